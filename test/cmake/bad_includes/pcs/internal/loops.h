@@ -1,0 +1,3 @@
+// Broken: the two headers that include everything.
+#include <CGAL/basic.h>
+#include <tbb/tbb.h>

@@ -1,0 +1,2 @@
+// Broken: a folder that the table does not know.
+#include <pcs/core/errors.h>

@@ -1,0 +1,57 @@
+# Tests of all headers at once, from generated sources. A new header is found without being listed.
+
+file(GLOB_RECURSE headers CONFIGURE_DEPENDS
+  RELATIVE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/include/pcs/*.h)
+list(SORT headers)
+set(generated ${CMAKE_CURRENT_BINARY_DIR}/headers)
+
+# Rewrites a file only when its text differs, so that nothing is compiled again without need.
+function(pcs_generate file text)
+  file(GENERATE OUTPUT ${generated}/${file} CONTENT "${text}")
+endfunction()
+
+set(include_all "")
+set(include_all_but_IO "")
+set(one_source_per_header "")
+foreach(header IN LISTS headers)
+  string(APPEND include_all "#include <${header}>\n")
+  if(NOT header MATCHES "^pcs/IO/")
+    string(APPEND include_all_but_IO "#include <${header}>\n")
+  endif()
+  string(MAKE_C_IDENTIFIER ${header} source)
+  pcs_generate(${source}.cpp "#include <${header}>\n#include <${header}>\n")
+  list(APPEND one_source_per_header ${generated}/${source}.cpp)
+endforeach()
+
+# Nothing here is run: compile without optimisation.
+add_library(pcs_header_flags INTERFACE)
+target_link_libraries(pcs_header_flags INTERFACE pcs::pcs)
+target_compile_options(pcs_header_flags INTERFACE $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-O0>)
+
+# Every header compiles alone, and a second time.
+add_library(headers_self_contained OBJECT EXCLUDE_FROM_ALL ${one_source_per_header})
+target_link_libraries(headers_self_contained PRIVATE pcs_header_flags pcs_dev_flags)
+pcs_add_build_test(headers.self_contained headers_self_contained)
+
+# Two sources with all headers link together: no function lacks its `inline`.
+pcs_generate(first.cpp "${include_all}int second();\nint main() { return second(); }\n")
+pcs_generate(second.cpp "${include_all}int second();\nint second() { return 0; }\n")
+add_executable(headers_two_translation_units EXCLUDE_FROM_ALL
+  ${generated}/first.cpp ${generated}/second.cpp)
+target_link_libraries(headers_two_translation_units PRIVATE pcs_header_flags)
+pcs_add_build_test(headers.two_translation_units headers_two_translation_units)
+
+# The headers outside IO/ reach no CGAL package under the GPL. CGAL's GPL headers include
+# <CGAL/license/...>, which stops the compiler under CGAL_LICENSE_ERROR, unless the macro of
+# a commercial licence is set. The second test proves that the first one can fail.
+pcs_generate(no_gpl.cpp "${include_all_but_IO}")
+pcs_generate(gpl.cpp "${include_all_but_IO}#include <CGAL/Kd_tree.h>\n")
+foreach(name no_gpl gpl)
+  add_library(license_${name} OBJECT EXCLUDE_FROM_ALL ${generated}/${name}.cpp)
+  target_link_libraries(license_${name} PRIVATE pcs_header_flags)
+  target_compile_definitions(license_${name} PRIVATE CGAL_LICENSE_ERROR)
+endforeach()
+pcs_add_build_test(license.no_gpl license_no_gpl)
+pcs_add_build_test(license.gpl_is_detected license_gpl)
+set_tests_properties(license.gpl_is_detected PROPERTIES
+  PASS_REGULAR_EXPRESSION "CGAL_SPATIAL_SEARCHING_COMMERCIAL_LICENSE is not defined")
