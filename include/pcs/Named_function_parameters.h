@@ -1,0 +1,117 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Named parameters of pcs: a chain of our own on top of CGAL's, so that both kinds may be passed.
+
+#ifndef PCS_NAMED_FUNCTION_PARAMETERS_H
+#define PCS_NAMED_FUNCTION_PARAMETERS_H
+
+#include <CGAL/Named_function_parameters.h>
+
+#include <functional>
+#include <type_traits>
+
+// The whole vocabulary in one list. PCS_SHARED(tag of CGAL, name), PCS_OWN(name).
+// Meaning, unit and default stand in the documentation of each function that reads a parameter.
+#define PCS_NAMED_PARAMETERS(PCS_SHARED, PCS_OWN)                                                  \
+  PCS_SHARED(point_t, point_map)                                                                   \
+  PCS_SHARED(normal_t, normal_map)                                                                 \
+  PCS_SHARED(geom_traits_t, geom_traits)                                                           \
+  PCS_SHARED(callback_t, callback)                                                                 \
+  PCS_SHARED(number_of_iterations_t, number_of_iterations)                                         \
+  PCS_OWN(number_of_samples)                                                                       \
+  PCS_OWN(number_of_neighbors)                                                                     \
+  PCS_OWN(number_of_sample_neighbors)                                                              \
+  PCS_OWN(region_of_interest)                                                                      \
+  PCS_OWN(sample_search)                                                                           \
+  PCS_OWN(sample_weights)                                                                          \
+  PCS_OWN(rotation_field)                                                                          \
+  PCS_OWN(tolerance)                                                                               \
+  PCS_OWN(stiffness)                                                                               \
+  PCS_OWN(poisson_ratio)                                                                           \
+  PCS_OWN(do_preserve_volume)
+
+namespace pcs {
+namespace internal_np {
+
+#define PCS_IGNORE(tag, name)
+#define PCS_DECLARE_TAG(name) enum name##_t{name};
+PCS_NAMED_PARAMETERS(PCS_IGNORE, PCS_DECLARE_TAG)
+#undef PCS_DECLARE_TAG
+#undef PCS_IGNORE
+
+} // namespace internal_np
+
+/// A chain of named parameters. It is a CGAL chain, so every function of CGAL accepts it too.
+template <class T, class Tag, class Base = CGAL::internal_np::No_property>
+struct Named_function_parameters : CGAL::Named_function_parameters<T, Tag, Base>
+{
+  using Cgal_chain = CGAL::Named_function_parameters<T, Tag, Base>;
+  using Cgal_chain::Cgal_chain;
+
+#define PCS_ADD_SHARED(tag, name)                                                                  \
+  template <class K>                                                                               \
+  auto name(const K& k) const                                                                      \
+  {                                                                                                \
+    return Named_function_parameters<K, CGAL::internal_np::tag, Cgal_chain>(k, *this);             \
+  }
+#define PCS_ADD_OWN(name)                                                                          \
+  template <class K>                                                                               \
+  auto name(const K& k) const                                                                      \
+  {                                                                                                \
+    return Named_function_parameters<K, internal_np::name##_t, Cgal_chain>(k, *this);              \
+  }
+  PCS_NAMED_PARAMETERS(PCS_ADD_SHARED, PCS_ADD_OWN)
+#undef PCS_ADD_SHARED
+#undef PCS_ADD_OWN
+};
+
+namespace parameters {
+
+using Default_named_parameters = Named_function_parameters<bool, CGAL::internal_np::all_default_t>;
+
+//! no parameter: every default applies
+inline Default_named_parameters default_values()
+{
+  return Default_named_parameters(true);
+}
+
+#define PCS_ADD_SHARED(tag, name)                                                                  \
+  template <class K>                                                                               \
+  auto name(const K& k)                                                                            \
+  {                                                                                                \
+    return Named_function_parameters<K, CGAL::internal_np::tag>(k);                                \
+  }
+#define PCS_ADD_OWN(name)                                                                          \
+  template <class K>                                                                               \
+  auto name(const K& k)                                                                            \
+  {                                                                                                \
+    return Named_function_parameters<K, internal_np::name##_t>(k);                                 \
+  }
+PCS_NAMED_PARAMETERS(PCS_ADD_SHARED, PCS_ADD_OWN)
+#undef PCS_ADD_SHARED
+#undef PCS_ADD_OWN
+
+} // namespace parameters
+
+namespace internal {
+
+/// The value given for `tag` in `np`, or `fallback`. A `std::reference_wrapper` is unwrapped.
+template <class NamedParameters, class Tag, class Default>
+auto choose(const NamedParameters& np, Tag tag, const Default& fallback)
+{
+  return CGAL::parameters::choose_parameter(CGAL::parameters::get_parameter(np, tag), fallback);
+}
+
+/// Whether `np` holds a value for the tag type.
+template <class NamedParameters, class Tag>
+constexpr bool is_given_v = !std::is_same_v<
+    std::decay_t<decltype(CGAL::parameters::get_parameter(std::declval<const NamedParameters&>(),
+                                                          std::declval<Tag>()))>,
+    CGAL::internal_np::Param_not_found>;
+
+} // namespace internal
+} // namespace pcs
+
+#undef PCS_NAMED_PARAMETERS
+
+#endif // PCS_NAMED_FUNCTION_PARAMETERS_H

@@ -1,0 +1,145 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// What a model must offer: traits that the public functions check, and that users may check themselves.
+
+#ifndef PCS_CONCEPTS_H
+#define PCS_CONCEPTS_H
+
+#include <boost/property_map/property_map.hpp>
+
+#include <iterator>
+#include <type_traits>
+#include <utility>
+
+namespace pcs {
+namespace internal {
+
+template <class T, class = void>
+struct Iterator_of
+{
+  using type = void;
+};
+template <class T>
+struct Iterator_of<
+    T,
+    std::void_t<decltype(std::begin(std::declval<T&>())), decltype(std::end(std::declval<T&>()))>>
+{
+  using type = decltype(std::begin(std::declval<T&>()));
+};
+
+template <class Iterator, class Category, class = void>
+struct Has_category : std::false_type
+{
+};
+template <class Iterator, class Category>
+struct Has_category<Iterator,
+                    Category,
+                    std::void_t<typename std::iterator_traits<Iterator>::iterator_category>>
+  : std::is_convertible<typename std::iterator_traits<Iterator>::iterator_category, Category>
+{
+};
+
+template <class T, class = void>
+struct Is_point : std::false_type
+{
+};
+template <class T>
+struct Is_point<T,
+                std::void_t<decltype(std::declval<const T&>().x()),
+                            decltype(std::declval<const T&>().y()),
+                            decltype(std::declval<const T&>().z())>>
+{
+  using FT = std::decay_t<decltype(std::declval<const T&>().x())>;
+  static constexpr bool value = std::is_constructible_v<T, FT, FT, FT>;
+};
+
+template <class Map, class = void>
+struct Map_value
+{
+  using type = void;
+};
+template <class Map>
+struct Map_value<Map, std::void_t<typename boost::property_traits<Map>::value_type>>
+{
+  using type = typename boost::property_traits<Map>::value_type;
+};
+
+template <class Map, class Key, class Value, class = void>
+struct Is_readable_map : std::false_type
+{
+};
+template <class Map, class Key, class Value>
+struct Is_readable_map<Map,
+                       Key,
+                       Value,
+                       std::void_t<decltype(get(std::declval<const Map&>(), std::declval<Key>()))>>
+  : std::is_same<typename Map_value<Map>::type, Value>
+{
+};
+
+template <class Map, class Key, class Value, class = void>
+struct Is_writable_map : std::false_type
+{
+};
+template <class Map, class Key, class Value>
+struct Is_writable_map<Map,
+                       Key,
+                       Value,
+                       std::void_t<decltype(put(std::declval<const Map&>(),
+                                                std::declval<Key>(),
+                                                std::declval<const Value&>()))>>
+  : std::is_same<typename Map_value<Map>::type, Value>
+{
+};
+
+} // namespace internal
+
+//! whether `T` has iterators of random access
+template <class T>
+constexpr bool is_random_access_range_v =
+    internal::Has_category<typename internal::Iterator_of<T>::type,
+                           std::random_access_iterator_tag>::value;
+
+//! what `*begin(range)` gives: the key of property maps over the range
+template <class Range>
+using Element_reference = decltype(*std::begin(std::declval<Range&>()));
+
+//! whether `T` has `x()`, `y()`, `z()` and can be made from three of these: any `Point_3` or `Vector_3` of CGAL,
+//! `Eigen::Vector3d`, or a type of your own
+template <class T>
+constexpr bool is_point_or_vector_v = internal::Is_point<T>::value;
+
+//! the value type of a property map, `void` if it is none
+template <class Map>
+using Map_value = typename internal::Map_value<Map>::type;
+
+//! whether `get(map, key)` gives a `Value`
+template <class Map, class Key, class Value>
+constexpr bool is_readable_map_v = internal::Is_readable_map<Map, Key, Value>::value;
+
+//! whether `get(map, key)` gives a `Value` and `put(map, key, value)` takes one
+template <class Map, class Key, class Value>
+constexpr bool is_read_write_map_v =
+    is_readable_map_v<Map, Key, Value>&& internal::Is_writable_map<Map, Key, Value>::value;
+
+namespace internal {
+
+template <class T, class = void>
+struct Is_index_range : std::false_type
+{
+};
+template <class T>
+struct Is_index_range<T, std::enable_if_t<!std::is_void_v<typename Iterator_of<const T>::type>>>
+  : std::is_integral<std::decay_t<decltype(*std::begin(std::declval<const T&>()))>>
+{
+};
+
+} // namespace internal
+
+//! whether `T` is a range of integers: the numbers of points
+template <class T>
+constexpr bool is_index_range_v = internal::Is_index_range<T>::value;
+
+} // namespace pcs
+
+#endif // PCS_CONCEPTS_H

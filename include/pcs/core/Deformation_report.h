@@ -1,0 +1,57 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// What a deformation did: counts, energies, seconds per stage.
+
+#ifndef PCS_CORE_DEFORMATION_REPORT_H
+#define PCS_CORE_DEFORMATION_REPORT_H
+
+#include <pcs/core/Status.h>
+
+#include <cstddef>
+#include <ostream>
+
+namespace pcs {
+
+//! \ingroup PkgPcsDeformationRef
+//! what `deform_point_set()` or `Point_set_deformation::deform()` did
+struct Deformation_report
+{
+  Status status = Status::nothing_to_do;
+
+  std::size_t number_of_points = 0;         ///< of the input [count]
+  std::size_t number_of_duplicates = 0;     ///< points at the place of another one [count]
+  std::size_t number_of_samples = 0;        ///< nodes of the non-linear problem [count]
+  std::size_t number_of_interior_links = 0; ///< springs through the inside [count]
+  std::size_t number_of_components = 0;     ///< of the neighbour graph [count]
+  std::size_t number_of_unreached_components =
+      0; ///< components without handle: they stay where they are [count]
+  std::size_t number_of_unreached_points = 0; ///< points of those components [count]
+  std::size_t number_of_iterations = 0;       ///< passes of rotations and positions [count]
+
+  double initial_energy = 0; ///< before the first pass [L^2]
+  double energy = 0;         ///< of the result [L^2]
+
+  //! wall-clock time of each stage [s]; stages that were not needed again show zero
+  struct Seconds
+  {
+    double neighbors = 0, sampling = 0, factorization = 0, solving = 0, upsampling = 0;
+  } seconds;
+};
+
+inline std::ostream& operator<<(std::ostream& out, const Deformation_report& r)
+{
+  out << "status " << r.status << ", " << r.number_of_points << " points ("
+      << r.number_of_duplicates << " duplicates), " << r.number_of_samples << " samples, "
+      << r.number_of_interior_links << " interior links, " << r.number_of_components
+      << " components (" << r.number_of_unreached_components << " unreached with "
+      << r.number_of_unreached_points << " points), " << r.number_of_iterations
+      << " iterations, energy " << r.initial_energy << " -> " << r.energy << "; seconds: neighbors "
+      << r.seconds.neighbors << ", sampling " << r.seconds.sampling << ", factorization "
+      << r.seconds.factorization << ", solving " << r.seconds.solving << ", upsampling "
+      << r.seconds.upsampling;
+  return out;
+}
+
+} // namespace pcs
+
+#endif // PCS_CORE_DEFORMATION_REPORT_H

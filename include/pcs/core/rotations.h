@@ -1,0 +1,70 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Rotation vectors, unit quaternions and the best rotation between two bundles of vectors.
+
+#ifndef PCS_CORE_ROTATIONS_H
+#define PCS_CORE_ROTATIONS_H
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <cmath>
+
+namespace pcs {
+
+using Quaternion = Eigen::Quaterniond;
+
+/// Unit quaternion of the rotation by `|u|` radians about `u`. Angles beyond 2 pi keep their sign on the
+/// double cover: `exp` of 360 degrees is -1.
+inline Quaternion rotation_exp(const Eigen::Vector3d& u)
+{
+  const double angle = u.norm();
+  // sin(t/2)/t = 1/2 - t^2/48 + ...; below 1e-4 the next term is under the last bit
+  const double f = angle > 1e-4 ? std::sin(0.5 * angle) / angle : 0.5 - angle * angle / 48;
+  return Quaternion(std::cos(0.5 * angle), f * u.x(), f * u.y(), f * u.z());
+}
+
+/// Rotation vector of the unit quaternion `q` on the double cover: length in [0, 2 pi]. [rad]
+inline Eigen::Vector3d lifted_rotation_log(const Quaternion& q)
+{
+  const double s = q.vec().norm();
+  const double f =
+      s > 1e-4 ? 2 * std::atan2(s, q.w()) / s : (q.w() >= 0 ? 2 + s * s / 3 : -2 - s * s / 3);
+  return f * q.vec();
+}
+
+/// Rotation vector of the rotation `q`, the shorter way round: length in [0, pi]. [rad]
+inline Eigen::Vector3d rotation_log(const Quaternion& q)
+{
+  return lifted_rotation_log(q.w() >= 0 ? q : Quaternion(-q.w(), -q.x(), -q.y(), -q.z()));
+}
+
+/*!
+  Improves the rotation `q` towards the maximiser of `trace(R^T covariance)`, where `covariance` is the sum
+  of `w * deformed * rest^T` (M. Mueller et al., "A robust method to extract the rotational part of
+  deformations", 2016). What the bundle does not determine (a line, a point, nothing) stays as in `q`, so every
+  input has a defined answer.
+*/
+inline Quaternion
+improve_rotation(const Eigen::Matrix3d& covariance, Quaternion q, int number_of_iterations)
+{
+  // 1e-9 of the size of the bundle: below it the axis is rounding
+  const double epsilon = 1e-9 * covariance.norm() + 1e-300;
+  for (int i = 0; i < number_of_iterations; ++i) {
+    const Eigen::Matrix3d r = q.toRotationMatrix();
+    const Eigen::Vector3d torque = r.col(0).cross(covariance.col(0)) +
+                                   r.col(1).cross(covariance.col(1)) +
+                                   r.col(2).cross(covariance.col(2));
+    const double stiffness = std::abs(r.cwiseProduct(covariance).sum());
+    const Eigen::Vector3d omega = torque / (stiffness + epsilon);
+    q = rotation_exp(omega) * q;
+    q.normalize();
+    if (omega.squaredNorm() < 1e-20)
+      break;
+  }
+  return q;
+}
+
+} // namespace pcs
+
+#endif // PCS_CORE_ROTATIONS_H

@@ -1,0 +1,135 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Loops and sums over index ranges, sequential or by TBB, with the same bits for every number of threads.
+
+#ifndef PCS_INTERNAL_PARALLEL_H
+#define PCS_INTERNAL_PARALLEL_H
+
+#include <CGAL/tags.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+// Copied headers follow CGAL's own switch; the CMake target sets PCS_WITH_TBB itself.
+#if !defined(PCS_WITH_TBB) && defined(CGAL_LINKED_WITH_TBB)
+#define PCS_WITH_TBB 1
+#endif
+
+#if defined(PCS_WITH_TBB) && PCS_WITH_TBB
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+#define PCS_HAS_TBB 1
+#else
+#define PCS_HAS_TBB 0
+#endif
+
+namespace pcs {
+namespace internal {
+
+template <class ConcurrencyTag>
+constexpr bool is_parallel()
+{
+  constexpr bool wants_parallel = std::is_convertible_v<ConcurrencyTag, CGAL::Parallel_tag>;
+#if PCS_HAS_TBB
+  return wants_parallel;
+#else
+  // Parallel_if_available_tag derives from Parallel_tag exactly when CGAL sees TBB; it must keep working here.
+  static_assert(!wants_parallel || !std::is_same_v<ConcurrencyTag, CGAL::Parallel_tag>,
+                "pcs: CGAL::Parallel_tag needs TBB; link TBB (PCS_WITH_TBB) or use "
+                "CGAL::Parallel_if_available_tag");
+  return false;
+#endif
+}
+
+/// Number of indices that one task takes. Fixed, so that no result depends on the number of threads.
+constexpr std::size_t default_block = 1024;
+
+/// Calls `f(begin, end)` for consecutive blocks of at most `block` indices that cover `[0, n)`.
+template <class ConcurrencyTag, class F>
+void for_each_block(std::size_t n, std::size_t block, const F& f)
+{
+  if constexpr (is_parallel<ConcurrencyTag>()) {
+#if PCS_HAS_TBB
+    if (n > block) {
+      const std::size_t number_of_blocks = (n + block - 1) / block;
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, number_of_blocks),
+                        [&](const tbb::blocked_range<std::size_t>& r) {
+                          for (std::size_t b = r.begin(); b != r.end(); ++b)
+                            f(b * block, std::min(n, (b + 1) * block));
+                        });
+      return;
+    }
+#endif
+  }
+  for (std::size_t begin = 0; begin < n; begin += block)
+    f(begin, std::min(n, begin + block));
+}
+
+/// Calls `f(i)` once for every `i` in `[0, n)`; `f(i)` may write only what belongs to `i`.
+template <class ConcurrencyTag, class F>
+void for_each_index(std::size_t n, const F& f, std::size_t block = default_block)
+{
+  for_each_block<ConcurrencyTag>(n, block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i != end; ++i)
+      f(i);
+  });
+}
+
+/// Joins `value(i)` over `[0, n)`: sequentially inside blocks of fixed size, then block by block in order.
+template <class ConcurrencyTag, class T, class Value, class Join>
+T blocked_reduce(std::size_t n,
+                 T init,
+                 const Value& value,
+                 const Join& join,
+                 std::size_t block = default_block)
+{
+  std::vector<T> partial((n + block - 1) / block, init);
+  for_each_block<ConcurrencyTag>(n, block, [&](std::size_t begin, std::size_t end) {
+    T sum = init;
+    for (std::size_t i = begin; i != end; ++i)
+      sum = join(sum, value(i));
+    partial[begin / block] = sum;
+  });
+  T total = init;
+  for (const T& p : partial)
+    total = join(total, p);
+  return total;
+}
+
+/// Runs two independent pieces of work, side by side where the tag allows it.
+template <class ConcurrencyTag, class F, class G>
+void invoke_both(const F& f, const G& g)
+{
+  if constexpr (is_parallel<ConcurrencyTag>()) {
+#if PCS_HAS_TBB
+    tbb::parallel_invoke(f, g);
+    return;
+#endif
+  }
+  f();
+  g();
+}
+
+/// Sorts by `less`, which must be a total order: then the result does not depend on the schedule.
+template <class ConcurrencyTag, class Iterator, class Less>
+void sort(Iterator begin, Iterator end, const Less& less)
+{
+  const auto n = static_cast<std::size_t>(end - begin);
+  if (!is_parallel<ConcurrencyTag>() || n < 4 * default_block) {
+    std::sort(begin, end, less);
+    return;
+  }
+  const auto middle = begin + (end - begin) / 2;
+  invoke_both<ConcurrencyTag>([&] { pcs::internal::sort<ConcurrencyTag>(begin, middle, less); },
+                              [&] { pcs::internal::sort<ConcurrencyTag>(middle, end, less); });
+  std::inplace_merge(begin, middle, end, less);
+}
+
+} // namespace internal
+} // namespace pcs
+
+#endif // PCS_INTERNAL_PARALLEL_H

@@ -1,0 +1,51 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Reports progress of staged work through the user's callback and remembers a request to stop.
+
+#ifndef PCS_INTERNAL_PROGRESS_H
+#define PCS_INTERNAL_PROGRESS_H
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+namespace pcs {
+namespace internal {
+
+/// Called on the caller's thread between stages. Values never decrease; `false` from the callback means stop.
+class Progress
+{
+public:
+  Progress() = default;
+  explicit Progress(std::function<bool(double)> callback) : m_callback(std::move(callback)) {}
+
+  /// Opens a stage that takes the share `[from, to]` of the whole work.
+  void stage(double from, double to)
+  {
+    m_from = from;
+    m_to = to;
+  }
+
+  /// Reports the fraction `f` in `[0, 1]` of the current stage. Returns `false` if the work must stop.
+  bool operator()(double f)
+  {
+    if (m_is_cancelled)
+      return false;
+    m_value = std::max(m_value, m_from + (m_to - m_from) * std::min(1.0, std::max(0.0, f)));
+    if (m_callback && !m_callback(m_value))
+      m_is_cancelled = true;
+    return !m_is_cancelled;
+  }
+
+  bool is_cancelled() const { return m_is_cancelled; }
+
+private:
+  std::function<bool(double)> m_callback;
+  double m_from = 0, m_to = 1, m_value = 0;
+  bool m_is_cancelled = false;
+};
+
+} // namespace internal
+} // namespace pcs
+
+#endif // PCS_INTERNAL_PROGRESS_H
