@@ -1,0 +1,92 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// k nearest neighbours of a set of distinct points, with ties decided by coordinates.
+
+#ifndef PCS_NEIGHBORHOOD_NEAREST_NEIGHBORS_H
+#define PCS_NEIGHBORHOOD_NEAREST_NEIGHBORS_H
+
+#include <pcs/neighborhood/spatial_order.h>
+
+#include <nanoflann.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace neighborhood {
+
+/*!
+  A k-d tree over `points`, which must stay alive and unchanged. Queries may run concurrently.
+  Coordinates should be relative to a near origin: distances are computed in double precision.
+*/
+class Nearest_neighbors
+{
+public:
+  struct Neighbor
+  {
+    std::uint32_t index;
+    double squared_distance; ///< [L^2]
+  };
+
+  explicit Nearest_neighbors(const std::vector<Vec3>& points)
+    : m_adaptor{points}, m_tree(3, m_adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(12))
+  {
+    m_tree.buildIndex();
+  }
+
+  Nearest_neighbors(const Nearest_neighbors&) = delete;
+  Nearest_neighbors& operator=(const Nearest_neighbors&) = delete;
+
+  /// Writes the `k` nearest points of `query` to `result`, nearest first; fewer if there are fewer points.
+  void operator()(const Vec3& query, std::size_t k, std::vector<Neighbor>& result) const
+  {
+    k = std::min(k, m_adaptor.points.size());
+    result.resize(k);
+    if (k == 0)
+      return;
+    thread_local std::vector<std::uint32_t> indices;
+    thread_local std::vector<double> distances;
+    indices.resize(k);
+    distances.resize(k);
+    const std::size_t found = m_tree.knnSearch(query.data(), k, indices.data(), distances.data());
+    result.resize(found);
+    for (std::size_t i = 0; i < found; ++i)
+      result[i] = {indices[i], distances[i]};
+    std::sort(result.begin(), result.end(), [&](const Neighbor& a, const Neighbor& b) {
+      if (a.squared_distance != b.squared_distance)
+        return a.squared_distance < b.squared_distance;
+      return lexicographically_less(m_adaptor.points[a.index], m_adaptor.points[b.index]);
+    });
+  }
+
+private:
+  struct Adaptor
+  {
+    const std::vector<Vec3>& points;
+    std::size_t kdtree_get_point_count() const { return points.size(); }
+    double kdtree_get_pt(std::size_t i, std::size_t d) const
+    {
+      return points[i][static_cast<Eigen::Index>(d)];
+    }
+    template <class Box>
+    bool kdtree_get_bbox(Box&) const
+    {
+      return false;
+    }
+  };
+  using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Adaptor>,
+                                                   Adaptor,
+                                                   3,
+                                                   std::uint32_t>;
+
+  Adaptor m_adaptor;
+  Tree m_tree;
+};
+
+} // namespace neighborhood
+} // namespace pcs
+
+#endif // PCS_NEIGHBORHOOD_NEAREST_NEIGHBORS_H

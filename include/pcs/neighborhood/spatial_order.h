@@ -1,0 +1,149 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Orders points along an octree of tight boxes, so that neighbours in space are neighbours in memory.
+
+#ifndef PCS_NEIGHBORHOOD_SPATIAL_ORDER_H
+#define PCS_NEIGHBORHOOD_SPATIAL_ORDER_H
+
+#include <pcs/internal/parallel.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <tuple>
+#include <vector>
+
+namespace pcs {
+namespace neighborhood {
+
+using Vec3 = Eigen::Vector3d;
+
+/// Strict order by coordinates, x first; points that compare equal are exact duplicates.
+inline bool lexicographically_less(const Vec3& a, const Vec3& b)
+{
+  return std::make_tuple(a.x(), a.y(), a.z()) < std::make_tuple(b.x(), b.y(), b.z());
+}
+
+/// Where a cell is cut, as a share of its box. Not the middle: on grids whole planes of points would lie exactly
+/// there, and rounding (a translated copy of the cloud) would decide on which side.
+constexpr double octree_cut = 0.49371;
+
+/// A cell of the octree: the octants around a point near the centre of the *tight* box of its points. Tight boxes
+/// keep the depth small however far away a single outlier lies.
+struct Octree_cell
+{
+  Vec3 center = Vec3::Zero();
+  double extent = 0; ///< largest side of the tight box [L]
+
+  template <class PointAt>
+  Octree_cell(std::size_t begin, std::size_t end, const PointAt& point_at)
+  {
+    Vec3 low = point_at(begin), high = low;
+    for (std::size_t i = begin + 1; i < end; ++i) {
+      low = low.cwiseMin(point_at(i));
+      high = high.cwiseMax(point_at(i));
+    }
+    extent = (high - low).maxCoeff();
+    center = low + octree_cut * (high - low);
+  }
+
+  int octant(const Vec3& p) const
+  {
+    return (p.x() > center.x() ? 4 : 0) + (p.y() > center.y() ? 2 : 0) +
+           (p.z() > center.z() ? 1 : 0);
+  }
+};
+
+/// Cells of at most this many points are not split further by `spatial_order()`; it sorts them by coordinates.
+constexpr std::size_t octree_leaf_size = 16;
+
+namespace internal {
+
+struct Order_entry
+{
+  Vec3 point;
+  std::uint32_t index;
+};
+
+template <class ConcurrencyTag>
+void order_cell(std::vector<Order_entry>& entries,
+                std::vector<Order_entry>& buffer,
+                std::size_t begin,
+                std::size_t end)
+{
+  const auto sort_leaf = [&] {
+    std::sort(entries.begin() + static_cast<std::ptrdiff_t>(begin),
+              entries.begin() + static_cast<std::ptrdiff_t>(end),
+              [](const Order_entry& a, const Order_entry& b) {
+                if (a.point == b.point)
+                  return a.index < b.index;
+                return lexicographically_less(a.point, b.point);
+              });
+  };
+  if (end - begin <= octree_leaf_size) {
+    sort_leaf();
+    return;
+  }
+  const Octree_cell cell(begin, end, [&](std::size_t i) -> const Vec3& {
+    return entries[i].point;
+  });
+  if (!(cell.extent > 0)) { // all duplicates of one another
+    sort_leaf();
+    return;
+  }
+  std::array<std::size_t, 9> first{};
+  for (std::size_t i = begin; i < end; ++i)
+    ++first[static_cast<std::size_t>(cell.octant(entries[i].point)) + 1];
+  first[0] = begin;
+  for (std::size_t c = 1; c < 9; ++c)
+    first[c] += first[c - 1];
+  std::array<std::size_t, 9> next = first;
+  for (std::size_t i = begin; i < end; ++i)
+    buffer[next[static_cast<std::size_t>(cell.octant(entries[i].point))]++] = entries[i];
+  std::copy(buffer.begin() + static_cast<std::ptrdiff_t>(begin),
+            buffer.begin() + static_cast<std::ptrdiff_t>(end),
+            entries.begin() + static_cast<std::ptrdiff_t>(begin));
+  // Two points on either side of the last representable centre may fall into one octant for ever.
+  for (std::size_t c = 0; c < 8; ++c)
+    if (first[c + 1] - first[c] == end - begin) {
+      sort_leaf();
+      return;
+    }
+  pcs::internal::for_each_index<ConcurrencyTag>(
+      8,
+      [&](std::size_t c) {
+        if (first[c] != first[c + 1])
+          order_cell<ConcurrencyTag>(entries, buffer, first[c], first[c + 1]);
+      },
+      end - begin > 20000 ? 1 : 8);
+}
+
+} // namespace internal
+
+/*!
+  Returns the indices of `points` in octree order. Exact duplicates are consecutive, the smaller index first.
+  Apart from duplicates the sequence of positions does not depend on the order of the input. O(n log n).
+*/
+template <class ConcurrencyTag>
+std::vector<std::uint32_t> spatial_order(const std::vector<Vec3>& points)
+{
+  std::vector<internal::Order_entry> entries(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    entries[i] = {points[i], static_cast<std::uint32_t>(i)};
+  {
+    std::vector<internal::Order_entry> buffer(points.size());
+    internal::order_cell<ConcurrencyTag>(entries, buffer, 0, entries.size());
+  }
+  std::vector<std::uint32_t> order(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    order[i] = entries[i].index;
+  return order;
+}
+
+} // namespace neighborhood
+} // namespace pcs
+
+#endif // PCS_NEIGHBORHOOD_SPATIAL_ORDER_H
