@@ -1,0 +1,89 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// One non-linear deformation of a point cloud by handles.
+
+#ifndef PCS_DEFORM_POINT_SET_H
+#define PCS_DEFORM_POINT_SET_H
+
+#include <pcs/Point_set_deformation.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace pcs {
+
+//! \ingroup PkgPcsDeformationRef
+//! points that move together, and how
+struct Deformation_handle
+{
+  std::vector<std::size_t> indices; //!< numbers of the points
+  Similarity transformation;        //!< from rest; the identity holds the points where they are
+  double softness = 0;              //!< see `Point_set_deformation::add_handle()` [-]
+};
+
+/*!
+  \ingroup PkgPcsDeformationRef
+  \brief moves `points` so that the handles reach their targets while neighbourhoods keep their shape.
+
+  Same as one `Point_set_deformation` with one `deform()`: see there for the model, the named parameters, errors, cost
+  and determinism.
+
+  \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or `CGAL::Parallel_if_available_tag`
+  \param points a model of `RandomAccessRange`, modified in place through `point_map`
+  \param handles range of `Deformation_handle`, at least one
+  \return a `Deformation_report`: status, counts, energies, seconds per stage
+*/
+template <class ConcurrencyTag = CGAL::Parallel_if_available_tag,
+          class PointRange,
+          class HandleRange,
+          class NamedParameters = parameters::Default_named_parameters,
+          class = std::enable_if_t<!is_index_range_v<HandleRange>>>
+Deformation_report deform_point_set(PointRange& points,
+                                    const HandleRange& handles,
+                                    const NamedParameters& np = NamedParameters())
+{
+  if (std::begin(handles) == std::end(handles))
+    throw Invalid_input("pcs::deform_point_set(): there is no handle");
+  Point_set_deformation<PointRange, NamedParameters, ConcurrencyTag> session(points, np);
+  if (session.number_of_samples() == 0)
+    return session.deform(); // cancelled
+  for (const Deformation_handle& h : handles)
+    session.set_transformation(session.add_handle(h.indices, h.softness), h.transformation);
+  return session.deform();
+}
+
+/*!
+  \ingroup PkgPcsDeformationRef
+  \brief the same for the commonest edit: `fixed` points stay, `moved` points are transformed.
+
+  \param fixed range of integers; may be empty
+  \param moved range of integers
+  \param transformation a `Similarity` (see `rotation()`, `translation()`, `scaling()`), or a
+         `CGAL::Aff_transformation_3` that is a rotation with uniform scale and translation
+*/
+template <class ConcurrencyTag = CGAL::Parallel_if_available_tag,
+          class PointRange,
+          class FixedRange,
+          class MovedRange,
+          class Transformation,
+          class NamedParameters = parameters::Default_named_parameters,
+          class = std::enable_if_t<is_similarity_like_v<Transformation>>>
+Deformation_report deform_point_set(PointRange& points,
+                                    const FixedRange& fixed,
+                                    const MovedRange& moved,
+                                    const Transformation& transformation,
+                                    const NamedParameters& np = NamedParameters())
+{
+  const Similarity motion = to_similarity(transformation);
+  Point_set_deformation<PointRange, NamedParameters, ConcurrencyTag> session(points, np);
+  if (session.number_of_samples() == 0)
+    return session.deform(); // cancelled
+  if (std::begin(fixed) != std::end(fixed))
+    session.add_handle(fixed);
+  session.set_transformation(session.add_handle(moved), motion);
+  return session.deform();
+}
+
+} // namespace pcs
+
+#endif // PCS_DEFORM_POINT_SET_H

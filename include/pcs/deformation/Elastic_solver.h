@@ -1,0 +1,425 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Rotations and positions of an elastic network under handles: constant factors, alternating solves.
+
+#ifndef PCS_DEFORMATION_ELASTIC_SOLVER_H
+#define PCS_DEFORMATION_ELASTIC_SOLVER_H
+
+#include <pcs/core/Similarity.h>
+#include <pcs/core/Status.h>
+#include <pcs/core/rotations.h>
+#include <pcs/deformation/Elastic_network.h>
+#include <pcs/deformation/Harmonic_system.h>
+#include <pcs/deformation/rotation_field.h>
+#include <pcs/internal/parallel.h>
+#include <pcs/internal/progress.h>
+
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+/// Weight of the local fit against its neighbours' when rotations are smoothed, at stiffness 1. [-]
+/// Chosen among 0.004 ... 2 on the bars, tubes and plates of benchmark/quality: smaller values hold back bending
+/// that a dragged handle asks for, larger ones let surfaces buckle.
+constexpr double default_fit_weight = 0.3;
+/// Passes end when the energy falls by less than this share. [-]
+constexpr double default_tolerance = 0.01;
+constexpr int default_maximal_number_of_passes = 20;
+
+struct Elastic_options
+{
+  int maximal_number_of_passes = default_maximal_number_of_passes;
+  double tolerance = default_tolerance;
+  double stiffness = 1;     ///< resistance against bending relative to stretching [-]
+  double poisson_ratio = 0; ///< transverse contraction under stretch, in [-1, 0.5] [-]
+  Rotation_field rotation_field = Rotation_field::geodesic;
+};
+
+struct Elastic_result
+{
+  Status status = Status::nothing_to_do;
+  int number_of_passes = 0;
+  double energy = 0;         ///< [L^2]
+  double initial_energy = 0; ///< after the first positions, before any pass [L^2]
+};
+
+/*!
+  Alternates
+
+  - the rotation field `B` of the handles (`Rotation_field_solver`) and a harmonic logarithm of scale,
+  - positions: `L x = b`, `b_i = sum_j w_ij (G_i + G_j)/2 (x0_i - x0_j)` with `G_i = s_i R_i S_i`,
+  - passes, the text's equation (2.2): best local rotations `R_fit`, their deviation from the field
+    `d = log(R_fit B^-1)` smoothed by `(L + mu D) d' = mu D d`, `R = exp(d') B`, positions again.
+
+  All matrices are constant while the constraints are; the three factors are made in `constrain()`. Of all states
+  that the passes go through, the one with the least energy is kept, so more passes never make it worse.
+*/
+template <class ConcurrencyTag>
+class Elastic_solver
+{
+public:
+  const Elastic_network& network() const { return *m_network; }
+  const Node_constraints& constraints() const { return m_constraints; }
+  const std::vector<Vec3>& positions() const { return m_position; }
+  /// `s_i R_i` of every node: the local similarity without its translation.
+  const std::vector<Eigen::Matrix3d>& frames() const { return m_frame; }
+
+  /// Takes a network, which must outlive its use here, and constraints, and factorises. Returns `false` if a matrix is
+  /// singular (a free part without handle).
+  bool constrain(const Elastic_network& network, Node_constraints constraints, double stiffness)
+  {
+    m_network = &network;
+    m_constraints = std::move(constraints);
+    m_rows = Free_rows(m_constraints);
+    m_fit_weight = default_fit_weight / stiffness;
+    std::vector<double> soft(m_rows.size(), 0), smoothing(m_rows.size(), 0);
+    for (std::size_t r = 0; r < m_rows.size(); ++r) {
+      const std::size_t i = m_rows.node_of_row[r];
+      const double degree = node_degree(m_network->surface, i);
+      if (m_constraints.is_soft(i))
+        soft[r] = degree * softness(i);
+      smoothing[r] = soft[r] + m_fit_weight * degree;
+    }
+    const auto assemble = [&](std::vector<const Weighted_graph*> graphs,
+                              const std::vector<double>& extra) {
+      return linear_algebra::free_laplacian(graphs, m_rows.row_of_node, m_rows.node_of_row, extra);
+    };
+    const Weighted_graph* surface = &m_network->surface;
+    const bool has_links = !m_network->links.neighbor.empty();
+    bool field_ok = false, smoothing_ok = false, position_ok = true;
+    pcs::internal::invoke_both<ConcurrencyTag>(
+        [&] {
+          field_ok = m_field_factor.factorize(assemble({surface}, soft));
+          if (has_links)
+            position_ok = m_link_factor.factorize(assemble({surface, &m_network->links}, soft));
+        },
+        [&] { smoothing_ok = m_smoothing_factor.factorize(assemble({surface}, smoothing)); });
+    m_position = network.rest;
+    m_frame.assign(network.size(), Eigen::Matrix3d::Identity());
+    return field_ok && smoothing_ok && position_ok;
+  }
+
+  /// Solves for one transformation per handle, from the rest shape.
+  Elastic_result solve(const std::vector<Similarity>& transforms,
+                       const Elastic_options& options,
+                       pcs::internal::Progress& progress)
+  {
+    Elastic_result result;
+    m_transforms = &transforms;
+    m_field_solver(options.rotation_field,
+                   m_field_factor,
+                   m_network->surface,
+                   m_constraints,
+                   m_rows,
+                   transforms,
+                   m_field);
+    m_rotation = m_field;
+    blend_scales();
+    m_stretch_is_used = options.poisson_ratio != 0;
+    if (m_stretch_is_used)
+      m_stretch.assign(m_network->size(), Eigen::Matrix3d::Identity());
+    update_frames();
+    place_constrained_nodes();
+    solve_positions(true);
+    result.energy = result.initial_energy = fit_and_measure(options);
+    result.status =
+        options.maximal_number_of_passes == 0 ? Status::iteration_limit : Status::converged;
+    if (m_rows.size() == 0)
+      return result;
+    for (int pass = 0; pass < options.maximal_number_of_passes; ++pass) {
+      if (!progress(static_cast<double>(pass) / options.maximal_number_of_passes)) {
+        result.status = Status::cancelled;
+        return result;
+      }
+      m_best_position = m_position;
+      m_best_frame = m_frame;
+      smooth_deviations();
+      update_frames();
+      solve_positions(false);
+      const double energy = fit_and_measure(options);
+      result.number_of_passes = pass + 1;
+      const double fall = result.energy - energy;
+      if (!(fall > 0)) { // rounding at the optimum, or overshoot: keep the better state
+        m_position.swap(m_best_position);
+        m_frame.swap(m_best_frame);
+        result.status = Status::converged;
+        break;
+      }
+      result.energy = energy;
+      result.status = Status::iteration_limit;
+      if (fall <= options.tolerance * (result.energy + fall)) {
+        result.status = Status::converged;
+        break;
+      }
+    }
+    return result;
+  }
+
+private:
+  using Vec1 = Eigen::Matrix<double, 1, 1>;
+  static constexpr std::size_t block = 512;
+
+  std::size_t handle(std::size_t node) const
+  {
+    return static_cast<std::size_t>(m_constraints.handle_of_node[node]);
+  }
+  double softness(std::size_t node) const { return m_constraints.softness_weight[handle(node)]; }
+
+  const linear_algebra::Sparse_cholesky& position_factor() const
+  {
+    return m_network->links.neighbor.empty() ? m_field_factor : m_link_factor;
+  }
+
+  void blend_scales()
+  {
+    m_log_scale.assign(m_network->size(), Vec1::Zero());
+    bool any = false;
+    for (const Similarity& t : *m_transforms)
+      any = any || t.scale() != 1;
+    if (!any)
+      return;
+    const auto value = [&](std::size_t i) {
+      return Vec1(std::log((*m_transforms)[handle(i)].scale()));
+    };
+    solve_harmonic(m_field_factor,
+                   m_network->surface,
+                   m_constraints,
+                   m_rows,
+                   value,
+                   m_rhs1,
+                   m_work1,
+                   m_log_scale);
+    for (std::size_t i = 0; i < m_network->size(); ++i)
+      if (m_constraints.is_prescribed(i))
+        m_log_scale[i] = value(i);
+  }
+
+  void update_frames()
+  {
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        m_network->size(),
+        [&](std::size_t i) {
+          if (m_constraints.is_prescribed(i)) {
+            const Similarity& t = (*m_transforms)[handle(i)];
+            m_frame[i] = t.scale() * t.rotation();
+          } else
+            m_frame[i] = std::exp(m_log_scale[i][0]) * m_rotation[i].toRotationMatrix();
+        },
+        block);
+  }
+
+  /// What an edge at node `i` aims at: the frame, times the stretch that the material allows.
+  Eigen::Matrix3d target(std::size_t i) const
+  {
+    return m_stretch_is_used ? Eigen::Matrix3d(m_frame[i] * m_stretch[i]) : m_frame[i];
+  }
+
+  void place_constrained_nodes()
+  {
+    for (std::size_t i = 0; i < m_network->size(); ++i)
+      if (m_constraints.is_prescribed(i))
+        m_position[i] = (*m_transforms)[handle(i)](m_network->rest[i]);
+      else if (m_constraints.handle_of_node[i] == unreached_node)
+        m_position[i] = m_network->rest[i];
+  }
+
+  /// Links keep their turned direction at first; later they are springs of their rest length, because a link through
+  /// a twisted bar must not turn with either end.
+  void solve_positions(bool links_turn)
+  {
+    const auto& rest = m_network->rest;
+    m_rhs3.resize(m_rows.size());
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        m_rows.size(),
+        [&](std::size_t r) {
+          const std::size_t i = m_rows.node_of_row[r];
+          const Eigen::Matrix3d target_i = target(i);
+          Vec3 own = Vec3::Zero(), b = Vec3::Zero();
+          const auto& graph = m_network->surface;
+          double degree = 0;
+          for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
+            const std::size_t j = graph.neighbor[e];
+            const Vec3 edge = graph.weight[e] * (rest[i] - rest[j]);
+            degree += graph.weight[e];
+            own += edge;
+            b += 0.5 * (m_stretch_is_used ? Vec3(m_frame[j] * (m_stretch[j] * edge))
+                                          : Vec3(m_frame[j] * edge));
+            if (m_constraints.is_prescribed(j))
+              b += graph.weight[e] * m_position[j];
+          }
+          b += 0.5 * (target_i * own);
+          const auto& links = m_network->links;
+          if (!links.neighbor.empty())
+            for (std::size_t e = links.first[i]; e < links.first[i + 1]; ++e) {
+              const std::size_t j = links.neighbor[e];
+              b += links.weight[e] * link_target(i, j, links_turn);
+              if (m_constraints.is_prescribed(j))
+                b += links.weight[e] * m_position[j];
+            }
+          if (m_constraints.is_soft(i))
+            b += softness(i) * degree * (*m_transforms)[handle(i)](rest[i]);
+          m_rhs3[r] = b;
+        },
+        block);
+    position_factor().solve(m_rhs3, m_work3);
+    for (std::size_t r = 0; r < m_rows.size(); ++r)
+      m_position[m_rows.node_of_row[r]] = m_rhs3[r];
+  }
+
+  double scale_between(std::size_t i, std::size_t j) const
+  {
+    return std::exp(0.5 * (m_log_scale[i][0] + m_log_scale[j][0]));
+  }
+
+  Vec3 link_target(std::size_t i, std::size_t j, bool links_turn) const
+  {
+    const Vec3 edge = m_network->rest[i] - m_network->rest[j];
+    if (links_turn)
+      return 0.5 * (m_frame[i] * edge + m_frame[j] * edge);
+    const Vec3 present = m_position[i] - m_position[j];
+    const double length = present.norm();
+    return length > 0 ? Vec3(scale_between(i, j) * edge.norm() / length * present)
+                      : Vec3(Vec3::Zero());
+  }
+
+  /// One sweep: the energy of the present state, and the deviation of each node's best rotation from the field.
+  double fit_and_measure(const Elastic_options& options)
+  {
+    const auto& rest = m_network->rest;
+    const auto& graph = m_network->surface;
+    m_deviation.resize(m_network->size());
+    return pcs::internal::blocked_reduce<ConcurrencyTag>(
+        m_network->size(),
+        0.0,
+        [&](std::size_t i) {
+          if (m_constraints.handle_of_node[i] == unreached_node)
+            return 0.0;
+          double energy = 0;
+          Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+          const Eigen::Matrix3d target_i = target(i);
+          for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
+            const std::size_t j = graph.neighbor[e];
+            const Vec3 edge = rest[j] - rest[i];
+            const Vec3 present = m_position[j] - m_position[i];
+            const Vec3 aim = 0.5 * (target_i * edge + target(j) * edge);
+            energy += 0.5 * graph.weight[e] * (present - aim).squaredNorm();
+            covariance += graph.weight[e] * present * edge.transpose();
+          }
+          energy += link_energy(i);
+          if (!m_constraints.is_prescribed(i)) {
+            const Quaternion fit = improve_rotation(covariance, m_rotation[i], 2);
+            m_deviation[i] = rotation_log(fit * m_field[i].conjugate());
+            if (m_stretch_is_used)
+              m_stretch[i] = transverse_stretch(i, options.poisson_ratio);
+          }
+          return energy;
+        },
+        [](double a, double b) { return a + b; },
+        block);
+  }
+
+  double link_energy(std::size_t i) const
+  {
+    const auto& links = m_network->links;
+    double energy = 0;
+    if (!links.neighbor.empty())
+      for (std::size_t e = links.first[i]; e < links.first[i + 1]; ++e) {
+        const std::size_t j = links.neighbor[e];
+        const double error = (m_position[i] - m_position[j]).norm() -
+                             scale_between(i, j) * (m_network->rest[i] - m_network->rest[j]).norm();
+        energy += 0.5 * links.weight[e] * error * error;
+      }
+    return energy;
+  }
+
+  /// `(L + mu D) d' = mu D d`, then `R = exp(d') B`.
+  void smooth_deviations()
+  {
+    const auto& graph = m_network->surface;
+    m_rhs3.resize(m_rows.size());
+    for (std::size_t r = 0; r < m_rows.size(); ++r) {
+      const std::size_t i = m_rows.node_of_row[r];
+      m_rhs3[r] = m_fit_weight * node_degree(graph, i) * m_deviation[i];
+    }
+    m_smoothing_factor.solve(m_rhs3, m_work3);
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        m_rows.size(),
+        [&](std::size_t r) {
+          const std::size_t i = m_rows.node_of_row[r];
+          m_rotation[i] = (rotation_exp(m_rhs3[r]) * m_field[i]).normalized();
+        },
+        block);
+  }
+
+  /// The rest shape that a material of the given Poisson's ratio takes under the present main stretch `s1` along
+  /// `v`: `S = s1 v v^T + s1^-nu (I - v v^T)`.
+  Eigen::Matrix3d transverse_stretch(std::size_t i, double poisson_ratio) const
+  {
+    const Eigen::Matrix3d in_rest = m_frame[i].inverse() * deformation_gradient(i);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(
+        Eigen::Matrix3d(0.5 * (in_rest + in_rest.transpose())));
+    if (eigen.info() != Eigen::Success || !(eigen.eigenvalues().minCoeff() > 0))
+      return Eigen::Matrix3d::Identity();
+    int main = 0;
+    for (int k = 1; k < 3; ++k)
+      if (std::abs(std::log(eigen.eigenvalues()[k])) >
+          std::abs(std::log(eigen.eigenvalues()[main])))
+        main = k;
+    // Beyond a factor of ten the network is torn, not stretched.
+    const double s1 = std::min(10.0, std::max(0.1, eigen.eigenvalues()[main]));
+    const Vec3 v = eigen.eigenvectors().col(main);
+    const double across = std::pow(s1, -poisson_ratio);
+    return (s1 - across) * v * v.transpose() + across * Eigen::Matrix3d::Identity();
+  }
+
+public:
+  /// Weight of the frame in `deformation_gradient()`, relative to the spread of the edges: it decides where the
+  /// edges say nothing, across a surface.
+  static constexpr double frame_share = 0.05;
+
+  /// Best linear map of the edges at node `i` from rest to now, completed by the frame across the surface. [-]
+  Eigen::Matrix3d deformation_gradient(std::size_t i) const
+  {
+    const auto& graph = m_network->surface;
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero(), spread = Eigen::Matrix3d::Zero();
+    for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
+      const std::size_t j = graph.neighbor[e];
+      const Vec3 edge = m_network->rest[j] - m_network->rest[i];
+      const Vec3 present = m_position[j] - m_position[i];
+      covariance += graph.weight[e] * present * edge.transpose();
+      spread += graph.weight[e] * edge * edge.transpose();
+    }
+    const double share = frame_share * spread.trace();
+    if (!(share > 0))
+      return m_frame[i];
+    covariance += share * m_frame[i];
+    spread += share * Eigen::Matrix3d::Identity();
+    return covariance * spread.inverse();
+  }
+
+private:
+  const Elastic_network* m_network = nullptr;
+  Node_constraints m_constraints;
+  Free_rows m_rows;
+  linear_algebra::Sparse_cholesky m_field_factor, m_link_factor, m_smoothing_factor;
+  Rotation_field_solver m_field_solver;
+  double m_fit_weight = default_fit_weight;
+  bool m_stretch_is_used = false;
+
+  const std::vector<Similarity>* m_transforms = nullptr;
+  std::vector<Quaternion> m_field, m_rotation;
+  std::vector<Eigen::Matrix3d> m_frame, m_best_frame, m_stretch;
+  std::vector<Vec1> m_log_scale, m_rhs1, m_work1;
+  std::vector<Vec3> m_position, m_best_position, m_deviation, m_rhs3, m_work3;
+};
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_ELASTIC_SOLVER_H

@@ -1,0 +1,209 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Which samples move a point, and how much: geodesic nearest samples and their weights.
+
+#ifndef PCS_DEFORMATION_SAMPLE_LINKS_H
+#define PCS_DEFORMATION_SAMPLE_LINKS_H
+
+#include <pcs/deformation/Sample_regions.h>
+#include <pcs/internal/parallel.h>
+#include <pcs/neighborhood/Proximity_graph.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+
+/// How the nearest samples of a point are found.
+enum class Sample_search {
+  regions, ///< the nearest among the samples whose regions touch that of the point, or touch those (default)
+  breadth_first_hops ///< the dissertation's Algorithm 1: by number of hops on the neighbour graph
+};
+
+/// How much a sample moves a point.
+enum class Sample_weights {
+  compact, ///< (1 - (d / d_{K+1})^2)^2: zero where a sample leaves the K nearest, hence continuous (default)
+  inverse_square ///< the dissertation's (2.6): 1 / d^2, which jumps there
+};
+
+namespace deformation {
+
+/// `k` samples per point with weights that sum to one; unused places hold `no_sample` and weight 0.
+struct Sample_links
+{
+  std::size_t k = 0;
+  std::vector<std::uint32_t> sample;
+  std::vector<float> weight;
+};
+
+namespace internal {
+
+/// Candidate samples of one point, nearest first, and the distance at which a sample no longer counts.
+struct Sample_candidate
+{
+  double distance;
+  std::uint32_t sample;
+  bool operator<(const Sample_candidate& other) const
+  {
+    return distance != other.distance ? distance < other.distance : sample < other.sample;
+  }
+};
+
+inline void write_weights(const std::vector<Sample_candidate>& nearest,
+                          Sample_weights kind,
+                          std::size_t point,
+                          Sample_links& links)
+{
+  const std::size_t count = std::min(links.k, nearest.size());
+  if (count == 0)
+    return;
+  double sum = 0;
+  std::vector<double> w(count);
+  // With fewer samples than K + 1 in reach there is none to fade out for: fade beyond the last.
+  const double support =
+      nearest.size() > links.k ? nearest[links.k].distance : 1.5 * nearest.back().distance;
+  for (std::size_t b = 0; b < count; ++b) {
+    const double d = nearest[b].distance;
+    if (kind == Sample_weights::compact) {
+      const double f = support > 0 ? 1 - (d / support) * (d / support) : 1;
+      w[b] = std::max(0.0, f) * std::max(0.0, f);
+    } else
+      w[b] = 1 / std::max(d * d,
+                          1e-24 * support * support + 1e-300); // the point may be the sample itself
+    sum += w[b];
+  }
+  if (!(sum > 0)) { // K + 1 samples at the same distance
+    w.assign(count, 1);
+    sum = static_cast<double>(count);
+  }
+  for (std::size_t b = 0; b < count; ++b) {
+    links.sample[point * links.k + b] = nearest[b].sample;
+    links.weight[point * links.k + b] = static_cast<float>(w[b] / sum);
+  }
+}
+
+} // namespace internal
+
+/*!
+  Nearest samples among the two rings of touching regions around the point's own, by distance in space.
+
+  On a smooth surface distances within two regions are all but geodesic, and unlike sums of edges they are smooth
+  functions of the point; that the rings follow the surface keeps out what is near in space only. Every point is
+  independent of all others. O(n ring).
+*/
+template <class ConcurrencyTag>
+Sample_links link_by_regions(const std::vector<Vec3>& points,
+                             const std::vector<std::uint32_t>& samples,
+                             const Sample_regions& regions,
+                             const Weighted_graph& graph,
+                             std::size_t k,
+                             Sample_weights weights)
+{
+  Sample_links links;
+  links.k = k;
+  links.sample.assign(points.size() * k, no_sample);
+  links.weight.assign(points.size() * k, 0);
+  std::vector<std::vector<std::uint32_t>> rings(samples.size());
+  pcs::internal::for_each_index<ConcurrencyTag>(
+      samples.size(),
+      [&](std::size_t s) {
+        auto& ring = rings[s];
+        ring.push_back(static_cast<std::uint32_t>(s));
+        for (auto t = graph.begin(s); t != graph.end(s); ++t) {
+          ring.push_back(*t);
+          ring.insert(ring.end(), graph.begin(*t), graph.end(*t));
+        }
+        std::sort(ring.begin(), ring.end());
+        ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+      },
+      256);
+  pcs::internal::for_each_block<ConcurrencyTag>(
+      points.size(),
+      1024,
+      [&](std::size_t begin, std::size_t end) {
+        std::vector<internal::Sample_candidate> nearest;
+        for (std::size_t i = begin; i < end; ++i) {
+          if (regions.sample_of_point[i] == no_sample)
+            continue;
+          nearest.clear();
+          for (const auto s : rings[regions.sample_of_point[i]])
+            nearest.push_back({(points[samples[s]] - points[i]).squaredNorm(), s});
+          const std::size_t count = std::min(k + 1, nearest.size());
+          std::partial_sort(nearest.begin(),
+                            nearest.begin() + static_cast<std::ptrdiff_t>(count),
+                            nearest.end());
+          nearest.resize(count);
+          for (auto& candidate : nearest)
+            candidate.distance = std::sqrt(candidate.distance);
+          internal::write_weights(nearest, weights, i, links);
+        }
+      });
+  return links;
+}
+
+/*!
+  The first `k` samples to arrive when all samples spread over the graph at once, one hop per round.
+  Equal to a breadth-first search from every point up to ties, at O(n k degree) instead of O(n r).
+*/
+template <class ConcurrencyTag>
+Sample_links link_by_hops(const std::vector<Vec3>& points,
+                          const neighborhood::Proximity_graph& graph,
+                          const std::vector<std::uint32_t>& samples,
+                          std::size_t k,
+                          Sample_weights weights)
+{
+  const std::size_t wanted = k + 1; // the last one ends the support of the compact weights
+  std::vector<std::uint32_t> label(points.size() * wanted, no_sample);
+  std::vector<std::uint8_t> count(points.size(), 0);
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> front, next; // point, sample
+  for (std::size_t s = 0; s < samples.size(); ++s)
+    front.emplace_back(samples[s], static_cast<std::uint32_t>(s));
+  const auto accept = [&](std::uint32_t point, std::uint32_t sample) {
+    auto* row = label.data() + point * wanted;
+    if (count[point] == wanted || std::find(row, row + count[point], sample) != row + count[point])
+      return false;
+    row[count[point]++] = sample;
+    return true;
+  };
+  while (!front.empty()) {
+    // Sorted: the order of arrival, and with it every tie, is the same on every machine.
+    std::sort(front.begin(), front.end());
+    front.erase(std::unique(front.begin(), front.end()), front.end());
+    next.clear();
+    for (const auto& [point, sample] : front)
+      if (accept(point, sample))
+        for (auto j = graph.begin(point); j != graph.end(point); ++j)
+          if (count[*j] < wanted)
+            next.emplace_back(*j, sample);
+    front.swap(next);
+  }
+  Sample_links links;
+  links.k = k;
+  links.sample.assign(points.size() * k, no_sample);
+  links.weight.assign(points.size() * k, 0);
+  pcs::internal::for_each_block<ConcurrencyTag>(
+      points.size(),
+      1024,
+      [&](std::size_t begin, std::size_t end) {
+        std::vector<internal::Sample_candidate> nearest;
+        for (std::size_t i = begin; i < end; ++i) {
+          nearest.clear();
+          for (std::size_t b = 0; b < count[i]; ++b) {
+            const std::uint32_t s = label[i * wanted + b];
+            nearest.push_back({(points[samples[s]] - points[i]).norm(), s});
+          }
+          std::sort(nearest.begin(), nearest.end());
+          internal::write_weights(nearest, weights, i, links);
+        }
+      });
+  return links;
+}
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_SAMPLE_LINKS_H

@@ -1,0 +1,204 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The part of a deformation that depends on the points only: order, neighbours, samples, links to the samples.
+
+#ifndef PCS_DEFORMATION_SAMPLED_BODY_H
+#define PCS_DEFORMATION_SAMPLED_BODY_H
+
+#include <pcs/core/Deformation_report.h>
+#include <pcs/core/errors.h>
+#include <pcs/deformation/Elastic_network.h>
+#include <pcs/deformation/Sample_links.h>
+#include <pcs/deformation/Sample_regions.h>
+#include <pcs/deformation/Upsampling.h>
+#include <pcs/deformation/interior_links.h>
+#include <pcs/deformation/octree_samples.h>
+#include <pcs/internal/Stopwatch.h>
+#include <pcs/internal/parallel.h>
+#include <pcs/internal/progress.h>
+#include <pcs/neighborhood/Proximity_graph.h>
+#include <pcs/neighborhood/spatial_order.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+struct Sampling_options
+{
+  std::size_t number_of_samples = 2000;
+  std::size_t number_of_neighbors = 6;
+  std::size_t number_of_sample_neighbors = 6;
+  Sample_search sample_search = Sample_search::regions;
+  Sample_weights sample_weights = Sample_weights::compact;
+  bool do_preserve_volume = true;
+};
+
+/// From the caller's coordinates to ours and back: centre of the box, and a power of two, which loses no bits.
+struct Local_frame
+{
+  Vec3 origin = Vec3::Zero();
+  double unit = 1; ///< length of one of our units [L]
+
+  Vec3 to_local(const Vec3& p) const { return (p - origin) / unit; }
+  Vec3 to_world(const Vec3& p) const { return p * unit + origin; }
+};
+
+/*!
+  Points are numbered three ways. An *input* index is the caller's. A *place* is its position in spatial order, all
+  points included. A *site* stands for all points at the same coordinates; graphs and components are over sites.
+*/
+template <class ConcurrencyTag>
+struct Sampled_body
+{
+  Local_frame frame;
+  std::vector<std::uint32_t> input_of_place;
+  std::vector<std::uint32_t> site_of_place;
+  std::vector<std::uint32_t> site_of_input;
+  std::vector<std::uint32_t> component_of_site;
+  std::vector<std::uint32_t> component_size; ///< in points
+  std::vector<std::uint32_t> site_of_sample;
+  std::vector<std::uint32_t>
+      sample_of_site; ///< nearest along the surface; `no_sample` where there is none
+  neighborhood::Proximity_graph
+      site_graph;          ///< kept for the borders of handles; empty if not sampled
+  Elastic_network network; ///< over the samples
+  double weight_unit = 1;  ///< see `sample_graph()`
+  Upsampling upsampling;   ///< over the places
+  bool is_sampled = true;  ///< whether there are fewer samples than sites
+
+  std::size_t number_of_points() const { return input_of_place.size(); }
+  std::size_t number_of_sites() const { return component_of_site.size(); }
+  std::size_t number_of_components() const { return component_size.size(); }
+
+  /// Builds everything from finite points in the caller's coordinates. Returns `false` if cancelled.
+  bool build(std::vector<Vec3> points,
+             const Sampling_options& options,
+             Deformation_report::Seconds& seconds,
+             pcs::internal::Progress& progress)
+  {
+    pcs::internal::Stopwatch watch;
+    to_local(points);
+    input_of_place = neighborhood::spatial_order<ConcurrencyTag>(points);
+    std::vector<Vec3> sites;
+    merge_duplicates(points, sites);
+    points = std::vector<Vec3>();
+    if (!progress(0.2))
+      return false;
+    neighborhood::Proximity_graph graph =
+        neighborhood::nearest_neighbor_graph<ConcurrencyTag>(sites, options.number_of_neighbors);
+    find_components(graph);
+    seconds.neighbors = watch.lap();
+    if (!progress(0.6))
+      return false;
+    sample(std::move(sites), std::move(graph), options, progress);
+    seconds.sampling = watch.lap();
+    return progress(1.0);
+  }
+
+private:
+  void to_local(std::vector<Vec3>& points)
+  {
+    Vec3 low = points.front(), high = low;
+    for (const Vec3& p : points) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    const double extent = (0.5 * high - 0.5 * low).norm() * 2;
+    if (!(extent > 0))
+      throw Invalid_input("pcs deformation: all " + std::to_string(points.size()) +
+                          " points lie at one place; there is nothing to deform");
+    // Squares and their products must stay representable.
+    if (!(extent > 1e-100 && extent < 1e100))
+      throw Invalid_input("pcs deformation: the points extend over " + std::to_string(extent) +
+                          "; extents must lie between 1e-100 and 1e100");
+    frame.origin = 0.5 * low + 0.5 * high;
+    frame.unit = std::exp2(std::floor(std::log2(extent)));
+    pcs::internal::for_each_index<ConcurrencyTag>(points.size(), [&](std::size_t i) {
+      points[i] = frame.to_local(points[i]);
+    });
+  }
+
+  void merge_duplicates(const std::vector<Vec3>& points, std::vector<Vec3>& sites)
+  {
+    const std::size_t n = points.size();
+    site_of_place.resize(n);
+    site_of_input.resize(n);
+    sites.reserve(n);
+    for (std::size_t place = 0; place < n; ++place) {
+      const Vec3& p = points[input_of_place[place]];
+      if (sites.empty() || sites.back() != p)
+        sites.push_back(p);
+      site_of_place[place] = static_cast<std::uint32_t>(sites.size() - 1);
+      site_of_input[input_of_place[place]] = site_of_place[place];
+    }
+  }
+
+  void find_components(const neighborhood::Proximity_graph& graph)
+  {
+    std::size_t count = 0;
+    component_of_site = neighborhood::connected_components(graph, count);
+    component_size.assign(count, 0);
+    for (const auto site : site_of_place)
+      ++component_size[component_of_site[site]];
+  }
+
+  void sample(std::vector<Vec3> sites,
+              neighborhood::Proximity_graph graph,
+              const Sampling_options& options,
+              pcs::internal::Progress& progress)
+  {
+    site_of_sample = octree_samples(sites, options.number_of_samples);
+    is_sampled = site_of_sample.size() < sites.size();
+    Sample_links links;
+    if (is_sampled) {
+      Sample_regions regions = grow_regions<ConcurrencyTag>(sites, graph, site_of_sample);
+      network.surface = sample_graph(sites, graph, site_of_sample, regions, weight_unit);
+      progress(0.8);
+      const bool is_text = options.sample_search == Sample_search::breadth_first_hops;
+      links = is_text ? link_by_hops<ConcurrencyTag>(sites,
+                                                     graph,
+                                                     site_of_sample,
+                                                     options.number_of_sample_neighbors,
+                                                     options.sample_weights)
+                      : link_by_regions<ConcurrencyTag>(sites,
+                                                        site_of_sample,
+                                                        regions,
+                                                        network.surface,
+                                                        options.number_of_sample_neighbors,
+                                                        options.sample_weights);
+      sample_of_site = std::move(regions.sample_of_point);
+      site_graph = std::move(graph);
+    } else {
+      static_cast<neighborhood::Proximity_graph&>(network.surface) = std::move(graph);
+      sample_of_site = site_of_sample;
+      set_edge_weights<ConcurrencyTag>(sites, network.surface, [](std::size_t) { return 1.0; });
+    }
+    network.rest.resize(site_of_sample.size());
+    for (std::size_t s = 0; s < site_of_sample.size(); ++s)
+      network.rest[s] = sites[site_of_sample[s]];
+    if (options.do_preserve_volume) {
+      std::vector<std::uint32_t> component(network.size());
+      for (std::size_t s = 0; s < network.size(); ++s)
+        component[s] = component_of_site[site_of_sample[s]];
+      network.links = interior_links<ConcurrencyTag>(network, component);
+    }
+    upsampling = Upsampling(
+        number_of_points(),
+        [&](std::size_t place) { return sites[site_of_place[place]]; },
+        [&](std::size_t place) { return site_of_place[place]; },
+        network.rest,
+        links);
+  }
+};
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_SAMPLED_BODY_H

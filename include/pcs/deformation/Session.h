@@ -1,0 +1,482 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Handles, constraints and frames of one editing session, on plain coordinates.
+
+#ifndef PCS_DEFORMATION_SESSION_H
+#define PCS_DEFORMATION_SESSION_H
+
+#include <pcs/core/Deformation_report.h>
+#include <pcs/core/Similarity.h>
+#include <pcs/core/errors.h>
+#include <pcs/deformation/Elastic_solver.h>
+#include <pcs/deformation/Sampled_body.h>
+#include <pcs/deformation/handle_boundary.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+/// The samples' state at one moment: enough to bring every point back.
+struct Session_snapshot
+{
+  std::vector<Similarity> transforms; ///< of the handles
+  std::vector<Affine_map> maps;       ///< of the samples
+};
+
+/*!
+  What `Point_set_deformation` does, without its point types. Indices are the caller's; transformations are in the
+  caller's coordinates; errors are thrown before anything changes.
+*/
+template <class ConcurrencyTag>
+class Session
+{
+public:
+  /// \param region indices of the region of interest, or null for all points
+  Session(std::vector<Vec3> points,
+          const Sampling_options& options,
+          const std::vector<std::uint32_t>* region,
+          pcs::internal::Progress& progress)
+  {
+    m_is_ready = m_body.build(std::move(points), options, m_report.seconds, progress);
+    if (!m_is_ready)
+      return;
+    m_report.number_of_points = m_body.number_of_points();
+    m_report.number_of_duplicates = m_body.number_of_points() - m_body.number_of_sites();
+    m_report.number_of_samples = m_body.network.size();
+    m_report.number_of_interior_links = m_body.network.links.neighbor.size() / 2;
+    m_report.number_of_components = m_body.number_of_components();
+    m_maps.assign(m_body.network.size(), identity_map());
+    m_handle_of_site.assign(m_body.number_of_sites(), free_node);
+    if (region) {
+      m_handle_of_site.assign(m_body.number_of_sites(), outside);
+      for (const auto i : *region)
+        m_handle_of_site[m_body.site_of_input[i]] = free_node;
+      m_has_outside = true;
+    }
+  }
+
+  /// `false` if the callback cancelled the construction: nothing else may be called then.
+  bool is_ready() const { return m_is_ready; }
+  std::size_t number_of_points() const { return m_body.number_of_points(); }
+  std::size_t number_of_handles() const { return m_transforms.size(); }
+  const Local_frame& frame() const { return m_body.frame; }
+  const Similarity& transform(std::size_t handle) const { return m_transforms[handle]; }
+  std::size_t number_of_samples() const { return m_maps.size(); }
+
+  /// Adds a handle that stays where it is. \param weight 0: exact; positive: soft, see `Node_constraints`
+  std::size_t
+  add_handle(const std::vector<std::uint32_t>& indices, double weight, const char* function)
+  {
+    if (indices.empty())
+      throw Invalid_input(std::string(function) + ": a handle needs at least one point");
+    for (const auto i : indices) {
+      const Node_constraint h = m_handle_of_site[m_body.site_of_input[i]];
+      if (h == outside)
+        throw Invalid_input(std::string(function) + ": point " + std::to_string(i) +
+                            " of the handle is outside the region of interest");
+      if (h >= 0 && m_is_used[static_cast<std::size_t>(h)])
+        throw Invalid_input(std::string(function) + ": point " + std::to_string(i) +
+                            " (or another one at the same place) belongs to handle " +
+                            std::to_string(h) + " already; a point has one target");
+    }
+    const std::size_t handle = m_transforms.size();
+    for (const auto i : indices)
+      m_handle_of_site[m_body.site_of_input[i]] = static_cast<Node_constraint>(handle);
+    m_transforms.emplace_back();
+    m_weight.push_back(weight);
+    m_is_used.push_back(1);
+    Vec3 sum = Vec3::Zero();
+    for (const auto i : indices)
+      sum += rest_of_site(m_body.site_of_input[i]);
+    m_centroid.push_back(m_body.frame.to_world(sum / static_cast<double>(indices.size())));
+    m_is_constrained = false;
+    return handle;
+  }
+
+  /// Frees the points of a handle. Its number is not used again.
+  void remove_handle(std::size_t handle)
+  {
+    for (auto& h : m_handle_of_site)
+      if (h == static_cast<Node_constraint>(handle))
+        h = free_node;
+    m_is_used[handle] = 0;
+    m_transforms[handle] = Similarity();
+    m_is_constrained = false;
+  }
+
+  bool is_handle(std::size_t handle) const
+  {
+    return handle < m_is_used.size() && m_is_used[handle];
+  }
+
+  /// Centroid of the handle's points at rest, in the caller's coordinates.
+  const Vec3& centroid(std::size_t handle) const { return m_centroid[handle]; }
+
+  void set_transform(std::size_t handle, const Similarity& transform)
+  {
+    m_transforms[handle] = transform;
+  }
+
+  /// Factorises if handles changed since the last time. Returns `false` if a matrix is singular.
+  bool constrain(double stiffness)
+  {
+    if (m_is_constrained && stiffness == m_stiffness)
+      return true;
+    pcs::internal::Stopwatch watch;
+    Node_constraints constraints = sample_constraints();
+    m_stiffness = stiffness;
+    if (m_body.is_sampled)
+      m_network = with_boundary(constraints);
+    m_is_constrained = m_solver.constrain(m_body.is_sampled ? m_network : m_body.network,
+                                          std::move(constraints),
+                                          stiffness);
+    m_report.seconds.factorization = watch.lap();
+    return m_is_constrained;
+  }
+
+  /// Solves for the present transformations. The points are not written: see `write()`.
+  Deformation_report solve(const Elastic_options& options, pcs::internal::Progress& progress)
+  {
+    const bool is_first = !m_was_reported;
+    m_was_reported = true;
+    if (!is_first)
+      m_report.seconds = Deformation_report::Seconds();
+    Deformation_report& r = m_report;
+    r.number_of_iterations = 0;
+    r.initial_energy = r.energy = 0;
+    if (std::find(m_is_used.begin(), m_is_used.end(), 1) == m_is_used.end()) {
+      constrain(options.stiffness);
+      r.status = Status::nothing_to_do;
+      m_maps.assign(m_maps.size(), identity_map());
+      m_local_transforms.clear();
+      return r;
+    }
+    if (!constrain(options.stiffness)) {
+      r.status = Status::numerical_failure;
+      return r;
+    }
+    pcs::internal::Stopwatch watch;
+    std::vector<Similarity> transforms = local_transforms();
+    const Elastic_result result = m_solver.solve(transforms, options, progress);
+    r.status = result.status;
+    r.number_of_iterations = static_cast<std::size_t>(result.number_of_passes);
+    const double unit = m_body.frame.unit;
+    r.initial_energy = result.initial_energy * unit * unit;
+    r.energy = result.energy * unit * unit;
+    if (result.status != Status::cancelled) {
+      m_local_transforms = std::move(transforms);
+      read_maps();
+    }
+    r.seconds.solving = watch.lap();
+    return r;
+  }
+
+  Session_snapshot snapshot() const { return {m_transforms, m_maps}; }
+
+  void restore(const Session_snapshot& s)
+  {
+    m_transforms = s.transforms;
+    m_transforms.resize(m_is_used.size());
+    m_maps = s.maps;
+    m_local_transforms = local_transforms();
+    constrain(m_stiffness);
+  }
+
+  /// Rest shape, handles at rest.
+  void reset()
+  {
+    for (Similarity& t : m_transforms)
+      t = Similarity();
+    m_maps.assign(m_maps.size(), identity_map());
+    m_local_transforms = local_transforms();
+    constrain(m_stiffness);
+  }
+
+  /*!
+    Calls `write(input index, position, normal)` in the caller's coordinates for every point that the deformation may
+    move: not for points outside the region of interest, nor for those that no handle reaches. Side by side.
+    `rest_normal(input index)` is asked if `HasNormals`.
+  */
+  template <class Write>
+  void write(const Write& write_point)
+  {
+    pcs::internal::Stopwatch watch;
+    const auto& body = m_body;
+    const auto put = [&](std::size_t place, const Vec3& p, const Vec3& normal) {
+      write_point(body.input_of_place[place], body.frame.to_world(p), normal);
+    };
+    const auto blended = [&](std::size_t place, const Vec3& p, const Vec3& normal) {
+      const Node_constraint h = m_constraint_of_site[body.site_of_place[place]];
+      if (h == free_node)
+        put(place, p, normal);
+      else if (h >= 0)
+        put_rigid(place, static_cast<std::size_t>(h), put);
+    };
+    if (body.is_sampled)
+      body.upsampling.template apply<ConcurrencyTag>(m_maps, blended);
+    else
+      pcs::internal::for_each_index<ConcurrencyTag>(
+          body.number_of_points(),
+          [&](std::size_t place) {
+            const std::size_t site = body.site_of_place[place];
+            const Node_constraint h = m_constraint_of_site[site];
+            if (h >= 0)
+              put_rigid(place, static_cast<std::size_t>(h), put);
+            else if (h == free_node) {
+              const Eigen::Map<const Row_major> a(m_maps[site].a);
+              const Vec3 t(m_maps[site].t[0], m_maps[site].t[1], m_maps[site].t[2]);
+              Vec3 normal = Vec3::Zero();
+              if (body.upsampling.has_normals())
+                normal = turn_normal(a, body.upsampling.rest_normal(place));
+              put(place, a * body.upsampling.rest(place) + t, normal);
+            }
+          });
+    m_report.seconds.upsampling = watch.lap();
+  }
+
+  const Deformation_report& report() const { return m_report; }
+
+  /// `normal(input index)` gives the normals at rest. [-]
+  template <class Normal_at>
+  void set_normals(const Normal_at& normal)
+  {
+    m_body.upsampling.set_normals(
+        [&](std::size_t place) { return normal(m_body.input_of_place[place]); });
+  }
+
+  /// The present shape becomes the rest shape. `position(input index)` reads it in the caller's coordinates.
+  template <class Position_at>
+  void accept(const Position_at& position)
+  {
+    m_body.upsampling.set_rest([&](std::size_t place) {
+      return m_body.frame.to_local(position(m_body.input_of_place[place]));
+    });
+    for (std::size_t s = 0; s < m_maps.size(); ++s) {
+      const Eigen::Map<const Row_major> a(m_maps[s].a);
+      m_body.network.rest[s] =
+          a * m_body.network.rest[s] + Vec3(m_maps[s].t[0], m_maps[s].t[1], m_maps[s].t[2]);
+    }
+    m_body.upsampling.set_sample_points(m_body.network.rest);
+    m_maps.assign(m_maps.size(), identity_map());
+    m_is_constrained = false;
+    for (Similarity& t : m_transforms)
+      t = Similarity();
+    update_centroids();
+    m_local_transforms = local_transforms();
+  }
+
+private:
+  static constexpr Node_constraint outside = -3;
+
+  Vec3 rest_of_site(std::size_t site) const
+  {
+    // Places are sorted by site, so the first place of the site is found by bisection.
+    const auto& sites = m_body.site_of_place;
+    const auto place = std::lower_bound(sites.begin(), sites.end(), site) - sites.begin();
+    return m_body.upsampling.rest(static_cast<std::size_t>(place));
+  }
+
+  void update_centroids()
+  {
+    std::vector<Vec3> sum(m_centroid.size(), Vec3::Zero());
+    std::vector<double> count(m_centroid.size(), 0);
+    for (std::size_t place = 0; place < m_body.number_of_points(); ++place) {
+      const Node_constraint h = m_handle_of_site[m_body.site_of_place[place]];
+      if (h < 0)
+        continue;
+      sum[static_cast<std::size_t>(h)] += m_body.upsampling.rest(place);
+      count[static_cast<std::size_t>(h)] += 1;
+    }
+    for (std::size_t h = 0; h < sum.size(); ++h)
+      if (count[h] > 0)
+        m_centroid[h] = m_body.frame.to_world(sum[h] / count[h]);
+  }
+
+  bool is_soft(Node_constraint h) const
+  {
+    return h >= 0 && m_weight[static_cast<std::size_t>(h)] > 0;
+  }
+
+  /// Handles in local coordinates: `x -> sR x + (sR c + t - c) / unit`; the outside of the region comes last.
+  std::vector<Similarity> local_transforms() const
+  {
+    std::vector<Similarity> local;
+    for (const Similarity& t : m_transforms) {
+      Similarity linear = Similarity::from_scale(t.scale());
+      for (const auto& turn : t.turns())
+        linear = Similarity::from_turn(turn) * linear;
+      const Vec3& c = m_body.frame.origin;
+      const Vec3 offset = (linear(c) - c) + t.translation();
+      local.push_back(Similarity::from_translation(offset / m_body.frame.unit) * linear);
+    }
+    if (m_has_outside)
+      local.emplace_back();
+    return local;
+  }
+
+  /// Which samples are held by which handle, and what becomes of every site.
+  Node_constraints sample_constraints()
+  {
+    const auto& body = m_body;
+    const auto outside_handle = static_cast<Node_constraint>(m_transforms.size());
+    Node_constraints constraints;
+    constraints.softness_weight = m_weight;
+    if (m_has_outside)
+      constraints.softness_weight.push_back(0);
+    std::vector<char> is_reached(body.number_of_components(), 0);
+    for (std::size_t site = 0; site < body.number_of_sites(); ++site)
+      if (m_handle_of_site[site] >= 0)
+        is_reached[body.component_of_site[site]] = 1;
+
+    auto& of_sample = constraints.handle_of_node;
+    of_sample.assign(m_maps.size(), free_node);
+    std::vector<char> has_sample(m_transforms.size(), 0);
+    for (std::size_t s = 0; s < of_sample.size(); ++s) {
+      const std::size_t site = body.site_of_sample[s];
+      const Node_constraint h = m_handle_of_site[site];
+      if (!is_reached[body.component_of_site[site]])
+        of_sample[s] = unreached_node;
+      else if (h == outside)
+        of_sample[s] = outside_handle;
+      else if (h >= 0) {
+        of_sample[s] = h;
+        has_sample[static_cast<std::size_t>(h)] = 1;
+      }
+    }
+    // A handle between the samples holds those in whose regions its points lie.
+    for (std::size_t site = 0; site < body.number_of_sites(); ++site) {
+      const Node_constraint h = m_handle_of_site[site];
+      if (h < 0 || has_sample[static_cast<std::size_t>(h)] ||
+          body.sample_of_site[site] == no_sample)
+        continue;
+      Node_constraint& sample = of_sample[body.sample_of_site[site]];
+      if (sample == free_node)
+        sample = h;
+    }
+    classify_sites(is_reached);
+    return constraints;
+  }
+
+  void classify_sites(const std::vector<char>& is_reached)
+  {
+    const auto& body = m_body;
+    m_report.number_of_unreached_components = m_report.number_of_unreached_points = 0;
+    for (std::size_t c = 0; c < body.number_of_components(); ++c)
+      if (!is_reached[c]) {
+        ++m_report.number_of_unreached_components;
+        m_report.number_of_unreached_points += body.component_size[c];
+      }
+    // Fragments too small for a sample of their own follow the handle that touches them.
+    std::vector<Node_constraint> follows(body.number_of_components(), unreached_node);
+    for (std::size_t site = 0; site < body.number_of_sites(); ++site) {
+      Node_constraint& f = follows[body.component_of_site[site]];
+      if (m_handle_of_site[site] >= 0 && f == unreached_node)
+        f = m_handle_of_site[site];
+    }
+    m_constraint_of_site.resize(body.number_of_sites());
+    for (std::size_t site = 0; site < body.number_of_sites(); ++site) {
+      const std::size_t component = body.component_of_site[site];
+      Node_constraint h = m_handle_of_site[site];
+      if (h == outside || !is_reached[component])
+        h = unreached_node;
+      else if (body.sample_of_site[site] == no_sample && h == free_node)
+        h = follows[component];
+      else if (is_soft(h))
+        h = free_node;
+      m_constraint_of_site[site] = h;
+    }
+  }
+
+  static Vec3 turn_normal(const Eigen::Matrix3d& a, const Vec3& normal)
+  {
+    Eigen::Matrix3d cofactor;
+    cofactor.row(0) = a.row(1).cross(a.row(2));
+    cofactor.row(1) = a.row(2).cross(a.row(0));
+    cofactor.row(2) = a.row(0).cross(a.row(1));
+    const Vec3 turned = cofactor * normal;
+    const double length = turned.norm();
+    return length > 0 ? Vec3(normal.norm() / length * turned) : normal;
+  }
+
+  template <class Put>
+  void put_rigid(std::size_t place, std::size_t handle, const Put& put) const
+  {
+    const Similarity& t = m_local_transforms[handle];
+    Vec3 normal = Vec3::Zero();
+    if (m_body.upsampling.has_normals())
+      normal = t.rotation() * m_body.upsampling.rest_normal(place);
+    put(place, t(m_body.upsampling.rest(place)), normal);
+  }
+
+  static Affine_map identity_map() { return {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}}; }
+
+  /// The samples' maps: the deformation gradient, which carries stretch as well, about the new position.
+  void read_maps()
+  {
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        m_maps.size(),
+        [&](std::size_t s) {
+          const Node_constraint h = m_solver.constraints().handle_of_node[s];
+          if (h == unreached_node) {
+            m_maps[s] = identity_map();
+            return;
+          }
+          const bool is_rigid = m_solver.constraints().is_prescribed(s);
+          const Eigen::Matrix3d a =
+              is_rigid ? m_solver.frames()[s] : m_solver.deformation_gradient(s);
+          // A prescribed map is the handle's own, to the last bit.
+          const Vec3 t =
+              is_rigid ? m_local_transforms[static_cast<std::size_t>(h)].translation()
+                       : Vec3(m_solver.positions()[s] - a * m_body.upsampling.sample_points()[s]);
+          Eigen::Map<Row_major>(m_maps[s].a) = a;
+          Eigen::Map<Vec3>(m_maps[s].t) = t;
+        },
+        512);
+  }
+
+  /// The sample network with nodes on the borders of the handles.
+  Elastic_network with_boundary(Node_constraints& constraints) const
+  {
+    const auto handle_of_site = [&](std::size_t site) {
+      const Node_constraint h = m_handle_of_site[site];
+      const auto outside_handle = static_cast<Node_constraint>(m_transforms.size());
+      return h == outside ? outside_handle : is_soft(h) ? free_node : h;
+    };
+    const auto position = [&](std::size_t site) { return rest_of_site(site); };
+    return with_boundary_nodes(
+        Boundary_input<decltype(handle_of_site), decltype(position)>{m_body.network,
+                                                                     m_body.weight_unit,
+                                                                     m_body.site_graph,
+                                                                     m_body.sample_of_site,
+                                                                     handle_of_site,
+                                                                     position},
+        constraints);
+  }
+
+  using Row_major = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+  Sampled_body<ConcurrencyTag> m_body;
+  Elastic_network m_network; ///< the samples and the borders of the handles, if sampled
+  Elastic_solver<ConcurrencyTag> m_solver;
+  std::vector<Node_constraint> m_handle_of_site;     ///< as the caller said
+  std::vector<Node_constraint> m_constraint_of_site; ///< as it is written
+  std::vector<Similarity> m_transforms, m_local_transforms;
+  std::vector<double> m_weight;
+  std::vector<char> m_is_used;
+  std::vector<Vec3> m_centroid;
+  std::vector<Affine_map> m_maps;
+  Deformation_report m_report;
+  double m_stiffness = 1;
+  bool m_has_outside = false, m_is_constrained = false, m_is_ready = false, m_was_reported = false;
+};
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_SESSION_H
