@@ -1,0 +1,158 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Reads a point file in chunks, so that files larger than memory can be handled.
+
+#ifndef PCS_IO_POINT_READER_H
+#define PCS_IO_POINT_READER_H
+
+#include <pcs/IO/Point_schema.h>
+#include <pcs/IO/Point_table.h>
+#include <pcs/IO/internal/Format_reader.h>
+#include <pcs/IO/internal/Las_reader.h>
+#include <pcs/IO/internal/Off_reader.h>
+#include <pcs/IO/internal/Ply_reader.h>
+#include <pcs/IO/internal/Row_block.h>
+#include <pcs/IO/internal/Text_reader.h>
+#include <pcs/IO/internal/file_format.h>
+#include <pcs/core/errors.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace pcs {
+namespace IO {
+
+/*!
+  \ingroup PkgPcsIORef
+  \brief Reads a point file in chunks.
+
+  The format is recognised by its first bytes (`ply`, `LASF`, `OFF` and its variants); a file
+  without them is text if its extension is xyz, txt, csv, asc, pts or pwn.
+
+  The reader is strict. Counts are compared with the size of the file before memory is allocated;
+  coordinates must be finite, other properties need not be; the file must end where its header says.
+  Anything else is a `pcs::IO_error` that names the file, the line or byte, and what was expected.
+
+  - PLY: ascii and binary of both byte orders. Scalar properties of `vertex` are read in their own
+    type (`int64` and `uint64` are an extension); lists and other elements, such as faces, are
+    checked, stepped over and not kept.
+  - Text: columns separated by blanks, tabs, commas or semicolons, all read as `float64`. Lines
+    that begin with `#` or `//` are comments. A first line without any number names the columns;
+    otherwise they are `x`, `y`, `z`, `column_4`, `column_5`, ...
+  - OFF, NOFF, COFF, CNOFF: `nx`, `ny`, `nz` and `red`, `green`, `blue`, `alpha`; faces are
+    checked and not kept.
+  - LAS 1.0 to 1.4, point formats 0 to 10, uncompressed: every dimension is a property; extra bytes
+    are properties of their own name where the file describes them, else `extra_byte_0`, ...
+    Header, VLRs and EVLRs are kept in `Point_schema::las`, which holds them in memory.
+
+  \par Memory
+  One chunk and buffers of less than 1 MB; a line of text may need up to 16 MB more.
+*/
+class Point_reader
+{
+public:
+  //! opens the file and reads its header; throws `pcs::IO_error`
+  explicit Point_reader(const std::string& path) : m_format(open(path)) {}
+
+  //! the number of points if the file states it, as all formats but text do
+  std::optional<std::uint64_t> number_of_points() const { return m_format->number_of_points(); }
+
+  //! the properties of the points
+  const Point_schema& schema() const { return m_format->schema(); }
+
+  /*!
+    \brief replaces `chunk` by the next points, at most `max_points` of them.
+
+    \return whether there were any; after the last points the file was checked up to its end
+    \pre `max_points > 0`, else `pcs::Invalid_input`
+
+    When it throws, `chunk` is empty and the reader can only be destroyed.
+  */
+  bool read(Point_table& chunk, std::size_t max_points)
+  {
+    if (max_points == 0)
+      throw Invalid_input("pcs::IO::Point_reader::read(): max_points is 0, expected 1 or more");
+    if (m_has_failed)
+      throw Invalid_input("pcs::IO::Point_reader::read(): an earlier call failed");
+    prepare(chunk);
+    m_has_failed = true;
+    try {
+      fill(chunk, max_points);
+    } catch (...) {
+      chunk.clear();
+      throw;
+    }
+    m_has_failed = false;
+    return chunk.number_of_points() > 0;
+  }
+
+private:
+  static std::unique_ptr<internal::Format_reader> open(const std::string& path)
+  {
+    switch (internal::format_by_content(path)) {
+    case File_format::ply:
+      return std::make_unique<internal::Ply_reader>(path);
+    case File_format::las:
+      return std::make_unique<internal::Las_reader>(path);
+    case File_format::off:
+      return std::make_unique<internal::Off_reader>(path);
+    case File_format::text:
+    case File_format::automatic:
+      break;
+    }
+    return std::make_unique<internal::Text_reader>(path);
+  }
+
+  //! keeps the memory of a chunk that was filled before
+  void prepare(Point_table& chunk) const
+  {
+    if (chunk.schema().properties == schema().properties && chunk.schema().las == schema().las &&
+        chunk.schema().format == schema().format && chunk.schema().comments == schema().comments &&
+        chunk.schema().obj_info == schema().obj_info)
+      chunk.clear();
+    else
+      chunk = Point_table(schema());
+  }
+
+  void fill(Point_table& chunk, std::size_t max_points)
+  {
+    const std::size_t rows_per_block = internal::rows_per_block(m_format->layout());
+    if (points_left()) // known and checked against the file, so memory may be reserved
+      chunk.points().reserve(
+          static_cast<std::size_t>(std::min<std::uint64_t>(max_points, *points_left())));
+    while (chunk.number_of_points() < max_points) {
+      m_format->read_rows(m_block, std::min(rows_per_block, max_points - chunk.number_of_points()));
+      if (m_block.number_of_rows == 0)
+        break;
+      append_rows(m_block,
+                  m_format->layout(),
+                  chunk,
+                  [&](std::size_t row, const std::string& what) {
+                    m_format->fail_at(m_block.locations[row],
+                                      "point " + std::to_string(m_points_read + row) + ": " + what);
+                  });
+      m_points_read += m_block.number_of_rows;
+    }
+  }
+
+  std::optional<std::uint64_t> points_left() const
+  {
+    if (!number_of_points())
+      return std::nullopt;
+    return *number_of_points() - m_points_read;
+  }
+
+  std::unique_ptr<internal::Format_reader> m_format;
+  internal::Row_block m_block;
+  std::uint64_t m_points_read = 0;
+  bool m_has_failed = false;
+};
+
+} // namespace IO
+} // namespace pcs
+
+#endif // PCS_IO_POINT_READER_H

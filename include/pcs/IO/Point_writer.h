@@ -1,0 +1,160 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Writes a point file in chunks; the file appears only when it is complete.
+
+#ifndef PCS_IO_POINT_WRITER_H
+#define PCS_IO_POINT_WRITER_H
+
+#include <pcs/IO/Point_schema.h>
+#include <pcs/IO/Point_table.h>
+#include <pcs/IO/Write_options.h>
+#include <pcs/IO/internal/Format_reader.h>
+#include <pcs/IO/internal/Format_writer.h>
+#include <pcs/IO/internal/Las_writer.h>
+#include <pcs/IO/internal/Off_writer.h>
+#include <pcs/IO/internal/Ply_writer.h>
+#include <pcs/IO/internal/Text_writer.h>
+#include <pcs/IO/internal/file_format.h>
+#include <pcs/core/errors.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace pcs {
+namespace IO {
+
+/*!
+  \ingroup PkgPcsIORef
+  \brief Writes a point file in chunks.
+
+  Everything goes to a temporary file in the same folder, which `commit()` renames. Until then an
+  old file of that name is untouched and may be the one that is being read; without `commit()` the
+  destructor removes the temporary file. A target that is a device or a pipe is written directly.
+
+  Properties are written in the order and type of the schema; coordinates are doubles unless
+  `Write_options::keep_coordinate_types` is set. Faces of a file that was read are not written.
+  Text reads back as `float64` columns; OFF refuses properties that it cannot store; LAS rounds
+  coordinates to its grid and stores properties that its point format lacks as extra bytes.
+
+  Errors of the file system and of the format are `pcs::IO_error`, data that does not match the
+  schema is `pcs::Invalid_input`. After either, nothing can be committed.
+*/
+class Point_writer
+{
+public:
+  //! opens the temporary file and writes the header
+  Point_writer(const std::string& path,
+               const Point_schema& schema,
+               const Write_options& options = Write_options())
+    : m_schema(schema), m_expected(options.number_of_points)
+  {
+    check_schema();
+    m_format = open(path, options);
+  }
+
+  /*!
+    \brief writes the points of `chunk`.
+
+    \pre `chunk` has the properties of the schema, in any order, and no others; its coordinates
+         are finite
+  */
+  void append(const Point_table& chunk)
+  {
+    check_usable("append");
+    m_is_usable = false;
+    check_chunk(chunk);
+    m_format->append(chunk);
+    m_count += chunk.number_of_points();
+    m_is_usable = true;
+  }
+
+  //! number of points written so far
+  std::uint64_t number_of_points() const { return m_count; }
+
+  //! completes the file and gives it its name; nothing can be appended afterwards
+  void commit()
+  {
+    check_usable("commit");
+    m_is_usable = false;
+    if (m_expected && m_count != *m_expected)
+      throw Invalid_input("pcs::IO::Point_writer::commit(): " + std::to_string(m_count) +
+                          " points were appended, " + std::to_string(*m_expected) +
+                          " were announced");
+    m_format->commit(m_count);
+  }
+
+private:
+  void check_schema() const
+  {
+    for (const char* name : {"x", "y", "z"})
+      if (!m_schema.has(name))
+        throw Invalid_input("pcs::IO::Point_writer: the schema has no property '" +
+                            std::string(name) + "'");
+    const std::string twice = internal::first_duplicate(m_schema);
+    if (!twice.empty())
+      throw Invalid_input("pcs::IO::Point_writer: the schema has the property '" + twice +
+                          "' twice");
+  }
+
+  std::unique_ptr<internal::Format_writer> open(const std::string& path,
+                                                const Write_options& options) const
+  {
+    const File_format format = options.format != File_format::automatic
+                                   ? options.format
+                                   : internal::format_by_extension(path);
+    switch (format) {
+    case File_format::las:
+      return std::make_unique<internal::Las_writer>(path, m_schema, options);
+    case File_format::off:
+      return std::make_unique<internal::Off_writer>(path, m_schema, options);
+    case File_format::text:
+      return std::make_unique<internal::Text_writer>(path, m_schema, options);
+    case File_format::ply:
+    case File_format::automatic:
+      break;
+    }
+    return std::make_unique<internal::Ply_writer>(path, m_schema, options);
+  }
+
+  void check_usable(const std::string& caller) const
+  {
+    if (!m_is_usable)
+      throw Invalid_input("pcs::IO::Point_writer::" + caller +
+                          "(): an earlier call failed, or the file is committed");
+  }
+
+  void check_chunk(const Point_table& chunk) const
+  {
+    chunk.check_sizes("points()");
+    for (const Property_description& p : m_schema.properties) {
+      const std::size_t i = chunk.schema().find(p.name);
+      const bool is_there =
+          i < chunk.schema().properties.size() &&
+          (is_coordinate_name(p.name) || chunk.schema().properties[i].type == p.type);
+      if (!is_there)
+        throw Invalid_input("pcs::IO::Point_writer::append(): the chunk has no property '" +
+                            p.name + "' of type " + name_of(p.type));
+    }
+    if (chunk.schema().properties.size() != m_schema.properties.size())
+      throw Invalid_input("pcs::IO::Point_writer::append(): the chunk has properties that are not "
+                          "in the schema");
+    if (m_expected && chunk.number_of_points() > *m_expected - m_count)
+      throw Invalid_input("pcs::IO::Point_writer::append(): more points than the announced " +
+                          std::to_string(*m_expected));
+    internal::check_finite(chunk);
+  }
+
+  Point_schema m_schema;
+  std::optional<std::uint64_t> m_expected;
+  std::unique_ptr<internal::Format_writer> m_format;
+  std::uint64_t m_count = 0;
+  bool m_is_usable = true;
+};
+
+} // namespace IO
+} // namespace pcs
+
+#endif // PCS_IO_POINT_WRITER_H

@@ -1,0 +1,100 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// What every format must do to be read in chunks.
+
+#ifndef PCS_IO_INTERNAL_FORMAT_READER_H
+#define PCS_IO_INTERNAL_FORMAT_READER_H
+
+#include <pcs/IO/Point_schema.h>
+#include <pcs/IO/internal/Input_file.h>
+#include <pcs/IO/internal/Row_block.h>
+#include <pcs/core/errors.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_set>
+
+namespace pcs {
+namespace IO {
+namespace internal {
+
+class Format_reader
+{
+public:
+  virtual ~Format_reader() = default;
+
+  /*!
+    Replaces the block by at most `max_rows` next rows; no rows mean the end. Everything behind the
+    points is checked before the last rows are handed out, so that whoever has all points has a
+    good file.
+  */
+  virtual void read_rows(Row_block& block, std::size_t max_rows) = 0;
+
+  //! throws the error for a row of a block just read
+  [[noreturn]] virtual void fail_at(std::uint64_t location, const std::string& what) const = 0;
+
+  const Point_schema& schema() const { return m_schema; }
+  const Row_layout& layout() const { return m_layout; }
+  std::optional<std::uint64_t> number_of_points() const { return m_number_of_points; }
+
+protected:
+  void add_property(const std::string& name, Scalar_type type)
+  {
+    m_layout.push_back(name, type);
+    m_schema.properties.push_back({name, type});
+  }
+  //! sizes the block for at most `max_rows` rows
+  void start_block(Row_block& block, std::size_t max_rows) const
+  {
+    block.bytes.resize(max_rows * m_layout.row_size);
+    block.locations.clear();
+    block.number_of_rows = 0;
+  }
+
+  Point_schema m_schema;
+  Row_layout m_layout;
+  std::optional<std::uint64_t> m_number_of_points;
+};
+
+//! the first name that occurs twice, or an empty string
+inline std::string first_duplicate(const Point_schema& schema)
+{
+  std::unordered_set<std::string> names;
+  for (const Property_description& p : schema.properties)
+    if (!names.insert(p.name).second)
+      return p.name;
+  return {};
+}
+
+//! the sentence for a word that is not a number of the wanted type
+inline std::string number_expected(std::string_view word,
+                                   const std::string& name,
+                                   Scalar_type type,
+                                   Parse_result result)
+{
+  std::string text = "expected a number of type " + std::string(name_of(type)) + " for '" + name +
+                     "', found " + in_quotes(word);
+  if (result == Parse_result::out_of_range)
+    text += ", which is out of range";
+  else if (word.find(',') != std::string_view::npos)
+    text += "; a decimal comma is not supported, write decimals with a point";
+  return text;
+}
+
+//! checks that only blank lines follow
+inline void expect_end_of_text(Input_file& file)
+{
+  std::string_view line;
+  while (file.read_line(line))
+    if (!trim(line).empty())
+      file.fail_at_line("expected the end of the file, found " + in_quotes(trim(line)));
+}
+
+} // namespace internal
+} // namespace IO
+} // namespace pcs
+
+#endif // PCS_IO_INTERNAL_FORMAT_READER_H

@@ -1,0 +1,173 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// A file that appears under its name only when it is complete.
+
+#ifndef PCS_IO_INTERNAL_OUTPUT_FILE_H
+#define PCS_IO_INTERNAL_OUTPUT_FILE_H
+
+#include <pcs/core/errors.h>
+
+#include <cerrno>
+#include <cstddef>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+namespace pcs {
+namespace IO {
+namespace internal {
+
+/*
+  Writes go to a temporary file in the directory of the target, which `commit()` renames. A target
+  that exists but is no regular file (a device, a pipe) is written to directly: renaming would
+  replace the device itself.
+*/
+class Output_file
+{
+public:
+  explicit Output_file(const std::string& path) : m_path(path)
+  {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (fs::is_directory(status))
+      throw IO_error(path, "is a directory, expected a file name");
+    m_target = path;
+    if (fs::exists(status)) {
+      // a symbolic link stays a link: the file behind it is replaced
+      const fs::path real = fs::canonical(path, error);
+      if (!error)
+        m_target = real;
+    }
+    if (fs::exists(status) && !fs::is_regular_file(status))
+      m_file = std::fopen(path.c_str(), "wb");
+    else
+      open_temporary();
+    if (m_file == nullptr)
+      throw IO_error(path, std::string("cannot be opened for writing: ") + std::strerror(errno));
+    m_buffer.reserve(buffer_size);
+  }
+
+  Output_file(const Output_file&) = delete;
+  Output_file& operator=(const Output_file&) = delete;
+
+  ~Output_file()
+  {
+    if (m_file != nullptr)
+      std::fclose(m_file);
+    remove_temporary();
+  }
+
+  const std::string& path() const { return m_path; }
+
+  void write(const void* data, std::size_t n)
+  {
+    const auto* bytes = static_cast<const char*>(data);
+    if (m_buffer.size() + n > buffer_size)
+      flush();
+    if (n >= buffer_size)
+      write_through(bytes, n);
+    else
+      m_buffer.insert(m_buffer.end(), bytes, bytes + n);
+    m_position += n;
+  }
+  void write(std::string_view text) { write(text.data(), text.size()); }
+
+  //! number of bytes written so far
+  std::size_t position() const { return m_position; }
+
+  //! overwrites bytes near the front of the file
+  void patch(std::size_t at, const void* data, std::size_t n)
+  {
+    flush();
+    if (std::fseek(m_file, static_cast<long>(at), SEEK_SET) != 0)
+      fail();
+    write_through(static_cast<const char*>(data), n);
+    if (std::fseek(m_file, 0, SEEK_END) != 0)
+      fail();
+  }
+
+  //! closes the file and gives it its name
+  void commit()
+  {
+    flush();
+    std::FILE* file = m_file;
+    m_file = nullptr;
+    if (std::fclose(file) != 0)
+      fail();
+    if (m_temporary.empty())
+      return;
+    std::error_code error;
+    const auto status = std::filesystem::status(m_target, error);
+    if (std::filesystem::exists(status))
+      std::filesystem::permissions(m_temporary, status.permissions(), error);
+    std::filesystem::rename(m_temporary, m_target, error);
+    if (error)
+      throw IO_error(m_path, "cannot be replaced: " + error.message());
+    m_temporary.clear();
+  }
+
+  [[noreturn]] void fail(const std::string& what) const { throw IO_error(m_path, what); }
+
+private:
+  static constexpr std::size_t buffer_size = std::size_t(1) << 18;
+
+  void open_temporary()
+  {
+    // the name must not depend on that of the target, which may already have the largest length
+    for (int i = 0; i < 1000 && m_file == nullptr; ++i) {
+      m_temporary = m_target.parent_path() / (".pcs_unfinished_" + std::to_string(i) + ".tmp");
+      m_file = std::fopen(m_temporary.string().c_str(), "wbx");
+      if (m_file == nullptr && errno != EEXIST)
+        break;
+    }
+    if (m_file == nullptr)
+      m_temporary.clear(); // it is not ours
+    else
+      std::setvbuf(m_file, nullptr, _IONBF, 0);
+  }
+
+  void remove_temporary()
+  {
+    std::error_code error;
+    if (!m_temporary.empty())
+      std::filesystem::remove(m_temporary, error);
+    m_temporary.clear();
+  }
+
+  void flush()
+  {
+    write_through(m_buffer.data(), m_buffer.size());
+    m_buffer.clear();
+  }
+
+  void write_through(const char* data, std::size_t n)
+  {
+    if (n > 0 && std::fwrite(data, 1, n, m_file) != n)
+      fail();
+    if (std::fflush(m_file) != 0)
+      fail();
+  }
+
+  [[noreturn]] void fail() const
+  {
+    throw IO_error(m_path, std::string("cannot be written: ") + std::strerror(errno));
+  }
+
+  std::string m_path;
+  std::filesystem::path m_target;
+  std::filesystem::path m_temporary; // empty when there is none
+  std::FILE* m_file = nullptr;
+  std::vector<char> m_buffer;
+  std::size_t m_position = 0;
+};
+
+} // namespace internal
+} // namespace IO
+} // namespace pcs
+
+#endif // PCS_IO_INTERNAL_OUTPUT_FILE_H

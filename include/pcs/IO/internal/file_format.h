@@ -1,0 +1,81 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The format of a file by its first bytes or its extension.
+
+#ifndef PCS_IO_INTERNAL_FILE_FORMAT_H
+#define PCS_IO_INTERNAL_FILE_FORMAT_H
+
+#include <pcs/IO/Point_schema.h>
+#include <pcs/IO/internal/Input_file.h>
+#include <pcs/IO/internal/Off_reader.h>
+#include <pcs/core/errors.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace pcs {
+namespace IO {
+namespace internal {
+
+//! the extension in lower case and without its dot
+inline std::string extension_of(const std::string& path)
+{
+  std::string text = std::filesystem::path(path).extension().string();
+  if (!text.empty())
+    text.erase(0, 1);
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z')
+      c = static_cast<char>(c - 'A' + 'a');
+  return text;
+}
+
+//! the format that an extension stands for; throws if none
+inline File_format format_by_extension(const std::string& path)
+{
+  const std::string extension = extension_of(path);
+  if (extension == "ply")
+    return File_format::ply;
+  if (extension == "off")
+    return File_format::off;
+  if (extension == "las")
+    return File_format::las;
+  for (const char* text : {"xyz", "txt", "csv", "asc", "pts", "pwn"})
+    if (extension == text)
+      return File_format::text;
+  if (extension == "laz")
+    throw IO_error(path, "LAZ is compressed and not supported, expected an uncompressed LAS file");
+  throw IO_error(path,
+                 "unknown format '" + extension +
+                     "', expected ply, las, off, xyz, txt, csv, asc, pts or pwn");
+}
+
+//! the format by the first bytes, else by the extension; opens the file
+inline File_format format_by_content(const std::string& path)
+{
+  Input_file file(path);
+  if (file.size() == 0)
+    throw IO_error(path, "the file is empty");
+  std::array<char, 8> bytes{};
+  file.read(bytes.data(),
+            static_cast<std::size_t>(std::min<std::uint64_t>(bytes.size(), file.size())));
+  const std::string_view text(bytes.data(), bytes.size());
+  const std::string_view word =
+      text.substr(0, text.find_first_of(std::string_view(" \t\r\n\0", 5)));
+  if (word == "ply")
+    return File_format::ply;
+  if (text.substr(0, 4) == "LASF")
+    return File_format::las;
+  if (is_off_keyword(word))
+    return File_format::off;
+  return format_by_extension(path); // the reader of that format tells what is missing
+}
+
+} // namespace internal
+} // namespace IO
+} // namespace pcs
+
+#endif // PCS_IO_INTERNAL_FILE_FORMAT_H

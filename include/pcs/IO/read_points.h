@@ -1,0 +1,84 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Reads a whole point file.
+
+#ifndef PCS_IO_READ_POINTS_H
+#define PCS_IO_READ_POINTS_H
+
+#include <pcs/IO/Point_reader.h>
+#include <pcs/IO/Point_table.h>
+#include <pcs/core/errors.h>
+
+#include <CGAL/Kernel_traits.h>
+
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <limits>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace IO {
+
+/*!
+  \ingroup PkgPcsIORef
+  \brief reads all points of a file with all their properties.
+
+  The formats and the rules are those of `Point_reader`. Faces and other elements are not kept.
+
+  \param path name of the file
+  \return the points; an empty table for a file that declares zero points
+  \throws pcs::IO_error naming the file, the line or byte, and what was expected
+  \par Determinism
+  The same file gives the same bits in every locale and on every machine.
+*/
+inline Point_table read_points(const std::string& path)
+{
+  Point_reader reader(path);
+  Point_table table;
+  reader.read(table, std::numeric_limits<std::size_t>::max());
+  return table;
+}
+
+/*!
+  \ingroup PkgPcsIORef
+  \brief appends the positions of all points of a file to `points`.
+
+  \tparam PointRange a container with `insert(end, first, last)`; its value type is the `Point_3`
+          of a CGAL kernel
+  \param path name of the file
+  \param points unchanged when an exception is thrown
+  \throws pcs::IO_error as for the other overload, and when a coordinate is too large for the
+          number type of `points`
+*/
+template <class PointRange>
+void read_points(const std::string& path, PointRange& points)
+{
+  using Point = typename PointRange::value_type;
+  using FT = typename CGAL::Kernel_traits<Point>::Kernel::FT;
+  constexpr std::size_t chunk_size = 65536; // a few MB
+  Point_reader reader(path);
+  Point_table chunk;
+  std::vector<Point> result;
+  while (reader.read(chunk, chunk_size))
+    for (const Point_table::Point_3& p : chunk.points()) {
+      if constexpr (std::is_same_v<FT, float>)
+        for (int axis = 0; axis < 3; ++axis)
+          if (std::abs(p[axis]) > double(std::numeric_limits<float>::max()))
+            throw IO_error(path,
+                           "point " + std::to_string(result.size()) +
+                               ": the coordinate is out of the range of float");
+      result.emplace_back(static_cast<FT>(p.x()), static_cast<FT>(p.y()), static_cast<FT>(p.z()));
+    }
+  points.insert(points.end(),
+                std::make_move_iterator(result.begin()),
+                std::make_move_iterator(result.end()));
+}
+
+} // namespace IO
+} // namespace pcs
+
+#endif // PCS_IO_READ_POINTS_H

@@ -1,0 +1,74 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Writes a whole point file.
+
+#ifndef PCS_IO_WRITE_POINTS_H
+#define PCS_IO_WRITE_POINTS_H
+
+#include <pcs/IO/Point_table.h>
+#include <pcs/IO/Point_writer.h>
+#include <pcs/IO/Write_options.h>
+#include <pcs/IO/internal/file_format.h>
+#include <pcs/IO/internal/las_metadata.h>
+
+#include <CGAL/number_utils.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace IO {
+
+/*!
+  \ingroup PkgPcsIORef
+  \brief writes a table with all its properties.
+
+  The rules are those of `Point_writer`; the file is complete or absent, and may be the one the
+  table was read from. LAS: points from a LAS file keep scale and offset as long as they fit, else
+  the offset is renewed; other points get a scale of at least 5e8 steps for the longest side of
+  their bounding box.
+
+  \param path name of the file; its extension tells the format unless `options.format` does
+  \param table the points
+  \param options how to write; `number_of_points` is ignored
+  \throws pcs::IO_error when the file cannot be written, or the format cannot hold the data
+  \throws pcs::Invalid_input when a coordinate is not finite or a property has the wrong size
+*/
+inline void write_points(const std::string& path,
+                         const Point_table& table,
+                         Write_options options = Write_options())
+{
+  table.check_sizes("points()");
+  internal::check_finite(table);
+  if (options.format == File_format::automatic)
+    options.format = internal::format_by_extension(path);
+  if (options.format == File_format::las)
+    internal::choose_las_grid(path, table, options);
+  options.number_of_points = table.number_of_points();
+  Point_writer writer(path, table.schema(), options);
+  writer.append(table);
+  writer.commit();
+}
+
+/*!
+  \ingroup PkgPcsIORef
+  \brief writes the positions of a range of points.
+
+  \tparam PointRange a range of `Point_3` of a CGAL kernel
+*/
+template <class PointRange>
+void write_points(const std::string& path,
+                  const PointRange& points,
+                  const Write_options& options = Write_options())
+{
+  std::vector<Point_table::Point_3> positions;
+  for (const auto& p : points)
+    positions.emplace_back(CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z()));
+  write_points(path, Point_table(std::move(positions)), options);
+}
+
+} // namespace IO
+} // namespace pcs
+
+#endif // PCS_IO_WRITE_POINTS_H
