@@ -1,0 +1,133 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Tests of reading text files.
+
+#include "temporary_files.h"
+#include <pcs/IO/Point_reader.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <clocale>
+#include <string>
+#include <vector>
+
+using pcs::IO::Point_table;
+using Point_3 = Point_table::Point_3;
+
+BOOST_FIXTURE_TEST_SUITE(read_text, Temporary_files)
+
+BOOST_AUTO_TEST_CASE(all_separators_give_the_same_points)
+{
+  for (const char* text : {"1 2.5 -3e2\n4 5 6\n",
+                           "1\t2.5\t-3e2\n4\t5\t6\n",
+                           "1,2.5,-3e2\n4, 5, 6",
+                           "1;2.5;-3e2\r\n4 ; 5 ; 6\r\n",
+                           "  1   2.5 -3e2  \n\n 4 5 6\n\n"}) {
+    const Point_table table = read("a.xyz", text);
+    BOOST_TEST((table.points() == std::vector<Point_3>{Point_3(1, 2.5, -300), Point_3(4, 5, 6)}));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(columns_without_a_header_are_numbered_and_never_guessed)
+{
+  const Point_table table = read("a.xyz", "1 2 3 255 0 0\n4 5 6 0 nan 1\n");
+  BOOST_TEST(
+      (table.property_names() == std::vector<std::string>{"column_4", "column_5", "column_6"}));
+  BOOST_TEST(table.property<double>("column_4")[0] == 255);
+  BOOST_TEST(!table.has_normals());
+}
+
+BOOST_AUTO_TEST_CASE(a_header_names_the_columns)
+{
+  const Point_table table =
+      read("a.csv", "# comment\n// another\n\"label\",X,Y,Z\n9,1,2,3\n# between\n8,4,5,6\n");
+  BOOST_TEST((table.points()[1] == Point_3(4, 5, 6)));
+  BOOST_TEST((table.property<double>("label") == std::vector<double>{9, 8}));
+  BOOST_TEST(read("a.csv", "x y z\n").number_of_points() == 0u);
+}
+
+BOOST_AUTO_TEST_CASE(malformed_headers_are_refused)
+{
+  refuses("a.csv", "x,y,label\n1,2,3\n", "line 1: expected numbers, or the names");
+  refuses("a.csv", "x,y,z,z\n1,2,3,4\n", "the column 'z' is named twice");
+  refuses("a.csv", "x,y,z,\n1,2,3,4\n", "line 1");
+}
+
+BOOST_AUTO_TEST_CASE(a_decimal_comma_is_refused_with_a_clear_message)
+{
+  for (const char* text : {"1,5 2,5 3,5\n",
+                           "1,5;2,5;3,5\n",
+                           "1,5\t2,5\t3,5\n",
+                           "1 2 3\n1 2 3,5\n",
+                           "x;y;z\n1;2;3,5\n"})
+    refuses("a.xyz", text, "decimal comma");
+}
+
+BOOST_AUTO_TEST_CASE(the_number_of_columns_is_constant)
+{
+  refuses("a.xyz", "1 2 3\n4 5\n", "line 2: expected 3 columns, found 2");
+  refuses("a.xyz", "1 2 3\n\n4 5 6 7\n", "line 3: expected 3 columns, found 4");
+  refuses("a.xyz", "1 2\n3 4\n", "line 1: expected at least three columns");
+  refuses("a.csv", "1,2,3,\n", "line 1");
+}
+
+BOOST_AUTO_TEST_CASE(values_that_are_not_finite_numbers_are_refused)
+{
+  refuses("a.xyz", "1 2 3\n1 nan 3\n", "line 2: point 1: expected a finite number as coordinate y");
+  refuses("a.xyz", "nan nan nan\n", "line 1");
+  refuses("a.xyz", "1 2 inf\n", "line 1");
+  refuses("a.xyz", "1 1e400 3\n", "out of range");
+  refuses("a.xyz", "1 2 3\n1 abc 3\n", "line 2: expected a number of type float64 for 'y'");
+  refuses("a.xyz", "1 2 3\n1 2.5.5 3\n", "line 2");
+  refuses("a.xyz", "1 2 3\n1 0x1p3 3\n", "line 2");
+}
+
+BOOST_AUTO_TEST_CASE(the_count_of_a_pts_file_is_checked)
+{
+  BOOST_TEST(read("a.pts", "2\n1 2 3 9\n4 5 6 8\n").number_of_points() == 2u);
+  BOOST_TEST(read("a.pts", "0\n").number_of_points() == 0u);
+  refuses("a.pts", "3\n1 2 3 90\n4 5 6 8.25\n", "promises 3 points, the file has 2");
+  refuses("a.pts", "1\n1 2 3 9\n4 5 6 8\n", "promises 1 points, the file has 2");
+  refuses("a.pts", "4000000000\n1 2 3\n", "line 1: the file is too small");
+  refuses("a.pts", "-5\n1 2 3\n", "line 1");
+}
+
+BOOST_AUTO_TEST_CASE(files_without_points_are_refused)
+{
+  refuses("a.xyz", "", "the file is empty");
+  refuses("a.xyz", "\n# nothing\n\n", "expected a line with a point");
+}
+
+BOOST_AUTO_TEST_CASE(unknown_formats_are_refused)
+{
+  refuses("a.e57", "ASTM-E57", "unknown format 'e57'");
+  refuses("a", "1 2 3", "unknown format ''");
+  refuses("a.laz", "whatever", "LAZ is compressed");
+}
+
+BOOST_AUTO_TEST_CASE(a_byte_order_mark_is_skipped)
+{
+  BOOST_TEST((read("a.txt",
+                   "\xEF\xBB\xBF"
+                   "1 2 3\n")
+                  .points()[0] == Point_3(1, 2, 3)));
+}
+
+BOOST_AUTO_TEST_CASE(lines_longer_than_the_buffer_are_read)
+{
+  std::string line = "1 2 3";
+  for (int i = 0; i < 300000; ++i)
+    line += ' ';
+  BOOST_TEST(read("a.xyz", line + "\n" + line + "\n4 5 6\n").number_of_points() == 3u);
+}
+
+BOOST_AUTO_TEST_CASE(the_locale_of_the_program_does_not_matter)
+{
+  const std::string old = std::setlocale(LC_ALL, nullptr);
+  for (const char* locale : {"de_DE.UTF-8", "fr_FR.UTF-8"}) // without effect where not installed
+    std::setlocale(LC_ALL, locale);
+  BOOST_TEST((read("a.xyz", "1.5 2.5 3.5\n").points()[0] == Point_3(1.5, 2.5, 3.5)));
+  std::setlocale(LC_ALL, old.c_str());
+}
+
+BOOST_AUTO_TEST_SUITE_END()
