@@ -211,15 +211,13 @@ public:
     const auto put = [&](std::size_t place, const Vec3& p, const Vec3& normal) {
       write_point(body.input_of_place[place], body.frame.to_world(p), normal);
     };
-    const auto blended = [&](std::size_t place, const Vec3& p, const Vec3& normal) {
+    const auto put_other = [&](std::size_t place) {
       const Node_constraint h = m_constraint_of_site[body.site_of_place[place]];
-      if (h == free_node)
-        put(place, p, normal);
-      else if (h >= 0)
+      if (h >= 0)
         put_rigid(place, static_cast<std::size_t>(h), put);
     };
     if (body.is_sampled)
-      body.upsampling.template apply<ConcurrencyTag>(m_maps, blended);
+      m_body.upsampling.template apply<ConcurrencyTag>(m_maps, m_is_blended, put, put_other);
     else
       pcs::internal::for_each_index<ConcurrencyTag>(
           body.number_of_points(),
@@ -391,6 +389,12 @@ private:
         h = free_node;
       m_constraint_of_site[site] = h;
     }
+    // Eight places share a byte, as eight points share a block of the upsampling.
+    m_is_blended.assign(body.upsampling.number_of_blocks(), 0);
+    for (std::size_t place = 0; place < body.number_of_points(); ++place)
+      if (m_constraint_of_site[body.site_of_place[place]] == free_node)
+        m_is_blended[place / lanes] =
+            static_cast<std::uint8_t>(m_is_blended[place / lanes] | 1u << place % lanes);
   }
 
   static Vec3 turn_normal(const Eigen::Matrix3d& a, const Vec3& normal)
@@ -466,6 +470,7 @@ private:
   Elastic_solver<ConcurrencyTag> m_solver;
   std::vector<Node_constraint> m_handle_of_site;     ///< as the caller said
   std::vector<Node_constraint> m_constraint_of_site; ///< as it is written
+  std::vector<std::uint8_t> m_is_blended;            ///< one bit per place
   std::vector<Similarity> m_transforms, m_local_transforms;
   std::vector<double> m_weight;
   std::vector<char> m_is_used;

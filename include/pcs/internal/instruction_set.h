@@ -16,6 +16,13 @@
 #define PCS_ALWAYS_INLINE inline
 #endif
 
+// A lambda in a kernel must become part of it: alone it would be compiled for another instruction set.
+#if defined(__GNUC__) || defined(__clang__)
+#define PCS_LAMBDA_INLINE __attribute__((always_inline))
+#else
+#define PCS_LAMBDA_INLINE
+#endif
+
 namespace pcs {
 namespace internal {
 
