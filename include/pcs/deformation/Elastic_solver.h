@@ -8,6 +8,7 @@
 #include <pcs/core/Similarity.h>
 #include <pcs/core/Status.h>
 #include <pcs/core/rotations.h>
+#include <pcs/deformation/Anderson_mixing.h>
 #include <pcs/deformation/Elastic_network.h>
 #include <pcs/deformation/Harmonic_system.h>
 #include <pcs/deformation/rotation_field.h>
@@ -31,6 +32,10 @@ constexpr double default_fit_weight = 0.3;
 /// Passes end when the energy falls by less than this share. [-]
 constexpr double default_tolerance = 0.01;
 constexpr int default_maximal_number_of_passes = 20;
+/// Passes are accelerated from this one on: where the handles' rotations explain the motion, fewer are needed.
+constexpr int first_accelerated_pass = 4;
+/// A guess from a coarser network is taken if it has less than this share of the energy after one pass. [-]
+constexpr double guess_advantage = 0.5;
 
 struct Elastic_options
 {
@@ -69,6 +74,8 @@ public:
   const std::vector<Vec3>& positions() const { return m_position; }
   /// `s_i R_i` of every node: the local similarity without its translation.
   const std::vector<Eigen::Matrix3d>& frames() const { return m_frame; }
+  /// Rotation of every node relative to the field of the handles. [rad]
+  const std::vector<Vec3>& deviations() const { return m_smooth; }
 
   /// Takes a network, which must outlive its use here, and constraints, and factorises. Returns `false` if a matrix is
   /// singular (a free part without handle).
@@ -105,10 +112,12 @@ public:
     return field_ok && smoothing_ok && position_ok;
   }
 
-  /// Solves for one transformation per handle, from the rest shape.
+  /// Solves for one transformation per handle, from the rest shape. After the first pass `guess`, deviations of the
+  /// first nodes from the field, is tried as a better state.
   Elastic_result solve(const std::vector<Similarity>& transforms,
                        const Elastic_options& options,
-                       pcs::internal::Progress& progress)
+                       pcs::internal::Progress& progress,
+                       const std::vector<Vec3>& guess = {})
   {
     Elastic_result result;
     m_transforms = &transforms;
@@ -130,33 +139,24 @@ public:
     result.energy = result.initial_energy = fit_and_measure(options);
     result.status =
         options.maximal_number_of_passes == 0 ? Status::iteration_limit : Status::converged;
+    m_smooth.assign(m_network->size(), Vec3::Zero());
     if (m_rows.size() == 0)
       return result;
+    m_mixing.restart();
     for (int pass = 0; pass < options.maximal_number_of_passes; ++pass) {
       if (!progress(static_cast<double>(pass) / options.maximal_number_of_passes)) {
         result.status = Status::cancelled;
         return result;
       }
-      m_best_position = m_position;
-      m_best_frame = m_frame;
-      smooth_deviations();
-      update_frames();
-      solve_positions(false);
-      const double energy = fit_and_measure(options);
+      const double before = result.energy;
+      const bool has_improved = improve(options, pass >= first_accelerated_pass, result);
+      if (pass == 0 && !guess.empty())
+        start_from(guess, options, result);
       result.number_of_passes = pass + 1;
-      const double fall = result.energy - energy;
-      if (!(fall > 0)) { // rounding at the optimum, or overshoot: keep the better state
-        m_position.swap(m_best_position);
-        m_frame.swap(m_best_frame);
-        result.status = Status::converged;
+      result.status = Status::converged;
+      if (!has_improved || before - result.energy <= options.tolerance * before)
         break;
-      }
-      result.energy = energy;
       result.status = Status::iteration_limit;
-      if (fall <= options.tolerance * (result.energy + fall)) {
-        result.status = Status::converged;
-        break;
-      }
     }
     return result;
   }
@@ -170,6 +170,80 @@ private:
     return static_cast<std::size_t>(m_constraints.handle_of_node[node]);
   }
   double softness(std::size_t node) const { return m_constraints.softness_weight[handle(node)]; }
+
+  void keep_state()
+  {
+    m_best_position = m_position;
+    m_best_frame = m_frame;
+    m_best_smooth = m_smooth;
+  }
+
+  void swap_state()
+  {
+    m_position.swap(m_best_position);
+    m_frame.swap(m_best_frame);
+    m_smooth.swap(m_best_smooth);
+  }
+
+  /// One pass: accelerated if that lowers the energy, else plain; `false` if neither does (rounding at the optimum).
+  bool improve(const Elastic_options& options, bool is_accelerated, Elastic_result& result)
+  {
+    keep_state();
+    smooth_deviations();
+    m_plain = m_smooth;
+    m_mixing.mix(m_best_smooth, m_smooth);
+    if (!is_accelerated)
+      m_smooth = m_plain;
+    double energy = apply_deviations(options);
+    if (is_accelerated && !(energy < result.energy)) {
+      m_mixing.restart();
+      m_smooth = m_plain;
+      energy = apply_deviations(options);
+    }
+    if (!(energy < result.energy)) {
+      swap_state();
+      return false;
+    }
+    result.energy = energy;
+    return true;
+  }
+
+  /// A guess replaces the present state if it is clearly better: where the field of the handles explains the motion,
+  /// it is more exact than a coarse network.
+  void
+  start_from(const std::vector<Vec3>& guess, const Elastic_options& options, Elastic_result& result)
+  {
+    keep_state();
+    m_best_deviation = m_deviation;
+    m_best_rotation = m_rotation;
+    for (const auto i : m_rows.node_of_row)
+      if (i < guess.size())
+        m_smooth[i] = guess[i];
+    const double energy = apply_deviations(options);
+    if (energy < guess_advantage * result.energy) {
+      result.energy = energy;
+      m_mixing.restart();
+    } else {
+      swap_state();
+      m_deviation.swap(m_best_deviation);
+      m_rotation.swap(m_best_rotation);
+    }
+  }
+
+  /// Rotations `exp(d) B` from the present deviations, then positions; returns the energy.
+  double apply_deviations(const Elastic_options& options)
+  {
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        m_rows.size(),
+        [&](std::size_t r) {
+          const std::size_t i = m_rows.node_of_row[r];
+          m_rotation[i] = (rotation_exp(m_smooth[i]) * m_field[i]).normalized();
+        },
+        block);
+    update_frames();
+    solve_positions(false);
+    return fit_and_measure(options);
+  }
 
   const linear_algebra::Sparse_cholesky& position_factor() const
   {
@@ -338,7 +412,7 @@ private:
     return energy;
   }
 
-  /// `(L + mu D) d' = mu D d`, then `R = exp(d') B`.
+  /// `(L + mu D) d' = mu D d`.
   void smooth_deviations()
   {
     const auto& graph = m_network->surface;
@@ -348,13 +422,8 @@ private:
       m_rhs3[r] = m_fit_weight * node_degree(graph, i) * m_deviation[i];
     }
     m_smoothing_factor.solve(m_rhs3, m_work3);
-    pcs::internal::for_each_index<ConcurrencyTag>(
-        m_rows.size(),
-        [&](std::size_t r) {
-          const std::size_t i = m_rows.node_of_row[r];
-          m_rotation[i] = (rotation_exp(m_rhs3[r]) * m_field[i]).normalized();
-        },
-        block);
+    for (std::size_t r = 0; r < m_rows.size(); ++r)
+      m_smooth[m_rows.node_of_row[r]] = m_rhs3[r];
   }
 
   /// The rest shape that a material of the given Poisson's ratio takes under the present main stretch `s1` along
@@ -413,10 +482,13 @@ private:
   bool m_stretch_is_used = false;
 
   const std::vector<Similarity>* m_transforms = nullptr;
-  std::vector<Quaternion> m_field, m_rotation;
+  Anderson_mixing<ConcurrencyTag> m_mixing;
+  std::vector<Quaternion> m_field, m_rotation, m_best_rotation;
   std::vector<Eigen::Matrix3d> m_frame, m_best_frame, m_stretch;
   std::vector<Vec1> m_log_scale, m_rhs1, m_work1;
-  std::vector<Vec3> m_position, m_best_position, m_deviation, m_rhs3, m_work3;
+  std::vector<Vec3> m_position, m_best_position, m_rhs3, m_work3;
+  std::vector<Vec3> m_deviation, m_best_deviation; ///< of the best local rotations from the field
+  std::vector<Vec3> m_smooth, m_best_smooth, m_plain; ///< the same, smoothed: what is used
 };
 
 } // namespace deformation

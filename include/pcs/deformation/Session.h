@@ -8,6 +8,7 @@
 #include <pcs/core/Deformation_report.h>
 #include <pcs/core/Similarity.h>
 #include <pcs/core/errors.h>
+#include <pcs/deformation/Coarse_level.h>
 #include <pcs/deformation/Elastic_solver.h>
 #include <pcs/deformation/Sampled_body.h>
 #include <pcs/deformation/handle_boundary.h>
@@ -15,6 +16,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <string>
 #include <utility>
 #include <vector>
@@ -52,6 +54,7 @@ public:
     m_report.number_of_interior_links = m_body.network.links.neighbor.size() / 2;
     m_report.number_of_components = m_body.number_of_components();
     m_maps.assign(m_body.network.size(), identity_map());
+    build_coarse_levels();
     m_handle_of_site.assign(m_body.number_of_sites(), free_node);
     if (region) {
       m_handle_of_site.assign(m_body.number_of_sites(), outside);
@@ -131,11 +134,20 @@ public:
     pcs::internal::Stopwatch watch;
     Node_constraints constraints = sample_constraints();
     m_stiffness = stiffness;
+    bool is_regular = true;
+    const Elastic_network* finer = &m_body.network;
+    const Node_constraints* of_finer = &constraints;
+    for (auto& level : m_coarse) {
+      is_regular = level.constrain(*finer, *of_finer, stiffness) && is_regular;
+      finer = &level.network();
+      of_finer = &level.constraints();
+    }
     if (m_body.is_sampled)
       m_network = with_boundary(constraints);
     m_is_constrained = m_solver.constrain(m_body.is_sampled ? m_network : m_body.network,
                                           std::move(constraints),
-                                          stiffness);
+                                          stiffness) &&
+                       is_regular;
     m_report.seconds.factorization = watch.lap();
     return m_is_constrained;
   }
@@ -163,7 +175,10 @@ public:
     }
     pcs::internal::Stopwatch watch;
     std::vector<Similarity> transforms = local_transforms();
-    const Elastic_result result = m_solver.solve(transforms, options, progress);
+    std::vector<Vec3> guess;
+    for (std::size_t level = m_coarse.size(); level-- > 0 && progress(0);)
+      m_coarse[level].improve(transforms, options, guess);
+    const Elastic_result result = m_solver.solve(transforms, options, progress, guess);
     r.status = result.status;
     r.number_of_iterations = static_cast<std::size_t>(result.number_of_passes);
     const double unit = m_body.frame.unit;
@@ -261,6 +276,11 @@ public:
           a * m_body.network.rest[s] + Vec3(m_maps[s].t[0], m_maps[s].t[1], m_maps[s].t[2]);
     }
     m_body.upsampling.set_sample_points(m_body.network.rest);
+    const Elastic_network* finer = &m_body.network;
+    for (auto& level : m_coarse) {
+      level.accept(*finer);
+      finer = &level.network();
+    }
     m_maps.assign(m_maps.size(), identity_map());
     m_is_constrained = false;
     for (Similarity& t : m_transforms)
@@ -271,6 +291,20 @@ public:
 
 private:
   static constexpr Node_constraint outside = -3;
+
+  void build_coarse_levels()
+  {
+    std::vector<std::uint32_t> component;
+    for (const auto site : m_body.site_of_sample)
+      component.push_back(m_body.component_of_site[site]);
+    const Elastic_network* finer = &m_body.network;
+    const std::vector<std::uint32_t>* of_finer = &component;
+    while (finer->size() >= smallest_coarsened_network) {
+      m_coarse.emplace_back(*finer, *of_finer);
+      finer = &m_coarse.back().network();
+      of_finer = &m_coarse.back().component();
+    }
+  }
 
   Vec3 rest_of_site(std::size_t site) const
   {
@@ -347,10 +381,11 @@ private:
         has_sample[static_cast<std::size_t>(h)] = 1;
       }
     }
-    // A handle between the samples holds those in whose regions its points lie.
+    // A soft handle between the samples draws those in whose regions its points lie; an exact one has nodes on its
+    // border.
     for (std::size_t site = 0; site < body.number_of_sites(); ++site) {
       const Node_constraint h = m_handle_of_site[site];
-      if (h < 0 || has_sample[static_cast<std::size_t>(h)] ||
+      if (!is_soft(h) || has_sample[static_cast<std::size_t>(h)] ||
           body.sample_of_site[site] == no_sample)
         continue;
       Node_constraint& sample = of_sample[body.sample_of_site[site]];
@@ -468,7 +503,9 @@ private:
   Sampled_body<ConcurrencyTag> m_body;
   Elastic_network m_network; ///< the samples and the borders of the handles, if sampled
   Elastic_solver<ConcurrencyTag> m_solver;
-  std::vector<Node_constraint> m_handle_of_site;     ///< as the caller said
+  std::deque<Coarse_level<ConcurrencyTag>>
+      m_coarse;                                  ///< the finest first; a deque does not move them
+  std::vector<Node_constraint> m_handle_of_site; ///< as the caller said
   std::vector<Node_constraint> m_constraint_of_site; ///< as it is written
   std::vector<std::uint8_t> m_is_blended;            ///< one bit per place
   std::vector<Similarity> m_transforms, m_local_transforms;

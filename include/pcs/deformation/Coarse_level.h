@@ -1,0 +1,131 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Coarser copies of the elastic network, which find the large rotations that a dragged handle asks for.
+
+#ifndef PCS_DEFORMATION_COARSE_LEVEL_H
+#define PCS_DEFORMATION_COARSE_LEVEL_H
+
+#include <pcs/deformation/Elastic_network.h>
+#include <pcs/deformation/Elastic_solver.h>
+#include <pcs/deformation/Harmonic_system.h>
+#include <pcs/deformation/Sample_links.h>
+#include <pcs/deformation/Sample_regions.h>
+#include <pcs/deformation/handle_boundary.h>
+#include <pcs/deformation/interior_links.h>
+#include <pcs/deformation/octree_samples.h>
+#include <pcs/internal/parallel.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+/// A level has one node for this many of the finer one.
+constexpr std::size_t coarsening_ratio = 5;
+/// Networks with fewer nodes get no coarser level.
+constexpr std::size_t smallest_coarsened_network = 1000;
+/// Largest number of passes on a coarse level; they are cheap there, and carry far.
+constexpr int number_of_coarse_passes = 100;
+
+/*!
+  A pass carries a rotation over a few edges only. Under a handle that is dragged without being turned, the whole
+  rotation has to be found that way; on a coarse network the same distance is a few edges. The passes of each level
+  start from the deviations (`Elastic_solver::deviations()`) found on the coarser one.
+*/
+template <class ConcurrencyTag>
+class Coarse_level
+{
+public:
+  /// \param finer its nodes in spatial order
+  /// \param component the component of each of its nodes
+  Coarse_level(const Elastic_network& finer, const std::vector<std::uint32_t>& component)
+    : m_node_of_sample(octree_samples(finer.rest, finer.size() / coarsening_ratio))
+  {
+    constexpr std::size_t number_of_sample_neighbors = 4;
+    Sample_regions regions =
+        grow_regions<ConcurrencyTag>(finer.rest, finer.surface, m_node_of_sample);
+    m_network.surface =
+        sample_graph(finer.rest, finer.surface, m_node_of_sample, regions, m_weight_unit);
+    m_links = link_by_regions<ConcurrencyTag>(finer.rest,
+                                              m_node_of_sample,
+                                              regions,
+                                              m_network.surface,
+                                              number_of_sample_neighbors,
+                                              Sample_weights::compact);
+    m_sample_of_node = std::move(regions.sample_of_point);
+    for (const auto node : m_node_of_sample) {
+      m_network.rest.push_back(finer.rest[node]);
+      m_component.push_back(component[node]);
+    }
+    if (!finer.links.neighbor.empty())
+      m_network.links = interior_links<ConcurrencyTag>(m_network, m_component);
+  }
+
+  const Elastic_network& network() const { return m_network; }
+  const std::vector<std::uint32_t>& component() const { return m_component; }
+  const Node_constraints& constraints() const { return m_constraints; }
+
+  /// Takes over the constraints of the finer level. Returns `false` if a matrix is singular.
+  bool constrain(const Elastic_network& finer, const Node_constraints& of_finer, double stiffness)
+  {
+    m_constraints = Node_constraints();
+    m_constraints.softness_weight = of_finer.softness_weight;
+    for (const auto node : m_node_of_sample)
+      m_constraints.handle_of_node.push_back(of_finer.handle_of_node[node]);
+    const auto handle_of_node = [&](std::size_t node) {
+      return of_finer.is_prescribed(node) ? of_finer.handle_of_node[node] : free_node;
+    };
+    const auto position = [&](std::size_t node) { return finer.rest[node]; };
+    Node_constraints constraints = m_constraints;
+    m_bounded = with_boundary_nodes(
+        Boundary_input<decltype(handle_of_node), decltype(position)>{m_network,
+                                                                     m_weight_unit,
+                                                                     finer.surface,
+                                                                     m_sample_of_node,
+                                                                     handle_of_node,
+                                                                     position},
+        constraints);
+    return m_solver.constrain(m_bounded, std::move(constraints), stiffness);
+  }
+
+  /// Runs the passes of this level. `deviations`: in, those of this level's nodes, or empty; out, of the finer one's.
+  void improve(const std::vector<Similarity>& transforms,
+               Elastic_options options,
+               std::vector<Vec3>& deviations)
+  {
+    options.maximal_number_of_passes = number_of_coarse_passes;
+    pcs::internal::Progress uninterrupted;
+    m_solver.solve(transforms, options, uninterrupted, deviations);
+    const auto& coarse = m_solver.deviations();
+    deviations.assign(m_sample_of_node.size(), Vec3::Zero());
+    pcs::internal::for_each_index<ConcurrencyTag>(deviations.size(), [&](std::size_t i) {
+      for (std::size_t b = i * m_links.k; b < (i + 1) * m_links.k; ++b)
+        if (m_links.sample[b] != no_sample)
+          deviations[i] += static_cast<double>(m_links.weight[b]) * coarse[m_links.sample[b]];
+    });
+  }
+
+  /// The finer level has a new rest shape.
+  void accept(const Elastic_network& finer)
+  {
+    for (std::size_t s = 0; s < m_node_of_sample.size(); ++s)
+      m_network.rest[s] = finer.rest[m_node_of_sample[s]];
+  }
+
+private:
+  std::vector<std::uint32_t> m_node_of_sample, m_sample_of_node, m_component;
+  Elastic_network m_network; ///< over the samples
+  double m_weight_unit = 1;
+  Sample_links m_links; ///< from the finer nodes to the samples
+  Node_constraints m_constraints;
+  Elastic_network m_bounded; ///< with nodes on the borders of the handles
+  Elastic_solver<ConcurrencyTag> m_solver;
+};
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_COARSE_LEVEL_H
