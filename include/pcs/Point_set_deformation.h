@@ -13,6 +13,7 @@
 #include <pcs/deformation/Session.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
+#include <pcs/internal/text.h>
 
 #include <CGAL/number_utils.h>
 #include <CGAL/property_map.h>
@@ -313,8 +314,9 @@ public:
   void set_rotation(Handle handle, const Vector_3& axis, double angle, const Point_3& center)
   {
     require_handle("pcs::Point_set_deformation::set_rotation()", handle);
-    m_motion[handle].rotation = rotation(axis, angle, center);
-    update(handle);
+    Motion motion = m_motion[handle];
+    motion.rotation = rotation(axis, angle, center);
+    set_motion(handle, motion);
   }
 
   /// The same about the centroid of the handle at rest.
@@ -329,16 +331,18 @@ public:
   void set_translation(Handle handle, const Vector_3& offset)
   {
     require_handle("pcs::Point_set_deformation::set_translation()", handle);
-    m_motion[handle].translation = translation(offset);
-    update(handle);
+    Motion motion = m_motion[handle];
+    motion.translation = translation(offset);
+    set_motion(handle, motion);
   }
 
   /// Sets the scale `factor` > 0 about the centroid of the handle at rest; it precedes the rotation.
   void set_scale(Handle handle, double factor)
   {
     require_handle("pcs::Point_set_deformation::set_scale()", handle);
-    m_motion[handle].scale = scaling(factor, centroid(handle));
-    update(handle);
+    Motion motion = m_motion[handle];
+    motion.scale = scaling(factor, centroid(handle));
+    set_motion(handle, motion);
   }
 
   /// Sets the whole motion from rest: a `Similarity`, or a `CGAL::Aff_transformation_3` that is one.
@@ -348,8 +352,7 @@ public:
     require_handle("pcs::Point_set_deformation::set_transformation()", handle);
     Motion motion;
     motion.rotation = to_similarity(transformation);
-    m_motion[handle] = motion;
-    update(handle);
+    set_motion(handle, motion);
   }
 
   /// The whole motion from rest: scale, then rotation, then translation.
@@ -379,7 +382,7 @@ public:
 
   /*!
     Solves for the present motions of the handles, from rest, and writes points and normals. Points that no handle
-    reaches, and those outside the region of interest, are not written. The result depends on the rest shape and the
+    reaches, those outside the region of interest, and those of handles that have not moved are not written. The result depends on the rest shape and the
     motions only, not on what was done before.
 
     If the report says `cancelled` or `numerical_failure`, nothing was written.
@@ -396,6 +399,7 @@ public:
     if (report.status == Status::cancelled || report.status == Status::numerical_failure)
       return report;
     write_points();
+    progress.finish();
     return m_session->report();
   }
 
@@ -462,12 +466,20 @@ private:
     return Triple(static_cast<FT>(v.x()), static_cast<FT>(v.y()), static_cast<FT>(v.z()));
   }
 
-  auto element(std::size_t i) const -> typename Types::Element
+  /// Calls `f` with element `i`, which may live in its iterator.
+  template <class F>
+  decltype(auto) with_element(std::size_t i, const F& f) const
   {
-    return *(
-        std::begin(*m_points) +
-        static_cast<
-            typename std::iterator_traits<decltype(std::begin(*m_points))>::difference_type>(i));
+    using Iterator = decltype(std::begin(*m_points));
+    const Iterator it = std::begin(*m_points) +
+                        static_cast<typename std::iterator_traits<Iterator>::difference_type>(i);
+    return f(*it);
+  }
+
+  deformation::Vec3 point_of(std::size_t i) const
+  {
+    return with_element(i,
+                        [this](auto&& key) { return internal::to_eigen(get(*m_point_map, key)); });
   }
 
   void require_ready(const char* function) const
@@ -484,22 +496,21 @@ private:
       throw Invalid_input(std::string(function) + ": there is no handle " + std::to_string(handle));
   }
 
-  void update(Handle handle)
+  void set_motion(Handle handle, const Motion& motion)
   {
-    const Motion& m = m_motion[handle];
-    const Similarity whole = m.translation * m.rotation * m.scale;
-    if (!whole.is_finite())
-      throw Invalid_input("pcs::Point_set_deformation: the motion of handle " +
-                          std::to_string(handle) + " is not finite");
-    m_session->set_transform(handle, whole);
+    m_session->set_transform(handle, motion.translation * motion.rotation * motion.scale);
+    m_motion[handle] = motion;
   }
 
   void read_parameters(const NamedParameters& np)
   {
     const char* function = "pcs::Point_set_deformation";
     constexpr std::size_t many = std::numeric_limits<std::uint32_t>::max();
-    m_point_map = std::make_unique<Point_map>(
-        internal::choose(np, CGAL::internal_np::point_map, Point_map()));
+    if constexpr (internal::is_given_v<NamedParameters, CGAL::internal_np::point_t>)
+      m_point_map = std::make_unique<Point_map>(
+          CGAL::parameters::get_parameter(np, CGAL::internal_np::point_map));
+    else
+      m_point_map = std::make_unique<Point_map>();
     if constexpr (Types::has_normals)
       m_normal_map = std::make_unique<Normal_map>(
           CGAL::parameters::get_parameter(np, CGAL::internal_np::normal_map));
@@ -576,9 +587,7 @@ private:
           "pcs::Point_set_deformation: " + std::to_string(n) +
           " points are too many for 32 bit indices of their links; deform a sample of them");
     std::vector<deformation::Vec3> points(n);
-    internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
-      points[i] = internal::to_eigen(get(*m_point_map, element(i)));
-    });
+    internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) { points[i] = point_of(i); });
     for (std::size_t i = 0; i < n; ++i)
       if (!points[i].allFinite())
         throw Invalid_input("pcs::Point_set_deformation: point " + std::to_string(i) +
@@ -589,7 +598,9 @@ private:
   deformation::Vec3 normal_of(std::size_t i) const
   {
     if constexpr (Types::has_normals)
-      return internal::to_eigen(get(*m_normal_map, element(i)));
+      return with_element(i, [this](auto&& key) {
+        return internal::to_eigen(get(*m_normal_map, key));
+      });
     else
       return deformation::Vec3::Zero();
   }
@@ -617,12 +628,12 @@ private:
     if constexpr (is_ok)
       m_session->write(
           [this](std::size_t i, const deformation::Vec3& p, const deformation::Vec3& normal) {
-            auto&& key = element(i);
-            put(*m_point_map, key, make<Point>(p));
-            if constexpr (Types::has_normals)
-              put(*m_normal_map, key, make<Normal>(normal));
-            else
-              static_cast<void>(normal);
+            with_element(i, [&](auto&& key) {
+              put(*m_point_map, key, make<Point>(p));
+              if constexpr (Types::has_normals)
+                put(*m_normal_map, key, make<Normal>(normal));
+            });
+            static_cast<void>(normal);
           });
   }
 

@@ -8,6 +8,10 @@
 #include <pcs/Point_set_deformation.h>
 
 #include <cstddef>
+#include <functional>
+#include <iterator>
+#include <memory>
+#include <type_traits>
 #include <vector>
 
 namespace pcs {
@@ -20,6 +24,42 @@ struct Deformation_handle
   Similarity transformation;        //!< from rest; the identity holds the points where they are
   double softness = 0;              //!< see `Point_set_deformation::add_handle()` [-]
 };
+
+namespace internal {
+
+/// Share of the callback's range for finding neighbours and samples; the rest is for the deformation.
+constexpr double construction_share = 0.6;
+
+/*!
+  One session for one edit: `edit(session)` adds and moves the handles. The callback sees construction and deformation as
+  one task.
+*/
+template <class ConcurrencyTag, class PointRange, class NamedParameters, class Edit>
+Deformation_report deform_once(PointRange& points, const NamedParameters& np, const Edit& edit)
+{
+  const auto run = [&](const auto& parameters) {
+    using Parameters = std::decay_t<decltype(parameters)>;
+    Point_set_deformation<PointRange, Parameters, ConcurrencyTag> session(points, parameters);
+    if (session.number_of_samples() > 0) // else it was cancelled
+      edit(session);
+    return session;
+  };
+  if constexpr (is_given_v<NamedParameters, CGAL::internal_np::callback_t>) {
+    const std::function<bool(double)> user =
+        CGAL::parameters::get_parameter(np, CGAL::internal_np::callback);
+    const auto done = std::make_shared<double>(0); // share of the work before the present stage
+    const std::function<bool(double)> callback = [user, done](double f) {
+      const double share = *done == 0 ? construction_share : 1 - construction_share;
+      return user(*done + share * f);
+    };
+    auto session = run(np.callback(callback));
+    *done = construction_share;
+    return session.deform();
+  } else
+    return run(np).deform();
+}
+
+} // namespace internal
 
 /*!
   \ingroup PkgPcsDeformationRef
@@ -44,12 +84,10 @@ Deformation_report deform_point_set(PointRange& points,
 {
   if (std::begin(handles) == std::end(handles))
     throw Invalid_input("pcs::deform_point_set(): there is no handle");
-  Point_set_deformation<PointRange, NamedParameters, ConcurrencyTag> session(points, np);
-  if (session.number_of_samples() == 0)
-    return session.deform(); // cancelled
-  for (const Deformation_handle& h : handles)
-    session.set_transformation(session.add_handle(h.indices, h.softness), h.transformation);
-  return session.deform();
+  return internal::deform_once<ConcurrencyTag>(points, np, [&](auto& session) {
+    for (const Deformation_handle& h : handles)
+      session.set_transformation(session.add_handle(h.indices, h.softness), h.transformation);
+  });
 }
 
 /*!
@@ -75,13 +113,11 @@ Deformation_report deform_point_set(PointRange& points,
                                     const NamedParameters& np = NamedParameters())
 {
   const Similarity motion = to_similarity(transformation);
-  Point_set_deformation<PointRange, NamedParameters, ConcurrencyTag> session(points, np);
-  if (session.number_of_samples() == 0)
-    return session.deform(); // cancelled
-  if (std::begin(fixed) != std::end(fixed))
-    session.add_handle(fixed);
-  session.set_transformation(session.add_handle(moved), motion);
-  return session.deform();
+  return internal::deform_once<ConcurrencyTag>(points, np, [&](auto& session) {
+    if (std::begin(fixed) != std::end(fixed))
+      session.add_handle(fixed);
+    session.set_transformation(session.add_handle(moved), motion);
+  });
 }
 
 } // namespace pcs

@@ -7,6 +7,7 @@
 
 #include <pcs/core/errors.h>
 #include <pcs/core/rotations.h>
+#include <pcs/internal/text.h>
 
 #include <CGAL/number_utils.h>
 
@@ -59,7 +60,7 @@ public:
   static Similarity from_scale(double factor)
   {
     if (!(factor > 0) || !std::isfinite(factor))
-      throw Invalid_input("pcs::Similarity: the scale factor is " + std::to_string(factor) +
+      throw Invalid_input("pcs::Similarity: the scale factor is " + internal::to_text(factor) +
                           "; it must be finite and positive");
     Similarity s;
     s.m_scale = factor;
@@ -85,7 +86,7 @@ public:
     const double determinant = a.determinant();
     if (!(determinant > 0))
       throw Invalid_input("pcs::Similarity: the matrix has determinant " +
-                          std::to_string(determinant) +
+                          internal::to_text(determinant) +
                           "; a rotation with scale has a positive one");
     const double scale = std::cbrt(determinant);
     const Eigen::Matrix3d r = a / scale;
@@ -93,7 +94,7 @@ public:
     if (!(error < 1e-6))
       throw Invalid_input(
           "pcs::Similarity: the matrix is not a rotation with uniform scale (off by " +
-          std::to_string(error) + "); shear and unequal scales are not possible");
+          internal::to_text(error) + "); shear and unequal scales are not possible");
     Similarity s;
     if ((r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > 0) {
       s.append(rotation_log(Quaternion(r).normalized()));
@@ -128,6 +129,12 @@ public:
     s.m_scale = a.m_scale * b.m_scale;
     s.m_translation = a.m_scale * (a.m_rotation * b.m_translation) + a.m_translation;
     return s;
+  }
+
+  /// Whether it moves nothing, bit for bit.
+  bool is_identity() const
+  {
+    return m_scale == 1 && m_turns.empty() && m_translation == Vec3::Zero();
   }
 
   bool is_finite() const

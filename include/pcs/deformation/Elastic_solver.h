@@ -74,6 +74,13 @@ public:
   const std::vector<Vec3>& positions() const { return m_position; }
   /// `s_i R_i` of every node: the local similarity without its translation.
   const std::vector<Eigen::Matrix3d>& frames() const { return m_frame; }
+  bool is_finite() const
+  {
+    for (std::size_t i = 0; i < m_position.size(); ++i)
+      if (!m_position[i].allFinite() || !m_frame[i].allFinite())
+        return false;
+    return true;
+  }
   /// Rotation of every node relative to the field of the handles. [rad]
   const std::vector<Vec3>& deviations() const { return m_smooth; }
 

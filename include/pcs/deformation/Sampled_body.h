@@ -16,6 +16,7 @@
 #include <pcs/internal/Stopwatch.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
+#include <pcs/internal/text.h>
 #include <pcs/neighborhood/Proximity_graph.h>
 #include <pcs/neighborhood/spatial_order.h>
 
@@ -116,7 +117,8 @@ private:
                           " points lie at one place; there is nothing to deform");
     // Squares and their products must stay representable.
     if (!(extent > 1e-100 && extent < 1e100))
-      throw Invalid_input("pcs deformation: the points extend over " + std::to_string(extent) +
+      throw Invalid_input("pcs deformation: the points extend over " +
+                          pcs::internal::to_text(extent) +
                           "; extents must lie between 1e-100 and 1e100");
     frame.origin = 0.5 * low + 0.5 * high;
     frame.unit = std::exp2(std::floor(std::log2(extent)));

@@ -121,8 +121,10 @@ public:
   /// Centroid of the handle's points at rest, in the caller's coordinates.
   const Vec3& centroid(std::size_t handle) const { return m_centroid[handle]; }
 
+  /// Throws `Invalid_input` if the motion cannot be represented beside the cloud.
   void set_transform(std::size_t handle, const Similarity& transform)
   {
+    check_motion(handle, transform);
     m_transforms[handle] = transform;
   }
 
@@ -184,7 +186,9 @@ public:
     const double unit = m_body.frame.unit;
     r.initial_energy = result.initial_energy * unit * unit;
     r.energy = result.energy * unit * unit;
-    if (result.status != Status::cancelled) {
+    if (!m_solver.is_finite())
+      r.status = Status::numerical_failure;
+    else if (result.status != Status::cancelled) {
       m_local_transforms = std::move(transforms);
       read_maps();
     }
@@ -226,9 +230,10 @@ public:
     const auto put = [&](std::size_t place, const Vec3& p, const Vec3& normal) {
       write_point(body.input_of_place[place], body.frame.to_world(p), normal);
     };
+    const std::vector<char> is_written = moved_handles();
     const auto put_other = [&](std::size_t place) {
       const Node_constraint h = m_constraint_of_site[body.site_of_place[place]];
-      if (h >= 0)
+      if (h >= 0 && is_written[static_cast<std::size_t>(h)])
         put_rigid(place, static_cast<std::size_t>(h), put);
     };
     if (body.is_sampled)
@@ -239,9 +244,9 @@ public:
           [&](std::size_t place) {
             const std::size_t site = body.site_of_place[place];
             const Node_constraint h = m_constraint_of_site[site];
-            if (h >= 0)
-              put_rigid(place, static_cast<std::size_t>(h), put);
-            else if (h == free_node) {
+            if (h != free_node)
+              put_other(place);
+            else {
               const Eigen::Map<const Row_major> a(m_maps[site].a);
               const Vec3 t(m_maps[site].t[0], m_maps[site].t[1], m_maps[site].t[2]);
               Vec3 normal = Vec3::Zero();
@@ -291,6 +296,21 @@ public:
 
 private:
   static constexpr Node_constraint outside = -3;
+  /// Scale and distance [extents] beyond which double precision keeps nothing of the shape.
+  static constexpr double largest_motion = 1e12;
+
+  void check_motion(std::size_t handle, const Similarity& transform) const
+  {
+    const double distance =
+        (transform(m_body.frame.origin) - m_body.frame.origin).norm() / m_body.frame.unit;
+    if (!transform.is_finite() || !(distance < largest_motion) ||
+        !(transform.scale() < largest_motion && transform.scale() > 1 / largest_motion))
+      throw Invalid_input("pcs deformation: the motion of handle " + std::to_string(handle) +
+                          " has scale " + pcs::internal::to_text(transform.scale()) +
+                          " and takes the cloud " + pcs::internal::to_text(distance) +
+                          " times its extent away; both must be less than " +
+                          pcs::internal::to_text(largest_motion));
+  }
 
   void build_coarse_levels()
   {
@@ -412,24 +432,42 @@ private:
       if (m_handle_of_site[site] >= 0 && f == unreached_node)
         f = m_handle_of_site[site];
     }
+    // What was written once goes back to rest when its last handle is removed.
+    m_was_reached.resize(body.number_of_components(), 0);
     m_constraint_of_site.resize(body.number_of_sites());
     for (std::size_t site = 0; site < body.number_of_sites(); ++site) {
       const std::size_t component = body.component_of_site[site];
       Node_constraint h = m_handle_of_site[site];
-      if (h == outside || !is_reached[component])
+      if (h == outside)
         h = unreached_node;
+      else if (!is_reached[component])
+        h = m_was_reached[component] ? free_node : unreached_node;
       else if (body.sample_of_site[site] == no_sample && h == free_node)
         h = follows[component];
       else if (is_soft(h))
         h = free_node;
       m_constraint_of_site[site] = h;
     }
+    for (std::size_t c = 0; c < is_reached.size(); ++c)
+      m_was_reached[c] = m_was_reached[c] || is_reached[c] ? 1 : 0;
     // Eight places share a byte, as eight points share a block of the upsampling.
     m_is_blended.assign(body.upsampling.number_of_blocks(), 0);
     for (std::size_t place = 0; place < body.number_of_points(); ++place)
       if (m_constraint_of_site[body.site_of_place[place]] == free_node)
         m_is_blended[place / lanes] =
             static_cast<std::uint8_t>(m_is_blended[place / lanes] | 1u << place % lanes);
+  }
+
+  /// Handles whose points are written: those that move, or did so the last time. Others keep their bits.
+  std::vector<char> moved_handles()
+  {
+    m_was_moved.resize(m_local_transforms.size(), 0);
+    std::vector<char> is_written = m_was_moved;
+    for (std::size_t h = 0; h < m_local_transforms.size(); ++h) {
+      m_was_moved[h] = m_local_transforms[h].is_identity() ? 0 : 1;
+      is_written[h] = is_written[h] || m_was_moved[h] ? 1 : 0;
+    }
+    return is_written;
   }
 
   static Vec3 turn_normal(const Eigen::Matrix3d& a, const Vec3& normal)
@@ -510,7 +548,7 @@ private:
   std::vector<std::uint8_t> m_is_blended;            ///< one bit per place
   std::vector<Similarity> m_transforms, m_local_transforms;
   std::vector<double> m_weight;
-  std::vector<char> m_is_used;
+  std::vector<char> m_is_used, m_was_moved, m_was_reached;
   std::vector<Vec3> m_centroid;
   std::vector<Affine_map> m_maps;
   Deformation_report m_report;

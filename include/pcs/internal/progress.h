@@ -37,6 +37,13 @@ public:
     return !m_is_cancelled;
   }
 
+  /// Reports that all is done; it is too late to stop.
+  void finish()
+  {
+    if (m_callback && !m_is_cancelled)
+      m_callback(m_to);
+  }
+
   bool is_cancelled() const { return m_is_cancelled; }
 
 private:
