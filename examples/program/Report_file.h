@@ -1,0 +1,72 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// A small text file that is found to be writable before the work, and appears under its name only when complete.
+
+#ifndef PCS_EXAMPLES_PROGRAM_REPORT_FILE_H
+#define PCS_EXAMPLES_PROGRAM_REPORT_FILE_H
+
+#include <pcs/core/errors.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <system_error>
+#include <unistd.h>
+
+namespace program {
+
+class Report_file
+{
+public:
+  explicit Report_file(const std::string& path) : m_path(path), m_target(path)
+  {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (fs::is_directory(status))
+      throw pcs::IO_error(path, "is a directory, expected a file name");
+    if (fs::exists(status) && !fs::is_regular_file(status))
+      m_out.open(path); // a device or a pipe: renaming would replace it
+    else {
+      if (fs::exists(status))
+        m_target = fs::canonical(path, error); // a symbolic link stays one
+      m_temporary =
+          m_target.parent_path() / (".unfinished_report_" + std::to_string(getpid()) + ".tmp");
+      m_out.open(m_temporary);
+    }
+    if (!m_out)
+      throw pcs::IO_error(path, "cannot be opened for writing");
+  }
+
+  Report_file(const Report_file&) = delete;
+  Report_file& operator=(const Report_file&) = delete;
+
+  ~Report_file()
+  {
+    std::error_code error;
+    if (!m_temporary.empty())
+      std::filesystem::remove(m_temporary, error);
+  }
+
+  void commit(const std::string& text)
+  {
+    m_out << text;
+    m_out.close();
+    std::error_code error;
+    if (m_out && !m_temporary.empty())
+      std::filesystem::rename(m_temporary, m_target, error);
+    if (!m_out || error)
+      throw pcs::IO_error(m_path, "cannot be written");
+    m_temporary.clear();
+  }
+
+private:
+  std::string m_path;
+  std::filesystem::path m_target;
+  std::filesystem::path m_temporary; // empty when there is none
+  std::ofstream m_out;
+};
+
+} // namespace program
+
+#endif // PCS_EXAMPLES_PROGRAM_REPORT_FILE_H
