@@ -28,8 +28,9 @@
   PCS_OWN(tolerance)                                                                               \
   PCS_OWN(stiffness)                                                                               \
   PCS_OWN(poisson_ratio)                                                                           \
-  PCS_OWN(do_preserve_volume)
-
+  PCS_OWN(do_preserve_volume)                                                                      \
+  PCS_OWN(vector_map)                                                                              \
+  PCS_OWN(tensor_map)
 namespace pcs {
 namespace internal_np {
 

@@ -68,6 +68,14 @@ struct Deformation_types
   using Normal =
       std::conditional_t<std::is_same_v<Normal_map, No_map>, Point, pcs::Map_value<Normal_map>>;
   static constexpr bool has_normals = !std::is_same_v<Normal_map, No_map>;
+  using Vector_map = std::decay_t<decltype(choose(std::declval<const NamedParameters&>(),
+                                                  internal_np::vector_map,
+                                                  std::declval<No_map>()))>;
+  using Tensor_map = std::decay_t<decltype(choose(std::declval<const NamedParameters&>(),
+                                                  internal_np::tensor_map,
+                                                  std::declval<No_map>()))>;
+  static constexpr bool has_vectors = !std::is_same_v<Vector_map, No_map>;
+  static constexpr bool has_tensors = !std::is_same_v<Tensor_map, No_map>;
 };
 
 template <class Value>
@@ -185,7 +193,27 @@ private:
                 "pcs::Point_set_deformation: named parameter `normal_map` must be readable and "
                 "writable, accept an "
                 "element of `points` as key, and store vectors like Kernel::Vector_3");
-  static constexpr bool is_ok = is_range_ok && is_point_ok && is_point_map_ok && is_normal_map_ok;
+  static constexpr bool is_vector_map_ok =
+      !Types::has_vectors || (is_point_or_vector_v<Map_value<typename Types::Vector_map>> &&
+                              is_read_write_map_v<typename Types::Vector_map,
+                                                  typename Types::Element,
+                                                  Map_value<typename Types::Vector_map>>);
+  static_assert(is_vector_map_ok,
+                "pcs::Point_set_deformation: named parameter `vector_map` must be readable and "
+                "writable, accept an element of `points` as key, and store vectors like "
+                "Kernel::Vector_3");
+  static constexpr bool is_tensor_map_ok =
+      !Types::has_tensors || (is_matrix_3_v<Map_value<typename Types::Tensor_map>> &&
+                              is_read_write_map_v<typename Types::Tensor_map,
+                                                  typename Types::Element,
+                                                  Map_value<typename Types::Tensor_map>>);
+  static_assert(
+      is_tensor_map_ok,
+      "pcs::Point_set_deformation: named parameter `tensor_map` must be readable and "
+      "writable, accept an element of `points` as key, and store 3 x 3 matrices of Eigen");
+  static constexpr bool has_gradients = Types::has_vectors || Types::has_tensors;
+  static constexpr bool is_ok = is_vector_map_ok && is_tensor_map_ok && is_range_ok &&
+                                is_point_ok && is_point_map_ok && is_normal_map_ok;
 
 public:
   /*!
@@ -200,6 +228,12 @@ public:
       \np{normal_map} where a normal is read and written; normals keep their length
         \nptype model of `ReadWritePropertyMap`, key: element of `points`, value: a vector type
         \npdefault none: normals are not deformed
+      \np{vector_map} vectors that are carried by the local deformation `G`: `G v`, like tangents
+        \nptype model of `ReadWritePropertyMap`, key: element of `points`, value: a vector type
+        \npdefault none
+      \np{tensor_map} tensors that are carried by it: `G T G^T`, like the covariances of splats
+        \nptype model of `ReadWritePropertyMap`, key: element of `points`, value: `Eigen::Matrix<FT, 3, 3>`
+        \npdefault none
       \np{number_of_samples} nodes of the non-linear problem [count]; as many as points, or more: no sampling
         \nptype integer, `> 0`
         \npdefault `default_number_of_samples`
@@ -265,7 +299,7 @@ public:
                                             has_region ? &region : nullptr,
                                             progress);
       if (m_session->is_ready())
-        read_normals();
+        read_attributes();
     }
   }
 
@@ -442,7 +476,7 @@ public:
     if constexpr (is_ok) {
       const std::vector<deformation::Vec3> present = read_points();
       m_session->accept([&](std::size_t i) { return present[i]; });
-      read_normals();
+      read_attributes();
     }
     m_motion.assign(m_motion.size(), Motion());
   }
@@ -514,6 +548,12 @@ private:
     if constexpr (Types::has_normals)
       m_normal_map = std::make_unique<Normal_map>(
           CGAL::parameters::get_parameter(np, CGAL::internal_np::normal_map));
+    if constexpr (Types::has_vectors)
+      m_vector_map = std::make_unique<typename Types::Vector_map>(
+          CGAL::parameters::get_parameter(np, internal_np::vector_map));
+    if constexpr (Types::has_tensors)
+      m_tensor_map = std::make_unique<typename Types::Tensor_map>(
+          CGAL::parameters::get_parameter(np, internal_np::tensor_map));
     m_sampling.number_of_samples = internal::count_parameter(function,
                                                              "number_of_samples",
                                                              np,
@@ -607,40 +647,83 @@ private:
 
   void check_normals() const
   {
-    if constexpr (Types::has_normals) {
-      const auto n =
-          static_cast<std::size_t>(std::distance(std::begin(*m_points), std::end(*m_points)));
-      for (std::size_t i = 0; i < n; ++i)
-        if (!normal_of(i).allFinite())
-          throw Invalid_input("pcs::Point_set_deformation: the normal of point " +
+    const auto is_finite = [this](std::size_t i) {
+      bool result = true;
+      if constexpr (Types::has_normals)
+        result = normal_of(i).allFinite();
+      if constexpr (Types::has_vectors)
+        result = result && internal::to_eigen(attribute(m_vector_map, i)).allFinite();
+      if constexpr (Types::has_tensors)
+        result = result && attribute(m_tensor_map, i).allFinite();
+      return result;
+    };
+    if constexpr (Types::has_normals || has_gradients)
+      for (std::size_t i = 0; i < size(); ++i)
+        if (!is_finite(i))
+          throw Invalid_input("pcs::Point_set_deformation: the normal, vector or tensor of point " +
                               std::to_string(i) + " is not finite");
-    }
   }
 
-  void read_normals()
+  template <class Map>
+  auto attribute(const std::unique_ptr<Map>& map, std::size_t i) const
+  {
+    return with_element(i, [&](auto&& key) -> pcs::Map_value<Map> { return get(*map, key); });
+  }
+
+  /// Takes the normals, vectors and tensors of the rest shape.
+  void read_attributes()
   {
     if constexpr (Types::has_normals)
       m_session->set_normals([this](std::size_t i) { return normal_of(i); });
+    m_rest_vectors.resize(Types::has_vectors ? size() : 0);
+    m_rest_tensors.resize(Types::has_tensors ? size() : 0);
+    for (std::size_t i = 0; i < m_rest_vectors.size(); ++i)
+      if constexpr (Types::has_vectors)
+        m_rest_vectors[i] = internal::to_eigen(attribute(m_vector_map, i));
+    for (std::size_t i = 0; i < m_rest_tensors.size(); ++i)
+      if constexpr (Types::has_tensors)
+        m_rest_tensors[i] = attribute(m_tensor_map, i).template cast<double>();
   }
 
   void write_points()
   {
     if constexpr (is_ok)
-      m_session->write(
-          [this](std::size_t i, const deformation::Vec3& p, const deformation::Vec3& normal) {
-            with_element(i, [&](auto&& key) {
-              put(*m_point_map, key, make<Point>(p));
-              if constexpr (Types::has_normals)
-                put(*m_normal_map, key, make<Normal>(normal));
-            });
-            static_cast<void>(normal);
-          });
+      m_session->template write<has_gradients>([this](std::size_t i,
+                                                      const deformation::Vec3& p,
+                                                      const deformation::Vec3& normal,
+                                                      const Eigen::Matrix3d& gradient) {
+        with_element(i, [&](auto&& key) {
+          put(*m_point_map, key, make<Point>(p));
+          if constexpr (Types::has_normals)
+            put(*m_normal_map, key, make<Normal>(normal));
+          if constexpr (Types::has_vectors)
+            put(*m_vector_map,
+                key,
+                make<pcs::Map_value<typename Types::Vector_map>>(gradient * m_rest_vectors[i]));
+          if constexpr (Types::has_tensors) {
+            using Tensor = pcs::Map_value<typename Types::Tensor_map>;
+            const Eigen::Matrix3d tensor = gradient * m_rest_tensors[i] * gradient.transpose();
+            put(*m_tensor_map, key, Tensor(tensor.template cast<typename Tensor::Scalar>()));
+          }
+        });
+        static_cast<void>(normal);
+        static_cast<void>(gradient);
+      });
+  }
+
+  std::size_t size() const
+  {
+    return static_cast<std::size_t>(std::distance(std::begin(*m_points), std::end(*m_points)));
   }
 
   PointRange* m_points;
   std::unique_ptr<Point_map>
       m_point_map; // maps need be neither assignable nor default constructible
   std::unique_ptr<Normal_map> m_normal_map;
+  std::unique_ptr<typename Types::Vector_map> m_vector_map;
+  std::unique_ptr<typename Types::Tensor_map> m_tensor_map;
+  std::vector<deformation::Vec3> m_rest_vectors;
+  std::vector<Eigen::Matrix3d> m_rest_tensors;
   deformation::Sampling_options m_sampling{default_number_of_samples,
                                            default_number_of_neighbors,
                                            default_number_of_sample_neighbors,

@@ -53,6 +53,16 @@ struct Is_point<T,
   static constexpr bool value = std::is_constructible_v<T, FT, FT, FT>;
 };
 
+template <class T, class = void>
+struct Is_matrix_3 : std::false_type
+{
+};
+template <class T>
+struct Is_matrix_3<T, std::void_t<decltype(T::RowsAtCompileTime), typename T::Scalar>>
+  : std::bool_constant<T::RowsAtCompileTime == 3 && T::ColsAtCompileTime == 3>
+{
+};
+
 template <class Map, class = void>
 struct Map_value
 {
@@ -108,6 +118,10 @@ using Element_reference = decltype(*std::begin(std::declval<Range&>()));
 //! `Eigen::Vector3d`, or a type of your own
 template <class T>
 constexpr bool is_point_or_vector_v = internal::Is_point<T>::value;
+
+//! whether `T` is a 3 x 3 matrix of Eigen
+template <class T>
+constexpr bool is_matrix_3_v = internal::Is_matrix_3<T>::value;
 
 //! the value type of a property map, `void` if it is none
 template <class Map>

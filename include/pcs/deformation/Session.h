@@ -218,18 +218,20 @@ public:
   }
 
   /*!
-    Calls `write(input index, position, normal)` in the caller's coordinates for every point that the deformation may
-    move: not for points outside the region of interest, nor for those that no handle reaches. Side by side.
-    `rest_normal(input index)` is asked if `HasNormals`.
+    Calls `write(input index, position, normal, gradient)` in the caller's coordinates for every point that the
+    deformation may move, side by side: not for points outside the region of interest, nor for those that no handle
+    reaches, nor for handles that have not moved. `gradient` is set if `HasGradients`: the linear part of the map of
+    the point.
   */
-  template <class Write>
+  template <bool HasGradients, class Write>
   void write(const Write& write_point)
   {
     pcs::internal::Stopwatch watch;
     const auto& body = m_body;
-    const auto put = [&](std::size_t place, const Vec3& p, const Vec3& normal) {
-      write_point(body.input_of_place[place], body.frame.to_world(p), normal);
-    };
+    const auto put =
+        [&](std::size_t place, const Vec3& p, const Vec3& normal, const Eigen::Matrix3d& gradient) {
+          write_point(body.input_of_place[place], body.frame.to_world(p), normal, gradient);
+        };
     const std::vector<char> is_written = moved_handles();
     const auto put_other = [&](std::size_t place) {
       const Node_constraint h = m_constraint_of_site[body.site_of_place[place]];
@@ -237,24 +239,20 @@ public:
         put_rigid(place, static_cast<std::size_t>(h), put);
     };
     if (body.is_sampled)
-      m_body.upsampling.template apply<ConcurrencyTag>(m_maps, m_is_blended, put, put_other);
+      m_body.upsampling.template apply<ConcurrencyTag, HasGradients>(m_maps,
+                                                                     m_is_blended,
+                                                                     put,
+                                                                     put_other);
     else
-      pcs::internal::for_each_index<ConcurrencyTag>(
-          body.number_of_points(),
-          [&](std::size_t place) {
-            const std::size_t site = body.site_of_place[place];
-            const Node_constraint h = m_constraint_of_site[site];
-            if (h != free_node)
-              put_other(place);
-            else {
-              const Eigen::Map<const Row_major> a(m_maps[site].a);
-              const Vec3 t(m_maps[site].t[0], m_maps[site].t[1], m_maps[site].t[2]);
-              Vec3 normal = Vec3::Zero();
-              if (body.upsampling.has_normals())
-                normal = turn_normal(a, body.upsampling.rest_normal(place));
-              put(place, a * body.upsampling.rest(place) + t, normal);
-            }
-          });
+      pcs::internal::for_each_index<ConcurrencyTag>(body.number_of_points(),
+                                                    [&](std::size_t place) {
+                                                      const std::size_t site =
+                                                          body.site_of_place[place];
+                                                      if (m_constraint_of_site[site] == free_node)
+                                                        put_mapped(place, m_maps[site], put);
+                                                      else
+                                                        put_other(place);
+                                                    });
     m_report.seconds.upsampling = watch.lap();
   }
 
@@ -295,6 +293,7 @@ public:
   }
 
 private:
+  using Row_major = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
   static constexpr Node_constraint outside = -3;
   /// Scale and distance [extents] beyond which double precision keeps nothing of the shape.
   static constexpr double largest_motion = 1e12;
@@ -488,7 +487,17 @@ private:
     Vec3 normal = Vec3::Zero();
     if (m_body.upsampling.has_normals())
       normal = t.rotation() * m_body.upsampling.rest_normal(place);
-    put(place, t(m_body.upsampling.rest(place)), normal);
+    put(place, t(m_body.upsampling.rest(place)), normal, t.scale() * t.rotation());
+  }
+
+  template <class Put>
+  void put_mapped(std::size_t place, const Affine_map& map, const Put& put) const
+  {
+    const Eigen::Matrix3d a = Eigen::Map<const Row_major>(map.a);
+    Vec3 normal = Vec3::Zero();
+    if (m_body.upsampling.has_normals())
+      normal = turn_normal(a, m_body.upsampling.rest_normal(place));
+    put(place, a * m_body.upsampling.rest(place) + Eigen::Map<const Vec3>(map.t), normal, a);
   }
 
   static Affine_map identity_map() { return {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}}; }
@@ -535,8 +544,6 @@ private:
                                                                      position},
         constraints);
   }
-
-  using Row_major = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
   Sampled_body<ConcurrencyTag> m_body;
   Elastic_network m_network; ///< the samples and the borders of the handles, if sampled

@@ -91,20 +91,23 @@ public:
   Vec3 rest_normal(std::size_t i) const { return lane(m_normal, i); }
 
   /*!
-    Calls `write(i, position, normal)` for the points whose bit is set in `is_blended[i / 8]`, and `other(i)` for all
-    others, in blocks side by side. `normal` is zero without normals. Blocks without a set bit cost nothing.
+    Calls `write(i, position, normal, gradient)` for the points whose bit is set in `is_blended[i / 8]`, and `other(i)`
+    for all others, in blocks side by side. `normal` is zero without normals, `gradient` only set if `HasGradients`.
+    Blocks without a set bit cost nothing.
   */
-  template <class ConcurrencyTag, class Write, class Other>
+  template <class ConcurrencyTag, bool HasGradients, class Write, class Other>
   void apply(const std::vector<Affine_map>& maps,
              const std::vector<std::uint8_t>& is_blended,
              const Write& write,
              const Other& other)
   {
     update_pairs<ConcurrencyTag>(maps);
-    if (has_normals())
-      apply_blocks<ConcurrencyTag, true>(maps, is_blended, write, other);
+    if constexpr (HasGradients)
+      apply_blocks<ConcurrencyTag, Blend_outputs::gradients>(maps, is_blended, write, other);
+    else if (has_normals())
+      apply_blocks<ConcurrencyTag, Blend_outputs::normals>(maps, is_blended, write, other);
     else
-      apply_blocks<ConcurrencyTag, false>(maps, is_blended, write, other);
+      apply_blocks<ConcurrencyTag, Blend_outputs::positions>(maps, is_blended, write, other);
   }
 
 private:
@@ -180,41 +183,51 @@ private:
     });
   }
 
-  template <class ConcurrencyTag, bool HasNormals, class Write, class Other>
+  template <class ConcurrencyTag, Blend_outputs Outputs, class Write, class Other>
   void apply_blocks(const std::vector<Affine_map>& maps,
                     const std::vector<std::uint8_t>& is_blended,
                     const Write& write,
                     const Other& other) const
   {
-    const auto blend = choose_blend_block<HasNormals>();
+    const auto blend = choose_blend_block<Outputs>();
     pcs::internal::for_each_block<ConcurrencyTag>(
         m_base.size(),
         256,
         [&](std::size_t begin, std::size_t end) {
-          Lane_vectors position{}, normal{};
+          Block_output out{};
+          Eigen::Matrix3d gradient = Eigen::Matrix3d::Identity();
           for (std::size_t block = begin; block < end; ++block) {
             const std::uint8_t mask = is_blended[block];
             const std::size_t first = block * lanes;
             const std::size_t count = std::min(lanes, m_size - first);
             if (mask != 0)
-              blend({&maps[m_base[block]],
-                     m_sample_points[m_base[block]].data(),
-                     m_differences.data(),
-                     m_entry.data() + m_first[block],
-                     m_entry.data() + m_first[block + 1],
-                     &m_rest[block],
-                     HasNormals ? &m_normal[block] : nullptr},
-                    position,
-                    normal);
+              blend(block_input(maps, block), out);
             for (std::size_t l = 0; l < count; ++l)
-              if (mask >> l & 1)
-                write(first + l,
-                      Vec3(position.value[0][l], position.value[1][l], position.value[2][l]),
-                      Vec3(normal.value[0][l], normal.value[1][l], normal.value[2][l]));
-              else
+              if (mask >> l & 1) {
+                if constexpr (Outputs == Blend_outputs::gradients)
+                  for (int k = 0; k < 9; ++k)
+                    gradient(k / 3, k % 3) = out.gradient[k][l];
+                write(first + l, at(out.position, l), at(out.normal, l), gradient);
+              } else
                 other(first + l);
           }
         });
+  }
+
+  static Vec3 at(const Lane_vectors& v, std::size_t l)
+  {
+    return {v.value[0][l], v.value[1][l], v.value[2][l]};
+  }
+
+  Block_input block_input(const std::vector<Affine_map>& maps, std::size_t block) const
+  {
+    return {&maps[m_base[block]],
+            m_sample_points[m_base[block]].data(),
+            m_differences.data(),
+            m_entry.data() + m_first[block],
+            m_entry.data() + m_first[block + 1],
+            &m_rest[block],
+            has_normals() ? &m_normal[block] : nullptr};
   }
 
   std::size_t m_size = 0;

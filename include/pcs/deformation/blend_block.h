@@ -28,6 +28,19 @@ struct Lane_vectors
   double value[3][lanes];
 };
 
+/// What a kernel computes for every point.
+enum class Blend_outputs {
+  positions,
+  normals,  ///< and normals
+  gradients ///< and normals, if the input has them, and the linear part of the blended map
+};
+
+struct Block_output
+{
+  Lane_vectors position, normal;
+  double gradient[9][lanes]; ///< row by row
+};
+
 /// How the map of a sample differs from that of the base, around the base's position: linear part row by row, then
 /// offset. Small numbers, hence in single precision.
 struct Map_difference
@@ -82,9 +95,8 @@ namespace internal {
   holds differences between neighbouring samples only, so that it may be blended in single precision and a rigid
   motion stays exact. Normals get the cofactor matrix of the blended map, and keep their length.
 */
-template <bool HasNormals>
-PCS_ALWAYS_INLINE void
-blend_block(const Block_input& in, Lane_vectors& position_out, Lane_vectors& normal_out)
+template <Blend_outputs Outputs>
+PCS_ALWAYS_INLINE void blend_block(const Block_input& in, Block_output& out)
 {
   using pcs::internal::Double4;
   using pcs::internal::Float8;
@@ -118,10 +130,16 @@ blend_block(const Block_input& in, Lane_vectors& position_out, Lane_vectors& nor
       constexpr std::size_t r = decltype(row)::value;
       const Double4 correction = g[3 * r] * qx + g[3 * r + 1] * qy + g[3 * r + 2] * qz + g[9 + r];
       const Double4 result = x * a[3 * r] + y * a[3 * r + 1] + z * a[3 * r + 2] + t[r] + correction;
-      pcs::internal::store(result, position_out.value[r] + half);
+      pcs::internal::store(result, out.position.value[r] + half);
     });
-    if constexpr (HasNormals) {
+    if constexpr (Outputs != Blend_outputs::positions) {
       unroll<9>([&](auto k) PCS_LAMBDA_INLINE { g[k] = g[k] + a[k]; });
+      if constexpr (Outputs == Blend_outputs::gradients) {
+        unroll<9>([&](auto k)
+                      PCS_LAMBDA_INLINE { pcs::internal::store(g[k], out.gradient[k] + half); });
+        if (!in.normal)
+          return;
+      }
       load(in.normal->value[0] + half, x);
       load(in.normal->value[1] + half, y);
       load(in.normal->value[2] + half, z);
@@ -134,41 +152,40 @@ blend_block(const Block_input& in, Lane_vectors& position_out, Lane_vectors& nor
       // A map that crushes the surface to a line leaves no normal: keep a finite value.
       Double4 scale = (x * x + y * y + z * z) / (nx * nx + ny * ny + nz * nz + 1e-290);
       pcs::internal::square_root(scale);
-      pcs::internal::store(nx * scale, normal_out.value[0] + half);
-      pcs::internal::store(ny * scale, normal_out.value[1] + half);
-      pcs::internal::store(nz * scale, normal_out.value[2] + half);
+      pcs::internal::store(nx * scale, out.normal.value[0] + half);
+      pcs::internal::store(ny * scale, out.normal.value[1] + half);
+      pcs::internal::store(nz * scale, out.normal.value[2] + half);
     }
   });
 }
 
-template <bool HasNormals>
-void blend_block_default(const Block_input& in, Lane_vectors& position, Lane_vectors& normal)
+template <Blend_outputs Outputs>
+void blend_block_default(const Block_input& in, Block_output& out)
 {
-  blend_block<HasNormals>(in, position, normal);
+  blend_block<Outputs>(in, out);
 }
 
 #if PCS_HAS_RUNTIME_DISPATCH
-template <bool HasNormals>
-PCS_TARGET_AVX2 void
-blend_block_avx2(const Block_input& in, Lane_vectors& position, Lane_vectors& normal)
+template <Blend_outputs Outputs>
+PCS_TARGET_AVX2 void blend_block_avx2(const Block_input& in, Block_output& out)
 {
-  blend_block<HasNormals>(in, position, normal);
+  blend_block<Outputs>(in, out);
 }
 #endif
 
 } // namespace internal
 
-using Blend_block = void (*)(const Block_input&, Lane_vectors&, Lane_vectors&);
+using Blend_block = void (*)(const Block_input&, Block_output&);
 
 /// The kernel for this machine. All give the same bits.
-template <bool HasNormals>
+template <Blend_outputs Outputs>
 Blend_block choose_blend_block()
 {
 #if PCS_HAS_RUNTIME_DISPATCH
   if (pcs::internal::has_avx2())
-    return &internal::blend_block_avx2<HasNormals>;
+    return &internal::blend_block_avx2<Outputs>;
 #endif
-  return &internal::blend_block_default<HasNormals>;
+  return &internal::blend_block_default<Outputs>;
 }
 
 } // namespace deformation
