@@ -437,6 +437,39 @@ public:
     return m_session->report();
   }
 
+  /*!
+    Moves other points, and their normals, as the last `deform()` moved the points around them: a cloud that does not fit
+    into memory is deformed through a sample of it, then chunk by chunk. Each point follows its nearest point of this
+    object: rigidly if that is in a handle, not at all if that stays; between them it is blended from the samples like
+    a point of this object (the same to rounding if it is one).
+
+    \param points a model of `RandomAccessRange` at rest, modified in place
+    \param np `point_map` and `normal_map` as in the constructor, for `points`
+    \throws Invalid_input if a point or normal is not finite; nothing is changed then
+    \par Complexity
+    O(n log n) once per rest shape, then O(log n) per point.
+  */
+  template <class OtherRange, class OtherParameters = parameters::Default_named_parameters>
+  void apply(OtherRange& points, const OtherParameters& np = OtherParameters())
+  {
+    require_ready("pcs::Point_set_deformation::apply()");
+    using Other = Point_set_deformation<OtherRange, OtherParameters, ConcurrencyTag>;
+    if constexpr (Other::is_ok) {
+      Other other(points, np, typename Other::Access_only());
+      m_session->prepare_carrying();
+      internal::for_each_index<ConcurrencyTag>(
+          other.size(),
+          [&](std::size_t i) {
+            deformation::Vec3 p = other.point_of(i), normal = other.normal_of(i);
+            const deformation::Vec3 before = p;
+            m_session->carry(p, normal);
+            if (p != before)
+              other.write(i, p, normal, Eigen::Matrix3d::Identity());
+          },
+          256);
+    }
+  }
+
   /// The present state, at the cost of the samples only.
   Snapshot snapshot() const
   {
@@ -486,7 +519,28 @@ public:
   std::size_t number_of_samples() const { return m_session ? m_session->number_of_samples() : 0; }
 
 private:
+  template <class, class, class>
+  friend class Point_set_deformation;
+
   using Session = deformation::Session<ConcurrencyTag>;
+
+  /// Reads and writes points without a session.
+  struct Access_only
+  {
+  };
+  Point_set_deformation(PointRange& points, const NamedParameters& np, Access_only)
+    : m_points(&points)
+  {
+    static_assert(!has_gradients,
+                  "pcs::Point_set_deformation::apply(): `vector_map` and `tensor_map` are for the "
+                  "points of the object itself");
+    read_parameters(np);
+    for (std::size_t i = 0; i < size(); ++i)
+      if (!point_of(i).allFinite())
+        throw Invalid_input("pcs::Point_set_deformation::apply(): point " + std::to_string(i) +
+                            " is not finite");
+    check_normals();
+  }
 
   struct Motion
   {
@@ -688,27 +742,32 @@ private:
   void write_points()
   {
     if constexpr (is_ok)
-      m_session->template write<has_gradients>([this](std::size_t i,
-                                                      const deformation::Vec3& p,
-                                                      const deformation::Vec3& normal,
-                                                      const Eigen::Matrix3d& gradient) {
-        with_element(i, [&](auto&& key) {
-          put(*m_point_map, key, make<Point>(p));
-          if constexpr (Types::has_normals)
-            put(*m_normal_map, key, make<Normal>(normal));
-          if constexpr (Types::has_vectors)
-            put(*m_vector_map,
-                key,
-                make<pcs::Map_value<typename Types::Vector_map>>(gradient * m_rest_vectors[i]));
-          if constexpr (Types::has_tensors) {
-            using Tensor = pcs::Map_value<typename Types::Tensor_map>;
-            const Eigen::Matrix3d tensor = gradient * m_rest_tensors[i] * gradient.transpose();
-            put(*m_tensor_map, key, Tensor(tensor.template cast<typename Tensor::Scalar>()));
-          }
-        });
-        static_cast<void>(normal);
-        static_cast<void>(gradient);
-      });
+      m_session->template write<has_gradients>(
+          [this](std::size_t i,
+                 const deformation::Vec3& p,
+                 const deformation::Vec3& normal,
+                 const Eigen::Matrix3d& gradient) { write(i, p, normal, gradient); });
+  }
+
+  void write(std::size_t i,
+             const deformation::Vec3& p,
+             [[maybe_unused]] const deformation::Vec3& normal,
+             [[maybe_unused]] const Eigen::Matrix3d& gradient)
+  {
+    with_element(i, [&](auto&& key) {
+      put(*m_point_map, key, make<Point>(p));
+      if constexpr (Types::has_normals)
+        put(*m_normal_map, key, make<Normal>(normal));
+      if constexpr (Types::has_vectors)
+        put(*m_vector_map,
+            key,
+            make<pcs::Map_value<typename Types::Vector_map>>(gradient * m_rest_vectors[i]));
+      if constexpr (Types::has_tensors) {
+        using Tensor = pcs::Map_value<typename Types::Tensor_map>;
+        const Eigen::Matrix3d tensor = gradient * m_rest_tensors[i] * gradient.transpose();
+        put(*m_tensor_map, key, Tensor(tensor.template cast<typename Tensor::Scalar>()));
+      }
+    });
   }
 
   std::size_t size() const

@@ -6,6 +6,7 @@
 #define PCS_DEFORMATION_SAMPLE_LINKS_H
 
 #include <pcs/deformation/Sample_regions.h>
+#include <pcs/deformation/blend_block.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/neighborhood/Proximity_graph.h>
 
@@ -53,37 +54,90 @@ struct Sample_candidate
   }
 };
 
-inline void write_weights(const std::vector<Sample_candidate>& nearest,
-                          Sample_weights kind,
-                          std::size_t point,
-                          Sample_links& links)
+/// Weights of the first `k` candidates, summing to one; empty without candidates.
+inline void sample_weights(const std::vector<Sample_candidate>& nearest,
+                           Sample_weights kind,
+                           std::size_t k,
+                           std::vector<double>& weight)
 {
-  const std::size_t count = std::min(links.k, nearest.size());
-  if (count == 0)
+  weight.assign(std::min(k, nearest.size()), 1);
+  if (nearest.empty())
     return;
-  double sum = 0;
-  std::vector<double> w(count);
   // With fewer samples than K + 1 in reach there is none to fade out for: fade beyond the last.
-  const double support =
-      nearest.size() > links.k ? nearest[links.k].distance : 1.5 * nearest.back().distance;
-  for (std::size_t b = 0; b < count; ++b) {
+  const double support = nearest.size() > k ? nearest[k].distance : 1.5 * nearest.back().distance;
+  double sum = 0;
+  for (std::size_t b = 0; b < weight.size(); ++b) {
     const double d = nearest[b].distance;
     if (kind == Sample_weights::compact) {
-      const double f = support > 0 ? 1 - (d / support) * (d / support) : 1;
-      w[b] = std::max(0.0, f) * std::max(0.0, f);
-    } else
-      w[b] = 1 / std::max(d * d,
-                          1e-24 * support * support + 1e-300); // the point may be the sample itself
-    sum += w[b];
+      const double f = support > 0 ? std::max(0.0, 1 - (d / support) * (d / support)) : 1;
+      weight[b] = f * f;
+    } else // the point may be the sample itself
+      weight[b] = 1 / std::max(d * d, 1e-24 * support * support + 1e-300);
+    sum += weight[b];
   }
   if (!(sum > 0)) { // K + 1 samples at the same distance
-    w.assign(count, 1);
-    sum = static_cast<double>(count);
+    weight.assign(weight.size(), 1);
+    sum = static_cast<double>(weight.size());
   }
-  for (std::size_t b = 0; b < count; ++b) {
+  // Whole steps of 16 bits, in which they will be stored; the nearest takes what rounding leaves.
+  double others = 0;
+  for (std::size_t b = weight.size(); b-- > 0;) {
+    weight[b] = std::round(weight_steps * weight[b] / sum) / weight_steps;
+    if (b > 0)
+      others += weight[b];
+  }
+  weight[0] = std::max(0.0, 1 - others);
+}
+
+inline void write_links(const std::vector<Sample_candidate>& nearest,
+                        const std::vector<double>& weight,
+                        std::size_t point,
+                        Sample_links& links)
+{
+  for (std::size_t b = 0; b < weight.size(); ++b) {
     links.sample[point * links.k + b] = nearest[b].sample;
-    links.weight[point * links.k + b] = static_cast<float>(w[b] / sum);
+    links.weight[point * links.k + b] = static_cast<float>(weight[b]);
   }
+}
+
+/// For every sample: itself, the samples whose regions touch its own, and those that touch these. Increasing.
+template <class ConcurrencyTag>
+std::vector<std::vector<std::uint32_t>> sample_rings(const Weighted_graph& graph)
+{
+  std::vector<std::vector<std::uint32_t>> rings(graph.size());
+  pcs::internal::for_each_index<ConcurrencyTag>(
+      rings.size(),
+      [&](std::size_t s) {
+        auto& ring = rings[s];
+        ring.push_back(static_cast<std::uint32_t>(s));
+        for (auto t = graph.begin(s); t != graph.end(s); ++t) {
+          ring.push_back(*t);
+          ring.insert(ring.end(), graph.begin(*t), graph.end(*t));
+        }
+        std::sort(ring.begin(), ring.end());
+        ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+      },
+      256);
+  return rings;
+}
+
+/// The `k + 1` nearest samples of the ring, nearest first, or all if there are fewer.
+inline void nearest_samples(const Vec3& point,
+                            const std::vector<Vec3>& sample_points,
+                            const std::vector<std::uint32_t>& ring,
+                            std::size_t k,
+                            std::vector<Sample_candidate>& nearest)
+{
+  nearest.clear();
+  for (const auto s : ring)
+    nearest.push_back({(sample_points[s] - point).squaredNorm(), s});
+  const std::size_t count = std::min(k + 1, nearest.size());
+  std::partial_sort(nearest.begin(),
+                    nearest.begin() + static_cast<std::ptrdiff_t>(count),
+                    nearest.end());
+  nearest.resize(count);
+  for (auto& candidate : nearest)
+    candidate.distance = std::sqrt(candidate.distance);
 }
 
 } // namespace internal
@@ -107,39 +161,26 @@ Sample_links link_by_regions(const std::vector<Vec3>& points,
   links.k = k;
   links.sample.assign(points.size() * k, no_sample);
   links.weight.assign(points.size() * k, 0);
-  std::vector<std::vector<std::uint32_t>> rings(samples.size());
-  pcs::internal::for_each_index<ConcurrencyTag>(
-      samples.size(),
-      [&](std::size_t s) {
-        auto& ring = rings[s];
-        ring.push_back(static_cast<std::uint32_t>(s));
-        for (auto t = graph.begin(s); t != graph.end(s); ++t) {
-          ring.push_back(*t);
-          ring.insert(ring.end(), graph.begin(*t), graph.end(*t));
-        }
-        std::sort(ring.begin(), ring.end());
-        ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
-      },
-      256);
+  const auto rings = internal::sample_rings<ConcurrencyTag>(graph);
+  std::vector<Vec3> sample_points;
+  for (const auto s : samples)
+    sample_points.push_back(points[s]);
   pcs::internal::for_each_block<ConcurrencyTag>(
       points.size(),
       1024,
       [&](std::size_t begin, std::size_t end) {
         std::vector<internal::Sample_candidate> nearest;
+        std::vector<double> weight;
         for (std::size_t i = begin; i < end; ++i) {
           if (regions.sample_of_point[i] == no_sample)
             continue;
-          nearest.clear();
-          for (const auto s : rings[regions.sample_of_point[i]])
-            nearest.push_back({(points[samples[s]] - points[i]).squaredNorm(), s});
-          const std::size_t count = std::min(k + 1, nearest.size());
-          std::partial_sort(nearest.begin(),
-                            nearest.begin() + static_cast<std::ptrdiff_t>(count),
-                            nearest.end());
-          nearest.resize(count);
-          for (auto& candidate : nearest)
-            candidate.distance = std::sqrt(candidate.distance);
-          internal::write_weights(nearest, weights, i, links);
+          internal::nearest_samples(points[i],
+                                    sample_points,
+                                    rings[regions.sample_of_point[i]],
+                                    k,
+                                    nearest);
+          internal::sample_weights(nearest, weights, k, weight);
+          internal::write_links(nearest, weight, i, links);
         }
       });
   return links;
@@ -190,6 +231,7 @@ Sample_links link_by_hops(const std::vector<Vec3>& points,
       1024,
       [&](std::size_t begin, std::size_t end) {
         std::vector<internal::Sample_candidate> nearest;
+        std::vector<double> weight;
         for (std::size_t i = begin; i < end; ++i) {
           nearest.clear();
           for (std::size_t b = 0; b < count[i]; ++b) {
@@ -197,7 +239,8 @@ Sample_links link_by_hops(const std::vector<Vec3>& points,
             nearest.push_back({(points[samples[s]] - points[i]).norm(), s});
           }
           std::sort(nearest.begin(), nearest.end());
-          internal::write_weights(nearest, weights, i, links);
+          internal::sample_weights(nearest, weights, k, weight);
+          internal::write_links(nearest, weight, i, links);
         }
       });
   return links;

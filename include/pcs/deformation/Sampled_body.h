@@ -58,6 +58,7 @@ struct Local_frame
 template <class ConcurrencyTag>
 struct Sampled_body
 {
+  Sampling_options options;
   Local_frame frame;
   std::vector<std::uint32_t> input_of_place;
   std::vector<std::uint32_t> site_of_place;
@@ -80,10 +81,11 @@ struct Sampled_body
 
   /// Builds everything from finite points in the caller's coordinates. Returns `false` if cancelled.
   bool build(std::vector<Vec3> points,
-             const Sampling_options& options,
+             const Sampling_options& sampling,
              Deformation_report::Seconds& seconds,
              pcs::internal::Progress& progress)
   {
+    options = sampling;
     pcs::internal::Stopwatch watch;
     to_local(points);
     input_of_place = neighborhood::spatial_order<ConcurrencyTag>(points);
@@ -98,7 +100,7 @@ struct Sampled_body
     seconds.neighbors = watch.lap();
     if (!progress(0.6))
       return false;
-    sample(std::move(sites), std::move(graph), options, progress);
+    sample(std::move(sites), std::move(graph), progress);
     seconds.sampling = watch.lap();
     return progress(1.0);
   }
@@ -153,7 +155,6 @@ private:
 
   void sample(std::vector<Vec3> sites,
               neighborhood::Proximity_graph graph,
-              const Sampling_options& options,
               pcs::internal::Progress& progress)
   {
     site_of_sample = octree_samples(sites, options.number_of_samples);

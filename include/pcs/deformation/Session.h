@@ -10,6 +10,7 @@
 #include <pcs/core/errors.h>
 #include <pcs/deformation/Coarse_level.h>
 #include <pcs/deformation/Elastic_solver.h>
+#include <pcs/deformation/Point_carrier.h>
 #include <pcs/deformation/Sampled_body.h>
 #include <pcs/deformation/handle_boundary.h>
 
@@ -17,6 +18,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -256,6 +258,47 @@ public:
     m_report.seconds.upsampling = watch.lap();
   }
 
+  /*!
+    Where the present deformation takes a point that need not belong to the session, and the normal there: like the
+    points around it. Points whose nearest point stays, stay bit for bit. `prepare_carrying()` comes first.
+  */
+  void carry(Vec3& point, Vec3& normal) const
+  {
+    const Vec3 local = m_body.frame.to_local(point);
+    const std::size_t site = m_carrier->nearest_site(local);
+    const Node_constraint h = m_constraint_of_site[site];
+    if (h >= 0) {
+      const Similarity& t = m_local_transforms[static_cast<std::size_t>(h)];
+      if (t.is_identity())
+        return;
+      point = m_body.frame.to_world(t(local));
+      normal = t.rotation() * normal;
+    } else if (h == free_node) {
+      const Affine_map map = m_carrier->map_at(local, site, m_maps);
+      const Eigen::Matrix3d a = Eigen::Map<const Row_major>(map.a);
+      point = m_body.frame.to_world(a * local + Eigen::Map<const Vec3>(map.t));
+      normal = turn_normal(a, normal);
+    }
+  }
+
+  /// Builds what `carry()` needs, unless it is there. O(n log n).
+  void prepare_carrying()
+  {
+    if (m_carrier)
+      return;
+    std::vector<Vec3> sites(m_body.number_of_sites());
+    for (std::size_t place = 0; place < m_body.number_of_points(); ++place)
+      sites[m_body.site_of_place[place]] = m_body.upsampling.rest(place);
+    m_carrier = std::make_unique<Point_carrier>(std::move(sites),
+                                                m_body.upsampling.sample_points(),
+                                                m_body.sample_of_site,
+                                                m_body.network.surface,
+                                                m_body.options.number_of_sample_neighbors,
+                                                m_body.options.sample_weights);
+    if (m_constraint_of_site.empty())
+      constrain(m_stiffness);
+  }
+
   const Deformation_report& report() const { return m_report; }
 
   /// `normal(input index)` gives the normals at rest. [-]
@@ -285,6 +328,7 @@ public:
       finer = &level.network();
     }
     m_maps.assign(m_maps.size(), identity_map());
+    m_carrier.reset();
     m_is_constrained = false;
     for (Similarity& t : m_transforms)
       t = Similarity();
@@ -557,6 +601,7 @@ private:
   std::vector<double> m_weight;
   std::vector<char> m_is_used, m_was_moved, m_was_reached;
   std::vector<Vec3> m_centroid;
+  std::unique_ptr<Point_carrier> m_carrier;
   std::vector<Affine_map> m_maps;
   Deformation_report m_report;
   double m_stiffness = 1;
