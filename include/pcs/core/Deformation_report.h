@@ -22,6 +22,7 @@ struct Deformation_report
   std::size_t number_of_duplicates = 0;     ///< points at the place of another one [count]
   std::size_t number_of_samples = 0;        ///< nodes of the non-linear problem [count]
   std::size_t number_of_interior_links = 0; ///< springs through the inside [count]
+  std::size_t number_of_short_cuts = 0;     ///< links dropped that jumped between sheets [count]
   std::size_t number_of_components = 0;     ///< of the neighbour graph [count]
   std::size_t number_of_unreached_components =
       0; ///< components without handle: they stay where they are [count]
@@ -42,13 +43,13 @@ inline std::ostream& operator<<(std::ostream& out, const Deformation_report& r)
 {
   out << "status " << r.status << ", " << r.number_of_points << " points ("
       << r.number_of_duplicates << " duplicates), " << r.number_of_samples << " samples, "
-      << r.number_of_interior_links << " interior links, " << r.number_of_components
-      << " components (" << r.number_of_unreached_components << " unreached with "
-      << r.number_of_unreached_points << " points), " << r.number_of_iterations
-      << " iterations, energy " << r.initial_energy << " -> " << r.energy << "; seconds: neighbors "
-      << r.seconds.neighbors << ", sampling " << r.seconds.sampling << ", factorization "
-      << r.seconds.factorization << ", solving " << r.seconds.solving << ", upsampling "
-      << r.seconds.upsampling;
+      << r.number_of_interior_links << " interior links, " << r.number_of_short_cuts
+      << " short cuts dropped, " << r.number_of_components << " components ("
+      << r.number_of_unreached_components << " unreached with " << r.number_of_unreached_points
+      << " points), " << r.number_of_iterations << " iterations, energy " << r.initial_energy
+      << " -> " << r.energy << "; seconds: neighbors " << r.seconds.neighbors << ", sampling "
+      << r.seconds.sampling << ", factorization " << r.seconds.factorization << ", solving "
+      << r.seconds.solving << ", upsampling " << r.seconds.upsampling;
   return out;
 }
 

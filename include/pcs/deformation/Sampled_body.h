@@ -18,6 +18,7 @@
 #include <pcs/internal/progress.h>
 #include <pcs/internal/text.h>
 #include <pcs/neighborhood/Proximity_graph.h>
+#include <pcs/neighborhood/drop_short_cuts.h>
 #include <pcs/neighborhood/spatial_order.h>
 
 #include <algorithm>
@@ -69,11 +70,12 @@ struct Sampled_body
   std::vector<std::uint32_t>
       sample_of_site; ///< nearest along the surface; `no_sample` where there is none
   neighborhood::Proximity_graph
-      site_graph;          ///< kept for the borders of handles; empty if not sampled
-  Elastic_network network; ///< over the samples
-  double weight_unit = 1;  ///< see `sample_graph()`
-  Upsampling upsampling;   ///< over the places
-  bool is_sampled = true;  ///< whether there are fewer samples than sites
+      site_graph;                       ///< kept for the borders of handles; empty if not sampled
+  Elastic_network network;              ///< over the samples
+  double weight_unit = 1;               ///< see `sample_graph()`
+  Upsampling upsampling;                ///< over the places
+  std::size_t number_of_short_cuts = 0; ///< links dropped between sheets
+  bool is_sampled = true;               ///< whether there are fewer samples than sites
 
   std::size_t number_of_points() const { return input_of_place.size(); }
   std::size_t number_of_sites() const { return component_of_site.size(); }
@@ -96,6 +98,7 @@ struct Sampled_body
       return false;
     neighborhood::Proximity_graph graph =
         neighborhood::nearest_neighbor_graph<ConcurrencyTag>(sites, options.number_of_neighbors);
+    number_of_short_cuts = neighborhood::drop_short_cuts<ConcurrencyTag>(sites, graph);
     find_components(graph);
     seconds.neighbors = watch.lap();
     if (!progress(0.6))

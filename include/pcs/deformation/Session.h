@@ -55,6 +55,7 @@ public:
     m_report.number_of_samples = m_body.network.size();
     m_report.number_of_interior_links = m_body.network.links.neighbor.size() / 2;
     m_report.number_of_components = m_body.number_of_components();
+    m_report.number_of_short_cuts = m_body.number_of_short_cuts;
     m_maps.assign(m_body.network.size(), identity_map());
     build_coarse_levels();
     m_handle_of_site.assign(m_body.number_of_sites(), free_node);
