@@ -264,7 +264,8 @@ public:
       \np{poisson_ratio} transverse contraction under stretch [-]: 0.5 like rubber, 0 like cork, negative auxetic
         \nptype floating point, -1 to 0.5
         \npdefault 0
-      \np{do_preserve_volume} whether closed surfaces get springs through their inside
+      \np{do_preserve_volume} whether closed surfaces get springs through their inside; with more than 20,000 samples
+          only their coarser levels do
         \nptype `bool`
         \npdefault `true`
       \np{region_of_interest} numbers of the points that may move; all others stay bit for bit

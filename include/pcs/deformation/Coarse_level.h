@@ -41,7 +41,10 @@ class Coarse_level
 public:
   /// \param finer its nodes in spatial order
   /// \param component the component of each of its nodes
-  Coarse_level(const Elastic_network& finer, const std::vector<std::uint32_t>& component)
+  /// \param has_links whether closed surfaces get springs through their inside
+  Coarse_level(const Elastic_network& finer,
+               const std::vector<std::uint32_t>& component,
+               bool has_links)
     : m_node_of_sample(octree_samples(finer.rest, finer.size() / coarsening_ratio))
   {
     constexpr std::size_t number_of_sample_neighbors = 4;
@@ -60,7 +63,7 @@ public:
       m_network.rest.push_back(finer.rest[node]);
       m_component.push_back(component[node]);
     }
-    if (!finer.links.neighbor.empty())
+    if (has_links && m_network.size() <= largest_linked_network)
       m_network.links = interior_links<ConcurrencyTag>(m_network, m_component);
   }
 

@@ -12,6 +12,7 @@
 #include <pcs/deformation/Elastic_solver.h>
 #include <pcs/deformation/Point_carrier.h>
 #include <pcs/deformation/Sampled_body.h>
+#include <pcs/deformation/border_fade.h>
 #include <pcs/deformation/handle_boundary.h>
 
 #include <algorithm>
@@ -147,8 +148,10 @@ public:
       finer = &level.network();
       of_finer = &level.constraints();
     }
-    if (m_body.is_sampled)
+    if (m_body.is_sampled) {
       m_network = with_boundary(constraints);
+      find_fades();
+    }
     m_is_constrained = m_solver.constrain(m_body.is_sampled ? m_network : m_body.network,
                                           std::move(constraints),
                                           stiffness) &&
@@ -241,10 +244,29 @@ public:
       if (h >= 0 && is_written[static_cast<std::size_t>(h)])
         put_rigid(place, static_cast<std::size_t>(h), put);
     };
+    const auto put_blended =
+        [&](std::size_t place, const Vec3& p, const Vec3& normal, const Eigen::Matrix3d& gradient) {
+          if (!(m_is_faded[place / lanes] >> place % lanes & 1) || m_local_transforms.empty()) {
+            put(place, p, normal, gradient);
+            return;
+          }
+          Vec3 faded = p, faded_normal = normal;
+          Eigen::Matrix3d faded_gradient = gradient;
+          const Vec3 rest_normal = body.upsampling.has_normals()
+                                       ? body.upsampling.rest_normal(place)
+                                       : Vec3(Vec3::Zero());
+          fade(body.site_of_place[place],
+               body.upsampling.rest(place),
+               rest_normal,
+               faded,
+               faded_normal,
+               faded_gradient);
+          put(place, faded, faded_normal, faded_gradient);
+        };
     if (body.is_sampled)
       m_body.upsampling.template apply<ConcurrencyTag, HasGradients>(m_maps,
                                                                      m_is_blended,
-                                                                     put,
+                                                                     put_blended,
                                                                      put_other);
     else
       pcs::internal::for_each_index<ConcurrencyTag>(body.number_of_points(),
@@ -276,9 +298,12 @@ public:
       normal = t.rotation() * normal;
     } else if (h == free_node) {
       const Affine_map map = m_carrier->map_at(local, site, m_maps);
-      const Eigen::Matrix3d a = Eigen::Map<const Row_major>(map.a);
-      point = m_body.frame.to_world(a * local + Eigen::Map<const Vec3>(map.t));
-      normal = turn_normal(a, normal);
+      Eigen::Matrix3d a = Eigen::Map<const Row_major>(map.a);
+      Vec3 moved = a * local + Eigen::Map<const Vec3>(map.t), turned = turn_normal(a, normal);
+      if (!m_local_transforms.empty())
+        fade(site, local, normal, moved, turned, a);
+      point = m_body.frame.to_world(moved);
+      normal = turned;
     }
   }
 
@@ -364,19 +389,23 @@ private:
     const Elastic_network* finer = &m_body.network;
     const std::vector<std::uint32_t>* of_finer = &component;
     while (finer->size() >= smallest_coarsened_network) {
-      m_coarse.emplace_back(*finer, *of_finer);
+      m_coarse.emplace_back(*finer, *of_finer, m_body.options.do_preserve_volume);
       finer = &m_coarse.back().network();
       of_finer = &m_coarse.back().component();
     }
   }
 
-  Vec3 rest_of_site(std::size_t site) const
+  /// Places are sorted by site.
+  std::size_t first_place(std::size_t site) const
   {
-    // Places are sorted by site, so the first place of the site is found by bisection.
+    if (m_body.number_of_sites() == m_body.number_of_points())
+      return site;
     const auto& sites = m_body.site_of_place;
-    const auto place = std::lower_bound(sites.begin(), sites.end(), site) - sites.begin();
-    return m_body.upsampling.rest(static_cast<std::size_t>(place));
+    return static_cast<std::size_t>(std::lower_bound(sites.begin(), sites.end(), site) -
+                                    sites.begin());
   }
+
+  Vec3 rest_of_site(std::size_t site) const { return m_body.upsampling.rest(first_place(site)); }
 
   void update_centroids()
   {
@@ -571,14 +600,19 @@ private:
         512);
   }
 
+  /// The exact handle that holds a site; the outside of the region counts as one, after all others.
+  Node_constraint exact_handle(std::size_t site) const
+  {
+    const Node_constraint h = m_handle_of_site[site];
+    if (h == outside)
+      return static_cast<Node_constraint>(m_transforms.size());
+    return is_soft(h) ? free_node : h;
+  }
+
   /// The sample network with nodes on the borders of the handles.
   Elastic_network with_boundary(Node_constraints& constraints) const
   {
-    const auto handle_of_site = [&](std::size_t site) {
-      const Node_constraint h = m_handle_of_site[site];
-      const auto outside_handle = static_cast<Node_constraint>(m_transforms.size());
-      return h == outside ? outside_handle : is_soft(h) ? free_node : h;
-    };
+    const auto handle_of_site = [&](std::size_t site) { return exact_handle(site); };
     const auto position = [&](std::size_t site) { return rest_of_site(site); };
     return with_boundary_nodes(
         Boundary_input<decltype(handle_of_site), decltype(position)>{m_body.network,
@@ -590,6 +624,53 @@ private:
         constraints);
   }
 
+  void find_fades()
+  {
+    const Weighted_graph& graph = m_body.network.surface;
+    std::vector<double> spacing(graph.size(), 0);
+    for (std::size_t s = 0; s < spacing.size(); ++s) {
+      for (auto t = graph.begin(s); t != graph.end(s); ++t)
+        spacing[s] += (m_body.network.rest[*t] - m_body.network.rest[s]).norm();
+      spacing[s] /= std::max<double>(1, static_cast<double>(graph.degree(s)));
+    }
+    m_fades = border_fades(
+        m_body.site_graph,
+        m_body.sample_of_site,
+        spacing,
+        [&](std::size_t site) { return exact_handle(site); },
+        [&](std::size_t site) { return rest_of_site(site); });
+    m_is_faded.assign(m_body.upsampling.number_of_blocks(), 0);
+    for (const Border_fade& f : m_fades)
+      for (std::size_t place = first_place(f.site);
+           place < m_body.number_of_points() && m_body.site_of_place[place] == f.site;
+           ++place)
+        m_is_faded[place / lanes] =
+            static_cast<std::uint8_t>(m_is_faded[place / lanes] | 1u << place % lanes);
+  }
+
+  /// Draws what the samples say about a point towards the motion of the handle next to it.
+  void fade(std::size_t site,
+            const Vec3& rest,
+            const Vec3& rest_normal,
+            Vec3& p,
+            Vec3& normal,
+            Eigen::Matrix3d& gradient) const
+  {
+    const auto f = std::lower_bound(m_fades.begin(),
+                                    m_fades.end(),
+                                    site,
+                                    [](const Border_fade& a, std::size_t s) { return a.site < s; });
+    if (f == m_fades.end() || f->site != site)
+      return;
+    const Similarity& t = m_local_transforms[static_cast<std::size_t>(f->handle)];
+    p += f->weight * (t(rest) - p);
+    gradient += f->weight * (t.scale() * t.rotation() - gradient);
+    const Vec3 mixed = normal + f->weight * (t.rotation() * rest_normal - normal);
+    const double length = mixed.norm();
+    if (length > 0)
+      normal = rest_normal.norm() / length * mixed;
+  }
+
   Sampled_body<ConcurrencyTag> m_body;
   Elastic_network m_network; ///< the samples and the borders of the handles, if sampled
   Elastic_solver<ConcurrencyTag> m_solver;
@@ -598,6 +679,8 @@ private:
   std::vector<Node_constraint> m_handle_of_site; ///< as the caller said
   std::vector<Node_constraint> m_constraint_of_site; ///< as it is written
   std::vector<std::uint8_t> m_is_blended;            ///< one bit per place
+  std::vector<std::uint8_t> m_is_faded;              ///< one bit per place
+  std::vector<Border_fade> m_fades;                  ///< increasing by site
   std::vector<Similarity> m_transforms, m_local_transforms;
   std::vector<double> m_weight;
   std::vector<char> m_is_used, m_was_moved, m_was_reached;

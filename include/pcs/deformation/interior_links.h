@@ -44,6 +44,10 @@ struct Interior_link_options
   int largest_number_of_steps = 128; ///< of one ray
 };
 
+/// Larger networks get no links; their coarser levels do. Links turn the factor of a surface into that of a volume:
+/// at 40,000 nodes factorising takes fifty times as long as at 5,000. [count]
+constexpr std::size_t largest_linked_network = 20000;
+
 namespace internal {
 
 /// Normals by principal components of the edges, oriented consistently along a spanning tree per component.
