@@ -1,0 +1,266 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Blending the samples' maps: the plain formula in double precision, rigid motions, both kernels.
+
+#include <pcs/core/rotations.h>
+#include <pcs/deformation/Upsampling.h>
+#include <pcs/deformation/octree_samples.h>
+#include <support/networks.h>
+#include <support/threads.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <cstring>
+
+namespace {
+
+using pcs::deformation::Affine_map;
+using pcs_test::Points;
+using pcs_test::Vec3;
+using Any_tag = CGAL::Parallel_if_available_tag;
+using Row_major = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+Affine_map affine(const Eigen::Matrix3d& a, const Vec3& t)
+{
+  Affine_map map;
+  Eigen::Map<Row_major>(map.a) = a;
+  Eigen::Map<Vec3>(map.t) = t;
+  return map;
+}
+
+struct Setup
+{
+  Points points, normals;
+  std::vector<Eigen::Matrix3d> gradients; ///< of the last apply()
+  std::vector<std::uint32_t> samples;
+  pcs::deformation::Sample_links links;
+  pcs::deformation::Upsampling upsampling;
+
+  Setup(const Points& unordered, std::size_t count, bool has_normals)
+    : points(pcs_test::in_spatial_order(unordered))
+  {
+    std::mt19937 random(3);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      normals.push_back((1 + double(i % 3)) * pcs_test::random_direction(random));
+    const auto graph =
+        pcs::neighborhood::nearest_neighbor_graph<CGAL::Sequential_tag>(points, 6);
+    samples = pcs::deformation::octree_samples(points, count);
+    links = pcs::deformation::link_by_hops<CGAL::Sequential_tag>(points,
+                                                                 graph,
+                                                                 samples,
+                                                                 6,
+                                                                 pcs::Sample_weights::compact);
+    upsampling = pcs::deformation::Upsampling(
+        points.size(),
+        [&](std::size_t i) { return points[i]; },
+        [](std::size_t i) { return i; },
+        pcs_test::permuted(points, samples),
+        links);
+    if (has_normals)
+      upsampling.set_normals([&](std::size_t i) { return normals[i]; });
+  }
+
+  /// Maps that turn and shift by up to `size`, differently for every sample.
+  std::vector<Affine_map> random_maps(double size, unsigned seed) const
+  {
+    std::mt19937 random(seed);
+    std::vector<Affine_map> maps;
+    for (std::size_t s = 0; s < samples.size(); ++s)
+      maps.push_back(affine(pcs::rotation_exp(size * pcs_test::random_vector(random))
+                                .toRotationMatrix(),
+                            size * pcs_test::random_vector(random)));
+    return maps;
+  }
+
+  template <class Tag>
+  void apply(const std::vector<Affine_map>& maps, Points& p, Points& n)
+  {
+    p.assign(points.size(), Vec3::Zero());
+    n.assign(points.size(), Vec3::Zero());
+    gradients.assign(points.size(), Eigen::Matrix3d::Zero());
+    const std::vector<std::uint8_t> all(upsampling.number_of_blocks(), 255);
+    upsampling.apply<Tag, true>(
+        maps,
+        all,
+        [&](std::size_t i, const Vec3& position, const Vec3& normal, const Eigen::Matrix3d& g) {
+          p[i] = position;
+          n[i] = normal;
+          gradients[i] = g;
+        },
+        [](std::size_t) { BOOST_ERROR("every point is blended"); });
+  }
+};
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(Upsampling)
+
+BOOST_AUTO_TEST_CASE(points_normals_and_gradients_follow_the_plain_formula)
+{
+  Setup s(pcs_test::sphere(1003), 60, true);
+  for (const double size : {1.0, 1e-3}) {
+    const auto maps = s.random_maps(size, 1);
+    Points p, n;
+    s.apply<Any_tag>(maps, p, n);
+    double error = 0, normal_error = 0, gradient_error = 0;
+    for (std::size_t i = 0; i < s.points.size(); ++i) {
+      Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
+      Vec3 t = Vec3::Zero();
+      for (std::size_t b = 0; b < 6; ++b) {
+        const auto k = s.links.sample[6 * i + b];
+        if (k == pcs::deformation::no_sample)
+          continue;
+        a += double(s.links.weight[6 * i + b]) * Eigen::Map<const Row_major>(maps[k].a);
+        t += double(s.links.weight[6 * i + b]) * Eigen::Map<const Vec3>(maps[k].t);
+      }
+      error = std::max(error, (p[i] - (a * s.points[i] + t)).norm());
+      gradient_error = std::max(gradient_error, (s.gradients[i] - a).norm());
+      const Vec3 expected = a.determinant() * a.inverse().transpose() * s.normals[i];
+      normal_error = std::max(
+          normal_error, (n[i] - s.normals[i].norm() * expected.normalized()).norm());
+    }
+    // Weights are kept in 16 bits: up to five of them off by half a step of 1/65535 each, times the difference of
+    // neighbouring maps, which is up to four sizes here.
+    BOOST_TEST(error < 2.5 / 65535 * 4 * size);
+    BOOST_TEST(gradient_error < 2.5 / 65535 * 4 * size);
+    BOOST_TEST(normal_error < 1e-3 * size);
+    BOOST_TEST_MESSAGE("size " << size << ": points off by " << error << ", normals by "
+                               << normal_error);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_rigid_motion_is_exact)
+{
+  Setup s(pcs_test::sphere(1003), 60, true);
+  const Eigen::Matrix3d r = pcs::rotation_exp(Vec3(1, -2, .5)).toRotationMatrix();
+  const Vec3 t(10, -20, 30);
+  Points p, n;
+  s.apply<Any_tag>(std::vector<Affine_map>(60, affine(r, t)), p, n);
+  double error = 0, normal_error = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    error = std::max(error, (p[i] - (r * s.points[i] + t)).norm());
+    normal_error = std::max(normal_error, (n[i] - r * s.normals[i]).norm());
+  }
+  BOOST_TEST(error < 1e-12);
+  BOOST_TEST(normal_error < 1e-12);
+}
+
+BOOST_AUTO_TEST_CASE(points_that_are_not_blended_are_passed_on)
+{
+  Setup s(pcs_test::sphere(101), 20, false);
+  std::vector<std::uint8_t> mask(s.upsampling.number_of_blocks(), 0);
+  for (std::size_t i = 0; i < 101; i += 3)
+    mask[i / 8] = static_cast<std::uint8_t>(mask[i / 8] | 1u << i % 8);
+  std::vector<int> written(101, 0), others(101, 0);
+  s.upsampling.apply<CGAL::Sequential_tag, false>(
+      s.random_maps(1, 2),
+      mask,
+      [&](std::size_t i, const Vec3&, const Vec3& normal, const Eigen::Matrix3d&) {
+        ++written[i];
+        BOOST_TEST((normal == Vec3::Zero()));
+      },
+      [&](std::size_t i) { ++others[i]; });
+  for (std::size_t i = 0; i < 101; ++i) {
+    BOOST_TEST(written[i] == (i % 3 == 0 ? 1 : 0));
+    BOOST_TEST(others[i] == (i % 3 == 0 ? 0 : 1));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(sizes_around_the_block_are_right)
+{
+  for (std::size_t n = 1; n < 20; ++n) {
+    Setup s(pcs_test::random_points(n, 4), 3, true);
+    BOOST_TEST(s.upsampling.size() == n);
+    const auto identity = affine(Eigen::Matrix3d::Identity(), Vec3::Zero());
+    Points p, normals;
+    s.apply<Any_tag>(std::vector<Affine_map>(s.samples.size(), identity), p, normals);
+    BOOST_TEST(pcs_test::largest_distance(p, s.points) < 1e-15);
+    for (std::size_t i = 0; i < n; ++i) {
+      BOOST_TEST((s.upsampling.rest(i) == s.points[i]));
+      BOOST_TEST((s.upsampling.rest_normal(i) == s.normals[i]));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_map_that_crushes_the_surface_leaves_finite_normals)
+{
+  Setup s(pcs_test::sphere(100), 10, true);
+  Points p, n;
+  for (const Eigen::Matrix3d& a :
+       {Eigen::Matrix3d(Eigen::Matrix3d::Zero()), Eigen::Matrix3d(Vec3(1, 0, 0).asDiagonal())}) {
+    s.apply<Any_tag>(std::vector<Affine_map>(10, affine(a, Vec3::Zero())), p, n);
+    for (const Vec3& v : n)
+      BOOST_REQUIRE(v.allFinite());
+  }
+}
+
+#if PCS_HAS_RUNTIME_DISPATCH
+BOOST_AUTO_TEST_CASE(both_kernels_give_the_same_bits)
+{
+  if (!pcs::internal::has_avx2()) {
+    BOOST_TEST_MESSAGE("no AVX2 here");
+    return;
+  }
+  using namespace pcs::deformation;
+  std::mt19937 random(5);
+  for (int repetition = 0; repetition < 2000; ++repetition) {
+    const auto map = [&] {
+      return affine(pcs::rotation_exp(pcs_test::random_vector(random)).toRotationMatrix(),
+                    pcs_test::random_vector(random));
+    };
+    const Affine_map base = map();
+    const Vec3 origin = pcs_test::random_vector(random);
+    std::vector<Map_difference> differences;
+    std::vector<Block_entry> entries;
+    for (std::uint32_t e = 0; e < random() % 9; ++e) {
+      differences.push_back(map_difference(base, map(), origin.data()));
+      Block_entry entry{e, {}};
+      for (auto& w : entry.weight)
+        w = static_cast<std::uint16_t>(random() % 8192);
+      entries.push_back(entry);
+    }
+    Lane_vectors rest, normal;
+    for (int c = 0; c < 3; ++c)
+      for (std::size_t l = 0; l < lanes; ++l) {
+        rest.value[c][l] = pcs_test::uniform(random);
+        normal.value[c][l] = pcs_test::uniform(random);
+      }
+    const Block_input in{&base,
+                         origin.data(),
+                         differences.data(),
+                         entries.data(),
+                         entries.data() + entries.size(),
+                         &rest,
+                         &normal};
+    Block_output a{}, b{}, c{};
+    internal::blend_block_default<Blend_outputs::gradients>(in, a);
+    internal::blend_block_avx2<Blend_outputs::gradients>(in, b);
+    BOOST_REQUIRE(std::memcmp(&a, &b, sizeof a) == 0);
+    // and whatever else is computed beside the positions
+    internal::blend_block_default<Blend_outputs::normals>(in, b);
+    internal::blend_block_avx2<Blend_outputs::normals>(in, c);
+    BOOST_REQUIRE(std::memcmp(&b.normal, &c.normal, sizeof b.normal) == 0);
+    BOOST_REQUIRE(std::memcmp(&a.normal, &c.normal, sizeof b.normal) == 0);
+    BOOST_REQUIRE(std::memcmp(&a.position, &c.position, sizeof b.position) == 0);
+    internal::blend_block_default<Blend_outputs::positions>(in, b);
+    internal::blend_block_avx2<Blend_outputs::positions>(in, c);
+    BOOST_REQUIRE(std::memcmp(&b.position, &c.position, sizeof b.position) == 0);
+    BOOST_REQUIRE(std::memcmp(&a.position, &c.position, sizeof b.position) == 0);
+  }
+}
+#endif
+
+BOOST_AUTO_TEST_CASE(every_number_of_threads_gives_the_same_bits)
+{
+  Setup s(pcs_test::sphere(20000), 300, true);
+  const auto maps = s.random_maps(0.5, 6);
+  Points p, n, q, m;
+  s.apply<CGAL::Sequential_tag>(maps, p, n);
+  for (const int threads : pcs_test::thread_counts)
+    pcs_test::with_threads(threads, [&] {
+      s.apply<Any_tag>(maps, q, m);
+      BOOST_TEST((p == q && n == m));
+    });
+}
+
+BOOST_AUTO_TEST_SUITE_END()

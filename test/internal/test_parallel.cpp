@@ -1,0 +1,133 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Loops, sums and sorting give the same bits for every number of threads.
+
+#include <pcs/internal/parallel.h>
+#include <support/point_clouds.h>
+#include <support/threads.h>
+
+#include <boost/mpl/list.hpp>
+#include <boost/test/unit_test.hpp>
+
+#include <atomic>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace {
+
+using Any_tag = CGAL::Parallel_if_available_tag;
+using Tags = boost::mpl::list<CGAL::Sequential_tag, Any_tag>;
+namespace internal = pcs::internal;
+
+std::vector<double> wild_numbers(std::size_t n)
+{
+  std::mt19937 random(1);
+  std::vector<double> numbers(n);
+  for (double& x : numbers)
+    x = std::ldexp(pcs_test::uniform(random), static_cast<int>(random() % 60) - 30);
+  return numbers;
+}
+
+template <class Tag>
+double sum(const std::vector<double>& numbers)
+{
+  return internal::blocked_reduce<Tag>(
+      numbers.size(),
+      0.0,
+      [&](std::size_t i) { return numbers[i]; },
+      std::plus<double>());
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(parallel)
+
+BOOST_AUTO_TEST_CASE_TEMPLATE(every_index_is_visited_once, Tag, Tags)
+{
+  for (const std::size_t n : {0, 1, 1023, 1024, 1025, 2048, 100000}) {
+    std::vector<std::atomic<int>> visits(n);
+    internal::for_each_index<Tag>(n, [&](std::size_t i) { ++visits[i]; });
+    std::size_t once = 0;
+    for (const auto& v : visits)
+      once += v == 1 ? 1 : 0;
+    BOOST_TEST(once == n);
+  }
+}
+
+BOOST_AUTO_TEST_CASE_TEMPLATE(blocks_are_consecutive_and_never_empty, Tag, Tags)
+{
+  for (const std::size_t block : {1, 7, 1000, 5000}) {
+    std::vector<std::atomic<std::size_t>> end_of_block((1000 + block - 1) / block);
+    internal::for_each_block<Tag>(1000, block, [&](std::size_t begin, std::size_t end) {
+      end_of_block[begin / block] = begin % block == 0 && begin < end ? end : 0;
+    });
+    for (std::size_t b = 0; b < end_of_block.size(); ++b)
+      BOOST_TEST(end_of_block[b] == std::min<std::size_t>(1000, (b + 1) * block));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(sums_have_the_same_bits_for_every_number_of_threads)
+{
+  const auto numbers = wild_numbers(123457);
+  const double sequential = sum<CGAL::Sequential_tag>(numbers);
+  for (const int threads : pcs_test::thread_counts)
+    pcs_test::with_threads(threads, [&] {
+      for (int repetition = 0; repetition < 5; ++repetition)
+        BOOST_TEST(sum<Any_tag>(numbers) == sequential);
+    });
+}
+
+BOOST_AUTO_TEST_CASE_TEMPLATE(values_are_joined_in_the_order_of_their_indices, Tag, Tags)
+{
+  const auto text = internal::blocked_reduce<Tag>(
+      26,
+      std::string(),
+      [](std::size_t i) { return std::string(1, static_cast<char>('a' + i)); },
+      std::plus<std::string>(),
+      4);
+  BOOST_TEST(text == "abcdefghijklmnopqrstuvwxyz");
+}
+
+BOOST_AUTO_TEST_CASE_TEMPLATE(sum_of_nothing_is_the_initial_value, Tag, Tags)
+{
+  BOOST_TEST(sum<Tag>({}) == 0);
+}
+
+BOOST_AUTO_TEST_CASE(sorting_gives_the_same_order_for_every_number_of_threads)
+{
+  std::mt19937 random(3);
+  std::vector<std::pair<int, int>> values;
+  for (int i = 0; i < 50000; ++i)
+    values.emplace_back(static_cast<int>(random() % 100), i);
+  std::shuffle(values.begin(), values.end(), random);
+  auto expected = values;
+  std::sort(expected.begin(), expected.end());
+  for (const int threads : pcs_test::thread_counts)
+    pcs_test::with_threads(threads, [&] {
+      auto sorted = values;
+      internal::sort<Any_tag>(sorted.begin(), sorted.end(), std::less<>());
+      BOOST_TEST((sorted == expected));
+    });
+}
+
+BOOST_AUTO_TEST_CASE_TEMPLATE(both_pieces_of_work_are_done, Tag, Tags)
+{
+  int a = 0, b = 0;
+  internal::invoke_both<Tag>([&] { a = 1; }, [&] { b = 2; });
+  BOOST_TEST(a == 1);
+  BOOST_TEST(b == 2);
+}
+
+BOOST_AUTO_TEST_CASE_TEMPLATE(an_exception_in_a_loop_reaches_the_caller, Tag, Tags)
+{
+  BOOST_CHECK_THROW(internal::for_each_index<Tag>(10000,
+                                                  [](std::size_t i) {
+                                                    if (i == 7777)
+                                                      throw std::range_error("stop");
+                                                  }),
+                    std::range_error);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,156 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The sparse factor against dense algebra.
+
+#include <pcs/linear_algebra/Sparse_cholesky.h>
+#include <support/point_clouds.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <Eigen/Cholesky>
+
+namespace {
+
+using Cholesky = pcs::linear_algebra::Sparse_cholesky;
+
+/// Sparse, symmetric, diagonally dominant.
+Eigen::MatrixXd random_spd(Eigen::Index n, unsigned seed)
+{
+  std::mt19937 random(seed);
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index e = 0; e < 3 * n; ++e) {
+    const auto i = static_cast<Eigen::Index>(random() % static_cast<unsigned>(n));
+    const auto j = static_cast<Eigen::Index>(random() % static_cast<unsigned>(n));
+    const double w = pcs_test::uniform(random);
+    if (i == j)
+      continue;
+    a(i, j) -= w;
+    a(j, i) -= w;
+    a(i, i) += std::abs(w);
+    a(j, j) += std::abs(w);
+  }
+  a.diagonal().array() += 0.1;
+  return a;
+}
+
+Cholesky::Matrix lower(const Eigen::MatrixXd& a)
+{
+  return Cholesky::Matrix(Eigen::MatrixXd(a.triangularView<Eigen::Lower>()).sparseView());
+}
+
+template <int Columns>
+double largest_error(const Cholesky& factor, const Eigen::MatrixXd& a)
+{
+  using Row = Eigen::Matrix<double, Columns, 1>;
+  std::mt19937 random(7);
+  const Eigen::Index n = a.rows();
+  Eigen::MatrixXd rhs(n, Columns);
+  std::vector<Row> b(static_cast<std::size_t>(n)), work;
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index c = 0; c < Columns; ++c)
+      b[static_cast<std::size_t>(i)][c] = rhs(i, c) = pcs_test::uniform(random);
+  const Eigen::MatrixXd expected = a.llt().solve(rhs);
+  factor.solve(b, work);
+  double error = 0;
+  for (Eigen::Index i = 0; i < n; ++i)
+    error = std::max(error,
+                     (b[static_cast<std::size_t>(i)].transpose() - expected.row(i)).norm());
+  return error;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(Sparse_cholesky)
+
+BOOST_AUTO_TEST_CASE(solutions_agree_with_the_dense_factor_for_1_3_and_4_right_hand_sides)
+{
+  for (const Eigen::Index n : {1, 2, 5, 60, 300}) {
+    const auto a = random_spd(n, static_cast<unsigned>(n));
+    Cholesky factor;
+    BOOST_REQUIRE(factor.factorize(lower(a)));
+    BOOST_TEST(factor.size() == static_cast<std::size_t>(n));
+    BOOST_TEST(largest_error<1>(factor, a) < 1e-11);
+    BOOST_TEST(largest_error<3>(factor, a) < 1e-11);
+    BOOST_TEST(largest_error<4>(factor, a) < 1e-11);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_matrix_of_size_zero_is_solved)
+{
+  Cholesky factor;
+  BOOST_TEST(factor.factorize(Cholesky::Matrix(0, 0)));
+  std::vector<Eigen::Vector3d> b, work;
+  factor.solve(b, work);
+  BOOST_TEST(b.empty());
+  BOOST_TEST(factor.number_of_nonzeros() == 0u);
+}
+
+BOOST_AUTO_TEST_CASE(matrices_that_are_not_positive_definite_are_refused)
+{
+  Cholesky factor;
+  Eigen::MatrixXd indefinite = Eigen::Vector3d(1, -1, 2).asDiagonal();
+  BOOST_TEST(!factor.factorize(lower(indefinite)));
+  Eigen::MatrixXd negative = -random_spd(20, 1);
+  BOOST_TEST(!factor.factorize(lower(negative)));
+  Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(3, 3);
+  BOOST_TEST(!factor.factorize(lower(zero)));
+  Eigen::MatrixXd hidden = Eigen::MatrixXd::Identity(2, 2); // eigenvalues -1 and 3
+  hidden(0, 1) = hidden(1, 0) = 2;
+  BOOST_TEST(!factor.factorize(lower(hidden)));
+  Eigen::MatrixXd bad = random_spd(20, 1);
+  bad(3, 3) = std::numeric_limits<double>::quiet_NaN();
+  BOOST_TEST(!factor.factorize(lower(bad)));
+}
+
+BOOST_AUTO_TEST_CASE(a_singular_laplacian_is_refused_in_spite_of_rounding)
+{
+  // A path without a prescribed node: exactly singular, but its last pivot is rounding.
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    std::mt19937 random(seed);
+    const Eigen::Index n = 40;
+    Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);
+    for (Eigen::Index i = 0; i + 1 < n; ++i) {
+      const double w = 1.1 + pcs_test::uniform(random);
+      a(i, i) += w;
+      a(i + 1, i + 1) += w;
+      a(i, i + 1) = a(i + 1, i) = -w;
+    }
+    Cholesky factor;
+    BOOST_TEST(!factor.factorize(lower(a)));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_factor_works_again_after_a_refusal)
+{
+  Cholesky factor;
+  BOOST_TEST(!factor.factorize(lower(-random_spd(30, 1))));
+  const auto a = random_spd(30, 2);
+  BOOST_REQUIRE(factor.factorize(lower(a)));
+  BOOST_TEST(largest_error<3>(factor, a) < 1e-11);
+}
+
+BOOST_AUTO_TEST_CASE(a_kept_pattern_gives_the_factor_of_the_new_values)
+{
+  const auto a = random_spd(50, 3);
+  Eigen::MatrixXd b = 2 * a;
+  b.diagonal().array() += 1;
+  Cholesky factor;
+  BOOST_REQUIRE(factor.factorize(lower(a)));
+  BOOST_REQUIRE(factor.factorize(lower(b), true));
+  BOOST_TEST(largest_error<3>(factor, b) < 1e-11);
+  // another size cannot keep it
+  const auto c = random_spd(20, 4);
+  BOOST_REQUIRE(factor.factorize(lower(c), true));
+  BOOST_TEST(largest_error<3>(factor, c) < 1e-11);
+}
+
+BOOST_AUTO_TEST_CASE(a_factor_can_be_moved)
+{
+  const auto a = random_spd(30, 5);
+  Cholesky factor;
+  BOOST_REQUIRE(factor.factorize(lower(a)));
+  const Cholesky moved = std::move(factor);
+  BOOST_TEST(largest_error<3>(moved, a) < 1e-11);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

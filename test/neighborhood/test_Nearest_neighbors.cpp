@@ -1,0 +1,74 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The k nearest points against brute force.
+
+#include <pcs/neighborhood/Nearest_neighbors.h>
+#include <support/point_clouds.h>
+
+#include <boost/test/unit_test.hpp>
+
+namespace {
+
+using Tree = pcs::neighborhood::Nearest_neighbors;
+using pcs_test::Points;
+using pcs_test::Vec3;
+
+std::vector<double> nearest_squared_distances(const Points& points, const Vec3& query)
+{
+  std::vector<double> distances;
+  for (const Vec3& p : points)
+    distances.push_back((p - query).squaredNorm());
+  std::sort(distances.begin(), distances.end());
+  return distances;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(Nearest_neighbors)
+
+BOOST_AUTO_TEST_CASE(they_are_the_nearest_and_come_in_order)
+{
+  const Points points = pcs_test::random_points(500, 1);
+  const Tree nearest(points);
+  std::vector<Tree::Neighbor> found;
+  std::mt19937 random(2);
+  for (int repetition = 0; repetition < 100; ++repetition) {
+    const Vec3 query = 1.5 * pcs_test::random_vector(random);
+    const auto expected = nearest_squared_distances(points, query);
+    for (const std::size_t k : {1, 2, 7, 64}) {
+      nearest(query, k, found);
+      BOOST_REQUIRE(found.size() == k);
+      for (std::size_t b = 0; b < k; ++b) {
+        BOOST_TEST(found[b].squared_distance == expected[b],
+                   boost::test_tools::tolerance(1e-13));
+        BOOST_TEST(found[b].squared_distance == (points[found[b].index] - query).squaredNorm(),
+                   boost::test_tools::tolerance(1e-13));
+      }
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(fewer_points_than_asked_for_are_all_returned)
+{
+  for (const std::size_t n : {0, 1, 2, 5}) {
+    const Points points = pcs_test::random_points(n, 3);
+    const Tree nearest(points);
+    std::vector<Tree::Neighbor> found(3);
+    nearest(Vec3(0, 0, 0), 10, found);
+    BOOST_TEST(found.size() == n);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(equal_distances_are_ordered_by_coordinates)
+{
+  const Points points{Vec3(0, 1, 0), Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(-1, 0, 0), Vec3(0, 0, -1)};
+  const Tree nearest(points);
+  std::vector<Tree::Neighbor> found;
+  nearest(Vec3(0, 0, 0), 5, found);
+  BOOST_REQUIRE(found.size() == 5u);
+  const std::size_t expected[] = {3, 4, 2, 0, 1};
+  for (std::size_t b = 0; b < 5; ++b)
+    BOOST_TEST(found[b].index == expected[b]);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,36 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Runs a piece of work on a given number of threads, so that results can be compared.
+
+#ifndef PCS_TEST_SUPPORT_THREADS_H
+#define PCS_TEST_SUPPORT_THREADS_H
+
+#include <pcs/internal/parallel.h>
+
+#if PCS_HAS_TBB
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+#endif
+
+namespace pcs_test {
+
+/// Without TBB the work simply runs. More threads than cores are really started: races do not wait for cores.
+template <class Work>
+void with_threads(int number_of_threads, const Work& work)
+{
+#if PCS_HAS_TBB
+  tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                            static_cast<std::size_t>(number_of_threads));
+  tbb::task_arena arena(number_of_threads);
+  arena.execute(work);
+#else
+  static_cast<void>(number_of_threads);
+  work();
+#endif
+}
+
+constexpr int thread_counts[] = {1, 2, 3, 8};
+
+} // namespace pcs_test
+
+#endif // PCS_TEST_SUPPORT_THREADS_H

@@ -1,0 +1,513 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Sessions: handles come and go, motions are absolute, shapes can be restored and accepted.
+
+#include <pcs/Point_set_deformation.h>
+#include <support/deform_cloud.h>
+#include <support/exceptions.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <limits>
+#include <thread>
+
+namespace {
+
+using pcs::Invalid_input;
+using pcs::Status;
+using pcs_test::Bar_edit;
+using pcs_test::message_has;
+using pcs_test::Points;
+using pcs_test::Vec3;
+
+constexpr double pi = 3.14159265358979323846;
+
+auto parameters(int samples)
+{
+  return pcs::parameters::number_of_samples(samples);
+}
+using Session = pcs::Point_set_deformation<Points, decltype(parameters(0))>;
+
+const int both_resolutions[] = {1000000, 150};
+
+/// A bar with a session and two handles, the upper one number 1.
+struct Bar_session
+{
+  Bar_edit edit;
+  Points points = edit.points; ///< what the session writes to
+  Session session;
+
+  explicit Bar_session(int samples) : session(points, parameters(samples))
+  {
+    session.add_handle(edit.handles[0].indices);
+    session.add_handle(edit.handles[1].indices);
+  }
+
+  /// The result of a fresh session with the given motion.
+  static Points fresh(int samples, const pcs::Similarity& motion)
+  {
+    Bar_session s(samples);
+    s.session.set_transformation(1, motion);
+    s.session.deform();
+    return s.points;
+  }
+};
+
+pcs::Similarity bend()
+{
+  return pcs::translation(Vec3(.5, 0, -.2)) * pcs::rotation(Vec3(0, 1, 0), 1.0, Vec3(.5, .5, 4));
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(Point_set_deformation)
+
+BOOST_AUTO_TEST_CASE(without_handle_there_is_nothing_to_do)
+{
+  const Bar_edit edit;
+  Points points = edit.points;
+  Session session(points, parameters(150));
+  BOOST_TEST(session.deform().status == Status::nothing_to_do);
+  BOOST_TEST((points == edit.points));
+  BOOST_TEST(session.number_of_samples() == 150u);
+}
+
+BOOST_AUTO_TEST_CASE(handles_are_numbered_from_0_and_numbers_are_not_used_again)
+{
+  Bar_session s(150);
+  BOOST_TEST(s.session.add_handle(std::vector<int>{300}) == 2u);
+  s.session.remove_handle(2);
+  BOOST_TEST(s.session.add_handle(std::vector<int>{300}) == 3u);
+  BOOST_CHECK_EXCEPTION(s.session.remove_handle(2), Invalid_input, message_has("no handle 2"));
+  BOOST_CHECK_EXCEPTION(
+      s.session.set_transformation(2, bend()), Invalid_input, message_has("no handle 2"));
+  BOOST_CHECK_THROW(s.session.centroid(99), Invalid_input);
+  BOOST_CHECK_THROW(s.session.transformation(99), Invalid_input);
+}
+
+BOOST_AUTO_TEST_CASE(a_result_depends_on_the_motions_only_and_not_on_the_way)
+{
+  for (const int samples : both_resolutions) {
+    Bar_session s(samples);
+    for (int step = 1; step <= 5; ++step) { // somewhere else first
+      s.session.set_rotation(1, Vec3(1, 2, 3), step);
+      s.session.deform();
+    }
+    s.session.set_transformation(1, bend());
+    s.session.deform();
+    BOOST_TEST((s.points == Bar_session::fresh(samples, bend())));
+    const Points once = s.points;
+    s.session.deform();
+    BOOST_TEST((s.points == once));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(rotation_translation_and_scale_combine)
+{
+  Bar_session s(150);
+  const Vec3 c = s.session.centroid(1);
+  s.session.set_translation(1, Vec3(0, 0, .3));
+  s.session.set_rotation(1, Vec3(0, 0, 1), 0.5);
+  s.session.set_scale(1, 1.5);
+  const auto expected = pcs::translation(Vec3(0, 0, .3)) * pcs::rotation(Vec3(0, 0, 1), 0.5, c) *
+                        pcs::scaling(1.5, c);
+  const auto& found = s.session.transformation(1);
+  for (const Vec3& x : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 2, 3)})
+    BOOST_TEST((found(x) - expected(x)).norm() < 1e-13);
+  // setting one again replaces it
+  s.session.set_translation(1, Vec3(0, 0, 0));
+  s.session.set_scale(1, 1);
+  s.session.set_rotation(1, Vec3(0, 0, 1), 0);
+  BOOST_TEST((s.session.transformation(1)(Vec3(1, 2, 3)) - Vec3(1, 2, 3)).norm() < 1e-14);
+}
+
+BOOST_AUTO_TEST_CASE(two_turns_of_twist_arrive_as_two_turns_and_undo_exactly)
+{
+  for (const int samples : {1000000, 400}) {
+    Bar_edit edit(6, 48);
+    Points points = edit.points;
+    Session session(points, parameters(samples));
+    session.add_handle(edit.handles[0].indices);
+    const auto top = session.add_handle(edit.handles[1].indices);
+    const Vec3 axis(0, 0, 1), center(.5, .5, 0);
+    session.set_rotation(top, axis, 4 * pi, center);
+    const auto report = session.deform();
+    BOOST_TEST(report.energy > 0.1); // it did something, although 720 degrees end where they began
+    // The turn grows evenly with the height: follow one side of the bar.
+    double turned = 0, before = 0;
+    std::vector<std::pair<double, std::size_t>> side;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (edit.points[i].x() == 1 && edit.points[i].y() == 0.5)
+        side.emplace_back(edit.points[i].z(), i);
+    std::sort(side.begin(), side.end());
+    for (const auto& [z, i] : side) {
+      const Vec3 d = points[i] - center;
+      const double angle = std::atan2(d.y(), d.x());
+      turned += std::remainder(angle - before, 2 * pi);
+      before = angle;
+    }
+    BOOST_TEST(turned == 4 * pi, boost::test_tools::tolerance(1e-6));
+    session.set_rotation(top, axis, 0, center);
+    session.deform();
+    BOOST_TEST(pcs_test::largest_distance(points, edit.points) < 1e-12 * 9);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(reset_brings_back_the_rest_shape)
+{
+  for (const int samples : both_resolutions) {
+    Bar_session s(samples);
+    s.session.set_transformation(1, bend());
+    s.session.deform();
+    BOOST_TEST(pcs_test::largest_distance(s.points, s.edit.points) > 0.1);
+    s.session.reset();
+    BOOST_TEST(pcs_test::largest_distance(s.points, s.edit.points) < 1e-12);
+    BOOST_TEST((s.session.transformation(1)(Vec3(1, 2, 3)) == Vec3(1, 2, 3)));
+    s.session.deform();
+    BOOST_TEST(pcs_test::largest_distance(s.points, s.edit.points) < 1e-12);
+    // handles and factors stay usable
+    s.session.set_transformation(1, bend());
+    s.session.deform();
+    BOOST_TEST((s.points == Bar_session::fresh(samples, bend())));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_snapshot_brings_back_points_and_motions)
+{
+  for (const int samples : both_resolutions) {
+    Bar_session s(samples);
+    s.session.set_transformation(1, bend());
+    s.session.deform();
+    const Points bent = s.points;
+    const auto snapshot = s.session.snapshot();
+    s.session.set_rotation(1, Vec3(0, 0, 1), 2);
+    s.session.deform();
+    s.session.restore(snapshot);
+    BOOST_TEST((s.points == bent));
+    BOOST_TEST((s.session.transformation(1)(Vec3(1, 2, 3)) - bend()(Vec3(1, 2, 3))).norm() < 1e-14);
+    s.session.deform();
+    BOOST_TEST((s.points == bent));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_snapshot_of_another_session_is_refused)
+{
+  Bar_session a(150), b(151);
+  BOOST_CHECK_EXCEPTION(
+      a.session.restore(b.session.snapshot()), Invalid_input, message_has("restore"));
+}
+
+BOOST_AUTO_TEST_CASE(an_accepted_shape_is_the_new_rest_shape)
+{
+  for (const int samples : both_resolutions) {
+    Bar_session s(samples);
+    s.session.set_transformation(1, bend());
+    s.session.deform();
+    const Points bent = s.points;
+    s.session.accept();
+    s.session.deform();
+    BOOST_TEST(pcs_test::largest_distance(s.points, bent) < 1e-12);
+    s.session.set_translation(1, Vec3(0, 0, .1));
+    s.session.deform();
+    BOOST_TEST(pcs_test::largest_distance(s.points, bent) < 0.2);
+    for (const auto i : s.edit.handles[1].indices)
+      BOOST_REQUIRE((s.points[i] - (bent[i] + Vec3(0, 0, .1))).norm() < 1e-12);
+    s.session.reset();
+    BOOST_TEST(pcs_test::largest_distance(s.points, bent) < 1e-12);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(many_accepted_steps_do_not_blow_up)
+{
+  Bar_session s(150);
+  for (int step = 0; step < 60; ++step) {
+    s.session.set_rotation(1, Vec3(0, 0, 1), 0.1);
+    s.session.deform();
+    s.session.accept();
+  }
+  BOOST_TEST(pcs_test::is_finite(s.points));
+  BOOST_TEST(pcs_test::diagonal(s.points) < 6);
+}
+
+BOOST_AUTO_TEST_CASE(points_of_a_removed_handle_are_free_again)
+{
+  for (const int samples : both_resolutions) {
+    Bar_session s(samples);
+    std::vector<std::size_t> middle = pcs_test::select(
+        s.edit.points, [](const Vec3& p) { return p.z() > 1.9 && p.z() < 2.1; });
+    const auto handle = s.session.add_handle(middle);
+    s.session.set_translation(handle, Vec3(1, 0, 0));
+    s.session.set_transformation(1, bend());
+    s.session.deform();
+    s.session.remove_handle(handle);
+    s.session.deform();
+    BOOST_TEST(pcs_test::largest_distance(s.points, Bar_session::fresh(samples, bend())) < 1e-9);
+    // all handles removed: back to rest
+    s.session.remove_handle(0);
+    s.session.remove_handle(1);
+    BOOST_TEST(s.session.deform().status == Status::nothing_to_do);
+    BOOST_TEST(pcs_test::largest_distance(s.points, s.edit.points) < 1e-12);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_refused_motion_leaves_the_former_one)
+{
+  Bar_session s(150);
+  s.session.set_transformation(1, bend());
+  const double bad = std::numeric_limits<double>::quiet_NaN();
+  BOOST_CHECK_THROW(s.session.set_translation(1, Vec3(bad, 0, 0)), Invalid_input);
+  BOOST_CHECK_THROW(s.session.set_translation(1, Vec3(1e300, 0, 0)), Invalid_input);
+  BOOST_CHECK_THROW(s.session.set_rotation(1, Vec3(0, 0, 1), bad), Invalid_input);
+  BOOST_CHECK_THROW(s.session.set_rotation(1, Vec3(0, 0, 1), 1, Vec3(bad, 0, 0)), Invalid_input);
+  BOOST_CHECK_THROW(s.session.set_scale(1, 0), Invalid_input);
+  s.session.set_scale(1, 1);
+  s.session.deform();
+  BOOST_TEST(
+      pcs_test::largest_distance(s.points, Bar_session::fresh(150, bend())) < 1e-12);
+}
+
+BOOST_AUTO_TEST_CASE(a_refused_handle_changes_nothing)
+{
+  Bar_session s(150);
+  const std::vector<long> negative{100, -1};
+  BOOST_CHECK_EXCEPTION(s.session.add_handle(negative), Invalid_input, message_has("-1"));
+  const std::vector<std::size_t> taken{s.edit.handles[0].indices[0], 300};
+  BOOST_CHECK_THROW(s.session.add_handle(taken), Invalid_input);
+  BOOST_TEST(s.session.add_handle(std::vector<int>{300}) == 2u); // 300 is still free, 2 too
+}
+
+BOOST_AUTO_TEST_CASE(factors_are_made_once_per_set_of_handles)
+{
+  Bar_session s(150);
+  BOOST_TEST(s.session.preprocess());
+  s.session.set_transformation(1, bend());
+  auto report = s.session.deform();
+  BOOST_TEST(report.number_of_points == s.points.size());
+  BOOST_TEST(report.number_of_samples == 150u);
+  report = s.session.deform();
+  BOOST_TEST(report.seconds.neighbors == 0); // nothing of this was done again
+  BOOST_TEST(report.seconds.sampling == 0);
+  BOOST_TEST(report.seconds.factorization == 0);
+}
+
+BOOST_AUTO_TEST_CASE(a_session_can_be_moved)
+{
+  Bar_session s(150);
+  Session moved = std::move(s.session);
+  moved.set_transformation(1, bend());
+  moved.deform();
+  BOOST_TEST((s.points == Bar_session::fresh(150, bend())));
+}
+
+BOOST_AUTO_TEST_CASE(a_cancelled_construction_leaves_a_defined_object)
+{
+  Points points = Bar_edit().points;
+  const Points before = points;
+  const auto np = pcs::parameters::callback([](double) { return false; });
+  pcs::Point_set_deformation<Points, decltype(np)> session(points, np);
+  BOOST_TEST(session.number_of_samples() == 0u);
+  BOOST_TEST(session.deform().status == Status::cancelled);
+  BOOST_CHECK_EXCEPTION(
+      session.add_handle(std::vector<int>{0}), Invalid_input, message_has("cancelled"));
+  BOOST_CHECK_THROW(session.reset(), Invalid_input);
+  BOOST_CHECK_THROW(session.snapshot(), Invalid_input);
+  BOOST_CHECK_THROW(session.accept(), Invalid_input);
+  BOOST_CHECK_THROW(session.preprocess(), Invalid_input);
+  BOOST_TEST((points == before));
+}
+
+BOOST_AUTO_TEST_CASE(a_cancelled_deformation_can_be_repeated)
+{
+  for (const int samples : both_resolutions) {
+    const Bar_edit edit;
+    Points points = edit.points;
+    int calls_left = 1000;
+    const auto np =
+        pcs::parameters::number_of_samples(samples).callback([&](double) { return --calls_left > 0; });
+    pcs::Point_set_deformation<Points, decltype(np)> session(points, np);
+    session.add_handle(edit.handles[0].indices);
+    session.add_handle(edit.handles[1].indices);
+    session.set_transformation(1, bend());
+    calls_left = 2;
+    BOOST_TEST(session.deform().status == Status::cancelled);
+    BOOST_TEST((points == edit.points));
+    calls_left = 1000;
+    session.deform();
+    BOOST_TEST((points == Bar_session::fresh(samples, bend())));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_region_and_the_rest_of_the_cloud_may_be_worked_on_in_turn)
+{
+  // Two regions, two sessions on the same points, one after the other.
+  const Bar_edit edit;
+  Points points = edit.points;
+  const auto region = [&](double low, double high) {
+    return pcs_test::select(edit.points,
+                            [=](const Vec3& p) { return p.z() >= low && p.z() <= high; });
+  };
+  const auto lower = region(0, 1.9), upper = region(2.1, 4);
+  const auto np = [](const std::vector<std::size_t>& r) {
+    return pcs::parameters::region_of_interest(std::cref(r)).number_of_samples(1000000);
+  };
+  using Region_session = pcs::Point_set_deformation<Points, decltype(np(lower))>;
+  {
+    Region_session session(points, np(lower));
+    session.set_translation(session.add_handle(region(0, .1)), Vec3(.2, 0, 0));
+    session.deform();
+  }
+  const Points between = points;
+  Region_session session(points, np(upper));
+  session.set_translation(session.add_handle(region(3.9, 4)), Vec3(.2, 0, 0));
+  session.deform();
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (edit.points[i].z() < 2.1)
+      BOOST_REQUIRE((points[i] == between[i]));
+    else if (edit.points[i].z() > 3.95)
+      BOOST_REQUIRE((points[i] - (edit.points[i] + Vec3(.2, 0, 0))).norm() < 1e-12);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(deformation_attributes)
+
+namespace {
+
+struct Splat
+{
+  Vec3 point, vector;
+  Eigen::Matrix3d covariance;
+};
+
+template <class Value, Value Splat::*Member>
+struct Member_map
+{
+  using key_type = Splat;
+  using value_type = Value;
+  using reference = const Value&;
+  using category = boost::read_write_property_map_tag;
+  friend const Value& get(Member_map, const Splat& s) { return s.*Member; }
+  friend void put(Member_map, Splat& s, const Value& v) { s.*Member = v; }
+};
+
+} // namespace
+
+BOOST_AUTO_TEST_CASE(vectors_and_tensors_follow_the_gradient)
+{
+  const Bar_edit edit(8, 32);
+  for (const int samples : {1000000, 400}) {
+    std::vector<Splat> splats;
+    for (const Vec3& p : edit.points)
+      splats.push_back({p, Vec3(0, 0, .01), 1e-4 * Eigen::Matrix3d::Identity()});
+    const auto np = pcs::parameters::point_map(Member_map<Vec3, &Splat::point>())
+                        .vector_map(Member_map<Vec3, &Splat::vector>())
+                        .tensor_map(Member_map<Eigen::Matrix3d, &Splat::covariance>())
+                        .number_of_samples(samples);
+    pcs::Point_set_deformation<std::vector<Splat>, decltype(np)> session(splats, np);
+    session.add_handle(edit.handles[0].indices);
+    const auto top = session.add_handle(edit.handles[1].indices);
+    // a rigid motion of everything
+    const auto motion = pcs::rotation(Vec3(1, 2, 3), 1.0, Vec3(0, 0, 0));
+    session.set_transformation(0, motion);
+    session.set_transformation(top, motion);
+    session.deform();
+    double worst = 0;
+    for (const Splat& s : splats)
+      worst = std::max(worst,
+                       (s.vector - motion.rotation() * Vec3(0, 0, .01)).norm() +
+                           (s.covariance - 1e-4 * Eigen::Matrix3d::Identity()).norm());
+    BOOST_TEST(worst < 1e-10);
+    // a stretch along z: vectors grow with it, and so do covariances, squared
+    session.reset();
+    session.set_translation(top, Vec3(0, 0, 1));
+    session.deform();
+    std::size_t in_the_middle = 0;
+    for (std::size_t i = 0; i < splats.size(); ++i) {
+      BOOST_REQUIRE((splats[i].vector.allFinite() && splats[i].covariance.allFinite()));
+      BOOST_REQUIRE((splats[i].covariance - splats[i].covariance.transpose()).norm() < 1e-15);
+      const double z = edit.points[i].z();
+      if (z < 1.5 || z > 2.5)
+        continue;
+      ++in_the_middle;
+      const double stretch = splats[i].vector.z() / .01;
+      BOOST_REQUIRE(std::abs(stretch - 1.27) < 0.1); // 4.75 / 3.75
+      BOOST_REQUIRE(std::abs(splats[i].covariance(2, 2) - 1e-4 * stretch * stretch) < 1e-5);
+    }
+    BOOST_TEST(in_the_middle > 100u);
+    session.reset();
+    for (const Splat& s : splats)
+      BOOST_REQUIRE((s.vector - Vec3(0, 0, .01)).norm() < 1e-12);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(other_points_follow_the_points_around_them)
+{
+  const Bar_edit edit(12, 48);
+  // every second point makes the session, all points are carried
+  Points half;
+  std::vector<std::size_t> fixed, moved;
+  for (std::size_t i = 0; i < edit.points.size(); i += 2) {
+    if (edit.points[i].z() < .2)
+      fixed.push_back(half.size());
+    if (edit.points[i].z() > 3.8)
+      moved.push_back(half.size());
+    half.push_back(edit.points[i]);
+  }
+  for (const int samples : {1000000, 300}) {
+    Points points = half;
+    Session session(points, parameters(samples));
+    session.add_handle(fixed);
+    session.set_transformation(session.add_handle(moved), bend());
+    session.deform();
+    Points others = edit.points;
+    session.apply(others);
+    double at_members = 0, jump = 0;
+    for (std::size_t i = 0; i < others.size(); ++i)
+      if (i % 2 == 0)
+        at_members = std::max(at_members, (others[i] - points[i / 2]).norm());
+      else if ((edit.points[i] - edit.points[i - 1]).norm() < 0.1)
+        jump = std::max(jump,
+                        ((others[i] - edit.points[i]) - (others[i - 1] - edit.points[i - 1])).norm());
+    BOOST_TEST_MESSAGE("carried points, " << samples << " samples: members off by " << at_members
+                                          << ", neighbours differ by " << jump);
+    BOOST_TEST(at_members < 1e-6);
+    BOOST_TEST(jump < 0.15); // a spacing is 0.083, turned by up to a radian
+    Points again = edit.points;
+    session.apply(again);
+    BOOST_TEST((again == others));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(carrying_checks_its_points_first)
+{
+  Bar_session s(150);
+  s.session.set_transformation(1, bend());
+  s.session.deform();
+  Points others = s.edit.points;
+  others[7].x() = std::numeric_limits<double>::infinity();
+  const Points before = others;
+  BOOST_CHECK_EXCEPTION(s.session.apply(others), Invalid_input, message_has("point 7"));
+  BOOST_TEST((others == before));
+  Points none;
+  s.session.apply(none);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(deformation_threads)
+
+BOOST_AUTO_TEST_CASE(independent_sessions_run_in_two_threads)
+{
+  const Points expected[2] = {Bar_session::fresh(150, bend()), Bar_session::fresh(1000000, bend())};
+  Points found[2];
+  for (int repetition = 0; repetition < 3; ++repetition) {
+    std::thread one([&] { found[0] = Bar_session::fresh(150, bend()); });
+    std::thread two([&] { found[1] = Bar_session::fresh(1000000, bend()); });
+    one.join();
+    two.join();
+    BOOST_TEST((found[0] == expected[0]));
+    BOOST_TEST((found[1] == expected[1]));
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,117 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Memory that runs out at any allocation leaves the points untouched.
+
+#include <pcs/deform_point_set.h>
+#include <support/point_clouds.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+namespace {
+
+// Allocations left before one fails; negative: none fails. Threads may share it.
+std::atomic<long> allocations_left{-1};
+std::atomic<bool> has_failed{false};
+
+void* allocate(std::size_t size, std::size_t alignment)
+{
+  if (allocations_left.load() >= 0 && allocations_left.fetch_sub(1) == 0) {
+    allocations_left = -1;
+    has_failed = true;
+    throw std::bad_alloc();
+  }
+  const std::size_t rounded = (size + alignment) / alignment * alignment; // and never nothing
+  void* result = std::aligned_alloc(alignment, rounded);
+  if (!result)
+    throw std::bad_alloc();
+  return result;
+}
+
+} // namespace
+
+void* operator new(std::size_t size)
+{
+  return allocate(size, alignof(std::max_align_t));
+}
+void* operator new(std::size_t size, std::align_val_t alignment)
+{
+  return allocate(size, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* p) noexcept
+{
+  std::free(p);
+}
+void operator delete(void* p, std::size_t) noexcept
+{
+  std::free(p);
+}
+void operator delete(void* p, std::align_val_t) noexcept
+{
+  std::free(p);
+}
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept
+{
+  std::free(p);
+}
+
+namespace {
+
+/// Lets every `stride`-th allocation fail, from the first to the last. Returns how many failures were tried.
+template <class Tag>
+int fail_everywhere(int number_of_samples, long stride)
+{
+  const auto rest = pcs_test::box(4, 4, 10, 0.25);
+  const std::vector<int> fixed{0, 1, 2, 3, 4};
+  const std::vector<int> moved{200, 201, 202};
+  auto points = rest;
+  int failures = 0;
+  for (long i = 0;; i += stride) {
+    points = rest;
+    has_failed = false;
+    allocations_left = i;
+    bool has_thrown = false;
+    try {
+      pcs::deform_point_set<Tag>(points,
+                                 fixed,
+                                 moved,
+                                 pcs::translation(pcs_test::Vec3(.1, 0, .2)),
+                                 pcs::parameters::number_of_samples(number_of_samples));
+    } catch (const std::bad_alloc&) {
+      has_thrown = true;
+    }
+    allocations_left = -1;
+    if (!has_failed)
+      return failures;
+    ++failures;
+    if (has_thrown)
+      BOOST_REQUIRE((points == rest));
+    // else somebody could do without; the result must then be whole
+    else
+      BOOST_REQUIRE((points[200] - rest[200] - pcs_test::Vec3(.1, 0, .2)).norm() < 1e-12);
+  }
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(deformation_allocation)
+
+BOOST_AUTO_TEST_CASE(a_failing_allocation_leaves_the_points_untouched)
+{
+  for (const int samples : {20, 1000}) {
+    const int failures = fail_everywhere<CGAL::Sequential_tag>(samples, 1);
+    BOOST_TEST_MESSAGE(failures << " allocations failed");
+    BOOST_TEST(failures > 50);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(so_it_does_with_threads)
+{
+  for (const int samples : {20, 1000})
+    BOOST_TEST(fail_everywhere<CGAL::Parallel_if_available_tag>(samples, 7) > 5);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,595 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Hostile clouds, handles and parameters: a defined result or an error that names the culprit, never a NaN.
+
+#include <support/deform_cloud.h>
+#include <support/exceptions.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <chrono>
+#include <limits>
+#include <stdexcept>
+#include <thread>
+
+namespace {
+
+using pcs::Invalid_input;
+using pcs::Similarity;
+using pcs::Status;
+using pcs_test::Bar_edit;
+using pcs_test::deform;
+using pcs_test::Handles;
+using pcs_test::is_finite;
+using pcs_test::is_untouched;
+using pcs_test::message_has;
+using pcs_test::Options;
+using pcs_test::Points;
+using pcs_test::Vec3;
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+Similarity some_motion()
+{
+  return pcs::translation(Vec3(.1, .2, .3)) * pcs::rotation(Vec3(1, 2, 3), 1.0, Vec3(0, 0, 0));
+}
+
+std::vector<std::size_t> all_of(const Points& points)
+{
+  return pcs_test::select(points, [](const Vec3&) { return true; });
+}
+
+/// Handles at the first and the last point, the last one moved.
+Handles at_both_ends(const Points& points, const Similarity& motion)
+{
+  return {{{0}, {}, 0}, {{points.size() - 1}, motion, 0}};
+}
+
+Options with_samples(long long count)
+{
+  Options options;
+  options.number_of_samples = count;
+  return options;
+}
+
+/// The handles reached their targets and everything is finite.
+void check(const Points& points, const Handles& handles, const Options& options)
+{
+  const auto result = deform(points, handles, options);
+  BOOST_TEST(is_finite(result));
+  BOOST_TEST(result.report.status != Status::numerical_failure);
+  BOOST_TEST(std::isfinite(result.report.energy));
+  const double size = pcs_test::diagonal(points);
+  for (const auto& handle : handles)
+    if (handle.softness == 0)
+      for (const auto i : handle.indices)
+        BOOST_TEST((result.points[i] - handle.transformation(points[i])).norm() <=
+                   1e-9 * (size + points[i].norm()));
+}
+
+void check_at_all_resolutions(const Points& points, const Handles& handles)
+{
+  for (const long long samples : {1, 2, 3, 10, 100, 1000000})
+    BOOST_TEST_CONTEXT(samples << " samples")
+    check(points, handles, with_samples(samples));
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(deformation_clouds)
+
+BOOST_AUTO_TEST_CASE(no_points_are_refused)
+{
+  BOOST_CHECK_EXCEPTION(deform({}, {{{0}, {}, 0}}), Invalid_input, message_has("no points"));
+}
+
+BOOST_AUTO_TEST_CASE(one_place_is_refused)
+{
+  for (const std::size_t n : {1, 2, 100})
+    BOOST_CHECK_EXCEPTION(deform(Points(n, Vec3(1, 2, 3)), {{{0}, {}, 0}}),
+                          Invalid_input,
+                          message_has("one place"));
+}
+
+BOOST_AUTO_TEST_CASE(tiny_clouds_are_deformed)
+{
+  for (const std::size_t n : {2, 3, 4, 5, 7, 8, 9, 17}) {
+    const Points points = pcs_test::random_points(n, static_cast<unsigned>(n));
+    check_at_all_resolutions(points, at_both_ends(points, some_motion()));
+    check_at_all_resolutions(points, {{{0}, some_motion(), 0}});
+    check_at_all_resolutions(points, {{all_of(points), some_motion(), 0}});
+  }
+}
+
+BOOST_AUTO_TEST_CASE(collinear_points_are_deformed)
+{
+  Points points;
+  for (int i = 0; i < 200; ++i)
+    points.push_back(i * Vec3(.1, .2, .3));
+  check_at_all_resolutions(points, at_both_ends(points, some_motion()));
+  // a rotation about the line is not determined by the points, but must not harm them
+  const auto about_itself = pcs::rotation(Vec3(.1, .2, .3), 2.0, Vec3(0, 0, 0));
+  const auto result = deform(points, at_both_ends(points, about_itself));
+  BOOST_TEST(pcs_test::largest_distance(result.points, points) < 1e-9);
+}
+
+BOOST_AUTO_TEST_CASE(coplanar_points_are_deformed)
+{
+  const Points points = pcs_test::plate(20, 20, 1. / 3);
+  check_at_all_resolutions(points, at_both_ends(points, some_motion()));
+}
+
+BOOST_AUTO_TEST_CASE(geometric_sequences_are_deformed)
+{
+  Points points;
+  for (int i = 0; i < 300; ++i)
+    points.push_back(Vec3(std::ldexp(1.0, -i), 0, 0));
+  check_at_all_resolutions(points, at_both_ends(points, some_motion()));
+}
+
+BOOST_AUTO_TEST_CASE(half_of_the_points_may_be_duplicates)
+{
+  const Bar_edit edit;
+  Points doubled = edit.points;
+  doubled.insert(doubled.end(), edit.points.begin(), edit.points.end());
+  for (const long long samples : {150, 1000000}) {
+    const auto single = deform(edit.points, edit.handles, with_samples(samples));
+    const auto result = deform(doubled, edit.handles, with_samples(samples));
+    BOOST_TEST(result.report.number_of_duplicates == edit.points.size());
+    const std::size_t n = edit.points.size();
+    double largest = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      largest = std::max(largest, (result.points[i] - single.points[i]).norm());
+      BOOST_REQUIRE((result.points[i] == result.points[n + i])); // copies stay copies
+    }
+    // With samples, duplicates change which eight points are blended together, in single precision.
+    BOOST_TEST(largest < (samples == 150 ? 1e-6 : 1e-12));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(forty_thousand_zeros_do_no_harm)
+{
+  Bar_edit edit;
+  edit.points.insert(edit.points.end(), 40000, Vec3(0, 0, 0)); // a corner of the fixed end
+  for (const long long samples : {150, 1000000}) {
+    const auto result = deform(edit.points, edit.handles, with_samples(samples));
+    BOOST_TEST(is_finite(result));
+    BOOST_TEST(result.report.number_of_duplicates == 40000u);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_far_outlier_does_not_spoil_the_rest)
+{
+  const Bar_edit edit;
+  for (const long long samples : {150, 1000000}) {
+    const auto expected = deform(edit.points, edit.handles, with_samples(samples));
+    for (const double distance : {10.0, 1e3, 1e6, 1e9}) {
+      Points points = edit.points;
+      points.push_back(Vec3(distance, distance, 0));
+      auto result = deform(points, edit.handles, with_samples(samples));
+      BOOST_TEST(is_finite(result));
+      result.points.pop_back();
+      // The links of the outlier hang on a corner of the bar; a spacing is 1/6, double precision keeps 1e-7 of 1e9.
+      BOOST_TEST(pcs_test::largest_distance(result.points, expected.points) < 0.1,
+                 "outlier at " << distance << ", " << samples << " samples: "
+                               << pcs_test::largest_distance(result.points, expected.points));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(points_that_are_not_finite_are_named)
+{
+  Bar_edit edit;
+  for (const double bad : {not_a_number, infinity, -infinity})
+    for (const std::size_t i : {0, 123}) {
+      Points points = edit.points;
+      points[i].y() = bad;
+      BOOST_CHECK_EXCEPTION(deform(points, edit.handles),
+                            Invalid_input,
+                            message_has("point " + std::to_string(i), "not finite"));
+      Points normals = pcs_test::arbitrary_normals(points.size());
+      normals[i].z() = bad;
+      BOOST_CHECK_EXCEPTION(deform(edit.points, edit.handles, {}, normals),
+                            Invalid_input,
+                            message_has("normal", "point " + std::to_string(i), "not finite"));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(zero_normals_stay_zero)
+{
+  const Bar_edit edit;
+  for (const long long samples : {150, 1000000}) {
+    const auto result = deform(edit.points,
+                               edit.handles,
+                               with_samples(samples),
+                               Points(edit.points.size(), Vec3::Zero()));
+    for (const Vec3& v : result.normals)
+      BOOST_REQUIRE((v == Vec3::Zero()));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(extents_beyond_the_representable_are_refused)
+{
+  for (const double size : {1e-120, 1e150, 1e300})
+    BOOST_CHECK_EXCEPTION(deform(Points{Vec3(0, 0, 0), Vec3(size, 0, 0), Vec3(0, size, 0)},
+                                 {{{0}, {}, 0}}),
+                          Invalid_input,
+                          message_has("extent"));
+  // the difference of two numbers may overflow although both are finite
+  BOOST_CHECK_THROW(deform(Points{Vec3(-1.5e308, 0, 0), Vec3(1.5e308, 0, 0)}, {{{0}, {}, 0}}),
+                    Invalid_input);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(deformation_handles)
+
+BOOST_AUTO_TEST_CASE(no_handle_is_refused)
+{
+  BOOST_CHECK_EXCEPTION(deform(Bar_edit().points, {}), Invalid_input, message_has("no handle"));
+  BOOST_CHECK_EXCEPTION(
+      deform(Bar_edit().points, {{{}, {}, 0}}), Invalid_input, message_has("at least one point"));
+}
+
+BOOST_AUTO_TEST_CASE(indices_out_of_range_are_named)
+{
+  const Bar_edit edit;
+  const std::size_t n = edit.points.size();
+  for (const std::size_t bad : {n, n + 1, std::size_t(1) << 32, ~std::size_t(0)})
+    BOOST_CHECK_EXCEPTION(deform(edit.points, {{{0, bad}, {}, 0}}),
+                          Invalid_input,
+                          message_has(std::to_string(bad), "out of range", std::to_string(n)));
+}
+
+BOOST_AUTO_TEST_CASE(a_point_in_two_handles_is_named)
+{
+  const Bar_edit edit;
+  BOOST_CHECK_EXCEPTION(deform(edit.points, {{{3, 5}, {}, 0}, {{7, 5}, some_motion(), 0}}),
+                        Invalid_input,
+                        message_has("point 5", "handle 0"));
+  Points points = edit.points;
+  points.push_back(points[5]); // or another point at the same place
+  BOOST_CHECK_EXCEPTION(
+      deform(points, {{{3, 5}, {}, 0}, {{points.size() - 1}, some_motion(), 0}}),
+      Invalid_input,
+      message_has("same place"));
+}
+
+BOOST_AUTO_TEST_CASE(an_index_may_be_given_twice_in_one_handle)
+{
+  const Bar_edit edit;
+  Handles handles = edit.handles;
+  handles[1].indices.push_back(handles[1].indices.front());
+  const auto a = deform(edit.points, edit.handles), b = deform(edit.points, handles);
+  BOOST_TEST(pcs_test::largest_distance(a.points, b.points) < 1e-12);
+}
+
+BOOST_AUTO_TEST_CASE(a_handle_outside_the_region_is_refused)
+{
+  const Bar_edit edit;
+  Options options;
+  options.region_of_interest =
+      pcs_test::select(edit.points, [](const Vec3& p) { return p.z() > 2; });
+  BOOST_CHECK_EXCEPTION(
+      deform(edit.points, edit.handles, options), Invalid_input, message_has("region of interest"));
+  options.region_of_interest = std::vector<std::size_t>{edit.points.size()};
+  BOOST_CHECK_EXCEPTION(
+      deform(edit.points, edit.handles, options), Invalid_input, message_has("out of range"));
+  // the same place inside and outside counts as inside
+  options.region_of_interest = std::vector<std::size_t>();
+  BOOST_CHECK_THROW(deform(edit.points, edit.handles, options), Invalid_input);
+}
+
+BOOST_AUTO_TEST_CASE(motions_that_are_not_finite_are_refused)
+{
+  const Bar_edit edit;
+  for (const double bad : {not_a_number, infinity, 1e300}) {
+    Handles handles = edit.handles;
+    handles[1].transformation = pcs::translation(Vec3(bad, 0, 0));
+    BOOST_CHECK_THROW(deform(edit.points, handles), Invalid_input);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(softness_out_of_range_is_refused)
+{
+  const Bar_edit edit;
+  for (const double bad : {-1.0, not_a_number, infinity}) {
+    Handles handles = edit.handles;
+    handles[1].softness = bad;
+    BOOST_CHECK_EXCEPTION(deform(edit.points, handles), Invalid_input, message_has("softness"));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(every_softness_gives_a_finite_result)
+{
+  const Bar_edit edit;
+  for (const double softness : {1e-300, 1e-9, 1.0, 1e9, 1e300})
+    for (const long long samples : {150, 1000000}) {
+      Handles handles = edit.handles;
+      handles[1].softness = softness;
+      const auto result = deform(edit.points, handles, with_samples(samples));
+      BOOST_TEST(is_finite(result), "softness " << softness);
+      for (auto& handle : handles) // nothing exact anywhere
+        handle.softness = softness;
+      BOOST_TEST(is_finite(deform(edit.points, handles, with_samples(samples))),
+                 "softness " << softness << " of all handles");
+    }
+}
+
+BOOST_AUTO_TEST_CASE(soft_handles_lie_between_free_and_exact)
+{
+  const Bar_edit edit;
+  const auto shift = pcs::translation(Vec3(0, 0, 1));
+  for (const long long samples : {150, 1000000}) {
+    double before = 1e9;
+    for (const double softness : {0.0, 0.01, 1.0, 100.0, 1e4}) {
+      Handles handles = edit.handles;
+      handles[1].transformation = shift;
+      handles[1].softness = softness;
+      const auto result = deform(edit.points, handles, with_samples(samples));
+      double mean = 0;
+      for (const auto i : handles[1].indices)
+        mean += (result.points[i] - edit.points[i]).z() / double(handles[1].indices.size());
+      BOOST_TEST_MESSAGE("softness " << softness << ", " << samples << " samples: " << mean);
+      BOOST_TEST(mean <= 1 + 1e-9);
+      BOOST_TEST(mean >= -1e-9);
+      BOOST_TEST(mean < before + 1e-9);
+      if (softness == 0)
+        BOOST_TEST(std::abs(mean - 1) < 1e-12);
+      before = mean;
+    }
+    BOOST_TEST(before < 0.2);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_handle_of_everything_moves_everything)
+{
+  const Points points = pcs_test::random_points(500, 1);
+  for (const long long samples : {50, 1000000}) {
+    const auto motion = some_motion() * pcs::scaling(2, Vec3(0, 0, 0));
+    const auto result = deform(points, {{all_of(points), motion, 0}}, with_samples(samples));
+    for (std::size_t i = 0; i < points.size(); ++i)
+      BOOST_REQUIRE((result.points[i] - motion(points[i])).norm() < 1e-13);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(one_handle_of_one_point_moves_everything_rigidly)
+{
+  const Bar_edit edit;
+  for (const long long samples : {50, 1000000})
+    for (const std::size_t i : {std::size_t(0), std::size_t(321)}) {
+      const auto result = deform(edit.points, {{{i}, some_motion(), 0}}, with_samples(samples));
+      double largest = 0;
+      for (std::size_t j = 0; j < edit.points.size(); ++j)
+        largest = std::max(largest, (result.points[j] - some_motion()(edit.points[j])).norm());
+      BOOST_TEST(largest < 1e-9);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(handles_need_not_be_contiguous)
+{
+  const Bar_edit edit;
+  // one handle is both ends, the other a ring in the middle, the third a single point
+  Handles handles(3);
+  for (std::size_t i = 0; i < edit.points.size(); ++i) {
+    const double z = edit.points[i].z();
+    if (z < .2 || z > 3.8)
+      handles[0].indices.push_back(i);
+    else if (z > 1.9 && z < 2.1)
+      handles[1].indices.push_back(i);
+  }
+  handles[2].indices = {pcs_test::select(edit.points, [](const Vec3& p) {
+    return p.z() > .9 && p.z() < 1.1;
+  })[0]};
+  handles[1].transformation = pcs::translation(Vec3(.5, 0, 0));
+  handles[2].transformation = pcs::translation(Vec3(.2, .1, 0));
+  check_at_all_resolutions(edit.points, handles);
+}
+
+BOOST_AUTO_TEST_CASE(scaled_handles_swell_what_lies_between)
+{
+  const Bar_edit edit;
+  Handles handles = edit.handles;
+  handles[0].transformation = Similarity();
+  handles[1].transformation = pcs::scaling(2, Vec3(.5, .5, 4));
+  for (const long long samples : {150, 1000000}) {
+    const auto result = deform(edit.points, handles, with_samples(samples));
+    const auto width_at = [&](double z) {
+      Eigen::AlignedBox3d box;
+      for (std::size_t i = 0; i < edit.points.size(); ++i)
+        if (std::abs(edit.points[i].z() - z) < 1e-9)
+          box.extend(result.points[i]);
+      return box.sizes().x();
+    };
+    BOOST_TEST(width_at(0) == 1, boost::test_tools::tolerance(1e-9));
+    BOOST_TEST(width_at(1) < width_at(2));
+    BOOST_TEST(width_at(2) == std::sqrt(2.0), boost::test_tools::tolerance(0.1));
+    BOOST_TEST(width_at(2) < width_at(3));
+    BOOST_TEST(width_at(4) == 2, boost::test_tools::tolerance(1e-9));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(huge_and_tiny_motions_give_finite_results)
+{
+  const Bar_edit edit;
+  for (const double factor : {1e-11, 1e-6, 1e6, 1e11})
+    for (const long long samples : {150, 1000000}) {
+      Handles handles = edit.handles;
+      handles[1].transformation = pcs::scaling(factor, Vec3(.5, .5, 4));
+      BOOST_TEST(is_finite(deform(edit.points, handles, with_samples(samples))), "scale " << factor);
+      handles[1].transformation = pcs::translation(Vec3(factor, 0, factor));
+      BOOST_TEST(is_finite(deform(edit.points, handles, with_samples(samples))), "shift " << factor);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(half_a_turn_and_more_is_finite_in_any_direction)
+{
+  const Bar_edit edit;
+  std::mt19937 random(5);
+  for (int repetition = 0; repetition < 20; ++repetition) {
+    Handles handles = edit.handles;
+    for (auto& handle : handles)
+      handle.transformation =
+          pcs::rotation(pcs_test::random_direction(random),
+                        20 * pcs_test::uniform(random),
+                        pcs_test::random_vector(random)) *
+          pcs::rotation(pcs_test::random_direction(random), 3.0, Vec3(0, 0, 0));
+    for (const long long samples : {150, 1000000})
+      BOOST_TEST(is_finite(deform(edit.points, handles, with_samples(samples))));
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(deformation_parameters)
+
+namespace {
+
+template <class Change>
+void check_refused(const char* name, const Change& change)
+{
+  const Bar_edit edit;
+  Options options;
+  change(options);
+  BOOST_CHECK_EXCEPTION(deform(edit.points, edit.handles, options), Invalid_input, message_has(name));
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_CASE(counts_out_of_range_are_refused)
+{
+  const long long far = std::numeric_limits<long long>::max();
+  for (const long long bad : {0ll, -1ll, far, -far})
+    check_refused("number_of_samples", [=](Options& o) { o.number_of_samples = bad; });
+  for (const long long bad : {0ll, 1ll, 61ll, -6ll, far})
+    check_refused("number_of_neighbors", [=](Options& o) { o.number_of_neighbors = bad; });
+  for (const long long bad : {0ll, 33ll, -1ll, far})
+    check_refused("number_of_sample_neighbors",
+                  [=](Options& o) { o.number_of_sample_neighbors = bad; });
+  for (const long long bad : {-1ll, far})
+    check_refused("number_of_iterations", [=](Options& o) { o.number_of_iterations = bad; });
+}
+
+BOOST_AUTO_TEST_CASE(quantities_out_of_range_are_refused)
+{
+  for (const double bad : {-1e-9, not_a_number, infinity})
+    check_refused("tolerance", [=](Options& o) { o.tolerance = bad; });
+  for (const double bad : {0.0, -1.0, 1e-4, 1e4, not_a_number, infinity})
+    check_refused("stiffness", [=](Options& o) { o.stiffness = bad; });
+  for (const double bad : {-1.01, 0.51, not_a_number, infinity})
+    check_refused("poisson_ratio", [=](Options& o) { o.poisson_ratio = bad; });
+}
+
+BOOST_AUTO_TEST_CASE(the_ends_of_the_ranges_are_accepted)
+{
+  const Bar_edit edit;
+  const auto check_accepted = [&](const auto& change) {
+    Options options;
+    options.number_of_samples = 200;
+    change(options);
+    check(edit.points, edit.handles, options);
+  };
+  check_accepted([](Options& o) { o.number_of_samples = 1; });
+  check_accepted([](Options& o) { o.number_of_samples = 4294967295; });
+  check_accepted([](Options& o) { o.number_of_neighbors = 2; });
+  check_accepted([](Options& o) { o.number_of_neighbors = 60; });
+  check_accepted([](Options& o) { o.number_of_sample_neighbors = 1; });
+  check_accepted([](Options& o) { o.number_of_sample_neighbors = 32; });
+  check_accepted([](Options& o) { o.number_of_iterations = 0; });
+  check_accepted([](Options& o) { o.tolerance = 0; });
+  check_accepted([](Options& o) { o.stiffness = 1e-3; });
+  check_accepted([](Options& o) { o.stiffness = 1e3; });
+  check_accepted([](Options& o) { o.poisson_ratio = -1; });
+  check_accepted([](Options& o) { o.poisson_ratio = 0.5; });
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(deformation_callback)
+
+BOOST_AUTO_TEST_CASE(values_grow_from_0_to_1)
+{
+  const Bar_edit edit;
+  for (const long long samples : {150, 1000000}) {
+    std::vector<double> values;
+    std::vector<std::thread::id> threads;
+    Options options = with_samples(samples);
+    options.callback = [&](double f) {
+      values.push_back(f);
+      threads.push_back(std::this_thread::get_id());
+      return true;
+    };
+    BOOST_TEST((deform(edit.points, edit.handles, options).report.status == Status::converged));
+    BOOST_REQUIRE(values.size() >= 4u);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      BOOST_TEST((values[i] >= 0 && values[i] <= 1));
+      BOOST_TEST((i == 0 || values[i] >= values[i - 1]), "value " << values[i]);
+      BOOST_TEST((threads[i] == std::this_thread::get_id()));
+    }
+    BOOST_TEST(values.back() == 1, boost::test_tools::tolerance(1e-12));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(cancelling_at_any_time_leaves_every_bit)
+{
+  const Bar_edit edit;
+  for (const long long samples : {150, 1000000}) {
+    int total = 0;
+    Options options = with_samples(samples);
+    options.callback = [&](double) { return ++total > 0; };
+    deform(edit.points, edit.handles, options);
+    for (int stop = 1; stop < total; ++stop) { // the last call reports the end
+      int calls = 0;
+      options.callback = [&](double) { return ++calls < stop; };
+      const auto result = deform(edit.points, edit.handles, options);
+      BOOST_TEST(result.report.status == Status::cancelled, "stopped at call " << stop);
+      BOOST_TEST(is_untouched(result, edit.points));
+      BOOST_TEST(calls == stop, "no call after the answer false");
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(an_exception_of_the_callback_passes_through)
+{
+  const Bar_edit edit;
+  for (const long long samples : {150, 1000000}) {
+    int total = 0;
+    Options options = with_samples(samples);
+    options.callback = [&](double) { return ++total > 0; };
+    deform(edit.points, edit.handles, options);
+    for (int stop = 1; stop < total; ++stop) {
+      int calls = 0;
+      options.callback = [&](double) -> bool {
+        if (++calls == stop)
+          throw std::range_error("enough");
+        return true;
+      };
+      // deform() of the tests checks that nothing was changed
+      BOOST_CHECK_THROW(deform(edit.points, edit.handles, options), std::range_error);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(an_empty_callback_is_none)
+{
+  const Bar_edit edit;
+  Points points = edit.points;
+  const auto report = pcs::deform_point_set(
+      points, edit.handles, pcs::parameters::callback(std::function<bool(double)>()));
+  BOOST_TEST(report.status == Status::converged);
+}
+
+BOOST_AUTO_TEST_CASE(the_callback_is_asked_during_a_long_solve)
+{
+  const Bar_edit edit(10, 40);
+  Options options;
+  options.number_of_iterations = 50;
+  options.tolerance = 0;
+  int calls = 0;
+  options.callback = [&](double) { return ++calls > 0; };
+  const auto report = deform(edit.points, edit.handles, options).report;
+  BOOST_TEST(calls >= static_cast<int>(report.number_of_iterations));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

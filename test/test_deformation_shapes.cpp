@@ -1,0 +1,314 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Known deformations of bars, tubes, plates and sheets, judged against their closed forms.
+
+#include <support/deform_cloud.h>
+#include <support/deformation_cases.h>
+
+#include <boost/test/unit_test.hpp>
+
+namespace {
+
+using pcs_test::deform;
+using pcs_test::Deformation_case;
+using pcs_test::Deformation_measures;
+using pcs_test::Deformed;
+using pcs_test::Handles;
+using pcs_test::measure;
+using pcs_test::Options;
+using pcs_test::Points;
+using pcs_test::Vec3;
+
+Handles handles_of(const Deformation_case& c)
+{
+  Handles handles;
+  for (std::size_t h = 0; h < c.handles.size(); ++h)
+    handles.push_back({{c.handles[h].begin(), c.handles[h].end()}, c.transforms[h], 0});
+  return handles;
+}
+
+/// Deforms, prints and measures.
+Deformation_measures run(const Deformation_case& c, const Options& options)
+{
+  const Deformed result = deform(c.points, handles_of(c), options);
+  const auto m = measure(c, result.points);
+  BOOST_TEST_MESSAGE(c.name << ", " << result.report.number_of_samples << " samples: edges rms "
+                            << m.rms_edge << " max " << m.largest_edge << ", rotation "
+                            << m.rotation_smoothness << ", frame " << m.frame_error
+                            << " deg, position " << m.position_error << " L, volume "
+                            << m.volume_ratio << ", " << result.report.number_of_iterations
+                            << " passes");
+  return m;
+}
+
+Options at_full_resolution()
+{
+  Options options;
+  options.number_of_samples = 1000000;
+  return options;
+}
+
+Options at_1000_samples()
+{
+  Options options;
+  options.number_of_samples = 1000;
+  return options;
+}
+
+} // namespace
+
+// The limits at full resolution are the goals of the project. The analytic shapes have, by the same measures:
+// T1 13.9 degrees of frame error (a best-fit rotation is biased by shear), T5 32; all others nearly none.
+BOOST_AUTO_TEST_SUITE(deformation_shapes)
+
+BOOST_AUTO_TEST_CASE(a_bar_twisted_by_135_degrees)
+{
+  const auto m = run(pcs_test::bar_135(), at_full_resolution());
+  BOOST_TEST(m.frame_error <= 14.5);
+  BOOST_TEST(m.position_error <= .003);
+  BOOST_TEST(m.volume_ratio >= .97);
+}
+
+BOOST_AUTO_TEST_CASE(a_bar_bent_by_120_degrees)
+{
+  const auto m = run(pcs_test::bar_bend_120(), at_full_resolution());
+  BOOST_TEST(m.frame_error <= .3);
+  BOOST_TEST(m.position_error <= .001);
+  BOOST_TEST(m.largest_edge <= .20);
+}
+
+BOOST_AUTO_TEST_CASE(a_tube_bent_by_120_degrees)
+{
+  const auto m = run(pcs_test::tube_120(), at_full_resolution());
+  BOOST_TEST(m.frame_error <= .2);
+  BOOST_TEST(m.position_error <= .001);
+}
+
+BOOST_AUTO_TEST_CASE(a_plate_dragged_without_rotation)
+{
+  const auto m = run(pcs_test::plate_drag(), at_full_resolution());
+  BOOST_TEST(m.rms_edge <= .0076); // CGAL's as-rigid-as-possible after 100 iterations on the mesh
+  BOOST_TEST(m.rotation_smoothness <= 1.5);
+}
+
+BOOST_AUTO_TEST_CASE(a_bar_twisted_by_720_degrees)
+{
+  const auto m = run(pcs_test::bar_720(), at_full_resolution());
+  BOOST_TEST(m.frame_error <= 33);
+  BOOST_TEST(m.position_error <= .006);
+  BOOST_TEST(m.volume_ratio >= .90);
+}
+
+BOOST_AUTO_TEST_CASE(a_thousand_samples_come_near)
+{
+  // Regression guards, not goals. Measured when this was written: T1 14.5 deg, .0048 L, volume .997; T2 2.1 deg,
+  // .0035 L; T3 1.3 deg, .0012 L; T4 rms .021; T5 33.6 deg, .0072 L, volume 1.00.
+  auto m = run(pcs_test::bar_135(), at_1000_samples());
+  BOOST_TEST(m.frame_error <= 15.5);
+  BOOST_TEST(m.position_error <= .0055);
+  BOOST_TEST(m.volume_ratio >= .97);
+  m = run(pcs_test::bar_bend_120(), at_1000_samples());
+  BOOST_TEST(m.frame_error <= 2.4);
+  BOOST_TEST(m.position_error <= .004);
+  m = run(pcs_test::tube_120(), at_1000_samples());
+  BOOST_TEST(m.frame_error <= 1.6);
+  BOOST_TEST(m.position_error <= .0015);
+  m = run(pcs_test::plate_drag(), at_1000_samples());
+  BOOST_TEST(m.rms_edge <= .025);
+  m = run(pcs_test::bar_720(), at_1000_samples());
+  BOOST_TEST(m.frame_error <= 36);
+  BOOST_TEST(m.position_error <= .009);
+  BOOST_TEST(m.volume_ratio >= .9);
+  BOOST_TEST(m.volume_ratio <= 1.1);
+}
+
+BOOST_AUTO_TEST_CASE(jitter_outliers_and_random_order_do_not_break_a_bend)
+{
+  auto c = pcs_test::bar_bend_120();
+  const double h = 0.05;
+  std::mt19937 random(1);
+  for (Vec3& p : c.points)
+    p += 0.3 * h * pcs_test::random_vector(random) / std::sqrt(3.0);
+  const std::size_t n = c.points.size();
+  for (std::size_t i = 0; i < n / 50; ++i)
+    c.points.push_back(c.points[random() % n] + 5 * h * pcs_test::random_vector(random));
+  const auto result = deform(c.points, handles_of(c), at_full_resolution());
+  BOOST_TEST(pcs_test::is_finite(result));
+  double squared = 0, largest_of_outliers = 0;
+  for (std::size_t i = 0; i < c.points.size(); ++i) {
+    const double d = (result.points[i] - c.exact(c.points[i])).norm() / c.length;
+    if (i < n)
+      squared += d * d;
+    else
+      largest_of_outliers = std::max(largest_of_outliers, d);
+  }
+  BOOST_TEST_MESSAGE("jittered bend: rms " << std::sqrt(squared / double(n)) << " L, worst outlier "
+                                           << largest_of_outliers << " L");
+  BOOST_TEST(std::sqrt(squared / double(n)) < .003);
+  BOOST_TEST(largest_of_outliers < .05); // outliers follow
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(deformation_sheets)
+
+namespace {
+
+/// The upper sheet's far end is lifted; returns how far the far part of the lower sheet moves.
+double motion_of_the_other_sheet(double gap,
+                                 bool is_folded,
+                                 const Options& options,
+                                 bool& is_upper_moved)
+{
+  const int nx = 40, ny = 20;
+  const Points points = pcs_test::sheets(nx, ny, gap, is_folded);
+  const auto is_lower = [=](const Vec3& p) { return p.z() < gap / 2; };
+  // The fold, or one end of each sheet, is held.
+  const auto fixed = pcs_test::select(points, [=](const Vec3& p) { return p.x() < 1.5; });
+  const auto lifted =
+      pcs_test::select(points, [=](const Vec3& p) { return p.x() > nx - 1.5 && !is_lower(p); });
+  const auto result = deform(
+      points,
+      {{fixed, {}, 0}, {lifted, pcs::translation(Vec3(-5, 0, 15)), 0}},
+      options);
+  double largest = 0, upper = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double d = (result.points[i] - points[i]).norm();
+    if (is_lower(points[i])) {
+      if (points[i].x() >= 10) // nearer to the fold few samples may reach around it
+        largest = std::max(largest, d);
+    } else
+      upper = std::max(upper, d);
+  }
+  is_upper_moved = upper > 10;
+  return largest;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_CASE(a_sheet_near_by_does_not_follow)
+{
+  for (const double gap : {1.5, 5.0})
+    for (const bool is_folded : {false, true})
+      for (const long long samples : {1000000, 200}) {
+        Options options;
+        options.number_of_samples = samples;
+        bool is_upper_moved = false;
+        const double d = motion_of_the_other_sheet(gap, is_folded, options, is_upper_moved);
+        BOOST_TEST_CONTEXT("gap " << gap << (is_folded ? ", folded, " : ", separate, ") << samples
+                                  << " samples")
+        {
+          BOOST_TEST(is_upper_moved);
+          // Eight points that are blended together may belong to both sheets: single precision of the motion.
+          BOOST_TEST(d < 1e-5);
+        }
+      }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(deformation_materials)
+
+namespace {
+
+/// Width at the middle of a strip stretched by 1.5, relative to rest.
+double width_ratio(double poisson_ratio, long long samples)
+{
+  const int nx = 80, ny = 20;
+  const Points points = pcs_test::plate(nx, ny, 1);
+  Options options;
+  options.number_of_samples = samples;
+  options.poisson_ratio = poisson_ratio;
+  const auto handles = pcs_test::two_handles(
+      points,
+      [](const Vec3& p) { return p.x() < 2.5; },
+      [=](const Vec3& p) { return p.x() > nx - 2.5; },
+      pcs::translation(Vec3(0.5 * (nx - 5), 0, 0)));
+  const auto result = deform(points, handles, options);
+  double low = 1e9, high = -1e9;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (points[i].x() == nx / 2) {
+      low = std::min(low, result.points[i].y());
+      high = std::max(high, result.points[i].y());
+    }
+  return (high - low) / ny;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_CASE(a_stretched_strip_narrows_like_its_material)
+{
+  // 1.5^-nu
+  const std::pair<double, double> materials[] = {{0, 1.0}, {0.5, 0.82}, {-0.5, 1.22}};
+  for (const auto& [poisson_ratio, expected] : materials)
+    for (const long long samples : {1000000, 300}) {
+      const double found = width_ratio(poisson_ratio, samples);
+      BOOST_TEST_MESSAGE("nu " << poisson_ratio << ", " << samples << " samples: width ratio "
+                               << found);
+      BOOST_TEST_CONTEXT("nu " << poisson_ratio << ", " << samples << " samples")
+      BOOST_TEST(std::abs(found - expected) < 0.03);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_stiffer_body_bends_less)
+{
+  // A dragged plate: the stiffer, the less bending and the more stretch.
+  const Points points = pcs_test::plate(40, 8, 1);
+  const auto handles = pcs_test::two_handles(
+      points,
+      [](const Vec3& p) { return p.x() < 1.5; },
+      [](const Vec3& p) { return p.x() > 38.5; },
+      pcs::translation(Vec3(-10, 0, 10)));
+  double before = 1e9;
+  for (const double stiffness : {0.1, 1.0, 10.0}) {
+    Options options;
+    options.stiffness = stiffness;
+    options.number_of_iterations = 200;
+    options.tolerance = 1e-4;
+    const auto result = deform(points, handles, options);
+    BOOST_TEST(pcs_test::is_finite(result));
+    std::vector<Vec3> line;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (points[i].y() == 4)
+        line.push_back(result.points[i]);
+    double bending = 0;
+    for (std::size_t i = 1; i + 1 < line.size(); ++i)
+      bending += ((line[i + 1] - line[i]).normalized() - (line[i] - line[i - 1]).normalized())
+                     .squaredNorm();
+    BOOST_TEST_MESSAGE("stiffness " << stiffness << ": bending " << bending << ", "
+                                    << result.report.number_of_iterations << " passes");
+    BOOST_TEST(bending < before);
+    before = bending;
+  }
+}
+
+BOOST_AUTO_TEST_CASE(interior_springs_keep_volume)
+{
+  const auto c = pcs_test::bar_135();
+  Options options = at_1000_samples();
+  const double with = run(c, options).volume_ratio;
+  options.do_preserve_volume = false;
+  const double without = run(c, options).volume_ratio;
+  BOOST_TEST(with > without + 0.02);
+}
+
+BOOST_AUTO_TEST_CASE(the_variants_of_the_dissertation_run_and_differ)
+{
+  const pcs_test::Bar_edit edit(10, 40);
+  Options options;
+  options.number_of_samples = 300;
+  const auto standard = deform(edit.points, edit.handles, options);
+  Options inverse = options, hops = options, quaternion = options;
+  inverse.sample_weights = pcs::Sample_weights::inverse_square;
+  hops.sample_search = pcs::Sample_search::breadth_first_hops;
+  quaternion.rotation_field = pcs::Rotation_field::quaternion;
+  for (const auto& variant : {inverse, hops, quaternion}) {
+    const auto result = deform(edit.points, edit.handles, variant);
+    BOOST_TEST(pcs_test::is_finite(result));
+    const double d = pcs_test::largest_distance(result.points, standard.points);
+    BOOST_TEST(d > 1e-6);
+    BOOST_TEST(d < 0.2); // ... a variant of the same shape
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
