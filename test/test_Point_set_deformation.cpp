@@ -422,6 +422,7 @@ BOOST_AUTO_TEST_CASE(vectors_and_tensors_follow_the_gradient)
     session.set_translation(top, Vec3(0, 0, 1));
     session.deform();
     std::size_t in_the_middle = 0;
+    double smallest = 9, largest = 0;
     for (std::size_t i = 0; i < splats.size(); ++i) {
       BOOST_REQUIRE((splats[i].vector.allFinite() && splats[i].covariance.allFinite()));
       BOOST_REQUIRE((splats[i].covariance - splats[i].covariance.transpose()).norm() < 1e-15);
@@ -430,10 +431,15 @@ BOOST_AUTO_TEST_CASE(vectors_and_tensors_follow_the_gradient)
         continue;
       ++in_the_middle;
       const double stretch = splats[i].vector.z() / .01;
-      BOOST_REQUIRE(std::abs(stretch - 1.27) < 0.1); // 4.75 / 3.75
+      smallest = std::min(smallest, stretch);
+      largest = std::max(largest, stretch);
       BOOST_REQUIRE(std::abs(splats[i].covariance(2, 2) - 1e-4 * stretch * stretch) < 1e-5);
     }
     BOOST_TEST(in_the_middle > 100u);
+    BOOST_TEST_MESSAGE("stretch in the middle, " << samples << " samples: " << smallest << " to "
+                                                 << largest);
+    BOOST_TEST(smallest > 1.15); // 4.75 / 3.75 = 1.27 on average
+    BOOST_TEST(largest < 1.35);
     session.reset();
     for (const Splat& s : splats)
       BOOST_REQUIRE((s.vector - Vec3(0, 0, .01)).norm() < 1e-12);

@@ -27,7 +27,9 @@ struct Options
   // signed, so that CLI11 does not take -5 for a large number
   std::int64_t number_of_samples = pcs::default_number_of_samples;
   std::int64_t number_of_neighbors = pcs::default_number_of_neighbors;
-  bool is_default_edit = false, is_quiet = false;
+  std::int64_t number_of_kept_points = 1000000; // with --stream
+  std::int64_t chunk_size = 262144;             // with --stream [count]
+  bool is_default_edit = false, is_streamed = false, is_quiet = false;
 };
 
 inline const char* edit_help()
@@ -47,6 +49,15 @@ must be made of a rotation, one scale and a translation. Bounds are inclusive.
 
 Files: PLY, LAS, OFF, or text (xyz, txt, csv, asc, pts, pwn). Order and properties of
 the points are kept, normals nx, ny, nz are turned; faces are not kept.
+
+With --stream the input may be larger than memory. It is read twice (text: three times;
+LAS output: once more). At most --stream-points points, spread over the file, are kept and
+deformed; they carry the others, whereas points of handles move exactly. A file with no
+more points gives the same output, byte for byte, as without --stream; otherwise each
+kept point is linked to at least 10 neighbours. For example:
+  generate_points /tmp/large.ply 50000000 --float
+  deform_point_set --stream --input /tmp/large.ply --default-edit --output /tmp/out.ply
+
 Exit codes: 0 success, 1 bad input or usage, 2 internal error.)";
 }
 
@@ -71,6 +82,20 @@ inline void declare(CLI::App& app, Options& options)
       ->check(
           CLI::Range(std::int64_t(2), std::int64_t(pcs::neighborhood::maximal_number_of_neighbors)))
       ->capture_default_str();
+  CLI::Option* stream =
+      app.add_flag("--stream",
+                   options.is_streamed,
+                   "from file to file, never with all points in memory; see below");
+  app.add_option("--stream-points",
+                 options.number_of_kept_points,
+                 "points that --stream keeps in memory, some 400 bytes each")
+      ->check(CLI::Range(std::int64_t(100), std::int64_t(1) << 26))
+      ->needs(stream)
+      ->capture_default_str();
+  app.add_option("--chunk-points", options.chunk_size, "points of a chunk; the output is the same")
+      ->check(CLI::Range(std::int64_t(1), std::int64_t(1) << 26))
+      ->needs(stream)
+      ->group("Advanced");
   app.add_option("--report", options.report, "write counts, seconds and energies here (JSON)");
   app.add_flag("--quiet", options.is_quiet, "print nothing but warnings and errors");
 }

@@ -14,6 +14,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <ostream>
 #include <string>
@@ -49,7 +50,10 @@ struct Run_report
 {
   pcs::Deformation_report deformation;
   std::string edit;
-  std::vector<std::size_t> points_of_handles;
+  std::uint64_t number_of_points = 0; ///< of the input; `deformation` counts those in memory
+  std::int64_t number_of_neighbors = 0;
+  std::uint64_t number_of_chunks = 0; ///< 0 unless streamed
+  std::vector<std::uint64_t> points_of_handles;
   std::string normals = "none"; ///< none, deformed, or unchanged
   std::vector<std::string> warnings;
   double seconds_read = 0, seconds_write = 0, seconds_total = 0;
@@ -65,13 +69,19 @@ inline std::string to_json(const Run_report& run, const Options& options)
   json["edit"] = run.edit;
   json["output"] = options.output;
   json["status"] = pcs::to_string(r.status);
-  json["points"] = r.number_of_points;
+  json["points"] = run.number_of_points;
+  json["streamed"] = options.is_streamed;
+  if (options.is_streamed) {
+    json["kept_points"] = r.number_of_points;
+    json["chunks"] = run.number_of_chunks;
+    json["points_per_second"] = static_cast<double>(run.number_of_points) / run.seconds_total;
+  }
   json["duplicates"] = r.number_of_duplicates;
   json["components"] = r.number_of_components;
   json["unreached_components"] = r.number_of_unreached_components;
   json["unreached_points"] = r.number_of_unreached_points;
   json["points_of_handles"] = run.points_of_handles;
-  json["neighbors"] = options.number_of_neighbors;
+  json["neighbors"] = run.number_of_neighbors;
   json["samples"] = r.number_of_samples;
   json["interior_links"] = r.number_of_interior_links;
   json["iterations"] = r.number_of_iterations;
@@ -100,7 +110,10 @@ inline void print_summary(std::ostream& out, const Run_report& run, const Option
     std::snprintf(text, sizeof text, "%s %.3f", stage, value);
     out << text;
   };
-  out << "points      " << r.number_of_points << '\n';
+  out << "points      " << run.number_of_points << '\n';
+  if (options.is_streamed)
+    out << "            " << r.number_of_points << " of them kept, in " << run.number_of_chunks
+        << " chunks\n";
   if (r.number_of_unreached_points > 0)
     out << "            " << r.number_of_unreached_points
         << " of them not connected to any handle: unchanged\n";

@@ -43,14 +43,14 @@ inline Extent robust_extent(const std::vector<pcs::IO::Point_table::Point_3>& po
 
 /// Along the longest axis: the lowest 20 % are fixed; the highest 15 % turn by 40 degrees about that axis and move
 /// sideways by 10 % of the extent.
-inline Edit default_edit(const pcs::IO::Point_table& table)
+inline Edit default_edit(const std::vector<pcs::IO::Point_table::Point_3>& points)
 {
-  if (table.number_of_points() == 0)
+  if (points.empty())
     throw pcs::Invalid_input("default edit: there are no points");
   int axis = 0;
-  Extent extent = robust_extent(table.points(), 0);
+  Extent extent = robust_extent(points, 0);
   for (int a = 1; a < 3; ++a)
-    if (const Extent other = robust_extent(table.points(), a); other.half() > extent.half()) {
+    if (const Extent other = robust_extent(points, a); other.half() > extent.half()) {
       axis = a;
       extent = other;
     }

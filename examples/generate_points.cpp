@@ -1,0 +1,60 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Writes a closed surface with bumps as a point file of any size, without holding it in memory.
+
+#include <pcs/IO/Point_schema.h>
+#include <pcs/IO/Point_table.h>
+#include <pcs/IO/Point_writer.h>
+#include <pcs/IO/Write_options.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <exception>
+#include <iostream>
+#include <string>
+
+using Table = pcs::IO::Point_table;
+
+/// Point `i` of `n` on an upright ellipsoid of height 6, along a spiral of even density, with bumps.
+Table::Point_3 surface_point(std::uint64_t i, std::uint64_t n)
+{
+  constexpr double golden_ratio = 1.618033988749895, pi = 3.141592653589793;
+  const double turns = static_cast<double>(i) / golden_ratio;
+  const double angle = 2 * pi * (turns - std::floor(turns));
+  const double z = (2 * static_cast<double>(i) + 1) / static_cast<double>(n) - 1;
+  const double radius = std::sqrt(1 - z * z) * (1 + 0.05 * std::sin(7 * angle) * std::cos(20 * z));
+  return {radius * std::cos(angle), radius * std::sin(angle), 3 * z};
+}
+
+int main(int argc, char** argv)
+try {
+  const bool is_float = argc == 4 && std::string(argv[3]) == "--float";
+  if (argc != 3 && !is_float) {
+    std::cerr << "usage: generate_points FILE NUMBER_OF_POINTS [--float]\n";
+    return 1;
+  }
+  const std::uint64_t n = std::stoull(argv[2]);
+  constexpr std::uint64_t chunk_size = 262144;
+
+  pcs::IO::Point_schema schema;
+  if (is_float)
+    for (auto& property : schema.properties)
+      property.type = pcs::IO::Scalar_type::float32;
+  pcs::IO::Write_options options;
+  options.number_of_points = n;
+  options.keep_coordinate_types = true;
+  pcs::IO::Point_writer writer(argv[1], schema, options);
+  Table chunk(schema);
+  for (std::uint64_t first = 0; first < n; first += chunk_size) {
+    chunk.clear();
+    for (std::uint64_t i = first; i < std::min(first + chunk_size, n); ++i)
+      chunk.points().push_back(surface_point(i, n));
+    writer.append(chunk);
+  }
+  writer.commit();
+  return 0;
+} catch (const std::exception& e) {
+  std::cerr << "generate_points: " << e.what() << '\n';
+  return 1;
+}

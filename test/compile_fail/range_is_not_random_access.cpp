@@ -1,0 +1,23 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The points must be a random access range.
+
+#include <pcs/deform_point_set.h>
+
+#include <CGAL/Simple_cartesian.h>
+
+#include <list>
+#include <vector>
+
+using Point = CGAL::Simple_cartesian<double>::Point_3;
+
+#ifdef PCS_BREAK_THE_RULE
+using Points = std::list<Point>;
+#else
+using Points = std::vector<Point>;
+#endif
+
+void compile(Points& points, const std::vector<int>& handle)
+{
+  pcs::deform_point_set(points, handle, handle, pcs::Similarity());
+}
