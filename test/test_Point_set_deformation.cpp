@@ -290,6 +290,71 @@ BOOST_AUTO_TEST_CASE(factors_are_made_once_per_set_of_handles)
   BOOST_TEST(report.seconds.factorization == 0);
 }
 
+BOOST_AUTO_TEST_CASE(any_sequence_of_calls_ends_like_a_fresh_session)
+{
+  struct Handle
+  {
+    std::size_t number;
+    std::vector<std::size_t> indices;
+    double softness;
+    pcs::Similarity motion;
+  };
+  const Points rest = pcs_test::box(4, 4, 12, 0.25);
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    std::mt19937 random(seed);
+    const int samples = seed % 2 ? 60 : 1000000;
+    Points points = rest;
+    Session session(points, parameters(samples));
+    std::vector<Handle> handles;
+    std::vector<char> is_taken(rest.size(), 0);
+    for (int step = 0; step < 120; ++step) {
+      const auto kind = random() % 10;
+      if (kind < 2) {
+        Handle h{0, {}, random() % 4 ? 0.0 : 1.0, {}};
+        for (int k = 0; k < 12; ++k) {
+          const std::size_t i = random() % rest.size();
+          if (!is_taken[i])
+            h.indices.push_back(i);
+          is_taken[i] = 1;
+        }
+        if (h.indices.empty())
+          continue;
+        h.number = session.add_handle(h.indices, h.softness);
+        handles.push_back(h);
+      } else if (kind == 2 && !handles.empty()) {
+        const std::size_t k = random() % handles.size();
+        session.remove_handle(handles[k].number);
+        for (const auto i : handles[k].indices)
+          is_taken[i] = 0;
+        handles.erase(handles.begin() + static_cast<std::ptrdiff_t>(k));
+      } else if (kind < 6 && !handles.empty()) {
+        Handle& h = handles[random() % handles.size()];
+        const Vec3 turn = pcs_test::random_vector(random), shift = pcs_test::random_vector(random);
+        h.motion = pcs::Similarity::from_translation(shift) * pcs::Similarity::from_turn(turn);
+        session.set_transformation(h.number, h.motion);
+      } else if (kind == 6 && random() % 3 == 0) {
+        session.reset();
+        BOOST_REQUIRE(pcs_test::largest_distance(points, rest) < 1e-12);
+        for (Handle& h : handles)
+          h.motion = pcs::Similarity();
+      } else if (kind == 7) {
+        session.restore(session.snapshot());
+      } else {
+        session.deform();
+        Points expected = rest;
+        Session fresh(expected, parameters(samples));
+        for (const Handle& h : handles)
+          fresh.set_transformation(fresh.add_handle(h.indices, h.softness), h.motion);
+        fresh.deform();
+        BOOST_REQUIRE(pcs_test::is_finite(points));
+        BOOST_TEST_CONTEXT("seed " << seed << ", step " << step << ", " << handles.size()
+                                   << " handles")
+        BOOST_REQUIRE(pcs_test::largest_distance(points, expected) < 1e-9);
+      }
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(a_session_can_be_moved)
 {
   Bar_session s(150);
@@ -438,8 +503,9 @@ BOOST_AUTO_TEST_CASE(vectors_and_tensors_follow_the_gradient)
     BOOST_TEST(in_the_middle > 100u);
     BOOST_TEST_MESSAGE("stretch in the middle, " << samples << " samples: " << smallest << " to "
                                                  << largest);
-    BOOST_TEST(smallest > 1.15); // 4.75 / 3.75 = 1.27 on average
-    BOOST_TEST(largest < 1.35);
+    // 4.75 / 3.75 = 1.27 on average. Measured: 1.270 to 1.274, with samples 1.22 to 1.40.
+    BOOST_TEST(smallest > (samples == 400 ? 1.18 : 1.25));
+    BOOST_TEST(largest < (samples == 400 ? 1.45 : 1.29));
     session.reset();
     for (const Splat& s : splats)
       BOOST_REQUIRE((s.vector - Vec3(0, 0, .01)).norm() < 1e-12);

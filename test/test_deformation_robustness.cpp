@@ -4,6 +4,7 @@
 
 #include <support/deform_cloud.h>
 #include <support/exceptions.h>
+#include <support/random_edits.h>
 
 #include <boost/test/unit_test.hpp>
 
@@ -72,7 +73,7 @@ void check_at_all_resolutions(const Points& points, const Handles& handles)
 {
   for (const long long samples : {1, 2, 3, 10, 100, 1000000})
     BOOST_TEST_CONTEXT(samples << " samples")
-    check(points, handles, with_samples(samples));
+  check(points, handles, with_samples(samples));
 }
 
 } // namespace
@@ -212,10 +213,10 @@ BOOST_AUTO_TEST_CASE(zero_normals_stay_zero)
 BOOST_AUTO_TEST_CASE(extents_beyond_the_representable_are_refused)
 {
   for (const double size : {1e-120, 1e150, 1e300})
-    BOOST_CHECK_EXCEPTION(deform(Points{Vec3(0, 0, 0), Vec3(size, 0, 0), Vec3(0, size, 0)},
-                                 {{{0}, {}, 0}}),
-                          Invalid_input,
-                          message_has("extent"));
+    BOOST_CHECK_EXCEPTION(
+        deform(Points{Vec3(0, 0, 0), Vec3(size, 0, 0), Vec3(0, size, 0)}, {{{0}, {}, 0}}),
+        Invalid_input,
+        message_has("extent"));
   // the difference of two numbers may overflow although both are finite
   BOOST_CHECK_THROW(deform(Points{Vec3(-1.5e308, 0, 0), Vec3(1.5e308, 0, 0)}, {{{0}, {}, 0}}),
                     Invalid_input);
@@ -228,8 +229,9 @@ BOOST_AUTO_TEST_SUITE(deformation_handles)
 BOOST_AUTO_TEST_CASE(no_handle_is_refused)
 {
   BOOST_CHECK_EXCEPTION(deform(Bar_edit().points, {}), Invalid_input, message_has("no handle"));
-  BOOST_CHECK_EXCEPTION(
-      deform(Bar_edit().points, {{{}, {}, 0}}), Invalid_input, message_has("at least one point"));
+  BOOST_CHECK_EXCEPTION(deform(Bar_edit().points, {{{}, {}, 0}}),
+                        Invalid_input,
+                        message_has("at least one point"));
 }
 
 BOOST_AUTO_TEST_CASE(indices_out_of_range_are_named)
@@ -250,10 +252,9 @@ BOOST_AUTO_TEST_CASE(a_point_in_two_handles_is_named)
                         message_has("point 5", "handle 0"));
   Points points = edit.points;
   points.push_back(points[5]); // or another point at the same place
-  BOOST_CHECK_EXCEPTION(
-      deform(points, {{{3, 5}, {}, 0}, {{points.size() - 1}, some_motion(), 0}}),
-      Invalid_input,
-      message_has("same place"));
+  BOOST_CHECK_EXCEPTION(deform(points, {{{3, 5}, {}, 0}, {{points.size() - 1}, some_motion(), 0}}),
+                        Invalid_input,
+                        message_has("same place"));
 }
 
 BOOST_AUTO_TEST_CASE(an_index_may_be_given_twice_in_one_handle)
@@ -271,11 +272,13 @@ BOOST_AUTO_TEST_CASE(a_handle_outside_the_region_is_refused)
   Options options;
   options.region_of_interest =
       pcs_test::select(edit.points, [](const Vec3& p) { return p.z() > 2; });
-  BOOST_CHECK_EXCEPTION(
-      deform(edit.points, edit.handles, options), Invalid_input, message_has("region of interest"));
+  BOOST_CHECK_EXCEPTION(deform(edit.points, edit.handles, options),
+                        Invalid_input,
+                        message_has("region of interest"));
   options.region_of_interest = std::vector<std::size_t>{edit.points.size()};
-  BOOST_CHECK_EXCEPTION(
-      deform(edit.points, edit.handles, options), Invalid_input, message_has("out of range"));
+  BOOST_CHECK_EXCEPTION(deform(edit.points, edit.handles, options),
+                        Invalid_input,
+                        message_has("out of range"));
   // the same place inside and outside counts as inside
   options.region_of_interest = std::vector<std::size_t>();
   BOOST_CHECK_THROW(deform(edit.points, edit.handles, options), Invalid_input);
@@ -379,9 +382,8 @@ BOOST_AUTO_TEST_CASE(handles_need_not_be_contiguous)
     else if (z > 1.9 && z < 2.1)
       handles[1].indices.push_back(i);
   }
-  handles[2].indices = {pcs_test::select(edit.points, [](const Vec3& p) {
-    return p.z() > .9 && p.z() < 1.1;
-  })[0]};
+  handles[2].indices = {
+      pcs_test::select(edit.points, [](const Vec3& p) { return p.z() > .9 && p.z() < 1.1; })[0]};
   handles[1].transformation = pcs::translation(Vec3(.5, 0, 0));
   handles[2].transformation = pcs::translation(Vec3(.2, .1, 0));
   check_at_all_resolutions(edit.points, handles);
@@ -417,9 +419,11 @@ BOOST_AUTO_TEST_CASE(huge_and_tiny_motions_give_finite_results)
     for (const long long samples : {150, 1000000}) {
       Handles handles = edit.handles;
       handles[1].transformation = pcs::scaling(factor, Vec3(.5, .5, 4));
-      BOOST_TEST(is_finite(deform(edit.points, handles, with_samples(samples))), "scale " << factor);
+      BOOST_TEST(is_finite(deform(edit.points, handles, with_samples(samples))),
+                 "scale " << factor);
       handles[1].transformation = pcs::translation(Vec3(factor, 0, factor));
-      BOOST_TEST(is_finite(deform(edit.points, handles, with_samples(samples))), "shift " << factor);
+      BOOST_TEST(is_finite(deform(edit.points, handles, with_samples(samples))),
+                 "shift " << factor);
     }
 }
 
@@ -430,11 +434,10 @@ BOOST_AUTO_TEST_CASE(half_a_turn_and_more_is_finite_in_any_direction)
   for (int repetition = 0; repetition < 20; ++repetition) {
     Handles handles = edit.handles;
     for (auto& handle : handles)
-      handle.transformation =
-          pcs::rotation(pcs_test::random_direction(random),
-                        20 * pcs_test::uniform(random),
-                        pcs_test::random_vector(random)) *
-          pcs::rotation(pcs_test::random_direction(random), 3.0, Vec3(0, 0, 0));
+      handle.transformation = pcs::rotation(pcs_test::random_direction(random),
+                                            20 * pcs_test::uniform(random),
+                                            pcs_test::random_vector(random)) *
+                              pcs::rotation(pcs_test::random_direction(random), 3.0, Vec3(0, 0, 0));
     for (const long long samples : {150, 1000000})
       BOOST_TEST(is_finite(deform(edit.points, handles, with_samples(samples))));
   }
@@ -452,7 +455,9 @@ void check_refused(const char* name, const Change& change)
   const Bar_edit edit;
   Options options;
   change(options);
-  BOOST_CHECK_EXCEPTION(deform(edit.points, edit.handles, options), Invalid_input, message_has(name));
+  BOOST_CHECK_EXCEPTION(deform(edit.points, edit.handles, options),
+                        Invalid_input,
+                        message_has(name));
 }
 
 } // namespace
@@ -575,8 +580,10 @@ BOOST_AUTO_TEST_CASE(an_empty_callback_is_none)
 {
   const Bar_edit edit;
   Points points = edit.points;
-  const auto report = pcs::deform_point_set(
-      points, edit.handles, pcs::parameters::callback(std::function<bool(double)>()));
+  const auto report =
+      pcs::deform_point_set(points,
+                            edit.handles,
+                            pcs::parameters::callback(std::function<bool(double)>()));
   BOOST_TEST(report.status == Status::converged);
 }
 
@@ -590,6 +597,27 @@ BOOST_AUTO_TEST_CASE(the_callback_is_asked_during_a_long_solve)
   options.callback = [&](double) { return ++calls > 0; };
   const auto report = deform(edit.points, edit.handles, options).report;
   BOOST_TEST(calls >= static_cast<int>(report.number_of_iterations));
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(deformation_random)
+
+BOOST_AUTO_TEST_CASE(random_edits_have_defined_results)
+{
+  for (unsigned seed = 1; seed <= 1200; ++seed) {
+    const std::string fault = pcs_test::fault_of(pcs_test::random_edit(seed));
+    BOOST_TEST(fault.empty(), "seed " << seed << ": " << fault);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_soft_handle_holds_a_body_of_one_sample)
+{
+  const Bar_edit edit;
+  const auto shift = pcs::translation(Vec3(1, 2, 3));
+  const auto result = deform(edit.points, {{all_of(edit.points), shift, 0.5}}, with_samples(1));
+  BOOST_TEST(result.report.status != Status::numerical_failure);
+  BOOST_TEST((result.points[0] - shift(edit.points[0])).norm() < 1e-9);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

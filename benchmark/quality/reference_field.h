@@ -40,9 +40,7 @@ public:
     m_rows = deformation::Free_rows(m_constraints);
     static_cast<pcs::neighborhood::Proximity_graph&>(m_graph) =
         pcs::neighborhood::nearest_neighbor_graph<CGAL::Sequential_tag>(c.points, 6);
-    deformation::set_edge_weights<CGAL::Sequential_tag>(c.points, m_graph, [](std::size_t) {
-      return 1.0;
-    });
+    deformation::set_edge_weights<CGAL::Sequential_tag>(c.points, m_graph);
     const std::vector<const deformation::Weighted_graph*> graphs = {&m_graph};
     m_factor.factorize(pcs::linear_algebra::free_laplacian(graphs,
                                                            m_rows.row_of_node,

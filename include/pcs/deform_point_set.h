@@ -50,7 +50,7 @@ Deformation_report deform_once(PointRange& points, const NamedParameters& np, co
     const auto done = std::make_shared<double>(0); // share of the work before the present stage
     const std::function<bool(double)> callback = [user, done](double f) {
       const double share = *done == 0 ? construction_share : 1 - construction_share;
-      return user(*done + share * f);
+      return !user || user(*done + share * f);
     };
     auto session = run(np.callback(callback));
     *done = construction_share;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // Parallel_tag needs TBB.
 
+#undef CGAL_LINKED_WITH_TBB
 #undef PCS_WITH_TBB
 #define PCS_WITH_TBB 0
 

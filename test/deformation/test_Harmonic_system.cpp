@@ -117,8 +117,8 @@ BOOST_AUTO_TEST_CASE(the_solution_is_that_of_the_dense_system)
   const auto found = solve(g, c, values);
   for (std::size_t i = 0; i < g.size(); ++i)
     if (!c.is_prescribed(i))
-      BOOST_REQUIRE(
-          (found[i].transpose() - expected.row(static_cast<Eigen::Index>(i))).norm() < 1e-11);
+      BOOST_REQUIRE((found[i].transpose() - expected.row(static_cast<Eigen::Index>(i))).norm() <
+                    1e-11);
 }
 
 BOOST_AUTO_TEST_CASE(values_lie_between_those_of_the_handles)

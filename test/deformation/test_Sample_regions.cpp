@@ -23,10 +23,8 @@ std::uint64_t steps(double length, double scale)
   return static_cast<std::uint64_t>(std::min(4096.0, std::max(1.0, std::round(scale * length))));
 }
 
-std::vector<std::uint64_t> distances_from(std::size_t source,
-                                          const Points& points,
-                                          const Proximity_graph& graph,
-                                          double scale)
+std::vector<std::uint64_t>
+distances_from(std::size_t source, const Points& points, const Proximity_graph& graph, double scale)
 {
   std::vector<std::uint64_t> distance(points.size(), ~std::uint64_t(0));
   using Entry = std::pair<std::uint64_t, std::size_t>;
@@ -55,7 +53,8 @@ void check_against_dijkstra(const Points& unordered, std::size_t count)
   for (std::size_t i = 0; i < points.size(); ++i)
     for (auto j = graph.begin(i); j != graph.end(i); ++j)
       sum += (points[*j] - points[i]).norm();
-  const double scale = 64 * double(graph.neighbor.size()) / sum;
+  static_cast<void>(sum);
+  const double scale = 64 / pcs::deformation::typical_edge(points, graph);
   std::vector<std::uint64_t> best(points.size(), ~std::uint64_t(0));
   std::vector<std::uint32_t> expected(points.size(), pcs::deformation::no_sample);
   for (std::size_t s = 0; s < samples.size(); ++s) {
@@ -66,7 +65,7 @@ void check_against_dijkstra(const Points& unordered, std::size_t count)
         expected[i] = static_cast<std::uint32_t>(s);
       }
   }
-  const auto found = pcs::deformation::grow_regions<Tag>(points, graph, samples).sample_of_point;
+  const auto found = pcs::deformation::grow_regions(points, graph, samples).sample_of_point;
   std::size_t different = 0;
   for (std::size_t i = 0; i < points.size(); ++i)
     different += found[i] != expected[i] ? 1 : 0;
@@ -86,7 +85,7 @@ struct Sampled
     : points(pcs_test::in_spatial_order(unordered)),
       graph(pcs::neighborhood::nearest_neighbor_graph<Tag>(points, 6)),
       samples(pcs::deformation::octree_samples(points, count)),
-      regions(pcs::deformation::grow_regions<Tag>(points, graph, samples)),
+      regions(pcs::deformation::grow_regions(points, graph, samples)),
       links(pcs::deformation::sample_graph(points, graph, samples, regions, weight_unit))
   {
   }
@@ -128,7 +127,7 @@ BOOST_AUTO_TEST_CASE(parts_without_sample_have_no_region)
 {
   Points points = pcs_test::plate(10, 10, 1);
   const auto graph = pcs::neighborhood::graph_from_edges(points.size(), {{0, 1}, {1, 2}, {4, 5}});
-  const auto regions = pcs::deformation::grow_regions<Tag>(points, graph, {1}).sample_of_point;
+  const auto regions = pcs::deformation::grow_regions(points, graph, {1}).sample_of_point;
   for (std::size_t i = 0; i < points.size(); ++i)
     BOOST_TEST((regions[i] == (i < 3 ? 0 : pcs::deformation::no_sample)));
 }
@@ -162,7 +161,7 @@ BOOST_AUTO_TEST_CASE(weights_are_border_over_distance)
       for (std::size_t i = 0; i < s.points.size(); ++i)
         for (auto j = s.graph.begin(i); j != s.graph.end(i); ++j)
           if (label[i] == a && label[*j] == b)
-            border += (s.points[*j] - s.points[i]).norm();
+            border += pcs::deformation::crossing_length(s.points, s.graph, i, *j);
       const double expected = s.weight_unit * border / (s.sample(a) - s.sample(b)).norm();
       BOOST_TEST(s.links.weight[e] == expected, boost::test_tools::tolerance(1e-12));
     }

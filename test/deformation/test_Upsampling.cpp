@@ -42,8 +42,7 @@ struct Setup
     std::mt19937 random(3);
     for (std::size_t i = 0; i < points.size(); ++i)
       normals.push_back((1 + double(i % 3)) * pcs_test::random_direction(random));
-    const auto graph =
-        pcs::neighborhood::nearest_neighbor_graph<CGAL::Sequential_tag>(points, 6);
+    const auto graph = pcs::neighborhood::nearest_neighbor_graph<CGAL::Sequential_tag>(points, 6);
     samples = pcs::deformation::octree_samples(points, count);
     links = pcs::deformation::link_by_hops<CGAL::Sequential_tag>(points,
                                                                  graph,
@@ -66,9 +65,9 @@ struct Setup
     std::mt19937 random(seed);
     std::vector<Affine_map> maps;
     for (std::size_t s = 0; s < samples.size(); ++s)
-      maps.push_back(affine(pcs::rotation_exp(size * pcs_test::random_vector(random))
-                                .toRotationMatrix(),
-                            size * pcs_test::random_vector(random)));
+      maps.push_back(
+          affine(pcs::rotation_exp(size * pcs_test::random_vector(random)).toRotationMatrix(),
+                 size * pcs_test::random_vector(random)));
     return maps;
   }
 
@@ -116,8 +115,8 @@ BOOST_AUTO_TEST_CASE(points_normals_and_gradients_follow_the_plain_formula)
       error = std::max(error, (p[i] - (a * s.points[i] + t)).norm());
       gradient_error = std::max(gradient_error, (s.gradients[i] - a).norm());
       const Vec3 expected = a.determinant() * a.inverse().transpose() * s.normals[i];
-      normal_error = std::max(
-          normal_error, (n[i] - s.normals[i].norm() * expected.normalized()).norm());
+      normal_error =
+          std::max(normal_error, (n[i] - s.normals[i].norm() * expected.normalized()).norm());
     }
     // Weights are kept in 16 bits: up to five of them off by half a step of 1/65535 each, times the difference of
     // neighbouring maps, which is up to four sizes here.

@@ -35,7 +35,7 @@ struct Plate
       graph(pcs::neighborhood::nearest_neighbor_graph<Tag>(sites, 6)),
       samples(octree_samples(sites, count))
   {
-    const auto regions = grow_regions<Tag>(sites, graph, samples);
+    const auto regions = grow_regions(sites, graph, samples);
     network.surface = sample_graph(sites, graph, samples, regions, weight_unit);
     sample_of_site = regions.sample_of_point;
     constraints.softness_weight = {0, 0};
@@ -142,14 +142,14 @@ BOOST_AUTO_TEST_CASE(without_handle_nothing_is_added)
   const std::vector<Node_constraint> handles(plate.sites.size(), free_node);
   const auto none = [&](std::size_t site) { return handles[site]; };
   const auto position = [&](std::size_t site) { return plate.sites[site]; };
-  const auto network = with_boundary_nodes(
-      Boundary_input<decltype(none), decltype(position)>{plate.network,
-                                                         plate.weight_unit,
-                                                         plate.graph,
-                                                         plate.sample_of_site,
-                                                         none,
-                                                         position},
-      extended);
+  const auto network =
+      with_boundary_nodes(Boundary_input<decltype(none), decltype(position)>{plate.network,
+                                                                             plate.weight_unit,
+                                                                             plate.graph,
+                                                                             plate.sample_of_site,
+                                                                             none,
+                                                                             position},
+                          extended);
   BOOST_TEST(network.size() == 60u);
   BOOST_TEST((network.surface.neighbor == plate.network.surface.neighbor));
   BOOST_TEST((network.surface.weight == plate.network.surface.weight));

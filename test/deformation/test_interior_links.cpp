@@ -154,7 +154,8 @@ BOOST_AUTO_TEST_CASE(degenerate_clouds_get_none_and_no_harm)
   BOOST_TEST(links_of(line).size() == 0u);
   BOOST_TEST(links_of(Points{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}).size() == 0u);
   BOOST_TEST(links_of(Points{Vec3(0, 0, 0)}).size() == 0u);
-  for (const double w : links_of(random).weight) // a filled cube has no surface: whatever, but finite
+  for (const double w :
+       links_of(random).weight) // a filled cube has no surface: whatever, but finite
     BOOST_REQUIRE((std::isfinite(w) && w > 0));
   Points outlier = pcs_test::box(6, 6, 18, 1. / 6);
   outlier.push_back(Vec3(1e6, 1e6, 1e6)); // the rays must not walk there step by step
@@ -187,8 +188,7 @@ BOOST_AUTO_TEST_CASE(every_number_of_threads_gives_the_same_bits)
   const auto network = pcs_test::network_of(pcs_test::box(12, 12, 48, 1. / 12));
   std::size_t count = 0;
   const auto component = connected_components(network.surface, count);
-  const auto expected =
-      pcs::deformation::interior_links<CGAL::Sequential_tag>(network, component);
+  const auto expected = pcs::deformation::interior_links<CGAL::Sequential_tag>(network, component);
   for (const int threads : pcs_test::thread_counts)
     pcs_test::with_threads(threads, [&] {
       const auto found = pcs::deformation::interior_links<Any_tag>(network, component);

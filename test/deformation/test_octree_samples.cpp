@@ -53,7 +53,8 @@ BOOST_AUTO_TEST_CASE(any_cloud_can_be_sampled)
 
 BOOST_AUTO_TEST_CASE(as_many_as_points_gives_all_points)
 {
-  const auto samples = checked_samples(pcs_test::in_spatial_order(pcs_test::random_points(50, 3)), 50);
+  const auto samples =
+      checked_samples(pcs_test::in_spatial_order(pcs_test::random_points(50, 3)), 50);
   for (std::size_t i = 0; i < 50; ++i)
     BOOST_TEST(samples[i] == i);
 }
@@ -91,8 +92,7 @@ BOOST_AUTO_TEST_CASE(every_point_has_a_sample_nearby)
 
 BOOST_AUTO_TEST_CASE(the_positions_of_the_samples_do_not_depend_on_the_order_of_the_points)
 {
-  for (const Points& points :
-       {pcs_test::random_points(2000, 5), pcs_test::box(8, 8, 24, 1. / 3)}) {
+  for (const Points& points : {pcs_test::random_points(2000, 5), pcs_test::box(8, 8, 24, 1. / 3)}) {
     const Points a = pcs_test::in_spatial_order(points);
     const Points b = pcs_test::in_spatial_order(
         pcs_test::permuted(points, pcs_test::random_permutation(points.size(), 6)));

@@ -153,8 +153,8 @@ BOOST_AUTO_TEST_CASE(about_one_axis_the_angle_is_linear_along_a_path_for_any_num
                          path_constraints(73),
                          {turn(-0.1 * angle * axis), turn(0.9 * angle * axis)});
     for (std::size_t i = 0; i < 73; ++i)
-      BOOST_TEST(angle_between(q[i],
-                               pcs::rotation_exp(angle * (double(i) / 72 - 0.1) * axis)) < 1e-10);
+      BOOST_TEST(angle_between(q[i], pcs::rotation_exp(angle * (double(i) / 72 - 0.1) * axis)) <
+                 1e-10);
   }
 }
 
@@ -163,8 +163,7 @@ BOOST_AUTO_TEST_CASE(about_two_axes_the_field_follows_the_geodesic)
   // The geodesic between two rotations is that of their difference.
   const auto graph = pcs_test::path_graph(41);
   const Vec3 a = Vec3(40, 0, 0) * degree, b = Vec3(0, 50, 20) * degree;
-  const auto q =
-      field(Rotation_field::geodesic, graph, path_constraints(41), {turn(a), turn(b)});
+  const auto q = field(Rotation_field::geodesic, graph, path_constraints(41), {turn(a), turn(b)});
   const Quaternion start = pcs::rotation_exp(a);
   const Vec3 difference = pcs::rotation_log(pcs::rotation_exp(b) * start.conjugate());
   for (std::size_t i = 0; i < 41; ++i)
@@ -177,10 +176,8 @@ BOOST_AUTO_TEST_CASE(several_large_turns_one_after_another_change_evenly)
   // 400 degrees about z, then 90 about x: each step along the path turns by about the same angle.
   const auto graph = pcs_test::path_graph(101);
   const Similarity both = turn(Vec3(90 * degree, 0, 0)) * turn(Vec3(0, 0, 400 * degree));
-  const auto q = field(Rotation_field::geodesic,
-                       graph,
-                       path_constraints(101),
-                       {Similarity(), both});
+  const auto q =
+      field(Rotation_field::geodesic, graph, path_constraints(101), {Similarity(), both});
   double total = 0, largest = 0;
   for (std::size_t i = 1; i < 101; ++i) {
     const double step = angle_between(q[i], q[i - 1]) / degree;
@@ -196,8 +193,7 @@ BOOST_AUTO_TEST_CASE(identity_handles_give_the_exact_identity)
 {
   const auto graph = pcs_test::path_graph(11);
   for (const auto kind : {Rotation_field::geodesic, Rotation_field::quaternion})
-    for (const auto& q :
-         field(kind, graph, path_constraints(11), {Similarity(), Similarity()}))
+    for (const auto& q : field(kind, graph, path_constraints(11), {Similarity(), Similarity()}))
       BOOST_TEST((q.vec().norm() == 0 && q.w() == 1));
 }
 
@@ -223,7 +219,7 @@ BOOST_AUTO_TEST_CASE(a_soft_handle_turns_its_node_part_of_the_way)
 {
   const auto graph = pcs_test::path_graph(11);
   for (const auto& transforms :
-       {std::vector<Similarity>{Similarity(), turn(Vec3(0, 0, 1))},          // one axis
+       {std::vector<Similarity>{Similarity(), turn(Vec3(0, 0, 1))},              // one axis
         std::vector<Similarity>{turn(Vec3(1e-3, 0, 0)), turn(Vec3(0, 0, 1))}}) { // two
     auto c = path_constraints(11);
     c.softness_weight = {0, 0.1};

@@ -85,7 +85,10 @@ struct Bar_edit
   Handles handles;
 
   /// `size` and `offset` are applied to the bar, to the handles, and to their motion.
-  explicit Bar_edit(int width = 6, int length = 24, double size = 1, const Vec3& offset = Vec3(0, 0, 0))
+  explicit Bar_edit(int width = 6,
+                    int length = 24,
+                    double size = 1,
+                    const Vec3& offset = Vec3(0, 0, 0))
   {
     points = box(width, width, length, 1.0 / width);
     const double height = double(length) / width;
@@ -101,8 +104,7 @@ struct Bar_edit
   }
 
   /// The same motion in the frame `x -> size x + offset`.
-  static pcs::Similarity
-  to_frame(const pcs::Similarity& motion, double size, const Vec3& offset)
+  static pcs::Similarity to_frame(const pcs::Similarity& motion, double size, const Vec3& offset)
   {
     pcs::Similarity linear = pcs::Similarity::from_scale(motion.scale());
     for (const auto& turn : motion.turns())

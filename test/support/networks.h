@@ -31,9 +31,7 @@ inline pcs::deformation::Elastic_network network_of(const Points& points, std::s
   network.rest = in_spatial_order(points);
   static_cast<pcs::neighborhood::Proximity_graph&>(network.surface) =
       pcs::neighborhood::nearest_neighbor_graph<CGAL::Sequential_tag>(network.rest, k);
-  pcs::deformation::set_edge_weights<CGAL::Sequential_tag>(network.rest,
-                                                           network.surface,
-                                                           [](std::size_t) { return 1.0; });
+  pcs::deformation::set_edge_weights<CGAL::Sequential_tag>(network.rest, network.surface);
   return network;
 }
 
@@ -65,9 +63,9 @@ struct Harmonic
     for (std::size_t r = 0; r < rows.size(); ++r) {
       const std::size_t i = rows.node_of_row[r];
       if (constraints.is_soft(i))
-        soft[r] = constraints.softness_weight[static_cast<std::size_t>(
-                      constraints.handle_of_node[i])] *
-                  pcs::deformation::node_degree(graph, i);
+        soft[r] =
+            constraints.softness_weight[static_cast<std::size_t>(constraints.handle_of_node[i])] *
+            pcs::deformation::node_degree(graph, i);
     }
     is_ok = factor.factorize(
         pcs::linear_algebra::free_laplacian<pcs::deformation::Weighted_graph>({&graph},

@@ -145,6 +145,8 @@ public:
 private:
   void append(const Turn& turn)
   {
+    if (!turn.allFinite())
+      throw Invalid_input("pcs::Similarity: a turn is not finite");
     if (turn.squaredNorm() > 0) {
       // Same axis, either sense: one turn with the sum of the angles, and nothing at all when they cancel.
       const bool is_same_axis = !m_turns.empty() && turn.cross(m_turns.back()).norm() <=

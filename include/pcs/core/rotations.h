@@ -28,8 +28,10 @@ inline Quaternion rotation_exp(const Eigen::Vector3d& u)
 inline Eigen::Vector3d lifted_rotation_log(const Quaternion& q)
 {
   const double s = q.vec().norm();
-  const double f =
-      s > 1e-4 ? 2 * std::atan2(s, q.w()) / s : (q.w() >= 0 ? 2 + s * s / 3 : -2 - s * s / 3);
+  if (!(s > 0)) // a full turn, about any axis, or none
+    return q.w() >= 0 ? Eigen::Vector3d(0, 0, 0)
+                      : Eigen::Vector3d(2 * static_cast<double>(EIGEN_PI), 0, 0);
+  const double f = s > 1e-4 || q.w() < 0 ? 2 * std::atan2(s, q.w()) / s : 2 + s * s / 3;
   return f * q.vec();
 }
 

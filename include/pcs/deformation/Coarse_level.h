@@ -48,8 +48,7 @@ public:
     : m_node_of_sample(octree_samples(finer.rest, finer.size() / coarsening_ratio))
   {
     constexpr std::size_t number_of_sample_neighbors = 4;
-    Sample_regions regions =
-        grow_regions<ConcurrencyTag>(finer.rest, finer.surface, m_node_of_sample);
+    Sample_regions regions = grow_regions(finer.rest, finer.surface, m_node_of_sample);
     m_network.surface =
         sample_graph(finer.rest, finer.surface, m_node_of_sample, regions, m_weight_unit);
     m_links = link_by_regions<ConcurrencyTag>(finer.rest,

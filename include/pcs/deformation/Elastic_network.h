@@ -11,9 +11,11 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace pcs {
@@ -38,40 +40,91 @@ struct Elastic_network
 /// An edge is never taken for shorter than this share of the spacing around it, so that two points that nearly
 /// coincide do not outweigh all others.
 constexpr double shortest_relative_edge = 0.2;
+/// Spacings of two neighbours that differ by more are an outlier and its victim.
+constexpr double widest_spacing_step = 2;
+
+/// Squares of extreme lengths underflow; the matrices need finite, positive weights.
+inline double representable_weight(double w)
+{
+  return std::isfinite(w) ? std::min(1e9, std::max(1e-30, w)) : 1;
+}
+
+/// Median length of the edges at node `i`: the spacing there, whatever single outlier is linked to it. [L]
+inline double local_spacing(const std::vector<Vec3>& rest,
+                            const neighborhood::Proximity_graph& graph,
+                            std::size_t i)
+{
+  std::array<double, 64> lengths;
+  const std::size_t count = std::min(lengths.size(), graph.degree(i));
+  if (count == 0)
+    return 0;
+  for (std::size_t e = 0; e < count; ++e)
+    lengths[e] = (rest[graph.begin(i)[e]] - rest[i]).norm();
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(count / 2);
+  std::nth_element(lengths.begin(), middle, lengths.begin() + static_cast<std::ptrdiff_t>(count));
+  return *middle;
+}
+
+/// Edges beyond this many median spacings lead to outliers.
+constexpr double longest_typical_edge = 4;
+
+/// Root mean square length of the edges, those to outliers left out. [L]
+inline double typical_edge(const std::vector<Vec3>& rest,
+                           const neighborhood::Proximity_graph& graph)
+{
+  std::vector<double> spacing;
+  for (std::size_t i = 0; i < graph.size(); ++i)
+    if (graph.degree(i) > 0)
+      spacing.push_back(local_spacing(rest, graph, i));
+  if (spacing.empty())
+    return 0;
+  const auto middle = spacing.begin() + static_cast<std::ptrdiff_t>(spacing.size() / 2);
+  std::nth_element(spacing.begin(), middle, spacing.end());
+  const double longest = longest_typical_edge * *middle;
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < graph.size(); ++i)
+    for (auto j = graph.begin(i); j != graph.end(i); ++j) {
+      const double squared = (rest[*j] - rest[i]).squaredNorm();
+      if (squared <= longest * longest) {
+        sum += squared;
+        count += 1;
+      }
+    }
+  return count > 0 ? std::sqrt(sum / count) : *middle;
+}
 
 /*!
-  Weights `w_ij = (s_i^2 + s_j^2) / (2 |x_j - x_i|^2)`, scaled to mean 1, where `s_i` is the root mean square edge
-  length at `i`. `1 / d^2` turns differences into slopes; the factor `s^2` is the area that a point stands for, so
-  that densely sampled parts do not become stiffer than sparse ones. `strength(e)` multiplies half-edge `e`.
+  Weights `w_ij = (s_i^2 + s_j^2) / (2 |x_j - x_i|^2)`, scaled to mean 1, where `s_i` is `local_spacing()`, the larger
+  taken for at most `widest_spacing_step` times the smaller. `1 / d^2` turns differences into slopes; the factor `s^2` is the area
+  that a point stands for, so that densely sampled parts do not become stiffer than sparse ones, and far outliers pull
+  on nothing.
 */
-template <class ConcurrencyTag, class Strength>
-void set_edge_weights(const std::vector<Vec3>& rest,
-                      Weighted_graph& graph,
-                      const Strength& strength)
+template <class ConcurrencyTag>
+void set_edge_weights(const std::vector<Vec3>& rest, Weighted_graph& graph)
 {
   const std::size_t n = graph.size();
-  std::vector<double> squared_spacing(n, 0);
+  std::vector<double> spacing(n, 0);
   pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
-    for (auto j = graph.begin(i); j != graph.end(i); ++j)
-      squared_spacing[i] += (rest[*j] - rest[i]).squaredNorm();
-    if (graph.degree(i) > 0)
-      squared_spacing[i] /= static_cast<double>(graph.degree(i));
+    spacing[i] = local_spacing(rest, graph, i);
   });
   graph.weight.resize(graph.neighbor.size());
   pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
     for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
       const std::size_t j = graph.neighbor[e];
-      const double area = 0.5 * (squared_spacing[i] + squared_spacing[j]);
+      const double smaller = std::min(spacing[i], spacing[j]);
+      const double larger =
+          std::min(std::max(spacing[i], spacing[j]), widest_spacing_step * smaller);
+      const double area = 0.5 * (smaller * smaller + larger * larger);
       const double floor = shortest_relative_edge * shortest_relative_edge * area;
       const double d2 = std::max((rest[j] - rest[i]).squaredNorm(), floor);
-      graph.weight[e] = d2 > 0 ? strength(e) * area / d2 : 1;
+      graph.weight[e] = d2 > 0 ? representable_weight(area / d2) : 1;
     }
   });
   const double sum = pcs::internal::blocked_reduce<ConcurrencyTag>(
       graph.weight.size(),
       0.0,
       [&](std::size_t e) { return graph.weight[e]; },
-      [](double a, double b) { return a + b; });
+      std::plus<double>());
   const double scale = sum > 0 ? static_cast<double>(graph.weight.size()) / sum : 1;
   for (double& w : graph.weight)
     w *= scale;

@@ -42,7 +42,7 @@ struct Sampling_options
   bool do_preserve_volume = true;
 };
 
-/// From the caller's coordinates to ours and back: centre of the box, and a power of two, which loses no bits.
+/// From the caller's coordinates to ours and back: the middle of the points, and a power of two, which loses no bits.
 struct Local_frame
 {
   Vec3 origin = Vec3::Zero();
@@ -109,6 +109,21 @@ struct Sampled_body
   }
 
 private:
+  /// Coordinate by coordinate: near the cloud, wherever a few outliers are.
+  static Vec3 median_point(const std::vector<Vec3>& points)
+  {
+    Vec3 median;
+    std::vector<double> values(points.size());
+    for (int c = 0; c < 3; ++c) {
+      for (std::size_t i = 0; i < points.size(); ++i)
+        values[i] = points[i][c];
+      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+      std::nth_element(values.begin(), middle, values.end());
+      median[c] = *middle;
+    }
+    return median;
+  }
+
   void to_local(std::vector<Vec3>& points)
   {
     Vec3 low = points.front(), high = low;
@@ -125,7 +140,7 @@ private:
       throw Invalid_input("pcs deformation: the points extend over " +
                           pcs::internal::to_text(extent) +
                           "; extents must lie between 1e-100 and 1e100");
-    frame.origin = 0.5 * low + 0.5 * high;
+    frame.origin = median_point(points);
     frame.unit = std::exp2(std::floor(std::log2(extent)));
     pcs::internal::for_each_index<ConcurrencyTag>(points.size(), [&](std::size_t i) {
       points[i] = frame.to_local(points[i]);
@@ -164,7 +179,7 @@ private:
     is_sampled = site_of_sample.size() < sites.size();
     Sample_links links;
     if (is_sampled) {
-      Sample_regions regions = grow_regions<ConcurrencyTag>(sites, graph, site_of_sample);
+      Sample_regions regions = grow_regions(sites, graph, site_of_sample);
       network.surface = sample_graph(sites, graph, site_of_sample, regions, weight_unit);
       progress(0.8);
       const bool is_text = options.sample_search == Sample_search::breadth_first_hops;
@@ -184,7 +199,7 @@ private:
     } else {
       static_cast<neighborhood::Proximity_graph&>(network.surface) = std::move(graph);
       sample_of_site = site_of_sample;
-      set_edge_weights<ConcurrencyTag>(sites, network.surface, [](std::size_t) { return 1.0; });
+      set_edge_weights<ConcurrencyTag>(sites, network.surface);
     }
     network.rest.resize(site_of_sample.size());
     for (std::size_t s = 0; s < site_of_sample.size(); ++s)

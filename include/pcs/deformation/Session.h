@@ -297,10 +297,11 @@ public:
       point = m_body.frame.to_world(t(local));
       normal = t.rotation() * normal;
     } else if (h == free_node) {
-      const Affine_map map = m_carrier->map_at(local, site, m_maps);
+      const Affine_map map =
+          m_body.is_sampled ? m_carrier->map_at(local, site, m_maps) : m_maps[site];
       Eigen::Matrix3d a = Eigen::Map<const Row_major>(map.a);
       Vec3 moved = a * local + Eigen::Map<const Vec3>(map.t), turned = turn_normal(a, normal);
-      if (!m_local_transforms.empty())
+      if (m_body.is_sampled && !m_local_transforms.empty())
         fade(site, local, normal, moved, turned, a);
       point = m_body.frame.to_world(moved);
       normal = turned;

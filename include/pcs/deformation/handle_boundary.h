@@ -21,7 +21,7 @@
 namespace pcs {
 namespace deformation {
 
-/// A boundary node is taken to lie at least this far from its sample, in units of the mean sample edge.
+/// A boundary node is taken to lie at least this far from its sample, in units of `typical_edge()`.
 constexpr double shortest_boundary_edge = 0.1;
 
 /// What `with_boundary_nodes()` reads. `handle_of_site(site)` is the handle that prescribes a site, or negative.
@@ -93,19 +93,17 @@ Elastic_network with_boundary_nodes(const Boundary_input<HandleOfSite, SitePosit
     double weight;
   };
   std::vector<Edge> edges;
-  double mean_edge = 0;
-  for (std::size_t s = 0; s < number_of_samples; ++s)
-    for (auto t = base.begin(s); t != base.end(s); ++t)
-      mean_edge += (in.network.rest[*t] - in.network.rest[s]).norm();
-  mean_edge /= std::max<double>(1, static_cast<double>(base.neighbor.size()));
+  const double edge = typical_edge(in.network.rest, base);
 
   const auto add_node = [&](std::size_t s, std::uint32_t site, Node_constraint h, double border) {
     const auto node = static_cast<std::uint32_t>(result.rest.size());
     result.rest.push_back(in.site_position(site));
     constraints.handle_of_node.push_back(h);
-    const double distance = std::max(shortest_boundary_edge * mean_edge,
-                                     (result.rest.back() - in.network.rest[s]).norm());
-    edges.push_back({static_cast<std::uint32_t>(s), node, in.weight_unit * border / distance});
+    const double distance =
+        std::max(shortest_boundary_edge * edge, (result.rest.back() - in.network.rest[s]).norm());
+    edges.push_back({static_cast<std::uint32_t>(s),
+                     node,
+                     representable_weight(in.weight_unit * border / distance)});
     edges.push_back({node, static_cast<std::uint32_t>(s), edges.back().weight});
   };
   const auto is_free = [&](std::size_t s) { return !constraints.is_prescribed(s); };

@@ -25,7 +25,7 @@ namespace pcs {
 namespace deformation {
 
 /*!
-  The links of `interior_links()`. Lengths are relative to the spacing `h`, the root mean square edge length.
+  The links of `interior_links()`. Lengths are relative to the spacing `h`, see `typical_edge()`.
 
   A link from a node along its inward normal to the opposite side, of length `d`, gets the weight
   `strength (h / d)^2`: then the energy of a relative compression does not depend on the sampling, like that of
@@ -121,10 +121,11 @@ public:
       const Vec3 at = origin + t * direction;
       if (!m_box.contains(at))
         return miss;
-      m_nearest(at, 1, found);
+      m_nearest(at, number_of_equals, found);
       const double d = std::sqrt(found[0].squared_distance);
-      if (d <= reach && (m_network.rest[found[0].index] - origin).norm() > first)
-        return found[0].index;
+      const std::uint32_t hit = lowest_of_nearest(found);
+      if (d <= reach && (m_network.rest[hit] - origin).norm() > first)
+        return hit;
       t += std::max(d - 0.5 * reach, 0.5 * reach);
     }
     return miss;
@@ -151,6 +152,19 @@ public:
   }
 
 private:
+  /// On grids a ray may pass between nodes that are equally near; rounding must not choose among them.
+  static constexpr std::size_t number_of_equals = 4;
+
+  static std::uint32_t
+  lowest_of_nearest(const std::vector<neighborhood::Nearest_neighbors::Neighbor>& found)
+  {
+    std::uint32_t lowest = found[0].index;
+    for (const auto& f : found)
+      if (f.squared_distance <= found[0].squared_distance * (1 + 1e-6))
+        lowest = std::min(lowest, f.index);
+    return lowest;
+  }
+
   const Elastic_network& m_network;
   neighborhood::Nearest_neighbors m_nearest;
   const Interior_link_options& m_options;
@@ -230,11 +244,7 @@ Weighted_graph interior_links(const Elastic_network& network,
   Weighted_graph none;
   if (n < 4 || graph.neighbor.empty())
     return none;
-  double squared = 0;
-  for (std::size_t i = 0; i < n; ++i)
-    for (auto j = graph.begin(i); j != graph.end(i); ++j)
-      squared += (network.rest[*j] - network.rest[i]).squaredNorm();
-  const double h = std::sqrt(squared / static_cast<double>(graph.neighbor.size()));
+  const double h = typical_edge(network.rest, graph);
   const std::vector<Vec3> normal = internal::oriented_normals<ConcurrencyTag>(network);
 
   if (!(h > 0))
