@@ -79,8 +79,9 @@ BOOST_AUTO_TEST_CASE(handles_are_numbered_from_0_and_numbers_are_not_used_again)
   s.session.remove_handle(2);
   BOOST_TEST(s.session.add_handle(std::vector<int>{300}) == 3u);
   BOOST_CHECK_EXCEPTION(s.session.remove_handle(2), Invalid_input, message_has("no handle 2"));
-  BOOST_CHECK_EXCEPTION(
-      s.session.set_transformation(2, bend()), Invalid_input, message_has("no handle 2"));
+  BOOST_CHECK_EXCEPTION(s.session.set_transformation(2, bend()),
+                        Invalid_input,
+                        message_has("no handle 2"));
   BOOST_CHECK_THROW(s.session.centroid(99), Invalid_input);
   BOOST_CHECK_THROW(s.session.transformation(99), Invalid_input);
 }
@@ -193,8 +194,9 @@ BOOST_AUTO_TEST_CASE(a_snapshot_brings_back_points_and_motions)
 BOOST_AUTO_TEST_CASE(a_snapshot_of_another_session_is_refused)
 {
   Bar_session a(150), b(151);
-  BOOST_CHECK_EXCEPTION(
-      a.session.restore(b.session.snapshot()), Invalid_input, message_has("restore"));
+  BOOST_CHECK_EXCEPTION(a.session.restore(b.session.snapshot()),
+                        Invalid_input,
+                        message_has("restore"));
 }
 
 BOOST_AUTO_TEST_CASE(an_accepted_shape_is_the_new_rest_shape)
@@ -233,8 +235,8 @@ BOOST_AUTO_TEST_CASE(points_of_a_removed_handle_are_free_again)
 {
   for (const int samples : both_resolutions) {
     Bar_session s(samples);
-    std::vector<std::size_t> middle = pcs_test::select(
-        s.edit.points, [](const Vec3& p) { return p.z() > 1.9 && p.z() < 2.1; });
+    std::vector<std::size_t> middle =
+        pcs_test::select(s.edit.points, [](const Vec3& p) { return p.z() > 1.9 && p.z() < 2.1; });
     const auto handle = s.session.add_handle(middle);
     s.session.set_translation(handle, Vec3(1, 0, 0));
     s.session.set_transformation(1, bend());
@@ -262,8 +264,7 @@ BOOST_AUTO_TEST_CASE(a_refused_motion_leaves_the_former_one)
   BOOST_CHECK_THROW(s.session.set_scale(1, 0), Invalid_input);
   s.session.set_scale(1, 1);
   s.session.deform();
-  BOOST_TEST(
-      pcs_test::largest_distance(s.points, Bar_session::fresh(150, bend())) < 1e-12);
+  BOOST_TEST(pcs_test::largest_distance(s.points, Bar_session::fresh(150, bend())) < 1e-12);
 }
 
 BOOST_AUTO_TEST_CASE(a_refused_handle_changes_nothing)
@@ -372,8 +373,9 @@ BOOST_AUTO_TEST_CASE(a_cancelled_construction_leaves_a_defined_object)
   pcs::Point_set_deformation<Points, decltype(np)> session(points, np);
   BOOST_TEST(session.number_of_samples() == 0u);
   BOOST_TEST(session.deform().status == Status::cancelled);
-  BOOST_CHECK_EXCEPTION(
-      session.add_handle(std::vector<int>{0}), Invalid_input, message_has("cancelled"));
+  BOOST_CHECK_EXCEPTION(session.add_handle(std::vector<int>{0}),
+                        Invalid_input,
+                        message_has("cancelled"));
   BOOST_CHECK_THROW(session.reset(), Invalid_input);
   BOOST_CHECK_THROW(session.snapshot(), Invalid_input);
   BOOST_CHECK_THROW(session.accept(), Invalid_input);
@@ -387,8 +389,8 @@ BOOST_AUTO_TEST_CASE(a_cancelled_deformation_can_be_repeated)
     const Bar_edit edit;
     Points points = edit.points;
     int calls_left = 1000;
-    const auto np =
-        pcs::parameters::number_of_samples(samples).callback([&](double) { return --calls_left > 0; });
+    const auto np = pcs::parameters::number_of_samples(samples).callback(
+        [&](double) { return --calls_left > 0; });
     pcs::Point_set_deformation<Points, decltype(np)> session(points, np);
     session.add_handle(edit.handles[0].indices);
     session.add_handle(edit.handles[1].indices);
@@ -538,8 +540,9 @@ BOOST_AUTO_TEST_CASE(other_points_follow_the_points_around_them)
       if (i % 2 == 0)
         at_members = std::max(at_members, (others[i] - points[i / 2]).norm());
       else if ((edit.points[i] - edit.points[i - 1]).norm() < 0.1)
-        jump = std::max(jump,
-                        ((others[i] - edit.points[i]) - (others[i - 1] - edit.points[i - 1])).norm());
+        jump =
+            std::max(jump,
+                     ((others[i] - edit.points[i]) - (others[i - 1] - edit.points[i - 1])).norm());
     BOOST_TEST_MESSAGE("carried points, " << samples << " samples: members off by " << at_members
                                           << ", neighbours differ by " << jump);
     BOOST_TEST(at_members < 1e-6);

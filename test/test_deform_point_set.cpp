@@ -136,8 +136,7 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(pairs_with_maps_of_every_kernel, K, Kernels)
           .number_of_samples(number_of_samples)
           .point_map(CGAL::First_of_pair_property_map<Element>()));
   BOOST_TEST(r.error([&](std::size_t i) { return elements[i].first; }) < tolerance<K>);
-  BOOST_TEST(r.normal_error([&](std::size_t i) { return elements[i].second; }) <
-             10 * tolerance<K>);
+  BOOST_TEST(r.normal_error([&](std::size_t i) { return elements[i].second; }) < 10 * tolerance<K>);
 }
 
 BOOST_AUTO_TEST_CASE(a_chain_of_cgal_serves_as_well)
@@ -147,12 +146,11 @@ BOOST_AUTO_TEST_CASE(a_chain_of_cgal_serves_as_well)
   std::vector<Element> elements;
   for (const auto& p : converted<Kernel::Point_3>(r.edit.points))
     elements.emplace_back(7, p);
-  pcs::deform_point_set(
-      elements,
-      r.fixed,
-      r.moved,
-      r.motion,
-      CGAL::parameters::point_map(CGAL::Nth_of_tuple_property_map<1, Element>()));
+  pcs::deform_point_set(elements,
+                        r.fixed,
+                        r.moved,
+                        r.motion,
+                        CGAL::parameters::point_map(CGAL::Nth_of_tuple_property_map<1, Element>()));
   // fewer points than the default number of samples: full resolution
   pcs_test::Options options;
   const auto expected = pcs_test::deform(r.edit.points, r.edit.handles, options);
@@ -181,9 +179,9 @@ BOOST_AUTO_TEST_CASE(a_point_set_3_with_normals)
                             .number_of_samples(number_of_samples));
   BOOST_TEST(r.error([&](std::size_t i) { return points.point(*(points.begin() + long(i))); }) <
              1e-12);
-  BOOST_TEST(
-      r.normal_error([&](std::size_t i) { return points.normal(*(points.begin() + long(i))); }) <
-      1e-12);
+  BOOST_TEST(r.normal_error([&](std::size_t i) {
+    return points.normal(*(points.begin() + long(i)));
+  }) < 1e-12);
 }
 
 BOOST_AUTO_TEST_CASE(archetypes_of_range_key_map_and_value)
@@ -204,12 +202,12 @@ BOOST_AUTO_TEST_CASE(archetypes_of_range_key_map_and_value)
   points = converted<Point>(r.edit.points);
   normals = converted<Point>(pcs_test::arbitrary_normals(points.size()));
   const auto n = static_cast<short>(points.size());
-  const auto report = pcs::deform_point_set(
-      range,
-      pcs_test::Index_range_archetype(0, 10),
-      pcs_test::Index_range_archetype(static_cast<short>(n - 10), n),
-      r.motion,
-      np.region_of_interest(pcs_test::Index_range_archetype(0, n)));
+  const auto report =
+      pcs::deform_point_set(range,
+                            pcs_test::Index_range_archetype(0, 10),
+                            pcs_test::Index_range_archetype(static_cast<short>(n - 10), n),
+                            r.motion,
+                            np.region_of_interest(pcs_test::Index_range_archetype(0, n)));
   BOOST_TEST(report.status == pcs::Status::converged);
 
   pcs::Point_set_deformation<pcs_test::Range_archetype, std::decay_t<decltype(np)>> session(range,

@@ -20,11 +20,10 @@ using Element = std::pair<Kernel::Point_3, Eigen::Matrix3d>;
 
 void compile(std::vector<Element>& points, const std::vector<int>& handle)
 {
-  pcs::deform_point_set(
-      points,
-      handle,
-      handle,
-      pcs::Similarity(),
-      pcs::parameters::point_map(CGAL::First_of_pair_property_map<Element>())
-          .tensor_map(CGAL::Second_of_pair_property_map<Element>()));
+  pcs::deform_point_set(points,
+                        handle,
+                        handle,
+                        pcs::Similarity(),
+                        pcs::parameters::point_map(CGAL::First_of_pair_property_map<Element>())
+                            .tensor_map(CGAL::Second_of_pair_property_map<Element>()));
 }

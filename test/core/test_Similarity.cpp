@@ -103,7 +103,7 @@ BOOST_AUTO_TEST_CASE(composition_is_that_of_the_matrices)
     BOOST_TEST((matrix(a * b) - matrix(a) * matrix(b)).norm() < 1e-13);
     BOOST_TEST((matrix((a * b) * c) - matrix(a * (b * c))).norm() < 1e-12);
     const Vec3 x = pcs_test::random_vector(random);
-    BOOST_TEST(((a * b)(x) - a(b(x))).norm() < 1e-13);
+    BOOST_TEST(((a * b)(x)-a(b(x))).norm() < 1e-13);
   }
 }
 
@@ -120,10 +120,10 @@ BOOST_AUTO_TEST_CASE(about_keeps_its_centre)
   std::mt19937 random(3);
   for (int repetition = 0; repetition < 50; ++repetition) {
     const Vec3 center = 100 * pcs_test::random_vector(random);
-    const auto s = pcs::Similarity::about(
-        pcs::Similarity::from_turn(5 * pcs_test::random_vector(random)) *
-            pcs::Similarity::from_scale(2),
-        center);
+    const auto s =
+        pcs::Similarity::about(pcs::Similarity::from_turn(5 * pcs_test::random_vector(random)) *
+                                   pcs::Similarity::from_scale(2),
+                               center);
     BOOST_TEST((s(center) - center).norm() < 1e-12 * (1 + center.norm()));
   }
   BOOST_TEST(is_exact_identity(pcs::Similarity::about(pcs::Similarity(), Vec3(5e6, 1e9, -3.3))));
@@ -131,8 +131,9 @@ BOOST_AUTO_TEST_CASE(about_keeps_its_centre)
 
 BOOST_AUTO_TEST_CASE(helpers_say_what_they_do)
 {
-  BOOST_TEST((pcs::rotation(Vec3(0, 0, 1), pi / 2, Vec3(1, 0, 0))(Vec3(2, 0, 0)) - Vec3(1, 1, 0))
-                 .norm() < 1e-15);
+  BOOST_TEST(
+      (pcs::rotation(Vec3(0, 0, 1), pi / 2, Vec3(1, 0, 0))(Vec3(2, 0, 0)) - Vec3(1, 1, 0)).norm() <
+      1e-15);
   BOOST_TEST((pcs::translation(Vec3(1, 2, 3))(Vec3(1, 1, 1)) == Vec3(2, 3, 4)));
   BOOST_TEST((pcs::scaling(3, Vec3(1, 1, 1))(Vec3(2, 1, 0)) - Vec3(4, 1, -2)).norm() < 1e-15);
 }
@@ -141,26 +142,31 @@ BOOST_AUTO_TEST_CASE(an_axis_of_any_length_serves)
 {
   const auto one = pcs::rotation(Vec3(1, 2, 3), 1.0, Vec3(0, 0, 0));
   for (const double length : {1e-200, 1e-3, 1e200})
-    BOOST_TEST((matrix(pcs::rotation(Vec3(length * Vec3(1, 2, 3)), 1.0, Vec3(0, 0, 0))) -
-                matrix(one))
-                   .norm() < 1e-14);
+    BOOST_TEST(
+        (matrix(pcs::rotation(Vec3(length * Vec3(1, 2, 3)), 1.0, Vec3(0, 0, 0))) - matrix(one))
+            .norm() < 1e-14);
 }
 
 BOOST_AUTO_TEST_CASE(bad_values_are_refused_with_the_value)
 {
   using pcs_test::message_has;
   const Vec3 o(0, 0, 0);
-  BOOST_CHECK_EXCEPTION(
-      pcs::rotation(o, 1.0, o), pcs::Invalid_input, message_has("rotation", "axis", "zero"));
-  BOOST_CHECK_EXCEPTION(
-      pcs::rotation(Vec3(not_a_number, 0, 0), 1.0, o), pcs::Invalid_input, message_has("axis"));
-  BOOST_CHECK_EXCEPTION(
-      pcs::rotation(Vec3(1, 0, 0), not_a_number, o), pcs::Invalid_input, message_has("angle"));
-  BOOST_CHECK_EXCEPTION(
-      pcs::rotation(Vec3(1, 0, 0), infinity, o), pcs::Invalid_input, message_has("angle"));
+  BOOST_CHECK_EXCEPTION(pcs::rotation(o, 1.0, o),
+                        pcs::Invalid_input,
+                        message_has("rotation", "axis", "zero"));
+  BOOST_CHECK_EXCEPTION(pcs::rotation(Vec3(not_a_number, 0, 0), 1.0, o),
+                        pcs::Invalid_input,
+                        message_has("axis"));
+  BOOST_CHECK_EXCEPTION(pcs::rotation(Vec3(1, 0, 0), not_a_number, o),
+                        pcs::Invalid_input,
+                        message_has("angle"));
+  BOOST_CHECK_EXCEPTION(pcs::rotation(Vec3(1, 0, 0), infinity, o),
+                        pcs::Invalid_input,
+                        message_has("angle"));
   for (const double factor : {0.0, -1.0, not_a_number, infinity})
-    BOOST_CHECK_EXCEPTION(
-        pcs::scaling(factor, o), pcs::Invalid_input, message_has("factor", "positive"));
+    BOOST_CHECK_EXCEPTION(pcs::scaling(factor, o),
+                          pcs::Invalid_input,
+                          message_has("factor", "positive"));
 }
 
 BOOST_AUTO_TEST_CASE(a_value_that_is_not_finite_never_goes_unnoticed)
@@ -205,13 +211,15 @@ BOOST_AUTO_TEST_CASE(matrices_of_anything_else_are_refused)
   const auto from = [](const Eigen::Matrix3d& a, const Vec3& t = Vec3::Zero()) {
     return pcs::Similarity::from_matrix(affine(a, t));
   };
-  Eigen::Matrix3d reflection = Vec3(1, 1, -1).asDiagonal(), stretch = Vec3(1, 1, 1.001).asDiagonal(),
-                  shear = Eigen::Matrix3d::Identity(), bad = shear;
+  Eigen::Matrix3d reflection = Vec3(1, 1, -1).asDiagonal(),
+                  stretch = Vec3(1, 1, 1.001).asDiagonal(), shear = Eigen::Matrix3d::Identity(),
+                  bad = shear;
   shear(0, 1) = 1e-3;
   bad(2, 2) = not_a_number;
   BOOST_CHECK_EXCEPTION(from(reflection), pcs::Invalid_input, message_has("determinant"));
-  BOOST_CHECK_EXCEPTION(
-      from(Eigen::Matrix3d::Zero()), pcs::Invalid_input, message_has("determinant"));
+  BOOST_CHECK_EXCEPTION(from(Eigen::Matrix3d::Zero()),
+                        pcs::Invalid_input,
+                        message_has("determinant"));
   BOOST_CHECK_EXCEPTION(from(stretch), pcs::Invalid_input, message_has("scale"));
   BOOST_CHECK_EXCEPTION(from(shear), pcs::Invalid_input, message_has("shear"));
   BOOST_CHECK_EXCEPTION(from(bad), pcs::Invalid_input, message_has("not finite"));
@@ -244,9 +252,8 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(transformations_of_cgal_are_accepted, Kernel, Kern
 
 BOOST_AUTO_TEST_CASE_TEMPLATE(points_and_vectors_of_cgal_serve_as_centre_and_axis, Kernel, Kernels)
 {
-  const auto s = pcs::rotation(typename Kernel::Vector_3(0, 0, 1),
-                               pi / 2,
-                               typename Kernel::Point_3(1, 0, 0));
+  const auto s =
+      pcs::rotation(typename Kernel::Vector_3(0, 0, 1), pi / 2, typename Kernel::Point_3(1, 0, 0));
   BOOST_TEST((s(Vec3(2, 0, 0)) - Vec3(1, 1, 0)).norm() < 1e-15);
   static_assert(!pcs::is_similarity_like_v<int>);
   static_assert(!pcs::is_similarity_like_v<typename Kernel::Point_3>);

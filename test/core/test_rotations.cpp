@@ -177,11 +177,11 @@ BOOST_AUTO_TEST_CASE(every_bundle_gives_a_rotation)
     for (int iterations = 0; iterations < 4; ++iterations)
       BOOST_TEST(is_rotation(pcs::improve_rotation(m, Quaternion::Identity(), iterations)));
   };
-  check(-Eigen::Matrix3d::Identity());                    // turned inside out
-  check(Vec3(1, -1, -1).asDiagonal());                    // half a turn: no torque
-  check(Vec3(1, 1, -1).asDiagonal());                     // a reflection
-  check(Vec3(1, 0, 0) * Vec3(0, 1, 0).transpose());       // at right angles: no stiffness
-  check(1e-300 * Eigen::Matrix3d::Random().eval());       // next to nothing
+  check(-Eigen::Matrix3d::Identity());              // turned inside out
+  check(Vec3(1, -1, -1).asDiagonal());              // half a turn: no torque
+  check(Vec3(1, 1, -1).asDiagonal());               // a reflection
+  check(Vec3(1, 0, 0) * Vec3(0, 1, 0).transpose()); // at right angles: no stiffness
+  check(1e-300 * Eigen::Matrix3d::Random().eval()); // next to nothing
   check(Vec3(1, 1e-160, 1e-300).asDiagonal());
   for (int repetition = 0; repetition < 1000; ++repetition) {
     const Vec3 a = pcs_test::random_vector(random), b = pcs_test::random_vector(random);

@@ -53,8 +53,7 @@ double largest_error(const Cholesky& factor, const Eigen::MatrixXd& a)
   factor.solve(b, work);
   double error = 0;
   for (Eigen::Index i = 0; i < n; ++i)
-    error = std::max(error,
-                     (b[static_cast<std::size_t>(i)].transpose() - expected.row(i)).norm());
+    error = std::max(error, (b[static_cast<std::size_t>(i)].transpose() - expected.row(i)).norm());
   return error;
 }
 

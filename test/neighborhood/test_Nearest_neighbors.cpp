@@ -39,8 +39,7 @@ BOOST_AUTO_TEST_CASE(they_are_the_nearest_and_come_in_order)
       nearest(query, k, found);
       BOOST_REQUIRE(found.size() == k);
       for (std::size_t b = 0; b < k; ++b) {
-        BOOST_TEST(found[b].squared_distance == expected[b],
-                   boost::test_tools::tolerance(1e-13));
+        BOOST_TEST(found[b].squared_distance == expected[b], boost::test_tools::tolerance(1e-13));
         BOOST_TEST(found[b].squared_distance == (points[found[b].index] - query).squaredNorm(),
                    boost::test_tools::tolerance(1e-13));
       }

@@ -51,7 +51,8 @@ void check(const Points& points)
   const auto shuffle = pcs_test::random_permutation(points.size(), 5);
   const Points shuffled = pcs_test::permuted(points, shuffle);
   const auto order_of_shuffled = pcs::neighborhood::spatial_order<Any_tag>(shuffled);
-  BOOST_TEST((pcs_test::permuted(shuffled, order_of_shuffled) == pcs_test::permuted(points, order)));
+  BOOST_TEST(
+      (pcs_test::permuted(shuffled, order_of_shuffled) == pcs_test::permuted(points, order)));
 }
 
 } // namespace

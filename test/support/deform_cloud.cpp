@@ -17,8 +17,7 @@ using Element = std::pair<Vec3, Vec3>;
 using Elements = std::vector<Element>;
 
 template <class Tag, class NamedParameters>
-pcs::Deformation_report
-run(Elements& elements, const Handles& handles, const NamedParameters& np)
+pcs::Deformation_report run(Elements& elements, const Handles& handles, const NamedParameters& np)
 {
   return pcs::deform_point_set<Tag>(elements, handles, np);
 }
@@ -29,9 +28,8 @@ pcs::Deformation_report dispatch(Elements& elements,
                                  const Options& options,
                                  const NamedParameters& np)
 {
-  return options.is_sequential
-             ? run<CGAL::Sequential_tag>(elements, handles, np)
-             : run<CGAL::Parallel_if_available_tag>(elements, handles, np);
+  return options.is_sequential ? run<CGAL::Sequential_tag>(elements, handles, np)
+                               : run<CGAL::Parallel_if_available_tag>(elements, handles, np);
 }
 
 } // namespace
@@ -45,10 +43,8 @@ Points arbitrary_normals(std::size_t n)
   return normals;
 }
 
-Deformed deform(const Points& points,
-                const Handles& handles,
-                const Options& options,
-                const Points& normals)
+Deformed
+deform(const Points& points, const Handles& handles, const Options& options, const Points& normals)
 {
   const Points rest = normals.empty() ? arbitrary_normals(points.size()) : normals;
   Elements elements;
@@ -76,13 +72,12 @@ Deformed deform(const Points& points,
     }
   };
   try {
-    result.report =
-        options.region_of_interest
-            ? dispatch(elements,
-                       handles,
-                       options,
-                       np.region_of_interest(std::cref(*options.region_of_interest)))
-            : dispatch(elements, handles, options, np);
+    result.report = options.region_of_interest
+                        ? dispatch(elements,
+                                   handles,
+                                   options,
+                                   np.region_of_interest(std::cref(*options.region_of_interest)))
+                        : dispatch(elements, handles, options, np);
   } catch (...) {
     // The promise that nothing was changed is checked here, once for all tests of errors.
     collect();
@@ -92,8 +87,7 @@ Deformed deform(const Points& points,
       for (int c = 0; c < 3; ++c) {
         const auto differ = [](double a, double b) { return !(a == b || (a != a && b != b)); };
         if (differ(result.points[i][c], points[i][c]) || differ(result.normals[i][c], rest[i][c]))
-          throw std::logic_error("deform_point_set() threw and changed point " +
-                                 std::to_string(i));
+          throw std::logic_error("deform_point_set() threw and changed point " + std::to_string(i));
       }
     throw;
   }

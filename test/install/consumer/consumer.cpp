@@ -26,7 +26,10 @@ int main()
       points.emplace_back(x, y, 0);
     }
   const auto report = pcs::deform_point_set(
-      points, fixed, moved, pcs::rotation(Kernel::Vector_3(0, -1, 0), 0.5, Kernel::Point_3(15, 5, 0)));
+      points,
+      fixed,
+      moved,
+      pcs::rotation(Kernel::Vector_3(0, -1, 0), 0.5, Kernel::Point_3(15, 5, 0)));
   std::cout << report << '\n';
   const double height = 14 * std::sin(0.5); // of the end at x = 29
   return std::abs(points[fixed.front()].z()) < 1e-9 &&

@@ -1,3 +1,4 @@
 // Broken: the two headers that include everything.
 #include <CGAL/basic.h>
+
 #include <tbb/tbb.h>

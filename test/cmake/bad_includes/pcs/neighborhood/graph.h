@@ -1,3 +1,4 @@
 // Broken: its sibling; a CGAL package under the GPL.
-#include <CGAL/Search_traits_3.h>
 #include <pcs/linear_algebra/laplacian.h>
+
+#include <CGAL/Search_traits_3.h>
