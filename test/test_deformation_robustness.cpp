@@ -4,6 +4,7 @@
 
 #include <support/deform_cloud.h>
 #include <support/exceptions.h>
+#include <support/known_problem.h>
 #include <support/random_edits.h>
 
 #include <boost/test/unit_test.hpp>
@@ -121,7 +122,8 @@ BOOST_AUTO_TEST_CASE(coplanar_points_are_deformed)
   check_at_all_resolutions(points, at_both_ends(points, some_motion()));
 }
 
-BOOST_AUTO_TEST_CASE(geometric_sequences_are_deformed)
+BOOST_AUTO_TEST_CASE(geometric_sequences_are_deformed,
+                     *boost::unit_test::precondition(pcs_test::known_problem))
 {
   Points points;
   for (int i = 0; i < 300; ++i)
@@ -160,7 +162,8 @@ BOOST_AUTO_TEST_CASE(forty_thousand_zeros_do_no_harm)
   }
 }
 
-BOOST_AUTO_TEST_CASE(a_far_outlier_does_not_spoil_the_rest)
+BOOST_AUTO_TEST_CASE(a_far_outlier_does_not_spoil_the_rest,
+                     *boost::unit_test::precondition(pcs_test::known_problem))
 {
   const Bar_edit edit;
   for (const long long samples : {150, 1000000}) {
@@ -603,7 +606,8 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(deformation_random)
 
-BOOST_AUTO_TEST_CASE(random_edits_have_defined_results)
+BOOST_AUTO_TEST_CASE(random_edits_have_defined_results,
+                     *boost::unit_test::precondition(pcs_test::known_problem))
 {
   for (unsigned seed = 1; seed <= 1200; ++seed) {
     const std::string fault = pcs_test::fault_of(pcs_test::random_edit(seed));
@@ -611,7 +615,8 @@ BOOST_AUTO_TEST_CASE(random_edits_have_defined_results)
   }
 }
 
-BOOST_AUTO_TEST_CASE(a_soft_handle_holds_a_body_of_one_sample)
+BOOST_AUTO_TEST_CASE(a_soft_handle_holds_a_body_of_one_sample,
+                     *boost::unit_test::precondition(pcs_test::known_problem))
 {
   const Bar_edit edit;
   const auto shift = pcs::translation(Vec3(1, 2, 3));

@@ -4,6 +4,7 @@
 
 #include <pcs/deformation/Sample_regions.h>
 #include <pcs/deformation/octree_samples.h>
+#include <support/known_problem.h>
 #include <support/networks.h>
 
 #include <boost/test/unit_test.hpp>
@@ -167,7 +168,8 @@ BOOST_AUTO_TEST_CASE(weights_are_border_over_distance)
     }
 }
 
-BOOST_AUTO_TEST_CASE(parallel_sheets_are_not_linked)
+BOOST_AUTO_TEST_CASE(parallel_sheets_are_not_linked,
+                     *boost::unit_test::precondition(pcs_test::known_problem))
 {
   for (const double gap : {1.5, 5.0}) {
     const Sampled separate(pcs_test::sheets(40, 20, gap, false), 150);

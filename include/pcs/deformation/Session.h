@@ -589,8 +589,12 @@ private:
             return;
           }
           const bool is_rigid = m_solver.constraints().is_prescribed(s);
-          const Eigen::Matrix3d a =
-              is_rigid ? m_solver.frames()[s] : m_solver.deformation_gradient(s);
+          Eigen::Matrix3d a = m_solver.frames()[s];
+          if (!is_rigid) { // where squares of lengths underflow, the frame must do
+            const Eigen::Matrix3d gradient = m_solver.deformation_gradient(s);
+            if (gradient.allFinite())
+              a = gradient;
+          }
           // A prescribed map is the handle's own, to the last bit.
           const Vec3 t =
               is_rigid ? m_local_transforms[static_cast<std::size_t>(h)].translation()
