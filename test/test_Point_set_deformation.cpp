@@ -5,7 +5,6 @@
 #include <pcs/Point_set_deformation.h>
 #include <support/deform_cloud.h>
 #include <support/exceptions.h>
-#include <support/known_problem.h>
 
 #include <boost/test/unit_test.hpp>
 
@@ -292,8 +291,7 @@ BOOST_AUTO_TEST_CASE(factors_are_made_once_per_set_of_handles)
   BOOST_TEST(report.seconds.factorization == 0);
 }
 
-BOOST_AUTO_TEST_CASE(any_sequence_of_calls_ends_like_a_fresh_session,
-                     *boost::unit_test::precondition(pcs_test::known_problem))
+BOOST_AUTO_TEST_CASE(any_sequence_of_calls_ends_like_a_fresh_session)
 {
   struct Handle
   {

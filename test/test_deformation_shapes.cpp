@@ -4,7 +4,6 @@
 
 #include <support/deform_cloud.h>
 #include <support/deformation_cases.h>
-#include <support/known_problem.h>
 
 #include <boost/test/unit_test.hpp>
 
@@ -122,9 +121,7 @@ BOOST_AUTO_TEST_CASE(a_thousand_samples_come_near)
   BOOST_TEST(m.volume_ratio <= 1.1);
 }
 
-// Known: one outlier of this cloud does not follow.
-BOOST_AUTO_TEST_CASE(jitter_outliers_and_random_order_do_not_break_a_bend,
-                     *boost::unit_test::precondition(pcs_test::known_problem))
+BOOST_AUTO_TEST_CASE(jitter_outliers_and_random_order_do_not_break_a_bend)
 {
   auto c = pcs_test::bar_bend_120();
   const double h = 0.05;

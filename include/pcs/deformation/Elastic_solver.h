@@ -97,7 +97,7 @@ public:
       const std::size_t i = m_rows.node_of_row[r];
       const double degree = node_degree(m_network->surface, i);
       if (m_constraints.is_soft(i))
-        soft[r] = degree * softness(i);
+        soft[r] = m_constraints.soft_weight(i, degree);
       smoothing[r] = soft[r] + m_fit_weight * degree;
     }
     const auto assemble = [&](std::vector<const Weighted_graph*> graphs,
@@ -176,7 +176,6 @@ private:
   {
     return static_cast<std::size_t>(m_constraints.handle_of_node[node]);
   }
-  double softness(std::size_t node) const { return m_constraints.softness_weight[handle(node)]; }
 
   void keep_state()
   {
@@ -344,7 +343,7 @@ private:
                 b += links.weight[e] * m_position[j];
             }
           if (m_constraints.is_soft(i))
-            b += softness(i) * degree * (*m_transforms)[handle(i)](rest[i]);
+            b += m_constraints.soft_weight(i, degree) * (*m_transforms)[handle(i)](rest[i]);
           m_rhs3[r] = b;
         },
         block);
@@ -458,16 +457,27 @@ public:
   /// Weight of the frame in `deformation_gradient()`, relative to the spread of the edges: it decides where the
   /// edges say nothing, across a surface.
   static constexpr double frame_share = 0.05;
+  /// Of shorter edges, relative to the coordinates, rounding leaves too little to measure a gradient. [-]
+  static constexpr double shortest_measured_edge = 1e-10;
 
   /// Best linear map of the edges at node `i` from rest to now, completed by the frame across the surface. [-]
   Eigen::Matrix3d deformation_gradient(std::size_t i) const
   {
     const auto& graph = m_network->surface;
+    double longest = 0, farthest = m_position[i].lpNorm<Eigen::Infinity>();
+    for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
+      const std::size_t j = graph.neighbor[e];
+      longest =
+          std::max(longest, (m_network->rest[j] - m_network->rest[i]).lpNorm<Eigen::Infinity>());
+      farthest = std::max(farthest, m_position[j].lpNorm<Eigen::Infinity>());
+    }
+    if (!(longest > shortest_measured_edge * farthest))
+      return m_frame[i];
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero(), spread = Eigen::Matrix3d::Zero();
     for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
       const std::size_t j = graph.neighbor[e];
-      const Vec3 edge = m_network->rest[j] - m_network->rest[i];
-      const Vec3 present = m_position[j] - m_position[i];
+      const Vec3 edge = (m_network->rest[j] - m_network->rest[i]) / longest;
+      const Vec3 present = (m_position[j] - m_position[i]) / longest;
       covariance += graph.weight[e] * present * edge.transpose();
       spread += graph.weight[e] * edge * edge.transpose();
     }

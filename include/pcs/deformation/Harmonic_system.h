@@ -40,6 +40,12 @@ struct Node_constraints
     const Node_constraint h = handle_of_node[node];
     return h >= 0 && softness_weight[static_cast<std::size_t>(h)] > 0;
   }
+  /// Weight of the spring of a soft node whose edge weights sum to `degree`; one without edges has its spring alone.
+  double soft_weight(std::size_t node, double degree) const
+  {
+    return softness_weight[static_cast<std::size_t>(handle_of_node[node])] *
+           (degree > 0 ? degree : 1);
+  }
 };
 
 /// Rows of the unknowns: nodes that are free or soft, in increasing order.
@@ -93,8 +99,7 @@ void solve_harmonic(const linear_algebra::Sparse_cholesky& factor,
       if (constraints.is_prescribed(graph.neighbor[e]))
         b += graph.weight[e] * value(graph.neighbor[e]);
     if (constraints.is_soft(i))
-      b += constraints.softness_weight[static_cast<std::size_t>(constraints.handle_of_node[i])] *
-           node_degree(graph, i) * value(i);
+      b += constraints.soft_weight(i, node_degree(graph, i)) * value(i);
     rhs[r] = b;
   }
   factor.solve(rhs, work);

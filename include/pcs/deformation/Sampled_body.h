@@ -18,6 +18,7 @@
 #include <pcs/internal/progress.h>
 #include <pcs/internal/text.h>
 #include <pcs/neighborhood/Proximity_graph.h>
+#include <pcs/neighborhood/detach_outliers.h>
 #include <pcs/neighborhood/drop_short_cuts.h>
 #include <pcs/neighborhood/spatial_order.h>
 
@@ -75,7 +76,8 @@ struct Sampled_body
   double weight_unit = 1;               ///< see `sample_graph()`
   Upsampling upsampling;                ///< over the places
   std::size_t number_of_short_cuts = 0; ///< links dropped between sheets
-  bool is_sampled = true;               ///< whether there are fewer samples than sites
+  std::vector<neighborhood::Outlier> outliers; ///< sites that hang on one other
+  bool is_sampled = true;                      ///< whether there are fewer samples than sites
 
   std::size_t number_of_points() const { return input_of_place.size(); }
   std::size_t number_of_sites() const { return component_of_site.size(); }
@@ -99,6 +101,7 @@ struct Sampled_body
     neighborhood::Proximity_graph graph =
         neighborhood::nearest_neighbor_graph<ConcurrencyTag>(sites, options.number_of_neighbors);
     number_of_short_cuts = neighborhood::drop_short_cuts<ConcurrencyTag>(sites, graph);
+    outliers = neighborhood::detach_outliers<ConcurrencyTag>(sites, graph);
     find_components(graph);
     seconds.neighbors = watch.lap();
     if (!progress(0.6))
@@ -171,11 +174,39 @@ private:
       ++component_size[component_of_site[site]];
   }
 
+  /// Outliers are no samples: nothing but themselves would follow them.
+  void choose_samples(const std::vector<Vec3>& sites)
+  {
+    if (outliers.empty() || options.number_of_samples >= sites.size()) {
+      site_of_sample = octree_samples(sites, options.number_of_samples);
+      return;
+    }
+    std::vector<Vec3> others;
+    std::vector<std::uint32_t> site_of_other;
+    auto next = outliers.begin();
+    for (std::size_t site = 0; site < sites.size(); ++site)
+      if (next != outliers.end() && next->point == site)
+        ++next;
+      else {
+        others.push_back(sites[site]);
+        site_of_other.push_back(static_cast<std::uint32_t>(site));
+      }
+    // Without the outliers, the octree is another one.
+    const auto order = neighborhood::spatial_order<ConcurrencyTag>(others);
+    std::vector<Vec3> ordered(others.size());
+    for (std::size_t i = 0; i < order.size(); ++i)
+      ordered[i] = others[order[i]];
+    site_of_sample = octree_samples(ordered, options.number_of_samples);
+    for (auto& s : site_of_sample)
+      s = site_of_other[order[s]];
+    std::sort(site_of_sample.begin(), site_of_sample.end());
+  }
+
   void sample(std::vector<Vec3> sites,
               neighborhood::Proximity_graph graph,
               pcs::internal::Progress& progress)
   {
-    site_of_sample = octree_samples(sites, options.number_of_samples);
+    choose_samples(sites);
     is_sampled = site_of_sample.size() < sites.size();
     Sample_links links;
     if (is_sampled) {

@@ -15,11 +15,17 @@
 #include <pcs/deformation/border_fade.h>
 #include <pcs/deformation/handle_boundary.h>
 
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -192,11 +198,15 @@ public:
     const double unit = m_body.frame.unit;
     r.initial_energy = result.initial_energy * unit * unit;
     r.energy = result.energy * unit * unit;
-    if (!m_solver.is_finite())
-      r.status = Status::numerical_failure;
-    else if (result.status != Status::cancelled) {
-      m_local_transforms = std::move(transforms);
+    if (result.status != Status::cancelled) {
+      m_local_transforms.swap(transforms);
       read_maps();
+      if (m_solver.is_finite() && all_finite(m_next_maps))
+        m_maps.swap(m_next_maps);
+      else {
+        m_local_transforms.swap(transforms);
+        r.status = Status::numerical_failure;
+      }
     }
     r.seconds.solving = watch.lap();
     return r;
@@ -239,10 +249,13 @@ public:
           write_point(body.input_of_place[place], body.frame.to_world(p), normal, gradient);
         };
     const std::vector<char> is_written = moved_handles();
+    read_outlier_maps();
     const auto put_other = [&](std::size_t place) {
       const Node_constraint h = m_constraint_of_site[body.site_of_place[place]];
       if (h >= 0 && is_written[static_cast<std::size_t>(h)])
         put_rigid(place, static_cast<std::size_t>(h), put);
+      else if (h == outlier)
+        put_mapped(place, outlier_map(body.site_of_place[place]), put);
     };
     const auto put_blended =
         [&](std::size_t place, const Vec3& p, const Vec3& normal, const Eigen::Matrix3d& gradient) {
@@ -296,12 +309,13 @@ public:
         return;
       point = m_body.frame.to_world(t(local));
       normal = t.rotation() * normal;
-    } else if (h == free_node) {
-      const Affine_map map =
-          m_body.is_sampled ? m_carrier->map_at(local, site, m_maps) : m_maps[site];
+    } else if (h == free_node || h == outlier) {
+      const Affine_map map = h == outlier         ? outlier_map(site)
+                             : !m_body.is_sampled ? m_maps[site]
+                                                  : m_carrier->map_at(local, site, m_maps);
       Eigen::Matrix3d a = Eigen::Map<const Row_major>(map.a);
       Vec3 moved = a * local + Eigen::Map<const Vec3>(map.t), turned = turn_normal(a, normal);
-      if (m_body.is_sampled && !m_local_transforms.empty())
+      if (m_body.is_sampled && h != outlier && !m_local_transforms.empty())
         fade(site, local, normal, moved, turned, a);
       point = m_body.frame.to_world(moved);
       normal = turned;
@@ -311,6 +325,7 @@ public:
   /// Builds what `carry()` needs, unless it is there. O(n log n).
   void prepare_carrying()
   {
+    read_outlier_maps();
     if (m_carrier)
       return;
     std::vector<Vec3> sites(m_body.number_of_sites());
@@ -366,6 +381,8 @@ public:
 private:
   using Row_major = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
   static constexpr Node_constraint outside = -3;
+  static constexpr Node_constraint outlier =
+      -4; ///< of a site: follows its host as if they were one rigid body
   /// Scale and distance [extents] beyond which double precision keeps nothing of the shape.
   static constexpr double largest_motion = 1e12;
 
@@ -462,7 +479,7 @@ private:
 
     auto& of_sample = constraints.handle_of_node;
     of_sample.assign(m_maps.size(), free_node);
-    std::vector<char> has_sample(m_transforms.size(), 0);
+    std::set<std::pair<Node_constraint, std::uint32_t>> has_sample; // handle and component
     for (std::size_t s = 0; s < of_sample.size(); ++s) {
       const std::size_t site = body.site_of_sample[s];
       const Node_constraint h = m_handle_of_site[site];
@@ -472,15 +489,15 @@ private:
         of_sample[s] = outside_handle;
       else if (h >= 0) {
         of_sample[s] = h;
-        has_sample[static_cast<std::size_t>(h)] = 1;
+        has_sample.emplace(h, body.component_of_site[site]);
       }
     }
     // A soft handle between the samples draws those in whose regions its points lie; an exact one has nodes on its
     // border.
     for (std::size_t site = 0; site < body.number_of_sites(); ++site) {
       const Node_constraint h = m_handle_of_site[site];
-      if (!is_soft(h) || has_sample[static_cast<std::size_t>(h)] ||
-          body.sample_of_site[site] == no_sample)
+      if (!is_soft(h) || body.sample_of_site[site] == no_sample ||
+          has_sample.count({h, body.component_of_site[site]}) > 0)
         continue;
       Node_constraint& sample = of_sample[body.sample_of_site[site]];
       if (sample == free_node)
@@ -522,6 +539,10 @@ private:
         h = free_node;
       m_constraint_of_site[site] = h;
     }
+    if (body.is_sampled)
+      for (const neighborhood::Outlier& o : body.outliers)
+        if (m_constraint_of_site[o.point] == free_node)
+          m_constraint_of_site[o.point] = outlier;
     for (std::size_t c = 0; c < is_reached.size(); ++c)
       m_was_reached[c] = m_was_reached[c] || is_reached[c] ? 1 : 0;
     // Eight places share a byte, as eight points share a block of the upsampling.
@@ -532,14 +553,51 @@ private:
             static_cast<std::uint8_t>(m_is_blended[place / lanes] | 1u << place % lanes);
   }
 
+  /// The similarity nearest to the map of the sample that an outlier hangs on: far away, a stretch would be a throw.
+  void read_outlier_maps()
+  {
+    if (!m_body.is_sampled)
+      return;
+    m_outlier_maps.resize(m_body.outliers.size());
+    pcs::internal::for_each_index<ConcurrencyTag>(m_outlier_maps.size(), [&](std::size_t o) {
+      const std::size_t s = m_body.sample_of_site[m_body.outliers[o].point];
+      if (s == no_sample)
+        return;
+      const Affine_map& map = m_maps[s];
+      const Eigen::Matrix3d a = Eigen::Map<const Row_major>(map.a);
+      const Vec3 center = m_body.network.rest[s];
+      const Eigen::JacobiSVD<Eigen::Matrix3d> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
+      Eigen::Matrix3d u = svd.matrixU();
+      if (u.determinant() * svd.matrixV().determinant() < 0)
+        u.col(2) *= -1;
+      const double scale = std::cbrt(svd.singularValues().prod());
+      const Eigen::Matrix3d similarity = scale * u * svd.matrixV().transpose();
+      Eigen::Map<Row_major>(m_outlier_maps[o].a) = similarity;
+      Eigen::Map<Vec3>(m_outlier_maps[o].t) =
+          a * center + Eigen::Map<const Vec3>(map.t) - similarity * center;
+    });
+  }
+
+  const Affine_map& outlier_map(std::size_t site) const
+  {
+    const auto o =
+        std::lower_bound(m_body.outliers.begin(),
+                         m_body.outliers.end(),
+                         site,
+                         [](const neighborhood::Outlier& a, std::size_t s) { return a.point < s; });
+    return m_outlier_maps[static_cast<std::size_t>(o - m_body.outliers.begin())];
+  }
+
   /// Handles whose points are written: those that move, or did so the last time. Others keep their bits.
   std::vector<char> moved_handles()
   {
-    m_was_moved.resize(m_local_transforms.size(), 0);
+    // Points of a new handle may have been carried away before they became a handle.
+    m_was_moved.resize(m_local_transforms.size(), m_is_displaced ? 1 : 0);
     std::vector<char> is_written = m_was_moved;
     for (std::size_t h = 0; h < m_local_transforms.size(); ++h) {
       m_was_moved[h] = m_local_transforms[h].is_identity() ? 0 : 1;
       is_written[h] = is_written[h] || m_was_moved[h] ? 1 : 0;
+      m_is_displaced = m_is_displaced || m_was_moved[h];
     }
     return is_written;
   }
@@ -577,30 +635,36 @@ private:
 
   static Affine_map identity_map() { return {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}}; }
 
+  static bool all_finite(const std::vector<Affine_map>& maps)
+  {
+    return std::all_of(maps.begin(), maps.end(), [](const Affine_map& map) {
+      return Eigen::Map<const Row_major>(map.a).allFinite() &&
+             Eigen::Map<const Vec3>(map.t).allFinite();
+    });
+  }
+
   /// The samples' maps: the deformation gradient, which carries stretch as well, about the new position.
   void read_maps()
   {
+    m_next_maps.resize(m_maps.size());
     pcs::internal::for_each_index<ConcurrencyTag>(
         m_maps.size(),
         [&](std::size_t s) {
           const Node_constraint h = m_solver.constraints().handle_of_node[s];
           if (h == unreached_node) {
-            m_maps[s] = identity_map();
+            m_next_maps[s] = identity_map();
             return;
           }
           const bool is_rigid = m_solver.constraints().is_prescribed(s);
           Eigen::Matrix3d a = m_solver.frames()[s];
-          if (!is_rigid) { // where squares of lengths underflow, the frame must do
-            const Eigen::Matrix3d gradient = m_solver.deformation_gradient(s);
-            if (gradient.allFinite())
-              a = gradient;
-          }
+          if (!is_rigid)
+            a = m_solver.deformation_gradient(s);
           // A prescribed map is the handle's own, to the last bit.
           const Vec3 t =
               is_rigid ? m_local_transforms[static_cast<std::size_t>(h)].translation()
                        : Vec3(m_solver.positions()[s] - a * m_body.upsampling.sample_points()[s]);
-          Eigen::Map<Row_major>(m_maps[s].a) = a;
-          Eigen::Map<Vec3>(m_maps[s].t) = t;
+          Eigen::Map<Row_major>(m_next_maps[s].a) = a;
+          Eigen::Map<Vec3>(m_next_maps[s].t) = t;
         },
         512);
   }
@@ -691,10 +755,11 @@ private:
   std::vector<char> m_is_used, m_was_moved, m_was_reached;
   std::vector<Vec3> m_centroid;
   std::unique_ptr<Point_carrier> m_carrier;
-  std::vector<Affine_map> m_maps;
+  std::vector<Affine_map> m_maps, m_next_maps, m_outlier_maps;
   Deformation_report m_report;
   double m_stiffness = 1;
   bool m_has_outside = false, m_is_constrained = false, m_is_ready = false, m_was_reported = false;
+  bool m_is_displaced = false; ///< whether points were written elsewhere than at rest
 };
 
 } // namespace deformation

@@ -104,14 +104,22 @@ private:
     return true;
   }
 
-  bool is_narrow(const std::vector<Similarity>& transforms) const
+  /// Handles without nodes, removed ones for instance, have no say.
+  bool is_narrow(const std::vector<Similarity>& transforms)
   {
+    m_has_nodes.assign(transforms.size(), 0);
+    for (const auto h : m_constraints->handle_of_node)
+      if (h >= 0)
+        m_has_nodes[static_cast<std::size_t>(h)] = 1;
     double lowest = 1;
     for (std::size_t a = 0; a < transforms.size(); ++a) {
+      if (!m_has_nodes[a])
+        continue;
       if (transforms[a].total_angle() > 2 * static_cast<double>(EIGEN_PI))
         return false; // the double cover has lost count
       for (std::size_t b = 0; b < a; ++b)
-        lowest = std::min(lowest, m_lifted[a].dot(m_lifted[b]));
+        if (m_has_nodes[b])
+          lowest = std::min(lowest, m_lifted[a].dot(m_lifted[b]));
     }
     return lowest > std::cos(widest_lifted_angle);
   }
@@ -175,7 +183,7 @@ private:
       for (std::size_t e = m_graph->first[i]; e < m_graph->first[i + 1]; ++e)
         b += m_graph->weight[e] * rotation_log(rotation_at(m_graph->neighbor[e]) * inverse);
       if (m_constraints->is_soft(i))
-        b += m_constraints->softness_weight[handle(i)] * node_degree(*m_graph, i) *
+        b += m_constraints->soft_weight(i, node_degree(*m_graph, i)) *
              rotation_log(m_lifted[handle(i)] * inverse);
       m_rhs3[r] = b;
     }
@@ -191,6 +199,7 @@ private:
   const Node_constraints* m_constraints = nullptr;
   const Free_rows* m_rows = nullptr;
   std::vector<Quaternion> m_lifted;
+  std::vector<char> m_has_nodes; ///< per handle
   std::vector<Vec3> m_rhs3, m_work3, m_value3;
   std::vector<Vec4> m_rhs4, m_work4, m_value4;
 };

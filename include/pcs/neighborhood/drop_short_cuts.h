@@ -15,6 +15,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace pcs {
@@ -26,6 +28,9 @@ namespace neighborhood {
 constexpr double smallest_short_cut_sine = 0.5;
 /// A point keeps suspected links if fewer than this many others are left: it is an outlier, and follows what is near.
 constexpr std::size_t smallest_remaining_degree = 2;
+/// A part of at most this many points that only dropped links join to the rest is no sheet but a clump of outliers: it
+/// keeps the shortest of them. [count]
+constexpr std::size_t largest_clump = 12;
 /// Neighbourhoods are flat enough to have a normal if the smallest eigenvalue is below this share of the middle one,
 /// and wide enough if the middle one is above `smallest_width` of the largest.
 constexpr double largest_thickness = 0.7;
@@ -138,6 +143,85 @@ std::vector<Surface_normal> settled_normals(const Proximity_graph& graph,
   return settled;
 }
 
+/// Disjoint sets of points with their sizes.
+class Point_sets
+{
+public:
+  explicit Point_sets(std::size_t n) : m_parent(n), m_size(n, 1)
+  {
+    for (std::size_t i = 0; i < n; ++i)
+      m_parent[i] = static_cast<std::uint32_t>(i);
+  }
+
+  std::uint32_t find(std::uint32_t i)
+  {
+    while (m_parent[i] != i)
+      i = m_parent[i] = m_parent[m_parent[i]];
+    return i;
+  }
+
+  std::uint32_t size(std::uint32_t i) { return m_size[find(i)]; }
+
+  void join(std::uint32_t i, std::uint32_t j)
+  {
+    i = find(i);
+    j = find(j);
+    if (i == j)
+      return;
+    if (m_size[i] < m_size[j])
+      std::swap(i, j);
+    m_parent[j] = i;
+    m_size[i] += m_size[j];
+  }
+
+private:
+  std::vector<std::uint32_t> m_parent, m_size;
+};
+
+/// Takes back the shortest drops that would cut off `largest_clump` points or fewer.
+inline void keep_clumps(const std::vector<Vec3>& points,
+                        const Proximity_graph& graph,
+                        std::vector<char>& is_dropped)
+{
+  struct Drop
+  {
+    double squared_length;
+    std::uint32_t i, j;
+    bool operator<(const Drop& other) const
+    {
+      return std::tie(squared_length, i, j) < std::tie(other.squared_length, other.i, other.j);
+    }
+  };
+  std::vector<Drop> drops;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e)
+      if (is_dropped[e] && graph.neighbor[e] > i)
+        drops.push_back({(points[graph.neighbor[e]] - points[i]).squaredNorm(),
+                         static_cast<std::uint32_t>(i),
+                         graph.neighbor[e]});
+  if (drops.empty())
+    return;
+  Point_sets sets(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e)
+      if (!is_dropped[e])
+        sets.join(static_cast<std::uint32_t>(i), graph.neighbor[e]);
+  std::sort(drops.begin(), drops.end());
+  const auto keep = [&](std::uint32_t i, std::uint32_t j) {
+    const auto found = std::lower_bound(graph.neighbor.begin() + graph.first[i],
+                                        graph.neighbor.begin() + graph.first[i + 1],
+                                        j);
+    is_dropped[static_cast<std::size_t>(found - graph.neighbor.begin())] = 0;
+  };
+  for (const Drop& d : drops)
+    if (sets.find(d.i) != sets.find(d.j) &&
+        std::min(sets.size(d.i), sets.size(d.j)) <= largest_clump) {
+      sets.join(d.i, d.j);
+      keep(d.i, d.j);
+      keep(d.j, d.i);
+    }
+}
+
 } // namespace internal
 
 /*!
@@ -196,6 +280,7 @@ std::size_t drop_short_cuts(const std::vector<Vec3>& points, Proximity_graph& gr
                           : 0;
     }
   });
+  internal::keep_clumps(points, graph, is_dropped);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::size_t begin = graph.first[i], end = graph.first[i + 1];

@@ -1,0 +1,131 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Single points far from all others: found, and left with one link each.
+
+#ifndef PCS_NEIGHBORHOOD_DETACH_OUTLIERS_H
+#define PCS_NEIGHBORHOOD_DETACH_OUTLIERS_H
+
+#include <pcs/internal/parallel.h>
+#include <pcs/neighborhood/Proximity_graph.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace pcs {
+namespace neighborhood {
+
+/// A point is an outlier if its shortest link is longer than this many spacings of the points it is linked to. Six
+/// nearest neighbours of uniformly random points on a surface reach that with a probability below 1e-15.
+constexpr double smallest_outlier_gap = 3;
+
+/// A point far from all others, and the nearest one that is not.
+struct Outlier
+{
+  std::uint32_t point, host;
+};
+
+namespace internal {
+
+/// The value in the middle; `values` is reordered, not empty.
+inline double take_median(std::vector<double>& values)
+{
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+} // namespace internal
+
+/*!
+  Drops the links of every outlier but the shortest, so that it hangs on one point and pulls on nothing.
+
+  Outliers are judged by the spacings of their neighbours, so dense and sparse parts each have their own measure.
+  Links never leave a point without any. O(n k).
+  \return the outliers, increasing by point
+*/
+template <class ConcurrencyTag>
+std::vector<Outlier> detach_outliers(const std::vector<Eigen::Vector3d>& points,
+                                     Proximity_graph& graph)
+{
+  const std::size_t n = points.size();
+  std::vector<double> shortest(n, 0), spacing(n, 0);
+  pcs::internal::for_each_block<ConcurrencyTag>(n, 512, [&](std::size_t begin, std::size_t end) {
+    std::vector<double> lengths;
+    for (std::size_t i = begin; i < end; ++i) {
+      lengths.clear();
+      for (auto j = graph.begin(i); j != graph.end(i); ++j)
+        lengths.push_back((points[*j] - points[i]).norm());
+      if (lengths.empty())
+        continue;
+      shortest[i] = *std::min_element(lengths.begin(), lengths.end());
+      spacing[i] = internal::take_median(lengths);
+    }
+  });
+  std::vector<char> is_outlier(n, 0);
+  pcs::internal::for_each_block<ConcurrencyTag>(n, 512, [&](std::size_t begin, std::size_t end) {
+    std::vector<double> spacings;
+    for (std::size_t i = begin; i < end; ++i) {
+      spacings.clear();
+      for (auto j = graph.begin(i); j != graph.end(i); ++j)
+        spacings.push_back(spacing[*j]);
+      is_outlier[i] =
+          !spacings.empty() && shortest[i] > smallest_outlier_gap * internal::take_median(spacings)
+              ? 1
+              : 0;
+    }
+  });
+
+  std::vector<Outlier> outliers;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!is_outlier[i])
+      continue;
+    double nearest = std::numeric_limits<double>::infinity();
+    Outlier outlier{static_cast<std::uint32_t>(i), 0};
+    for (auto j = graph.begin(i); j != graph.end(i); ++j) {
+      const double d = (points[*j] - points[i]).squaredNorm();
+      const bool is_left_alone = std::all_of(graph.begin(*j), graph.end(*j), [&](std::uint32_t k) {
+        return is_outlier[k] != 0;
+      });
+      if (!is_outlier[*j] && !is_left_alone && d < nearest) {
+        nearest = d;
+        outlier.host = *j;
+      }
+    }
+    if (nearest < std::numeric_limits<double>::infinity())
+      outliers.push_back(outlier);
+  }
+  if (outliers.empty())
+    return outliers;
+
+  std::fill(is_outlier.begin(), is_outlier.end(), 0);
+  std::vector<std::uint32_t> host(n, 0);
+  for (const Outlier& o : outliers) {
+    is_outlier[o.point] = 1;
+    host[o.point] = o.host;
+  }
+  const auto is_kept = [&](std::size_t i, std::uint32_t j) {
+    return (!is_outlier[i] || host[i] == j) && (!is_outlier[j] || host[j] == i);
+  };
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t begin = graph.first[i], end = graph.first[i + 1];
+    graph.first[i] = static_cast<std::uint32_t>(kept);
+    for (std::size_t e = begin; e < end; ++e)
+      if (is_kept(i, graph.neighbor[e]))
+        graph.neighbor[kept++] = graph.neighbor[e];
+  }
+  graph.first[n] = static_cast<std::uint32_t>(kept);
+  graph.neighbor.resize(kept);
+  return outliers;
+}
+
+} // namespace neighborhood
+} // namespace pcs
+
+#endif // PCS_NEIGHBORHOOD_DETACH_OUTLIERS_H
