@@ -747,7 +747,8 @@ private:
           [this](std::size_t i,
                  const deformation::Vec3& p,
                  const deformation::Vec3& normal,
-                 const Eigen::Matrix3d& gradient) { write(i, p, normal, gradient); });
+                 const Eigen::Matrix3d& gradient)
+              PCS_LAMBDA_INLINE { write(i, p, normal, gradient); });
   }
 
   void write(std::size_t i,

@@ -8,6 +8,7 @@
 #include <pcs/core/Deformation_report.h>
 #include <pcs/core/Similarity.h>
 #include <pcs/core/errors.h>
+#include <pcs/core/rotations.h>
 #include <pcs/deformation/Coarse_level.h>
 #include <pcs/deformation/Elastic_solver.h>
 #include <pcs/deformation/Point_carrier.h>
@@ -17,7 +18,6 @@
 
 #include <Eigen/Core>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
@@ -257,30 +257,23 @@ public:
       else if (h == outlier)
         put_mapped(place, outlier_map(body.site_of_place[place]), put);
     };
+    // In the caller's coordinates already.
     const auto put_blended =
-        [&](std::size_t place, const Vec3& p, const Vec3& normal, const Eigen::Matrix3d& gradient) {
-          if (!(m_is_faded[place / lanes] >> place % lanes & 1) || m_local_transforms.empty()) {
-            put(place, p, normal, gradient);
-            return;
-          }
-          Vec3 faded = p, faded_normal = normal;
-          Eigen::Matrix3d faded_gradient = gradient;
-          const Vec3 rest_normal = body.upsampling.has_normals()
-                                       ? body.upsampling.rest_normal(place)
-                                       : Vec3(Vec3::Zero());
-          fade(body.site_of_place[place],
-               body.upsampling.rest(place),
-               rest_normal,
-               faded,
-               faded_normal,
-               faded_gradient);
-          put(place, faded, faded_normal, faded_gradient);
-        };
+        [&](std::size_t place, const Vec3& p, const Vec3& normal, const Eigen::Matrix3d& gradient)
+            PCS_LAMBDA_INLINE { write_point(body.input_of_place[place], p, normal, gradient); };
+    const bool is_faded = body.is_sampled && !m_place_fades.empty() && !m_local_transforms.empty();
+    const auto fade_block = [&](std::size_t block, Block_output& out) {
+      if (is_faded && m_first_fade[block] != m_first_fade[block + 1])
+        fade<HasGradients>(block, out);
+    };
     if (body.is_sampled)
-      m_body.upsampling.template apply<ConcurrencyTag, HasGradients>(m_maps,
-                                                                     m_is_blended,
-                                                                     put_blended,
-                                                                     put_other);
+      m_body.upsampling.template apply<ConcurrencyTag, HasGradients>(
+          m_maps,
+          {body.frame.unit, body.frame.origin},
+          m_is_blended,
+          fade_block,
+          put_blended,
+          put_other);
     else
       pcs::internal::for_each_index<ConcurrencyTag>(body.number_of_points(),
                                                     [&](std::size_t place) {
@@ -380,6 +373,12 @@ public:
 
 private:
   using Row_major = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  struct Place_fade
+  {
+    std::uint32_t place;
+    Node_constraint handle;
+    double weight;
+  };
   static constexpr Node_constraint outside = -3;
   static constexpr Node_constraint outlier =
       -4; ///< of a site: follows its host as if they were one rigid body
@@ -566,16 +565,23 @@ private:
       const Affine_map& map = m_maps[s];
       const Eigen::Matrix3d a = Eigen::Map<const Row_major>(map.a);
       const Vec3 center = m_body.network.rest[s];
-      const Eigen::JacobiSVD<Eigen::Matrix3d> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
-      Eigen::Matrix3d u = svd.matrixU();
-      if (u.determinant() * svd.matrixV().determinant() < 0)
-        u.col(2) *= -1;
-      const double scale = std::cbrt(svd.singularValues().prod());
-      const Eigen::Matrix3d similarity = scale * u * svd.matrixV().transpose();
+      const Eigen::Matrix3d similarity = std::cbrt(std::abs(a.determinant())) * rotation_of(a);
       Eigen::Map<Row_major>(m_outlier_maps[o].a) = similarity;
       Eigen::Map<Vec3>(m_outlier_maps[o].t) =
           a * center + Eigen::Map<const Vec3>(map.t) - similarity * center;
     });
+  }
+
+  /// The rotation nearest to `a`; the identity if `a` is not invertible.
+  static Eigen::Matrix3d rotation_of(const Eigen::Matrix3d& a)
+  {
+    const Vec3 x = a.col(0).normalized(), z = a.col(0).cross(a.col(1)).normalized();
+    Eigen::Matrix3d start;
+    start << x, z.cross(x), z;
+    if (!(a.determinant() > 0) || !start.allFinite())
+      return Eigen::Matrix3d::Identity();
+    constexpr int number_of_steps = 20; // it stops by itself after a few
+    return improve_rotation(a, Quaternion(start), number_of_steps).toRotationMatrix();
   }
 
   const Affine_map& outlier_map(std::size_t site) const
@@ -708,13 +714,48 @@ private:
         spacing,
         [&](std::size_t site) { return exact_handle(site); },
         [&](std::size_t site) { return rest_of_site(site); });
-    m_is_faded.assign(m_body.upsampling.number_of_blocks(), 0);
+    m_place_fades.clear();
+    m_first_fade.assign(m_body.upsampling.number_of_blocks() + 1, 0);
     for (const Border_fade& f : m_fades)
       for (std::size_t place = first_place(f.site);
            place < m_body.number_of_points() && m_body.site_of_place[place] == f.site;
-           ++place)
-        m_is_faded[place / lanes] =
-            static_cast<std::uint8_t>(m_is_faded[place / lanes] | 1u << place % lanes);
+           ++place) {
+        m_place_fades.push_back({static_cast<std::uint32_t>(place), f.handle, f.weight});
+        ++m_first_fade[place / lanes + 1];
+      }
+    for (std::size_t block = 0; block + 1 < m_first_fade.size(); ++block)
+      m_first_fade[block + 1] += m_first_fade[block];
+  }
+
+  /// The same as below for the faded points of a block, whose positions are in the caller's coordinates.
+  template <bool HasGradients>
+  void fade(std::size_t block, Block_output& out) const
+  {
+    const auto& upsampling = m_body.upsampling;
+    for (std::size_t k = m_first_fade[block]; k < m_first_fade[block + 1]; ++k) {
+      const Place_fade& f = m_place_fades[k];
+      const std::size_t l = f.place % lanes;
+      const Similarity& t = m_local_transforms[static_cast<std::size_t>(f.handle)];
+      const Vec3 target = m_body.frame.to_world(t(upsampling.rest(f.place)));
+      for (int c = 0; c < 3; ++c)
+        out.position.value[c][l] += f.weight * (target[c] - out.position.value[c][l]);
+      if (upsampling.has_normals()) {
+        const Vec3 rest = upsampling.rest_normal(f.place), turned = t.rotation() * rest;
+        Vec3 mixed;
+        for (int c = 0; c < 3; ++c)
+          mixed[c] = out.normal.value[c][l] + f.weight * (turned[c] - out.normal.value[c][l]);
+        const double squared = mixed.squaredNorm();
+        if (squared > 0) {
+          const double scale = std::sqrt(rest.squaredNorm() / squared);
+          for (int c = 0; c < 3; ++c)
+            out.normal.value[c][l] = scale * mixed[c];
+        }
+      }
+      if constexpr (HasGradients)
+        for (int e = 0; e < 9; ++e)
+          out.gradient[e][l] +=
+              f.weight * (t.scale() * t.rotation()(e / 3, e % 3) - out.gradient[e][l]);
+    }
   }
 
   /// Draws what the samples say about a point towards the motion of the handle next to it.
@@ -748,8 +789,9 @@ private:
   std::vector<Node_constraint> m_handle_of_site; ///< as the caller said
   std::vector<Node_constraint> m_constraint_of_site; ///< as it is written
   std::vector<std::uint8_t> m_is_blended;            ///< one bit per place
-  std::vector<std::uint8_t> m_is_faded;              ///< one bit per place
   std::vector<Border_fade> m_fades;                  ///< increasing by site
+  std::vector<Place_fade> m_place_fades;             ///< the same by place
+  std::vector<std::uint32_t> m_first_fade; ///< of each block in `m_place_fades`, and the end
   std::vector<Similarity> m_transforms, m_local_transforms;
   std::vector<double> m_weight;
   std::vector<char> m_is_used, m_was_moved, m_was_reached;

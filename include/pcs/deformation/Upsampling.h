@@ -90,24 +90,48 @@ public:
   Vec3 rest(std::size_t i) const { return lane(m_rest, i); }
   Vec3 rest_normal(std::size_t i) const { return lane(m_normal, i); }
 
+  /// From the coordinates of the points to those that are written.
+  struct Output_frame
+  {
+    double unit = 1;
+    Vec3 origin = Vec3::Zero();
+  };
+
   /*!
-    Calls `write(i, position, normal, gradient)` for the points whose bit is set in `is_blended[i / 8]`, and `other(i)`
+    Calls `edit(block, out)` for blocks with a set bit, then `write(i, position, normal, gradient)` for the points whose bit is set in `is_blended[i / 8]`, and `other(i)`
     for all others, in blocks side by side. `normal` is zero without normals, `gradient` only set if `HasGradients`.
     Blocks without a set bit cost nothing.
   */
-  template <class ConcurrencyTag, bool HasGradients, class Write, class Other>
+  template <class ConcurrencyTag, bool HasGradients, class Edit, class Write, class Other>
   void apply(const std::vector<Affine_map>& maps,
+             const Output_frame& frame,
              const std::vector<std::uint8_t>& is_blended,
+             const Edit& edit,
              const Write& write,
              const Other& other)
   {
     update_pairs<ConcurrencyTag>(maps);
     if constexpr (HasGradients)
-      apply_blocks<ConcurrencyTag, Blend_outputs::gradients>(maps, is_blended, write, other);
+      apply_blocks<ConcurrencyTag, Blend_outputs::gradients>(maps,
+                                                             frame,
+                                                             is_blended,
+                                                             edit,
+                                                             write,
+                                                             other);
     else if (has_normals())
-      apply_blocks<ConcurrencyTag, Blend_outputs::normals>(maps, is_blended, write, other);
+      apply_blocks<ConcurrencyTag, Blend_outputs::normals>(maps,
+                                                           frame,
+                                                           is_blended,
+                                                           edit,
+                                                           write,
+                                                           other);
     else
-      apply_blocks<ConcurrencyTag, Blend_outputs::positions>(maps, is_blended, write, other);
+      apply_blocks<ConcurrencyTag, Blend_outputs::positions>(maps,
+                                                             frame,
+                                                             is_blended,
+                                                             edit,
+                                                             write,
+                                                             other);
   }
 
 private:
@@ -116,6 +140,7 @@ private:
     std::uint32_t sample;
     std::array<float, lanes> weight;
   };
+  static constexpr std::size_t blocks_in_flight = 4;
   struct Sample_pair
   {
     std::uint32_t base, sample;
@@ -183,9 +208,11 @@ private:
     });
   }
 
-  template <class ConcurrencyTag, Blend_outputs Outputs, class Write, class Other>
+  template <class ConcurrencyTag, Blend_outputs Outputs, class Edit, class Write, class Other>
   void apply_blocks(const std::vector<Affine_map>& maps,
+                    const Output_frame& frame,
                     const std::vector<std::uint8_t>& is_blended,
+                    const Edit& edit,
                     const Write& write,
                     const Other& other) const
   {
@@ -194,24 +221,40 @@ private:
         m_base.size(),
         256,
         [&](std::size_t begin, std::size_t end) {
-          Block_output out{};
-          Eigen::Matrix3d gradient = Eigen::Matrix3d::Identity();
-          for (std::size_t block = begin; block < end; ++block) {
-            const std::uint8_t mask = is_blended[block];
-            const std::size_t first = block * lanes;
-            const std::size_t count = std::min(lanes, m_size - first);
-            if (mask != 0)
-              blend(block_input(maps, block), out);
-            for (std::size_t l = 0; l < count; ++l)
-              if (mask >> l & 1) {
-                if constexpr (Outputs == Blend_outputs::gradients)
-                  for (int k = 0; k < 9; ++k)
-                    gradient(k / 3, k % 3) = out.gradient[k][l];
-                write(first + l, at(out.position, l), at(out.normal, l), gradient);
-              } else
-                other(first + l);
+          // A few blocks are blended, then written: stores that miss the caches do not hold up the arithmetic.
+          std::array<Block_output, blocks_in_flight> out{};
+          for (std::size_t start = begin; start < end; start += blocks_in_flight) {
+            const std::size_t stop = std::min(end, start + blocks_in_flight);
+            for (std::size_t block = start; block < stop; ++block)
+              if (is_blended[block] != 0)
+                blend(block_input(maps, frame, block), out[block - start]);
+            for (std::size_t block = start; block < stop; ++block) {
+              if (is_blended[block] != 0)
+                edit(block, out[block - start]);
+              write_block<Outputs>(block, is_blended[block], out[block - start], write, other);
+            }
           }
         });
+  }
+
+  template <Blend_outputs Outputs, class Write, class Other>
+  PCS_ALWAYS_INLINE void write_block(std::size_t block,
+                                     std::uint8_t mask,
+                                     const Block_output& out,
+                                     const Write& write,
+                                     const Other& other) const
+  {
+    Eigen::Matrix3d gradient = Eigen::Matrix3d::Identity();
+    const std::size_t first = block * lanes;
+    const std::size_t count = std::min(lanes, m_size - first);
+    for (std::size_t l = 0; l < count; ++l)
+      if (mask >> l & 1) {
+        if constexpr (Outputs == Blend_outputs::gradients)
+          for (int k = 0; k < 9; ++k)
+            gradient(k / 3, k % 3) = out.gradient[k][l];
+        write(first + l, at(out.position, l), at(out.normal, l), gradient);
+      } else
+        other(first + l);
   }
 
   static Vec3 at(const Lane_vectors& v, std::size_t l)
@@ -219,7 +262,9 @@ private:
     return {v.value[0][l], v.value[1][l], v.value[2][l]};
   }
 
-  Block_input block_input(const std::vector<Affine_map>& maps, std::size_t block) const
+  Block_input block_input(const std::vector<Affine_map>& maps,
+                          const Output_frame& frame,
+                          std::size_t block) const
   {
     return {&maps[m_base[block]],
             m_sample_points[m_base[block]].data(),
@@ -227,7 +272,9 @@ private:
             m_entry.data() + m_first[block],
             m_entry.data() + m_first[block + 1],
             &m_rest[block],
-            has_normals() ? &m_normal[block] : nullptr};
+            has_normals() ? &m_normal[block] : nullptr,
+            frame.unit,
+            frame.origin.data()};
   }
 
   std::size_t m_size = 0;

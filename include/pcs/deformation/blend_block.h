@@ -8,6 +8,7 @@
 #include <pcs/internal/instruction_set.h>
 #include <pcs/internal/lanes.h>
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -28,6 +29,9 @@ struct Lane_vectors
   double value[3][lanes];
 };
 
+/// Weights are stored in 16 bits, in steps of one over this.
+constexpr double weight_steps = 65535;
+
 /// What a kernel computes for every point.
 enum class Blend_outputs {
   positions,
@@ -41,15 +45,12 @@ struct Block_output
   double gradient[9][lanes]; ///< row by row
 };
 
-/// How the map of a sample differs from that of the base, around the base's position: linear part row by row, then
-/// offset. Small numbers, hence in single precision.
+/// How the map of a sample differs from that of the base, around the base's position, per step of weight: linear part
+/// row by row, then offset. Small numbers, hence in single precision.
 struct Map_difference
 {
   float value[12];
 };
-
-/// Weights are stored in 16 bits, in steps of one over this.
-constexpr double weight_steps = 65535;
 
 /// A sample of a block besides its base: which difference, and how much of it for each point.
 struct Block_entry
@@ -65,6 +66,8 @@ struct Block_input
   const Map_difference* differences;
   const Block_entry *entry, *entry_end;
   const Lane_vectors *rest, *normal;
+  double frame_unit;          ///< positions are multiplied by it, then
+  const double* frame_origin; ///< moved by this
 };
 
 /// The difference of `sample` to `base` around `origin`, formed in double precision.
@@ -76,10 +79,10 @@ map_difference(const Affine_map& base, const Affine_map& sample, const double* o
     double offset = sample.t[r] - base.t[r];
     for (int c = 0; c < 3; ++c) {
       const double difference = sample.a[3 * r + c] - base.a[3 * r + c];
-      result.value[3 * r + c] = static_cast<float>(difference);
+      result.value[3 * r + c] = static_cast<float>(difference / weight_steps);
       offset += difference * origin[c];
     }
-    result.value[9 + r] = static_cast<float>(offset);
+    result.value[9 + r] = static_cast<float>(offset / weight_steps);
   }
   return result;
 }
@@ -89,72 +92,92 @@ namespace internal {
 /*!
   Equations (2.4) and (2.5) of the dissertation for one block. With `sum w = 1`,
 
-      sum w_s (A_s p + t_s) = A_b p + t_b + sum w_s ((A_s - A_b) (p - o) + ((A_s - A_b) o + t_s - t_b))
+      sum w_s (A_s p + t_s) = (A_b + G) (p - o) + (A_b o + t_b) + g,
+      G = sum w_s (A_s - A_b),  g = sum w_s ((A_s - A_b) o + t_s - t_b)
 
-  for any base sample `b` of the block and its position `o`. The first part is computed in double precision; the sum
-  holds differences between neighbouring samples only, so that it may be blended in single precision and a rigid
-  motion stays exact. Normals get the cofactor matrix of the blended map, and keep their length.
+  for any base sample `b` of the block and its position `o`. `G` and `g` hold differences between neighbouring samples
+  only, so that they may be blended in single precision and a rigid motion stays exact; the rest is in double
+  precision. Normals get the cofactor matrix of the blended map, and keep their length.
 */
-template <Blend_outputs Outputs>
+template <Blend_outputs Outputs, class Arithmetic>
 PCS_ALWAYS_INLINE void blend_block(const Block_input& in, Block_output& out)
 {
-  using pcs::internal::Double4;
-  using pcs::internal::Float8;
   using pcs::internal::load;
   using pcs::internal::unroll;
-  Float8 m[12] = {};
-  for (const Block_entry* entry = in.entry; entry != in.entry_end; ++entry) {
-    const float* d = in.differences[entry->pair].value;
-    pcs::internal::Uint16x8 steps;
-    load(entry->weight, steps);
-    Float8 w;
-    pcs::internal::to_float(steps, w);
-    unroll<12>([&](auto k) PCS_LAMBDA_INLINE { m[k] += w * d[k]; });
-  }
-  constexpr float unit = static_cast<float>(1 / weight_steps);
-  unroll<12>([&](auto k) PCS_LAMBDA_INLINE { m[k] = m[k] * unit; });
+  using Doubles = typename Arithmetic::Doubles;
+  constexpr std::size_t width = sizeof(Doubles) / sizeof(double);
+  pcs::internal::Lane_sums<Arithmetic, 12> m;
+  for (const Block_entry* entry = in.entry; entry != in.entry_end; ++entry)
+    m.add(entry->weight, in.differences[entry->pair].value);
+  m.finish();
 
-  const double* a = in.base->a;
-  const double* t = in.base->t;
-  unroll<2>([&](auto part) PCS_LAMBDA_INLINE {
-    constexpr std::size_t half = 4 * decltype(part)::value;
-    Double4 x, y, z, g[12];
-    load(in.rest->value[0] + half, x);
-    load(in.rest->value[1] + half, y);
-    load(in.rest->value[2] + half, z);
+  const double *a = in.base->a, *t = in.base->t, *o = in.origin;
+  double center[3];
+  for (int r = 0; r < 3; ++r)
+    center[r] =
+        std::fma(a[3 * r], o[0], std::fma(a[3 * r + 1], o[1], std::fma(a[3 * r + 2], o[2], t[r])));
+  unroll<lanes / width>([&](auto part) PCS_LAMBDA_INLINE {
+    constexpr std::size_t first = width * decltype(part)::value;
+    Doubles x, y, z, g[12];
+    load(in.rest->value[0] + first, x);
+    load(in.rest->value[1] + first, y);
+    load(in.rest->value[2] + first, z);
+    x = x - o[0];
+    y = y - o[1];
+    z = z - o[2];
     unroll<12>([&](auto k) PCS_LAMBDA_INLINE {
-      pcs::internal::to_double<decltype(part)::value>(m[k], g[k]);
+      Arithmetic::template to_double<decltype(part)::value>(m.sum[k], g[k]);
+      if constexpr (decltype(k)::value < 9)
+        g[k] = g[k] + a[k];
     });
-    const Double4 qx = x - in.origin[0], qy = y - in.origin[1], qz = z - in.origin[2];
     unroll<3>([&](auto row) PCS_LAMBDA_INLINE {
       constexpr std::size_t r = decltype(row)::value;
-      const Double4 correction = g[3 * r] * qx + g[3 * r + 1] * qy + g[3 * r + 2] * qz + g[9 + r];
-      const Double4 result = x * a[3 * r] + y * a[3 * r + 1] + z * a[3 * r + 2] + t[r] + correction;
-      pcs::internal::store(result, out.position.value[r] + half);
+      Doubles local = g[9 + r] + center[r];
+      Arithmetic::fma(g[3 * r + 2], z, local);
+      Arithmetic::fma(g[3 * r + 1], y, local);
+      Arithmetic::fma(g[3 * r], x, local);
+      Doubles unit, written;
+      pcs::internal::fill(in.frame_unit, unit);
+      pcs::internal::fill(in.frame_origin[r], written);
+      Arithmetic::fma(local, unit, written);
+      pcs::internal::store(written, out.position.value[r] + first);
     });
     if constexpr (Outputs != Blend_outputs::positions) {
-      unroll<9>([&](auto k) PCS_LAMBDA_INLINE { g[k] = g[k] + a[k]; });
       if constexpr (Outputs == Blend_outputs::gradients) {
         unroll<9>([&](auto k)
-                      PCS_LAMBDA_INLINE { pcs::internal::store(g[k], out.gradient[k] + half); });
+                      PCS_LAMBDA_INLINE { pcs::internal::store(g[k], out.gradient[k] + first); });
         if (!in.normal)
           return;
       }
-      load(in.normal->value[0] + half, x);
-      load(in.normal->value[1] + half, y);
-      load(in.normal->value[2] + half, z);
-      const Double4 nx = (g[4] * g[8] - g[5] * g[7]) * x + (g[5] * g[6] - g[3] * g[8]) * y +
-                         (g[3] * g[7] - g[4] * g[6]) * z;
-      const Double4 ny = (g[2] * g[7] - g[1] * g[8]) * x + (g[0] * g[8] - g[2] * g[6]) * y +
-                         (g[1] * g[6] - g[0] * g[7]) * z;
-      const Double4 nz = (g[1] * g[5] - g[2] * g[4]) * x + (g[2] * g[3] - g[0] * g[5]) * y +
-                         (g[0] * g[4] - g[1] * g[3]) * z;
-      // A map that crushes the surface to a line leaves no normal: keep a finite value.
-      Double4 scale = (x * x + y * y + z * z) / (nx * nx + ny * ny + nz * nz + 1e-290);
-      pcs::internal::square_root(scale);
-      pcs::internal::store(nx * scale, out.normal.value[0] + half);
-      pcs::internal::store(ny * scale, out.normal.value[1] + half);
-      pcs::internal::store(nz * scale, out.normal.value[2] + half);
+      load(in.normal->value[0] + first, x);
+      load(in.normal->value[1] + first, y);
+      load(in.normal->value[2] + first, z);
+      Doubles turned[3];
+      unroll<3>([&](auto row) PCS_LAMBDA_INLINE { // of the cofactor matrix
+        constexpr std::size_t r = 3 * ((decltype(row)::value + 1) % 3);
+        constexpr std::size_t s = 3 * ((decltype(row)::value + 2) % 3);
+        Doubles cx = -(g[r + 2] * g[s + 1]), cy = -(g[r] * g[s + 2]), cz = -(g[r + 1] * g[s]);
+        Arithmetic::fma(g[r + 1], g[s + 2], cx);
+        Arithmetic::fma(g[r + 2], g[s], cy);
+        Arithmetic::fma(g[r], g[s + 1], cz);
+        Doubles& n = turned[row];
+        n = cx * x;
+        Arithmetic::fma(cy, y, n);
+        Arithmetic::fma(cz, z, n);
+      });
+      // Length over new length; where a map crushes the surface to a line, the normal becomes zero.
+      Doubles squared = x * x, new_squared = turned[0] * turned[0], product, scale;
+      Arithmetic::fma(y, y, squared);
+      Arithmetic::fma(z, z, squared);
+      Arithmetic::fma(turned[1], turned[1], new_squared);
+      Arithmetic::fma(turned[2], turned[2], new_squared);
+      pcs::internal::fill(1e-290, product);
+      Arithmetic::fma(squared, new_squared, product);
+      pcs::internal::reciprocal_root<Arithmetic>(product, scale);
+      scale = scale * squared;
+      unroll<3>([&](auto r) PCS_LAMBDA_INLINE {
+        pcs::internal::store(Doubles(turned[r] * scale), out.normal.value[r] + first);
+      });
     }
   });
 }
@@ -162,14 +185,20 @@ PCS_ALWAYS_INLINE void blend_block(const Block_input& in, Block_output& out)
 template <Blend_outputs Outputs>
 void blend_block_default(const Block_input& in, Block_output& out)
 {
-  blend_block<Outputs>(in, out);
+  blend_block<Outputs, pcs::internal::Portable_arithmetic>(in, out);
 }
 
 #if PCS_HAS_RUNTIME_DISPATCH
 template <Blend_outputs Outputs>
 PCS_TARGET_AVX2 void blend_block_avx2(const Block_input& in, Block_output& out)
 {
-  blend_block<Outputs>(in, out);
+  blend_block<Outputs, pcs::internal::Avx2_arithmetic>(in, out);
+}
+
+template <Blend_outputs Outputs>
+PCS_TARGET_AVX512 void blend_block_avx512(const Block_input& in, Block_output& out)
+{
+  blend_block<Outputs, pcs::internal::Avx512_arithmetic>(in, out);
 }
 #endif
 
@@ -182,6 +211,8 @@ template <Blend_outputs Outputs>
 Blend_block choose_blend_block()
 {
 #if PCS_HAS_RUNTIME_DISPATCH
+  if (pcs::internal::has_avx512())
+    return &internal::blend_block_avx512<Outputs>;
   if (pcs::internal::has_avx2())
     return &internal::blend_block_avx2<Outputs>;
 #endif

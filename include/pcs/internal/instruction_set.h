@@ -1,15 +1,16 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Compiles a kernel for the build's own instruction set and for AVX2, and picks one at run time.
+// Compiles a kernel for the build's own instruction set, for AVX2 and for AVX-512, and picks one at run time.
 
 #ifndef PCS_INTERNAL_INSTRUCTION_SET_H
 #define PCS_INTERNAL_INSTRUCTION_SET_H
 
-// AVX2 without FMA: a fused multiply-add rounds once instead of twice, and results must not depend on the machine.
+// Kernels say where a multiply-add is fused, so all machines give the same bits; those without the instruction are slow.
 #if (defined(__GNUC__) || defined(__clang__)) && defined(__x86_64__) &&                            \
     !defined(PCS_NO_RUNTIME_DISPATCH)
 #define PCS_HAS_RUNTIME_DISPATCH 1
-#define PCS_TARGET_AVX2 __attribute__((target("avx2")))
+#define PCS_TARGET_AVX2 __attribute__((target("avx2,fma")))
+#define PCS_TARGET_AVX512 __attribute__((target("avx512f,avx512vl,avx512dq,fma")))
 #define PCS_ALWAYS_INLINE inline __attribute__((always_inline))
 #else
 #define PCS_HAS_RUNTIME_DISPATCH 0
@@ -29,7 +30,21 @@ namespace internal {
 inline bool has_avx2()
 {
 #if PCS_HAS_RUNTIME_DISPATCH
-  static const bool answer = __builtin_cpu_supports("avx2") != 0;
+  static const bool answer =
+      __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
+  return answer;
+#else
+  return false;
+#endif
+}
+
+/// AVX-512 on whole registers: the extensions that all processors have that are not slowed down by it.
+inline bool has_avx512()
+{
+#if PCS_HAS_RUNTIME_DISPATCH
+  static const bool answer =
+      __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512vl") != 0 &&
+      __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512vnni") != 0;
   return answer;
 #else
   return false;

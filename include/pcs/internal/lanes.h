@@ -14,10 +14,6 @@
 #include <type_traits>
 #include <utility>
 
-#if defined(__SSE2__)
-#include <emmintrin.h>
-#endif
-
 namespace pcs {
 namespace internal {
 
@@ -26,6 +22,8 @@ namespace internal {
 // Both compilers split a vector that the machine does not have; the operations, and so the bits, stay the same.
 using Float8 = float __attribute__((vector_size(32)));
 using Double4 = double __attribute__((vector_size(32)));
+using Double8 = double __attribute__((vector_size(64)));
+using Float16 = float __attribute__((vector_size(64)));
 using Float4 = float __attribute__((vector_size(16)));
 using Uint16x8 = std::uint16_t __attribute__((vector_size(16)));
 
@@ -34,12 +32,38 @@ PCS_ALWAYS_INLINE void to_float(const Uint16x8& from, Float8& to)
   to = __builtin_convertvector(from, Float8);
 }
 
-/// Lanes 0 to 3 (`Half` 0) or 4 to 7 (`Half` 1).
-template <std::size_t Half>
+constexpr std::uint64_t reciprocal_root_bits = 0x5fe6eb50c7b537a9;
+
+PCS_ALWAYS_INLINE void guess_reciprocal_root(const Double4& x, Double4& y)
+{
+  using Bits = std::uint64_t __attribute__((vector_size(32)));
+  y = reinterpret_cast<Double4>(reciprocal_root_bits - (reinterpret_cast<Bits>(x) >> 1));
+}
+PCS_ALWAYS_INLINE void guess_reciprocal_root(const Double8& x, Double8& y)
+{
+  using Bits = std::uint64_t __attribute__((vector_size(64)));
+  y = reinterpret_cast<Double8>(reciprocal_root_bits - (reinterpret_cast<Bits>(x) >> 1));
+}
+
+/// Lanes 0 to 3 (`Part` 0) or 4 to 7 (`Part` 1).
+template <std::size_t Part>
 PCS_ALWAYS_INLINE void to_double(const Float8& from, Double4& to)
 {
-  const Float4 part = {from[4 * Half], from[4 * Half + 1], from[4 * Half + 2], from[4 * Half + 3]};
+  const Float4 part = {from[4 * Part], from[4 * Part + 1], from[4 * Part + 2], from[4 * Part + 3]};
   to = __builtin_convertvector(part, Double4);
+}
+
+PCS_ALWAYS_INLINE void fill(double value, Double4& to)
+{
+  to = Double4{value, value, value, value};
+}
+PCS_ALWAYS_INLINE void fill(double value, Double8& to)
+{
+  to = Double8{value, value, value, value, value, value, value, value};
+}
+PCS_ALWAYS_INLINE void fill(float value, Float8& to)
+{
+  to = Float8{value, value, value, value, value, value, value, value};
 }
 
 #else
@@ -77,6 +101,13 @@ struct Array_lanes
   PCS_LANE_OPERATOR(*)
   PCS_LANE_OPERATOR(/)
 #undef PCS_LANE_OPERATOR
+  friend Array_lanes operator-(T a, const Array_lanes& b)
+  {
+    Array_lanes c;
+    for (std::size_t i = 0; i < N; ++i)
+      c.v[i] = a - b.v[i];
+    return c;
+  }
   Array_lanes& operator+=(const Array_lanes& b)
   {
     return *this = *this + b;
@@ -84,6 +115,7 @@ struct Array_lanes
 };
 using Float8 = Array_lanes<float, 8>;
 using Double4 = Array_lanes<double, 4>;
+using Double8 = Array_lanes<double, 8>;
 using Uint16x8 = Array_lanes<std::uint16_t, 8>;
 
 inline void to_float(const Uint16x8& from, Float8& to)
@@ -92,11 +124,31 @@ inline void to_float(const Uint16x8& from, Float8& to)
     to[i] = static_cast<float>(from[i]);
 }
 
-template <std::size_t Half>
-void to_double(const Float8& from, Double4& to)
+constexpr std::uint64_t reciprocal_root_bits = 0x5fe6eb50c7b537a9;
+
+template <std::size_t N>
+void guess_reciprocal_root(const Array_lanes<double, N>& x, Array_lanes<double, N>& y)
 {
-  for (std::size_t i = 0; i < 4; ++i)
-    to[i] = static_cast<double>(from[4 * Half + i]);
+  for (std::size_t i = 0; i < N; ++i) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &x.v[i], sizeof(bits));
+    bits = reciprocal_root_bits - (bits >> 1);
+    std::memcpy(&y.v[i], &bits, sizeof(bits));
+  }
+}
+
+template <class T, std::size_t N>
+void fill(T value, Array_lanes<T, N>& to)
+{
+  for (std::size_t i = 0; i < N; ++i)
+    to[i] = value;
+}
+
+template <std::size_t Part, std::size_t N>
+void to_double(const Float8& from, Array_lanes<double, N>& to)
+{
+  for (std::size_t i = 0; i < N; ++i)
+    to[i] = static_cast<double>(from[N * Part + i]);
 }
 
 #endif
@@ -114,21 +166,6 @@ PCS_ALWAYS_INLINE void store(const Lanes& from, T* to)
   std::memcpy(to, &from, sizeof(Lanes));
 }
 
-PCS_ALWAYS_INLINE void square_root(Double4& x)
-{
-#if defined(__SSE2__) && !defined(PCS_NO_VECTOR_EXTENSIONS)
-  // std::sqrt looks at every lane for errno; this is the same correctly rounded root.
-  __m128d part[2];
-  std::memcpy(part, &x, sizeof(part));
-  part[0] = _mm_sqrt_pd(part[0]);
-  part[1] = _mm_sqrt_pd(part[1]);
-  std::memcpy(&x, part, sizeof(part));
-#else
-  for (std::size_t i = 0; i < 4; ++i)
-    x[i] = std::sqrt(x[i]);
-#endif
-}
-
 /// Calls `f(std::integral_constant<std::size_t, I>)` for I = 0 ... N - 1, unrolled: arrays of lanes that are
 /// indexed by constants live in registers.
 template <class F, std::size_t... I>
@@ -140,6 +177,163 @@ template <std::size_t N, class F>
 PCS_ALWAYS_INLINE void unroll(const F& f)
 {
   unroll(f, std::make_index_sequence<N>());
+}
+
+/*!
+  How a kernel computes, on the doubles that fit a register: `fma` is `x * y + z` with one rounding, and nothing else is
+  fused, so that all kernels give the same bits. `to_float` reads eight weights, `to_double` widens a part of them.
+*/
+struct Portable_arithmetic
+{
+  using Doubles = Double4;
+
+  template <class Lanes>
+  static PCS_ALWAYS_INLINE void fma(const Lanes& x, const Lanes& y, Lanes& z)
+  {
+    for (std::size_t i = 0; i < sizeof(Lanes) / sizeof(x[0]); ++i)
+      z[i] = std::fma(x[i], y[i], z[i]);
+  }
+  static PCS_ALWAYS_INLINE void to_float(const std::uint16_t* from, Float8& to)
+  {
+    Uint16x8 steps;
+    load(from, steps);
+    internal::to_float(steps, to);
+  }
+  template <std::size_t Part>
+  static PCS_ALWAYS_INLINE void to_double(const Float8& from, Doubles& to)
+  {
+    internal::to_double<Part>(from, to);
+  }
+};
+
+#if PCS_HAS_RUNTIME_DISPATCH
+// Written out: whether a compiler fuses `x * y + z` depends on its options, and conversions it takes to pieces.
+PCS_ALWAYS_INLINE void read_weights(const std::uint16_t* from, Float8& to)
+{
+  Uint16x8 steps;
+  load(from, steps);
+  __asm__("vpmovzxwd %1, %0\n\tvcvtdq2ps %0, %0" : "=x"(to) : "x"(steps));
+}
+
+struct Avx2_arithmetic
+{
+  using Doubles = Double4;
+
+  static PCS_ALWAYS_INLINE void fma(const Float8& x, const Float8& y, Float8& z)
+  {
+    __asm__("vfmadd231ps %2, %1, %0" : "+x"(z) : "x"(x), "x"(y));
+  }
+  static PCS_ALWAYS_INLINE void fma(const Double4& x, const Double4& y, Double4& z)
+  {
+    __asm__("vfmadd231pd %2, %1, %0" : "+x"(z) : "x"(x), "x"(y));
+  }
+  static PCS_ALWAYS_INLINE void to_float(const std::uint16_t* from, Float8& to)
+  {
+    read_weights(from, to);
+  }
+  template <std::size_t Part>
+  static PCS_ALWAYS_INLINE void to_double(const Float8& from, Double4& to)
+  {
+    const Float4 part = {from[4 * Part],
+                         from[4 * Part + 1],
+                         from[4 * Part + 2],
+                         from[4 * Part + 3]};
+    __asm__("vcvtps2pd %1, %0" : "=x"(to) : "x"(part));
+  }
+};
+
+struct Avx512_arithmetic
+{
+  using Doubles = Double8;
+
+  static PCS_ALWAYS_INLINE void fma(const Float16& x, const Float16& y, Float16& z)
+  {
+    __asm__("vfmadd231ps %2, %1, %0" : "+v"(z) : "v"(x), "v"(y));
+  }
+  static PCS_ALWAYS_INLINE void fma(const Double8& x, const Double8& y, Double8& z)
+  {
+    __asm__("vfmadd231pd %2, %1, %0" : "+v"(z) : "v"(x), "v"(y));
+  }
+  template <std::size_t Part>
+  static PCS_ALWAYS_INLINE void to_double(const Float8& from, Double8& to)
+  {
+    __asm__("vcvtps2pd %1, %0" : "=v"(to) : "v"(from));
+  }
+};
+#endif
+
+/// Sums `w[l] * d[k]` over pairs of weights `w` of eight lanes and numbers `d[k]`, for `k` below `N`.
+template <class Arithmetic, std::size_t N>
+struct Lane_sums
+{
+  Float8 sum[N] = {};
+
+  PCS_ALWAYS_INLINE void add(const std::uint16_t* weight, const float* d)
+  {
+    Float8 w;
+    Arithmetic::to_float(weight, w);
+    unroll<N>([&](auto k) PCS_LAMBDA_INLINE {
+      Float8 all;
+      fill(d[k], all);
+      Arithmetic::fma(w, all, sum[k]);
+    });
+  }
+  PCS_ALWAYS_INLINE void finish() {}
+};
+
+#if PCS_HAS_RUNTIME_DISPATCH
+/// Two numbers share a register, in turns: narrower ones would leave half of each unit idle.
+template <std::size_t N>
+struct Lane_sums<Avx512_arithmetic, N>
+{
+  static_assert(N % 2 == 0);
+  Float8 sum[N];
+  Float16 pair[N / 2] = {};
+
+  PCS_ALWAYS_INLINE void add(const std::uint16_t* weight, const float* d)
+  {
+    Float8 once;
+    read_weights(weight, once);
+    const Float16 w =
+        __builtin_shufflevector(once, once, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7);
+    unroll<N / 2>([&](auto k) PCS_LAMBDA_INLINE {
+      double two; // moved only
+      std::memcpy(&two, d + 2 * k, sizeof(two));
+      const Double8 all = {two, two, two, two, two, two, two, two};
+      Avx512_arithmetic::fma(w, reinterpret_cast<Float16>(all), pair[k]);
+    });
+  }
+  PCS_ALWAYS_INLINE void finish()
+  {
+    unroll<N / 2>([&](auto k) PCS_LAMBDA_INLINE {
+      const Float16& p = pair[k];
+      sum[2 * k] = __builtin_shufflevector(p, p, 0, 2, 4, 6, 8, 10, 12, 14);
+      sum[2 * k + 1] = __builtin_shufflevector(p, p, 1, 3, 5, 7, 9, 11, 13, 15);
+    });
+  }
+};
+#endif
+
+/*!
+  `1 / sqrt(x)` to one or two units in the last place, by Newton's method from a guess on the bits of `x`: neither a
+  division nor a root, which take longer than all else in a kernel. `x` must be positive.
+*/
+template <class Arithmetic>
+PCS_ALWAYS_INLINE void reciprocal_root(const typename Arithmetic::Doubles& x,
+                                       typename Arithmetic::Doubles& y)
+{
+  using Doubles = typename Arithmetic::Doubles;
+  // M. Robertson, "A Brief History of InvSqrt" (2012): the constant for doubles.
+  guess_reciprocal_root(x, y);
+  Doubles half;
+  fill(-0.5, half);
+  for (int step = 0; step < 4; ++step) {
+    const Doubles squared = y * y;
+    Doubles factor;
+    fill(1.5, factor);
+    Arithmetic::fma(half * x, squared, factor);
+    y = y * factor;
+  }
 }
 
 } // namespace internal
