@@ -138,7 +138,7 @@ inline Tree_habit conifer_habit()
 inline Tree_habit fruit_habit()
 {
   Tree_habit h;
-  h.height = 3.6;
+  h.height = 3.2;
   h.trunk_radius = 0.07;
   h.flare = 0.25;
   h.flare_height = 0.12;
@@ -146,16 +146,16 @@ inline Tree_habit fruit_habit()
   h.largest_step = 0.06;
   h.smallest_step = 0.02;
   h.bend = {0.03, 0.06, 0.06};
-  h.tropism = {0.01, 0.05, 0.05};
-  h.spacing = {0.14, 0.14, 0.11};
+  h.tropism = {0.01, 0.025, 0.03};
+  h.spacing = {0.12, 0.14, 0.11};
   h.bare = {0.24, 0.12, 0.12};
-  h.insertion = {{{0.8, 1.2}, {0.6, 1.1}}};
+  h.insertion = {{{0.9, 1.3}, {0.6, 1.1}}};
   h.child_radius = {{{0.4, 0.65}, {0.25, 0.5}}};
   h.largest_branch = 0.035;
   h.smallest_branch = 0.0025;
-  h.slenderness = {50, 75};
+  h.slenderness = {60, 85};
   h.crown = Crown_shape::vase;
-  h.crown_radius = 1.7;
+  h.crown_radius = 2;
   return h;
 }
 
@@ -183,12 +183,12 @@ inline Tree_habit weeping_habit()
   h.height = 7;
   h.trunk_radius = 0.16;
   h.bend = {0.02, 0.03, 0.03};
-  h.tropism = {0.01, 0.05, -0.02};
-  h.sag = 0.19;
-  h.spacing = {0.2, 0.2, 0.2};
+  h.tropism = {0.01, 0.07, -0.1};
+  h.sag = 0.2;
+  h.spacing = {0.2, 0.22, 0.22};
   h.bare = {0.28, 0.2, 0.2};
-  h.insertion = {{{0.6, 1.0}, {0.5, 0.9}}};
-  h.slenderness = {80, 120};
+  h.insertion = {{{0.5, 0.9}, {0.5, 0.9}}};
+  h.slenderness = {90, 140};
   h.largest_branch = 0.05;
   h.crown_radius = 4.5;
   return h;

@@ -104,8 +104,10 @@ private:
 
   double distance(std::size_t v, std::size_t w) const
   {
-    const auto d = m_tree[w].point - m_tree[v].point;
-    return std::sqrt(CGAL::to_double(d.x() * d.x() + d.y() * d.y() + d.z() * d.z()));
+    const auto &p = m_tree[v].point, &q = m_tree[w].point;
+    return std::hypot(CGAL::to_double(q.x() - p.x()),
+                      CGAL::to_double(q.y() - p.y()),
+                      CGAL::to_double(q.z() - p.z()));
   }
 
   static Tree_node<Kernel> between(const Tree_node<Kernel>& a, const Tree_node<Kernel>& b, double t)

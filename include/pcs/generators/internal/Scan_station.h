@@ -50,7 +50,8 @@ public:
     Random_stream random(seed, 20, number);
     for (int axis = 0; axis < 3; ++axis)
       m_shift[axis] = scanner.registration_error * random.normal();
-    set_grid(triangles, random);
+    if (!triangles.empty())
+      set_grid(triangles, random);
     for (std::size_t k = 0; k < m_rolls.size(); ++k) {
       const double roll = pi * double(k) / double(m_rolls.size());
       m_rolls[k] = 0.5 * scanner.beam_width * Eigen::Vector2d(std::cos(roll), std::sin(roll));
