@@ -23,11 +23,6 @@ foreach(header IN LISTS headers)
   list(APPEND one_source_per_header ${generated}/${source}.cpp)
 endforeach()
 
-# Nothing here is run: compile without optimisation.
-add_library(pcs_header_flags INTERFACE)
-target_link_libraries(pcs_header_flags INTERFACE pcs::pcs)
-target_compile_options(pcs_header_flags INTERFACE $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-O0>)
-
 # Every header compiles alone, and a second time.
 add_library(headers_self_contained OBJECT EXCLUDE_FROM_ALL ${one_source_per_header})
 target_link_libraries(headers_self_contained PRIVATE pcs_header_flags pcs_dev_flags)

@@ -1,3 +1,8 @@
+# Nothing of this is run: compile without optimisation.
+add_library(pcs_header_flags INTERFACE)
+target_link_libraries(pcs_header_flags INTERFACE pcs::pcs)
+target_compile_options(pcs_header_flags INTERFACE $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-O0>)
+
 # A test that builds a target of this build tree, one at a time.
 function(pcs_add_build_test test target)
   add_test(NAME ${test} COMMAND ${CMAKE_COMMAND}
@@ -7,15 +12,22 @@ endfunction()
 
 # pcs_add_compile_fail_test(<rule> <sentence>)
 #
-# Builds compile_fail/<rule>.cpp twice: it must compile as it is, and with PCS_BREAK_THE_RULE defined
-# the compiler must print <sentence> (a regular expression).
+# With PCS_BREAK_THE_RULE defined, compile_fail/<rule>.cpp must make the compiler print <sentence> (a
+# regular expression). That it compiles as it is, pcs_add_compile_accepted_test() sees to.
 function(pcs_add_compile_fail_test rule sentence)
-  foreach(kind accepted rejected)
-    add_library(${rule}_${kind} OBJECT EXCLUDE_FROM_ALL compile_fail/${rule}.cpp)
-    target_link_libraries(${rule}_${kind} PRIVATE pcs::pcs)
-    pcs_add_build_test(compile_fail.${rule}.${kind} ${rule}_${kind} compile_fail)
-  endforeach()
+  set_property(GLOBAL APPEND PROPERTY pcs_compile_fail_sources
+    ${CMAKE_CURRENT_SOURCE_DIR}/compile_fail/${rule}.cpp)
+  add_library(${rule}_rejected OBJECT EXCLUDE_FROM_ALL compile_fail/${rule}.cpp)
+  target_link_libraries(${rule}_rejected PRIVATE pcs_header_flags)
   target_compile_definitions(${rule}_rejected PRIVATE PCS_BREAK_THE_RULE)
-  set_tests_properties(compile_fail.${rule}.rejected PROPERTIES
-    PASS_REGULAR_EXPRESSION "${sentence}")
+  pcs_add_build_test(compile_fail.${rule} ${rule}_rejected compile_fail)
+  set_tests_properties(compile_fail.${rule} PROPERTIES PASS_REGULAR_EXPRESSION "${sentence}")
+endfunction()
+
+# One test that builds all sources of the rules as they are, side by side.
+function(pcs_add_compile_accepted_test)
+  get_property(sources GLOBAL PROPERTY pcs_compile_fail_sources)
+  add_library(compile_fail_accepted OBJECT EXCLUDE_FROM_ALL ${sources})
+  target_link_libraries(compile_fail_accepted PRIVATE pcs_header_flags)
+  pcs_add_build_test(compile_fail.all_accepted compile_fail_accepted compile_fail)
 endfunction()

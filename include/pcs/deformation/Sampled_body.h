@@ -64,6 +64,8 @@ struct Sampled_body
   Local_frame frame;
   std::vector<std::uint32_t> input_of_place;
   std::vector<std::uint32_t> site_of_place;
+  std::vector<std::uint32_t>
+      place_of_site; ///< the first one; empty if every point has a place of its own
   std::vector<std::uint32_t> site_of_input;
   std::vector<std::uint32_t> component_of_site;
   std::vector<std::uint32_t> component_size; ///< in points
@@ -163,6 +165,11 @@ private:
       site_of_place[place] = static_cast<std::uint32_t>(sites.size() - 1);
       site_of_input[input_of_place[place]] = site_of_place[place];
     }
+    if (sites.size() == n)
+      return;
+    place_of_site.resize(sites.size());
+    for (std::size_t place = n; place-- > 0;)
+      place_of_site[site_of_place[place]] = static_cast<std::uint32_t>(place);
   }
 
   void find_components(const neighborhood::Proximity_graph& graph)

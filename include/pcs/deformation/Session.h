@@ -154,14 +154,19 @@ public:
       finer = &level.network();
       of_finer = &level.constraints();
     }
-    if (m_body.is_sampled) {
+    if (m_body.is_sampled)
       m_network = with_boundary(constraints);
-      find_fades();
-    }
-    m_is_constrained = m_solver.constrain(m_body.is_sampled ? m_network : m_body.network,
-                                          std::move(constraints),
-                                          stiffness) &&
-                       is_regular;
+    pcs::internal::invoke_both<ConcurrencyTag>(
+        [&] {
+          m_is_constrained = m_solver.constrain(m_body.is_sampled ? m_network : m_body.network,
+                                                std::move(constraints),
+                                                stiffness);
+        },
+        [&] {
+          if (m_body.is_sampled)
+            find_fades();
+        });
+    m_is_constrained = m_is_constrained && is_regular;
     m_report.seconds.factorization = watch.lap();
     return m_is_constrained;
   }
@@ -412,14 +417,9 @@ private:
     }
   }
 
-  /// Places are sorted by site.
   std::size_t first_place(std::size_t site) const
   {
-    if (m_body.number_of_sites() == m_body.number_of_points())
-      return site;
-    const auto& sites = m_body.site_of_place;
-    return static_cast<std::size_t>(std::lower_bound(sites.begin(), sites.end(), site) -
-                                    sites.begin());
+    return m_body.place_of_site.empty() ? site : m_body.place_of_site[site];
   }
 
   Vec3 rest_of_site(std::size_t site) const { return m_body.upsampling.rest(first_place(site)); }

@@ -12,10 +12,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
-#include <queue>
-#include <tuple>
 #include <vector>
 
 namespace pcs {
@@ -50,24 +47,33 @@ std::vector<Border_fade> border_fades(const neighborhood::Proximity_graph& graph
     double radius = 0;
     Node_constraint handle = free_node;
   };
-  using Entry = std::tuple<double, std::uint32_t, std::uint32_t>; // distance, source, site
-  std::vector<std::uint32_t> index(graph.size(), no_sample);      // of a site in `reached`
+  struct Entry
+  {
+    double distance;
+    std::uint32_t site;
+  };
+  std::vector<std::uint32_t> index(graph.size(), no_sample); // of a site in `reached`
   std::vector<Reached> reached;
-  std::vector<std::uint32_t> site_of_reached;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
-  const auto relax = [&](std::uint32_t from, std::uint32_t to, const Reached& source) {
+  // Sites wait in buckets of distance; one may wait more than once, and is left alone if it came nearer meanwhile.
+  double largest_radius = 0;
+  for (const double r : spacing_of_sample)
+    largest_radius = std::max(largest_radius, r);
+  constexpr std::size_t number_of_buckets = 256;
+  const double width = largest_radius > 0 ? largest_radius / number_of_buckets : 1;
+  std::vector<std::vector<Entry>> buckets(number_of_buckets);
+  const auto relax = [&](std::size_t from, std::uint32_t to, const Reached& source) {
     const double d = source.distance + (position(to) - position(from)).norm();
     if (!(d < source.radius))
       return;
     if (index[to] == no_sample) {
       index[to] = static_cast<std::uint32_t>(reached.size());
       reached.emplace_back();
-      site_of_reached.push_back(to);
     }
     Reached& r = reached[index[to]];
     if (d < r.distance) {
       r = {d, source.radius, source.handle};
-      queue.emplace(d, from, to);
+      buckets[std::min(number_of_buckets - 1, static_cast<std::size_t>(d / width))].push_back(
+          {d, to});
     }
   };
   for (std::size_t site = 0; site < graph.size(); ++site) {
@@ -77,18 +83,18 @@ std::vector<Border_fade> border_fades(const neighborhood::Proximity_graph& graph
     const Reached source{0, spacing_of_sample[sample_of_site[site]], h};
     for (auto j = graph.begin(site); j != graph.end(site); ++j)
       if (handle_of_site(*j) < 0)
-        relax(static_cast<std::uint32_t>(site), *j, source);
+        relax(site, *j, source);
   }
-  while (!queue.empty()) {
-    const auto [d, from, site] = queue.top();
-    queue.pop();
-    const Reached r = reached[index[site]];
-    if (d > r.distance)
-      continue;
-    for (auto j = graph.begin(site); j != graph.end(site); ++j)
-      if (handle_of_site(*j) < 0)
-        relax(site, *j, r);
-  }
+  for (auto& bucket : buckets)
+    for (std::size_t b = 0; b < bucket.size(); ++b) { // grows while it is read
+      const Entry entry = bucket[b];
+      const Reached r = reached[index[entry.site]];
+      if (entry.distance > r.distance)
+        continue;
+      for (auto j = graph.begin(entry.site); j != graph.end(entry.site); ++j)
+        if (handle_of_site(*j) < 0)
+          relax(entry.site, *j, r);
+    }
   std::vector<Border_fade> fades;
   for (std::size_t site = 0; site < graph.size(); ++site)
     if (index[site] != no_sample) {
