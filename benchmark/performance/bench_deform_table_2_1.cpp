@@ -231,21 +231,22 @@ double per_pass(const Measured& m, double seconds)
 int main(int argc, char** argv)
 {
   CLI::App app("Times every stage of the deformation beside the dissertation's Table 2.1.");
-  std::string folder, csv;
+  std::string folder = pcs_bench::default_data_folder(), csv;
   std::vector<std::string> only;
   int repetitions = 3;
   unsigned time_limit = 120;
-  bool is_tabular = false;
-  app.add_option("--data", folder, "folder with the scans; those missing are generated")
+  app.add_option("--data",
+                 folder,
+                 "folder with the scans (default: build/data); those missing are generated")
       ->check(CLI::ExistingDirectory);
   app.add_option("--only", only, "only rows of these models")
       ->check(CLI::IsMember({"bunny", "armadillo", "dragon", "plain"}));
   app.add_option("--csv", csv, "write all figures to this file");
   app.add_option("--repetitions", repetitions, "constructions of each row; the best counts")
       ->check(CLI::Range(1, 1000));
-  app.add_option("--limit", time_limit, "seconds after which a row is given up");
-  app.add_flag("--benchmark_counters_tabular", is_tabular)
-      ->group(""); // ./run bench gives it to all
+  app.add_option("--limit",
+                 time_limit,
+                 "seconds after which a row is given up"); // ./run bench gives it to all
   CLI11_PARSE(app, argc, argv);
 
   pcs_bench::Table seconds({"model",

@@ -246,12 +246,9 @@ int main(int argc, char** argv)
   CLI::App app("Quality of deformations with known answers.");
   Options options;
   std::string csv;
-  bool is_tabular = false;
   app.add_option("--only", options.only, "only cases whose name contains this, for example T3");
   app.add_flag("--peers", options.has_peers, "also CGAL::Surface_mesh_deformation; takes minutes");
-  app.add_option("--csv", csv, "write the first table to this file");
-  app.add_flag("--benchmark_counters_tabular", is_tabular)
-      ->group(""); // ./run bench gives it to all
+  app.add_option("--csv", csv, "write the first table to this file"); // ./run bench gives it to all
   CLI11_PARSE(app, argc, argv);
 
   try {

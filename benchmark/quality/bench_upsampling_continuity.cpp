@@ -112,15 +112,14 @@ struct Jumps
 int main(int argc, char** argv)
 {
   CLI::App app("Jumps of the displacement between neighbouring points.");
-  std::string folder, csv;
+  std::string folder = pcs_bench::default_data_folder(), csv;
   std::vector<std::string> only;
-  bool is_tabular = false;
-  app.add_option("--data", folder, "folder with the scans; those missing are generated")
+  app.add_option("--data",
+                 folder,
+                 "folder with the scans (default: build/data); those missing are generated")
       ->check(CLI::ExistingDirectory);
   app.add_option("--only", only, "only these models")->check(CLI::IsMember({"bunny", "dragon"}));
-  app.add_option("--csv", csv, "write the table to this file");
-  app.add_flag("--benchmark_counters_tabular", is_tabular)
-      ->group(""); // ./run bench gives it to all
+  app.add_option("--csv", csv, "write the table to this file"); // ./run bench gives it to all
   CLI11_PARSE(app, argc, argv);
 
   pcs_bench::Table table({"model",

@@ -65,17 +65,24 @@ inline std::vector<Vec3> make_plain(std::size_t side)
   return points;
 }
 
+/// Where ./run keeps what it downloads, if it has been there.
+inline std::string default_data_folder()
+{
+  return std::filesystem::is_directory("build/data") ? "build/data" : "";
+}
+
 /// `name` is bunny, armadillo, dragon or plain.
 inline Model load_model(const std::string& name, const std::string& folder)
 {
   struct Entry
   {
-    const char *name, *file;
+    const char *name, *file, *other_file; ///< of a download by hand, and by ./run
     std::size_t size;
   };
-  constexpr Entry entries[] = {{"bunny", "bunny_35947.ply", 35947},
-                               {"armadillo", "armadillo_172966_points.ply", 172966},
-                               {"dragon", "dragon_437645.ply", 437645}};
+  constexpr Entry entries[] = {
+      {"bunny", "bunny_35947.ply", "bunny.ply", 35947},
+      {"armadillo", "armadillo_172966_points.ply", "armadillo.ply", 172966},
+      {"dragon", "dragon_437645.ply", "dragon.ply", 437645}};
   Model model;
   if (name == "plain") {
     model.points = make_plain(1000);
@@ -84,7 +91,9 @@ inline Model load_model(const std::string& name, const std::string& folder)
   for (const Entry& entry : entries) {
     if (name != entry.name)
       continue;
-    const std::filesystem::path path = std::filesystem::path(folder) / entry.file;
+    std::filesystem::path path = std::filesystem::path(folder) / entry.file;
+    if (!std::filesystem::exists(path))
+      path = std::filesystem::path(folder) / entry.other_file;
     if (folder.empty() || !std::filesystem::exists(path)) {
       model.points = make_bumpy_figure(entry.size);
       return model;
