@@ -40,6 +40,9 @@ struct Chain_rules
   double prior_share = 0.5; ///< standard deviation of the radius by counting, in radii ...
   double prior_offset = 0.15; ///< ... and spacings
   double noise_share = 0.5; ///< r^2 is reduced by this many noise^2: noise inflates thin branches
+  double extension = 3; ///< how far both ends are prolonged on trial, in radii ...
+  double extension_offset = 4; ///< ... and spacings
+  double extension_share = 0.3; ///< share of the expected points that a prolongation needs
   std::size_t lowest_count = 4; ///< points of an axis
   int iterations = 4; ///< of each of the two fits
 };
@@ -77,10 +80,12 @@ public:
     start_at_circles(fit);
     if (!run(fit, first_widening))
       return candidate;
+    const Vec3 base = fit.axis().front().point, tip = fit.axis().back().point;
+    prolong(fit);
     std::vector<Index> points = gather(fit);
     if (points.size() < m_rules.lowest_count || !run(fit, 1))
       return candidate;
-    trim(fit);
+    trim(base, tip, fit);
     judge(fit, points, candidate);
     return candidate;
   }
@@ -99,7 +104,8 @@ private:
   void set_priors(Axis_fit& fit) const;
   bool run(Axis_fit& fit, double widening) const;
   std::vector<Index> gather(Axis_fit& fit) const;
-  void trim(Axis_fit& fit) const;
+  void prolong(Axis_fit& fit) const;
+  void trim(const Vec3& base, const Vec3& tip, Axis_fit& fit) const;
   void judge(Axis_fit& fit, const std::vector<Index>& points, Candidate& candidate) const;
   /// Points of each node, and the length of axis they stand for, over a window of nodes.
   std::pair<std::vector<double>, std::vector<double>> counts(const Axis_fit& fit) const;
@@ -361,19 +367,65 @@ inline std::vector<Index> Chain_fit::gather(Axis_fit& fit) const
   return points;
 }
 
-/// Cuts what lies before the first and behind the last point.
-inline void Chain_fit::trim(Axis_fit& fit) const
+/// Adds straight pieces at both ends; the points decide later how much of them stays.
+inline void Chain_fit::prolong(Axis_fit& fit) const
 {
   Axis& axis = fit.axis();
-  double begin = double(axis.size()), end = -1;
-  std::vector<double> at;
-  for (const Axis_place& p : fit.places())
-    if (p.distance < radius_at(axis, p) + m_rules.cover_offset * m_scan.spacing)
-      at.push_back(double(p.segment) + std::min(1.0, std::max(0.0, p.share)));
-  if (at.size() < 2)
+  const auto piece = [&](bool is_tip) {
+    const std::size_t n = axis.size();
+    const auto node = [&](std::size_t k) -> const Axis_node& { return axis[is_tip ? n - 1 - k : k]; };
+    const double reach = 2 * node(0).radius + 4 * m_scan.spacing;
+    std::size_t k = 1;
+    while (k + 1 < n && (node(k).point - node(0).point).norm() < reach)
+      ++k;
+    Vec3 d = node(0).point - node(k).point;
+    const double length = d.norm();
+    Axis_node end = node(0);
+    if (length > 0)
+      end.point += d / length *
+                   (m_rules.extension * end.radius + m_rules.extension_offset * m_scan.spacing);
+    return end;
+  };
+  const Axis_node before = piece(false), behind = piece(true);
+  axis.insert(axis.begin(), before);
+  axis.push_back(behind);
+}
+
+/// Cuts the ends where the points end: outwards from the places of `base` and `tip`, as far as there are enough.
+inline void Chain_fit::trim(const Vec3& base, const Vec3& tip, Axis_fit& fit) const
+{
+  Axis& axis = fit.axis();
+  const std::size_t segments_of_axis = axis.size() - 1;
+  std::vector<double> count(segments_of_axis, 0), lowest(segments_of_axis, 1), highest(segments_of_axis, 0);
+  for (const Axis_place& p : fit.places()) {
+    const double r = radius_at(axis, p);
+    if (p.distance > r + std::max(m_rules.cover_offset * m_scan.spacing, m_rules.cover_factor * r))
+      continue;
+    if (p.share < 0 || p.share > 1)
+      continue;
+    count[p.segment] += 1;
+    lowest[p.segment] = std::min(lowest[p.segment], p.share);
+    highest[p.segment] = std::max(highest[p.segment], p.share);
+  }
+  const auto is_supported = [&](std::size_t s) {
+    const double expected = 2 * 3.14159265358979323846 * axis[s].radius * m_set.density *
+                            (axis[s + 1].point - axis[s].point).norm();
+    return count[s] >= std::max(1.0, m_rules.extension_share * expected);
+  };
+  std::size_t from = nearest_place(axis, base).segment, to = nearest_place(axis, tip).segment;
+  if (from > to)
+    std::swap(from, to);
+  while (from < to && count[from] == 0)
+    ++from;
+  while (to > from && count[to] == 0)
+    --to;
+  if (count[from] == 0)
     return;
-  begin = *std::min_element(at.begin(), at.end());
-  end = *std::max_element(at.begin(), at.end());
+  while (from > 0 && is_supported(from - 1))
+    --from;
+  while (to + 1 < segments_of_axis && is_supported(to + 1))
+    ++to;
+  const double begin = double(from) + lowest[from], end = double(to) + highest[to];
   Axis result;
   const auto cut = [&](double a) {
     const std::size_t s = std::min(axis.size() - 2, static_cast<std::size_t>(a));
