@@ -48,6 +48,7 @@ struct Axis_set
 struct Density_sample
 {
   double density; ///< points per area [1/L^2]
+  double radius; ///< of the section [L]
   Vec3 place;
 };
 
@@ -64,8 +65,7 @@ public:
   }
   void add_densities(const std::vector<Density_sample>& samples)
   {
-    for (const Density_sample& s : samples)
-      m_densities.push_back(s.density);
+    m_densities.insert(m_densities.end(), samples.begin(), samples.end());
   }
 
   /// Updates noise and density where there is enough to go by.
@@ -76,15 +76,21 @@ public:
       set.noise = 1.4826 * double(median(copy)); // standard deviation from the median of |e|
     }
     if (m_densities.size() >= enough_densities) {
-      std::vector<double> copy = m_densities;
-      set.density = median(copy);
+      std::vector<double> thick, all;
+      for (const Density_sample& s : m_densities) {
+        all.push_back(s.density);
+        if (s.radius > thick_radius * set.noise)
+          thick.push_back(s.density);
+      }
+      set.density = median(thick.size() >= enough_densities ? thick : all);
     }
   }
 
 private:
   static constexpr std::size_t capacity = 40000, enough_deviations = 200, enough_densities = 8;
+  static constexpr double thick_radius = 6; ///< in noise: here the radius, hence the density, has no bias
   std::vector<float> m_deviations;
-  std::vector<double> m_densities;
+  std::vector<Density_sample> m_densities;
 };
 
 } // namespace skeleton

@@ -477,7 +477,7 @@ Chain_fit::judge(Axis_fit& fit, const std::vector<Index>& points, Candidate& can
   for (std::size_t k = 2; k + 2 < axis.size(); ++k)
     if (axis[k].is_measured && axis[k].radius > 2.5 * s && axis[k].radius_error < 0.15 * axis[k].radius)
       candidate.densities.push_back(
-          {count[k] / (2 * 3.14159265358979323846 * axis[k].radius * length[k]), axis[k].point});
+          {count[k] / (2 * 3.14159265358979323846 * axis[k].radius * length[k]), axis[k].radius, axis[k].point});
   candidate.axis = axis;
   for (Axis_node& node : candidate.axis) {
     const double r2 = node.radius * node.radius - m_rules.noise_share * s * s;
