@@ -39,7 +39,8 @@ struct Chain_rules
   double expected_share = 0.25; ///< circles with fewer points than this share of the expected straddle several twigs
   double prior_share = 0.5; ///< standard deviation of the radius by counting, in radii ...
   double prior_offset = 0.15; ///< ... and spacings
-  double noise_share = 0.5; ///< r^2 is reduced by this many noise^2: noise inflates thin branches
+  double noise_share = 0.2; ///< r^2 is reduced by this many noise^2: noise inflates thin branches
+  double thick = 4; ///< branches of at least this radius are followed beyond their tips
   double extension = 3; ///< how far both ends are prolonged on trial, in radii ...
   double extension_offset = 4; ///< ... and spacings
   double extension_share = 0.3; ///< share of the expected points that a prolongation needs
@@ -86,6 +87,11 @@ public:
     if (points.size() < m_rules.lowest_count || !run(fit, 1))
       return candidate;
     trim(base, tip, fit);
+    if (follow(fit)) {
+      points = gather(fit);
+      if (!run(fit, 1))
+        return candidate;
+    }
     judge(fit, points, candidate);
     return candidate;
   }
@@ -104,7 +110,8 @@ private:
   void set_priors(Axis_fit& fit) const;
   bool run(Axis_fit& fit, double widening) const;
   std::vector<Index> gather(Axis_fit& fit) const;
-  void prolong(Axis_fit& fit) const;
+  void prolong(Axis_fit& fit, bool do_base = true) const;
+  bool follow(Axis_fit& fit) const;
   void trim(const Vec3& base, const Vec3& tip, Axis_fit& fit) const;
   void judge(Axis_fit& fit, const std::vector<Index>& points, Candidate& candidate) const;
   /// Points of each node, and the length of axis they stand for, over a window of nodes.
@@ -368,7 +375,7 @@ inline std::vector<Index> Chain_fit::gather(Axis_fit& fit) const
 }
 
 /// Adds straight pieces at both ends; the points decide later how much of them stays.
-inline void Chain_fit::prolong(Axis_fit& fit) const
+inline void Chain_fit::prolong(Axis_fit& fit, bool do_base) const
 {
   Axis& axis = fit.axis();
   const auto piece = [&](bool is_tip) {
@@ -387,8 +394,49 @@ inline void Chain_fit::prolong(Axis_fit& fit) const
     return end;
   };
   const Axis_node before = piece(false), behind = piece(true);
-  axis.insert(axis.begin(), before);
+  if (do_base)
+    axis.insert(axis.begin(), before);
   axis.push_back(behind);
+}
+
+/*!
+  Follows a thick branch beyond its tip, piece by piece, as long as there are points around it: paths over the surface
+  end at occlusions, or turn into a side branch. Returns whether the axis grew.
+*/
+inline bool Chain_fit::follow(Axis_fit& fit) const
+{
+  constexpr int most_pieces = 100;
+  const double u = m_scan.spacing;
+  Axis& axis = fit.axis();
+  bool is_longer = false;
+  for (int piece = 0; piece < most_pieces; ++piece) {
+    const double radius = axis.back().radius;
+    if (radius < m_rules.thick * u || axis.size() < 4)
+      break;
+    double tail = 0;
+    std::size_t b = axis.size() - 1;
+    while (b > 0 && (tail < 4 * radius + 8 * u || axis.size() - b < 4)) {
+      tail += (axis[b].point - axis[b - 1].point).norm();
+      --b;
+    }
+    Axis_fit tail_fit(Axis(axis.begin() + static_cast<std::ptrdiff_t>(b), axis.end()),
+                      Fit_model::of(u, m_set.noise));
+    const Vec3 base = tail_fit.axis().front().point, tip = tail_fit.axis().back().point;
+    prolong(tail_fit, false);
+    const double wanted = (tail_fit.axis().back().point - tip).norm();
+    if (gather(tail_fit).size() < m_rules.lowest_count || !run(tail_fit, 1.5))
+      break;
+    trim(base, tip, tail_fit);
+    const Axis& longer = tail_fit.axis();
+    const double gained = length_of(longer) - tail;
+    const double ratio = longer.back().radius / radius;
+    if (gained < 0.3 * wanted || ratio < 0.6 || ratio > 1.3)
+      break;
+    axis.resize(b + 1);
+    axis.insert(axis.end(), longer.begin() + 1, longer.end());
+    is_longer = true;
+  }
+  return is_longer;
 }
 
 /// Cuts the ends where the points end: outwards from the places of `base` and `tip`, as far as there are enough.

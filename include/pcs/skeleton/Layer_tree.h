@@ -68,6 +68,7 @@ struct Layer_tree
   std::vector<Index> parent; ///< `none` at the sources
   std::vector<Vec3> center; ///< mean of the points of a node
   std::vector<double> spread; ///< root of the mean squared distance from it [L]
+  std::vector<Index> next_in_ring; ///< the child that continues a thick ring; itself: the ring ends here; `none`: no ring
   std::vector<Index> first; ///< offsets into `point`
   std::vector<Index> point; ///< the points node by node
 
@@ -185,6 +186,7 @@ layer_tree(const Scan& scan, const std::vector<Link>& links, const Shortest_path
   internal::number_layer_parts(links, layer, tree);
   internal::collect_nodes(scan, tree);
   internal::vote_for_parents(paths.predecessor, tree);
+  tree.next_in_ring.assign(tree.size(), none);
   return tree;
 }
 

@@ -58,7 +58,7 @@ inline Vec3 direction_to(const Layer_tree& tree, Index node)
 
 } // namespace internal
 
-/// The chains, longest first. A chain begins with the first node that is not its parent's. O(n log n).
+/// The chains: the longest that begins at a source, then the others, longest first. A chain begins with the first node that is not its parent's. O(n log n).
 inline std::vector<Chain> chains_of(const Scan& scan, const Layer_tree& tree)
 {
   const std::size_t m = tree.size();
@@ -76,6 +76,9 @@ inline std::vector<Chain> chains_of(const Scan& scan, const Layer_tree& tree)
         child[next[tree.parent[v]]++] = v;
   }
   const auto main_child = [&](Index v) {
+    const Index in_ring = tree.next_in_ring[v];
+    if (in_ring != none)
+      return in_ring == v ? none : in_ring;
     const Vec3 along = internal::direction_to(tree, v);
     Index best = none;
     double best_score = -1;
@@ -114,6 +117,11 @@ inline std::vector<Chain> chains_of(const Scan& scan, const Layer_tree& tree)
   std::stable_sort(chains.begin(), chains.end(), [](const Chain& a, const Chain& b) {
     return a.length > b.length;
   });
+  const auto trunk = std::find_if(chains.begin(), chains.end(), [](const Chain& c) {
+    return c.parent_node == none;
+  });
+  if (trunk != chains.end())
+    std::rotate(chains.begin(), trunk, trunk + 1);
   return chains;
 }
 

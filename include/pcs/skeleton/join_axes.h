@@ -115,6 +115,23 @@ private:
   Joint best_place(const internal::Axis_end& end, Index b, const std::vector<Index>& nodes) const;
   double cost(const internal::Axis_end& end, Index b, const Axis_place& place) const;
   std::vector<Joint> options_of(Index a, const neighborhood::Nearest_neighbors& search) const;
+  static std::vector<std::uint8_t> reached_from(Index root, const std::vector<Joint>& joints)
+  {
+    const std::size_t n = joints.size();
+    std::vector<std::vector<Index>> children(n);
+    for (Index a = 0; a < n; ++a)
+      if (joints[a].parent != none)
+        children[joints[a].parent].push_back(a);
+    std::vector<std::uint8_t> is_reached(n, 0);
+    std::vector<Index> stack{root};
+    while (!stack.empty()) {
+      const Index a = stack.back();
+      stack.pop_back();
+      is_reached[a] = 1;
+      stack.insert(stack.end(), children[a].begin(), children[a].end());
+    }
+    return is_reached;
+  }
   static std::vector<Joint> choose(Index root, const std::vector<std::vector<Joint>>& options);
 
   const Axis_set& m_set;
@@ -218,8 +235,8 @@ Axis_joiner::options_of(Index a, const neighborhood::Nearest_neighbors& search) 
 }
 
 /*!
-  Every axis takes its cheapest option. Cycles are then broken one by one where the change to another option, outside
-  of the cycle and of all that hangs on it, costs least.
+  Every axis takes its cheapest option. What then does not hang on the root, because it runs in a circle, is led back
+  axis by axis where the change to an option that does costs least.
 */
 inline std::vector<Joint> Axis_joiner::choose(Index root,
                                               const std::vector<std::vector<Joint>>& options)
@@ -229,59 +246,32 @@ inline std::vector<Joint> Axis_joiner::choose(Index root,
   for (Index a = 0; a < n; ++a)
     if (a != root && !options[a].empty())
       joints[a] = options[a].front();
-  // ends[a]: the axis without parent that the way up from `a` ends at; `none` on the way into a cycle
-  const auto top_of = [&](Index a) {
-    for (std::size_t steps = 0; steps <= n; ++steps) {
-      if (joints[a].parent == none)
-        return a;
-      a = joints[a].parent;
-    }
-    return none;
-  };
-  for (Index a = 0; a < n; ++a) {
-    while (true) {
-      // walk up; if we come back, `cycle` holds the ring
-      std::vector<Index> way;
-      std::vector<std::uint8_t> seen(0);
-      Index b = a;
-      std::size_t steps = 0;
-      while (b != none && steps <= n) {
-        b = joints[b].parent;
-        ++steps;
-      }
-      if (b == none)
-        break; // no cycle above
-      b = a;
-      for (std::size_t k = 0; k < n; ++k)
-        b = joints[b].parent; // now inside of the ring
-      const Index begin = b;
-      do {
-        way.push_back(b);
-        b = joints[b].parent;
-      } while (b != begin);
-      double least = std::numeric_limits<double>::infinity();
-      Index who = *std::max_element(way.begin(), way.end());
-      Joint instead; // none: cut off
-      for (const Index w : way)
-        for (const Joint& o : options[w]) {
-          const double change = o.cost - joints[w].cost;
-          if (change >= least)
-            break;
-          const Joint old = joints[w];
-          joints[w] = Joint();
-          const bool is_outside = top_of(o.parent) != w && top_of(o.parent) != none;
-          joints[w] = old;
-          if (is_outside) {
-            least = change;
-            who = w;
+  while (true) {
+    const std::vector<std::uint8_t> is_reached = reached_from(root, joints);
+    Index who = none;
+    Joint instead;
+    double least = std::numeric_limits<double>::infinity();
+    for (Index a = 0; a < n; ++a) {
+      if (is_reached[a])
+        continue;
+      for (const Joint& o : options[a])
+        if (is_reached[o.parent]) {
+          if (o.cost - joints[a].cost < least) {
+            least = o.cost - joints[a].cost;
+            who = a;
             instead = o;
-            break;
           }
+          break; // options are sorted
         }
-      joints[who] = instead;
     }
+    if (who == none) {
+      for (Index a = 0; a < n; ++a)
+        if (!is_reached[a])
+          joints[a] = Joint();
+      return joints;
+    }
+    joints[who] = instead;
   }
-  return joints;
 }
 
 } // namespace skeleton

@@ -26,6 +26,9 @@ struct Ring_rules
   double band = 0.2; ///< half width of the ring, in radii ...
   double band_offset = 1.5; ///< ... and spacings
   double share = 0.75; ///< of the points of an arc that lie in the band [-]
+  double main_share = 0.4; ///< the same for the arc with the most points: a branch may leave there [-]
+  double lasting = 2; ///< thicker than this many smallest ones, a ring ends rather than become a branch [-],
+  int age = 8; ///< layers in which such a ring was seen
   double inertia = 0.7; ///< of the radius from layer to layer [-]
   int sectors = 6; ///< of 12, that a ring must see to correct its centre
 };
@@ -37,6 +40,7 @@ struct Ring
 {
   Vec3 center = Vec3::Zero(), along = Vec3::Zero();
   double radius = 0; ///< 0: no ring
+  int age = 0; ///< layers in which it was seen
 };
 
 class Ring_merger
@@ -44,7 +48,7 @@ class Ring_merger
 public:
   Ring_merger(const Scan& scan, const Layer_tree& tree, const Ring_rules& rules)
     : m_scan(scan), m_tree(tree), m_rules(rules), m_leader(tree.size()), m_ring(tree.size()),
-      m_members(tree.size())
+      m_members(tree.size()), m_next(tree.size(), none)
   {
   }
 
@@ -70,13 +74,19 @@ public:
       for (const Index w : m_members[v])
         group.insert(group.end(), children[w].begin(), children[w].end());
       std::sort(group.begin(), group.end());
-      merge_group(m_ring[v], group);
+      m_next[v] = merge_group(m_ring[v], group);
+      if (m_next[v] == none && m_ring[v].age >= m_rules.age && m_ring[v].radius > m_rules.lasting * m_rules.smallest * m_scan.spacing)
+        m_next[v] = v;
     }
     return m_leader;
   }
 
+  /// The leader that continues the ring of a leader; itself where a thick ring ends.
+  const std::vector<Index>& next() const { return m_next; }
+
 private:
-  bool is_arc(const Ring& ring, Index v) const
+  /// Points of `v` that lie in the band of the ring.
+  std::size_t count_inside(const Ring& ring, Index v) const
   {
     const double band = m_rules.band * ring.radius + m_rules.band_offset * m_scan.spacing;
     std::size_t inside = 0;
@@ -84,25 +94,37 @@ private:
       const Vec3 d = m_scan.points[m_tree.point[k]] - ring.center;
       inside += std::abs((d - d.dot(ring.along) * ring.along).norm() - ring.radius) < band;
     }
-    return double(inside) >= m_rules.share * double(m_tree.count(v));
+    return inside;
   }
 
-  void merge_group(const Ring& ring, const std::vector<Index>& group)
+  Index merge_group(const Ring& ring, const std::vector<Index>& group)
   {
     Index first = none;
-    if (ring.radius > 0)
+    if (ring.radius > 0) {
+      std::vector<std::size_t> inside;
       for (const Index c : group)
-        if (is_arc(ring, c)) {
-          if (first == none)
-            first = c;
-          else {
-            m_leader[c] = first;
-            m_members[first].push_back(c);
-          }
+        inside.push_back(count_inside(ring, c));
+      std::size_t most = 0; // this one may carry the base of a branch as well
+      for (std::size_t k = 0; k < group.size(); ++k)
+        if (inside[k] > inside[most])
+          most = k;
+      for (std::size_t k = 0; k < group.size(); ++k) {
+        const Index c = group[k];
+        const double share = k == most ? m_rules.main_share : m_rules.share;
+        if (double(inside[k]) < share * double(m_tree.count(c)))
+          continue;
+        if (first == none)
+          first = c;
+        else {
+          m_leader[c] = first;
+          m_members[first].push_back(c);
         }
+      }
+    }
     for (const Index c : group)
       if (m_leader[c] == c)
         follow(c, c == first ? ring : Ring());
+    return first;
   }
 
   /// Corrects the ring by the points of `v` and all that was merged into it, or looks for a new one.
@@ -140,9 +162,10 @@ private:
       return;
     const Vec3 center = mean + c.center.x() * e1 + c.center.y() * e2;
     if (before.radius == 0)
-      ring = {center, along, c.radius};
+      ring = {center, along, c.radius, 1};
     else if (std::abs(c.radius - before.radius) < 0.3 * before.radius) {
       const double a = m_rules.inertia;
+      ++ring.age;
       ring.radius = a * before.radius + (1 - a) * c.radius;
       const Vec3 step = center - before.center;
       ring.center = (1 - a) * center + a * ring.center;
@@ -174,6 +197,7 @@ private:
   std::vector<Index> m_leader;
   std::vector<Ring> m_ring;
   std::vector<std::vector<Index>> m_members;
+  std::vector<Index> m_next;
 };
 
 } // namespace internal
@@ -181,7 +205,8 @@ private:
 /// Merges arcs of one ring into one node.
 inline void merge_rings(const Scan& scan, const Ring_rules& rules, Layer_tree& tree)
 {
-  const std::vector<Index> leader = internal::Ring_merger(scan, tree, rules)();
+  internal::Ring_merger merger(scan, tree, rules);
+  const std::vector<Index>& leader = merger();
   std::vector<Index> number(tree.size(), none), parent;
   for (Index v = 0; v < tree.size(); ++v)
     if (leader[v] == v) {
@@ -191,6 +216,10 @@ inline void merge_rings(const Scan& scan, const Ring_rules& rules, Layer_tree& t
   for (Index& v : tree.node_of_point)
     if (v != none)
       v = number[leader[v]];
+  tree.next_in_ring.assign(parent.size(), none);
+  for (Index v = 0; v < tree.size(); ++v)
+    if (leader[v] == v && merger.next()[v] != none)
+      tree.next_in_ring[number[v]] = number[merger.next()[v]];
   tree.parent = std::move(parent);
   internal::collect_nodes(scan, tree);
 }
