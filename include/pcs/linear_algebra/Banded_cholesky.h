@@ -28,7 +28,10 @@ public:
   std::size_t size() const { return m_size; }
 
   /// Entry of the lower half: `j <= i <= j + Bandwidth`.
-  double& operator()(std::size_t i, std::size_t j) { return m_rows[i * width + Bandwidth - (i - j)]; }
+  double& operator()(std::size_t i, std::size_t j)
+  {
+    return m_rows[i * width + Bandwidth - (i - j)];
+  }
   double operator()(std::size_t i, std::size_t j) const
   {
     return m_rows[i * width + Bandwidth - (i - j)];

@@ -117,10 +117,9 @@ private:
     }
     bool addPoint(double d, std::uint32_t i)
     {
-      const bool is_closer =
-          d < best.squared_distance ||
-          (is_found && d == best.squared_distance &&
-           lexicographically_less((*points)[i], (*points)[best.index]));
+      const bool is_closer = d < best.squared_distance ||
+                             (is_found && d == best.squared_distance &&
+                              lexicographically_less((*points)[i], (*points)[best.index]));
       if (is_closer && (*is_wanted)(i)) {
         best = {i, d};
         is_found = true;

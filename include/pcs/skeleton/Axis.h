@@ -18,8 +18,8 @@ namespace skeleton {
 struct Axis_node
 {
   Vec3 point = Vec3::Zero();
-  double radius = 0; ///< [L]
-  double radius_error = 0; ///< standard error [L]
+  double radius = 0;        ///< [L]
+  double radius_error = 0;  ///< standard error [L]
   bool is_measured = false; ///< the points decide the radius, not the prior
 };
 
@@ -30,7 +30,8 @@ using Axis = std::vector<Axis_node>;
 struct Axis_place
 {
   Index segment = 0; ///< between nodes `segment` and `segment + 1`
-  double share = 0; ///< position on the segment; outside of [0, 1] only before the first and behind the last node
+  double share =
+      0; ///< position on the segment; outside of [0, 1] only before the first and behind the last node
   double distance = 0; ///< from the place clamped to the axis [L]
 };
 

@@ -21,12 +21,12 @@ namespace skeleton {
 /// What the fit assumes. Lengths are in the unit of the scan.
 struct Fit_model
 {
-  double noise = 0; ///< standard deviation of a point from the surface [L]
-  double bark = 0.04; ///< the same relative to the radius [-]
+  double noise = 0;     ///< standard deviation of a point from the surface [L]
+  double bark = 0.04;   ///< the same relative to the radius [-]
   double axis_bend = 0; ///< standard deviation of the curvature of an axis [1/L]
   double taper_offset = 0, taper_scale = 1; ///< radius'' = (taper_offset + r) / taper_scale^2 [L]
-  double correlation = 1; ///< the length on which a bend is one event [L]
-  double lowest_radius = 0; ///< [L]
+  double correlation = 1;                   ///< the length on which a bend is one event [L]
+  double lowest_radius = 0;                 ///< [L]
 
   /// Defaults in multiples of the spacing `u` and the noise.
   static Fit_model of(double u, double noise)

@@ -30,7 +30,7 @@ struct Axis_set
   std::vector<Fitted_axis> axes;
   std::vector<Index> axis_of_point; ///< `none`: not explained by any axis
   std::vector<Index> segment_of_point;
-  double noise = 0; ///< standard deviation of points from the surface [L]
+  double noise = 0;   ///< standard deviation of points from the surface [L]
   double density = 0; ///< points per area of the surface; 0: not known yet [1/L^2]
 
   bool is_covered(Index i) const { return axis_of_point[i] != none; }
@@ -48,7 +48,7 @@ struct Axis_set
 struct Density_sample
 {
   double density; ///< points per area [1/L^2]
-  double radius; ///< of the section [L]
+  double radius;  ///< of the section [L]
   Vec3 place;
 };
 
@@ -61,7 +61,8 @@ public:
     const std::size_t room = capacity - std::min(capacity, m_deviations.size());
     m_deviations.insert(m_deviations.end(),
                         values.begin(),
-                        values.begin() + static_cast<std::ptrdiff_t>(std::min(room, values.size())));
+                        values.begin() +
+                            static_cast<std::ptrdiff_t>(std::min(room, values.size())));
   }
   void add_densities(const std::vector<Density_sample>& samples)
   {
@@ -88,7 +89,8 @@ public:
 
 private:
   static constexpr std::size_t capacity = 40000, enough_deviations = 200, enough_densities = 8;
-  static constexpr double thick_radius = 6; ///< in noise: here the radius, hence the density, has no bias
+  static constexpr double thick_radius =
+      6; ///< in noise: here the radius, hence the density, has no bias
   std::vector<float> m_deviations;
   std::vector<Density_sample> m_densities;
 };

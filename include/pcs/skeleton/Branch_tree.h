@@ -36,7 +36,7 @@ struct Branch
 struct Branch_tree
 {
   std::vector<Branch_node> nodes;
-  std::vector<Branch> branches; ///< parents before their children
+  std::vector<Branch> branches;     ///< parents before their children
   std::vector<Index> node_of_point; ///< per point of the scan; `none`: not explained
   std::size_t number_of_unreached_axes = 0;
 
@@ -118,7 +118,8 @@ private:
       places.assign(axis.size(), none);
       std::size_t next = 0;
       const auto add_seats = [&](double until) { // all seats on the way to `until`
-        for (; next < seats.size() && (is_reversed ? seats[next].at >= until : seats[next].at <= until);
+        for (; next < seats.size() &&
+               (is_reversed ? seats[next].at >= until : seats[next].at <= until);
              ++next) {
           const double at = seats[next].at;
           const std::size_t s = std::min(axis.size() - 2, static_cast<std::size_t>(at));
@@ -127,9 +128,8 @@ private:
           static_cast<Axis_node&>(node) = t < 0.5 ? axis[s] : axis[s + 1];
           node.point = (1 - t) * axis[s].point + t * axis[s + 1].point;
           node.radius = (1 - t) * axis[s].radius + t * axis[s + 1].radius;
-          const bool is_there =
-              before != none && before >= m_first_node[a] &&
-              (m_tree.nodes[before].point - node.point).norm() < 1e-3 * m_spacing;
+          const bool is_there = before != none && before >= m_first_node[a] &&
+                                (m_tree.nodes[before].point - node.point).norm() < 1e-3 * m_spacing;
           if (!is_there)
             before = add(node, before);
           stack.emplace_back(seats[next].axis, before);
@@ -142,7 +142,8 @@ private:
           add_seats(is_reversed ? double(k) + 1e-9 : double(k) - 1e-9);
         Branch_node node;
         static_cast<Axis_node&>(node) = axis[k];
-        const bool is_there = i > 0 && (m_tree.nodes[before].point - node.point).norm() < 1e-3 * m_spacing;
+        const bool is_there =
+            i > 0 && (m_tree.nodes[before].point - node.point).norm() < 1e-3 * m_spacing;
         if (!is_there)
           before = add(node, before);
         places[k] = before;
@@ -216,8 +217,7 @@ private:
         const double norm = from.norm() * to.norm();
         const double cosine = norm > 0 ? from.dot(to) / norm : 0;
         const double radius = 0.5 * (m_tree.nodes[c].radius + m_tree.nodes[w].radius);
-        const double score =
-            radius * (1.3 + cosine) * std::sqrt(m_height[c] + 4 * m_spacing);
+        const double score = radius * (1.3 + cosine) * std::sqrt(m_height[c] + 4 * m_spacing);
         if (score > best) {
           best = score;
           m_next[v] = c;
@@ -258,7 +258,8 @@ private:
         append(base);
       }
       for (Index v = start; v != none; v = m_next[v]) {
-        const bool is_double = v != start && (m_tree.nodes[v].point - nodes[before].point).norm() < tiny;
+        const bool is_double =
+            v != start && (m_tree.nodes[v].point - nodes[before].point).norm() < tiny;
         if (!is_double)
           append(m_tree.nodes[v]);
         number[v] = before;

@@ -26,32 +26,33 @@ namespace skeleton {
 struct Chain_rules
 {
   Node_spacing node_spacing{0.6, 2, 8}; ///< the factor is of the radius
-  double gather_factor = 1.25; ///< points within this many radii ...
-  double gather_offset = 1.7; ///< ... and this many spacings are looked at again
-  double cover_factor = 0.15; ///< points this many radii outside of the surface are explained,
-  double cover_offset = 1.1; ///< ... or this many spacings
-  double explained = 0.4; ///< share of its own points that a chain must explain
-  double protrusion = 3; ///< how far an axis must leave those that are there
+  double gather_factor = 1.25;          ///< points within this many radii ...
+  double gather_offset = 1.7;           ///< ... and this many spacings are looked at again
+  double cover_factor = 0.15;     ///< points this many radii outside of the surface are explained,
+  double cover_offset = 1.1;      ///< ... or this many spacings
+  double explained = 0.4;         ///< share of its own points that a chain must explain
+  double protrusion = 3;          ///< how far an axis must leave those that are there
   double protrusion_radius = 0.3; ///< ... and this many radii of those
-  int sectors = 5; ///< of 12, that a circle must see to be a start
+  int sectors = 5;                ///< of 12, that a circle must see to be a start
   double circle_deviation = 0.25; ///< largest deviation of such a circle in radii
-  double circle_noise = 2.5; ///< smallest radius of such a circle in noise
-  double expected_share = 0.25; ///< circles with fewer points than this share of the expected straddle several twigs
-  double prior_share = 0.5; ///< standard deviation of the radius by counting, in radii ...
+  double circle_noise = 2.5;      ///< smallest radius of such a circle in noise
+  double expected_share =
+      0.25; ///< circles with fewer points than this share of the expected straddle several twigs
+  double prior_share = 0.5;   ///< standard deviation of the radius by counting, in radii ...
   double prior_offset = 0.15; ///< ... and spacings
-  double noise_share = 0.2; ///< r^2 is reduced by this many noise^2: noise inflates thin branches
-  double thick = 4; ///< branches of at least this radius are followed beyond their tips
-  double extension = 3; ///< how far both ends are prolonged on trial, in radii ...
-  double extension_offset = 4; ///< ... and spacings
+  double noise_share = 0.2;   ///< r^2 is reduced by this many noise^2: noise inflates thin branches
+  double thick = 4;           ///< branches of at least this radius are followed beyond their tips
+  double extension = 3;       ///< how far both ends are prolonged on trial, in radii ...
+  double extension_offset = 4;  ///< ... and spacings
   double extension_share = 0.3; ///< share of the expected points that a prolongation needs
   std::size_t lowest_count = 4; ///< points of an axis
-  int iterations = 4; ///< of each of the two fits
+  int iterations = 4;           ///< of each of the two fits
 };
 
 /// An axis that is not yet accepted.
 struct Candidate
 {
-  Axis axis; ///< empty: none
+  Axis axis;                           ///< empty: none
   std::vector<Index> points, segments; ///< what it explains, points in increasing order
   std::size_t number_of_own_points = 0;
   std::vector<float> deviations;
@@ -153,8 +154,9 @@ inline Chain_fit::Start Chain_fit::start_of(const Layer_tree& tree, const Chain&
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
     Vec3 along = solver.eigenvectors().col(2);
-    const Vec3 from = chain.parent_node != none ? Vec3(axis[0].point - tree.center[chain.parent_node])
-                                                : Vec3(Vec3::UnitZ());
+    const Vec3 from = chain.parent_node != none
+                          ? Vec3(axis[0].point - tree.center[chain.parent_node])
+                          : Vec3(Vec3::UnitZ());
     if (along.dot(from) < 0)
       along = -along;
     const double half = 0.5 * layer_thickness * u;
@@ -167,8 +169,7 @@ inline Chain_fit::Start Chain_fit::start_of(const Layer_tree& tree, const Chain&
     for (int pass = 0; pass < 2; ++pass) { // the layers are ragged
       Axis smooth = axis;
       for (std::size_t k = 1; k + 1 < axis.size(); ++k)
-        smooth[k].point =
-            0.25 * axis[k - 1].point + 0.5 * axis[k].point + 0.25 * axis[k + 1].point;
+        smooth[k].point = 0.25 * axis[k - 1].point + 0.5 * axis[k].point + 0.25 * axis[k + 1].point;
       axis = smooth;
     }
     // the centres of the outermost layers lie half a layer inside
@@ -191,8 +192,8 @@ inline Chain_fit::Start Chain_fit::start_of(const Layer_tree& tree, const Chain&
     count[k] += 1;
   }
   for (std::size_t k = 0; k < axis.size(); ++k)
-    axis[k].radius =
-        count[k] > 0 ? std::max(0.2 * u, std::sqrt(sum[k] / count[k])) : (k > 0 ? axis[k - 1].radius : 0.2 * u);
+    axis[k].radius = count[k] > 0 ? std::max(0.2 * u, std::sqrt(sum[k] / count[k]))
+                                  : (k > 0 ? axis[k - 1].radius : 0.2 * u);
   return start;
 }
 
@@ -291,8 +292,8 @@ inline void Chain_fit::start_at_circles(Axis_fit& fit) const
       axis[k].point += circles[k].center.x() * e1[k] + circles[k].center.y() * e2[k];
       axis[k].radius = circles[k].radius;
     } else if (m_set.density > 0 && priors.second[k] > 0) {
-      const double r = priors.first[k] /
-                       (2 * 3.14159265358979323846 * m_set.density * priors.second[k]);
+      const double r =
+          priors.first[k] / (2 * 3.14159265358979323846 * m_set.density * priors.second[k]);
       axis[k].radius = std::max(0.1 * u, std::min(axis[k].radius, r));
     }
   }
@@ -362,8 +363,7 @@ inline std::vector<Index> Chain_fit::gather(Axis_fit& fit) const
       }
     }
     const Axis_place place = nearest_place(axis, node, p);
-    if (place.distance >
-        m_rules.gather_factor * radius_at(axis, place) + m_rules.gather_offset * u)
+    if (place.distance > m_rules.gather_factor * radius_at(axis, place) + m_rules.gather_offset * u)
       continue;
     points.push_back(found[b].first);
     segments.push_back(place.segment);
@@ -380,7 +380,9 @@ inline void Chain_fit::prolong(Axis_fit& fit, bool do_base) const
   Axis& axis = fit.axis();
   const auto piece = [&](bool is_tip) {
     const std::size_t n = axis.size();
-    const auto node = [&](std::size_t k) -> const Axis_node& { return axis[is_tip ? n - 1 - k : k]; };
+    const auto node = [&](std::size_t k) -> const Axis_node& {
+      return axis[is_tip ? n - 1 - k : k];
+    };
     const double reach = 2 * node(0).radius + 4 * m_scan.spacing;
     std::size_t k = 1;
     while (k + 1 < n && (node(k).point - node(0).point).norm() < reach)
@@ -389,8 +391,8 @@ inline void Chain_fit::prolong(Axis_fit& fit, bool do_base) const
     const double length = d.norm();
     Axis_node end = node(0);
     if (length > 0)
-      end.point += d / length *
-                   (m_rules.extension * end.radius + m_rules.extension_offset * m_scan.spacing);
+      end.point +=
+          d / length * (m_rules.extension * end.radius + m_rules.extension_offset * m_scan.spacing);
     return end;
   };
   const Axis_node before = piece(false), behind = piece(true);
@@ -444,7 +446,8 @@ inline void Chain_fit::trim(const Vec3& base, const Vec3& tip, Axis_fit& fit) co
 {
   Axis& axis = fit.axis();
   const std::size_t segments_of_axis = axis.size() - 1;
-  std::vector<double> count(segments_of_axis, 0), lowest(segments_of_axis, 1), highest(segments_of_axis, 0);
+  std::vector<double> count(segments_of_axis, 0), lowest(segments_of_axis, 1),
+      highest(segments_of_axis, 0);
   for (const Axis_place& p : fit.places()) {
     const double r = radius_at(axis, p);
     if (p.distance > r + std::max(m_rules.cover_offset * m_scan.spacing, m_rules.cover_factor * r))
@@ -523,9 +526,12 @@ Chain_fit::judge(Axis_fit& fit, const std::vector<Index>& points, Candidate& can
   if (candidate.points.size() < m_rules.lowest_count)
     return;
   for (std::size_t k = 2; k + 2 < axis.size(); ++k)
-    if (axis[k].is_measured && axis[k].radius > 2.5 * s && axis[k].radius_error < 0.15 * axis[k].radius)
+    if (axis[k].is_measured && axis[k].radius > 2.5 * s &&
+        axis[k].radius_error < 0.15 * axis[k].radius)
       candidate.densities.push_back(
-          {count[k] / (2 * 3.14159265358979323846 * axis[k].radius * length[k]), axis[k].radius, axis[k].point});
+          {count[k] / (2 * 3.14159265358979323846 * axis[k].radius * length[k]),
+           axis[k].radius,
+           axis[k].point});
   candidate.axis = axis;
   for (Axis_node& node : candidate.axis) {
     const double r2 = node.radius * node.radius - m_rules.noise_share * s * s;

@@ -65,10 +65,11 @@ shortest_paths(const Scan& scan, const Neighbor_graph& graph, const std::vector<
 struct Layer_tree
 {
   std::vector<Index> node_of_point; ///< `none` where no path leads
-  std::vector<Index> parent; ///< `none` at the sources
-  std::vector<Vec3> center; ///< mean of the points of a node
-  std::vector<double> spread; ///< root of the mean squared distance from it [L]
-  std::vector<Index> next_in_ring; ///< the child that continues a thick ring; itself: the ring ends here; `none`: no ring
+  std::vector<Index> parent;        ///< `none` at the sources
+  std::vector<Vec3> center;         ///< mean of the points of a node
+  std::vector<double> spread;       ///< root of the mean squared distance from it [L]
+  std::vector<Index>
+      next_in_ring; ///< the child that continues a thick ring; itself: the ring ends here; `none`: no ring
   std::vector<Index> first; ///< offsets into `point`
   std::vector<Index> point; ///< the points node by node
 

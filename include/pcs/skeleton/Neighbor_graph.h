@@ -22,13 +22,17 @@ namespace pcs {
 namespace skeleton {
 
 /// Compressed rows of Boost.Graph, every edge in both directions; weights come from the points.
-using Neighbor_graph = boost::
-    compressed_sparse_row_graph<boost::directedS, boost::no_property, boost::no_property, boost::no_property, Index, Index>;
+using Neighbor_graph = boost::compressed_sparse_row_graph<boost::directedS,
+                                                          boost::no_property,
+                                                          boost::no_property,
+                                                          boost::no_property,
+                                                          Index,
+                                                          Index>;
 
 /// Which neighbours are linked, in multiples of the spacing [-].
 struct Link_rule
 {
-  double local_factor = 2.5; ///< longest link relative to the local spacing
+  double local_factor = 2.5;       ///< longest link relative to the local spacing
   double lowest = 3, highest = 12; ///< bounds of it relative to the median spacing
   double gap = 30; ///< widest gap that is closed, relative to the median spacing; 0: none
 
@@ -156,8 +160,8 @@ inline void close_gaps(const Scan& scan,
       if (!is_used[i] || label[i] == largest)
         continue;
       Best& b = best[label[i]];
-      const auto found = scan.search->nearest_if(
-          scan.points[i], std::sqrt(b.squared_distance), [&](Index j) {
+      const auto found =
+          scan.search->nearest_if(scan.points[i], std::sqrt(b.squared_distance), [&](Index j) {
             return is_used[j] && label[j] != label[i];
           });
       if (found.squared_distance < b.squared_distance)
@@ -203,7 +207,10 @@ inline Neighbor_graph graph_of(std::size_t n, const std::vector<Link>& links)
       targets[next[l.second]++] = l.first;
     }
   }
-  return Neighbor_graph(boost::construct_inplace_from_sources_and_targets, sources, targets, static_cast<Index>(n));
+  return Neighbor_graph(boost::construct_inplace_from_sources_and_targets,
+                        sources,
+                        targets,
+                        static_cast<Index>(n));
 }
 
 /// The cost of an edge as a property map over the edges of `graph`.

@@ -31,9 +31,14 @@ constexpr std::size_t neighbors_per_point = 12;
 /// The neighbour whose distance measures the local spacing; the first is too noisy.
 constexpr std::size_t spacing_neighbor = 4;
 
-/// A scan ready for the stages. Points are distinct, in spatial order, relative to `origin`.
+/// A scan ready for the stages. Points are distinct, in spatial order, relative to `origin`. It stays where it is: the
+/// search refers to its points.
 struct Scan
 {
+  Scan() = default;
+  Scan(const Scan&) = delete;
+  Scan& operator=(const Scan&) = delete;
+
   Vec3 origin = Vec3::Zero();
   std::vector<Vec3> points;
   std::vector<Index> point_of_input; ///< which of `points` an input point became
@@ -79,8 +84,9 @@ template <class ConcurrencyTag>
 void merge_duplicates(const std::vector<Vec3>& input, Scan& scan)
 {
   std::vector<Vec3> local(input.size());
-  pcs::internal::for_each_index<ConcurrencyTag>(
-      input.size(), [&](std::size_t i) { local[i] = input[i] - scan.origin; });
+  pcs::internal::for_each_index<ConcurrencyTag>(input.size(), [&](std::size_t i) {
+    local[i] = input[i] - scan.origin;
+  });
   const std::vector<Index> order = neighborhood::spatial_order<ConcurrencyTag>(local);
   scan.point_of_input.resize(input.size());
   scan.points.reserve(input.size());
@@ -145,16 +151,14 @@ void mark_outliers(Scan& scan)
 
 } // namespace internal
 
-/// Prepares a scan; `input` is finite and not empty. O(n log n).
+/// Prepares an empty scan; `input` is finite and not empty. O(n log n).
 template <class ConcurrencyTag>
-Scan prepare_scan(const std::vector<Vec3>& input)
+void prepare_scan(const std::vector<Vec3>& input, Scan& scan)
 {
-  Scan scan;
   internal::move_to_local_origin(input, scan);
   internal::merge_duplicates<ConcurrencyTag>(input, scan);
   internal::find_neighbors<ConcurrencyTag>(scan);
   internal::mark_outliers<ConcurrencyTag>(scan);
-  return scan;
 }
 
 } // namespace skeleton

@@ -22,7 +22,7 @@ struct Chain
 {
   std::vector<Index> nodes;
   Index parent_node = none; ///< the node of another chain that it sprouts from
-  double length = 0; ///< along the centres [L]
+  double length = 0;        ///< along the centres [L]
 };
 
 /// How many layers back the direction of a chain is taken from.

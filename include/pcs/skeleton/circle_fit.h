@@ -19,7 +19,7 @@ using Vec2 = Eigen::Vector2d;
 struct Circle
 {
   Vec2 center = Vec2::Zero();
-  double radius = 0; ///< 0: no circle
+  double radius = 0;    ///< 0: no circle
   double deviation = 0; ///< root of the mean squared distance of the points from it [L]
 };
 

@@ -23,7 +23,8 @@ struct Root_rules
   double slab = 0.03; ///< height in which it is looked for, relative to the extent upwards [-]
   double slab_spacings = 8; ///< ... at least this many spacings
   double band = 0.4; ///< height of the points that are the root, in half widths of the stem [-]
-  double smallest_component = 0.05; ///< share of the points that a part must have to hold the root [-]
+  double smallest_component =
+      0.05; ///< share of the points that a part must have to hold the root [-]
 };
 
 namespace internal {
@@ -65,7 +66,9 @@ inline std::vector<Index> find_root(const Scan& scan,
   const double smallest = std::min(double(largest), rules.smallest_component * double(n));
   std::vector<double> height(n);
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  const auto is_large = [&](Index i) { return is_used[i] && parts.size[parts.part[i]] >= smallest; };
+  const auto is_large = [&](Index i) {
+    return is_used[i] && parts.size[parts.part[i]] >= smallest;
+  };
   for (Index i = 0; i < n; ++i) {
     height[i] = up.dot(scan.points[i]);
     if (is_large(i)) {
@@ -95,7 +98,8 @@ inline std::vector<Index> find_root(const Scan& scan,
       const Vec3 d = scan.points[i] - mean;
       spread += (d - up.dot(d) * up).squaredNorm();
     }
-  const double band = std::max(layer_thickness * scan.spacing, rules.band * std::sqrt(spread / count));
+  const double band =
+      std::max(layer_thickness * scan.spacing, rules.band * std::sqrt(spread / count));
   std::vector<Index> root;
   for (Index i = 0; i < n; ++i)
     if (low_parts.part[i] == stem && height[i] <= foot + band)

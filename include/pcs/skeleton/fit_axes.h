@@ -13,6 +13,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -26,7 +28,8 @@ struct Axis_rules
   Chain_rules chains;
   int passes = 3;
   double later_links = 0.7; ///< links of later passes are this much shorter [-]
-  double later_protrusion = 6; ///< replaces `Chain_rules::protrusion` in later passes, in spacings [-]
+  double later_protrusion =
+      6;                    ///< replaces `Chain_rules::protrusion` in later passes, in spacings [-]
   double first_noise = 0.3; ///< noise before anything is known, in spacings [-]
   std::size_t largest_wave = 64; ///< chains that are fitted side by side [count]
 };
@@ -39,13 +42,12 @@ protrusion_of(const Scan& scan, const Axis_set& set, const Axis& axis, double re
 {
   double best = -reach;
   for (std::size_t k = axis.size(); k-- > 0 && best < reach;) {
-    const auto near = scan.search->nearest_if(
-        axis[k].point, reach, [&](Index i) { return set.is_covered(i); });
+    const auto near =
+        scan.search->nearest_if(axis[k].point, reach, [&](Index i) { return set.is_covered(i); });
     if (!(near.squared_distance < reach * reach))
       return reach;
     const Axis& other = set.axes[set.axis_of_point[near.index]].axis;
-    const Axis_place place =
-        nearest_place(other, set.segment_of_point[near.index], axis[k].point);
+    const Axis_place place = nearest_place(other, set.segment_of_point[near.index], axis[k].point);
     best = std::max(best, place.distance - (1 + share) * radius_at(other, place));
   }
   return best;
@@ -87,12 +89,14 @@ inline bool accept(const Scan& scan,
 }
 
 /// Fits the chains of one tree of layers, in waves whose members do not see each other.
-template <class ConcurrencyTag>
-void fit_chains(const Scan& scan,
+/// Returns `false` as soon as `progress` does, which sees a share of the work.
+template <class ConcurrencyTag, class Progress>
+bool fit_chains(const Scan& scan,
                 const Layer_tree& tree,
                 const Axis_rules& rules,
                 Scan_statistics& statistics,
-                Axis_set& set)
+                Axis_set& set,
+                const Progress& progress)
 {
   const std::vector<Chain> chains = chains_of(scan, tree);
   std::vector<Index> axis_of_chain(chains.size(), none), chain_of_node(tree.size());
@@ -124,8 +128,11 @@ void fit_chains(const Scan& scan,
     }
     statistics.learn(set);
     begin = end;
+    if (!progress(double(end) / double(chains.size())))
+      return false;
     wave = std::min(rules.largest_wave, 2 * wave);
   }
+  return true;
 }
 
 /// In every component, the point nearest to an axis.
@@ -147,8 +154,8 @@ inline std::vector<Index> nearest_to_axes(const Scan& scan,
     if (source[c] == none)
       source[c] = i;
     const double reach = std::min(best[c], 1e3 * scan.spacing);
-    const auto near = scan.search->nearest_if(
-        scan.points[i], reach, [&](Index j) { return set.is_covered(j); });
+    const auto near =
+        scan.search->nearest_if(scan.points[i], reach, [&](Index j) { return set.is_covered(j); });
     const double d = std::sqrt(near.squared_distance);
     if (d < reach) {
       best[c] = d;
@@ -162,12 +169,15 @@ inline std::vector<Index> nearest_to_axes(const Scan& scan,
 
 } // namespace internal
 
-/// All axes; `root` are the points where the tree leaves the ground.
-template <class ConcurrencyTag>
+/*!
+  All axes: those of the chains of `first_tree`, then those of the points that are left. What is found until `progress`
+  returns `false` is returned.
+*/
+template <class ConcurrencyTag, class Progress>
 Axis_set fit_axes(const Scan& scan,
-                  const std::vector<Link>& links,
                   const Layer_tree& first_tree,
-                  const Axis_rules& rules)
+                  const Axis_rules& rules,
+                  const Progress& progress)
 {
   const std::size_t n = scan.size();
   Axis_set set;
@@ -175,14 +185,22 @@ Axis_set fit_axes(const Scan& scan,
   set.segment_of_point.assign(n, none);
   set.noise = rules.first_noise * scan.spacing;
   Scan_statistics statistics;
-  internal::fit_chains<ConcurrencyTag>(scan, first_tree, rules, statistics, set);
+  const auto share = [&](double from, double to) {
+    return [&progress, from, to](double f) { return progress(from + (to - from) * f); };
+  };
+  if (!internal::fit_chains<ConcurrencyTag>(scan,
+                                            first_tree,
+                                            rules,
+                                            statistics,
+                                            set,
+                                            share(0, 0.7)))
+    return set;
 
   Axis_rules later = rules;
   later.chains.protrusion = rules.later_protrusion;
   later.links.local_factor *= rules.later_links;
   later.links.lowest *= rules.later_links;
   later.links.highest *= rules.later_links;
-  (void)links;
   for (int pass = 1; pass < rules.passes; ++pass) {
     std::vector<std::uint8_t> is_used(n);
     for (Index i = 0; i < n; ++i)
@@ -191,7 +209,14 @@ Axis_set fit_axes(const Scan& scan,
     const std::vector<Index> sources = internal::nearest_to_axes(scan, set, is_used, rest);
     const Neighbor_graph graph = graph_of(n, rest);
     const Layer_tree tree = layer_tree(scan, rest, shortest_paths(scan, graph, sources));
-    internal::fit_chains<ConcurrencyTag>(scan, tree, later, statistics, set);
+    const double done = 0.7 + 0.3 * double(pass - 1) / double(rules.passes - 1);
+    if (!internal::fit_chains<ConcurrencyTag>(scan,
+                                              tree,
+                                              later,
+                                              statistics,
+                                              set,
+                                              share(done, done + 0.3 / double(rules.passes - 1))))
+      return set;
   }
   return set;
 }

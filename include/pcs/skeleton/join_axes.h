@@ -22,16 +22,16 @@ namespace skeleton {
 /// What a joint costs. Factors of the spacing unless said otherwise [-].
 struct Joint_rules
 {
-  double reach = 30; ///< widest gap between the base of a branch and the surface of its parent
+  double reach = 30;      ///< widest gap between the base of a branch and the surface of its parent
   double base_length = 8; ///< length over which the direction of a base is taken
-  double lateral = 1; ///< cost of missing the parent's axis, per length [-]
+  double lateral = 1;     ///< cost of missing the parent's axis, per length [-]
   double lateral_tolerance = 0.3; ///< of it free of charge, in radii of the parent
-  double steep_gap = 6; ///< gaps longer than this cost more than their length
-  double radius = 4; ///< for each time that the base is thicker than its parent
-  double backward = 3; ///< for pointing to the root of the parent
-  double reversal = 6; ///< for using the tip as the base
-  double path_bonus = 0.7; ///< factor where the paths to the root agree [-]
-  double bend = 6; ///< for the angle at the tip of the parent
+  double steep_gap = 6;           ///< gaps longer than this cost more than their length
+  double radius = 4;              ///< for each time that the base is thicker than its parent
+  double backward = 3;            ///< for pointing to the root of the parent
+  double reversal = 6;            ///< for using the tip as the base
+  double path_bonus = 0.7;        ///< factor where the paths to the root agree [-]
+  double bend = 6;                ///< for the angle at the tip of the parent
 };
 
 /// Where an axis sits on its parent.
@@ -200,7 +200,8 @@ Axis_joiner::options_of(Index a, const neighborhood::Nearest_neighbors& search) 
   const Axis& axis = m_set.axes[a].axis;
   for (const bool is_tip : {false, true}) {
     const double length =
-        std::min(std::max(m_rules.base_length * m_spacing, 2 * axis.front().radius), 0.7 * length_of(axis));
+        std::min(std::max(m_rules.base_length * m_spacing, 2 * axis.front().radius),
+                 0.7 * length_of(axis));
     const internal::Axis_end end = internal::end_of(axis, is_tip, length);
     near.clear();
     search.within(end.point, m_reach, near); // by axis, then by node

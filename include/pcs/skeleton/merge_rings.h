@@ -22,15 +22,17 @@ namespace skeleton {
 /// When parts are arcs of one ring.
 struct Ring_rules
 {
-  double smallest = 4; ///< radius of a ring, in spacings [-]
-  double band = 0.2; ///< half width of the ring, in radii ...
+  double smallest = 4;      ///< radius of a ring, in spacings [-]
+  double band = 0.2;        ///< half width of the ring, in radii ...
   double band_offset = 1.5; ///< ... and spacings
-  double share = 0.75; ///< of the points of an arc that lie in the band [-]
-  double main_share = 0.4; ///< the same for the arc with the most points: a branch may leave there [-]
-  double lasting = 2; ///< thicker than this many smallest ones, a ring ends rather than become a branch [-],
-  int age = 8; ///< layers in which such a ring was seen
+  double share = 0.75;      ///< of the points of an arc that lie in the band [-]
+  double main_share =
+      0.4; ///< the same for the arc with the most points: a branch may leave there [-]
+  double lasting =
+      2; ///< thicker than this many smallest ones, a ring ends rather than become a branch [-],
+  int age = 8;          ///< layers in which such a ring was seen
   double inertia = 0.7; ///< of the radius from layer to layer [-]
-  int sectors = 6; ///< of 12, that a ring must see to correct its centre
+  int sectors = 6;      ///< of 12, that a ring must see to correct its centre
 };
 
 namespace internal {
@@ -40,15 +42,20 @@ struct Ring
 {
   Vec3 center = Vec3::Zero(), along = Vec3::Zero();
   double radius = 0; ///< 0: no ring
-  int age = 0; ///< layers in which it was seen
+  int age = 0;       ///< layers in which it was seen
 };
 
 class Ring_merger
 {
 public:
   Ring_merger(const Scan& scan, const Layer_tree& tree, const Ring_rules& rules)
-    : m_scan(scan), m_tree(tree), m_rules(rules), m_leader(tree.size()), m_ring(tree.size()),
-      m_members(tree.size()), m_next(tree.size(), none)
+    : m_scan(scan),
+      m_tree(tree),
+      m_rules(rules),
+      m_leader(tree.size()),
+      m_ring(tree.size()),
+      m_members(tree.size()),
+      m_next(tree.size(), none)
   {
   }
 
@@ -75,7 +82,8 @@ public:
         group.insert(group.end(), children[w].begin(), children[w].end());
       std::sort(group.begin(), group.end());
       m_next[v] = merge_group(m_ring[v], group);
-      if (m_next[v] == none && m_ring[v].age >= m_rules.age && m_ring[v].radius > m_rules.lasting * m_rules.smallest * m_scan.spacing)
+      if (m_next[v] == none && m_ring[v].age >= m_rules.age &&
+          m_ring[v].radius > m_rules.lasting * m_rules.smallest * m_scan.spacing)
         m_next[v] = v;
     }
     return m_leader;
@@ -156,7 +164,8 @@ private:
     for (const Vec3& p : points)
       plane.emplace_back((p - mean).dot(e1), (p - mean).dot(e2));
     const Circle c = fit_circle(plane);
-    const bool is_good = c.radius > m_rules.smallest * m_scan.spacing && c.deviation < m_rules.band * c.radius &&
+    const bool is_good = c.radius > m_rules.smallest * m_scan.spacing &&
+                         c.deviation < m_rules.band * c.radius &&
                          covered_sectors(plane, c.center) >= m_rules.sectors;
     if (!is_good)
       return;
