@@ -56,7 +56,7 @@ struct Density_sample
 class Scan_statistics
 {
 public:
-  void add_deviations(const std::vector<float>& values)
+  void add_deviations(const std::vector<double>& values)
   {
     const std::size_t room = capacity - std::min(capacity, m_deviations.size());
     m_deviations.insert(m_deviations.end(),
@@ -73,8 +73,8 @@ public:
   void learn(Axis_set& set) const
   {
     if (m_deviations.size() >= enough_deviations) {
-      std::vector<float> copy = m_deviations;
-      set.noise = 1.4826 * double(median(copy)); // standard deviation from the median of |e|
+      std::vector<double> copy = m_deviations;
+      set.noise = 1.4826 * median(copy); // standard deviation from the median of |e|
     }
     if (m_densities.size() >= enough_densities) {
       std::vector<double> thick, all;
@@ -91,7 +91,7 @@ private:
   static constexpr std::size_t capacity = 40000, enough_deviations = 200, enough_densities = 8;
   static constexpr double thick_radius =
       6; ///< in noise: here the radius, hence the density, has no bias
-  std::vector<float> m_deviations;
+  std::vector<double> m_deviations;
   std::vector<Density_sample> m_densities;
 };
 

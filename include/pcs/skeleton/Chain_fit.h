@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -42,6 +43,8 @@ struct Chain_rules
   double prior_offset = 0.15; ///< ... and spacings
   double noise_share = 0.2;   ///< r^2 is reduced by this many noise^2: noise inflates thin branches
   double thick = 4;           ///< branches of at least this radius are followed beyond their tips
+  double swelling = 1.2;      ///< thick axes end where they are this much thicker than below ...
+  double swelling_offset = 1; ///< ... and this many spacings
   double extension = 3;       ///< how far both ends are prolonged on trial, in radii ...
   double extension_offset = 4;  ///< ... and spacings
   double extension_share = 0.3; ///< share of the expected points that a prolongation needs
@@ -55,7 +58,7 @@ struct Candidate
   Axis axis;                           ///< empty: none
   std::vector<Index> points, segments; ///< what it explains, points in increasing order
   std::size_t number_of_own_points = 0;
-  std::vector<float> deviations;
+  std::vector<double> deviations;
   std::vector<Density_sample> densities;
 };
 
@@ -82,6 +85,7 @@ public:
     start_at_circles(fit);
     if (!run(fit, first_widening))
       return candidate;
+    cut_swelling(fit);
     const Vec3 base = fit.axis().front().point, tip = fit.axis().back().point;
     prolong(fit);
     std::vector<Index> points = gather(fit);
@@ -113,6 +117,7 @@ private:
   std::vector<Index> gather(Axis_fit& fit) const;
   void prolong(Axis_fit& fit, bool do_base = true) const;
   bool follow(Axis_fit& fit) const;
+  void cut_swelling(Axis_fit& fit) const;
   void trim(const Vec3& base, const Vec3& tip, Axis_fit& fit) const;
   void judge(Axis_fit& fit, const std::vector<Index>& points, Candidate& candidate) const;
   /// Points of each node, and the length of axis they stand for, over a window of nodes.
@@ -401,6 +406,27 @@ inline void Chain_fit::prolong(Axis_fit& fit, bool do_base) const
   axis.push_back(behind);
 }
 
+/// Ends an axis that was thick where it grows much thicker: from there on it runs around a fork.
+inline void Chain_fit::cut_swelling(Axis_fit& fit) const
+{
+  constexpr std::size_t window = 5;
+  Axis& axis = fit.axis();
+  double thinnest = std::numeric_limits<double>::infinity();
+  std::vector<double> radii;
+  for (std::size_t k = window; k < axis.size(); ++k) {
+    radii.clear();
+    for (std::size_t i = k - window; i < k; ++i)
+      radii.push_back(axis[i].radius);
+    const double before = median(radii);
+    if (before >= m_rules.thick * m_scan.spacing)
+      thinnest = std::min(thinnest, before);
+    if (axis[k].radius > m_rules.swelling * thinnest + m_rules.swelling_offset * m_scan.spacing) {
+      axis.resize(k);
+      return;
+    }
+  }
+}
+
 /*!
   Follows a thick branch beyond its tip, piece by piece, as long as there are points around it: paths over the surface
   end at occlusions, or turn into a side branch. Returns whether the axis grew.
@@ -432,7 +458,7 @@ inline bool Chain_fit::follow(Axis_fit& fit) const
     const Axis& longer = tail_fit.axis();
     const double gained = length_of(longer) - tail;
     const double ratio = longer.back().radius / radius;
-    if (gained < 0.3 * wanted || ratio < 0.6 || ratio > 1.3)
+    if (gained < 0.3 * wanted || ratio < 0.6 || ratio > 1.1)
       break;
     axis.resize(b + 1);
     axis.insert(axis.end(), longer.begin() + 1, longer.end());
@@ -521,7 +547,7 @@ Chain_fit::judge(Axis_fit& fit, const std::vector<Index>& points, Candidate& can
     const bool is_inside = p.share > 0 && p.share < 1;
     // where noise, not bark, is what one sees
     if (is_inside && r > 3 * s && 0.03 * r < s && candidate.deviations.size() < 2000)
-      candidate.deviations.push_back(static_cast<float>(std::abs(p.distance - r)));
+      candidate.deviations.push_back(std::abs(p.distance - r));
   }
   if (candidate.points.size() < m_rules.lowest_count)
     return;

@@ -143,7 +143,8 @@ inline void collect_nodes(const Scan& scan, Layer_tree& tree)
   }
 }
 
-/// The parent of a node is the one that most shortest paths of its points come from; ties by number.
+/// The parent of a node is the one that most shortest paths of its points come from; among equals the one with more
+/// points, or the wider one.
 inline void vote_for_parents(const std::vector<Index>& predecessor, Layer_tree& tree)
 {
   std::vector<Index> votes;
@@ -159,7 +160,11 @@ inline void vote_for_parents(const std::vector<Index>& predecessor, Layer_tree& 
     for (std::size_t b = 0, e = 0; b < votes.size(); b = e) {
       while (e < votes.size() && votes[e] == votes[b])
         ++e;
-      if (e - b > best) {
+      const Index other = tree.parent[v], node = votes[b];
+      const bool is_tie_won =
+          e - b == best && std::make_pair(tree.count(node), tree.spread[node]) >
+                               std::make_pair(tree.count(other), tree.spread[other]);
+      if (e - b > best || is_tie_won) {
         best = e - b;
         tree.parent[v] = votes[b];
       }

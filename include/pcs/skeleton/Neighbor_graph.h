@@ -38,7 +38,7 @@ struct Link_rule
 
   double longest(const Scan& scan, Index i) const
   {
-    return std::min(std::max(local_factor * double(scan.local_spacing[i]), lowest * scan.spacing),
+    return std::min(std::max(local_factor * scan.local_spacing[i], lowest * scan.spacing),
                     highest * scan.spacing);
   }
 };

@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace pcs {
@@ -43,7 +44,7 @@ struct Scan
   std::vector<Vec3> points;
   std::vector<Index> point_of_input; ///< which of `points` an input point became
   std::vector<std::array<Index, neighbors_per_point>> neighbors; ///< nearest first, `none` behind
-  std::vector<float> local_spacing; ///< distance to the 4th neighbour [L]
+  std::vector<double> local_spacing; ///< distance to the 4th neighbour [L]
   std::vector<std::uint8_t> is_outlier;
   double spacing = 0; ///< median distance to the nearest neighbour [L]
   std::unique_ptr<neighborhood::Nearest_neighbors> search; ///< over all `points`
@@ -63,9 +64,9 @@ T median(std::vector<T>& values)
 }
 
 /// An outlier is this much farther from its neighbours than these from theirs ...
-constexpr float outlier_factor = 3;
+constexpr double outlier_factor = 3;
 /// ... and than is usual in the cloud; or so far from all that nothing else matters.
-constexpr float outlier_global_factor = 2, outlier_far_factor = 20;
+constexpr double outlier_global_factor = 2, outlier_far_factor = 20;
 
 namespace internal {
 
@@ -79,7 +80,7 @@ inline void move_to_local_origin(const std::vector<Vec3>& input, Scan& scan)
   scan.origin = low + 0.5 * (high - low);
 }
 
-/// Sorts the points along an octree and merges those at one place.
+/// Sorts the points along an octree and merges those at one place. The order of what is left does not depend on duplicates.
 template <class ConcurrencyTag>
 void merge_duplicates(const std::vector<Vec3>& input, Scan& scan)
 {
@@ -95,6 +96,18 @@ void merge_duplicates(const std::vector<Vec3>& input, Scan& scan)
       scan.points.push_back(local[i]);
     scan.point_of_input[i] = static_cast<Index>(scan.points.size() - 1);
   }
+  if (scan.points.size() == input.size())
+    return;
+  const std::vector<Index> again = neighborhood::spatial_order<ConcurrencyTag>(scan.points);
+  std::vector<Vec3> sorted(again.size());
+  std::vector<Index> place(again.size());
+  for (Index k = 0; k < again.size(); ++k) {
+    sorted[k] = scan.points[again[k]];
+    place[again[k]] = k;
+  }
+  scan.points = std::move(sorted);
+  for (Index& i : scan.point_of_input)
+    i = place[i];
 }
 
 template <class ConcurrencyTag>
@@ -104,7 +117,7 @@ void find_neighbors(Scan& scan)
   scan.search = std::make_unique<neighborhood::Nearest_neighbors>(scan.points);
   scan.neighbors.resize(n);
   scan.local_spacing.resize(n);
-  std::vector<float> nearest(n);
+  std::vector<double> nearest(n);
   pcs::internal::for_each_block<ConcurrencyTag>(n, 512, [&](std::size_t begin, std::size_t end) {
     std::vector<neighborhood::Nearest_neighbors::Neighbor> found;
     for (std::size_t i = begin; i < end; ++i) {
@@ -117,11 +130,11 @@ void find_neighbors(Scan& scan)
         if (f.index != i && count < neighbors_per_point) {
           row[count++] = f.index;
           if (count == 1)
-            nearest[i] = static_cast<float>(std::sqrt(f.squared_distance));
+            nearest[i] = std::sqrt(f.squared_distance);
           if (count <= spacing_neighbor)
             fourth = std::sqrt(f.squared_distance);
         }
-      scan.local_spacing[i] = static_cast<float>(fourth);
+      scan.local_spacing[i] = fourth;
     }
   });
   scan.spacing = median(nearest);
@@ -132,19 +145,19 @@ void mark_outliers(Scan& scan)
 {
   const std::size_t n = scan.size();
   scan.is_outlier.assign(n, 0);
-  std::vector<float> copy = scan.local_spacing;
-  const float usual = median(copy);
+  std::vector<double> copy = scan.local_spacing;
+  const double usual = median(copy);
   pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
-    const float own = scan.local_spacing[i];
+    const double own = scan.local_spacing[i];
     if (own <= outlier_global_factor * usual)
       return;
-    std::array<float, neighbors_per_point> others;
+    std::array<double, neighbors_per_point> others;
     std::size_t count = 0;
     for (const Index j : scan.neighbors[i])
       if (j != none)
         others[count++] = scan.local_spacing[j];
     std::sort(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(count));
-    const float theirs = count > 0 ? others[count / 2] : 0;
+    const double theirs = count > 0 ? others[count / 2] : 0;
     scan.is_outlier[i] = own > outlier_factor * theirs || own > outlier_far_factor * usual;
   });
 }

@@ -380,7 +380,7 @@ Surface_builder::sew(const Loop& outer, const Loop& inner, const Vec3& center, c
     const Vec3 d = m_surface.points[v] - center;
     return std::atan2(d.dot(e2), d.dot(e1));
   };
-  // start at the pair that is nearest, then always advance on the side with the shorter diagonal
+  // start at the pair that is nearest
   std::size_t start = 0, n = outer.size(), m = inner.size();
   double best = -1;
   for (std::size_t k = 0; k < m; ++k) {
@@ -395,13 +395,9 @@ Surface_builder::sew(const Loop& outer, const Loop& inner, const Vec3& center, c
   while (i < n || j < m) {
     const std::size_t a = outer[i % n], a2 = outer[(i + 1) % n];
     const std::size_t b = inner[(start + j) % m], b2 = inner[(start + j + 1) % m];
-    const bool can_outer = i < n, can_inner = j < m;
-    const double d_outer = (m_surface.points[a2] - m_surface.points[b]).norm();
-    const double d_inner = (m_surface.points[b2] - m_surface.points[a]).norm();
-    // keep in step: neither loop may run ahead by more than half a turn
-    const double lead = double(i) / double(n) - double(j) / double(m);
+    // in step: neither loop runs ahead
     const bool is_outer =
-        can_outer && (!can_inner || lead < -0.35 || (lead < 0.35 && d_outer <= d_inner));
+        j == m || (i < n && (double(i) + 0.5) / double(n) <= (double(j) + 0.5) / double(m));
     if (is_outer) {
       add(a, a2, b);
       ++i;

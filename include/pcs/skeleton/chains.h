@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -114,8 +116,15 @@ inline std::vector<Chain> chains_of(const Scan& scan, const Layer_tree& tree)
     }
     chains.push_back(std::move(chain));
   }
-  std::stable_sort(chains.begin(), chains.end(), [](const Chain& a, const Chain& b) {
-    return a.length > b.length;
+  // Ties are decided by what does not change when the scan is turned.
+  const auto key = [&](const Chain& c) {
+    std::size_t points = 0;
+    for (const Index v : c.nodes)
+      points += tree.count(v);
+    return std::make_tuple(c.length, points, tree.spread[c.nodes.front()]);
+  };
+  std::stable_sort(chains.begin(), chains.end(), [&](const Chain& a, const Chain& b) {
+    return a.length != b.length ? a.length > b.length : key(a) > key(b);
   });
   const auto trunk = std::find_if(chains.begin(), chains.end(), [](const Chain& c) {
     return c.parent_node == none;

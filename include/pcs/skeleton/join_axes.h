@@ -26,12 +26,13 @@ struct Joint_rules
   double base_length = 8; ///< length over which the direction of a base is taken
   double lateral = 1;     ///< cost of missing the parent's axis, per length [-]
   double lateral_tolerance = 0.3; ///< of it free of charge, in radii of the parent
-  double steep_gap = 6;           ///< gaps longer than this cost more than their length
-  double radius = 4;              ///< for each time that the base is thicker than its parent
-  double backward = 3;            ///< for pointing to the root of the parent
-  double reversal = 6;            ///< for using the tip as the base
-  double path_bonus = 0.7;        ///< factor where the paths to the root agree [-]
-  double bend = 6;                ///< for the angle at the tip of the parent
+  double tie = 0.02;       ///< of the whole distance: what costs nothing else is decided by it [-]
+  double steep_gap = 6;    ///< gaps longer than this cost more than their length
+  double radius = 4;       ///< for each time that the base is thicker than its parent
+  double backward = 3;     ///< for pointing to the root of the parent
+  double reversal = 6;     ///< for using the tip as the base
+  double path_bonus = 0.7; ///< factor where the paths to the root agree [-]
+  double bend = 6;         ///< for the angle at the tip of the parent
 };
 
 /// Where an axis sits on its parent.
@@ -155,6 +156,7 @@ Axis_joiner::cost(const internal::Axis_end& end, Index b, const Axis_place& plac
   double sum = gap * std::max(1.0, gap / (m_rules.steep_gap * u));
   sum += m_rules.lateral * std::max(0.0, lateral - m_rules.lateral_tolerance * radius);
   sum += std::max(0.0, -back - radius);
+  sum += m_rules.tie * (lateral + distance);
   sum += m_rules.radius * u * std::max(0.0, end.radius / std::max(radius, 1e-3 * u) - 1);
   const double cosine = internal::tangent(axis, place.segment).dot(end.inward);
   sum += m_rules.backward * u * std::max(0.0, -cosine);

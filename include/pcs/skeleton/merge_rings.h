@@ -30,6 +30,7 @@ struct Ring_rules
       0.4; ///< the same for the arc with the most points: a branch may leave there [-]
   double lasting =
       2; ///< thicker than this many smallest ones, a ring ends rather than become a branch [-],
+  double growth = 1.1;  ///< largest growth of a radius from layer to layer [-]
   int age = 8;          ///< layers in which such a ring was seen
   double inertia = 0.7; ///< of the radius from layer to layer [-]
   int sectors = 6;      ///< of 12, that a ring must see to correct its centre
@@ -172,7 +173,7 @@ private:
     const Vec3 center = mean + c.center.x() * e1 + c.center.y() * e2;
     if (before.radius == 0)
       ring = {center, along, c.radius, 1};
-    else if (std::abs(c.radius - before.radius) < 0.3 * before.radius) {
+    else if (c.radius < m_rules.growth * before.radius && c.radius > 0.7 * before.radius) {
       const double a = m_rules.inertia;
       ++ring.age;
       ring.radius = a * before.radius + (1 - a) * c.radius;
