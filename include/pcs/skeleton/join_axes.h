@@ -24,10 +24,10 @@ struct Joint_rules
 {
   double reach = 30;      ///< widest gap between the base of a branch and the surface of its parent
   double base_length = 8; ///< length over which the direction of a base is taken
-  double lateral = 1;     ///< cost of missing the parent's axis, per length [-]
+  double lateral = 2;     ///< cost of missing the parent's axis, per length [-]
   double lateral_tolerance = 0.3; ///< of it free of charge, in radii of the parent
   double tie = 0.02;       ///< of the whole distance: what costs nothing else is decided by it [-]
-  double steep_gap = 6;    ///< gaps longer than this cost more than their length
+  double steep_gap = 12;    ///< gaps longer than this cost more than their length
   double radius = 4;       ///< for each time that the base is thicker than its parent
   double backward = 3;     ///< for pointing to the root of the parent
   double reversal = 6;     ///< for using the tip as the base
