@@ -51,6 +51,16 @@ Kernel::Vector_3 up_direction(const std::string& name)
   return {axis == 'x' ? sign : 0, axis == 'y' ? sign : 0, axis == 'z' ? sign : 0};
 }
 
+pcs::skeleton::Section_fit section_fit(const std::string& name)
+{
+  using pcs::skeleton::Section_fit;
+  if (name == "ellipse")
+    return Section_fit::ellipse;
+  if (name == "circle")
+    return Section_fit::circle;
+  return name == "by_arc" ? Section_fit::by_arc : Section_fit::conic;
+}
+
 struct Labels
 {
   std::vector<std::size_t> branch;
@@ -85,7 +95,16 @@ pcs::Skeleton_report extract(const pcs::IO::Point_table& table,
     line.show("skeleton", f);
     return true;
   };
+  pcs::skeleton::Slice_rules slices;
+  slices.fit = section_fit(options.fit);
+  slices.do_mark_support = !options.do_fit_all;
+  if (options.do_use_all)
+    slices.highest_count = 0;
+  const auto method = options.method == "chains" ? pcs::skeleton::Skeleton_method::chains
+                                                 : pcs::skeleton::Skeleton_method::sections;
   const auto np = pcs::parameters::point_map(points)
+                      .skeleton_method(method)
+                      .slice_rules(slices)
                       .up_direction(up_direction(options.up))
                       .breast_height(options.breast_height)
                       .do_remove_ground(!options.do_keep_ground)

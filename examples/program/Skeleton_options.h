@@ -20,11 +20,13 @@ namespace program {
 struct Skeleton_options
 {
   std::vector<std::string> inputs;
-  std::string swc, mesh, cylinders, edges, points, report, folder, up = "z";
+  std::string swc, mesh, cylinders, edges, points, report, folder, up = "z", method = "chains",
+                                                                   fit = "conic";
   std::vector<double> root;
   double tolerance = -1; // < 0: the default of the library
   double breast_height = 1.3;
-  bool do_keep_ground = false, do_separate = false, is_quiet = false;
+  bool do_keep_ground = false, do_separate = false, do_use_all = false, do_fit_all = false,
+       is_quiet = false;
 };
 
 inline const char* skeleton_help()
@@ -63,6 +65,20 @@ inline void declare(CLI::App& app, Skeleton_options& options)
   app.add_option("--tolerance",
                  options.tolerance,
                  "largest distance of the mesh from the sections");
+  app.add_option("--method",
+                 options.method,
+                 "how branches are found; `sections` is the dissertation's way")
+      ->check(CLI::IsMember({"chains", "sections"}))
+      ->capture_default_str();
+  app.add_option("--fit", options.fit, "of the method `sections`: how a section is fitted")
+      ->check(CLI::IsMember({"conic", "ellipse", "circle", "by_arc"}))
+      ->capture_default_str();
+  app.add_flag("--all-points",
+               options.do_use_all,
+               "of the method `sections`: not 20 points drawn at random");
+  app.add_flag("--no-support",
+               options.do_fit_all,
+               "of the method `sections`: a slice for every point");
   app.add_flag("--keep-ground", options.do_keep_ground, "do not look for ground");
   app.add_flag("--separate", options.do_separate, "mesh: every branch a closed tube of its own");
   app.add_flag("--quiet", options.is_quiet, "print nothing but errors");

@@ -42,6 +42,8 @@
   PCS_OWN(point_is_dense_map)                                                                      \
   PCS_OWN(node_point_map)                                                                          \
   PCS_OWN(node_radius_map)                                                                         \
+  PCS_OWN(skeleton_method)                                                                         \
+  PCS_OWN(slice_rules)                                                                             \
   PCS_OWN(do_join)
 namespace pcs {
 namespace internal_np {

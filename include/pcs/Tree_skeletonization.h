@@ -166,6 +166,12 @@ public:
       \np{root_position} a place near the foot of the trunk [L]
         \nptype a point with `x()`, `y()`, `z()`
         \npdefault none: the lower end of the thickest part near the lower end of the cloud
+      \np{skeleton_method} how branches are found
+        \nptype `skeleton::Skeleton_method`: `chains`, or `sections` for the dissertation's own way
+        \npdefault `chains`
+      \np{slice_rules} the steps of the method `sections`: how slices are cut, fitted, tilted, and which points they spare
+        \nptype `skeleton::Slice_rules`
+        \npdefault the dissertation's, with which nothing is replaced
       \np{do_remove_ground} whether a slice of ground around the foot is looked for and left out
         \nptype `bool`
         \npdefault `true`
@@ -324,6 +330,8 @@ private:
       if (!options.root->allFinite())
         throw Invalid_input(std::string(function) + ": root_position must be finite");
     }
+    options.method = choose(m_np, internal_np::skeleton_method, skeleton::Skeleton_method::chains);
+    options.slices = choose(m_np, internal_np::slice_rules, skeleton::Slice_rules());
     options.do_mark_ground = choose(m_np, internal_np::do_remove_ground, true);
     options.breast_height =
         static_cast<double>(choose(m_np, internal_np::breast_height, default_breast_height));

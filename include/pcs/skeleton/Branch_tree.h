@@ -49,22 +49,13 @@ struct Branch_tree
 
 namespace internal {
 
-/// Nodes with parents, while the tree is being built.
-class Tree_builder
+/// Groups nodes, parents first and the root at the front, in branches. `number` tells where each node went.
+class Branch_grouper
 {
 public:
-  Tree_builder(const Axis_set& set, const std::vector<Joint>& joints, Index root, double spacing)
-    : m_set(set), m_joints(joints), m_spacing(spacing)
+  Branch_grouper(std::vector<Branch_node> nodes, double spacing) : m_spacing(spacing)
   {
-    const std::size_t n = set.axes.size();
-    m_children.resize(n);
-    for (Index a = 0; a < n; ++a)
-      if (joints[a].parent != none)
-        m_children[joints[a].parent].push_back(a);
-    m_first_node.assign(n, none);
-    add_axes(root);
-    m_tree.number_of_unreached_axes =
-        static_cast<std::size_t>(std::count(m_first_node.begin(), m_first_node.end(), none));
+    m_tree.nodes = std::move(nodes);
   }
 
   Branch_tree operator()()
@@ -72,94 +63,12 @@ public:
     link();
     choose_continuations();
     number_branches();
-    assign_points();
     return std::move(m_tree);
   }
 
+  const std::vector<Index>& number() const { return m_number; }
+
 private:
-  struct Inserted
-  {
-    double at; ///< segment + share
-    Index axis;
-  };
-
-  /// Copies the axes in the order of a walk from the root, with a node where a child sits.
-  void add_axes(Index root)
-  {
-    std::vector<std::pair<Index, Index>> stack{{root, none}}; // axis, node that it sits on
-    while (!stack.empty()) {
-      const auto [a, seat] = stack.back();
-      stack.pop_back();
-      const Axis& axis = m_set.axes[a].axis;
-      std::vector<Inserted> seats;
-      for (const Index c : m_children[a]) {
-        const Axis_place& p = m_joints[c].place;
-        seats.push_back({double(p.segment) + std::min(1.0, std::max(0.0, p.share)), c});
-      }
-      std::sort(seats.begin(), seats.end(), [](const Inserted& x, const Inserted& y) {
-        return x.at != y.at ? x.at < y.at : x.axis < y.axis;
-      });
-      const bool is_reversed = m_joints[a].is_reversed;
-      if (is_reversed)
-        std::reverse(seats.begin(), seats.end());
-      Index before = seat;
-      if (seat != none) { // its own node on the axis of the parent
-        Branch_node base;
-        static_cast<Axis_node&>(base) = is_reversed ? axis.back() : axis.front();
-        base.point = m_tree.nodes[seat].point;
-        base.is_measured = false;
-        before = add(base, seat);
-      }
-      m_first_node[a] = static_cast<Index>(m_tree.nodes.size());
-      m_node_of_place.emplace_back();
-      auto& places = m_node_of_place.back();
-      m_places_of_axis.resize(m_set.axes.size(), none);
-      m_places_of_axis[a] = static_cast<Index>(m_node_of_place.size() - 1);
-      places.assign(axis.size(), none);
-      std::size_t next = 0;
-      const auto add_seats = [&](double until) { // all seats on the way to `until`
-        for (; next < seats.size() &&
-               (is_reversed ? seats[next].at >= until : seats[next].at <= until);
-             ++next) {
-          const double at = seats[next].at;
-          const std::size_t s = std::min(axis.size() - 2, static_cast<std::size_t>(at));
-          const double t = at - double(s);
-          Branch_node node;
-          static_cast<Axis_node&>(node) = t < 0.5 ? axis[s] : axis[s + 1];
-          node.point = (1 - t) * axis[s].point + t * axis[s + 1].point;
-          node.radius = (1 - t) * axis[s].radius + t * axis[s + 1].radius;
-          const bool is_there = before != none && before >= m_first_node[a] &&
-                                (m_tree.nodes[before].point - node.point).norm() < 1e-3 * m_spacing;
-          if (!is_there)
-            before = add(node, before);
-          stack.emplace_back(seats[next].axis, before);
-        }
-      };
-      for (std::size_t i = 0; i < axis.size(); ++i) {
-        const std::size_t k = is_reversed ? axis.size() - 1 - i : i;
-        // a seat between the nodes comes before the next node
-        if (i > 0)
-          add_seats(is_reversed ? double(k) + 1e-9 : double(k) - 1e-9);
-        Branch_node node;
-        static_cast<Axis_node&>(node) = axis[k];
-        const bool is_there =
-            i > 0 && (m_tree.nodes[before].point - node.point).norm() < 1e-3 * m_spacing;
-        if (!is_there)
-          before = add(node, before);
-        places[k] = before;
-        add_seats(double(k));
-      }
-      add_seats(is_reversed ? -1.0 : double(axis.size()));
-    }
-  }
-
-  Index add(const Branch_node& node, Index parent)
-  {
-    m_tree.nodes.push_back(node);
-    m_tree.nodes.back().parent = parent;
-    return static_cast<Index>(m_tree.nodes.size() - 1);
-  }
-
   void link()
   {
     const std::size_t n = m_tree.nodes.size();
@@ -272,6 +181,126 @@ private:
     m_number = std::move(number);
   }
 
+  double m_spacing;
+  Branch_tree m_tree;
+  std::vector<std::vector<Index>> m_child;
+  std::vector<Index> m_next, m_number;
+  std::vector<double> m_height;
+};
+
+/// Nodes with parents, while the tree is being built.
+class Tree_builder
+{
+public:
+  Tree_builder(const Axis_set& set, const std::vector<Joint>& joints, Index root, double spacing)
+    : m_set(set), m_joints(joints), m_spacing(spacing)
+  {
+    const std::size_t n = set.axes.size();
+    m_children.resize(n);
+    for (Index a = 0; a < n; ++a)
+      if (joints[a].parent != none)
+        m_children[joints[a].parent].push_back(a);
+    m_first_node.assign(n, none);
+    add_axes(root);
+    m_tree.number_of_unreached_axes =
+        static_cast<std::size_t>(std::count(m_first_node.begin(), m_first_node.end(), none));
+  }
+
+  Branch_tree operator()()
+  {
+    Branch_grouper group(std::move(m_tree.nodes), m_spacing);
+    const std::size_t unreached = m_tree.number_of_unreached_axes;
+    m_tree = group();
+    m_tree.number_of_unreached_axes = unreached;
+    m_number = group.number();
+    assign_points();
+    return std::move(m_tree);
+  }
+
+private:
+  struct Inserted
+  {
+    double at; ///< segment + share
+    Index axis;
+  };
+
+  /// Copies the axes in the order of a walk from the root, with a node where a child sits.
+  void add_axes(Index root)
+  {
+    std::vector<std::pair<Index, Index>> stack{{root, none}}; // axis, node that it sits on
+    while (!stack.empty()) {
+      const auto [a, seat] = stack.back();
+      stack.pop_back();
+      const Axis& axis = m_set.axes[a].axis;
+      std::vector<Inserted> seats;
+      for (const Index c : m_children[a]) {
+        const Axis_place& p = m_joints[c].place;
+        seats.push_back({double(p.segment) + std::min(1.0, std::max(0.0, p.share)), c});
+      }
+      std::sort(seats.begin(), seats.end(), [](const Inserted& x, const Inserted& y) {
+        return x.at != y.at ? x.at < y.at : x.axis < y.axis;
+      });
+      const bool is_reversed = m_joints[a].is_reversed;
+      if (is_reversed)
+        std::reverse(seats.begin(), seats.end());
+      Index before = seat;
+      if (seat != none) { // its own node on the axis of the parent
+        Branch_node base;
+        static_cast<Axis_node&>(base) = is_reversed ? axis.back() : axis.front();
+        base.point = m_tree.nodes[seat].point;
+        base.is_measured = false;
+        before = add(base, seat);
+      }
+      m_first_node[a] = static_cast<Index>(m_tree.nodes.size());
+      m_node_of_place.emplace_back();
+      auto& places = m_node_of_place.back();
+      m_places_of_axis.resize(m_set.axes.size(), none);
+      m_places_of_axis[a] = static_cast<Index>(m_node_of_place.size() - 1);
+      places.assign(axis.size(), none);
+      std::size_t next = 0;
+      const auto add_seats = [&](double until) { // all seats on the way to `until`
+        for (; next < seats.size() &&
+               (is_reversed ? seats[next].at >= until : seats[next].at <= until);
+             ++next) {
+          const double at = seats[next].at;
+          const std::size_t s = std::min(axis.size() - 2, static_cast<std::size_t>(at));
+          const double t = at - double(s);
+          Branch_node node;
+          static_cast<Axis_node&>(node) = t < 0.5 ? axis[s] : axis[s + 1];
+          node.point = (1 - t) * axis[s].point + t * axis[s + 1].point;
+          node.radius = (1 - t) * axis[s].radius + t * axis[s + 1].radius;
+          const bool is_there = before != none && before >= m_first_node[a] &&
+                                (m_tree.nodes[before].point - node.point).norm() < 1e-3 * m_spacing;
+          if (!is_there)
+            before = add(node, before);
+          stack.emplace_back(seats[next].axis, before);
+        }
+      };
+      for (std::size_t i = 0; i < axis.size(); ++i) {
+        const std::size_t k = is_reversed ? axis.size() - 1 - i : i;
+        // a seat between the nodes comes before the next node
+        if (i > 0)
+          add_seats(is_reversed ? double(k) + 1e-9 : double(k) - 1e-9);
+        Branch_node node;
+        static_cast<Axis_node&>(node) = axis[k];
+        const bool is_there =
+            i > 0 && (m_tree.nodes[before].point - node.point).norm() < 1e-3 * m_spacing;
+        if (!is_there)
+          before = add(node, before);
+        places[k] = before;
+        add_seats(double(k));
+      }
+      add_seats(is_reversed ? -1.0 : double(axis.size()));
+    }
+  }
+
+  Index add(const Branch_node& node, Index parent)
+  {
+    m_tree.nodes.push_back(node);
+    m_tree.nodes.back().parent = parent;
+    return static_cast<Index>(m_tree.nodes.size() - 1);
+  }
+
   void assign_points()
   {
     const std::size_t n = m_set.axis_of_point.size();
@@ -290,9 +319,8 @@ private:
   const std::vector<Joint>& m_joints;
   double m_spacing;
   Branch_tree m_tree;
-  std::vector<std::vector<Index>> m_children, m_child, m_node_of_place;
-  std::vector<Index> m_first_node, m_places_of_axis, m_next, m_number;
-  std::vector<double> m_height;
+  std::vector<std::vector<Index>> m_children, m_node_of_place;
+  std::vector<Index> m_first_node, m_places_of_axis, m_number;
 };
 
 } // namespace internal

@@ -15,6 +15,7 @@
 #include <pcs/skeleton/join_axes.h>
 #include <pcs/skeleton/mark_ground.h>
 #include <pcs/skeleton/merge_rings.h>
+#include <pcs/skeleton/section_skeleton.h>
 
 #include <algorithm>
 #include <cmath>
@@ -28,6 +29,12 @@
 namespace pcs {
 namespace skeleton {
 
+/// How branches are found.
+enum class Skeleton_method {
+  chains, ///< whole axes are fitted to the layers of the paths from the root
+  sections ///< the dissertation: sections at centers of curvature, spanning trees where there are none
+};
+
 /// All rules of the pipeline, and the hints of the caller.
 struct Session_options
 {
@@ -35,6 +42,9 @@ struct Session_options
   std::optional<Vec3> root; ///< in the coordinates of the input
   bool do_mark_ground = true;
   double breast_height = 1.3; ///< [L]
+  Skeleton_method method = Skeleton_method::chains;
+  Slice_rules slices; ///< of the method `sections`, like the next
+  Section_tree_rules section_tree;
   Axis_rules axes;
   Ring_rules rings;
   Root_rules roots;
@@ -128,6 +138,15 @@ public:
     if (m_stage >= 3)
       return true;
     pcs::internal::Stopwatch watch;
+    if (m_options.method == Skeleton_method::sections) {
+      const std::vector<Surface_frame> frames = principal_curvatures<ConcurrencyTag>(m_scan);
+      if (!progress(0.7))
+        return false;
+      m_sections = detect_sections(m_scan, m_is_used, frames, m_options.slices);
+      m_report.seconds.axes = watch.lap();
+      m_stage = 3;
+      return progress(0.9);
+    }
     bool is_running = true;
     m_axes = skeleton::fit_axes<ConcurrencyTag>(m_scan, m_layers, m_options.axes, [&](double f) {
       return is_running = progress(0.6 + 0.3 * f);
@@ -148,6 +167,13 @@ public:
     if (m_stage >= 4)
       return true;
     pcs::internal::Stopwatch watch;
+    if (m_options.method == Skeleton_method::sections) {
+      m_tree = section_skeleton(m_scan, m_is_used, m_sections, m_root, m_options.section_tree);
+      count();
+      m_report.seconds.joints = watch.lap();
+      m_stage = 4;
+      return progress(0.97);
+    }
     if (!m_axes.axes.empty()) {
       const Index root = root_axis();
       m_joints = Axis_joiner(m_axes, m_scan.spacing, m_options.joints)(root);
@@ -172,6 +198,7 @@ public:
   const Shortest_paths& paths() const { return m_paths; }
   const Layer_tree& layers() const { return m_layers; }
   const Axis_set& axes() const { return m_axes; }
+  const std::vector<Found_section>& sections() const { return m_sections; }
   const std::vector<Joint>& joints() const { return m_joints; }
   const Branch_tree& tree() const { return m_tree; }
   const Skeleton_report& report() const { return m_report; }
@@ -183,8 +210,15 @@ public:
   /// Distance of an input point from the surface of its branch; negative inside. It has a node.
   double residual_of_input(std::size_t i) const
   {
-    const Index p = m_point_of_input[i];
-    return m_axes.height_above(p, m_scan.points[p]);
+    const Index p = m_point_of_input[i], v = m_tree.node_of_point[p];
+    if (m_options.method == Skeleton_method::chains)
+      return m_axes.height_above(p, m_scan.points[p]);
+    const Branch_node& node = m_tree.nodes[v];
+    const Branch_node& below = m_tree.nodes[node.parent == none ? v : node.parent];
+    const Vec3 d = node.point - below.point, q = m_scan.points[p] - below.point;
+    const double t =
+        d.squaredNorm() > 0 ? std::min(1.0, std::max(0.0, q.dot(d) / d.squaredNorm())) : 1;
+    return (q - t * d).norm() - (1 - t) * below.radius - t * node.radius;
   }
 
 private:
@@ -239,6 +273,7 @@ private:
   Shortest_paths m_paths;
   Layer_tree m_layers;
   Axis_set m_axes;
+  std::vector<Found_section> m_sections;
   std::vector<Joint> m_joints;
   Branch_tree m_tree;
   Skeleton_report m_report;
@@ -258,10 +293,11 @@ void Session<ConcurrencyTag>::count()
   for (std::size_t i = 0; i < m_scan.size(); ++i) {
     if (!m_is_used[i])
       continue;
+    const bool has_node = !m_tree.node_of_point.empty() && m_tree.node_of_point[i] != none;
     const bool is_covered =
-        !m_axes.axis_of_point.empty() && m_axes.is_covered(static_cast<Index>(i));
+        has_node || (!m_axes.axis_of_point.empty() && m_axes.is_covered(static_cast<Index>(i)));
     r.number_of_unexplained_points += !is_covered;
-    r.number_of_unreached_points += is_covered && m_tree.node_of_point[i] == none;
+    r.number_of_unreached_points += is_covered && !has_node;
   }
   for (const double b : size_bounds_by_breast_height)
     r.size_bounds.push_back(b * m_options.breast_height);

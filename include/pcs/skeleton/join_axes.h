@@ -27,7 +27,7 @@ struct Joint_rules
   double lateral = 2;     ///< cost of missing the parent's axis, per length [-]
   double lateral_tolerance = 0.3; ///< of it free of charge, in radii of the parent
   double tie = 0.02;       ///< of the whole distance: what costs nothing else is decided by it [-]
-  double steep_gap = 12;    ///< gaps longer than this cost more than their length
+  double steep_gap = 12;   ///< gaps longer than this cost more than their length
   double radius = 4;       ///< for each time that the base is thicker than its parent
   double backward = 3;     ///< for pointing to the root of the parent
   double reversal = 6;     ///< for using the tip as the base
