@@ -28,8 +28,8 @@ struct Axis_rules
   Chain_rules chains;
   int passes = 3;
   double later_links = 0.7; ///< links of later passes are this much shorter [-]
-  double later_protrusion =
-      6;                    ///< replaces `Chain_rules::protrusion` in later passes, in spacings [-]
+  //! replaces `Chain_rules::protrusion` in later passes, in spacings [-]
+  double later_protrusion = 3;
   double first_noise = 0.3; ///< noise before anything is known, in spacings [-]
   std::size_t largest_wave = 64; ///< chains that are fitted side by side [count]
 };
