@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // Scans a virtual tree, finds its skeleton, and prints what a forester wants to know.
 
+#include <pcs/IO/write_points.h>
 #include <pcs/IO/write_swc.h>
 #include <pcs/extract_tree_skeleton.h>
 #include <pcs/generators/grow_tree.h>
@@ -40,5 +41,6 @@ int main()
             << " cm thick; " << measured << " of " << num_vertices(tree) << " radii measured\n";
   pcs::IO::write_swc("skeleton_of_a_tree.swc", tree);
   //! [use]
+  pcs::IO::write_points("virtual_tree.ply", scan.points);
   return report.number_of_branches > 1 && measured > 0 ? 0 : 1;
 }

@@ -81,13 +81,19 @@ inline Circle fit_circle(const std::vector<Vec2>& points)
 /// Sectors of a full turn that arcs are measured in [count].
 constexpr int number_of_sectors = 12;
 
-/// How many of the sectors around `center` hold a point.
+/// How many of the sectors around `center` hold a point. The first sector begins at the mean of the points, so that the
+/// count does not depend on the frame of the plane.
 inline int covered_sectors(const std::vector<Vec2>& points, const Vec2& center)
 {
+  Vec2 mean = Vec2::Zero();
+  for (const Vec2& p : points)
+    mean += p - center;
   unsigned seen = 0;
   for (const Vec2& p : points) {
     const Vec2 d = p - center;
-    const double turn = std::atan2(d.y(), d.x()) / (2 * 3.14159265358979323846) + 0.5;
+    const double angle =
+        std::atan2(mean.x() * d.y() - mean.y() * d.x(), mean.x() * d.x() + mean.y() * d.y());
+    const double turn = angle / (2 * 3.14159265358979323846) + 0.5;
     const int sector = static_cast<int>(turn * number_of_sectors) % number_of_sectors;
     seen |= 1u << sector;
   }
