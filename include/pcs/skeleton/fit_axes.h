@@ -30,7 +30,7 @@ struct Axis_rules
   double later_links = 0.7; ///< links of later passes are this much shorter [-]
   //! replaces `Chain_rules::protrusion` in later passes, in spacings [-]
   double later_protrusion = 3;
-  double first_noise = 0.3; ///< noise before anything is known, in spacings [-]
+  double first_noise = 0.3;      ///< noise before anything is known, in spacings [-]
   std::size_t largest_wave = 64; ///< chains that are fitted side by side [count]
 };
 
