@@ -176,7 +176,8 @@ public:
     }
     if (!m_axes.axes.empty()) {
       const Index root = root_axis();
-      m_joints = Axis_joiner(m_axes, m_scan.spacing, m_options.joints)(root);
+      m_joints =
+          Axis_joiner(m_axes, m_scan.spacing, m_options.joints).template run<ConcurrencyTag>(root);
       if (!progress(0.95))
         return false;
       m_joints[root].is_reversed = is_root_reversed(root);

@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_JOIN_AXES_H
 #define PCS_SKELETON_JOIN_AXES_H
 
+#include <pcs/internal/parallel.h>
 #include <pcs/neighborhood/Nearest_neighbors.h>
 #include <pcs/skeleton/Axis.h>
 #include <pcs/skeleton/Axis_set.h>
@@ -100,14 +101,19 @@ public:
   }
 
   /// A joint for every axis but the root; no cycles. Axes that nothing is near to have no parent.
-  std::vector<Joint> operator()(Index root) const
+  template <class ConcurrencyTag>
+  std::vector<Joint> run(Index root) const
   {
     const std::size_t n = m_set.axes.size();
     const neighborhood::Nearest_neighbors search(m_nodes);
     std::vector<std::vector<Joint>> options(n);
-    for (Index a = 0; a < n; ++a)
-      if (a != root)
-        options[a] = options_of(a, search);
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        n,
+        [&](std::size_t a) {
+          if (a != root)
+            options[a] = options_of(static_cast<Index>(a), search);
+        },
+        16);
     return choose(root, options);
   }
 
