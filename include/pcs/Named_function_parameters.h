@@ -31,7 +31,20 @@
   PCS_OWN(poisson_ratio)                                                                           \
   PCS_OWN(do_preserve_volume)                                                                      \
   PCS_OWN(vector_map)                                                                              \
-  PCS_OWN(tensor_map)
+  PCS_OWN(tensor_map)                                                                              \
+  PCS_OWN(up_direction)                                                                            \
+  PCS_OWN(root_position)                                                                           \
+  PCS_OWN(breast_height)                                                                           \
+  PCS_OWN(do_remove_ground)                                                                        \
+  PCS_OWN(wood_map)                                                                                \
+  PCS_OWN(point_branch_map)                                                                        \
+  PCS_OWN(point_residual_map)                                                                      \
+  PCS_OWN(point_is_dense_map)                                                                      \
+  PCS_OWN(node_point_map)                                                                          \
+  PCS_OWN(node_radius_map)                                                                         \
+  PCS_OWN(skeleton_method)                                                                         \
+  PCS_OWN(slice_rules)                                                                             \
+  PCS_OWN(do_join)
 namespace pcs {
 namespace internal_np {
 

@@ -10,6 +10,7 @@
 #include <nanoflann.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -62,7 +63,71 @@ public:
     });
   }
 
+  /// Appends the indices of all points closer than `radius` to `query`, in increasing order.
+  void within(const Vec3& query, double radius, std::vector<std::uint32_t>& result) const
+  {
+    const std::size_t before = result.size();
+    Collector collector{radius * radius, &result};
+    if (!m_adaptor.points.empty())
+      m_tree.findNeighbors(collector, query.data(), nanoflann::SearchParams());
+    std::sort(result.begin() + static_cast<std::ptrdiff_t>(before), result.end());
+  }
+
+  /*!
+    The nearest point among those for which `is_wanted(index)` holds and that is closer than `radius`; ties by coordinates.
+    `squared_distance` is not less than the square of `radius` if there is none.
+  */
+  template <class Predicate>
+  Neighbor nearest_if(const Vec3& query, double radius, const Predicate& is_wanted) const
+  {
+    Filter<Predicate> filter{{0, radius * radius}, &m_adaptor.points, &is_wanted, false};
+    if (!m_adaptor.points.empty())
+      m_tree.findNeighbors(filter, query.data(), nanoflann::SearchParams());
+    return filter.best;
+  }
+
 private:
+  // Result sets in the sense of nanoflann.
+  struct Collector
+  {
+    double squared_radius;
+    std::vector<std::uint32_t>* result;
+    bool full() const { return true; }
+    double worstDist() const { return squared_radius; }
+    bool addPoint(double d, std::uint32_t i)
+    {
+      if (d < squared_radius)
+        result->push_back(i);
+      return true;
+    }
+  };
+  template <class Predicate>
+  struct Filter
+  {
+    Neighbor best;
+    const std::vector<Vec3>* points;
+    const Predicate* is_wanted;
+    bool is_found;
+    bool full() const { return true; }
+    double worstDist() const
+    {
+      // one step up: a tie must be seen
+      return is_found ? std::nextafter(best.squared_distance, 2 * best.squared_distance + 1)
+                      : best.squared_distance;
+    }
+    bool addPoint(double d, std::uint32_t i)
+    {
+      const bool is_closer = d < best.squared_distance ||
+                             (is_found && d == best.squared_distance &&
+                              lexicographically_less((*points)[i], (*points)[best.index]));
+      if (is_closer && (*is_wanted)(i)) {
+        best = {i, d};
+        is_found = true;
+      }
+      return true;
+    }
+  };
+
   struct Adaptor
   {
     const std::vector<Vec3>& points;

@@ -1,0 +1,264 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// A program that turns the scan of a tree into a skeleton with radii, a mesh, and tables.
+
+#include "program/Progress_line.h"
+#include "program/Report_file.h"
+#include "program/Skeleton_options.h"
+#include "program/skeleton_report.h"
+#include <pcs/IO/Point_table.h>
+#include <pcs/IO/read_points.h>
+#include <pcs/IO/write_cylinders.h>
+#include <pcs/IO/write_mesh.h>
+#include <pcs/IO/write_points.h>
+#include <pcs/IO/write_swc.h>
+#include <pcs/core/errors.h>
+#include <pcs/extract_tree_skeleton.h>
+#include <pcs/make_branch_surface.h>
+
+#include <CGAL/Simple_cartesian.h>
+
+#include <boost/iterator/counting_iterator.hpp>
+#include <boost/property_map/function_property_map.hpp>
+#include <boost/property_map/property_map.hpp>
+#include <boost/range/iterator_range.hpp>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <new>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace program {
+
+using Kernel = CGAL::Simple_cartesian<double>;
+using Tree = pcs::Tree_skeleton<Kernel>;
+
+Kernel::Vector_3 up_direction(const std::string& name)
+{
+  const double sign = name.front() == '-' ? -1 : 1;
+  const char axis = name.back();
+  return {axis == 'x' ? sign : 0, axis == 'y' ? sign : 0, axis == 'z' ? sign : 0};
+}
+
+pcs::skeleton::Section_fit section_fit(const std::string& name)
+{
+  using pcs::skeleton::Section_fit;
+  if (name == "ellipse")
+    return Section_fit::ellipse;
+  if (name == "circle")
+    return Section_fit::circle;
+  return name == "by_arc" ? Section_fit::by_arc : Section_fit::conic;
+}
+
+struct Labels
+{
+  std::vector<std::size_t> branch;
+  std::vector<double> residual;
+  std::vector<std::uint8_t> dense;
+};
+
+pcs::Skeleton_report extract(const pcs::IO::Point_table& table,
+                             const Skeleton_options& options,
+                             Tree& tree,
+                             Labels& labels)
+{
+  const std::size_t n = table.number_of_points();
+  labels.branch.assign(n, pcs::npos);
+  labels.residual.assign(n, 0);
+  labels.dense.assign(n, 0);
+  std::vector<double> wood(n, 1);
+  if (table.has_property("wood"))
+    wood = table.property_as_double("wood");
+  // the points are numbers here, and everything about them is a map
+  const auto indices = boost::make_iterator_range(boost::counting_iterator<std::size_t>(0),
+                                                  boost::counting_iterator<std::size_t>(n));
+  const auto identity = boost::typed_identity_property_map<std::size_t>();
+  const auto points = boost::make_iterator_property_map(table.points().begin(), identity);
+  const auto branches = boost::make_iterator_property_map(labels.branch.begin(), identity);
+  const auto residuals = boost::make_iterator_property_map(labels.residual.begin(), identity);
+  const auto dense = boost::make_iterator_property_map(labels.dense.begin(), identity);
+  const auto is_wood = boost::make_function_property_map<std::size_t, bool>(
+      [&](std::size_t i) { return wood[i] > 0.5; });
+  Progress_line line(!options.is_quiet);
+  const std::function<bool(double)> callback = [&](double f) {
+    line.show("skeleton", f);
+    return true;
+  };
+  pcs::skeleton::Slice_rules slices;
+  slices.fit = section_fit(options.fit);
+  slices.do_mark_support = !options.do_fit_all;
+  if (options.do_use_all)
+    slices.highest_count = 0;
+  const auto method = options.method == "chains" ? pcs::skeleton::Skeleton_method::chains
+                                                 : pcs::skeleton::Skeleton_method::sections;
+  const auto np = pcs::parameters::point_map(points)
+                      .skeleton_method(method)
+                      .slice_rules(slices)
+                      .up_direction(up_direction(options.up))
+                      .breast_height(options.breast_height)
+                      .do_remove_ground(!options.do_keep_ground)
+                      .wood_map(is_wood)
+                      .point_branch_map(branches)
+                      .point_residual_map(residuals)
+                      .point_is_dense_map(dense)
+                      .callback(callback);
+  if (options.root.empty())
+    return pcs::extract_tree_skeleton(indices, tree, np);
+  const Kernel::Point_3 root(options.root[0], options.root[1], options.root[2]);
+  return pcs::extract_tree_skeleton(indices, tree, np.root_position(root));
+}
+
+void write_mesh(const std::string& path, const Skeleton_options& options, const Tree& tree)
+{
+  std::vector<Kernel::Point_3> points;
+  std::vector<std::array<std::size_t, 3>> triangles;
+  const auto np = pcs::parameters::do_join(!options.do_separate);
+  if (options.tolerance >= 0)
+    pcs::make_branch_surface(tree, points, triangles, np.tolerance(options.tolerance));
+  else
+    pcs::make_branch_surface(tree, points, triangles, np);
+  pcs::IO::write_mesh(path, points, triangles);
+}
+
+void write_points(const std::string& path, pcs::IO::Point_table table, const Labels& labels)
+{
+  std::vector<std::int32_t> branch;
+  for (const std::size_t b : labels.branch)
+    branch.push_back(b == pcs::npos ? -1 : static_cast<std::int32_t>(b));
+  for (const char* name : {"branch", "dense", "residual"})
+    if (table.has_property(name))
+      table.remove_property(name);
+  table.add_property("branch", branch);
+  table.add_property("dense", labels.dense);
+  table.add_property("residual",
+                     std::vector<float>(labels.residual.begin(), labels.residual.end()));
+  pcs::IO::write_points(path, table);
+}
+
+/// One scan; throws if there is no tree in it.
+nlohmann::ordered_json run_one(const std::string& input, const Skeleton_options& options)
+{
+  pcs::IO::Point_table table = pcs::IO::read_points(input);
+  Tree tree;
+  Labels labels;
+  const pcs::Skeleton_report report = extract(table, options, tree, labels);
+  if (report.status != pcs::Status::converged)
+    throw pcs::Invalid_input(input + ": there is no tree in this scan (" +
+                             std::to_string(report.number_of_points) + " points)");
+  if (!options.mesh.empty())
+    write_mesh(options.mesh, options, tree);
+  if (!options.cylinders.empty())
+    pcs::IO::write_cylinders(options.cylinders, tree);
+  if (!options.edges.empty())
+    pcs::IO::write_ply_edges(options.edges, tree);
+  if (!options.points.empty())
+    write_points(options.points, std::move(table), labels);
+  pcs::IO::write_swc(options.swc, tree);
+  return to_json(input, report);
+}
+
+void run_single(const Skeleton_options& options)
+{
+  const nlohmann::ordered_json json = run_one(options.inputs.front(), options);
+  if (!options.report.empty()) {
+    Report_file file(options.report);
+    file.commit(json.dump(2) + "\n");
+  }
+  if (!options.is_quiet)
+    std::cout << "branches " << json["branches"] << ", nodes " << json["nodes"] << ", height "
+              << json["height"] << ", diameter at breast height "
+              << json["diameter_at_breast_height"] << ", length " << json["total"]["length"]
+              << ", volume " << json["total"]["volume"] << '\n';
+}
+
+/// Many scans; returns whether all are done.
+bool run_batch(const Skeleton_options& options)
+{
+  namespace fs = std::filesystem;
+  const fs::path folder = options.folder, log = folder / "batch.jsonl";
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (!fs::is_directory(folder))
+    throw pcs::IO_error(options.folder, "is not a directory and cannot be made one");
+  std::set<std::string> done;
+  {
+    std::ifstream in(log);
+    for (std::string line; std::getline(in, line);) {
+      const auto json = nlohmann::json::parse(line, nullptr, false); // the last line may be torn
+      if (json.is_object() && json.value("status", "") == "converged")
+        done.insert(json.value("input", ""));
+    }
+  }
+  std::ofstream out(log, std::ios::app);
+  if (!out)
+    throw pcs::IO_error(log.string(), "cannot be opened for writing");
+  bool is_good = true;
+  for (const std::string& input : options.inputs) {
+    if (done.count(input) != 0)
+      continue;
+    Skeleton_options one = options;
+    one.swc = (folder / fs::path(input).stem()).string() + ".swc";
+    nlohmann::ordered_json json;
+    try {
+      json = run_one(input, one);
+    } catch (const std::exception& e) { // one bad tree never ends the batch
+      json = {{"input", input}, {"status", "failed"}, {"error", e.what()}};
+      std::cerr << "extract_tree_skeleton: " << e.what() << '\n';
+      is_good = false;
+    }
+    out << json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << std::endl;
+    if (!out)
+      throw pcs::IO_error(log.string(), "cannot be written");
+  }
+  return is_good;
+}
+
+int fail(int exit_code, const std::string& what)
+{
+  std::cerr << "extract_tree_skeleton: " << what << '\n';
+  return exit_code;
+}
+
+} // namespace program
+
+int main(int argc, char** argv)
+{
+  constexpr int bad_input = 1, internal_error = 2;
+  program::Skeleton_options options;
+  CLI::App app("Finds the branches of a tree in a scan: their axes, radii and connection.",
+               "extract_tree_skeleton");
+  program::declare(app, options);
+  try {
+    app.parse(argc, argv);
+    program::check(options);
+    if (options.folder.empty())
+      program::run_single(options);
+    else if (!program::run_batch(options))
+      return bad_input;
+    return 0;
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0)
+      return app.exit(e); // --help, --version
+    return program::fail(bad_input,
+                         std::string(e.what()) + "\nRun with --help for more information.");
+  } catch (const pcs::IO_error& e) {
+    return program::fail(bad_input, e.what());
+  } catch (const pcs::Invalid_input& e) {
+    return program::fail(bad_input, e.what());
+  } catch (const std::bad_alloc&) {
+    return program::fail(internal_error, "not enough memory");
+  } catch (const std::exception& e) {
+    return program::fail(internal_error, std::string("internal error: ") + e.what());
+  }
+}

@@ -1,0 +1,64 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The report of a skeletonization as JSON.
+
+#ifndef PCS_EXAMPLES_PROGRAM_SKELETON_REPORT_H
+#define PCS_EXAMPLES_PROGRAM_SKELETON_REPORT_H
+
+#include <pcs/core/Skeleton_report.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cstddef>
+#include <string>
+
+namespace program {
+
+inline nlohmann::ordered_json to_json(const pcs::Wood& wood)
+{
+  return {{"branches", wood.number_of_branches}, {"length", wood.length}, {"volume", wood.volume}};
+}
+
+/// All figures; lengths in the unit of the input.
+inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skeleton_report& r)
+{
+  nlohmann::ordered_json json;
+  json["input"] = input;
+  json["status"] = pcs::to_string(r.status);
+  json["points"] = {{"all", r.number_of_points},
+                    {"duplicates", r.number_of_duplicates},
+                    {"outliers", r.number_of_outliers},
+                    {"ground", r.number_of_ground_points},
+                    {"unexplained", r.number_of_unexplained_points},
+                    {"out_of_reach", r.number_of_unreached_points}};
+  json["spacing"] = r.spacing;
+  json["noise"] = r.noise;
+  json["nodes"] = r.number_of_nodes;
+  json["branches"] = r.number_of_branches;
+  json["branches_out_of_reach"] = r.number_of_unreached_branches;
+  json["height"] = r.height;
+  json["diameter_at_breast_height"] = r.diameter_at_breast_height;
+  json["total"] = to_json(r.total);
+  json["by_order"] = nlohmann::ordered_json::array();
+  for (const pcs::Wood& wood : r.by_order)
+    json["by_order"].push_back(to_json(wood));
+  json["by_size"] = nlohmann::ordered_json::array();
+  for (std::size_t k = 0; k < r.by_size.size(); ++k) {
+    nlohmann::ordered_json size = to_json(r.by_size[k]);
+    size.erase("branches");
+    size["radius_from"] = k > 0 ? r.size_bounds[k - 1] : 0.0;
+    if (k < r.size_bounds.size())
+      size["radius_to"] = r.size_bounds[k];
+    json["by_size"].push_back(size);
+  }
+  json["seconds"] = {{"neighbors", r.seconds.neighbors},
+                     {"paths", r.seconds.paths},
+                     {"axes", r.seconds.axes},
+                     {"joints", r.seconds.joints},
+                     {"sections", r.seconds.sections}};
+  return json;
+}
+
+} // namespace program
+
+#endif // PCS_EXAMPLES_PROGRAM_SKELETON_REPORT_H

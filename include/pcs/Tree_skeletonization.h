@@ -1,0 +1,516 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The skeleton of a tree from a scan, stage by stage.
+
+#ifndef PCS_TREE_SKELETONIZATION_H
+#define PCS_TREE_SKELETONIZATION_H
+
+#include <pcs/Named_function_parameters.h>
+#include <pcs/concepts.h>
+#include <pcs/core/Skeleton_report.h>
+#include <pcs/core/Tree_skeleton.h>
+#include <pcs/core/errors.h>
+#include <pcs/internal/progress.h>
+#include <pcs/internal/text.h>
+#include <pcs/skeleton/Session.h>
+
+#include <CGAL/number_utils.h>
+#include <CGAL/property_map.h>
+
+#include <boost/graph/graph_traits.hpp>
+#include <boost/property_map/property_map.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+
+//! \ingroup PkgPcsSkeletonRef
+//! a scan of fewer different points has no skeleton [count]
+constexpr std::size_t lowest_number_of_scan_points = 10;
+//! \ingroup PkgPcsSkeletonRef
+//! height above the root at which foresters measure the diameter of a trunk [m]
+constexpr double default_breast_height = 1.3;
+
+namespace internal {
+
+struct No_skeleton_map
+{
+};
+
+/// The types that a point range and a chain of named parameters stand for.
+template <class PointRange, class NamedParameters>
+struct Skeleton_types
+{
+  using Element = Element_reference<const PointRange>;
+  using Point_map = std::decay_t<decltype(choose(
+      std::declval<const NamedParameters&>(),
+      CGAL::internal_np::point_map,
+      std::declval<CGAL::Identity_property_map<std::decay_t<Element>>>()))>;
+  using Point = pcs::Map_value<Point_map>;
+};
+
+template <class Graph>
+struct Is_tree_skeleton : std::false_type
+{
+};
+template <class Kernel>
+struct Is_tree_skeleton<boost::adjacency_list<boost::vecS,
+                                              boost::vecS,
+                                              boost::bidirectionalS,
+                                              Tree_node<Kernel>,
+                                              boost::no_property,
+                                              Tree_bundle>> : std::true_type
+{
+};
+
+template <class Graph, class = void>
+struct Is_mutable_graph : std::false_type
+{
+};
+template <class Graph>
+struct Is_mutable_graph<
+    Graph,
+    std::void_t<decltype(add_vertex(std::declval<Graph&>())),
+                decltype(add_edge(
+                    std::declval<typename boost::graph_traits<Graph>::vertex_descriptor>(),
+                    std::declval<typename boost::graph_traits<Graph>::vertex_descriptor>(),
+                    std::declval<Graph&>()))>> : std::true_type
+{
+};
+
+template <class Point>
+skeleton::Vec3 to_vec3(const Point& p)
+{
+  return {CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())};
+}
+
+} // namespace internal
+
+/*!
+  \ingroup PkgPcsSkeletonRef
+  \brief finds branches, radii and their connection in the scan of a tree, one stage at a time.
+
+  After chapter 3 of \cite aiteanu2022 (\cite ak2014), with the sections of a branch fitted together: paths from the root
+  over the neighbour graph are cut into layers, the layers form chains, and every chain becomes one axis whose positions and
+  radii are a robust least-squares fit to all of its points; where the points do not decide a radius, their number does.
+
+  Each stage runs those before it, once; `extract()` runs them all. What a stage found can be inspected in between.
+
+  \tparam PointRange a model of `RandomAccessRange`; read by the constructor only
+  \tparam NamedParameters the type of the chain given to the constructor (deduced)
+  \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or `CGAL::Parallel_if_available_tag`
+
+  \par Memory
+  About 350 bytes per point at the peak.
+
+  \par Thread safety
+  Different objects may be used at the same time. One object may be used by one thread at a time.
+
+  \par Determinism
+  Same bits for every number of threads and for the sequential tag.
+*/
+template <class PointRange,
+          class NamedParameters = parameters::Default_named_parameters,
+          class ConcurrencyTag = CGAL::Parallel_if_available_tag>
+class Tree_skeletonization
+{
+  using Types = internal::Skeleton_types<PointRange, NamedParameters>;
+
+public:
+  using Point_map = typename Types::Point_map;
+  using Point = typename Types::Point;
+  using Session = skeleton::Session<ConcurrencyTag>;
+
+private:
+  static constexpr bool is_range_ok = is_random_access_range_v<const PointRange>;
+  static_assert(
+      is_range_ok,
+      "pcs::Tree_skeletonization: the points must be a random access range, for example a "
+      "std::vector");
+  static constexpr bool is_point_ok = is_point_or_vector_v<Point>;
+  static_assert(
+      is_point_ok,
+      "pcs::Tree_skeletonization: `point_map` must be a property map that stores points "
+      "with x(), y(), z() and a constructor from three coordinates, like Kernel::Point_3");
+  static constexpr bool is_point_map_ok =
+      !is_point_ok || is_readable_map_v<Point_map, typename Types::Element, Point>;
+  static_assert(
+      is_point_map_ok,
+      "pcs::Tree_skeletonization: named parameter `point_map` must be readable and accept "
+      "an element of `points` as key");
+  static constexpr bool is_ok = is_range_ok && is_point_ok && is_point_map_ok;
+
+public:
+  /*!
+    Reads the points and the hints; no stage runs yet. O(n).
+
+    \param points at least `lowest_number_of_scan_points` different ones
+    \param np
+    \npbegin
+      \np{point_map} where a position is read
+        \nptype model of `ReadablePropertyMap`, key: element of `points`, value: a point type
+        \npdefault `CGAL::Identity_property_map`
+      \np{up_direction} where the tree grows to; used to find the root, the ground and heights
+        \nptype a vector with `x()`, `y()`, `z()`, not null
+        \npdefault the z-axis
+      \np{root_position} a place near the foot of the trunk [L]
+        \nptype a point with `x()`, `y()`, `z()`
+        \npdefault none: the lower end of the thickest part near the lower end of the cloud
+      \np{skeleton_method} how branches are found
+        \nptype `skeleton::Skeleton_method`: `chains`, or `sections` for the dissertation's own way
+        \npdefault `chains`
+      \np{slice_rules} the steps of the method `sections`: how slices are cut, fitted, tilted, and which points they spare
+        \nptype `skeleton::Slice_rules`
+        \npdefault the dissertation's, with which nothing is replaced
+      \np{do_remove_ground} whether a slice of ground around the foot is looked for and left out
+        \nptype `bool`
+        \npdefault `true`
+      \np{breast_height} height of the diameter in the report, and unit of its size classes [L]
+        \nptype floating point, `> 0`
+        \npdefault `default_breast_height`, for scans in metres
+      \np{wood_map} whether a point may belong to a branch; others (leaves) are left out
+        \nptype model of `ReadablePropertyMap`, key: element of `points`, value: `bool`
+        \npdefault all points
+      \np{point_branch_map} written by `extract()`: the branch of a point, an index in the result, or `npos`
+        \nptype model of `WritablePropertyMap`, key: element of `points`, value: `std::size_t`
+        \npdefault none
+      \np{point_residual_map} written by `extract()`: distance from the surface of the branch, negative inside, 0 for points
+          without a branch [L]
+        \nptype model of `WritablePropertyMap`, key: element of `points`, value: floating point
+        \npdefault none
+      \np{point_is_dense_map} written by `extract()`: whether the point lies where the section of its branch was measured
+        \nptype model of `WritablePropertyMap`, key: element of `points`, value: `bool`
+        \npdefault none
+      \np{node_point_map} where the position of a vertex of the result is written
+        \nptype model of `WritablePropertyMap`, key: vertex descriptor, value: a point type
+        \npdefault the bundled property of `Tree_skeleton`; needed for other graphs
+      \np{node_radius_map} where the radius of a vertex of the result is written [L]
+        \nptype model of `WritablePropertyMap`, key: vertex descriptor, value: floating point
+        \npdefault the bundled property of `Tree_skeleton`; needed for other graphs
+      \np{callback} called on this thread with a value that grows from 0 to 1; `false` stops
+        \nptype `std::function<bool(double)>`
+        \npdefault none
+    \npend
+
+    \throws Invalid_input if there are too few points, a coordinate is not finite or beyond 1e150, or a parameter is out of
+            range
+  */
+  explicit Tree_skeletonization(const PointRange& points,
+                                const NamedParameters& np = NamedParameters())
+    : m_points(&points), m_np(np)
+  {
+    if constexpr (is_ok) {
+      skeleton::Session_options options = read_options();
+      std::vector<skeleton::Vec3> input = read_points();
+      check_extent(input);
+      std::vector<std::uint8_t> is_wood = read_wood();
+      m_session =
+          std::make_unique<Session>(std::move(input), std::move(is_wood), std::move(options));
+    }
+  }
+
+  Tree_skeletonization(Tree_skeletonization&&) = default;
+  Tree_skeletonization& operator=(Tree_skeletonization&&) = default;
+
+  /// \name Stages
+  /// Each returns `false` if the callback stopped it; it may be called again then.
+  /// @{
+
+  //! neighbours, spacing, duplicates and outliers. O(n log n)
+  bool find_neighbors()
+  {
+    return run([&](auto& p) { return m_session->find_neighbors(p); });
+  }
+  //! ground, root, shortest paths, and the tree of their layers. O(n log n)
+  bool find_paths()
+  {
+    return run([&](auto& p) { return m_session->find_paths(p); });
+  }
+  //! the axes of all branches with their radii. O(n log n)
+  bool fit_axes()
+  {
+    return run([&](auto& p) { return m_session->fit_axes(p); });
+  }
+  //! one rooted tree of branches, and its sections. O(axes log axes)
+  bool join()
+  {
+    return run([&](auto& p) { return m_session->join(p); });
+  }
+
+  /*!
+    Runs the stages that have not run, and writes the result.
+
+    \tparam Graph `Tree_skeleton<Kernel>`, or any model of `MutableGraph` of Boost with `node_point_map` and
+            `node_radius_map` given. It becomes a tree with edges from parent to child; the first vertex is the root
+    \param tree replaced by the result; untouched if there is none or the callback stopped the work
+  */
+  template <class Graph>
+  Skeleton_report extract(Graph& tree)
+  {
+    constexpr bool is_ready_made = internal::Is_tree_skeleton<Graph>::value;
+    constexpr bool has_maps =
+        internal::is_given_v<NamedParameters, internal_np::node_point_map_t> &&
+        internal::is_given_v<NamedParameters, internal_np::node_radius_map_t>;
+    constexpr bool is_graph_ok = internal::Is_mutable_graph<Graph>::value;
+    static_assert(is_graph_ok,
+                  "pcs::extract_tree_skeleton(): the result must be a mutable graph of Boost, for "
+                  "example pcs::Tree_skeleton<Kernel>");
+    static_assert(!is_graph_ok || is_ready_made || has_maps,
+                  "pcs::extract_tree_skeleton(): a graph that is no pcs::Tree_skeleton needs the "
+                  "named parameters `node_point_map` and `node_radius_map`");
+    if constexpr (is_graph_ok && is_ok && (is_ready_made || has_maps)) {
+      if (!join()) {
+        Skeleton_report report;
+        report.status = Status::cancelled;
+        report.number_of_points = m_session->report().number_of_points;
+        return report;
+      }
+      if (m_session->report().status == Status::converged) {
+        if constexpr (is_ready_made)
+          write_ready_made(tree);
+        else
+          write_graph(tree);
+      }
+      write_points();
+      if (m_callback)
+        m_callback(1);
+      return m_session->report();
+    } else
+      return Skeleton_report();
+  }
+
+  /// @}
+
+  /// \name What was found
+  /// Coordinates of the stages are relative to `scan().origin`.
+  /// @{
+  const skeleton::Scan& scan() const { return m_session->scan(); }
+  const skeleton::Layer_tree& layers() const { return m_session->layers(); }
+  const skeleton::Axis_set& axes() const { return m_session->axes(); }
+  const std::vector<skeleton::Joint>& joints() const { return m_session->joints(); }
+  const skeleton::Branch_tree& branches() const { return m_session->tree(); }
+  const Skeleton_report& report() const { return m_session->report(); }
+  /// @}
+
+private:
+  static constexpr const char* function = "pcs::extract_tree_skeleton()";
+
+  template <class Stage>
+  bool run(const Stage& stage)
+  {
+    internal::Progress progress(m_callback);
+    return stage(progress);
+  }
+
+  skeleton::Session_options read_options()
+  {
+    using internal::choose;
+    skeleton::Session_options options;
+    if constexpr (internal::is_given_v<NamedParameters, internal_np::up_direction_t>)
+      options.up =
+          internal::to_vec3(CGAL::parameters::get_parameter(m_np, internal_np::up_direction));
+    const double length = options.up.norm();
+    if (!std::isfinite(length) || !(length > 0))
+      throw Invalid_input(std::string(function) +
+                          ": up_direction must be finite and not the null vector");
+    options.up /= length;
+    if constexpr (internal::is_given_v<NamedParameters, internal_np::root_position_t>) {
+      options.root =
+          internal::to_vec3(CGAL::parameters::get_parameter(m_np, internal_np::root_position));
+      if (!options.root->allFinite())
+        throw Invalid_input(std::string(function) + ": root_position must be finite");
+    }
+    options.method = choose(m_np, internal_np::skeleton_method, skeleton::Skeleton_method::chains);
+    options.slices = choose(m_np, internal_np::slice_rules, skeleton::Slice_rules());
+    options.do_mark_ground = choose(m_np, internal_np::do_remove_ground, true);
+    options.breast_height =
+        static_cast<double>(choose(m_np, internal_np::breast_height, default_breast_height));
+    if (!std::isfinite(options.breast_height) || !(options.breast_height > 0))
+      throw Invalid_input(std::string(function) + ": breast_height is " +
+                          internal::to_text(options.breast_height) + "; it must be positive");
+    m_callback = choose(m_np, CGAL::internal_np::callback, std::function<bool(double)>());
+    return options;
+  }
+
+  std::vector<skeleton::Vec3> read_points() const
+  {
+    const auto point_map =
+        internal::choose(m_np,
+                         CGAL::internal_np::point_map,
+                         CGAL::Identity_property_map<std::decay_t<typename Types::Element>>());
+    std::vector<skeleton::Vec3> input;
+    constexpr double largest = 1e150; // squares must be finite
+    for (auto it = std::begin(*m_points); it != std::end(*m_points); ++it) {
+      const skeleton::Vec3 p = internal::to_vec3(get(point_map, *it));
+      if (!p.allFinite() || p.cwiseAbs().maxCoeff() > largest)
+        throw Invalid_input(std::string(function) + ": point " + std::to_string(input.size()) +
+                            " is not finite, or beyond 1e150");
+      input.push_back(p);
+    }
+    return input;
+  }
+
+  static void check_extent(const std::vector<skeleton::Vec3>& input)
+  {
+    std::vector<skeleton::Vec3> some;
+    for (const skeleton::Vec3& p : input) {
+      if (some.size() < lowest_number_of_scan_points &&
+          std::find(some.begin(), some.end(), p) == some.end())
+        some.push_back(p);
+      if (some.size() == lowest_number_of_scan_points)
+        return;
+    }
+    throw Invalid_input(std::string(function) + ": there are " + std::to_string(some.size()) +
+                        " different points; there must be at least " +
+                        std::to_string(lowest_number_of_scan_points));
+  }
+
+  std::vector<std::uint8_t> read_wood() const
+  {
+    std::vector<std::uint8_t> is_wood;
+    if constexpr (internal::is_given_v<NamedParameters, internal_np::wood_map_t>) {
+      const auto map = CGAL::parameters::get_parameter(m_np, internal_np::wood_map);
+      constexpr bool is_map_ok =
+          is_readable_map_v<std::decay_t<decltype(map)>, typename Types::Element, bool>;
+      static_assert(is_map_ok,
+                    "pcs::extract_tree_skeleton(): named parameter `wood_map` must be readable, "
+                    "accept an element of `points` as key, and store bool");
+      std::size_t count = 0;
+      if constexpr (is_map_ok)
+        for (auto it = std::begin(*m_points); it != std::end(*m_points); ++it) {
+          is_wood.push_back(get(map, *it) ? 1 : 0);
+          count += is_wood.back();
+        }
+      if (count < lowest_number_of_scan_points)
+        throw Invalid_input(std::string(function) + ": wood_map leaves " + std::to_string(count) +
+                            " points; there must be at least " +
+                            std::to_string(lowest_number_of_scan_points));
+    }
+    return is_wood;
+  }
+
+  template <class Graph>
+  void write_ready_made(Graph& tree) const
+  {
+    using Node = typename Graph::vertex_bundled;
+    using FT = typename Node::FT;
+    using P = typename Node::Point_3;
+    using V = typename Node::Vector_3;
+    const skeleton::Branch_tree& found = m_session->tree();
+    const skeleton::Vec3& origin = m_session->scan().origin;
+    Graph result;
+    for (const skeleton::Branch_node& from : found.nodes) {
+      Node node;
+      const skeleton::Vec3 p = from.point + origin;
+      node.point = P(FT(p.x()), FT(p.y()), FT(p.z()));
+      node.radius = FT(from.radius);
+      node.radius_error = FT(from.radius_error);
+      node.is_measured = from.is_measured;
+      const bool is_oval = from.major_radius > 0;
+      node.major_radius = FT(is_oval ? from.major_radius : from.radius);
+      node.minor_radius = FT(is_oval ? from.minor_radius : from.radius);
+      node.major_axis =
+          V(FT(from.major_axis.x()), FT(from.major_axis.y()), FT(from.major_axis.z()));
+      node.branch = from.branch;
+      const auto v = add_vertex(node, result);
+      if (from.parent != skeleton::none)
+        add_edge(from.parent, v, result);
+    }
+    Tree_bundle& bundle = result[boost::graph_bundle];
+    bundle.root = 0;
+    for (std::size_t b = 0; b < found.branches.size(); ++b) {
+      Tree_branch branch;
+      if (found.branches[b].parent != skeleton::none)
+        branch.parent = found.branches[b].parent;
+      branch.order = found.branches[b].order;
+      branch.id = b;
+      bundle.branches.push_back(branch);
+    }
+    tree = result; // swap() of Boost 1.74 forgets the bundle
+  }
+
+  template <class Graph>
+  void write_graph(Graph& tree) const
+  {
+    const auto point_map = CGAL::parameters::get_parameter(m_np, internal_np::node_point_map);
+    const auto radius_map = CGAL::parameters::get_parameter(m_np, internal_np::node_radius_map);
+    using P = pcs::Map_value<std::decay_t<decltype(point_map)>>;
+    using R = pcs::Map_value<std::decay_t<decltype(radius_map)>>;
+    constexpr bool are_maps_ok = is_point_or_vector_v<P> && std::is_floating_point_v<R>;
+    static_assert(are_maps_ok,
+                  "pcs::extract_tree_skeleton(): `node_point_map` must store points with x(), y(), "
+                  "z(), and `node_radius_map` floating point numbers");
+    if constexpr (are_maps_ok) {
+      using FT = std::decay_t<decltype(std::declval<const P&>().x())>;
+      const skeleton::Branch_tree& found = m_session->tree();
+      const skeleton::Vec3& origin = m_session->scan().origin;
+      while (num_vertices(tree) > 0) {
+        const auto v = *vertices(tree).first;
+        clear_vertex(v, tree);
+        remove_vertex(v, tree);
+      }
+      std::vector<typename boost::graph_traits<Graph>::vertex_descriptor> vertex;
+      vertex.reserve(found.nodes.size());
+      for (std::size_t k = 0; k < found.nodes.size(); ++k)
+        vertex.push_back(add_vertex(tree));
+      for (std::size_t k = 0; k < found.nodes.size(); ++k) {
+        const skeleton::Branch_node& from = found.nodes[k];
+        const skeleton::Vec3 p = from.point + origin;
+        put(point_map, vertex[k], P(FT(p.x()), FT(p.y()), FT(p.z())));
+        put(radius_map, vertex[k], R(from.radius));
+        if (from.parent != skeleton::none)
+          add_edge(vertex[from.parent], vertex[k], tree);
+      }
+    }
+  }
+
+  /// Writes the maps over the points; nothing is there to write if there is no tree.
+  void write_points() const
+  {
+    const skeleton::Branch_tree& found = m_session->tree();
+    const bool has_tree = !found.nodes.empty();
+    const auto for_each_point = [&](const auto& f) {
+      std::size_t i = 0;
+      for (auto it = std::begin(*m_points); it != std::end(*m_points); ++it, ++i)
+        f(*it, i, has_tree ? m_session->node_of_input(i) : skeleton::none);
+    };
+    if constexpr (internal::is_given_v<NamedParameters, internal_np::point_branch_map_t>) {
+      const auto map = CGAL::parameters::get_parameter(m_np, internal_np::point_branch_map);
+      for_each_point([&](auto&& key, std::size_t, skeleton::Index v) {
+        put(map, key, v == skeleton::none ? npos : std::size_t(found.nodes[v].branch));
+      });
+    }
+    if constexpr (internal::is_given_v<NamedParameters, internal_np::point_residual_map_t>) {
+      const auto map = CGAL::parameters::get_parameter(m_np, internal_np::point_residual_map);
+      using R = pcs::Map_value<std::decay_t<decltype(map)>>;
+      for_each_point([&](auto&& key, std::size_t i, skeleton::Index v) {
+        put(map, key, R(v == skeleton::none ? 0.0 : m_session->residual_of_input(i)));
+      });
+    }
+    if constexpr (internal::is_given_v<NamedParameters, internal_np::point_is_dense_map_t>) {
+      const auto map = CGAL::parameters::get_parameter(m_np, internal_np::point_is_dense_map);
+      for_each_point([&](auto&& key, std::size_t, skeleton::Index v) {
+        put(map, key, v != skeleton::none && found.nodes[v].is_measured);
+      });
+    }
+  }
+
+  const PointRange* m_points;
+  NamedParameters m_np;
+  std::function<bool(double)> m_callback;
+  std::unique_ptr<Session> m_session;
+};
+
+} // namespace pcs
+
+#endif // PCS_TREE_SKELETONIZATION_H

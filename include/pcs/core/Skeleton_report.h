@@ -1,0 +1,80 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// What a skeletonization found: counts, sizes of the tree, seconds per stage.
+
+#ifndef PCS_CORE_SKELETON_REPORT_H
+#define PCS_CORE_SKELETON_REPORT_H
+
+#include <pcs/core/Status.h>
+
+#include <cstddef>
+#include <ostream>
+#include <vector>
+
+namespace pcs {
+
+//! \ingroup PkgPcsSkeletonRef
+//! sums over a part of a tree
+struct Wood
+{
+  std::size_t number_of_branches = 0; ///< [count]; 0 in classes of size, which cut branches
+  double length = 0;                  ///< along the axes [L]
+  double volume = 0;                  ///< of the frusta between the nodes [L^3]
+};
+
+//! \ingroup PkgPcsSkeletonRef
+//! what `extract_tree_skeleton()` or `Tree_skeletonization` found
+struct Skeleton_report
+{
+  //! `converged`; `nothing_to_do` if nothing in the cloud is a branch; `cancelled`
+  Status status = Status::nothing_to_do;
+
+  std::size_t number_of_points = 0;     ///< of the input [count]
+  std::size_t number_of_duplicates = 0; ///< points at the place of another one [count]
+  std::size_t number_of_outliers =
+      0; ///< points left out because they are far from all others [count]
+  std::size_t number_of_ground_points = 0;      ///< points left out as ground [count]
+  std::size_t number_of_unexplained_points = 0; ///< other points that no branch explains [count]
+  std::size_t number_of_unreached_points =
+      0; ///< points of branches too far from the tree; these are not part of the result [count]
+  std::size_t number_of_unreached_branches = 0; ///< [count]
+  std::size_t number_of_nodes = 0;              ///< [count]
+  std::size_t number_of_branches = 0;           ///< [count]
+
+  double spacing = 0; ///< median distance to the nearest neighbour [L]
+  double noise = 0;   ///< standard deviation of the points from the surface [L]
+  double density = 0; ///< points per area of the surface of branches; 0: not known [1/L^2]
+
+  double height = 0; ///< from the root to the highest node, along the up direction [L]
+  double diameter_at_breast_height = 0; ///< of the trunk; 0: the trunk is not that high [L]
+  Wood total;
+  std::vector<Wood> by_order; ///< trunk first
+  //! upper bounds of the radius in the classes of `by_size`, the last class has none
+  std::vector<double> size_bounds;
+  std::vector<Wood> by_size; ///< thinnest class first
+
+  //! wall-clock time of each stage [s]
+  struct Seconds
+  {
+    double neighbors = 0, paths = 0, axes = 0, joints = 0, sections = 0;
+  } seconds;
+};
+
+inline std::ostream& operator<<(std::ostream& out, const Skeleton_report& r)
+{
+  out << "status " << r.status << ", " << r.number_of_points << " points ("
+      << r.number_of_duplicates << " duplicates, " << r.number_of_outliers << " outliers, "
+      << r.number_of_ground_points << " on the ground, " << r.number_of_unexplained_points
+      << " unexplained, " << r.number_of_unreached_points << " out of reach), "
+      << r.number_of_branches << " branches, " << r.number_of_nodes << " nodes, spacing "
+      << r.spacing << ", noise " << r.noise << ", height " << r.height
+      << ", diameter at breast height " << r.diameter_at_breast_height << ", length "
+      << r.total.length << ", volume " << r.total.volume << "; seconds: neighbors "
+      << r.seconds.neighbors << ", paths " << r.seconds.paths << ", axes " << r.seconds.axes
+      << ", joints " << r.seconds.joints << ", sections " << r.seconds.sections;
+  return out;
+}
+
+} // namespace pcs
+
+#endif // PCS_CORE_SKELETON_REPORT_H

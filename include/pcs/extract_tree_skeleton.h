@@ -1,0 +1,47 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The skeleton of a tree from a scan, in one call.
+
+#ifndef PCS_EXTRACT_TREE_SKELETON_H
+#define PCS_EXTRACT_TREE_SKELETON_H
+
+#include <pcs/Tree_skeletonization.h>
+
+namespace pcs {
+
+/*!
+  \ingroup PkgPcsSkeletonRef
+  \brief finds the skeleton of a tree in a scan: nodes with radii, connected from the root to the tips.
+
+  Same as one `Tree_skeletonization` with one `extract()`: see there for the model, the named parameters, errors, cost and
+  determinism. The result is always one tree: connected, rooted, without cycles. What cannot be connected is counted in the
+  report and left out.
+
+  | scan | result |
+  |---|---|
+  | fewer than `lowest_number_of_scan_points` different points, or one that is not finite | `Invalid_input` |
+  | nothing that can be a branch | `Status::nothing_to_do`, `tree` untouched |
+  | a lamp post, a stick | one branch |
+  | a bush | its thickest stem is the root; other stems within reach are branches of it |
+  | two trees in one cloud | the one with the thicker foot; the other one is counted as out of reach |
+
+  \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or `CGAL::Parallel_if_available_tag`
+  \param points a model of `RandomAccessRange`
+  \param tree a `Tree_skeleton`, or a mutable graph of Boost with `node_point_map` and `node_radius_map`; replaced
+  \return a `Skeleton_report`: status, counts, sizes of the tree, seconds per stage
+*/
+template <class ConcurrencyTag = CGAL::Parallel_if_available_tag,
+          class PointRange,
+          class Graph,
+          class NamedParameters = parameters::Default_named_parameters>
+Skeleton_report extract_tree_skeleton(const PointRange& points,
+                                      Graph& tree,
+                                      const NamedParameters& np = NamedParameters())
+{
+  return Tree_skeletonization<PointRange, NamedParameters, ConcurrencyTag>(points, np)
+      .extract(tree);
+}
+
+} // namespace pcs
+
+#endif // PCS_EXTRACT_TREE_SKELETON_H

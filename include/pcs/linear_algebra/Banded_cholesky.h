@@ -1,0 +1,86 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Symmetric positive definite systems of small bandwidth: assembled, factorised and solved in place.
+
+#ifndef PCS_LINEAR_ALGEBRA_BANDED_CHOLESKY_H
+#define PCS_LINEAR_ALGEBRA_BANDED_CHOLESKY_H
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace pcs {
+namespace linear_algebra {
+
+/// A symmetric matrix with `Bandwidth` diagonals below the main one, kept as rows of the lower half.
+template <std::size_t Bandwidth>
+class Banded_cholesky
+{
+public:
+  /// Becomes the zero matrix of size `n`.
+  void reset(std::size_t n)
+  {
+    m_size = n;
+    m_rows.assign(n * width, 0.0);
+  }
+
+  std::size_t size() const { return m_size; }
+
+  /// Entry of the lower half: `j <= i <= j + Bandwidth`.
+  double& operator()(std::size_t i, std::size_t j)
+  {
+    return m_rows[i * width + Bandwidth - (i - j)];
+  }
+  double operator()(std::size_t i, std::size_t j) const
+  {
+    return m_rows[i * width + Bandwidth - (i - j)];
+  }
+
+  /// Replaces the matrix by its factor. `false` if it is not positive definite.
+  bool factorize()
+  {
+    for (std::size_t i = 0; i < m_size; ++i) {
+      const std::size_t begin = i > Bandwidth ? i - Bandwidth : 0;
+      for (std::size_t j = begin; j <= i; ++j) {
+        const std::size_t from = std::max(begin, j > Bandwidth ? j - Bandwidth : 0);
+        double sum = (*this)(i, j);
+        for (std::size_t k = from; k < j; ++k)
+          sum -= (*this)(i, k) * (*this)(j, k);
+        if (j < i)
+          (*this)(i, j) = sum / (*this)(j, j);
+        else if (sum > 0 && std::isfinite(sum))
+          (*this)(i, i) = std::sqrt(sum);
+        else
+          return false;
+      }
+    }
+    return true;
+  }
+
+  /// Solves in place, after `factorize()`.
+  void solve(std::vector<double>& x) const
+  {
+    for (std::size_t i = 0; i < m_size; ++i) {
+      for (std::size_t k = i > Bandwidth ? i - Bandwidth : 0; k < i; ++k)
+        x[i] -= (*this)(i, k) * x[k];
+      x[i] /= (*this)(i, i);
+    }
+    for (std::size_t i = m_size; i-- > 0;) {
+      const std::size_t end = std::min(m_size, i + Bandwidth + 1);
+      for (std::size_t k = i + 1; k < end; ++k)
+        x[i] -= (*this)(k, i) * x[k];
+      x[i] /= (*this)(i, i);
+    }
+  }
+
+private:
+  static constexpr std::size_t width = Bandwidth + 1;
+  std::size_t m_size = 0;
+  std::vector<double> m_rows;
+};
+
+} // namespace linear_algebra
+} // namespace pcs
+
+#endif // PCS_LINEAR_ALGEBRA_BANDED_CHOLESKY_H

@@ -1,0 +1,138 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The surface of a tree skeleton as a triangle mesh.
+
+#ifndef PCS_MAKE_BRANCH_SURFACE_H
+#define PCS_MAKE_BRANCH_SURFACE_H
+
+#include <pcs/Named_function_parameters.h>
+#include <pcs/core/Tree_skeleton.h>
+#include <pcs/core/errors.h>
+#include <pcs/internal/text.h>
+#include <pcs/skeleton/Surface_builder.h>
+
+#include <CGAL/number_utils.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+
+//! \ingroup PkgPcsSkeletonRef
+//! default distance of the mesh from the sections, in largest radii of the tree [-]
+constexpr double default_surface_tolerance = 0.01;
+
+//! \ingroup PkgPcsSkeletonRef
+//! what `make_branch_surface()` made
+struct Branch_surface_report
+{
+  std::size_t number_of_points = 0;    ///< [count]
+  std::size_t number_of_triangles = 0; ///< [count]
+  std::size_t number_of_joined = 0;    ///< branches sewn into a hole of their parent [count]
+  std::size_t number_of_separate =
+      0; ///< branches for which there was no room: closed tubes of their own [count]
+};
+
+/*!
+  \ingroup PkgPcsSkeletonRef
+  \brief makes the surface of a tree: generalized cylinders along the branches, joined to one closed mesh.
+
+  Every branch is a tube through its sections, whose frames do not twist; tubes end in a lid at the tip. A branch is sewn into
+  a hole that is cut where it leaves its parent, so that there are no walls inside. Every edge has two triangles, which run
+  through it in opposite directions. Branches that do not leave the wood of their parent have no surface. Thin tubes that
+  touch or bend sharply may intersect themselves or each other.
+
+  \param tree a tree; positions and radii are finite
+  \param points replaced by the vertices
+  \param triangles replaced by triples of indices into `points`, counter-clockwise seen from outside
+  \param np
+  \npbegin
+    \np{tolerance} largest distance of the mesh from the sections [L]; larger values give fewer triangles
+      \nptype floating point, `>= 0`
+      \npdefault `default_surface_tolerance` times the largest radius
+    \np{do_join} whether branches are joined to their parents; else each is a closed tube that begins inside its parent
+      \nptype `bool`
+      \npdefault `true`
+  \npend
+  \throws Invalid_input if a position or radius is not finite, or `tolerance` is out of range
+  \par Complexity
+  O(nodes log nodes + triangles).
+*/
+template <class Kernel, class NamedParameters = parameters::Default_named_parameters>
+Branch_surface_report make_branch_surface(const Tree_skeleton<Kernel>& tree,
+                                          std::vector<typename Kernel::Point_3>& points,
+                                          std::vector<std::array<std::size_t, 3>>& triangles,
+                                          const NamedParameters& np = NamedParameters())
+{
+  using FT = typename Kernel::FT;
+  using skeleton::Vec3;
+  const auto lists = nodes_by_branch<Kernel>(tree);
+  const Tree_bundle& bundle = tree[boost::graph_bundle];
+  Vec3 origin = Vec3::Zero();
+  if (bundle.root != npos) {
+    const auto& p = tree[bundle.root].point;
+    origin = {CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())};
+  }
+  std::vector<std::size_t> order(lists.size()), number(lists.size());
+  for (std::size_t b = 0; b < lists.size(); ++b)
+    order[b] = b;
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return bundle.branches[a].order < bundle.branches[b].order;
+  });
+  for (std::size_t k = 0; k < order.size(); ++k)
+    number[order[k]] = k;
+  double thickest = 0;
+  std::vector<skeleton::Surface_branch> branches(lists.size());
+  for (std::size_t b = 0; b < lists.size(); ++b) {
+    skeleton::Surface_branch& branch = branches[number[b]];
+    if (bundle.branches[b].parent != npos)
+      branch.parent = number[bundle.branches[b].parent];
+    for (const std::size_t v : lists[b]) {
+      const Tree_node<Kernel>& node = tree[v];
+      skeleton::Section s;
+      s.center = Vec3(CGAL::to_double(node.point.x()),
+                      CGAL::to_double(node.point.y()),
+                      CGAL::to_double(node.point.z())) -
+                 origin;
+      s.radius = CGAL::to_double(node.radius);
+      if (!s.center.allFinite() || !std::isfinite(s.radius) || s.radius < 0)
+        throw Invalid_input("pcs::make_branch_surface(): position or radius of node " +
+                            std::to_string(v) + " is not finite, or the radius is negative");
+      s.major_radius = CGAL::to_double(node.major_radius);
+      s.minor_radius = CGAL::to_double(node.minor_radius);
+      s.major_axis = Vec3(CGAL::to_double(node.major_axis.x()),
+                          CGAL::to_double(node.major_axis.y()),
+                          CGAL::to_double(node.major_axis.z()));
+      if (!(s.major_axis.squaredNorm() > 0))
+        s.major_radius = s.minor_radius = 0;
+      thickest = std::max(thickest, s.radius);
+      branch.sections.push_back(s);
+    }
+  }
+  skeleton::Surface_rules rules;
+  rules.do_join = internal::choose(np, internal_np::do_join, true);
+  rules.tolerance = static_cast<double>(
+      internal::choose(np, internal_np::tolerance, default_surface_tolerance * thickest));
+  if (!std::isfinite(rules.tolerance) || rules.tolerance < 0)
+    throw Invalid_input("pcs::make_branch_surface(): tolerance is " +
+                        internal::to_text(rules.tolerance) + "; it must not be negative");
+  skeleton::Branch_surface surface = skeleton::Surface_builder(std::move(branches), rules)();
+  std::vector<typename Kernel::Point_3> result;
+  result.reserve(surface.points.size());
+  for (const Vec3& q : surface.points) {
+    const Vec3 p = q + origin;
+    result.emplace_back(FT(p.x()), FT(p.y()), FT(p.z()));
+  }
+  points = std::move(result);
+  triangles = std::move(surface.triangles);
+  return {points.size(), triangles.size(), surface.number_of_joined, surface.number_of_separate};
+}
+
+} // namespace pcs
+
+#endif // PCS_MAKE_BRANCH_SURFACE_H

@@ -1,0 +1,253 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Fits the positions and radii of a whole axis to its points at once.
+
+#ifndef PCS_SKELETON_AXIS_FIT_H
+#define PCS_SKELETON_AXIS_FIT_H
+
+#include <pcs/linear_algebra/Banded_cholesky.h>
+#include <pcs/skeleton/Axis.h>
+#include <pcs/skeleton/Scan.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// What the fit assumes. Lengths are in the unit of the scan.
+struct Fit_model
+{
+  double noise = 0;     ///< standard deviation of a point from the surface [L]
+  double bark = 0.04;   ///< the same relative to the radius [-]
+  double axis_bend = 0; ///< standard deviation of the curvature of an axis [1/L]
+  double taper_offset = 0, taper_scale = 1; ///< radius'' = (taper_offset + r) / taper_scale^2 [L]
+  double correlation = 1;                   ///< the length on which a bend is one event [L]
+  double lowest_radius = 0;                 ///< [L]
+
+  /// Defaults in multiples of the spacing `u` and the noise.
+  static Fit_model of(double u, double noise)
+  {
+    Fit_model model;
+    model.noise = noise;
+    model.axis_bend = 0.007 / u;
+    model.taper_offset = 7 * u;
+    model.taper_scale = 143 * u;
+    model.correlation = 14 * u;
+    model.lowest_radius = 0.05 * u;
+    return model;
+  }
+
+  double deviation(double radius) const { return std::max(noise, bark * radius); }
+};
+
+/// A radius expected without looking at the points' positions.
+struct Radius_prior
+{
+  double radius = 0;
+  double deviation = 0; ///< 0: no expectation
+};
+
+/// Tukey's constant, in standard deviations, and how much wider the first iterations look [-].
+constexpr double tukey_constant = 4.7, first_widening = 2.5;
+
+/*!
+  Least squares with Tukey's weights over centres and radii of all nodes; second differences of both are small a priori.
+  Each iteration is a banded Cholesky solution: O(points + nodes).
+*/
+class Axis_fit
+{
+public:
+  Axis_fit(Axis axis, const Fit_model& model) : m_axis(std::move(axis)), m_model(model) {}
+
+  const Axis& axis() const { return m_axis; }
+  Axis& axis() { return m_axis; }
+
+  /// `segments` are guesses, one per point.
+  void set_points(std::vector<Vec3> points, std::vector<Index> segments)
+  {
+    m_points = std::move(points);
+    m_segments = std::move(segments);
+    m_places.resize(m_points.size());
+  }
+  void set_priors(std::vector<Radius_prior> priors) { m_priors = std::move(priors); }
+
+  const std::vector<Vec3>& points() const { return m_points; }
+  const std::vector<Axis_place>& places() const { return m_places; }
+
+  /// Finds the place of every point on the present axis.
+  void project()
+  {
+    for (std::size_t i = 0; i < m_points.size(); ++i) {
+      m_places[i] = nearest_place(m_axis, m_segments[i], m_points[i]);
+      m_segments[i] = m_places[i].segment;
+    }
+  }
+
+  /// One step from the present axis; `widening` scales the width of the weights. Leaves places up to date.
+  bool iterate(double widening)
+  {
+    assemble(widening);
+    m_factor = m_matrix;
+    if (!m_factor.factorize())
+      return false;
+    m_step = m_gradient;
+    m_factor.solve(m_step);
+    apply_step();
+    project();
+    return true;
+  }
+
+  /// Standard errors of the radii from the last system: the diagonal of the inverse, by blocks around a node.
+  void estimate_errors();
+
+private:
+  static constexpr std::size_t bandwidth = 11;
+  using Matrix = linear_algebra::Banded_cholesky<bandwidth>;
+
+  void assemble(double widening);
+  void add_points(double widening);
+  void add_smoothness();
+  void add_priors();
+  void apply_step();
+
+  Axis m_axis;
+  Fit_model m_model;
+  std::vector<Vec3> m_points;
+  std::vector<Index> m_segments;
+  std::vector<Axis_place> m_places;
+  std::vector<Radius_prior> m_priors;
+  Matrix m_matrix, m_factor;
+  std::vector<double> m_gradient, m_step;
+  std::vector<double> m_information; // of the points on each radius alone
+};
+
+inline void Axis_fit::assemble(double widening)
+{
+  m_matrix.reset(4 * m_axis.size());
+  m_gradient.assign(4 * m_axis.size(), 0);
+  m_information.assign(m_axis.size(), 0);
+  add_points(widening);
+  add_smoothness();
+  add_priors();
+  // A little of everything holds nodes that nothing else holds.
+  const double position = 1e-6 / (m_model.noise * m_model.noise);
+  for (std::size_t i = 0; i < m_matrix.size(); ++i)
+    m_matrix(i, i) += position;
+}
+
+inline void Axis_fit::add_points(double widening)
+{
+  for (std::size_t i = 0; i < m_points.size(); ++i) {
+    const Axis_place& place = m_places[i];
+    if (place.share < 0 || place.share > 1)
+      continue; // before the base or beyond the tip
+    const std::size_t s = place.segment;
+    const double t = place.share;
+    const double radius = radius_at(m_axis, place);
+    const double sigma = m_model.deviation(radius);
+    const double e = place.distance - radius, x = e / (tukey_constant * widening * sigma);
+    if (x * x >= 1 || !(place.distance > 0))
+      continue;
+    const double w = (1 - x * x) * (1 - x * x) / (sigma * sigma);
+    const Vec3 n = (m_points[i] - point_at(m_axis, place)) / place.distance;
+    // e(c, r) = |p - c| - r with c, r linear between the nodes
+    const double j[8] = {-(1 - t) * n.x(),
+                         -(1 - t) * n.y(),
+                         -(1 - t) * n.z(),
+                         -(1 - t),
+                         -t * n.x(),
+                         -t * n.y(),
+                         -t * n.z(),
+                         -t};
+    for (std::size_t a = 0; a < 8; ++a) {
+      m_gradient[4 * s + a] -= w * j[a] * e;
+      for (std::size_t b = 0; b <= a; ++b)
+        m_matrix(4 * s + a, 4 * s + b) += w * j[a] * j[b];
+    }
+    m_information[s] += w * (1 - t);
+    m_information[s + 1] += w * t;
+  }
+}
+
+inline void Axis_fit::add_smoothness()
+{
+  for (std::size_t k = 1; k + 1 < m_axis.size(); ++k) {
+    const double h0 = (m_axis[k].point - m_axis[k - 1].point).norm();
+    const double h1 = (m_axis[k + 1].point - m_axis[k].point).norm();
+    const double floor = 1e-3 * m_model.correlation;
+    const double a = std::max(h0, floor), b = std::max(h1, floor), h = 0.5 * (a + b);
+    // second derivative on a grid of unequal steps
+    const double c0 = 1 / (a * h), c2 = 1 / (b * h), c1 = -(c0 + c2);
+    const double coefficients[3] = {c0, c1, c2};
+    const double share = h / m_model.correlation;
+    const double radius_bend =
+        (m_model.taper_offset + m_axis[k].radius) / (m_model.taper_scale * m_model.taper_scale);
+    for (std::size_t d = 0; d < 4; ++d) {
+      const double deviation = d < 3 ? m_model.axis_bend : radius_bend;
+      const double w = share / (deviation * deviation);
+      double bend = 0;
+      for (std::size_t m = 0; m < 3; ++m) {
+        const Axis_node& node = m_axis[k - 1 + m];
+        bend += coefficients[m] * (d < 3 ? node.point[static_cast<Eigen::Index>(d)] : node.radius);
+      }
+      for (std::size_t m = 0; m < 3; ++m) {
+        const std::size_t row = 4 * (k - 1 + m) + d;
+        m_gradient[row] -= w * coefficients[m] * bend;
+        for (std::size_t l = 0; l <= m; ++l)
+          m_matrix(row, 4 * (k - 1 + l) + d) += w * coefficients[m] * coefficients[l];
+      }
+    }
+  }
+}
+
+inline void Axis_fit::add_priors()
+{
+  for (std::size_t k = 0; k < m_axis.size() && k < m_priors.size(); ++k) {
+    const Radius_prior& prior = m_priors[k];
+    if (!(prior.deviation > 0))
+      continue;
+    const double w = 1 / (prior.deviation * prior.deviation);
+    m_matrix(4 * k + 3, 4 * k + 3) += w;
+    m_gradient[4 * k + 3] -= w * (m_axis[k].radius - prior.radius);
+  }
+}
+
+inline void Axis_fit::apply_step()
+{
+  for (std::size_t k = 0; k < m_axis.size(); ++k) {
+    Axis_node& node = m_axis[k];
+    Vec3 move(m_step[4 * k], m_step[4 * k + 1], m_step[4 * k + 2]);
+    // far from the solution the linear model overshoots
+    const double longest = 0.5 * node.radius + m_model.noise, length = move.norm();
+    if (length > longest)
+      move *= longest / length;
+    node.point += move;
+    const double change = std::min(longest, std::max(-longest, m_step[4 * k + 3]));
+    node.radius = std::max(m_model.lowest_radius, node.radius + change);
+  }
+}
+
+inline void Axis_fit::estimate_errors()
+{
+  if (m_factor.size() != 4 * m_axis.size())
+    return;
+  for (std::size_t k = 0; k < m_axis.size(); ++k) {
+    // column of the inverse at this radius; far entries do not matter, the solution is needed at one place only
+    m_step.assign(4 * m_axis.size(), 0);
+    m_step[4 * k + 3] = 1;
+    m_factor.solve(m_step);
+    m_axis[k].radius_error = std::sqrt(std::max(0.0, m_step[4 * k + 3]));
+    const bool has_prior = k < m_priors.size() && m_priors[k].deviation > 0;
+    const double prior = has_prior ? 1 / (m_priors[k].deviation * m_priors[k].deviation) : 0;
+    m_axis[k].is_measured = m_information[k] > prior && m_information[k] > 0;
+  }
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_AXIS_FIT_H

@@ -1,0 +1,101 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The axes found so far, which points they explain, and what was learned from them about the scan.
+
+#ifndef PCS_SKELETON_AXIS_SET_H
+#define PCS_SKELETON_AXIS_SET_H
+
+#include <pcs/skeleton/Axis.h>
+#include <pcs/skeleton/Scan.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// One axis and where it came from.
+struct Fitted_axis
+{
+  Axis axis;
+  Index parent = none; ///< axis that the paths to the root lead to
+  std::size_t number_of_points = 0;
+};
+
+struct Axis_set
+{
+  std::vector<Fitted_axis> axes;
+  std::vector<Index> axis_of_point; ///< `none`: not explained by any axis
+  std::vector<Index> segment_of_point;
+  double noise = 0;   ///< standard deviation of points from the surface [L]
+  double density = 0; ///< points per area of the surface; 0: not known yet [1/L^2]
+
+  bool is_covered(Index i) const { return axis_of_point[i] != none; }
+
+  /// How far `p` lies outside of the axis that explains point `i`; negative inside [L].
+  double height_above(Index i, const Vec3& p) const
+  {
+    const Axis& axis = axes[axis_of_point[i]].axis;
+    const Axis_place place = nearest_place(axis, segment_of_point[i], p);
+    return place.distance - radius_at(axis, place);
+  }
+};
+
+/// What one good section says about the scan.
+struct Density_sample
+{
+  double density; ///< points per area [1/L^2]
+  double radius;  ///< of the section [L]
+  Vec3 place;
+};
+
+/// Deviations and densities, gathered from fits in a fixed order.
+class Scan_statistics
+{
+public:
+  void add_deviations(const std::vector<double>& values)
+  {
+    const std::size_t room = capacity - std::min(capacity, m_deviations.size());
+    m_deviations.insert(m_deviations.end(),
+                        values.begin(),
+                        values.begin() +
+                            static_cast<std::ptrdiff_t>(std::min(room, values.size())));
+  }
+  void add_densities(const std::vector<Density_sample>& samples)
+  {
+    m_densities.insert(m_densities.end(), samples.begin(), samples.end());
+  }
+
+  /// Updates noise and density where there is enough to go by.
+  void learn(Axis_set& set) const
+  {
+    if (m_deviations.size() >= enough_deviations) {
+      std::vector<double> copy = m_deviations;
+      set.noise = 1.4826 * median(copy); // standard deviation from the median of |e|
+    }
+    if (m_densities.size() >= enough_densities) {
+      std::vector<double> thick, all;
+      for (const Density_sample& s : m_densities) {
+        all.push_back(s.density);
+        if (s.radius > thick_radius * set.noise)
+          thick.push_back(s.density);
+      }
+      set.density = median(thick.size() >= enough_densities ? thick : all);
+    }
+  }
+
+private:
+  static constexpr std::size_t capacity = 40000, enough_deviations = 200, enough_densities = 8;
+  static constexpr double thick_radius =
+      6; ///< in noise: here the radius, hence the density, has no bias
+  std::vector<double> m_deviations;
+  std::vector<Density_sample> m_densities;
+};
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_AXIS_SET_H

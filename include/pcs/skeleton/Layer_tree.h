@@ -1,0 +1,202 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Layers of equal path length from the root, their connected parts, and the tree that these form.
+
+#ifndef PCS_SKELETON_LAYER_TREE_H
+#define PCS_SKELETON_LAYER_TREE_H
+
+#include <pcs/skeleton/Neighbor_graph.h>
+#include <pcs/skeleton/Scan.h>
+
+#include <boost/graph/dijkstra_shortest_paths.hpp>
+#include <boost/property_map/property_map.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// Thickness of a layer in spacings [-].
+constexpr double layer_thickness = 3;
+
+/// The shortest paths from a set of sources; unreached points have an infinite distance and are their own predecessor.
+struct Shortest_paths
+{
+  std::vector<double> distance;
+  std::vector<Index> predecessor;
+};
+
+inline Shortest_paths
+shortest_paths(const Scan& scan, const Neighbor_graph& graph, const std::vector<Index>& sources)
+{
+  const std::size_t n = scan.size();
+  Shortest_paths paths;
+  paths.distance.assign(n, std::numeric_limits<double>::infinity());
+  paths.predecessor.resize(n);
+  for (std::size_t i = 0; i < n; ++i)
+    paths.predecessor[i] = static_cast<Index>(i);
+  for (const Index s : sources)
+    paths.distance[s] = 0;
+  if (sources.empty())
+    return paths;
+  const auto index = get(boost::vertex_index, graph);
+  boost::dijkstra_shortest_paths_no_init(
+      graph,
+      sources.begin(),
+      sources.end(),
+      boost::make_iterator_property_map(paths.predecessor.begin(), index),
+      boost::make_iterator_property_map(paths.distance.begin(), index),
+      step_cost_map(scan, graph),
+      index,
+      std::less<double>(),
+      std::plus<double>(),
+      0.0,
+      boost::dijkstra_visitor<>());
+  return paths;
+}
+
+/// A node is a connected part of a layer. Parents have smaller numbers than their children.
+struct Layer_tree
+{
+  std::vector<Index> node_of_point; ///< `none` where no path leads
+  std::vector<Index> parent;        ///< `none` at the sources
+  std::vector<Vec3> center;         ///< mean of the points of a node
+  std::vector<double> spread;       ///< root of the mean squared distance from it [L]
+  std::vector<Index>
+      next_in_ring; ///< the child that continues a thick ring; itself: the ring ends here; `none`: no ring
+  std::vector<Index> first; ///< offsets into `point`
+  std::vector<Index> point; ///< the points node by node
+
+  std::size_t size() const { return parent.size(); }
+  std::size_t count(Index node) const { return first[node + 1] - first[node]; }
+};
+
+namespace internal {
+
+/// Numbers the connected parts of the layers by layer, then by their first point.
+inline void number_layer_parts(const std::vector<Link>& links,
+                               const std::vector<Index>& layer,
+                               Layer_tree& tree)
+{
+  const std::size_t n = layer.size();
+  Point_sets sets(n);
+  for (const Link& l : links)
+    if (layer[l.first] == layer[l.second] && layer[l.first] != none)
+      sets.unite(l.first, l.second);
+  std::vector<Index> order; // first point of each part
+  std::vector<Index> part(n, none);
+  for (Index i = 0; i < n; ++i) {
+    if (layer[i] == none)
+      continue;
+    const Index r = sets.find(i);
+    if (part[r] == none) {
+      part[r] = static_cast<Index>(order.size());
+      order.push_back(i);
+    }
+  }
+  std::vector<Index> number(order.size());
+  std::vector<Index> sorted(order.size());
+  for (Index k = 0; k < sorted.size(); ++k)
+    sorted[k] = k;
+  std::sort(sorted.begin(), sorted.end(), [&](Index a, Index b) {
+    return std::make_pair(layer[order[a]], order[a]) < std::make_pair(layer[order[b]], order[b]);
+  });
+  for (Index k = 0; k < sorted.size(); ++k)
+    number[sorted[k]] = k;
+  tree.parent.assign(order.size(), none);
+  for (Index i = 0; i < n; ++i)
+    if (layer[i] != none)
+      tree.node_of_point[i] = number[part[sets.find(i)]];
+}
+
+/// Sorts the points by node and computes centres and spreads.
+inline void collect_nodes(const Scan& scan, Layer_tree& tree)
+{
+  const std::size_t n = scan.size(), m = tree.size();
+  tree.first.assign(m + 1, 0);
+  for (std::size_t i = 0; i < n; ++i)
+    if (tree.node_of_point[i] != none)
+      ++tree.first[tree.node_of_point[i] + 1];
+  for (std::size_t v = 0; v < m; ++v)
+    tree.first[v + 1] += tree.first[v];
+  tree.point.resize(tree.first[m]);
+  std::vector<Index> next(tree.first.begin(), tree.first.end() - 1);
+  for (Index i = 0; i < n; ++i)
+    if (tree.node_of_point[i] != none)
+      tree.point[next[tree.node_of_point[i]]++] = i;
+  tree.center.assign(m, Vec3::Zero());
+  tree.spread.assign(m, 0);
+  for (Index v = 0; v < m; ++v) {
+    const double count = double(tree.count(v));
+    for (Index k = tree.first[v]; k < tree.first[v + 1]; ++k)
+      tree.center[v] += scan.points[tree.point[k]];
+    tree.center[v] /= count;
+    for (Index k = tree.first[v]; k < tree.first[v + 1]; ++k)
+      tree.spread[v] += (scan.points[tree.point[k]] - tree.center[v]).squaredNorm();
+    tree.spread[v] = std::sqrt(tree.spread[v] / count);
+  }
+}
+
+/// The parent of a node is the one that most shortest paths of its points come from; among equals the one with more
+/// points, or the wider one.
+inline void vote_for_parents(const std::vector<Index>& predecessor, Layer_tree& tree)
+{
+  std::vector<Index> votes;
+  for (Index v = 0; v < tree.size(); ++v) {
+    votes.clear();
+    for (Index k = tree.first[v]; k < tree.first[v + 1]; ++k) {
+      const Index from = tree.node_of_point[predecessor[tree.point[k]]];
+      if (from != v)
+        votes.push_back(from);
+    }
+    std::sort(votes.begin(), votes.end());
+    std::size_t best = 0;
+    for (std::size_t b = 0, e = 0; b < votes.size(); b = e) {
+      while (e < votes.size() && votes[e] == votes[b])
+        ++e;
+      const Index other = tree.parent[v], node = votes[b];
+      const bool is_tie_won =
+          e - b == best && std::make_pair(tree.count(node), tree.spread[node]) >
+                               std::make_pair(tree.count(other), tree.spread[other]);
+      if (e - b > best || is_tie_won) {
+        best = e - b;
+        tree.parent[v] = votes[b];
+      }
+    }
+  }
+}
+
+} // namespace internal
+
+/*!
+  Cuts the shortest paths into layers and returns the tree of their connected parts.
+  `links` are the edges of the graph that the paths were found in.
+*/
+inline Layer_tree
+layer_tree(const Scan& scan, const std::vector<Link>& links, const Shortest_paths& paths)
+{
+  const std::size_t n = scan.size();
+  const double thickness = layer_thickness * scan.spacing;
+  std::vector<Index> layer(n, none);
+  for (std::size_t i = 0; i < n; ++i)
+    if (std::isfinite(paths.distance[i]))
+      layer[i] = static_cast<Index>(std::min(paths.distance[i] / thickness, double(none - 1)));
+  Layer_tree tree;
+  tree.node_of_point.assign(n, none);
+  internal::number_layer_parts(links, layer, tree);
+  internal::collect_nodes(scan, tree);
+  internal::vote_for_parents(paths.predecessor, tree);
+  tree.next_in_ring.assign(tree.size(), none);
+  return tree;
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_LAYER_TREE_H

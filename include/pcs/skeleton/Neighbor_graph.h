@@ -1,0 +1,228 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The neighbour graph of a scan for Boost.Graph, with links that close gaps of occlusion.
+
+#ifndef PCS_SKELETON_NEIGHBOR_GRAPH_H
+#define PCS_SKELETON_NEIGHBOR_GRAPH_H
+
+#include <pcs/internal/parallel.h>
+#include <pcs/skeleton/Scan.h>
+
+#include <boost/graph/compressed_sparse_row_graph.hpp>
+#include <boost/property_map/function_property_map.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// Compressed rows of Boost.Graph, every edge in both directions; weights come from the points.
+using Neighbor_graph = boost::compressed_sparse_row_graph<boost::directedS,
+                                                          boost::no_property,
+                                                          boost::no_property,
+                                                          boost::no_property,
+                                                          Index,
+                                                          Index>;
+
+/// Which neighbours are linked, in multiples of the spacing [-].
+struct Link_rule
+{
+  double local_factor = 2.5;       ///< longest link relative to the local spacing
+  double lowest = 3, highest = 12; ///< bounds of it relative to the median spacing
+  double gap = 30; ///< widest gap that is closed, relative to the median spacing; 0: none
+
+  double longest(const Scan& scan, Index i) const
+  {
+    return std::min(std::max(local_factor * scan.local_spacing[i], lowest * scan.spacing),
+                    highest * scan.spacing);
+  }
+};
+
+/// Steps longer than this many spacings cost more than their length: a path should not jump [-].
+constexpr double cheap_step = 2.5;
+
+/// The cost of going from one point to another [L].
+inline double step_cost(const Scan& scan, Index i, Index j)
+{
+  const double d = (scan.points[i] - scan.points[j]).norm();
+  return d * std::max(1.0, d / (cheap_step * scan.spacing));
+}
+
+using Link = std::pair<Index, Index>;
+
+/// Sets of points that hang together: union by size, path halving.
+class Point_sets
+{
+public:
+  explicit Point_sets(std::size_t n) : m_size(n, 1), m_parent(n)
+  {
+    for (std::size_t i = 0; i < n; ++i)
+      m_parent[i] = static_cast<Index>(i);
+  }
+
+  Index find(Index i)
+  {
+    while (m_parent[i] != i)
+      i = m_parent[i] = m_parent[m_parent[i]];
+    return i;
+  }
+  void unite(Index i, Index j)
+  {
+    i = find(i);
+    j = find(j);
+    if (i == j)
+      return;
+    if (m_size[i] < m_size[j] || (m_size[i] == m_size[j] && j < i))
+      std::swap(i, j);
+    m_parent[j] = i;
+    m_size[i] += m_size[j];
+  }
+
+private:
+  std::vector<Index> m_size, m_parent;
+};
+
+/// Links between the points of `is_used` that are neighbours, each once, in increasing order.
+template <class ConcurrencyTag>
+std::vector<Link>
+neighbor_links(const Scan& scan, const std::vector<std::uint8_t>& is_used, const Link_rule& rule)
+{
+  const std::size_t n = scan.size(), block = 4096;
+  std::vector<std::vector<Link>> parts((n + block - 1) / block);
+  const auto is_link = [&](Index i, Index j) {
+    const double longest = std::max(rule.longest(scan, i), rule.longest(scan, j));
+    return (scan.points[i] - scan.points[j]).squaredNorm() <= longest * longest;
+  };
+  pcs::internal::for_each_block<ConcurrencyTag>(n, block, [&](std::size_t begin, std::size_t end) {
+    auto& part = parts[begin / block];
+    for (std::size_t k = begin; k < end; ++k) {
+      const Index i = static_cast<Index>(k);
+      if (!is_used[i])
+        continue;
+      for (const Index j : scan.neighbors[i]) {
+        if (j == none || !is_used[j] || !is_link(i, j))
+          continue;
+        // the other side stores it if both know each other
+        const auto& other = scan.neighbors[j];
+        if (j < i && std::find(other.begin(), other.end(), i) != other.end())
+          continue;
+        part.emplace_back(std::min(i, j), std::max(i, j));
+      }
+    }
+  });
+  std::size_t total = 0;
+  for (const auto& part : parts)
+    total += part.size();
+  std::vector<Link> links;
+  links.reserve(total);
+  for (auto& part : parts) {
+    links.insert(links.end(), part.begin(), part.end());
+    std::vector<Link>().swap(part);
+  }
+  return links;
+}
+
+/*!
+  Joins components by the shortest links between them, in Boruvka's rounds, up to the widest gap of the rule. The
+  largest component never searches: the others find it. Appends to `links`.
+*/
+inline void close_gaps(const Scan& scan,
+                       const std::vector<std::uint8_t>& is_used,
+                       const Link_rule& rule,
+                       std::vector<Link>& links)
+{
+  const std::size_t n = scan.size();
+  const double widest = rule.gap * scan.spacing;
+  Point_sets sets(n);
+  for (const Link& l : links)
+    sets.unite(l.first, l.second);
+  struct Best
+  {
+    double squared_distance;
+    Link link;
+  };
+  std::vector<Index> label(n, none), size(n, 0);
+  std::vector<Best> best;
+  while (widest > 0) {
+    std::fill(size.begin(), size.end(), 0);
+    for (Index i = 0; i < n; ++i)
+      if (is_used[i])
+        ++size[label[i] = sets.find(i)];
+    const Index largest =
+        static_cast<Index>(std::max_element(size.begin(), size.end()) - size.begin());
+    best.assign(n, {widest * widest, {none, none}});
+    for (Index i = 0; i < n; ++i) {
+      if (!is_used[i] || label[i] == largest)
+        continue;
+      Best& b = best[label[i]];
+      const auto found =
+          scan.search->nearest_if(scan.points[i], std::sqrt(b.squared_distance), [&](Index j) {
+            return is_used[j] && label[j] != label[i];
+          });
+      if (found.squared_distance < b.squared_distance)
+        b = {found.squared_distance, {std::min(i, found.index), std::max(i, found.index)}};
+    }
+    std::vector<Best> chosen;
+    for (const Best& b : best)
+      if (b.link.first != none)
+        chosen.push_back(b);
+    std::sort(chosen.begin(), chosen.end(), [](const Best& a, const Best& b) {
+      return a.squared_distance != b.squared_distance ? a.squared_distance < b.squared_distance
+                                                      : a.link < b.link;
+    });
+    bool is_joined = false;
+    for (const Best& b : chosen)
+      if (sets.find(b.link.first) != sets.find(b.link.second)) {
+        sets.unite(b.link.first, b.link.second);
+        links.push_back(b.link);
+        is_joined = true;
+      }
+    if (!is_joined)
+      return;
+  }
+}
+
+/// Rows from links, each link in both directions.
+inline Neighbor_graph graph_of(std::size_t n, const std::vector<Link>& links)
+{
+  std::vector<Index> first(n + 1, 0);
+  for (const Link& l : links) {
+    ++first[l.first + 1];
+    ++first[l.second + 1];
+  }
+  for (std::size_t i = 0; i < n; ++i)
+    first[i + 1] += first[i];
+  std::vector<Index> sources(2 * links.size()), targets(2 * links.size());
+  {
+    std::vector<Index> next(first.begin(), first.end() - 1);
+    for (const Link& l : links) {
+      sources[next[l.first]] = l.first;
+      targets[next[l.first]++] = l.second;
+      sources[next[l.second]] = l.second;
+      targets[next[l.second]++] = l.first;
+    }
+  }
+  return Neighbor_graph(boost::construct_inplace_from_sources_and_targets,
+                        sources,
+                        targets,
+                        static_cast<Index>(n));
+}
+
+/// The cost of an edge as a property map over the edges of `graph`.
+inline auto step_cost_map(const Scan& scan, const Neighbor_graph& graph)
+{
+  using Edge = boost::graph_traits<Neighbor_graph>::edge_descriptor;
+  return boost::make_function_property_map<Edge>([&scan, &graph](const Edge& e) {
+    return step_cost(scan, source(e, graph), target(e, graph));
+  });
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_NEIGHBOR_GRAPH_H

@@ -1,0 +1,180 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The scan of a tree, prepared: distinct points about a local origin, their neighbours, spacing and outliers.
+
+#ifndef PCS_SKELETON_SCAN_H
+#define PCS_SKELETON_SCAN_H
+
+#include <pcs/internal/parallel.h>
+#include <pcs/neighborhood/Nearest_neighbors.h>
+#include <pcs/neighborhood/spatial_order.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+using neighborhood::Vec3;
+using Index = std::uint32_t;
+/// No point, no node, no branch.
+constexpr Index none = std::numeric_limits<Index>::max();
+
+/// Neighbours kept per point [count].
+constexpr std::size_t neighbors_per_point = 12;
+/// The neighbour whose distance measures the local spacing; the first is too noisy.
+constexpr std::size_t spacing_neighbor = 4;
+
+/// A scan ready for the stages. Points are distinct, in spatial order, relative to `origin`. It stays where it is: the
+/// search refers to its points.
+struct Scan
+{
+  Scan() = default;
+  Scan(const Scan&) = delete;
+  Scan& operator=(const Scan&) = delete;
+
+  Vec3 origin = Vec3::Zero();
+  std::vector<Vec3> points;
+  std::vector<Index> point_of_input; ///< which of `points` an input point became
+  std::vector<std::array<Index, neighbors_per_point>> neighbors; ///< nearest first, `none` behind
+  std::vector<double> local_spacing; ///< distance to the 4th neighbour [L]
+  std::vector<std::uint8_t> is_outlier;
+  double spacing = 0; ///< median distance to the nearest neighbour [L]
+  std::unique_ptr<neighborhood::Nearest_neighbors> search; ///< over all `points`
+
+  std::size_t size() const { return points.size(); }
+};
+
+/// The lower median; rearranges `values`. 0 if there are none.
+template <class T>
+T median(std::vector<T>& values)
+{
+  if (values.empty())
+    return T(0);
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// An outlier is this much farther from its neighbours than these from theirs ...
+constexpr double outlier_factor = 3;
+/// ... and than is usual in the cloud; or so far from all that nothing else matters.
+constexpr double outlier_global_factor = 2, outlier_far_factor = 20;
+
+namespace internal {
+
+inline void move_to_local_origin(const std::vector<Vec3>& input, Scan& scan)
+{
+  Vec3 low = input.front(), high = low;
+  for (const Vec3& p : input) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  scan.origin = low + 0.5 * (high - low);
+}
+
+/// Sorts the points along an octree and merges those at one place. The order of what is left does not depend on duplicates.
+template <class ConcurrencyTag>
+void merge_duplicates(const std::vector<Vec3>& input, Scan& scan)
+{
+  std::vector<Vec3> local(input.size());
+  pcs::internal::for_each_index<ConcurrencyTag>(input.size(), [&](std::size_t i) {
+    local[i] = input[i] - scan.origin;
+  });
+  const std::vector<Index> order = neighborhood::spatial_order<ConcurrencyTag>(local);
+  scan.point_of_input.resize(input.size());
+  scan.points.reserve(input.size());
+  for (const Index i : order) {
+    if (scan.points.empty() || scan.points.back() != local[i])
+      scan.points.push_back(local[i]);
+    scan.point_of_input[i] = static_cast<Index>(scan.points.size() - 1);
+  }
+  if (scan.points.size() == input.size())
+    return;
+  const std::vector<Index> again = neighborhood::spatial_order<ConcurrencyTag>(scan.points);
+  std::vector<Vec3> sorted(again.size());
+  std::vector<Index> place(again.size());
+  for (Index k = 0; k < again.size(); ++k) {
+    sorted[k] = scan.points[again[k]];
+    place[again[k]] = k;
+  }
+  scan.points = std::move(sorted);
+  for (Index& i : scan.point_of_input)
+    i = place[i];
+}
+
+template <class ConcurrencyTag>
+void find_neighbors(Scan& scan)
+{
+  const std::size_t n = scan.size();
+  scan.search = std::make_unique<neighborhood::Nearest_neighbors>(scan.points);
+  scan.neighbors.resize(n);
+  scan.local_spacing.resize(n);
+  std::vector<double> nearest(n);
+  pcs::internal::for_each_block<ConcurrencyTag>(n, 512, [&](std::size_t begin, std::size_t end) {
+    std::vector<neighborhood::Nearest_neighbors::Neighbor> found;
+    for (std::size_t i = begin; i < end; ++i) {
+      (*scan.search)(scan.points[i], neighbors_per_point + 1, found);
+      auto& row = scan.neighbors[i];
+      row.fill(none);
+      std::size_t count = 0;
+      double fourth = 0;
+      for (const auto& f : found)
+        if (f.index != i && count < neighbors_per_point) {
+          row[count++] = f.index;
+          if (count == 1)
+            nearest[i] = std::sqrt(f.squared_distance);
+          if (count <= spacing_neighbor)
+            fourth = std::sqrt(f.squared_distance);
+        }
+      scan.local_spacing[i] = fourth;
+    }
+  });
+  scan.spacing = median(nearest);
+}
+
+template <class ConcurrencyTag>
+void mark_outliers(Scan& scan)
+{
+  const std::size_t n = scan.size();
+  scan.is_outlier.assign(n, 0);
+  std::vector<double> copy = scan.local_spacing;
+  const double usual = median(copy);
+  pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
+    const double own = scan.local_spacing[i];
+    if (own <= outlier_global_factor * usual)
+      return;
+    std::array<double, neighbors_per_point> others;
+    std::size_t count = 0;
+    for (const Index j : scan.neighbors[i])
+      if (j != none)
+        others[count++] = scan.local_spacing[j];
+    std::sort(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(count));
+    const double theirs = count > 0 ? others[count / 2] : 0;
+    scan.is_outlier[i] = own > outlier_factor * theirs || own > outlier_far_factor * usual;
+  });
+}
+
+} // namespace internal
+
+/// Prepares an empty scan; `input` is finite and not empty. O(n log n).
+template <class ConcurrencyTag>
+void prepare_scan(const std::vector<Vec3>& input, Scan& scan)
+{
+  internal::move_to_local_origin(input, scan);
+  internal::merge_duplicates<ConcurrencyTag>(input, scan);
+  internal::find_neighbors<ConcurrencyTag>(scan);
+  internal::mark_outliers<ConcurrencyTag>(scan);
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_SCAN_H

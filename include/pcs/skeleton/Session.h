@@ -1,0 +1,342 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The stages of a skeletonization, one after the other, with all that they leave behind.
+
+#ifndef PCS_SKELETON_SESSION_H
+#define PCS_SKELETON_SESSION_H
+
+#include <pcs/core/Skeleton_report.h>
+#include <pcs/internal/Stopwatch.h>
+#include <pcs/internal/progress.h>
+#include <pcs/skeleton/Branch_tree.h>
+#include <pcs/skeleton/estimate_sections.h>
+#include <pcs/skeleton/find_root.h>
+#include <pcs/skeleton/fit_axes.h>
+#include <pcs/skeleton/join_axes.h>
+#include <pcs/skeleton/mark_ground.h>
+#include <pcs/skeleton/merge_rings.h>
+#include <pcs/skeleton/section_skeleton.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// How branches are found.
+enum class Skeleton_method {
+  chains, ///< whole axes are fitted to the layers of the paths from the root
+  sections ///< the dissertation: sections at centers of curvature, spanning trees where there are none
+};
+
+/// All rules of the pipeline, and the hints of the caller.
+struct Session_options
+{
+  Vec3 up = Vec3::UnitZ();
+  std::optional<Vec3> root; ///< in the coordinates of the input
+  bool do_mark_ground = true;
+  double breast_height = 1.3; ///< [L]
+  Skeleton_method method = Skeleton_method::chains;
+  Slice_rules slices; ///< of the method `sections`, like the next
+  Section_tree_rules section_tree;
+  Axis_rules axes;
+  Ring_rules rings;
+  Root_rules roots;
+  Ground_rules ground;
+  Joint_rules joints;
+  Section_rules sections;
+};
+
+/// Runs the stages in order; each runs those before it that have not run yet, and stops when cancelled.
+template <class ConcurrencyTag>
+class Session
+{
+public:
+  /// `input` is finite, with at least two different points; `is_wood` is empty or has one entry per point.
+  Session(std::vector<Vec3> input, std::vector<std::uint8_t> is_wood, Session_options options)
+    : m_input(std::move(input)), m_is_wood(std::move(is_wood)), m_options(std::move(options))
+  {
+    m_report.number_of_points = m_input.size();
+  }
+
+  bool find_neighbors(pcs::internal::Progress& progress)
+  {
+    if (m_stage >= 1)
+      return true;
+    pcs::internal::Stopwatch watch;
+    if (!progress(0))
+      return false;
+    prepare_scan<ConcurrencyTag>(m_input, m_scan);
+    const std::size_t n = m_scan.size();
+    m_point_of_input = m_scan.point_of_input;
+    std::vector<std::uint8_t> is_wood(n, m_is_wood.empty());
+    for (std::size_t i = 0; i < m_is_wood.size(); ++i)
+      is_wood[m_scan.point_of_input[i]] |= m_is_wood[i];
+    m_is_used.resize(n);
+    for (std::size_t i = 0; i < n; ++i)
+      m_is_used[i] = is_wood[i] && !m_scan.is_outlier[i];
+    if (std::find(m_is_used.begin(), m_is_used.end(), 1) == m_is_used.end())
+      m_is_used = is_wood; // all are far from each other: better these than none
+    for (std::size_t i = 0; i < n; ++i)
+      m_scan.is_outlier[i] = !m_is_used[i];
+    std::vector<Vec3>().swap(m_input);
+    m_report.number_of_duplicates = m_report.number_of_points - n;
+    m_report.number_of_outliers =
+        static_cast<std::size_t>(std::count(m_scan.is_outlier.begin(), m_scan.is_outlier.end(), 1));
+    m_report.spacing = m_scan.spacing;
+    m_report.seconds.neighbors = watch.lap();
+    m_stage = 1;
+    return progress(0.35);
+  }
+
+  bool find_paths(pcs::internal::Progress& progress)
+  {
+    if (!find_neighbors(progress))
+      return false;
+    if (m_stage >= 2)
+      return true;
+    pcs::internal::Stopwatch watch;
+    std::vector<Link> links =
+        neighbor_links<ConcurrencyTag>(m_scan, m_is_used, m_options.axes.links);
+    if (m_options.do_mark_ground) {
+      m_report.number_of_ground_points =
+          mark_ground(m_scan, links, m_options.up, m_options.ground, m_is_used);
+      if (m_report.number_of_ground_points > 0) {
+        for (std::size_t i = 0; i < m_scan.size(); ++i)
+          m_scan.is_outlier[i] = !m_is_used[i];
+        links = neighbor_links<ConcurrencyTag>(m_scan, m_is_used, m_options.axes.links);
+      }
+    }
+    m_root = m_options.root ? nearest_used(*m_options.root)
+                            : find_root(m_scan, m_is_used, links, m_options.up, m_options.roots);
+    if (!progress(0.42))
+      return false;
+    close_gaps(m_scan, m_is_used, m_options.axes.links, links);
+    {
+      const Neighbor_graph graph = graph_of(m_scan.size(), links);
+      m_paths = shortest_paths(m_scan, graph, m_root);
+    }
+    if (!progress(0.55))
+      return false;
+    m_layers = layer_tree(m_scan, links, m_paths);
+    merge_rings(m_scan, m_options.rings, m_layers);
+    m_report.seconds.paths = watch.lap();
+    m_stage = 2;
+    return progress(0.6);
+  }
+
+  bool fit_axes(pcs::internal::Progress& progress)
+  {
+    if (!find_paths(progress))
+      return false;
+    if (m_stage >= 3)
+      return true;
+    pcs::internal::Stopwatch watch;
+    if (m_options.method == Skeleton_method::sections) {
+      const std::vector<Surface_frame> frames = principal_curvatures<ConcurrencyTag>(m_scan);
+      if (!progress(0.7))
+        return false;
+      m_sections = detect_sections(m_scan, m_is_used, frames, m_options.slices);
+      m_report.seconds.axes = watch.lap();
+      m_stage = 3;
+      return progress(0.9);
+    }
+    bool is_running = true;
+    m_axes = skeleton::fit_axes<ConcurrencyTag>(m_scan, m_layers, m_options.axes, [&](double f) {
+      return is_running = progress(0.6 + 0.3 * f);
+    });
+    if (!is_running)
+      return false;
+    m_report.noise = m_axes.noise;
+    m_report.density = m_axes.density;
+    m_report.seconds.axes = watch.lap();
+    m_stage = 3;
+    return progress(0.9);
+  }
+
+  bool join(pcs::internal::Progress& progress)
+  {
+    if (!fit_axes(progress))
+      return false;
+    if (m_stage >= 4)
+      return true;
+    pcs::internal::Stopwatch watch;
+    if (m_options.method == Skeleton_method::sections) {
+      m_tree = section_skeleton(m_scan, m_is_used, m_sections, m_root, m_options.section_tree);
+      count();
+      m_report.seconds.joints = watch.lap();
+      m_stage = 4;
+      return progress(0.97);
+    }
+    if (!m_axes.axes.empty()) {
+      const Index root = root_axis();
+      m_joints =
+          Axis_joiner(m_axes, m_scan.spacing, m_options.joints).template run<ConcurrencyTag>(root);
+      if (!progress(0.95))
+        return false;
+      m_joints[root].is_reversed = is_root_reversed(root);
+      m_tree = branch_tree(m_axes, m_joints, root, m_scan.spacing);
+    }
+    m_report.seconds.joints = watch.lap();
+    if (!progress(0.97))
+      return false;
+    estimate_sections<ConcurrencyTag>(m_scan, m_axes.noise, m_options.sections, m_tree);
+    count();
+    m_report.seconds.sections = watch.lap();
+    m_stage = 4;
+    return true;
+  }
+
+  const Scan& scan() const { return m_scan; }
+  const std::vector<std::uint8_t>& is_used() const { return m_is_used; }
+  const std::vector<Index>& root() const { return m_root; }
+  const Shortest_paths& paths() const { return m_paths; }
+  const Layer_tree& layers() const { return m_layers; }
+  const Axis_set& axes() const { return m_axes; }
+  const std::vector<Found_section>& sections() const { return m_sections; }
+  const std::vector<Joint>& joints() const { return m_joints; }
+  const Branch_tree& tree() const { return m_tree; }
+  const Skeleton_report& report() const { return m_report; }
+  Skeleton_report& report() { return m_report; }
+
+  /// The node that explains an input point, or `none`.
+  Index node_of_input(std::size_t i) const { return m_tree.node_of_point[m_point_of_input[i]]; }
+
+  /// Distance of an input point from the surface of its branch; negative inside. It has a node.
+  double residual_of_input(std::size_t i) const
+  {
+    const Index p = m_point_of_input[i], v = m_tree.node_of_point[p];
+    if (m_options.method == Skeleton_method::chains)
+      return m_axes.height_above(p, m_scan.points[p]);
+    const Branch_node& node = m_tree.nodes[v];
+    const Branch_node& below = m_tree.nodes[node.parent == none ? v : node.parent];
+    const Vec3 d = node.point - below.point, q = m_scan.points[p] - below.point;
+    const double t =
+        d.squaredNorm() > 0 ? std::min(1.0, std::max(0.0, q.dot(d) / d.squaredNorm())) : 1;
+    return (q - t * d).norm() - (1 - t) * below.radius - t * node.radius;
+  }
+
+private:
+  std::vector<Index> nearest_used(const Vec3& place) const
+  {
+    const auto found = m_scan.search->nearest_if(place - m_scan.origin,
+                                                 std::numeric_limits<double>::max(),
+                                                 [&](Index i) { return m_is_used[i] != 0; });
+    return {found.index};
+  }
+
+  /// The axis that explains most of the root, else the nearest one.
+  Index root_axis() const
+  {
+    std::vector<std::size_t> votes(m_axes.axes.size(), 0);
+    for (const Index i : m_root)
+      if (m_axes.is_covered(i))
+        ++votes[m_axes.axis_of_point[i]];
+    const auto most = std::max_element(votes.begin(), votes.end());
+    if (*most > 0)
+      return static_cast<Index>(most - votes.begin());
+    Index best = 0;
+    double distance = std::numeric_limits<double>::infinity();
+    for (Index a = 0; a < m_axes.axes.size(); ++a) {
+      const double d = nearest_place(m_axes.axes[a].axis, m_scan.points[m_root.front()]).distance;
+      if (d < distance) {
+        distance = d;
+        best = a;
+      }
+    }
+    return best;
+  }
+
+  bool is_root_reversed(Index root) const
+  {
+    Vec3 mean = Vec3::Zero();
+    for (const Index i : m_root)
+      mean += m_scan.points[i];
+    mean /= double(m_root.size());
+    const Axis& axis = m_axes.axes[root].axis;
+    return (axis.back().point - mean).norm() < (axis.front().point - mean).norm();
+  }
+
+  void count();
+
+  std::vector<Vec3> m_input;
+  std::vector<std::uint8_t> m_is_wood, m_is_used;
+  Session_options m_options;
+  int m_stage = 0;
+  Scan m_scan;
+  std::vector<Index> m_point_of_input, m_root;
+  Shortest_paths m_paths;
+  Layer_tree m_layers;
+  Axis_set m_axes;
+  std::vector<Found_section> m_sections;
+  std::vector<Joint> m_joints;
+  Branch_tree m_tree;
+  Skeleton_report m_report;
+};
+
+/// Upper bounds of the radius in the classes of the report, in breast heights: 5, 10, 20 and 50 mm in metres.
+constexpr double size_bounds_by_breast_height[] = {0.005 / 1.3, 0.01 / 1.3, 0.02 / 1.3, 0.05 / 1.3};
+
+template <class ConcurrencyTag>
+void Session<ConcurrencyTag>::count()
+{
+  Skeleton_report& r = m_report;
+  r.status = m_tree.nodes.empty() ? Status::nothing_to_do : Status::converged;
+  r.number_of_nodes = m_tree.nodes.size();
+  r.number_of_branches = m_tree.branches.size();
+  r.number_of_unreached_branches = m_tree.number_of_unreached_axes;
+  for (std::size_t i = 0; i < m_scan.size(); ++i) {
+    if (!m_is_used[i])
+      continue;
+    const bool has_node = !m_tree.node_of_point.empty() && m_tree.node_of_point[i] != none;
+    const bool is_covered =
+        has_node || (!m_axes.axis_of_point.empty() && m_axes.is_covered(static_cast<Index>(i)));
+    r.number_of_unexplained_points += !is_covered;
+    r.number_of_unreached_points += is_covered && !has_node;
+  }
+  for (const double b : size_bounds_by_breast_height)
+    r.size_bounds.push_back(b * m_options.breast_height);
+  r.by_size.resize(r.size_bounds.size() + 1);
+  for (const Branch& b : m_tree.branches) {
+    const std::size_t order = static_cast<std::size_t>(b.order);
+    if (r.by_order.size() <= order)
+      r.by_order.resize(order + 1);
+    ++r.by_order[order].number_of_branches;
+    ++r.total.number_of_branches;
+  }
+  if (m_tree.nodes.empty())
+    return;
+  const double ground = m_options.up.dot(m_tree.nodes[0].point);
+  for (Index v = 0; v < m_tree.nodes.size(); ++v) {
+    const Branch_node& node = m_tree.nodes[v];
+    r.height = std::max(r.height, m_options.up.dot(node.point) - ground);
+    if (m_tree.is_base(v))
+      continue;
+    const Branch_node& below = m_tree.nodes[node.parent];
+    const double length = (node.point - below.point).norm(), a = below.radius, b = node.radius;
+    const double volume = 3.14159265358979323846 / 3 * length * (a * a + a * b + b * b);
+    std::size_t size = 0;
+    while (size < r.size_bounds.size() && 0.5 * (a + b) > r.size_bounds[size])
+      ++size;
+    const std::size_t order = static_cast<std::size_t>(m_tree.branches[node.branch].order);
+    for (Wood* w : {&r.total, &r.by_order[order], &r.by_size[size]}) {
+      w->length += length;
+      w->volume += volume;
+    }
+    const double h0 = m_options.up.dot(below.point) - ground - m_options.breast_height;
+    const double h1 = m_options.up.dot(node.point) - ground - m_options.breast_height;
+    if (order == 0 && h0 <= 0 && h1 > 0 && r.diameter_at_breast_height == 0)
+      r.diameter_at_breast_height = 2 * (a + (b - a) * h0 / (h0 - h1));
+  }
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_SESSION_H

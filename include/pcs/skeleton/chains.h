@@ -1,0 +1,140 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Decomposes a layer tree into chains: at every fork one child continues, the others begin a chain.
+
+#ifndef PCS_SKELETON_CHAINS_H
+#define PCS_SKELETON_CHAINS_H
+
+#include <pcs/skeleton/Layer_tree.h>
+#include <pcs/skeleton/Scan.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// Nodes of a layer tree from the base to a tip.
+struct Chain
+{
+  std::vector<Index> nodes;
+  Index parent_node = none; ///< the node of another chain that it sprouts from
+  double length = 0;        ///< along the centres [L]
+};
+
+/// How many layers back the direction of a chain is taken from.
+constexpr int direction_reach = 4;
+/// Added to the spread of a node, in spacings: thin nodes must not win by noise [-].
+constexpr double spread_offset = 0.4;
+/// Added to the cosine between the parent's direction and a child's.
+constexpr double cosine_offset = 1.2;
+
+namespace internal {
+
+/// Longest way from each node to a tip below it.
+inline std::vector<double> heights(const Layer_tree& tree)
+{
+  std::vector<double> height(tree.size(), 0);
+  for (std::size_t v = tree.size(); v-- > 0;)
+    if (tree.parent[v] != none) {
+      double& h = height[tree.parent[v]];
+      h = std::max(h, height[v] + (tree.center[v] - tree.center[tree.parent[v]]).norm());
+    }
+  return height;
+}
+
+inline Vec3 direction_to(const Layer_tree& tree, Index node)
+{
+  Index from = node;
+  for (int k = 0; k < direction_reach && tree.parent[from] != none; ++k)
+    from = tree.parent[from];
+  const Vec3 d = tree.center[node] - tree.center[from];
+  const double length = d.norm();
+  return length > 0 ? Vec3(d / length) : Vec3(Vec3::Zero());
+}
+
+} // namespace internal
+
+/// The chains: the longest that begins at a source, then the others, longest first. A chain begins with the first node that is not its parent's. O(n log n).
+inline std::vector<Chain> chains_of(const Scan& scan, const Layer_tree& tree)
+{
+  const std::size_t m = tree.size();
+  const std::vector<double> height = internal::heights(tree);
+  std::vector<Index> first(m + 1, 0), child(m);
+  for (Index v = 0; v < m; ++v)
+    if (tree.parent[v] != none)
+      ++first[tree.parent[v] + 1];
+  for (std::size_t v = 0; v < m; ++v)
+    first[v + 1] += first[v];
+  {
+    std::vector<Index> next(first.begin(), first.end() - 1);
+    for (Index v = 0; v < m; ++v)
+      if (tree.parent[v] != none)
+        child[next[tree.parent[v]]++] = v;
+  }
+  const auto main_child = [&](Index v) {
+    const Index in_ring = tree.next_in_ring[v];
+    if (in_ring != none)
+      return in_ring == v ? none : in_ring;
+    const Vec3 along = internal::direction_to(tree, v);
+    Index best = none;
+    double best_score = -1;
+    for (Index k = first[v]; k < first[v + 1]; ++k) {
+      const Index c = child[k];
+      Index ahead = c; // a short way further on, to see where the child leads
+      for (int step = 0; step < direction_reach / 2 && first[ahead + 1] - first[ahead] == 1; ++step)
+        ahead = child[first[ahead]];
+      const Vec3 d = tree.center[ahead] - tree.center[v];
+      const double norm = d.norm(), cosine = norm > 0 ? along.dot(d) / norm : 0;
+      const double score = std::sqrt(height[c] + layer_thickness * scan.spacing) *
+                           (tree.spread[c] + spread_offset * scan.spacing) *
+                           (cosine_offset + cosine);
+      if (score > best_score) {
+        best_score = score;
+        best = c;
+      }
+    }
+    return best;
+  };
+  std::vector<Chain> chains;
+  std::vector<std::uint8_t> is_taken(m, 0);
+  for (Index v = 0; v < m; ++v) { // parents come before their children
+    if (is_taken[v])
+      continue;
+    Chain chain;
+    chain.parent_node = tree.parent[v];
+    for (Index w = v; w != none; w = main_child(w)) {
+      is_taken[w] = 1;
+      if (!chain.nodes.empty())
+        chain.length += (tree.center[w] - tree.center[chain.nodes.back()]).norm();
+      chain.nodes.push_back(w);
+    }
+    chains.push_back(std::move(chain));
+  }
+  // Ties are decided by what does not change when the scan is turned.
+  const auto key = [&](const Chain& c) {
+    std::size_t points = 0;
+    for (const Index v : c.nodes)
+      points += tree.count(v);
+    return std::make_tuple(c.length, points, tree.spread[c.nodes.front()]);
+  };
+  std::stable_sort(chains.begin(), chains.end(), [&](const Chain& a, const Chain& b) {
+    return a.length != b.length ? a.length > b.length : key(a) > key(b);
+  });
+  const auto trunk = std::find_if(chains.begin(), chains.end(), [](const Chain& c) {
+    return c.parent_node == none;
+  });
+  if (trunk != chains.end())
+    std::rotate(chains.begin(), trunk, trunk + 1);
+  return chains;
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_CHAINS_H

@@ -1,0 +1,243 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The pieces of a skeletonization: banded systems, circles and ellipses, curvatures, axes and their fit.
+
+#include <pcs/Tree_skeletonization.h>
+#include <pcs/linear_algebra/Banded_cholesky.h>
+#include <pcs/skeleton/Axis_fit.h>
+#include <pcs/skeleton/ellipse_fit.h>
+#include <pcs/skeleton/principal_curvatures.h>
+
+#include <CGAL/Simple_cartesian.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <Eigen/Dense>
+
+#include <cmath>
+#include <cstddef>
+#include <random>
+#include <vector>
+
+namespace {
+
+using pcs::skeleton::Vec2;
+using pcs::skeleton::Vec3;
+constexpr double pi = 3.14159265358979323846;
+
+/// Points on an arc of an ellipse, turned by 0.5 and moved.
+std::vector<Vec2> arc(double a, double b, double turn, std::size_t n, double noise)
+{
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal(0, noise);
+  std::vector<Vec2> points;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double t = turn * (double(i) + 0.5) / double(n);
+    const Vec2 p((a + normal(random)) * std::cos(t), (b + normal(random)) * std::sin(t));
+    points.emplace_back(5 + std::cos(0.5) * p.x() - std::sin(0.5) * p.y(),
+                        -3 + std::sin(0.5) * p.x() + std::cos(0.5) * p.y());
+  }
+  return points;
+}
+
+std::vector<Vec3> tube(double radius, double height, std::size_t n)
+{
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double angle = 2.39996322972865332 * double(i);
+    points.emplace_back(radius * std::cos(angle),
+                        radius * std::sin(angle),
+                        height * (double(i) + 0.5) / double(n));
+  }
+  return points;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(Banded_cholesky)
+
+BOOST_AUTO_TEST_CASE(it_solves_what_a_dense_solver_solves)
+{
+  constexpr std::size_t width = 3;
+  const std::size_t n = 12;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> value(-1, 1);
+  pcs::linear_algebra::Banded_cholesky<width> banded;
+  banded.reset(n);
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(n, n);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = i > width ? i - width : 0; j <= i; ++j) {
+      const double x = i == j ? 8 : value(random);
+      banded(i, j) = x;
+      dense(Eigen::Index(i), Eigen::Index(j)) = dense(Eigen::Index(j), Eigen::Index(i)) = x;
+    }
+  std::vector<double> x(n);
+  for (double& v : x)
+    v = value(random);
+  const Eigen::VectorXd expected =
+      dense.ldlt().solve(Eigen::Map<Eigen::VectorXd>(x.data(), Eigen::Index(n)));
+  BOOST_REQUIRE(banded.factorize());
+  banded.solve(x);
+  for (std::size_t i = 0; i < n; ++i)
+    BOOST_CHECK_SMALL(x[i] - expected(Eigen::Index(i)), 1e-12);
+}
+
+BOOST_AUTO_TEST_CASE(it_refuses_what_is_not_definite)
+{
+  pcs::linear_algebra::Banded_cholesky<1> matrix;
+  matrix.reset(2);
+  matrix(0, 0) = 1;
+  matrix(1, 0) = 2;
+  matrix(1, 1) = 1;
+  BOOST_CHECK(!matrix.factorize());
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(circle_fit)
+
+BOOST_AUTO_TEST_CASE(short_arcs_are_not_biased)
+{
+  for (const double turn : {2 * pi, pi, pi / 2}) {
+    const auto circle = pcs::skeleton::fit_circle(arc(2, 2, turn, 400, 0.02));
+    BOOST_CHECK_CLOSE(circle.radius, 2.0, 2.0);
+    BOOST_CHECK_SMALL((circle.center - Vec2(5, -3)).norm(), 0.04);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(points_on_a_line_have_no_circle)
+{
+  std::vector<Vec2> points;
+  for (int i = 0; i < 10; ++i)
+    points.emplace_back(i, 2 * i);
+  BOOST_CHECK_EQUAL(pcs::skeleton::fit_circle(points).radius, 0);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(ellipse_fit)
+
+BOOST_AUTO_TEST_CASE(all_ways_find_an_exact_ellipse)
+{
+  using pcs::skeleton::Section_fit;
+  for (const Section_fit how : {Section_fit::conic, Section_fit::ellipse, Section_fit::by_arc}) {
+    const auto e = pcs::skeleton::fit_section(arc(2, 1.5, 2 * pi, 40, 0), how);
+    BOOST_CHECK_CLOSE(e.major, 2.0, 1e-6);
+    BOOST_CHECK_CLOSE(e.minor, 1.5, 1e-6);
+    BOOST_CHECK_SMALL((e.center - Vec2(5, -3)).norm(), 1e-8);
+    BOOST_CHECK_SMALL(std::abs(e.direction.dot(Vec2(std::cos(0.5), std::sin(0.5)))) - 1, 1e-8);
+    BOOST_CHECK_SMALL(e.deviation, 1e-7);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(on_a_half_turn_only_the_circle_keeps_the_radius)
+{
+  using pcs::skeleton::Section_fit;
+  const auto points = arc(1, 1, pi, 20, 0.03);
+  BOOST_CHECK_CLOSE(pcs::skeleton::fit_section(points, Section_fit::circle).major, 1.0, 10.0);
+  BOOST_CHECK_CLOSE(pcs::skeleton::fit_section(points, Section_fit::by_arc).major, 1.0, 10.0);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(principal_curvatures)
+
+BOOST_AUTO_TEST_CASE(the_center_candidates_of_a_tube_lie_on_its_axis)
+{
+  pcs::skeleton::Scan scan;
+  pcs::skeleton::prepare_scan<CGAL::Sequential_tag>(tube(0.1, 1, 6000), scan);
+  const auto frames = pcs::skeleton::principal_curvatures<CGAL::Sequential_tag>(scan);
+  std::size_t good = 0;
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    const Vec3 center = scan.points[i] + scan.origin + frames[i].normal / frames[i].k1;
+    good += std::hypot(center.x(), center.y()) < 0.01 && std::abs(frames[i].e2.z()) > 0.98;
+  }
+  BOOST_CHECK_GT(good, scan.size() * 9 / 10);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(Axis)
+
+BOOST_AUTO_TEST_CASE(resampling_keeps_ends_and_length)
+{
+  pcs::skeleton::Axis axis(3);
+  axis[1].point = Vec3(1, 0, 0);
+  axis[2].point = Vec3(1, 2, 0);
+  for (auto& node : axis)
+    node.radius = 0.1;
+  const auto result = pcs::skeleton::resample(axis, {1, 0.01, 1});
+  BOOST_CHECK_EQUAL(result.size(), 31u);
+  BOOST_CHECK(result.front().point == axis.front().point);
+  BOOST_CHECK(result.back().point == axis.back().point);
+  BOOST_CHECK_CLOSE(pcs::skeleton::length_of(result), 3.0, 1.0);
+}
+
+BOOST_AUTO_TEST_CASE(a_place_beyond_an_end_says_so)
+{
+  pcs::skeleton::Axis axis(2);
+  axis[1].point = Vec3(0, 0, 1);
+  const auto before = pcs::skeleton::nearest_place(axis, 0, Vec3(0, 0, -1));
+  BOOST_CHECK_LT(before.share, 0);
+  BOOST_CHECK_CLOSE(before.distance, 1.0, 1e-9);
+  BOOST_CHECK_CLOSE(pcs::skeleton::nearest_place(axis, 0, Vec3(3, 0, 0.25)).share, 0.25, 1e-9);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(Axis_fit)
+
+BOOST_AUTO_TEST_CASE(a_wrong_start_finds_the_axis_of_half_a_tube)
+{
+  std::vector<Vec3> points;
+  for (const Vec3& p : tube(0.1, 1, 4000))
+    if (p.x() > 0)
+      points.push_back(p);
+  pcs::skeleton::Axis axis;
+  for (int k = 0; k <= 10; ++k) {
+    pcs::skeleton::Axis_node node;
+    node.point = Vec3(0.04, 0.01, 0.1 * k);
+    node.radius = 0.08;
+    axis.push_back(node);
+  }
+  pcs::skeleton::Axis_fit fit(axis, pcs::skeleton::Fit_model::of(0.01, 0.002));
+  fit.set_points(points, std::vector<pcs::skeleton::Index>(points.size(), 0));
+  fit.project();
+  for (int k = 0; k < 12; ++k)
+    BOOST_REQUIRE(fit.iterate(k < 6 ? 4 : 1));
+  for (const auto& node : fit.axis()) {
+    BOOST_CHECK_CLOSE(node.radius, 0.1, 2.0);
+    BOOST_CHECK_SMALL(std::hypot(node.point.x(), node.point.y()), 0.002);
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(section_skeleton)
+
+BOOST_AUTO_TEST_CASE(the_way_of_the_dissertation_runs_from_end_to_end)
+{
+  using Kernel = CGAL::Simple_cartesian<double>;
+  std::vector<Kernel::Point_3> points;
+  for (const Vec3& p : tube(0.1, 2, 8000))
+    points.emplace_back(p.x(), p.y(), p.z());
+  for (int i = 0; i < 40; ++i) // a twig that is too thin for slices
+    points.emplace_back(0.11 + 0.015 * i, 0, 1 + 0.015 * i);
+  pcs::Tree_skeleton<Kernel> tree;
+  pcs::Tree_skeletonization stages(
+      points,
+      pcs::parameters::skeleton_method(pcs::skeleton::Skeleton_method::sections));
+  const auto report = stages.extract(tree);
+  BOOST_CHECK_EQUAL(report.status, pcs::Status::converged);
+  BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.2, 5.0);
+  BOOST_CHECK_EQUAL(num_edges(tree) + 1, num_vertices(tree));
+  double farthest = 0, thinnest = 1;
+  for (std::size_t v = 0; v < num_vertices(tree); ++v) {
+    farthest = std::max(farthest, tree[v].point.x());
+    thinnest = std::min(thinnest, tree[v].radius);
+  }
+  BOOST_CHECK_GT(farthest, 0.5); // the sparse part is there
+  BOOST_CHECK_LT(thinnest, 0.05);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
