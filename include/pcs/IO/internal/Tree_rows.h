@@ -1,0 +1,180 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Nodes of a tree as rows of a file that name their parents, linked and checked.
+
+#ifndef PCS_IO_INTERNAL_TREE_ROWS_H
+#define PCS_IO_INTERNAL_TREE_ROWS_H
+
+#include <pcs/IO/internal/Input_file.h>
+#include <pcs/IO/internal/numbers.h>
+#include <pcs/core/Tree_skeleton.h>
+#include <pcs/core/errors.h>
+
+#include <CGAL/number_utils.h>
+
+#include <boost/graph/graph_traits.hpp>
+#include <boost/range/iterator_range.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace IO {
+namespace internal {
+
+constexpr std::int64_t no_parent = -1; // of the root, in the file
+
+struct Tree_row
+{
+  std::int64_t id = 0, parent = no_parent;
+  std::uint64_t line = 0;
+};
+
+//! the whole word as a number, or an error that names the line and the column
+template <class T>
+T required_number(const Input_file& file, std::string_view word, const char* column)
+{
+  T value{};
+  const Parse_result result = parse_number(word, value);
+  if (result == Parse_result::out_of_range)
+    file.fail_at_line(std::string("'") + column + "' is out of range: " + in_quotes(word));
+  if (result != Parse_result::ok)
+    file.fail_at_line(std::string("expected ") +
+                      (std::is_integral_v<T> ? "an integer" : "a number") + " as '" + column +
+                      "', found " + in_quotes(word));
+  if constexpr (std::is_floating_point_v<T>)
+    if (!std::isfinite(value))
+      file.fail_at_line(std::string("expected a finite number as '") + column + "', found " +
+                        in_quotes(word));
+  return value;
+}
+
+inline double required_length(const Input_file& file, std::string_view word, const char* column)
+{
+  const auto value = required_number<double>(file, word, column);
+  if (value < 0)
+    file.fail_at_line(std::string("'") + column + "' must not be negative, found " +
+                      in_quotes(word));
+  return value;
+}
+
+/*
+  The parents of all rows as indices, `npos` for the root. There must be exactly one root, and every
+  row must hang on it.
+*/
+class Tree_links
+{
+public:
+  Tree_links(std::string path, const std::vector<Tree_row>& rows) : m_path(std::move(path))
+  {
+    if (rows.empty())
+      throw IO_error(m_path, "the file has no node, expected at least one");
+    std::unordered_map<std::int64_t, std::size_t> index;
+    index.reserve(rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      if (!index.emplace(rows[i].id, i).second)
+        fail(rows[i], "the id " + std::to_string(rows[i].id) + " is used twice");
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (rows[i].parent == no_parent) {
+        if (m_root != npos)
+          fail(rows[i],
+               "a second root; the first one is in line " + std::to_string(rows[m_root].line));
+        m_root = i;
+        m_parents.push_back(npos);
+        continue;
+      }
+      const auto parent = index.find(rows[i].parent);
+      if (parent == index.end())
+        fail(rows[i], "there is no node with the id " + std::to_string(rows[i].parent));
+      m_parents.push_back(parent->second);
+    }
+    if (m_root == npos)
+      throw IO_error(m_path, "no node has the parent -1, expected one root");
+    refuse_cycles(rows);
+  }
+
+  std::size_t root() const { return m_root; }
+  const std::vector<std::size_t>& parents() const { return m_parents; }
+
+private:
+  [[noreturn]] void fail(const Tree_row& row, const std::string& what) const
+  {
+    throw IO_error(m_path, "line " + std::to_string(row.line) + ": " + what);
+  }
+
+  //! walks up from every node until a node whose walk was fine
+  void refuse_cycles(const std::vector<Tree_row>& rows) const
+  {
+    std::vector<std::size_t> walk_of(rows.size(), npos);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      for (std::size_t v = i; v != npos && walk_of[v] != npos - 1; v = m_parents[v]) {
+        if (walk_of[v] == i)
+          fail(rows[v], "the parents of this node form a cycle");
+        if (walk_of[v] != npos)
+          break;
+        walk_of[v] = i;
+      }
+  }
+
+  std::string m_path;
+  std::size_t m_root = npos;
+  std::vector<std::size_t> m_parents;
+};
+
+/*
+  The nodes of a graph in the order in which they are written: as they are numbered if parents come
+  before their children, else as a walk from the root meets them.
+*/
+template <class Graph>
+std::vector<std::size_t> writing_order(const Graph& graph, std::size_t root, const char* caller)
+{
+  const std::size_t n = num_vertices(graph);
+  const auto refuse = [&](const std::string& what) {
+    throw Invalid_input(std::string("pcs::IO::") + caller + "(): " + what);
+  };
+  if (n == 0)
+    refuse("the tree has no nodes");
+  if (root >= n)
+    refuse("the root is not a node of the graph");
+  std::vector<std::size_t> parent(n, npos), order = {root};
+  parent[root] = root;
+  bool is_sorted = root == 0;
+  for (std::size_t i = 0; i < order.size(); ++i)
+    for (const auto e : boost::make_iterator_range(out_edges(order[i], graph))) {
+      const std::size_t v = target(e, graph);
+      if (parent[v] != npos)
+        refuse("node " + std::to_string(v) + " has two parents or is its own ancestor");
+      parent[v] = order[i];
+      is_sorted = is_sorted && order[i] < v;
+      order.push_back(v);
+    }
+  if (order.size() != n)
+    refuse(std::to_string(n - order.size()) + " nodes cannot be reached from the root");
+  if (is_sorted)
+    for (std::size_t i = 0; i < n; ++i)
+      order[i] = i;
+  return order;
+}
+
+//! `value` as text, or an error that names the node
+template <class FT>
+double finite_value(const FT& value, const char* what, std::size_t node, const char* caller)
+{
+  const double result = CGAL::to_double(value);
+  if (!std::isfinite(result))
+    throw Invalid_input(std::string("pcs::IO::") + caller + "(): " + what + " of node " +
+                        std::to_string(node) + " is not finite");
+  return result;
+}
+
+} // namespace internal
+} // namespace IO
+} // namespace pcs
+
+#endif // PCS_IO_INTERNAL_TREE_ROWS_H

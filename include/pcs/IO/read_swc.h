@@ -1,0 +1,92 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Reads a tree skeleton from an SWC file.
+
+#ifndef PCS_IO_READ_SWC_H
+#define PCS_IO_READ_SWC_H
+
+#include <pcs/IO/internal/Input_file.h>
+#include <pcs/IO/internal/Tree_rows.h>
+#include <pcs/IO/internal/numbers.h>
+#include <pcs/core/Tree_skeleton.h>
+#include <pcs/core/assign_branches.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pcs {
+namespace IO {
+
+/*!
+  \ingroup PkgPcsIORef
+  \brief reads a tree skeleton from an SWC file: lines `id type x y z radius parent`.
+
+  Lines that are blank or begin with `#` are skipped; parents may stand behind their children. Nodes
+  are numbered in the order of the file. The format knows no branches, so these come from
+  `assign_branches()`, and no sections, so all are circles.
+
+  \tparam Kernel a kernel of CGAL
+  \param path name of the file
+  \param tree is replaced; unchanged when an exception is thrown
+  \throws pcs::IO_error when the file cannot be read, a line does not have seven columns of finite
+          numbers, an id is used twice, a parent is missing, a radius is negative, or the nodes do
+          not form one tree with one root (parent -1)
+  \par Complexity
+  Linear in the size of the file.
+*/
+template <class Kernel>
+void read_swc(const std::string& path, Tree_skeleton<Kernel>& tree)
+{
+  using FT = typename Kernel::FT;
+  internal::Input_file file(path);
+  std::vector<internal::Tree_row> rows;
+  std::vector<Tree_node<Kernel>> nodes;
+  std::string_view line;
+  while (file.read_line(line)) {
+    line = internal::trim(line);
+    if (line.empty() || line[0] == '#')
+      continue;
+    std::array<std::string_view, 7> words;
+    std::size_t n = 0;
+    for (std::string_view word = internal::next_word(line); !word.empty();
+         word = internal::next_word(line), ++n)
+      if (n < words.size())
+        words[n] = word;
+    if (n != words.size())
+      file.fail_at_line("expected the 7 columns id, type, x, y, z, radius, parent, found " +
+                        std::to_string(n));
+    internal::required_number<std::int64_t>(file, words[1], "type");
+    const auto x = internal::required_number<double>(file, words[2], "x");
+    const auto y = internal::required_number<double>(file, words[3], "y");
+    const auto z = internal::required_number<double>(file, words[4], "z");
+    Tree_node<Kernel> node;
+    node.point = typename Kernel::Point_3(FT(x), FT(y), FT(z));
+    node.radius = FT(internal::required_length(file, words[5], "radius"));
+    node.major_radius = node.minor_radius = node.radius;
+    nodes.push_back(node);
+    rows.push_back({internal::required_number<std::int64_t>(file, words[0], "id"),
+                    internal::required_number<std::int64_t>(file, words[6], "parent"),
+                    file.line_number()});
+    if (rows.back().id < 0)
+      file.fail_at_line("an id must not be negative, found " + internal::in_quotes(words[0]));
+  }
+  const internal::Tree_links links(path, rows);
+  Tree_skeleton<Kernel> result(nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    result[i] = nodes[i];
+    if (links.parents()[i] != npos)
+      add_edge(links.parents()[i], i, result);
+  }
+  result[boost::graph_bundle].root = links.root();
+  assign_branches<Kernel>(result);
+  tree = result;
+}
+
+} // namespace IO
+} // namespace pcs
+
+#endif // PCS_IO_READ_SWC_H

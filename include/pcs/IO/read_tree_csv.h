@@ -1,0 +1,226 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Reads a tree skeleton with branches and sections from a CSV file.
+
+#ifndef PCS_IO_READ_TREE_CSV_H
+#define PCS_IO_READ_TREE_CSV_H
+
+#include <pcs/IO/internal/Input_file.h>
+#include <pcs/IO/internal/Tree_rows.h>
+#include <pcs/IO/internal/numbers.h>
+#include <pcs/core/Tree_skeleton.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace IO {
+namespace internal {
+
+//! the columns of a tree as CSV, in the order in which they are written
+constexpr std::array<const char*, 11> tree_columns =
+    {"id", "parent", "branch", "order", "x", "y", "z", "r", "a", "b", "hits"};
+constexpr std::size_t column_hits = 10; // the only one that may be missing
+
+inline std::vector<std::string_view> split_at_commas(std::string_view line)
+{
+  std::vector<std::string_view> words;
+  for (;;) {
+    const std::size_t end = line.find(',');
+    words.push_back(trim(line.substr(0, end)));
+    if (end == std::string_view::npos)
+      return words;
+    line.remove_prefix(end + 1);
+  }
+}
+
+//! for each of `tree_columns` its place in the header, `npos` if it is missing
+inline std::array<std::size_t, 11> find_tree_columns(const Input_file& file,
+                                                     std::string_view header)
+{
+  std::array<std::size_t, 11> place;
+  place.fill(npos);
+  if (header.substr(0, 3) == "\xEF\xBB\xBF") // byte order mark
+    header.remove_prefix(3);
+  const std::vector<std::string_view> names = split_at_commas(header);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    std::size_t c = 0;
+    while (c < tree_columns.size() && names[i] != tree_columns[c])
+      ++c;
+    if (c == tree_columns.size())
+      file.fail_at_line("unknown column " + in_quotes(names[i]) +
+                        ", expected id,parent,branch,order,x,y,z,r,a,b,hits");
+    if (place[c] != npos)
+      file.fail_at_line("the column " + in_quotes(names[i]) + " is named twice");
+    place[c] = i;
+  }
+  for (std::size_t c = 0; c < tree_columns.size(); ++c)
+    if (place[c] == npos && c != column_hits)
+      file.fail_at_line(std::string("there is no column '") + tree_columns[c] + "'");
+  return place;
+}
+
+//! Gives the rows their branches: numbered as they first appear, each one a chain of nodes.
+template <class Kernel>
+class Branch_rows
+{
+public:
+  Branch_rows(const std::string& path, Tree_skeleton<Kernel>& tree) : m_path(path), m_tree(tree) {}
+
+  //! sets the branch of node `i` of the tree
+  void add(std::size_t i, std::int64_t id, int order, std::uint64_t line)
+  {
+    auto& branches = m_tree[boost::graph_bundle].branches;
+    const auto [found, is_new] = m_index.emplace(id, branches.size());
+    if (is_new)
+      branches.push_back({npos, order, static_cast<std::size_t>(id)});
+    else if (branches[found->second].order != order)
+      fail(line, "branch " + std::to_string(id) + " has two different orders");
+    m_tree[i].branch = found->second;
+    m_lines.push_back(line);
+  }
+
+  //! checks that branches are chains and finds their parents
+  void link()
+  {
+    auto& branches = m_tree[boost::graph_bundle].branches;
+    std::vector<bool> has_base(branches.size(), false);
+    for (std::size_t v = 0; v < num_vertices(m_tree); ++v) {
+      const std::size_t p = parent_node<Kernel>(v, m_tree), b = m_tree[v].branch;
+      std::size_t followers = 0;
+      for (const auto e : boost::make_iterator_range(out_edges(v, m_tree)))
+        followers += m_tree[target(e, m_tree)].branch == b ? 1 : 0;
+      const bool is_base = p == npos || m_tree[p].branch != b;
+      if (followers > 1 || (is_base && has_base[b]))
+        fail(m_lines[v],
+             "the nodes of branch " + std::to_string(branches[b].id) + " are not a chain");
+      if (is_base) {
+        has_base[b] = true;
+        branches[b].parent = p == npos ? npos : m_tree[p].branch;
+      }
+    }
+  }
+
+private:
+  [[noreturn]] void fail(std::uint64_t line, const std::string& what) const
+  {
+    throw IO_error(m_path, "line " + std::to_string(line) + ": " + what);
+  }
+
+  std::string m_path;
+  Tree_skeleton<Kernel>& m_tree;
+  std::unordered_map<std::int64_t, std::size_t> m_index;
+  std::vector<std::uint64_t> m_lines;
+};
+
+} // namespace internal
+
+/*!
+  \ingroup PkgPcsIORef
+  \brief reads a tree skeleton from a CSV file with the columns
+         `id,parent,branch,order,x,y,z,r,a,b,hits`.
+
+  The first line names the columns, in any order; `hits` may be missing. One row is one node: its id,
+  that of its parent (-1: the root), the id and order of its branch, position, radius, the half axes
+  of its section, and the number of points that a scan has there. Nodes are numbered in the order of
+  the file, branches in the order of their first rows.
+
+  \tparam Kernel a kernel of CGAL
+  \param path name of the file
+  \param tree is replaced; unchanged when an exception is thrown
+  \param hits is replaced by one number per node, or emptied when the file has no such column
+  \throws pcs::IO_error when the file cannot be read, a line is malformed, the nodes do not form one
+          tree with one root, or the nodes of a branch are not a chain
+  \par Complexity
+  Linear in the size of the file.
+*/
+template <class Kernel>
+void read_tree_csv(const std::string& path,
+                   Tree_skeleton<Kernel>& tree,
+                   std::vector<std::size_t>& hits)
+{
+  using FT = typename Kernel::FT;
+  internal::Input_file file(path);
+  std::string_view line;
+  if (!file.read_line(line))
+    throw IO_error(path, "the file is empty, expected the names of the columns");
+  const auto place = internal::find_tree_columns(file, line);
+  const std::size_t number_of_columns = internal::split_at_commas(line).size();
+
+  std::vector<internal::Tree_row> rows;
+  std::vector<Tree_node<Kernel>> nodes;
+  std::vector<std::pair<std::int64_t, int>> branches; // id, order
+  std::vector<std::size_t> counts;
+  while (file.read_line(line)) {
+    if (internal::trim(line).empty())
+      continue;
+    const std::vector<std::string_view> words = internal::split_at_commas(line);
+    if (words.size() != number_of_columns)
+      file.fail_at_line("expected " + std::to_string(number_of_columns) + " columns, found " +
+                        std::to_string(words.size()));
+    const auto integer = [&](std::size_t c, std::int64_t least) {
+      const auto value =
+          internal::required_number<std::int64_t>(file, words[place[c]], internal::tree_columns[c]);
+      if (value < least)
+        file.fail_at_line(std::string("'") + internal::tree_columns[c] +
+                          "' must not be less than " + std::to_string(least) + ", found " +
+                          std::to_string(value));
+      return value;
+    };
+    const auto number = [&](std::size_t c) {
+      return FT(
+          internal::required_number<double>(file, words[place[c]], internal::tree_columns[c]));
+    };
+    const auto length = [&](std::size_t c) {
+      return FT(internal::required_length(file, words[place[c]], internal::tree_columns[c]));
+    };
+    rows.push_back({integer(0, 0), integer(1, internal::no_parent), file.line_number()});
+    const std::int64_t order = integer(3, 0);
+    if (order > std::numeric_limits<int>::max())
+      file.fail_at_line("'order' is out of range: " + std::to_string(order));
+    branches.emplace_back(integer(2, 0), static_cast<int>(order));
+    Tree_node<Kernel> node;
+    node.point = typename Kernel::Point_3(number(4), number(5), number(6));
+    node.radius = length(7);
+    node.major_radius = length(8);
+    node.minor_radius = length(9);
+    node.is_measured = true;
+    nodes.push_back(node);
+    if (place[internal::column_hits] != npos)
+      counts.push_back(static_cast<std::size_t>(integer(internal::column_hits, 0)));
+  }
+
+  const internal::Tree_links links(path, rows);
+  Tree_skeleton<Kernel> result(nodes.size());
+  internal::Branch_rows<Kernel> branch_rows(path, result);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    result[i] = nodes[i];
+    if (links.parents()[i] != npos)
+      add_edge(links.parents()[i], i, result);
+    branch_rows.add(i, branches[i].first, branches[i].second, rows[i].line);
+  }
+  branch_rows.link();
+  result[boost::graph_bundle].root = links.root();
+  tree = result;
+  hits.swap(counts);
+}
+
+//! \ingroup PkgPcsIORef
+//! the same for a caller who does not want the numbers of points
+template <class Kernel>
+void read_tree_csv(const std::string& path, Tree_skeleton<Kernel>& tree)
+{
+  std::vector<std::size_t> hits;
+  read_tree_csv<Kernel>(path, tree, hits);
+}
+
+} // namespace IO
+} // namespace pcs
+
+#endif // PCS_IO_READ_TREE_CSV_H
