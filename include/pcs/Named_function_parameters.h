@@ -30,7 +30,20 @@
   PCS_OWN(poisson_ratio)                                                                           \
   PCS_OWN(do_preserve_volume)                                                                      \
   PCS_OWN(vector_map)                                                                              \
-  PCS_OWN(tensor_map)
+  PCS_OWN(tensor_map)                                                                              \
+  PCS_OWN(node_point_map)                                                                          \
+  PCS_OWN(node_radius_map)                                                                         \
+  PCS_OWN(node_index_map)                                                                          \
+  PCS_OWN(matching_weights)                                                                        \
+  PCS_OWN(assignment_options)                                                                      \
+  PCS_OWN(transport_options)                                                                       \
+  PCS_OWN(orientation)                                                                             \
+  PCS_OWN(virtual_direction)                                                                       \
+  PCS_OWN(do_use_unit_weights)                                                                     \
+  PCS_OWN(maximal_turn)                                                                            \
+  PCS_OWN(do_limit_radii)                                                                          \
+  PCS_OWN(point_path)                                                                              \
+  PCS_OWN(metric)
 namespace pcs {
 namespace internal_np {
 

@@ -41,7 +41,8 @@ struct Rooted_tree
   std::vector<double> radii;        ///< [L]
   std::vector<double> base_radii;   ///< at the beginning of the edge to a node; NaN: not given [L]
   std::vector<std::size_t> parents; ///< `none` for the root
-  std::vector<std::size_t> sources; ///< index of the vertex in the caller's graph
+  std::vector<std::size_t>
+      sources; ///< index of the vertex in the caller's graph; `none` for a node put on an axis
   std::vector<std::size_t> first_child,
       children;                ///< children of v: [first_child[v], first_child[v + 1])
   std::vector<double> heights; ///< length of the longest path from a node to a tip [L]
@@ -97,14 +98,87 @@ inline void connect(Rooted_tree& tree)
   }
 }
 
+/// A node this close to the axis of an edge, as a share of the radius there, begins a branch on that axis.
+constexpr double on_axis = 1e-3;
+
+/*!
+  Where the first node of a branch lies on the axis of its parent, between two nodes of that, the axis gets a node there.
+  Without it the branch would seem to begin at the node before, and to run along its parent.
+*/
+inline Rooted_tree with_nodes_at_bases(const Rooted_tree& all)
+{
+  const std::size_t n = all.size();
+  std::vector<std::vector<std::size_t>> children(n);
+  for (std::size_t v = 1; v < n; ++v)
+    children[all.parents[v]].push_back(v);
+  Rooted_tree tree;
+  tree.origin = all.origin;
+  tree.extent = all.extent;
+  const auto add = [&](const Vec3& point, double radius, std::size_t parent, std::size_t source) {
+    tree.points.push_back(point);
+    tree.radii.push_back(radius);
+    tree.parents.push_back(parent);
+    tree.sources.push_back(source);
+    return tree.size() - 1;
+  };
+  std::vector<std::size_t> new_node(n, none);
+  new_node[0] = add(all.points[0], all.radii[0], none, all.sources[0]);
+  struct Base
+  {
+    double share;
+    std::size_t node;
+  };
+  for (std::size_t p = 0; p < n; ++p) {
+    std::vector<std::vector<Base>> bases(children[p].size());
+    std::vector<char> is_base(children[p].size(), 0);
+    for (std::size_t i = 0; i < children[p].size(); ++i) {
+      const Vec3 v = all.points[children[p][i]] - all.points[p];
+      std::size_t axis = none;
+      double longest = v.norm() * (1 + shortest_edge), share = 0;
+      for (std::size_t j = 0; j < children[p].size() && v.norm() > shortest_edge * all.extent;
+           ++j) {
+        const Vec3 w = all.points[children[p][j]] - all.points[p];
+        const double t = v.dot(w) / std::max(w.squaredNorm(), 1e-300);
+        const double radius = (1 - t) * all.radii[p] + t * all.radii[children[p][j]];
+        if (j != i && w.norm() > longest && t > 0 &&
+            (v - t * w).norm() <= std::max(on_axis * radius, shortest_edge * all.extent)) {
+          axis = j;
+          longest = w.norm();
+          share = t;
+        }
+      }
+      if (axis != none) {
+        bases[axis].push_back({share, children[p][i]});
+        is_base[i] = 1;
+      }
+    }
+    for (std::size_t j = 0; j < children[p].size(); ++j)
+      if (!is_base[j]) {
+        std::size_t last = new_node[p];
+        const std::size_t w = children[p][j];
+        std::stable_sort(bases[j].begin(), bases[j].end(), [](const Base& a, const Base& b) {
+          return a.share < b.share;
+        });
+        for (const Base& base : bases[j]) {
+          const double radius = (1 - base.share) * all.radii[p] + base.share * all.radii[w];
+          last = add(all.points[base.node], radius, last, none);
+          new_node[base.node] =
+              add(all.points[base.node], all.radii[base.node], last, all.sources[base.node]);
+        }
+        new_node[w] = add(all.points[w], all.radii[w], last, all.sources[w]);
+      }
+  }
+  return tree;
+}
+
 /// The tree without edges that have no length.
-inline Rooted_tree without_coincident_nodes(const Rooted_tree& all)
+inline Rooted_tree without_coincident_nodes(const Rooted_tree& all, std::size_t number_of_sources)
 {
   const double threshold = shortest_edge * all.extent;
   Rooted_tree tree;
   tree.origin = all.origin;
   tree.extent = all.extent;
-  tree.node_of_source.resize(all.size());
+  tree.node_of_source.resize(number_of_sources);
   std::vector<std::size_t> new_node(all.size());
   std::vector<double> base(all.size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t v = 0; v < all.size(); ++v) {
@@ -122,7 +196,11 @@ inline Rooted_tree without_coincident_nodes(const Rooted_tree& all)
       tree.parents.push_back(p == none ? none : new_node[p]);
       tree.sources.push_back(all.sources[v]);
     }
+    if (all.sources[v] == none)
+      continue;
     tree.node_of_source[all.sources[v]] = new_node[v];
+    if (tree.sources[new_node[v]] == none)
+      tree.sources[new_node[v]] = all.sources[v];
   }
   connect(tree);
   return tree;
@@ -206,7 +284,7 @@ Rooted_tree make_rooted_tree(const TreeGraph& graph,
     fail("the nodes of the tree do not span a finite box");
   for (Vec3& p : all.points)
     p -= all.origin;
-  return internal::without_coincident_nodes(all);
+  return internal::without_coincident_nodes(internal::with_nodes_at_bases(all), n);
 }
 
 } // namespace shape_space
