@@ -18,6 +18,7 @@
   PCS_SHARED(geom_traits_t, geom_traits)                                                           \
   PCS_SHARED(callback_t, callback)                                                                 \
   PCS_SHARED(number_of_iterations_t, number_of_iterations)                                         \
+  PCS_SHARED(random_seed_t, random_seed)                                                           \
   PCS_OWN(number_of_samples)                                                                       \
   PCS_OWN(number_of_neighbors)                                                                     \
   PCS_OWN(number_of_sample_neighbors)                                                              \

@@ -12,6 +12,34 @@
 
 namespace pcs_test {
 
+/// A kernel with nothing to spare: points, vectors and numbers, no predicates and no constructions.
+struct Kernel_archetype
+{
+  using FT = double;
+  class Vector_3
+  {
+  public:
+    Vector_3(FT x, FT y, FT z) : m_x(x), m_y(y), m_z(z) {}
+    FT x() const { return m_x; }
+    FT y() const { return m_y; }
+    FT z() const { return m_z; }
+
+  private:
+    FT m_x, m_y, m_z;
+  };
+  class Point_3
+  {
+  public:
+    Point_3(FT x, FT y, FT z) : m_x(x), m_y(y), m_z(z) {}
+    FT x() const { return m_x; }
+    FT y() const { return m_y; }
+    FT z() const { return m_z; }
+
+  private:
+    FT m_x, m_y, m_z;
+  };
+};
+
 /// A node as it stands in a table: its parent (`npos`: root), its branch, position and radius.
 struct Row
 {

@@ -44,8 +44,10 @@ std::vector<double> lengths_to_tips(const Tree_skeleton<Kernel>& tree)
   std::vector<double> length(n, 0);
   for (std::size_t i = n; i-- > 1;) {
     const std::size_t v = order[i], p = parent_node<Kernel>(v, tree);
-    const auto step = tree[v].point - tree[p].point;
-    const double through = length[v] + std::sqrt(CGAL::to_double(step * step));
+    const auto &a = tree[p].point, &b = tree[v].point;
+    const double through = length[v] + std::hypot(CGAL::to_double(b.x() - a.x()),
+                                                  CGAL::to_double(b.y() - a.y()),
+                                                  CGAL::to_double(b.z() - a.z()));
     if (through > length[p])
       length[p] = through;
   }

@@ -1,0 +1,286 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// How a virtual tree grows, and the habits of five kinds of trees.
+
+#ifndef PCS_GENERATORS_TREE_HABIT_H
+#define PCS_GENERATORS_TREE_HABIT_H
+
+#include <pcs/core/errors.h>
+#include <pcs/internal/text.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+
+//! \ingroup PkgPcsGeneratorsRef
+//! how far branches reach from the trunk, from the foot of the crown to its top
+enum class Crown_shape {
+  dome, //!< widest in the lower half
+  cone, //!< widest at the foot
+  vase  //!< widest near the top
+};
+
+//! \ingroup PkgPcsGeneratorsRef
+//! the least and the largest value that is drawn
+struct Value_range
+{
+  double least = 0, largest = 0;
+};
+
+/*!
+  \ingroup PkgPcsGeneratorsRef
+  \brief How a virtual tree grows; the defaults are those of a broadleaf in metres.
+
+  Arrays hold the values of the trunk, of branches on it, and of all others. Bends and tropisms are
+  per `bend_length` of growth. Lengths are in any one unit; `scaled()` changes it.
+*/
+struct Tree_habit
+{
+  double height = 12;          //!< length of the trunk [L]
+  double trunk_radius = 0.18;  //!< at its base, without the root flare [L]
+  double flare = 0.35;         //!< additional share of the radius at the ground [-]
+  double flare_height = 0.35;  //!< over which it fades by 1/e [L]
+  double lean = 0.02;          //!< standard deviation of the trunk's first direction [rad]
+  int number_of_orders = 4;    //!< the trunk, branches, twigs, ... [count]
+  double largest_step = 0.1;   //!< distance of nodes, everywhere on the trunk [L]
+  double smallest_step = 0.03; //!< between them, steps are twice the radius [L]
+
+  double bend_length = 0.1;                           //!< unit of the next three [L]
+  std::array<double, 3> bend = {0.012, 0.05, 0.05};   //!< standard deviation [rad]
+  double bend_renewal = 0.06;                         //!< chance of a new bend per step [-]
+  std::array<double, 3> tropism = {0.01, 0.06, 0.02}; //!< upwards, or down if negative [-]
+  double sag = 0; //!< tropism that a branch loses from its base to its tip [-]
+
+  std::array<double, 2> taper = {0.75, 0.6};     //!< exponent: trunk, branches [-]
+  std::array<double, 2> tip_share = {0.03, 0.1}; //!< of the radius at the base [-]
+  double tip_radius = 0.002;                     //!< no radius is smaller [L]
+
+  std::array<double, 3> spacing = {0.28, 0.22, 0.14}; //!< of branches, on average [L]
+  std::array<double, 3> bare = {0.18, 0.15, 0.15};    //!< share of the length without branches [-]
+  std::size_t whorl = 1; //!< branches that leave the trunk together [count]
+  std::array<Value_range, 2> insertion = {
+      {{0.7, 1.3}, {0.7, 1.3}}}; //!< angle: trunk, branches [rad]
+  std::array<Value_range, 2> child_radius = {{{0.25, 0.52}, {0.25, 0.52}}}; //!< of the parent's [-]
+  double largest_branch = 0.065;         //!< radius of branches on the trunk [L]
+  double smallest_branch = 0.003;        //!< thinner ones do not grow [L]
+  Value_range slenderness = {55, 80};    //!< length of a branch by its radius [-]
+  Crown_shape crown = Crown_shape::dome; //!< limits branches on the trunk
+  double crown_radius = 3.2;             //!< [L]
+
+  std::size_t number_of_leaders = 1;    //!< stems that go on behind the fork [count]
+  double fork = 0.3;                    //!< share of the trunk below the fork [-]
+  Value_range fork_angle = {0.45, 0.7}; //!< between the stems [rad]
+  std::size_t number_of_stubs = 0;      //!< dead stubs below the crown [count]
+
+  double flattest_section = 0.88; //!< least ratio of the half axes of a section, up to 1 [-]
+
+  //! the same habit in another unit: all lengths times `factor`
+  Tree_habit scaled(double factor) const
+  {
+    Tree_habit result = *this;
+    for (double* length : {&result.height,
+                           &result.trunk_radius,
+                           &result.flare_height,
+                           &result.largest_step,
+                           &result.smallest_step,
+                           &result.bend_length,
+                           &result.tip_radius,
+                           &result.largest_branch,
+                           &result.smallest_branch,
+                           &result.crown_radius,
+                           &result.spacing[0],
+                           &result.spacing[1],
+                           &result.spacing[2]})
+      *length *= factor;
+    return result;
+  }
+};
+
+//! \ingroup PkgPcsGeneratorsRef
+//! a broadleaf of 12 m with a dense crown
+inline Tree_habit broadleaf_habit()
+{
+  return Tree_habit();
+}
+
+//! \ingroup PkgPcsGeneratorsRef
+//! a conifer of 14 m: one straight leader, whorls of slender branches, a narrow cone
+inline Tree_habit conifer_habit()
+{
+  Tree_habit h;
+  h.height = 14;
+  h.trunk_radius = 0.14;
+  h.lean = 0.01;
+  h.number_of_orders = 3;
+  h.bend = {0.004, 0.03, 0.04};
+  h.tropism = {0.02, 0.015, 0.01};
+  h.sag = 0.03;
+  h.taper = {0.95, 0.7};
+  h.spacing = {0.42, 0.16, 0.14};
+  h.bare = {0.12, 0.2, 0.2};
+  h.whorl = 5;
+  h.insertion = {{{1.25, 1.6}, {0.7, 1.0}}};
+  h.child_radius = {{{0.12, 0.2}, {0.25, 0.45}}};
+  h.largest_branch = 0.022;
+  h.slenderness = {90, 130};
+  h.crown = Crown_shape::cone;
+  h.crown_radius = 2.2;
+  return h;
+}
+
+//! \ingroup PkgPcsGeneratorsRef
+//! a fruit tree of 4 m with a short trunk and a wide, open crown
+inline Tree_habit fruit_habit()
+{
+  Tree_habit h;
+  h.height = 3.2;
+  h.trunk_radius = 0.07;
+  h.flare = 0.25;
+  h.flare_height = 0.12;
+  h.lean = 0.06;
+  h.largest_step = 0.06;
+  h.smallest_step = 0.02;
+  h.bend = {0.03, 0.06, 0.06};
+  h.tropism = {0.01, 0.025, 0.03};
+  h.spacing = {0.12, 0.14, 0.11};
+  h.bare = {0.24, 0.12, 0.12};
+  h.insertion = {{{0.9, 1.3}, {0.6, 1.1}}};
+  h.child_radius = {{{0.4, 0.65}, {0.25, 0.5}}};
+  h.largest_branch = 0.035;
+  h.smallest_branch = 0.0025;
+  h.slenderness = {60, 85};
+  h.crown = Crown_shape::vase;
+  h.crown_radius = 2;
+  return h;
+}
+
+//! \ingroup PkgPcsGeneratorsRef
+//! a broadleaf of 11 m whose trunk forks into two stems, with dead stubs below its crown
+inline Tree_habit forked_habit()
+{
+  Tree_habit h;
+  h.height = 11;
+  h.trunk_radius = 0.2;
+  h.number_of_leaders = 2;
+  h.fork = 0.2;
+  h.number_of_stubs = 3;
+  h.spacing = {0.34, 0.26, 0.18};
+  h.bare = {0.3, 0.15, 0.15};
+  h.crown_radius = 2.8;
+  return h;
+}
+
+//! \ingroup PkgPcsGeneratorsRef
+//! a weeping tree of 7 m: branches rise, arch over and hang
+inline Tree_habit weeping_habit()
+{
+  Tree_habit h;
+  h.height = 7;
+  h.trunk_radius = 0.16;
+  h.bend = {0.02, 0.03, 0.03};
+  h.tropism = {0.01, 0.07, -0.1};
+  h.sag = 0.2;
+  h.spacing = {0.2, 0.22, 0.22};
+  h.bare = {0.28, 0.2, 0.2};
+  h.insertion = {{{0.5, 0.9}, {0.5, 0.9}}};
+  h.slenderness = {90, 140};
+  h.largest_branch = 0.05;
+  h.crown_radius = 4.5;
+  return h;
+}
+
+//! \ingroup PkgPcsGeneratorsRef
+//! names and habits of all presets
+inline std::vector<std::pair<std::string, Tree_habit>> tree_habits()
+{
+  return {{"broadleaf", broadleaf_habit()},
+          {"conifer", conifer_habit()},
+          {"fruit", fruit_habit()},
+          {"forked", forked_habit()},
+          {"weeping", weeping_habit()}};
+}
+
+namespace internal {
+
+//! throws unless every value makes sense
+inline void check_habit(const Tree_habit& h)
+{
+  const auto check = [](bool is_fine, const char* name, double value, const char* rule) {
+    if (!is_fine || !std::isfinite(value))
+      throw Invalid_input(std::string("pcs::Tree_habit: `") + name + "` must be " + rule +
+                          ", found " + to_text(value));
+  };
+  const auto positive = [&](double value, const char* name) {
+    check(value > 0, name, value, "positive");
+  };
+  const auto not_negative = [&](double value, const char* name) {
+    check(value >= 0, name, value, "0 or more");
+  };
+  const auto share = [&](double value, const char* name) {
+    check(value >= 0 && value < 1, name, value, "in [0, 1)");
+  };
+  const auto range = [&](const Value_range& r, const char* name) {
+    check(r.least > 0, name, r.least, "positive");
+    check(r.largest >= r.least, name, r.largest, "a range from the least to the largest value");
+  };
+  positive(h.height, "height");
+  positive(h.trunk_radius, "trunk_radius");
+  not_negative(h.flare, "flare");
+  positive(h.flare_height, "flare_height");
+  not_negative(h.lean, "lean");
+  check(h.number_of_orders >= 1 && h.number_of_orders <= 8,
+        "number_of_orders",
+        h.number_of_orders,
+        "from 1 to 8");
+  positive(h.smallest_step, "smallest_step");
+  check(h.largest_step >= h.smallest_step,
+        "largest_step",
+        h.largest_step,
+        "at least smallest_step");
+  positive(h.bend_length, "bend_length");
+  share(h.bend_renewal, "bend_renewal");
+  for (std::size_t i = 0; i < 3; ++i) {
+    not_negative(h.bend[i], "bend");
+    check(std::isfinite(h.tropism[i]), "tropism", h.tropism[i], "finite");
+    positive(h.spacing[i], "spacing");
+    share(h.bare[i], "bare");
+  }
+  check(std::isfinite(h.sag), "sag", h.sag, "finite");
+  for (std::size_t i = 0; i < 2; ++i) {
+    positive(h.taper[i], "taper");
+    share(h.tip_share[i], "tip_share");
+    range(h.insertion[i], "insertion");
+    range(h.child_radius[i], "child_radius");
+    check(h.child_radius[i].largest <= 1, "child_radius", h.child_radius[i].largest, "at most 1");
+  }
+  positive(h.tip_radius, "tip_radius");
+  check(h.whorl >= 1 && h.whorl <= 64, "whorl", static_cast<double>(h.whorl), "from 1 to 64");
+  positive(h.largest_branch, "largest_branch");
+  positive(h.smallest_branch, "smallest_branch");
+  range(h.slenderness, "slenderness");
+  positive(h.crown_radius, "crown_radius");
+  check(h.number_of_leaders >= 1 && h.number_of_leaders <= 8,
+        "number_of_leaders",
+        static_cast<double>(h.number_of_leaders),
+        "from 1 to 8");
+  share(h.fork, "fork");
+  range(h.fork_angle, "fork_angle");
+  check(h.number_of_stubs <= 1000,
+        "number_of_stubs",
+        static_cast<double>(h.number_of_stubs),
+        "at most 1000");
+  check(h.flattest_section > 0 && h.flattest_section <= 1,
+        "flattest_section",
+        h.flattest_section,
+        "in (0, 1]");
+}
+
+} // namespace internal
+} // namespace pcs
+
+#endif // PCS_GENERATORS_TREE_HABIT_H

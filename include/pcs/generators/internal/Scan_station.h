@@ -1,0 +1,185 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// One station of the virtual scanner: its beams, and what comes back of them.
+
+#ifndef PCS_GENERATORS_INTERNAL_SCAN_STATION_H
+#define PCS_GENERATORS_INTERNAL_SCAN_STATION_H
+
+#include <pcs/core/errors.h>
+#include <pcs/generators/Virtual_scanner.h>
+#include <pcs/generators/internal/Ray_tree.h>
+#include <pcs/generators/internal/Scene.h>
+#include <pcs/internal/Random_stream.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace pcs {
+namespace generators {
+namespace internal {
+
+constexpr int label_ghost = -1, label_ground = -2, label_leaf = -3, label_post = -4;
+
+struct Scan_return
+{
+  Eigen::Vector3d point;
+  int label;
+};
+
+/*
+  The grid of beams of a station covers the triangles of the scene as they are seen from there, and
+  no more. Each beam has a random stream of its own.
+*/
+class Scan_station
+{
+public:
+  Scan_station(const Virtual_scanner& scanner,
+               std::uint64_t seed,
+               std::size_t number,
+               const Eigen::Vector3d& position,
+               const std::vector<Triangle>& triangles)
+    : m_scanner(scanner), m_seed(seed), m_number(number), m_position(position)
+  {
+    Random_stream random(seed, 20, number);
+    for (int axis = 0; axis < 3; ++axis)
+      m_shift[axis] = scanner.registration_error * random.normal();
+    if (!triangles.empty())
+      set_grid(triangles, random);
+    for (std::size_t k = 0; k < m_rolls.size(); ++k) {
+      const double roll = pi * double(k) / double(m_rolls.size());
+      m_rolls[k] = 0.5 * scanner.beam_width * Eigen::Vector2d(std::cos(roll), std::sin(roll));
+    }
+  }
+
+  std::size_t number_of_rows() const { return m_rows; }
+  std::size_t number_of_columns() const { return m_directions.size(); }
+
+  //! sends the beams of one row
+  void scan_row(const Ray_tree& tree,
+                const Scene& scene,
+                std::size_t row,
+                std::vector<Scan_return>& returns) const
+  {
+    const double elevation = m_low + double(row) * m_scanner.angular_step;
+    const double c = std::cos(elevation), s = std::sin(elevation);
+    Beam beam;
+    beam.origin = m_position.cast<float>();
+    for (std::size_t column = 0; column < m_directions.size(); ++column) {
+      const Eigen::Vector2d& azimuth = m_directions[column];
+      const Eigen::Vector3d direction(c * azimuth.x(), c * azimuth.y(), s);
+      Random_stream random(m_seed, m_number, row, column);
+      // two rays on opposite sides of the middle one; the fourth lane repeats that
+      const Eigen::Vector2d& roll = m_rolls[random.bits() % m_rolls.size()];
+      const Eigen::Vector3d side =
+          roll.x() * Eigen::Vector3d(-azimuth.y(), azimuth.x(), 0) +
+          roll.y() * Eigen::Vector3d(-s * azimuth.x(), -s * azimuth.y(), c);
+      beam.direction[0] = beam.direction[3] = direction.cast<float>();
+      beam.direction[1] = (direction + side).cast<float>();
+      beam.direction[2] = (direction - side).cast<float>();
+      const Beam_hits hits = tree.first_hits(beam);
+      add_return(hits, scene, direction, random, returns);
+    }
+  }
+
+private:
+  static constexpr double pi = 3.14159265358979323846;
+  static constexpr float none = std::numeric_limits<float>::infinity();
+
+  void set_grid(const std::vector<Triangle>& triangles, Random_stream& random)
+  {
+    Eigen::Vector3f low = Vector3f::Constant(none), high = Vector3f::Constant(-none);
+    for (const Triangle& t : triangles) {
+      low = low.cwiseMin(t.corner);
+      high = high.cwiseMax(t.corner);
+    }
+    const Eigen::Vector3d middle = 0.5 * (low + high).cast<double>() - m_position;
+    const double front = std::atan2(middle.y(), middle.x());
+    const Eigen::Vector2d toward(std::cos(front), std::sin(front));
+    double left = pi, right = -pi, down = pi / 2, up = -pi / 2;
+    for (const Triangle& t : triangles)
+      for (const Vector3f& corner :
+           {t.corner, Vector3f(t.corner + t.edge_1), Vector3f(t.corner + t.edge_2)}) {
+        const Eigen::Vector3d d = corner.cast<double>() - m_position;
+        const double x = toward.x() * d.x() + toward.y() * d.y();
+        const double y = toward.x() * d.y() - toward.y() * d.x();
+        const double azimuth = std::atan2(y, x), elevation = std::atan2(d.z(), std::hypot(x, y));
+        left = std::min(left, azimuth);
+        right = std::max(right, azimuth);
+        down = std::min(down, elevation);
+        up = std::max(up, elevation);
+      }
+    const double step = m_scanner.angular_step;
+    m_low = down - random.uniform() * step;
+    const double first = front + left - random.uniform() * step;
+    const double columns = std::floor((right - left) / step) + 2;
+    const double rows = std::floor((up - down) / step) + 2;
+    if (!(rows * columns < 4e9))
+      throw Invalid_input("pcs::scan_tree(): a station would send " +
+                          pcs::internal::to_text(rows * columns) +
+                          " beams, at most 4e9 are possible; enlarge `angular_step`");
+    m_rows = static_cast<std::size_t>(rows);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(columns); ++i) {
+      const double azimuth = first + double(i) * step;
+      m_directions.emplace_back(std::cos(azimuth), std::sin(azimuth));
+    }
+  }
+
+  void add_return(const Beam_hits& hits,
+                  const Scene& scene,
+                  const Eigen::Vector3d& direction,
+                  Random_stream& random,
+                  std::vector<Scan_return>& returns) const
+  {
+    std::size_t nearest = 0;
+    float least = none, largest = 0;
+    for (std::size_t lane = 0; lane < 3; ++lane)
+      if (hits.range[lane] < none) {
+        if (hits.range[lane] < least)
+          nearest = lane;
+        least = std::min(least, hits.range[lane]);
+        largest = std::max(largest, hits.range[lane]);
+      }
+    if (!(least < none))
+      return;
+    const bool is_split = double(largest) - double(least) > m_scanner.ghost_gap;
+    const bool is_ghost = is_split && random.uniform() < m_scanner.ghost_share;
+    if (hits.range[0] < none)
+      nearest = 0;
+    else if (!is_ghost && random.uniform() >= m_scanner.edge_share)
+      return;
+    const double true_range =
+        is_ghost ? random.uniform(least, largest) : double(hits.range[nearest]);
+    if (true_range > m_scanner.largest_range)
+      return;
+    const double noise =
+        m_scanner.range_noise * (1 + true_range / m_scanner.noise_distance) * random.normal();
+    // the scanner knows one direction for all that comes back of a beam
+    const Eigen::Vector3d point = m_position + (true_range + noise) * direction + m_shift;
+    const int label =
+        is_ghost ? label_ghost
+                 : scene.label(hits.triangle[nearest], m_position + true_range * direction);
+    returns.push_back({point, label});
+  }
+
+  const Virtual_scanner& m_scanner;
+  std::uint64_t m_seed;
+  std::size_t m_number;
+  Eigen::Vector3d m_position, m_shift = Eigen::Vector3d::Zero();
+  double m_low = 0;
+  std::size_t m_rows = 0;
+  std::vector<Eigen::Vector2d> m_directions; // cosine and sine of the azimuths
+  std::array<Eigen::Vector2d, 16> m_rolls;
+};
+
+} // namespace internal
+} // namespace generators
+} // namespace pcs
+
+#endif // PCS_GENERATORS_INTERNAL_SCAN_STATION_H

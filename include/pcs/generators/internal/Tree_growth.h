@@ -1,0 +1,345 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The rules by which a virtual tree grows.
+
+#ifndef PCS_GENERATORS_INTERNAL_TREE_GROWTH_H
+#define PCS_GENERATORS_INTERNAL_TREE_GROWTH_H
+
+#include <pcs/core/Tree_skeleton.h>
+#include <pcs/core/errors.h>
+#include <pcs/generators/Tree_habit.h>
+#include <pcs/internal/Random_stream.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace pcs {
+namespace generators {
+namespace internal {
+
+using pcs::internal::Random_stream;
+using Vector3 = Eigen::Vector3d;
+
+constexpr double pi = 3.14159265358979323846;
+
+//! a unit vector across `direction`, the same for the same input
+inline Vector3 any_normal(const Vector3& direction)
+{
+  Eigen::Index least = 0;
+  direction.cwiseAbs().minCoeff(&least);
+  return direction.cross(Vector3::Unit(least)).normalized();
+}
+
+//! `normal` after the direction has changed: turned as little as possible
+inline Vector3 transported(const Vector3& normal, const Vector3& direction)
+{
+  const Vector3 across = normal - normal.dot(direction) * direction;
+  return across.squaredNorm() > 1e-12 ? Vector3(across.normalized()) : any_normal(direction);
+}
+
+class Tree_growth
+{
+public:
+  Tree_growth(const Tree_habit& habit, std::uint64_t seed) : m_habit(habit), m_seed(seed) {}
+
+  void run()
+  {
+    Random_stream random(m_seed, 1);
+    Bud trunk;
+    trunk.direction = Vector3(m_habit.lean * random.normal(), m_habit.lean * random.normal(), 1);
+    trunk.direction.normalize();
+    trunk.radius = m_habit.trunk_radius;
+    trunk.length = m_habit.height;
+    trunk.kind = Kind::stem;
+    trunk.seed = random.bits();
+    m_buds.push_back(trunk);
+    for (std::size_t i = 0; i < m_buds.size(); ++i)
+      grow(Bud(m_buds[i]));
+  }
+
+  template <class Kernel>
+  Tree_skeleton<Kernel> skeleton() const
+  {
+    using FT = typename Kernel::FT;
+    Tree_skeleton<Kernel> tree(m_nodes.size());
+    for (std::size_t v = 0; v < m_nodes.size(); ++v) {
+      const Node& node = m_nodes[v];
+      auto& out = tree[v];
+      const Vector3& p = node.point;
+      const Vector3& a = node.major_axis;
+      out.point = typename Kernel::Point_3(FT(p.x()), FT(p.y()), FT(p.z()));
+      out.radius = FT(node.radius);
+      const double stretch = std::sqrt(m_buds[node.branch].flatness);
+      out.major_radius = FT(node.radius / stretch);
+      out.minor_radius = FT(node.radius * stretch);
+      out.major_axis = typename Kernel::Vector_3(FT(a.x()), FT(a.y()), FT(a.z()));
+      out.is_measured = true;
+      out.branch = node.branch;
+      if (node.parent != npos)
+        add_edge(node.parent, v, tree);
+    }
+    auto& bundle = tree[boost::graph_bundle];
+    bundle.root = 0;
+    for (std::size_t b = 0; b < m_buds.size(); ++b)
+      bundle.branches.push_back({m_buds[b].parent_branch, m_buds[b].order, b});
+    return tree;
+  }
+
+private:
+  enum class Kind { stem, branch, stub };
+
+  struct Bud
+  {
+    std::size_t parent_node = npos, parent_branch = npos;
+    Vector3 base = Vector3::Zero(), direction = Vector3::UnitZ();
+    double radius = 0, length = 0, flatness = 1;
+    int order = 0;
+    Kind kind = Kind::branch;
+    std::uint64_t seed = 0;
+  };
+
+  struct Node
+  {
+    Vector3 point, major_axis;
+    double radius;
+    std::size_t parent, branch;
+  };
+
+  //! a node of the branch that grows now
+  struct Place
+  {
+    std::size_t node;
+    Vector3 direction, normal;
+    double at, radius; // length from the base
+  };
+
+  static constexpr std::size_t largest_number_of_nodes = 10'000'000;
+
+  static std::size_t row(const Bud& bud)
+  {
+    return bud.kind == Kind::stem ? 0 : std::size_t(std::min(bud.order, 2));
+  }
+  static std::size_t short_row(const Bud& bud) { return bud.kind == Kind::stem ? 0 : 1; }
+
+  double radius_at(const Bud& bud, double at) const
+  {
+    const std::size_t i = short_row(bud);
+    const double rest = std::max(0.0, 1 - at / bud.length);
+    double r = bud.radius;
+    if (bud.kind == Kind::stub)
+      r *= 0.8 + 0.2 * rest; // broken off, not grown to a tip
+    else
+      r *= (1 - m_habit.tip_share[i]) * std::pow(rest, m_habit.taper[i]) + m_habit.tip_share[i];
+    if (bud.order == 0)
+      r *= 1 + m_habit.flare * std::exp(-at / m_habit.flare_height);
+    if (bud.order == 0 && m_habit.number_of_leaders > 1 && at > m_habit.fork * bud.length)
+      r *= 0.85; // the other stems take their share
+    return std::max(r, m_habit.tip_radius);
+  }
+
+  void grow(const Bud& bud)
+  {
+    const std::size_t branch = m_next_branch++;
+    Random_stream random(bud.seed, 2);
+    m_buds[branch].flatness = random.uniform(m_habit.flattest_section, 1);
+    const std::vector<Place> places = grow_axis(bud, branch, random);
+    if (bud.kind == Kind::stub)
+      return;
+    if (bud.order == 0)
+      fork(bud, branch, places);
+    if (bud.order + 1 < m_habit.number_of_orders)
+      sprout(bud, branch, places);
+    if (bud.order == 0)
+      add_stubs(bud, branch, places);
+  }
+
+  std::vector<Place> grow_axis(const Bud& bud, std::size_t branch, Random_stream& random)
+  {
+    const std::size_t i = row(bud);
+    std::vector<Place> places;
+    Vector3 point = bud.base, direction = bud.direction, normal = any_normal(direction);
+    const double phase = random.uniform(0, 2 * pi);
+    normal = Eigen::AngleAxisd(phase, direction) * normal;
+    Vector3 bend = Vector3::Zero();
+    std::size_t parent = bud.parent_node;
+    bool do_renew = true;
+    for (double at = 0;;) {
+      const double radius = radius_at(bud, at);
+      if (m_nodes.size() == largest_number_of_nodes)
+        throw Invalid_input("pcs::grow_tree(): the tree would have more than " +
+                            std::to_string(largest_number_of_nodes) + " nodes");
+      normal = transported(normal, direction);
+      places.push_back({m_nodes.size(), direction, normal, at, radius});
+      m_nodes.push_back({point, normal, radius, parent, branch});
+      parent = m_nodes.size() - 1;
+      if (at >= bud.length)
+        return places;
+      double step = bud.kind == Kind::stem
+                        ? m_habit.largest_step
+                        : std::clamp(2 * radius, m_habit.smallest_step, m_habit.largest_step);
+      if (at + 1.5 * step > bud.length)
+        step = bud.length - at;
+      if (do_renew || random.uniform() < m_habit.bend_renewal)
+        bend = m_habit.bend[i] * Vector3(random.normal(), random.normal(), random.normal());
+      do_renew = false;
+      const double sag = bud.kind == Kind::branch ? m_habit.sag * at / bud.length : 0;
+      direction +=
+          step / m_habit.bend_length * (bend + (m_habit.tropism[i] - sag) * Vector3::UnitZ());
+      direction.normalize();
+      point += step * direction;
+      at = step == bud.length - at ? bud.length : at + step;
+      if (bud.order == 0 && !m_is_forked && m_habit.number_of_leaders > 1 &&
+          at >= m_habit.fork * bud.length) {
+        // the stems lean away from each other
+        m_is_forked = true;
+        m_fork_angle = random.uniform(m_habit.fork_angle.least, m_habit.fork_angle.largest);
+        m_fork_axis = Eigen::AngleAxisd(random.uniform(0, 2 * pi), direction) * normal;
+        m_fork_direction = direction;
+        m_fork_place = places.size();
+        direction = Eigen::AngleAxisd(-m_fork_angle / 2, m_fork_axis) * direction;
+      }
+    }
+  }
+
+  //! the stems besides the trunk that go on behind its fork
+  void fork(const Bud& bud, std::size_t branch, const std::vector<Place>& places)
+  {
+    if (!m_is_forked || m_fork_place >= places.size())
+      return;
+    const Place& place = places[m_fork_place];
+    for (std::size_t k = 1; k < m_habit.number_of_leaders; ++k) {
+      Random_stream random(bud.seed, 3, k);
+      const double turn =
+          2 * pi * double(k - 1) / double(std::max<std::size_t>(m_habit.number_of_leaders, 2));
+      const Vector3 axis = Eigen::AngleAxisd(turn, m_fork_direction) * m_fork_axis;
+      Bud stem = child(branch, place, bud.order + 1, random);
+      stem.direction = Eigen::AngleAxisd(m_fork_angle / 2, axis) * m_fork_direction;
+      stem.radius = place.radius * random.uniform(0.8, 0.95);
+      stem.length = (bud.length - place.at) * random.uniform(0.85, 1.0);
+      stem.kind = Kind::stem;
+      m_buds.push_back(stem);
+    }
+  }
+
+  Bud child(std::size_t branch, const Place& place, int order, Random_stream& random) const
+  {
+    Bud bud;
+    bud.parent_node = place.node;
+    bud.parent_branch = branch;
+    bud.base = m_nodes[place.node].point;
+    bud.order = order;
+    bud.seed = random.bits();
+    return bud;
+  }
+
+  //! how far a branch reaches that leaves the trunk at the share `x` of the crown
+  double reach(double x) const
+  {
+    switch (m_habit.crown) {
+    case Crown_shape::cone:
+      return m_habit.crown_radius * (0.06 + 0.94 * (1 - x));
+    case Crown_shape::vase:
+      return m_habit.crown_radius * std::min(0.5 + 0.8 * x, 2.6 * (1.1 - x));
+    case Crown_shape::dome:
+      break;
+    }
+    const double y = x < 0.35 ? 0.6 * (0.35 - x) / 0.35 : (x - 0.35) / 0.7;
+    return m_habit.crown_radius * std::sqrt(std::max(0.01, 1 - y * y));
+  }
+
+  void sprout(const Bud& bud, std::size_t branch, const std::vector<Place>& places)
+  {
+    constexpr double golden_angle = 2.399963229728653;
+    const std::size_t i = row(bud);
+    Random_stream random(bud.seed, 4);
+    double azimuth = random.uniform(0, 2 * pi);
+    const double from = m_habit.bare[i] * bud.length;
+    std::size_t place = 0;
+    for (double at = from; at < bud.length; at += m_habit.spacing[i] * random.uniform(0.5, 1.5)) {
+      while (place + 2 < places.size() &&
+             std::abs(places[place + 1].at - at) <= std::abs(places[place].at - at))
+        ++place;
+      const std::size_t n = bud.kind == Kind::stem ? m_habit.whorl : 1;
+      for (std::size_t k = 0; k < n; ++k) {
+        const double jitter = 0.3 * random.normal();
+        const double turn = azimuth + jitter + 2 * pi * double(k) / double(n);
+        add_branch(bud, branch, places[place], turn, (at - from) / (bud.length - from), random);
+      }
+      azimuth += golden_angle;
+    }
+  }
+
+  void add_branch(const Bud& parent,
+                  std::size_t branch,
+                  const Place& place,
+                  double azimuth,
+                  double share,
+                  Random_stream& parent_random)
+  {
+    const std::size_t i = short_row(parent);
+    Random_stream random(parent_random.bits(), 5);
+    Bud bud = child(branch, place, parent.order + 1, random);
+    const Value_range& insertion = m_habit.insertion[i];
+    const double angle = random.uniform(insertion.least, insertion.largest);
+    const Vector3 across = Eigen::AngleAxisd(azimuth, place.direction) * place.normal;
+    bud.direction = std::cos(angle) * place.direction + std::sin(angle) * across;
+    const Value_range& radius = m_habit.child_radius[i];
+    bud.radius = place.radius * random.uniform(radius.least, radius.largest);
+    const Value_range& slenderness = m_habit.slenderness;
+    const double slender = random.uniform(slenderness.least, slenderness.largest);
+    const double full = random.uniform(0.8, 1.05);
+    if (parent.kind == Kind::stem) {
+      bud.radius = std::min(bud.radius, m_habit.largest_branch);
+      bud.length = std::min(slender * bud.radius, full * reach(share));
+      // what the crown cuts short is thin, too
+      bud.radius = std::min(bud.radius, bud.length / (0.6 * slenderness.least));
+    } else {
+      bud.length = std::min(slender * bud.radius, 0.9 * full * (parent.length - 0.6 * place.at));
+    }
+    // a branch that ends inside its parent is none
+    if (bud.radius >= m_habit.smallest_branch && bud.length > 1.5 * place.radius &&
+        bud.length >= 2 * m_habit.smallest_step)
+      m_buds.push_back(bud);
+  }
+
+  void add_stubs(const Bud& trunk, std::size_t branch, const std::vector<Place>& places)
+  {
+    for (std::size_t k = 0; k < m_habit.number_of_stubs; ++k) {
+      Random_stream random(trunk.seed, 6, k);
+      const double share = random.uniform(0.3, 1) * std::max(0.1, m_habit.bare[0]);
+      const auto i = static_cast<std::size_t>(share * static_cast<double>(places.size() - 1));
+      const Place& place = places[i];
+      Bud bud = child(branch, place, trunk.order + 1, random);
+      const double azimuth = random.uniform(0, 2 * pi);
+      const Vector3 across = Eigen::AngleAxisd(azimuth, place.direction) * place.normal;
+      bud.direction = (0.4 * place.direction + across).normalized();
+      bud.radius = std::max(m_habit.tip_radius, place.radius * random.uniform(0.1, 0.2));
+      bud.length = place.radius + bud.radius * random.uniform(4, 10);
+      bud.kind = Kind::stub;
+      m_buds.push_back(bud);
+    }
+  }
+
+  Tree_habit m_habit;
+  std::uint64_t m_seed;
+  std::vector<Bud> m_buds; // one for each branch
+  std::vector<Node> m_nodes;
+  std::size_t m_next_branch = 0;
+  bool m_is_forked = false;
+  double m_fork_angle = 0;
+  Vector3 m_fork_axis = Vector3::UnitX(), m_fork_direction = Vector3::UnitZ();
+  std::size_t m_fork_place = 0;
+};
+
+} // namespace internal
+} // namespace generators
+} // namespace pcs
+
+#endif // PCS_GENERATORS_INTERNAL_TREE_GROWTH_H
