@@ -5,80 +5,17 @@
 #ifndef PCS_IO_READ_TXTSKL_H
 #define PCS_IO_READ_TXTSKL_H
 
-#include <pcs/IO/internal/Input_file.h>
-#include <pcs/IO/internal/numbers.h>
+#include <pcs/IO/internal/Word_reader.h>
 #include <pcs/core/Tree_skeleton.h>
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace pcs {
 namespace IO {
-namespace internal {
-
-/// The words of a file, with line numbers in its errors.
-class Word_reader
-{
-public:
-  explicit Word_reader(const std::string& path) : m_file(path) {}
-
-  template <class T>
-  T number(const char* what)
-  {
-    T value{};
-    const std::string_view word = next();
-    if (word.empty() || parse_number(word, value) != Parse_result::ok)
-      m_file.fail_at_line(std::string("expected ") + what + ", found " +
-                          (word.empty() ? "the end of the file" : in_quotes(word)));
-    return value;
-  }
-
-  std::size_t count(const char* what)
-  {
-    const auto value = number<std::int64_t>(what);
-    if (value < 0 || static_cast<std::uint64_t>(value) > m_file.size())
-      m_file.fail_at_line(std::string("expected ") + what + ", found " + std::to_string(value));
-    return static_cast<std::size_t>(value);
-  }
-
-  double real(const char* what)
-  {
-    const auto value = number<double>(what);
-    if (!std::isfinite(value))
-      m_file.fail_at_line(std::string("expected a finite ") + what);
-    return value;
-  }
-
-  void expect(std::string_view text)
-  {
-    const std::string_view word = next();
-    if (word != text)
-      m_file.fail_at_line("expected '" + std::string(text) + "', found " + in_quotes(word));
-  }
-
-  bool is_at_end() { return next().empty(); }
-  [[noreturn]] void fail(const std::string& what) const { m_file.fail_at_line(what); }
-
-private:
-  std::string_view next()
-  {
-    std::string_view word = next_word(m_line);
-    while (word.empty() && m_file.read_line(m_line))
-      word = next_word(m_line);
-    return word;
-  }
-
-  Input_file m_file;
-  std::string_view m_line;
-};
-
-} // namespace internal
-
 /*!
   \ingroup PkgPcsIORef
   \brief reads a tree skeleton from a `.txtskl` file.

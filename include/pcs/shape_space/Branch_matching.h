@@ -26,7 +26,8 @@
 namespace pcs {
 namespace shape_space {
 
-/// Weights of the energy of a matching. All terms are lengths [L].
+/// Weights of the energy of a matching. All terms are lengths in units of the longest path of each tree, so
+/// that size does not matter.
 struct Matching_weights
 {
   double curve = 1;       ///< of the elastic energy of two branches [-]
@@ -47,7 +48,7 @@ struct Matching_weights
 struct Matched_branch
 {
   std::size_t path_1 = none, path_2 = none;
-  double cost = 0; ///< with all that hangs on them [L]
+  double cost = 0; ///< with all that hangs on them [-]
   Eigen::Matrix3d rotation =
       Eigen::Matrix3d::Identity(); ///< carries the second branch to the first
   struct Pair
@@ -77,6 +78,7 @@ public:
           m_curves[t].size(),
           [&](std::size_t i) {
             m_curves[t][i] = sample_curve(*m_trees[t], m_paths[t].paths[i], number_of_samples);
+            m_curves[t][i].length /= m_trees[t]->heights[0];
           },
           16);
     }
@@ -166,7 +168,8 @@ private:
   double weight(int t, std::size_t start) const
   {
     const Rooted_tree& tree = *m_trees[t];
-    return tree.weights[start] + (tree.parents[start] == none ? 0 : tree.edge_length(start));
+    return (tree.weights[start] + (tree.parents[start] == none ? 0 : tree.edge_length(start))) /
+           tree.heights[0];
   }
 
   /// A bound for the elastic energy: no pair of tangents is closer than the cones around the mean directions allow.
@@ -295,22 +298,30 @@ private:
     return {p1, p2, m_weights.curve * std::max(0.0, energy), matcher.gamma()};
   }
 
-  /// Pairs of paths that may continue two branches, the most promising first, judged without looking below their children.
-  std::vector<Trial>
-  find_trials(std::size_t start_1, std::size_t start_2, const Eigen::Matrix3d& rotation) const
+  /// Pairs of paths that may continue two branches, the most promising first, judged without looking below their
+  /// children; those that cost at least `limit` by themselves are left out.
+  std::vector<Trial> find_trials(std::size_t start_1,
+                                 std::size_t start_2,
+                                 const Eigen::Matrix3d& rotation,
+                                 double limit) const
   {
     const auto &paths_1 = m_paths[0].paths_of[start_1], &paths_2 = m_paths[1].paths_of[start_2];
     std::vector<Trial> all;
     std::vector<std::pair<double, std::size_t>> order;
     for (const std::size_t p1 : paths_1)
       for (const std::size_t p2 : paths_2) {
-        all.push_back(match_curves(p1, p2, rotation));
+        if (m_weights.curve * least_energy(p1, p2, rotation) >= limit)
+          continue;
+        Trial trial = match_curves(p1, p2, rotation);
+        if (trial.cost >= limit)
+          continue;
+        all.push_back(std::move(trial));
         double cost = 0;
         if (paths_1.size() * paths_2.size() > 1) {
           const Children a = children_of(0, path(0, p1), nullptr);
           const Children b = children_of(1, path(1, p2), &all.back().gamma);
           const Eigen::Matrix3d turned = turn(p1, p2, all.back().gamma, a, b, rotation);
-          quick_assignment(a, b, turned, path(0, p1).length(), &cost);
+          quick_assignment(a, b, turned, m_curves[0][p1].length, &cost);
         }
         order.emplace_back(cost + all.back().cost, all.size() - 1);
       }
@@ -331,7 +342,7 @@ private:
                        pcs::internal::Progress* progress)
   {
     Result best;
-    const std::vector<Trial> trials = find_trials(start_1, start_2, rotation);
+    const std::vector<Trial> trials = find_trials(start_1, start_2, rotation, limit);
     for (std::size_t k = 0; k < trials.size(); ++k) {
       if (progress && !(*progress)(static_cast<double>(k) / static_cast<double>(trials.size())))
         return nullptr;
@@ -368,7 +379,11 @@ private:
     std::vector<double> gain(n * m);
     std::vector<Result> exact(n * m);
     const auto rest = [&](std::size_t i, std::size_t j) {
-      return position_term(a.weight[i], b.weight[j], a.s[i], b.s[j], path_1.length()) -
+      return position_term(a.weight[i],
+                           b.weight[j],
+                           a.s[i],
+                           b.s[j],
+                           m_curves[0][trial.path_1].length) -
              single_term(a.weight[i]) - single_term(b.weight[j]);
     };
     for (std::size_t i = 0; i < n; ++i)

@@ -167,7 +167,7 @@ private:
                 const std::array<std::vector<Vec3>, 2>& points,
                 const std::array<std::vector<Vec3>, 2>& normals)
   {
-    constexpr double pi = EIGEN_PI;
+    constexpr double pi = static_cast<double>(EIGEN_PI);
     const Point_pair& pair = m_pairs[k];
     std::array<Tube_coordinates, 2> c{};
     std::array<Vec3, 2> normal{Vec3::Zero(), Vec3::Zero()};

@@ -215,7 +215,7 @@ private:
     {
       double angle, weight;
     };
-    constexpr double pi = EIGEN_PI, least_slant = 0.02, window = 0.01, gap = 0.1;
+    constexpr double pi = static_cast<double>(EIGEN_PI), least_slant = 0.02, window = 0.01, gap = 0.1;
     m_angles.assign(1, 0);
     std::vector<Vote> votes;
     for (const std::size_t e : m_edges) {

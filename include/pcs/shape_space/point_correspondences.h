@@ -138,6 +138,27 @@ inline std::vector<double> to_shares(std::vector<double> weights)
 
 } // namespace internal
 
+/// The arcs that carry most of what leaves a source or reaches a target: every point keeps a partner, and few have two.
+inline std::vector<std::uint32_t> main_arcs(const Transport_problem& problem,
+                                            const Transport_plan& plan)
+{
+  const std::size_t n = problem.supplies.size();
+  std::vector<std::size_t> best(n + problem.demands.size(), none); // index in flows
+  for (std::size_t k = 0; k < plan.flows.size(); ++k) {
+    const Transport_problem::Arc& a = problem.arcs[plan.flows[k].arc];
+    for (const std::size_t v : {std::size_t(a.source), n + a.target})
+      if (best[v] == none || plan.flows[k].mass > plan.flows[best[v]].mass)
+        best[v] = k;
+  }
+  std::sort(best.begin(), best.end());
+  best.erase(std::unique(best.begin(), best.end()), best.end());
+  std::vector<std::uint32_t> arcs;
+  for (const std::size_t k : best)
+    if (k != none)
+      arcs.push_back(plan.flows[k].arc);
+  return arcs;
+}
+
 /// Transport between two sets in the same place; every point gets a partner. Candidates are nearest neighbours both ways;
 /// for points whose mass they cannot carry more are taken, until all is carried.
 inline Transport_plan match_points(const std::vector<Vec3>& one,
@@ -386,8 +407,8 @@ private:
       pairs.push_back({p.edge, {p.point, q.point}});
       is_paired[i] = is_paired[one.size() + j] = 1;
     };
-    for (const Transport_plan::Flow& f : plan.flows)
-      add(problem.arcs[f.arc].source, problem.arcs[f.arc].target);
+    for (const std::uint32_t k : main_arcs(problem, plan))
+      add(problem.arcs[k].source, problem.arcs[k].target);
     for (std::size_t v = 0; v < is_paired.size(); ++v) // only where the transport failed
       if (!is_paired[v]) {
         const bool is_one = v < one.size();
