@@ -575,6 +575,36 @@ BOOST_AUTO_TEST_CASE(a_tree_of_one_edge_and_points_far_away_are_no_trouble)
     BOOST_TEST(to_eigen(p).allFinite());
 }
 
+BOOST_AUTO_TEST_CASE(stems_may_part_at_the_root)
+{
+  Tree bush(5);
+  const double x[] = {0, 1, 2, -1, 0}, z[] = {0, 2, 4, 2, 3};
+  for (std::size_t v = 0; v < 5; ++v) {
+    bush[v].point = Point(x[v], 0, z[v]);
+    bush[v].radius = 0.1;
+  }
+  add_edge(0, 1, bush);
+  add_edge(1, 2, bush);
+  add_edge(0, 3, bush);
+  add_edge(0, 4, bush);
+  const Tree other = random_tree(26, 3, 2);
+  for (const bool is_first : {true, false}) {
+    const Space space = is_first ? make_space(bush, other) : make_space(other, bush);
+    std::size_t number = 0;
+    for (const auto& m : space.matches())
+      number += m.tip[is_first ? 0 : 1] != pcs::npos ? 1 : 0;
+    BOOST_TEST(number == 3u);
+    Tree out;
+    space.skeleton(space.tree(is_first ? 0 : 1), out);
+    BOOST_TEST(out[boost::graph_bundle].branches.size() == 3u);
+    Space again;
+    again.add_skeleton(is_first ? bush : other);
+    again.add_skeleton(is_first ? other : bush);
+    again.build_from(space.correspondences());
+    BOOST_TEST(again.distance(0, 1) == space.distance(0, 1));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(cancelling_leaves_outputs_and_the_space_as_they_were)
 {
   const Tree a = random_tree(24), b = random_tree(25);

@@ -73,7 +73,7 @@ struct Branch_match
   \ingroup PkgPcsShapeSpaceRef
   \brief A shape space of two trees, with the points of their scans.
 
-  Follows \cite golla2021 (chapter 4 of the dissertation): branches are matched by elastic curves, both trees get one
+  Follows chapter 4 of \cite aiteanu2022: branches are matched by elastic curves, both trees get one
   topology, points are matched by optimal transport along corresponding edges, and a tree is the list of orientations,
   radii and lengths (ORL) of the edges of the topology. Distances are those of (4.7), geodesics interpolate the
   coordinates; points follow their edges.

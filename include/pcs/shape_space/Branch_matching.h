@@ -255,7 +255,8 @@ private:
                        const std::vector<double>& gamma,
                        const Children& a,
                        const Children& b,
-                       const Eigen::Matrix3d& carried) const
+                       const Eigen::Matrix3d& carried,
+                       int passes) const
   {
     if (!m_weights.is_carried || m_weights.is_published)
       return carried;
@@ -274,7 +275,7 @@ private:
     Quaternion q = improve_rotation(covariance, Quaternion(carried), 50);
     if (m_weights.children <= 0 || a.s.empty() || b.s.empty())
       return q.toRotationMatrix();
-    for (int pass = 0; pass < 3; ++pass) {
+    for (int pass = 0; pass < passes; ++pass) {
       const Eigen::Matrix3d rotation = q.toRotationMatrix();
       const std::vector<std::size_t> partner =
           quick_assignment(a, b, rotation, one.length, nullptr);
@@ -320,7 +321,7 @@ private:
         if (paths_1.size() * paths_2.size() > 1) {
           const Children a = children_of(0, path(0, p1), nullptr);
           const Children b = children_of(1, path(1, p2), &all.back().gamma);
-          const Eigen::Matrix3d turned = turn(p1, p2, all.back().gamma, a, b, rotation);
+          const Eigen::Matrix3d turned = turn(p1, p2, all.back().gamma, a, b, rotation, 0);
           quick_assignment(a, b, turned, m_curves[0][p1].length, &cost);
         }
         order.emplace_back(cost + all.back().cost, all.size() - 1);
@@ -366,7 +367,7 @@ private:
     result->path_1 = trial.path_1;
     result->path_2 = trial.path_2;
     result->cost = trial.cost;
-    result->rotation = turn(trial.path_1, trial.path_2, trial.gamma, a, b, rotation);
+    result->rotation = turn(trial.path_1, trial.path_2, trial.gamma, a, b, rotation, 3);
     const std::size_t n = a.s.size(), m = b.s.size();
     for (const double w : a.weight)
       result->cost += single_term(w);

@@ -35,6 +35,7 @@ struct Branch_path
     std::size_t position; ///< index in `nodes`
   };
   std::vector<Child> children; ///< by position, then longest first
+  bool is_trunk = false;       ///< whether it begins with the root itself, and not with an edge
   double length() const { return arc.back(); }
   std::size_t tip() const { return nodes.back(); }
 };
@@ -58,14 +59,14 @@ inline void follow_longest(const Rooted_tree& tree, std::vector<std::size_t>& no
   }
 }
 
-inline Branch_path make_path(const Rooted_tree& tree, std::vector<std::size_t> nodes)
+inline Branch_path make_path(const Rooted_tree& tree, std::vector<std::size_t> nodes, bool is_trunk)
 {
   Branch_path path;
+  path.is_trunk = is_trunk;
   path.nodes = std::move(nodes);
   path.arc.push_back(0);
   for (std::size_t k = 1; k < path.nodes.size(); ++k)
     path.arc.push_back(path.arc.back() + tree.edge_length(path.nodes[k]));
-  const bool is_trunk = tree.parents[path.nodes[0]] == none;
   // other children of the first node belong to the parent branch, unless there is none
   for (std::size_t k = is_trunk ? 0 : 1; k < path.nodes.size(); ++k)
     for (std::size_t c = tree.first_child[path.nodes[k]]; c < tree.first_child[path.nodes[k] + 1];
@@ -136,7 +137,7 @@ find_branch_paths(const Rooted_tree& tree, double fork_ratio, std::size_t maxima
         maximal_number > 1 && start == 0 ? trunk_factor * maximal_number : maximal_number;
     for (auto& nodes : internal::candidate_paths(tree, start, fork_ratio, most)) {
       result.paths_of[start].push_back(result.paths.size());
-      result.paths.push_back(internal::make_path(tree, std::move(nodes)));
+      result.paths.push_back(internal::make_path(tree, std::move(nodes), start == 0));
       for (const Branch_path::Child& child : result.paths.back().children)
         if (!is_found[child.start]) {
           is_found[child.start] = 1;

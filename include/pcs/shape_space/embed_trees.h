@@ -54,7 +54,7 @@ namespace internal {
 inline double path_radius(const Rooted_tree& tree, const Branch_path& path, std::size_t k)
 {
   const std::size_t v = path.nodes[k];
-  if (k > 0 || tree.parents[v] == none)
+  if (k > 0 || path.is_trunk)
     return tree.radii[v];
   const std::size_t w = path.nodes[1];
   return std::isfinite(tree.base_radii[w]) ? tree.base_radii[w]
@@ -215,7 +215,8 @@ private:
     {
       double angle, weight;
     };
-    constexpr double pi = static_cast<double>(EIGEN_PI), least_slant = 0.02, window = 0.01, gap = 0.1;
+    constexpr double pi = static_cast<double>(EIGEN_PI), least_slant = 0.02, window = 0.01,
+                     gap = 0.1;
     m_angles.assign(1, 0);
     std::vector<Vote> votes;
     for (const std::size_t e : m_edges) {

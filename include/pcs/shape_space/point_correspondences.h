@@ -90,6 +90,8 @@ struct Transport_options
 {
   Point_transport method = Point_transport::exact;
   Point_weights weights = Point_weights::area;
+  bool is_squared =
+      true; ///< cost is the squared distance, as a 2-Wasserstein distance wants; the text's is not
   std::size_t number_of_neighbors = 16; ///< candidates of each point in the other tree
   std::size_t largest_window = 1000;    ///< points of a tree that are transported together
   std::size_t least_window = 24;        ///< edges are joined until both trees have as many points
@@ -193,7 +195,8 @@ inline Transport_plan match_points(const std::vector<Vec3>& one,
     arcs.erase(std::unique(arcs.begin(), arcs.end()), arcs.end());
     problem.arcs.clear();
     for (const auto& [i, j] : arcs)
-      problem.arcs.push_back({i, j, (one[i] - two[j]).norm()});
+      problem.arcs.push_back(
+          {i, j, options.is_squared ? (one[i] - two[j]).squaredNorm() : (one[i] - two[j]).norm()});
     if (options.method == Point_transport::sinkhorn)
       return sinkhorn(problem, options.sinkhorn);
     plan = Transport_simplex()(problem);

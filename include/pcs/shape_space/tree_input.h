@@ -301,8 +301,7 @@ inline Orl_correspondences store_topology(const Common_topology& topology,
     for (std::size_t t = 0; t < 2; ++t)
       if (b.path[t] != none) {
         const Branch_path& path = topology.paths[t].paths[b.path[t]];
-        const bool is_trunk = inputs[t]->tree.parents[path.nodes[0]] == none && b.parent == none;
-        branch.first[t] = path.nodes[is_trunk ? 0 : 1];
+        branch.first[t] = path.nodes[path.is_trunk ? 0 : 1];
         branch.tip[t] = path.tip();
       }
     result.branches.push_back(std::move(branch));
@@ -347,8 +346,9 @@ inline Common_topology restore_topology(const Orl_correspondences& stored,
         nodes.push_back(tree.parents[b.first[t]]);
       std::reverse(nodes.begin(), nodes.end());
       check(nodes.size() > 1, "a branch has no edge");
+      check((b.first[t] == 0) == (i == 0), "a branch begins with the root");
       branch.path[t] = result.paths[t].paths.size();
-      result.paths[t].paths.push_back(internal::make_path(tree, std::move(nodes)));
+      result.paths[t].paths.push_back(internal::make_path(tree, std::move(nodes), b.first[t] == 0));
       const std::vector<double>& s = b.nodes[t];
       check(s.size() > 1 && s.front() == 0 && s.back() == 1, "a branch does not go from 0 to 1");
       for (std::size_t k = 1; k < s.size(); ++k)
