@@ -30,7 +30,7 @@ public:
     else {
       if (fs::exists(status))
         m_target = fs::canonical(path, error); // a symbolic link stays one
-      static int number = 0; // two reports may be open in one folder
+      static int number = 0;                   // two reports may be open in one folder
       m_temporary = m_target.parent_path() / (".unfinished_report_" + std::to_string(getpid()) +
                                               "_" + std::to_string(++number) + ".tmp");
       m_out.open(m_temporary);
