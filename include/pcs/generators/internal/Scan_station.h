@@ -12,6 +12,7 @@
 #include <pcs/internal/Random_stream.h>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
@@ -92,33 +93,68 @@ private:
   static constexpr double pi = 3.14159265358979323846;
   static constexpr float none = std::numeric_limits<float>::infinity();
 
+  //! azimuths from the front and elevations that surely contain some triangles
+  struct Window
+  {
+    double left = pi, right = -pi, down = pi / 2, up = -pi / 2;
+
+    //! adds a box; `low` and `high` as seen from the station
+    void
+    extend(const Eigen::Vector3d& low, const Eigen::Vector3d& high, const Eigen::Vector2d& front)
+    {
+      const double gap_x = std::max({0.0, low.x(), -high.x()});
+      const double gap_y = std::max({0.0, low.y(), -high.y()});
+      const double near = std::hypot(gap_x, gap_y);
+      const double far = std::hypot(std::max(-low.x(), high.x()), std::max(-low.y(), high.y()));
+      up = std::max(up, std::atan2(high.z(), high.z() > 0 ? near : far));
+      down = std::min(down, std::atan2(low.z(), low.z() < 0 ? near : far));
+      bool is_ahead = near > 0;
+      for (const double x : {low.x(), high.x()})
+        for (const double y : {low.y(), high.y()}) {
+          const double ahead = front.x() * x + front.y() * y;
+          const double azimuth = std::atan2(front.x() * y - front.y() * x, ahead);
+          left = std::min(left, azimuth);
+          right = std::max(right, azimuth);
+          is_ahead = is_ahead && ahead > 0;
+        }
+      if (!is_ahead) { // beside or around the station: the azimuths of the corners need not enclose it
+        left = -pi;
+        right = pi;
+      }
+    }
+  };
+
   void set_grid(const std::vector<Triangle>& triangles, Random_stream& random)
   {
-    Eigen::Vector3f low = Vector3f::Constant(none), high = Vector3f::Constant(-none);
-    for (const Triangle& t : triangles) {
-      low = low.cwiseMin(t.corner);
-      high = high.cwiseMax(t.corner);
+    // neighbours in the list are neighbours in space, so a few boxes tell what all corners would
+    constexpr std::size_t group = 32;
+    std::vector<Eigen::AlignedBox3f> boxes((triangles.size() + group - 1) / group);
+    Eigen::AlignedBox3f whole;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      const Triangle& t = triangles[i];
+      Eigen::AlignedBox3f& box = boxes[i / group];
+      box.extend(t.corner).extend(Vector3f(t.corner + t.edge_1));
+      box.extend(Vector3f(t.corner + t.edge_2));
     }
-    const Eigen::Vector3d middle = 0.5 * (low + high).cast<double>() - m_position;
+    for (const Eigen::AlignedBox3f& box : boxes)
+      whole.extend(box);
+    const Eigen::Vector3d middle = whole.center().cast<double>() - m_position;
     const double front = std::atan2(middle.y(), middle.x());
     const Eigen::Vector2d toward(std::cos(front), std::sin(front));
-    double left = pi, right = -pi, down = pi / 2, up = -pi / 2;
-    for (const Triangle& t : triangles)
-      for (const Vector3f& corner :
-           {t.corner, Vector3f(t.corner + t.edge_1), Vector3f(t.corner + t.edge_2)}) {
-        const Eigen::Vector3d d = corner.cast<double>() - m_position;
-        const double x = toward.x() * d.x() + toward.y() * d.y();
-        const double y = toward.x() * d.y() - toward.y() * d.x();
-        const double azimuth = std::atan2(y, x), elevation = std::atan2(d.z(), std::hypot(x, y));
-        left = std::min(left, azimuth);
-        right = std::max(right, azimuth);
-        down = std::min(down, elevation);
-        up = std::max(up, elevation);
-      }
+    Window window;
+    for (const Eigen::AlignedBox3f& box : boxes)
+      window.extend(box.min().cast<double>() - m_position,
+                    box.max().cast<double>() - m_position,
+                    toward);
+    // a beam beside the tree may still touch it
+    const double margin = 0.5 * m_scanner.beam_width;
+    const double down = window.down - margin, up = window.up + margin;
+    const double left = window.left - margin, right = window.right + margin;
     const double step = m_scanner.angular_step;
     m_low = down - random.uniform() * step;
     const double first = front + left - random.uniform() * step;
-    const double columns = std::floor((right - left) / step) + 2;
+    const double columns =
+        std::min(std::floor((right - left) / step) + 2, std::ceil(2 * pi / step));
     const double rows = std::floor((up - down) / step) + 2;
     if (!(rows * columns < 4e9))
       throw Invalid_input("pcs::scan_tree(): a station would send " +
