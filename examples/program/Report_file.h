@@ -30,8 +30,9 @@ public:
     else {
       if (fs::exists(status))
         m_target = fs::canonical(path, error); // a symbolic link stays one
-      m_temporary =
-          m_target.parent_path() / (".unfinished_report_" + std::to_string(getpid()) + ".tmp");
+      static int number = 0;                   // two reports may be open in one folder
+      m_temporary = m_target.parent_path() / (".unfinished_report_" + std::to_string(getpid()) +
+                                              "_" + std::to_string(++number) + ".tmp");
       m_out.open(m_temporary);
     }
     if (!m_out)

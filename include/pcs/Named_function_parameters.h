@@ -44,7 +44,18 @@
   PCS_OWN(node_radius_map)                                                                         \
   PCS_OWN(skeleton_method)                                                                         \
   PCS_OWN(slice_rules)                                                                             \
-  PCS_OWN(do_join)
+  PCS_OWN(do_join)                                                                                 \
+  PCS_OWN(node_index_map)                                                                          \
+  PCS_OWN(matching_weights)                                                                        \
+  PCS_OWN(assignment_options)                                                                      \
+  PCS_OWN(transport_options)                                                                       \
+  PCS_OWN(orientation)                                                                             \
+  PCS_OWN(virtual_direction)                                                                       \
+  PCS_OWN(do_use_unit_weights)                                                                     \
+  PCS_OWN(maximal_turn)                                                                            \
+  PCS_OWN(do_limit_radii)                                                                          \
+  PCS_OWN(point_path)                                                                              \
+  PCS_OWN(metric)
 namespace pcs {
 namespace internal_np {
 

@@ -1,0 +1,110 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// A tree of the command line: its skeleton, its points, and the names of its nodes.
+
+#ifndef PCS_EXAMPLES_ORL_PROGRAM_TREE_FILE_H
+#define PCS_EXAMPLES_ORL_PROGRAM_TREE_FILE_H
+
+#include <pcs/IO/Point_table.h>
+#include <pcs/IO/read_points.h>
+#include <pcs/IO/read_swc.h>
+#include <pcs/IO/read_txtskl.h>
+#include <pcs/core/Tree_skeleton.h>
+#include <pcs/core/errors.h>
+
+#if __has_include(<pcs/extract_tree_skeleton.h>)
+#include <pcs/extract_tree_skeleton.h>
+#define PCS_CAN_EXTRACT_SKELETONS 1
+#else
+#define PCS_CAN_EXTRACT_SKELETONS 0
+#endif
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace orl_program {
+
+using Kernel = pcs::IO::Point_table::Kernel;
+using Skeleton = pcs::Tree_skeleton<Kernel>;
+
+struct Tree_file
+{
+  Skeleton skeleton;
+  pcs::IO::Point_table points;
+  std::vector<std::int64_t> ids; ///< of the nodes, as in the file
+  bool has_valid_normals = false;
+};
+
+/// The ids of an SWC file in the order of its lines, which is the order of the nodes.
+inline std::vector<std::int64_t> read_swc_ids(const std::string& path)
+{
+  std::vector<std::int64_t> ids;
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream words(line);
+    double id = 0;
+    if (line.find_first_not_of(" \t\r") != std::string::npos &&
+        line[line.find_first_not_of(" \t\r")] != '#' && words >> id)
+      ids.push_back(std::llround(id));
+  }
+  return ids;
+}
+
+inline void read_skeleton(const std::string& path, Tree_file& tree)
+{
+  if (std::filesystem::path(path).extension() == ".txtskl")
+    pcs::IO::read_txtskl<Kernel>(path, tree.skeleton);
+  else {
+    pcs::IO::read_swc<Kernel>(path, tree.skeleton);
+    tree.ids = read_swc_ids(path);
+  }
+}
+
+inline void extract_skeleton(const std::string& points, Tree_file& tree)
+{
+#if PCS_CAN_EXTRACT_SKELETONS
+  const auto report = pcs::extract_tree_skeleton(tree.points.points(), tree.skeleton);
+  if (report.status != pcs::Status::converged || num_vertices(tree.skeleton) < 2)
+    throw pcs::Invalid_input(points + ": no skeleton can be extracted (" +
+                             pcs::to_string(report.status) + "); give one with --skeleton");
+#else
+  static_cast<void>(tree);
+  throw pcs::Invalid_input(points + ": a skeleton is needed; give one with --skeleton");
+#endif
+}
+
+/// Either path may be empty, not both.
+inline Tree_file read_tree(const std::string& points, const std::string& skeleton)
+{
+  Tree_file tree;
+  if (!points.empty())
+    tree.points = pcs::IO::read_points(points);
+  if (!skeleton.empty())
+    read_skeleton(skeleton, tree);
+  else
+    extract_skeleton(points, tree);
+  if (tree.ids.size() != num_vertices(tree.skeleton)) {
+    tree.ids.clear();
+    for (std::size_t v = 0; v < num_vertices(tree.skeleton); ++v)
+      tree.ids.push_back(static_cast<std::int64_t>(v) + 1);
+  }
+  if (tree.points.has_normals()) {
+    tree.has_valid_normals = true;
+    for (const auto& n : tree.points.normals()) {
+      const double squared_length = n.squared_length();
+      tree.has_valid_normals =
+          tree.has_valid_normals && squared_length > 0 && std::isfinite(squared_length);
+    }
+  }
+  return tree;
+}
+
+} // namespace orl_program
+
+#endif // PCS_EXAMPLES_ORL_PROGRAM_TREE_FILE_H

@@ -1,0 +1,66 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Reads the correspondences of two trees from a file.
+
+#ifndef PCS_IO_READ_CORRESPONDENCES_H
+#define PCS_IO_READ_CORRESPONDENCES_H
+
+#include <pcs/IO/internal/Word_reader.h>
+#include <pcs/core/Orl_correspondences.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace pcs {
+namespace IO {
+
+/*!
+  \ingroup PkgPcsIORef
+  \brief reads what `write_correspondences()` wrote.
+
+  Whether the correspondences fit the trees is checked by `Orl_shape_space::build_from()`.
+  \throws pcs::IO_error naming the line and what was expected there
+*/
+inline Orl_correspondences read_correspondences(const std::string& path)
+{
+  internal::Word_reader file(path);
+  Orl_correspondences result;
+  file.expect("pcs_correspondences");
+  file.expect("1");
+  file.expect("trees");
+  for (std::uint64_t& f : result.fingerprint)
+    f = file.number<std::uint64_t>("a fingerprint");
+  const auto index = [&] {
+    return file.skip("-") ? Orl_correspondences::none : file.count("the number of an element");
+  };
+  file.expect("branches");
+  result.branches.resize(file.count("the number of branches"));
+  for (Orl_correspondences::Branch& b : result.branches) {
+    b.parent = index();
+    for (std::size_t t = 0; t < 2; ++t) {
+      b.first[t] = index();
+      b.tip[t] = index();
+      b.attachment[t] = file.real("attachment");
+      b.nodes[t].resize(file.count("the number of nodes"));
+      for (double& s : b.nodes[t])
+        s = file.real("share");
+    }
+  }
+  file.expect("pairs");
+  result.pairs.resize(file.count("the number of pairs"));
+  for (Orl_correspondences::Pair& p : result.pairs) {
+    p.edge = file.number<std::uint32_t>("the number of an edge");
+    for (std::uint32_t& i : p.point)
+      i = file.skip("-") ? Orl_correspondences::no_point
+                         : file.number<std::uint32_t>("the number of a point");
+  }
+  if (!file.is_at_end())
+    file.fail("expected the end of the file");
+  return result;
+}
+
+} // namespace IO
+} // namespace pcs
+
+#endif // PCS_IO_READ_CORRESPONDENCES_H

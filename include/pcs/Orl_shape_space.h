@@ -1,0 +1,700 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// A space in which trees are points: distance, geodesic and extrapolation between trees, with their scans.
+
+#ifndef PCS_ORL_SHAPE_SPACE_H
+#define PCS_ORL_SHAPE_SPACE_H
+
+#include <pcs/Named_function_parameters.h>
+#include <pcs/concepts.h>
+#include <pcs/core/Orl_correspondences.h>
+#include <pcs/core/Orl_report.h>
+#include <pcs/core/Tree_skeleton.h>
+#include <pcs/core/errors.h>
+#include <pcs/internal/Stopwatch.h>
+#include <pcs/internal/progress.h>
+#include <pcs/internal/text.h>
+#include <pcs/shape_space/Branch_matching.h>
+#include <pcs/shape_space/Common_topology.h>
+#include <pcs/shape_space/Point_instances.h>
+#include <pcs/shape_space/assign_points.h>
+#include <pcs/shape_space/embed_trees.h>
+#include <pcs/shape_space/point_correspondences.h>
+#include <pcs/shape_space/tree_input.h>
+
+#include <CGAL/Simple_cartesian.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+
+/*!
+  \ingroup PkgPcsShapeSpaceRef
+  \brief A tree of an `Orl_shape_space`: orientations, radii and lengths of the edges of its topology, a value.
+
+  Kept and assigned to again, it keeps its memory.
+*/
+class Orl_tree
+{
+public:
+  //! the place on the path it comes from: 0 and 1 are the ends [-]
+  double lambda() const { return m_lambda; }
+  //! number of points that `Orl_shape_space::points()` writes [count]
+  std::size_t number_of_points() const { return m_offset.empty() ? 0 : m_offset.back(); }
+  //! orientations, radii, lengths and attachments
+  const shape_space::Orl_coordinates& coordinates() const { return m_x; }
+
+private:
+  template <class, class>
+  friend class Orl_shape_space;
+  shape_space::Orl_coordinates m_x;
+  shape_space::Orl_geometry m_geometry;
+  std::vector<std::size_t> m_offset;
+  double m_lambda = 0;
+};
+
+//! \ingroup PkgPcsShapeSpaceRef
+//! two branches that correspond, named by the vertices at their tips
+struct Branch_match
+{
+  std::size_t parent = npos; ///< index of the parents' match, `npos` for the trunks
+  std::array<std::size_t, 2> tip = {npos,
+                                    npos}; ///< index of a vertex; `npos`: the tree lacks the branch
+};
+
+/*!
+  \ingroup PkgPcsShapeSpaceRef
+  \brief A shape space of two trees, with the points of their scans.
+
+  Follows chapter 4 of \cite aiteanu2022: branches are matched by elastic curves, both trees get one
+  topology, points are matched by optimal transport along corresponding edges, and a tree is the list of orientations,
+  radii and lengths (ORL) of the edges of the topology. Distances are those of (4.7), geodesics interpolate the
+  coordinates; points follow their edges.
+
+  Trees of any Boost.Graph type are added, then `build()` finds the correspondences, then trees of the space are made by
+  `geodesic()` and turned into skeletons and points. Inputs are copied, nothing refers to them afterwards.
+
+  \tparam Kernel a kernel of CGAL; computations are in double precision about a local origin
+  \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or `CGAL::Parallel_if_available_tag`
+  \par Determinism
+  Same bits for every number of threads and for the sequential tag. The order of vertices and edges in the graphs does not
+  matter, save for exact copies of branches.
+*/
+template <class Kernel = CGAL::Simple_cartesian<double>,
+          class ConcurrencyTag = CGAL::Parallel_if_available_tag>
+class Orl_shape_space
+{
+public:
+  using FT = typename Kernel::FT;
+  using Point_3 = typename Kernel::Point_3;
+  using Vector_3 = typename Kernel::Vector_3;
+  //! names an added tree
+  using Handle = std::size_t;
+
+  Orl_shape_space() = default;
+  Orl_shape_space(const Orl_shape_space&) = delete;
+  Orl_shape_space& operator=(const Orl_shape_space&) = delete;
+  Orl_shape_space(Orl_shape_space&&) = default;
+  Orl_shape_space& operator=(Orl_shape_space&&) = default;
+
+  /*!
+    \brief adds a tree and the points of its scan.
+
+    \tparam TreeGraph a model of `boost::VertexListGraph` and `boost::IncidenceGraph`, edges from parent to child
+    \param tree with one root, at least 2 nodes, finite positions and radii `>= 0`; nodes in the same place are joined
+    \param scan a model of `RandomAccessRange`; may be empty; it should lie about the tree
+    \npbegin
+      \np{node_point_map} position of a vertex [L]
+        \nptype readable, key: vertex, value with `x()`, `y()`, `z()`
+        \npdefault `Tree_node::point`
+      \np{node_radius_map} radius of a vertex [L]; 0 where it is not known
+        \nptype readable, key: vertex, value: a number
+        \npdefault `Tree_node::radius`
+      \np{node_index_map} number of a vertex, from 0
+        \nptype readable, key: vertex, value: an integer
+        \npdefault `get(boost::vertex_index, tree)`
+      \np{point_map} position of an element of `scan` [L]
+        \nptype readable, value with `x()`, `y()`, `z()`
+        \npdefault `CGAL::Identity_property_map`
+      \np{normal_map} normal of an element; given for both trees, instances have normals
+        \nptype readable, value with `x()`, `y()`, `z()`
+        \npdefault none: normals are estimated at forks
+    \npend
+    \throws pcs::Invalid_input when a rule is broken; the space is unchanged then
+    \par Complexity
+    Linear in the size of tree and scan, but for the sorting of children.
+  */
+  template <class TreeGraph,
+            class PointRange,
+            class NamedParameters = parameters::Default_named_parameters>
+  Handle
+  add(const TreeGraph& tree, const PointRange& scan, const NamedParameters& np = NamedParameters())
+  {
+    if (m_inputs.size() == 2)
+      throw Invalid_input("pcs::Orl_shape_space::add(): there are two trees already");
+    m_inputs.push_back(
+        shape_space::make_tree_input<Kernel>(tree, scan, np, "pcs::Orl_shape_space::add()"));
+    m_is_built = false;
+    return m_inputs.size() - 1;
+  }
+
+  //! adds a tree without points
+  template <class TreeGraph, class NamedParameters = parameters::Default_named_parameters>
+  Handle add_skeleton(const TreeGraph& tree, const NamedParameters& np = NamedParameters())
+  {
+    return add(tree, std::vector<Point_3>(), np);
+  }
+
+  /*!
+    \brief finds the correspondences of branches and points, and the coordinates of both trees.
+
+    \npbegin
+      \np{matching_weights} of the energy of matching branches
+        \nptype `shape_space::Matching_weights`
+        \npdefault changed energy; `is_published` gives the text's
+      \np{assignment_options} of points to branches
+        \nptype `shape_space::Assignment_options`
+      \np{transport_options} of the correspondence of points: exact or by Sinkhorn's algorithm, and sizes
+        \nptype `shape_space::Transport_options`
+      \np{orientation} how orientations are measured
+        \nptype `shape_space::Orientation`
+        \npdefault `gauge_fixed`; `world_axes` is the text's
+      \np{virtual_direction} where branches without partner point
+        \nptype `shape_space::Virtual_direction`
+        \npdefault `of_partner`; `along_parent` is the text's
+      \np{do_use_unit_weights} whether all weights of the metric are 1, as in the text
+        \nptype `bool`
+        \npdefault `false`: turns count with the length of the edge, so that distances are lengths
+      \np{callback} progress in [0, 1]; `false` cancels
+        \nptype any `bool(double)`
+    \npend
+    \return a report; with `Status::cancelled` the space is as before
+    \throws pcs::Invalid_input unless two trees were added
+    \par Complexity
+    Branches: about the number of pairs of branches on the same level. Points: \f$O(n \log n)\f$ in practice.
+  */
+  template <class NamedParameters = parameters::Default_named_parameters>
+  Orl_report build(const NamedParameters& np = NamedParameters())
+  {
+    using namespace shape_space;
+    const auto weights =
+        pcs::internal::choose(np, pcs::internal_np::matching_weights, Matching_weights());
+    const auto assignment =
+        pcs::internal::choose(np, pcs::internal_np::assignment_options, Assignment_options());
+    const auto transport =
+        pcs::internal::choose(np, pcs::internal_np::transport_options, Transport_options());
+    check_options(weights, assignment, transport);
+    pcs::internal::Progress progress(
+        pcs::internal::choose(np, CGAL::internal_np::callback, std::function<bool(double)>()));
+    check_inputs("build");
+
+    Orl_report report = new_report();
+    pcs::internal::Stopwatch watch;
+    progress.stage(0, 0.4);
+    Built built;
+    read_form(np, built);
+    {
+      Branch_matching<ConcurrencyTag> matching(m_inputs[0].tree, m_inputs[1].tree, weights);
+      const auto trunk = progress(0) ? matching.run(progress) : nullptr;
+      report.seconds.matching = watch.lap();
+      if (!trunk)
+        return cancelled(report);
+      report.matching_energy = trunk->cost;
+      built.topology.paths = {matching.paths(0), matching.paths(1)};
+      shape_space::internal::Topology_builder builder(m_inputs[0].tree,
+                                                      m_inputs[1].tree,
+                                                      built.topology.paths);
+      built.topology.branches = builder.run(*trunk);
+    }
+    embed(built);
+    report.seconds.topology = watch.lap();
+
+    progress.stage(0.4, 0.6);
+    if (!progress(0))
+      return cancelled(report);
+    std::array<std::vector<std::size_t>, 2> edges;
+    for (std::size_t t = 0; t < 2; ++t) {
+      edges[t] = edges_of_points(built, t, assignment);
+      if (!progress(0.5 * static_cast<double>(t + 1)))
+        return cancelled(report);
+    }
+    report.seconds.assignment = watch.lap();
+
+    progress.stage(0.6, 1);
+    Transport_summary summary;
+    const std::array<std::vector<Vec3>, 2> points = {m_inputs[0].points, points_of_second()};
+    std::vector<Point_pair> pairs =
+        Point_matching<ConcurrencyTag>(built.layout,
+                                       built.geometry,
+                                       points,
+                                       edges,
+                                       built.is_relative)
+            .run(transport, summary, [&](double f) { return !progress(f); });
+    report.seconds.transport = watch.lap();
+    if (progress.is_cancelled())
+      return cancelled(report);
+    report.number_of_windows = summary.number_of_windows;
+    report.number_of_failed_windows = summary.number_of_failures;
+    report.worst_marginal_violation = summary.worst_violation;
+    report.mean_marginal_violation = summary.mean_violation;
+    finish(built, std::move(pairs), points, report);
+    report.seconds.instances = watch.lap();
+    progress.finish();
+    return report;
+  }
+
+  /*!
+    \brief the same with correspondences that were computed before, for the same trees.
+
+    Reads `orientation`, `virtual_direction` and `do_use_unit_weights`.
+    \throws pcs::Invalid_input when the correspondences do not fit the trees
+  */
+  template <class NamedParameters = parameters::Default_named_parameters>
+  Orl_report build_from(const Orl_correspondences& correspondences,
+                        const NamedParameters& np = NamedParameters())
+  {
+    check_inputs("build_from");
+    Orl_report report = new_report();
+    pcs::internal::Stopwatch watch;
+    Built built;
+    read_form(np, built);
+    built.topology = shape_space::restore_topology(correspondences,
+                                                   {&m_inputs[0], &m_inputs[1]},
+                                                   "pcs::Orl_shape_space::build_from()");
+    embed(built);
+    report.seconds.topology = watch.lap();
+    shape_space::check_pairs(correspondences,
+                             built.layout.number_of_edges(),
+                             {m_inputs[0].points.size(), m_inputs[1].points.size()},
+                             "pcs::Orl_shape_space::build_from()");
+    finish(built, correspondences.pairs, {m_inputs[0].points, points_of_second()}, report);
+    report.seconds.instances = watch.lap();
+    return report;
+  }
+
+  //! what `build()` found, to be kept; \pre it was built
+  Orl_correspondences correspondences() const
+  {
+    check_built("correspondences");
+    return shape_space::store_topology(m_built.topology,
+                                       {&m_inputs[0], &m_inputs[1]},
+                                       m_built.instances.pairs());
+  }
+
+  //! branches that correspond, parents first; \pre it was built
+  std::vector<Branch_match> matches() const
+  {
+    check_built("matches");
+    std::vector<Branch_match> result;
+    for (const shape_space::Common_branch& b : m_built.topology.branches) {
+      Branch_match match;
+      match.parent = b.parent;
+      for (std::size_t t = 0; t < 2; ++t)
+        if (b.path[t] != shape_space::none)
+          match.tip[t] = m_inputs[t].tree.sources[m_built.topology.paths[t].paths[b.path[t]].tip()];
+      result.push_back(match);
+    }
+    return result;
+  }
+
+  //! an added tree as a tree of the space; \pre it was built
+  Orl_tree tree(Handle h) const { return geodesic(h, h == 0 ? 1 : 0, 0); }
+
+  /*!
+    \brief returns the tree at `lambda` on the geodesic from `a` (0) to `b` (1), or beyond its ends.
+
+    Beyond the ends lengths and radii stay positive, and orientations turn by at most `maximal_turn`.
+
+    \npbegin
+      \np{maximal_turn} how far an edge turns beyond an end of the path [rad]
+        \nptype `double`, `>= 0`
+        \npdefault `pi / 4`
+      \np{do_limit_radii} whether branches are made no thicker than where they grow from
+        \nptype `bool`
+        \npdefault `false`: real trees break that rule
+    \npend
+    \throws pcs::Invalid_input when `lambda` is not finite or a handle is wrong
+  */
+  template <class NamedParameters = parameters::Default_named_parameters>
+  Orl_tree
+  geodesic(Handle a, Handle b, double lambda, const NamedParameters& np = NamedParameters()) const
+  {
+    Orl_tree result;
+    geodesic(a, b, lambda, result, np);
+    return result;
+  }
+
+  //! the same into `result`, whose memory is used again
+  template <class NamedParameters = parameters::Default_named_parameters>
+  void geodesic(Handle a,
+                Handle b,
+                double lambda,
+                Orl_tree& result,
+                const NamedParameters& np = NamedParameters()) const
+  {
+    check_built("geodesic");
+    if (a > 1 || b > 1)
+      throw Invalid_input("pcs::Orl_shape_space::geodesic(): there is no tree " +
+                          std::to_string(std::max(a, b)));
+    if (a == b)
+      lambda = 0;
+    // one direction only, so that the path back is the same
+    const double t = a <= b && a == 0 ? lambda : a == b ? 1 : 1 - lambda;
+    make_tree(m_built.x[0], m_built.x[1], t, t, np, result);
+  }
+
+  //! the same between trees of the space
+  template <class NamedParameters = parameters::Default_named_parameters>
+  Orl_tree geodesic(const Orl_tree& a,
+                    const Orl_tree& b,
+                    double lambda,
+                    const NamedParameters& np = NamedParameters()) const
+  {
+    check_built("geodesic");
+    Orl_tree result;
+    make_tree(a.m_x, b.m_x, lambda, (1 - lambda) * a.m_lambda + lambda * b.m_lambda, np, result);
+    return result;
+  }
+
+  /*!
+    \brief the distance between two trees of the space.
+
+    \npbegin
+      \np{metric} sum of differences as in (4.7), root of their squares, or edges as vectors
+        \nptype `shape_space::Orl_metric`
+        \npdefault `sum`
+    \npend
+  */
+  template <class NamedParameters = parameters::Default_named_parameters>
+  double distance(const Orl_tree& a,
+                  const Orl_tree& b,
+                  const NamedParameters& np = NamedParameters()) const
+  {
+    check_built("distance");
+    return shape_space::distance(
+        a.m_x,
+        b.m_x,
+        m_built.weights,
+        pcs::internal::choose(np, pcs::internal_np::metric, shape_space::Orl_metric::sum));
+  }
+  double distance(Handle a, Handle b) const { return distance(tree(a), tree(b)); }
+
+  /*!
+    \brief writes a tree of the space as a skeleton; branches of length 0 are left out.
+
+    Every branch begins with a node of its own on the axis of its parent.
+    \param result is replaced
+  */
+  template <class OutKernel>
+  void skeleton(const Orl_tree& t, Tree_skeleton<OutKernel>& result) const
+  {
+    check_built("skeleton");
+    shape_space::write_skeleton(m_built.layout,
+                                t.m_x,
+                                t.m_geometry,
+                                m_inputs[0].tree.origin,
+                                result);
+  }
+
+  /*!
+    \brief writes the points of a tree of the space.
+
+    Pairs come by edge; at `lambda` 0 and 1 the points are those of the scans, as often as they have partners, and points
+    of branches that the tree lacks are left out.
+
+    \param result a random access range; a container with `resize()` gets the size `t.number_of_points()`, which
+           allocates nothing if its capacity suffices; another range must have that size at least
+    \npbegin
+      \np{point_map} where a position is written
+        \nptype model of `WritablePropertyMap`, key: element of `result`, value: `Kernel::Point_3`
+        \npdefault `CGAL::Identity_property_map`
+      \np{normal_map} where a normal is written, if both scans have normals
+        \nptype model of `WritablePropertyMap`, value: `Kernel::Vector_3`
+        \npdefault none
+      \np{point_path} how the points of a pair are joined
+        \nptype `shape_space::Point_path`
+        \npdefault `cylindrical`; `virtual_edges` is the text's
+    \npend
+    \return the number of points
+    \par Complexity
+    Linear in the number of points; no allocation.
+  */
+  template <class PointRange, class NamedParameters = parameters::Default_named_parameters>
+  std::size_t
+  points(const Orl_tree& t, PointRange& result, const NamedParameters& np = NamedParameters()) const
+  {
+    check_built("points");
+    const std::size_t n = t.number_of_points();
+    shape_space::internal::resize_range(result, n, "pcs::Orl_shape_space::points()");
+    const auto point_map = pcs::internal::choose(
+        np,
+        CGAL::internal_np::point_map,
+        CGAL::Identity_property_map<std::decay_t<decltype(*std::begin(result))>>());
+    constexpr bool has_normals =
+        pcs::internal::is_given_v<NamedParameters, CGAL::internal_np::normal_t>;
+    const auto normal_map = pcs::internal::choose(np, CGAL::internal_np::normal_map, 0);
+    if (has_normals && !m_built.instances.has_normals())
+      throw Invalid_input(
+          "pcs::Orl_shape_space::points(): `normal_map` needs trees that were added with normals");
+    using Point = Map_value<std::decay_t<decltype(point_map)>>;
+    const shape_space::Vec3 origin = m_inputs[0].tree.origin;
+    const auto begin = std::begin(result);
+    const auto put_point = [&, origin](std::size_t i,
+                                       const shape_space::Vec3& p,
+                                       const shape_space::Vec3& normal,
+                                       std::size_t) {
+      using Number = std::decay_t<decltype(std::declval<const Point&>().x())>;
+      const shape_space::Vec3 q = p + origin;
+      auto&& key = *(begin + static_cast<std::ptrdiff_t>(i));
+      put(point_map,
+          key,
+          Point(static_cast<Number>(q.x()),
+                static_cast<Number>(q.y()),
+                static_cast<Number>(q.z())));
+      if constexpr (has_normals) {
+        using Vector = Map_value<std::decay_t<decltype(normal_map)>>;
+        put(normal_map,
+            key,
+            Vector(static_cast<Number>(normal.x()),
+                   static_cast<Number>(normal.y()),
+                   static_cast<Number>(normal.z())));
+      } else
+        static_cast<void>(normal);
+    };
+    m_built.instances.write(m_built.layout,
+                            t.m_x,
+                            t.m_geometry,
+                            t.m_lambda,
+                            pcs::internal::choose(np,
+                                                  pcs::internal_np::point_path,
+                                                  shape_space::Point_path::cylindrical),
+                            t.m_offset,
+                            put_point,
+                            ConcurrencyTag());
+    return n;
+  }
+
+  /*!
+    \brief calls `f(i, a, b, w)` for every point of a tree of the space: `a` and `b` are the numbers of the points it comes
+    from in the two scans, `npos` where there is none, `w` is the share of the second, in [0, 1].
+
+    Attributes are blended with it: `result[i] = (1 - w) * one[a] + w * two[b]`. `f` may be called concurrently.
+  */
+  template <class F>
+  void for_each_point(const Orl_tree& t, const F& f) const
+  {
+    check_built("for_each_point");
+    const double share = std::min(1.0, std::max(0.0, t.m_lambda));
+    m_built.instances.for_each_pair(
+        t.m_x,
+        t.m_offset,
+        [&](std::size_t i, const shape_space::Point_pair& pair) {
+          const bool has_a = pair.point[0] != shape_space::no_point;
+          const bool has_b = pair.point[1] != shape_space::no_point;
+          f(i,
+            has_a ? std::size_t(pair.point[0]) : npos,
+            has_b ? std::size_t(pair.point[1]) : npos,
+            has_a ? (has_b ? share : 0.0) : 1.0);
+        },
+        ConcurrencyTag());
+  }
+
+  //! the topology, for callers who look inside; \pre it was built
+  const shape_space::Orl_layout& layout() const { return m_built.layout; }
+  //! weights of the metric; \pre it was built
+  const shape_space::Orl_weights& weights() const { return m_built.weights; }
+
+private:
+  struct Built
+  {
+    shape_space::Orientation orientation = shape_space::Orientation::gauge_fixed;
+    shape_space::Virtual_direction direction = shape_space::Virtual_direction::of_partner;
+    bool has_unit_weights = false;
+    shape_space::Common_topology topology;
+    shape_space::Orl_layout layout;
+    std::array<shape_space::Orl_coordinates, 2> x;
+    std::array<shape_space::Orl_geometry, 2> geometry;
+    std::vector<char> is_relative;
+    shape_space::Orl_weights weights;
+    shape_space::Point_instances instances;
+  };
+
+  static void check_options(const shape_space::Matching_weights& w,
+                            const shape_space::Assignment_options& a,
+                            const shape_space::Transport_options& t)
+  {
+    const auto check = [](bool is_right, const char* what) {
+      if (!is_right)
+        throw Invalid_input(std::string("pcs::Orl_shape_space::build(): ") + what);
+    };
+    const auto is_weight = [](double x) { return x >= 0 && std::isfinite(x); };
+    check(w.curve > 0 && std::isfinite(w.curve), "the weight `curve` must be > 0 and finite");
+    check(is_weight(w.position) && is_weight(w.single) && is_weight(w.children) &&
+              is_weight(w.carried),
+          "the weights of the matching must be >= 0 and finite");
+    check(w.fork_ratio > 0 && w.fork_ratio <= 1, "`fork_ratio` must be in (0, 1]");
+    check(w.number_of_paths > 0 && w.number_of_trials > 0,
+          "`number_of_paths` and `number_of_trials` must be at least 1");
+    check(is_weight(a.noise) && a.normal_angle > 0, "`noise` must be >= 0, `normal_angle` > 0");
+    check(a.number_of_neighbors >= 3, "`number_of_neighbors` of the assignment must be >= 3");
+    check(t.number_of_neighbors > 0 && t.largest_window > 0,
+          "`number_of_neighbors` and `largest_window` of the transport must be at least 1");
+    check(t.sinkhorn.regularization > 0 && t.sinkhorn.iterations > 0,
+          "`regularization` and `iterations` must be > 0");
+  }
+
+  void check_inputs(const char* caller) const
+  {
+    if (m_inputs.size() != 2)
+      throw Invalid_input(std::string("pcs::Orl_shape_space::") + caller + "(): " +
+                          std::to_string(m_inputs.size()) + " trees were added, expected 2");
+  }
+  void check_built(const char* caller) const
+  {
+    if (!m_is_built)
+      throw Invalid_input(std::string("pcs::Orl_shape_space::") + caller +
+                          "(): call build() first");
+  }
+
+  Orl_report new_report() const
+  {
+    Orl_report report;
+    for (std::size_t t = 0; t < 2; ++t) {
+      report.number_of_nodes[t] = m_inputs[t].tree.node_of_source.size();
+      report.number_of_points[t] = m_inputs[t].points.size();
+    }
+    return report;
+  }
+  static Orl_report cancelled(Orl_report report)
+  {
+    report.status = Status::cancelled;
+    return report;
+  }
+
+  template <class NamedParameters>
+  static void read_form(const NamedParameters& np, Built& built)
+  {
+    built.orientation = pcs::internal::choose(np, pcs::internal_np::orientation, built.orientation);
+    built.direction =
+        pcs::internal::choose(np, pcs::internal_np::virtual_direction, built.direction);
+    built.has_unit_weights =
+        pcs::internal::choose(np, pcs::internal_np::do_use_unit_weights, built.has_unit_weights);
+  }
+
+  void embed(Built& built) const
+  {
+    using namespace shape_space;
+    built.layout = make_layout(built.topology.branches);
+    built.x = embed_trees(built.layout,
+                          built.topology.branches,
+                          {&m_inputs[0].tree, &m_inputs[1].tree},
+                          built.topology.paths,
+                          built.orientation,
+                          built.direction);
+    for (std::size_t t = 0; t < 2; ++t)
+      build_geometry(built.layout, built.x[t], built.orientation, built.geometry[t]);
+    built.weights = make_weights(built.layout, built.x, built.has_unit_weights);
+    built.is_relative = edges_with_radius(built.layout, built.topology, built.geometry);
+  }
+
+  /// Points of the second tree in the local coordinates of the first.
+  std::vector<shape_space::Vec3> points_of_second() const
+  {
+    const shape_space::Vec3 shift = m_inputs[1].tree.origin - m_inputs[0].tree.origin;
+    std::vector<shape_space::Vec3> points(m_inputs[1].points);
+    for (shape_space::Vec3& p : points)
+      p += shift;
+    return points;
+  }
+
+  std::vector<std::size_t> edges_of_points(const Built& built,
+                                           std::size_t t,
+                                           const shape_space::Assignment_options& options) const
+  {
+    using namespace shape_space;
+    std::vector<std::size_t> edge_of_tube;
+    const Vec3 shift =
+        t == 0 ? Vec3(Vec3::Zero()) : Vec3(m_inputs[0].tree.origin - m_inputs[1].tree.origin);
+    const std::vector<Tube> tubes =
+        make_tubes(built.layout, built.topology, built.geometry[t], t, shift, edge_of_tube);
+    std::vector<std::size_t> result = assign_points<ConcurrencyTag>(m_inputs[t].points,
+                                                                    m_inputs[t].normals,
+                                                                    tubes,
+                                                                    m_inputs[t].tree.extent,
+                                                                    options);
+    for (std::size_t& e : result)
+      e = edge_of_tube[e];
+    return result;
+  }
+
+  void finish(Built& built,
+              std::vector<shape_space::Point_pair> pairs,
+              const std::array<std::vector<shape_space::Vec3>, 2>& points,
+              Orl_report& report)
+  {
+    built.instances.set(built.layout,
+                        built.geometry,
+                        points,
+                        {m_inputs[0].normals, m_inputs[1].normals},
+                        built.is_relative,
+                        std::move(pairs),
+                        ConcurrencyTag());
+    m_built = std::move(built);
+    m_is_built = true;
+    report.status = Status::converged;
+    for (const shape_space::Common_branch& b : m_built.topology.branches) {
+      for (int t = 0; t < 2; ++t)
+        report.number_of_branches[static_cast<std::size_t>(t)] += b.is_virtual(t) ? 0 : 1;
+      report.number_of_matched_branches += b.is_virtual(0) || b.is_virtual(1) ? 0 : 1;
+    }
+    report.number_of_edges = m_built.layout.number_of_edges();
+    report.distance = shape_space::distance(m_built.x[0],
+                                            m_built.x[1],
+                                            m_built.weights,
+                                            shape_space::Orl_metric::sum);
+    report.number_of_point_pairs = m_built.instances.pairs().size();
+    for (const shape_space::Point_pair& p : m_built.instances.pairs())
+      report.number_of_single_points +=
+          p.point[0] == shape_space::no_point || p.point[1] == shape_space::no_point ? 1 : 0;
+  }
+
+  template <class NamedParameters>
+  void make_tree(const shape_space::Orl_coordinates& a,
+                 const shape_space::Orl_coordinates& b,
+                 double t,
+                 double lambda,
+                 const NamedParameters& np,
+                 Orl_tree& result) const
+  {
+    const double maximal_turn = pcs::internal::choose(np,
+                                                      pcs::internal_np::maximal_turn,
+                                                      0.25 * static_cast<double>(EIGEN_PI));
+    const bool do_limit = pcs::internal::choose(np, pcs::internal_np::do_limit_radii, false);
+    if (!std::isfinite(t))
+      throw Invalid_input("pcs::Orl_shape_space::geodesic(): `lambda` is not finite");
+    if (!(maximal_turn >= 0))
+      throw Invalid_input("pcs::Orl_shape_space::geodesic(): `maximal_turn` is " +
+                          pcs::internal::to_text(maximal_turn) + ", expected at least 0");
+    shape_space::coordinates_at(m_built.layout, a, b, t, maximal_turn, result.m_x);
+    if (do_limit)
+      shape_space::limit_radii(m_built.layout, result.m_x);
+    result.m_lambda = lambda;
+    shape_space::build_geometry(m_built.layout, result.m_x, m_built.orientation, result.m_geometry);
+    m_built.instances.find_offsets(result.m_x, result.m_offset);
+  }
+
+  std::vector<shape_space::Tree_input> m_inputs;
+  Built m_built;
+  bool m_is_built = false;
+};
+
+} // namespace pcs
+
+#endif // PCS_ORL_SHAPE_SPACE_H

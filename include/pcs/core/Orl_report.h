@@ -1,0 +1,61 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// What the construction of a shape space of trees did: counts, distances, seconds per stage.
+
+#ifndef PCS_CORE_ORL_REPORT_H
+#define PCS_CORE_ORL_REPORT_H
+
+#include <pcs/core/Status.h>
+
+#include <array>
+#include <cstddef>
+#include <ostream>
+
+namespace pcs {
+
+//! \ingroup PkgPcsShapeSpaceRef
+//! what `orl_geodesic()` or `Orl_shape_space::build()` did
+struct Orl_report
+{
+  Status status = Status::nothing_to_do;
+
+  std::array<std::size_t, 2> number_of_nodes = {0, 0};    ///< of the trees [count]
+  std::array<std::size_t, 2> number_of_branches = {0, 0}; ///< of the trees, as matched [count]
+  std::size_t number_of_matched_branches = 0;             ///< pairs of branches [count]
+  std::size_t number_of_edges = 0;                        ///< of the common topology [count]
+  double matching_energy = 0; ///< of the branches, in units of the longest paths [-]
+  double distance = 0;        ///< between the trees, (4.7) [L]
+
+  std::array<std::size_t, 2> number_of_points = {0, 0}; ///< of the scans [count]
+  std::size_t number_of_point_pairs = 0;                ///< points of an instance [count]
+  std::size_t number_of_single_points = 0;  ///< of the pairs: points without partner [count]
+  std::size_t number_of_windows = 0;        ///< transports between sets of points [count]
+  std::size_t number_of_failed_windows = 0; ///< transports that could not be completed [count]
+  double worst_marginal_violation = 0;      ///< mass of a window, of 1, that went elsewhere [-]
+  double mean_marginal_violation = 0;       ///< the same, mean over windows [-]
+
+  //! wall-clock time of each stage [s]
+  struct Seconds
+  {
+    double matching = 0, topology = 0, assignment = 0, transport = 0, instances = 0;
+    double total() const { return matching + topology + assignment + transport + instances; }
+  } seconds;
+};
+
+inline std::ostream& operator<<(std::ostream& out, const Orl_report& r)
+{
+  out << "status " << r.status << ", " << r.number_of_branches[0] << " and "
+      << r.number_of_branches[1] << " branches, " << r.number_of_matched_branches << " matched, "
+      << r.number_of_edges << " edges, distance " << r.distance << "; " << r.number_of_points[0]
+      << " and " << r.number_of_points[1] << " points, " << r.number_of_point_pairs << " pairs ("
+      << r.number_of_single_points << " single), " << r.number_of_windows << " windows ("
+      << r.number_of_failed_windows << " failed), marginal violation " << r.worst_marginal_violation
+      << "; seconds: matching " << r.seconds.matching << ", topology " << r.seconds.topology
+      << ", assignment " << r.seconds.assignment << ", transport " << r.seconds.transport
+      << ", instances " << r.seconds.instances;
+  return out;
+}
+
+} // namespace pcs
+
+#endif // PCS_CORE_ORL_REPORT_H

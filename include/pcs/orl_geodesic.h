@@ -1,0 +1,69 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// One tree on the path between two scanned trees.
+
+#ifndef PCS_ORL_GEODESIC_H
+#define PCS_ORL_GEODESIC_H
+
+#include <pcs/Orl_shape_space.h>
+
+#include <CGAL/Kernel_traits.h>
+
+#include <iterator>
+#include <type_traits>
+
+namespace pcs {
+
+/*!
+  \ingroup PkgPcsShapeSpaceRef
+  \brief computes the tree at `lambda` on the geodesic from tree `a` (0) to tree `b` (1), or beyond, with its points.
+
+  Same as one `Orl_shape_space` with two `add()`, `build()`, `geodesic()`, `skeleton()` and `points()`: see there for the
+  model, errors, cost and determinism. For more than one `lambda` use the class: nearly all time goes into `build()`.
+
+  \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or `CGAL::Parallel_if_available_tag`
+  \param tree_a, tree_b graphs, see `Orl_shape_space::add()`
+  \param scan_a, scan_b points of the trees; may be empty
+  \param lambda place on the path, finite [-]
+  \param out_tree a `pcs::Tree_skeleton`, replaced
+  \param out_points a container with `resize()`, replaced
+  \param np named parameters of `build()`, `geodesic()` and `points()`
+  \param np_a, np_b named parameters of `add()` for the trees
+  \return the report of `build()`; unless its status is `Status::converged`, the outputs are unchanged
+*/
+template <class ConcurrencyTag = CGAL::Parallel_if_available_tag,
+          class TreeGraphA,
+          class PointRangeA,
+          class TreeGraphB,
+          class PointRangeB,
+          class OutKernel,
+          class OutPointRange,
+          class NamedParameters = parameters::Default_named_parameters,
+          class NamedParametersA = parameters::Default_named_parameters,
+          class NamedParametersB = parameters::Default_named_parameters>
+Orl_report orl_geodesic(const TreeGraphA& tree_a,
+                        const PointRangeA& scan_a,
+                        const TreeGraphB& tree_b,
+                        const PointRangeB& scan_b,
+                        double lambda,
+                        Tree_skeleton<OutKernel>& out_tree,
+                        OutPointRange& out_points,
+                        const NamedParameters& np = NamedParameters(),
+                        const NamedParametersA& np_a = NamedParametersA(),
+                        const NamedParametersB& np_b = NamedParametersB())
+{
+  Orl_shape_space<OutKernel, ConcurrencyTag> space;
+  const auto a = space.add(tree_a, scan_a, np_a);
+  const auto b = space.add(tree_b, scan_b, np_b);
+  Orl_report report = space.build(np);
+  if (report.status != Status::converged)
+    return report;
+  const Orl_tree tree = space.geodesic(a, b, lambda, np);
+  space.points(tree, out_points, np);
+  space.skeleton(tree, out_tree);
+  return report;
+}
+
+} // namespace pcs
+
+#endif // PCS_ORL_GEODESIC_H

@@ -1,0 +1,154 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The branches that a tree may be taken apart into: longest continuations, and nearly as long ones.
+
+#ifndef PCS_SHAPE_SPACE_BRANCH_PATHS_H
+#define PCS_SHAPE_SPACE_BRANCH_PATHS_H
+
+#include <pcs/shape_space/Rooted_tree.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+
+/// At a fork, a child whose continuation has at least this share of the longest one may continue the branch.
+constexpr double default_fork_ratio = 0.8;
+
+/// Share of a branch that must lie beyond a fork for the choice there to matter.
+constexpr double smallest_alternative = 0.1;
+
+/// All else depends on the trunk: so many times more candidates are looked at.
+constexpr std::size_t trunk_factor = 4;
+
+/// A branch begins with an edge; the node at its end names the place. Several paths may begin there.
+struct Branch_path
+{
+  std::vector<std::size_t> nodes; ///< from the node on the parent branch to the tip
+  std::vector<double> arc;        ///< length from the beginning to each node [L]
+  struct Child
+  {
+    std::size_t start;    ///< node at the end of the first edge
+    std::size_t position; ///< index in `nodes`
+  };
+  std::vector<Child> children; ///< by position, then longest first
+  bool is_trunk = false;       ///< whether it begins with the root itself, and not with an edge
+  double length() const { return arc.back(); }
+  std::size_t tip() const { return nodes.back(); }
+};
+
+/// All paths that a matching may choose from. `paths_of[v]`: those that begin with the edge to `v`, longest first; for the
+/// root, the trunks.
+struct Branch_paths
+{
+  std::vector<Branch_path> paths;
+  std::vector<std::vector<std::size_t>> paths_of;
+};
+
+namespace internal {
+
+/// Follows the longest continuation from `v`, which is already in `nodes`.
+inline void follow_longest(const Rooted_tree& tree, std::vector<std::size_t>& nodes)
+{
+  for (std::size_t v = nodes.back(); tree.first_child[v] < tree.first_child[v + 1];) {
+    v = tree.children[tree.first_child[v]];
+    nodes.push_back(v);
+  }
+}
+
+inline Branch_path make_path(const Rooted_tree& tree, std::vector<std::size_t> nodes, bool is_trunk)
+{
+  Branch_path path;
+  path.is_trunk = is_trunk;
+  path.nodes = std::move(nodes);
+  path.arc.push_back(0);
+  for (std::size_t k = 1; k < path.nodes.size(); ++k)
+    path.arc.push_back(path.arc.back() + tree.edge_length(path.nodes[k]));
+  // other children of the first node belong to the parent branch, unless there is none
+  for (std::size_t k = is_trunk ? 0 : 1; k < path.nodes.size(); ++k)
+    for (std::size_t c = tree.first_child[path.nodes[k]]; c < tree.first_child[path.nodes[k] + 1];
+         ++c)
+      if (k + 1 == path.nodes.size() || tree.children[c] != path.nodes[k + 1])
+        path.children.push_back({tree.children[c], k});
+  return path;
+}
+
+/// The longest path from `start`, and others that leave it at a fork of nearly equal continuations.
+inline std::vector<std::vector<std::size_t>> candidate_paths(const Rooted_tree& tree,
+                                                             std::size_t start,
+                                                             double fork_ratio,
+                                                             std::size_t maximal_number)
+{
+  std::vector<std::size_t> longest;
+  if (tree.parents[start] != none)
+    longest.push_back(tree.parents[start]);
+  longest.push_back(start);
+  follow_longest(tree, longest);
+  std::vector<std::pair<double, std::vector<std::size_t>>> others; // lost length, path
+  double total = 0;
+  for (std::size_t k = 1; k < longest.size(); ++k)
+    total += tree.edge_length(longest[k]);
+  for (std::size_t k = 0; k + 1 < longest.size() && maximal_number > 1; ++k) {
+    const std::size_t v = longest[k];
+    if (v != start && k == 0)
+      continue; // the node on the parent branch
+    const double rest = tree.heights[v];
+    if (rest < smallest_alternative * total)
+      break;
+    for (std::size_t c = tree.first_child[v] + 1; c < tree.first_child[v + 1]; ++c) {
+      const std::size_t w = tree.children[c];
+      const double length = tree.edge_length(w) + tree.heights[w];
+      if (length < fork_ratio * rest)
+        break;
+      std::vector<std::size_t> path(longest.begin(),
+                                    longest.begin() + static_cast<std::ptrdiff_t>(k + 1));
+      path.push_back(w);
+      follow_longest(tree, path);
+      others.emplace_back(rest - length, std::move(path));
+    }
+  }
+  std::stable_sort(others.begin(), others.end(), [](const auto& a, const auto& b) {
+    return a.first < b.first;
+  });
+  std::vector<std::vector<std::size_t>> result{longest};
+  for (std::size_t i = 0; i < others.size() && result.size() < maximal_number; ++i)
+    result.push_back(std::move(others[i].second));
+  return result;
+}
+
+} // namespace internal
+
+/// `maximal_number` 1 gives the decomposition by longest paths alone.
+inline Branch_paths
+find_branch_paths(const Rooted_tree& tree, double fork_ratio, std::size_t maximal_number)
+{
+  Branch_paths result;
+  result.paths_of.resize(tree.size());
+  std::vector<std::size_t> starts{0};
+  std::vector<char> is_found(tree.size(), 0);
+  is_found[0] = 1;
+  while (!starts.empty()) {
+    const std::size_t start = starts.back();
+    starts.pop_back();
+    const std::size_t most =
+        maximal_number > 1 && start == 0 ? trunk_factor * maximal_number : maximal_number;
+    for (auto& nodes : internal::candidate_paths(tree, start, fork_ratio, most)) {
+      result.paths_of[start].push_back(result.paths.size());
+      result.paths.push_back(internal::make_path(tree, std::move(nodes), start == 0));
+      for (const Branch_path::Child& child : result.paths.back().children)
+        if (!is_found[child.start]) {
+          is_found[child.start] = 1;
+          starts.push_back(child.start);
+        }
+    }
+  }
+  return result;
+}
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_BRANCH_PATHS_H

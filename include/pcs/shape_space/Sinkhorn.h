@@ -1,0 +1,116 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Regularised transport over a sparse list of arcs, as in the text, in logarithms.
+
+#ifndef PCS_SHAPE_SPACE_SINKHORN_H
+#define PCS_SHAPE_SPACE_SINKHORN_H
+
+#include <pcs/shape_space/Transport_simplex.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+
+struct Sinkhorn_options
+{
+  double regularization = 0.02;  ///< final epsilon, as a share of the largest cost
+  std::size_t iterations = 1000; ///< at the final epsilon
+  double tolerance = 1e-6;       ///< stops at this violation of the marginals
+};
+
+/*!
+  Alternating projections (M. Cuturi, 2013) with potentials; epsilon is halved from the largest cost down. Of the plan,
+  the entries that are largest in their row or column are kept, so that every source and target has a partner; `violation`
+  is that of the plan before. With arcs that cannot carry the marginals, the violation stays large: it is reported.
+*/
+inline Transport_plan sinkhorn(const Transport_problem& problem, const Sinkhorn_options& options)
+{
+  const std::size_t n = problem.supplies.size(), m = problem.demands.size();
+  const std::size_t number = problem.arcs.size();
+  double largest = 0;
+  for (const Transport_problem::Arc& a : problem.arcs)
+    largest = std::max(largest, a.cost);
+  if (!(largest > 0))
+    largest = 1;
+  std::vector<double> f(n, 0), g(m, 0), top, sum;
+  double epsilon = largest;
+  const auto logarithm = [&](const Transport_problem::Arc& a) {
+    return (f[a.source] + g[a.target] - a.cost) / epsilon;
+  };
+  // potential += epsilon (log weight - log sum of the plan); a side at a time
+  const auto project = [&](bool is_source) {
+    std::vector<double>& potential = is_source ? f : g;
+    const std::vector<double>& weight = is_source ? problem.supplies : problem.demands;
+    top.assign(potential.size(), -std::numeric_limits<double>::infinity());
+    sum.assign(potential.size(), 0);
+    for (const Transport_problem::Arc& a : problem.arcs) {
+      double& t = top[is_source ? a.source : a.target];
+      t = std::max(t, logarithm(a));
+    }
+    for (const Transport_problem::Arc& a : problem.arcs) {
+      const std::size_t i = is_source ? a.source : a.target;
+      sum[i] += std::exp(logarithm(a) - top[i]);
+    }
+    for (std::size_t i = 0; i < potential.size(); ++i)
+      if (sum[i] > 0)
+        potential[i] += epsilon * (std::log(weight[i]) - top[i] - std::log(sum[i]));
+  };
+  const auto violation = [&] {
+    std::vector<double> defect(problem.supplies);
+    defect.insert(defect.end(), problem.demands.begin(), problem.demands.end());
+    for (const Transport_problem::Arc& a : problem.arcs) {
+      const double mass = std::exp(logarithm(a));
+      defect[a.source] -= mass;
+      defect[n + a.target] -= mass;
+    }
+    double total = 0;
+    for (const double d : defect)
+      total += std::abs(d);
+    return total;
+  };
+  const double last = options.regularization * largest;
+  for (;;) {
+    const bool is_last = epsilon <= last;
+    const std::size_t passes = is_last ? options.iterations : 20;
+    for (std::size_t i = 0; i < passes; ++i) {
+      project(true);
+      project(false);
+      if (is_last && i % 20 == 19 && violation() < options.tolerance)
+        break;
+    }
+    if (is_last)
+      break;
+    epsilon = std::max(last, 0.5 * epsilon);
+  }
+
+  Transport_plan plan;
+  plan.violation = violation();
+  plan.is_complete = plan.violation < options.tolerance;
+  plan.is_unmet.assign(n + m, 0);
+  std::vector<std::size_t> best(n + m, none);
+  std::vector<double> mass(number);
+  for (std::size_t k = 0; k < number; ++k) {
+    const Transport_problem::Arc& a = problem.arcs[k];
+    mass[k] = std::exp(logarithm(a));
+    plan.cost += mass[k] * a.cost;
+    for (const std::size_t i : {std::size_t(a.source), n + a.target})
+      if (best[i] == none || mass[k] > mass[best[i]])
+        best[i] = k;
+  }
+  std::sort(best.begin(), best.end());
+  best.erase(std::unique(best.begin(), best.end()), best.end());
+  for (const std::size_t k : best)
+    if (k != none)
+      plan.flows.push_back({static_cast<std::uint32_t>(k), mass[k]});
+  return plan;
+}
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_SINKHORN_H

@@ -1,0 +1,213 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Elastic matching of two curves by square-root velocities and dynamic programming.
+
+#ifndef PCS_SHAPE_SPACE_ELASTIC_CURVES_H
+#define PCS_SHAPE_SPACE_ELASTIC_CURVES_H
+
+#include <pcs/shape_space/Branch_paths.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+
+/// Unit tangents of a curve at N places of equal distance along it, column by column, and its length. The square-root
+/// velocity is the tangent times the root of the length.
+struct Sampled_curve
+{
+  Eigen::Matrix3Xd tangents;
+  double length = 0;              ///< [L]
+  Vec3 direction = Vec3::UnitZ(); ///< unit vector of the mean tangent
+  double spread = 0;              ///< largest angle between `direction` and a tangent [rad]
+};
+
+/// The place at arc length `s` on a polyline.
+inline Vec3 point_at(const Rooted_tree& tree, const Branch_path& path, double s)
+{
+  const auto it = std::upper_bound(path.arc.begin(), path.arc.end(), s);
+  const auto k = std::min<std::size_t>(path.arc.size() - 1,
+                                       std::max<std::ptrdiff_t>(1, it - path.arc.begin()));
+  const double length = path.arc[k] - path.arc[k - 1];
+  const double f = std::min(1.0, std::max(0.0, (s - path.arc[k - 1]) / length));
+  return (1 - f) * tree.points[path.nodes[k - 1]] + f * tree.points[path.nodes[k]];
+}
+
+/// Tangents by differences over two steps: kinks shorter than the step are smoothed, as by the text's spline.
+inline Sampled_curve sample_curve(const Rooted_tree& tree, const Branch_path& path, std::size_t n)
+{
+  Sampled_curve curve;
+  const auto size = static_cast<Eigen::Index>(n);
+  curve.length = path.length();
+  Eigen::Matrix3Xd places(3, size);
+  for (Eigen::Index i = 0; i < size; ++i)
+    places.col(i) =
+        point_at(tree, path, curve.length * static_cast<double>(i) / static_cast<double>(n - 1));
+  curve.tangents.resize(3, size);
+  Vec3 mean = Vec3::Zero();
+  for (Eigen::Index i = 0; i < size; ++i) {
+    Vec3 t = places.col(std::min(size - 1, i + 1)) - places.col(std::max<Eigen::Index>(0, i - 1));
+    if (t.squaredNorm() <= 0 || !(t.norm() > 0)) // turns back on itself
+      t = i > 0 ? Vec3(curve.tangents.col(i - 1)) : Vec3(places.col(size - 1) - places.col(0));
+    curve.tangents.col(i) = t.norm() > 0 ? Vec3(t.normalized()) : Vec3(Vec3::UnitZ());
+    mean += curve.tangents.col(i);
+  }
+  curve.direction = mean.norm() > 1e-12 * static_cast<double>(n) ? Vec3(mean.normalized())
+                                                                 : Vec3(curve.tangents.col(0));
+  double smallest = 1;
+  for (Eigen::Index i = 0; i < size; ++i)
+    smallest = std::min(smallest, curve.direction.dot(curve.tangents.col(i)));
+  curve.spread = std::acos(std::max(-1.0, smallest));
+  return curve;
+}
+
+/// Steps of the grid, coprime pairs up to 3 or up to 6.
+struct Slope
+{
+  std::uint8_t a, b;
+};
+using Slopes = std::vector<Slope>;
+inline Slopes make_slopes(int largest)
+{
+  Slopes slopes{{1, 1}}; // first: ties keep the plain correspondence
+  for (int a = 1; a <= largest; ++a)
+    for (int b = 1; b <= largest; ++b)
+      if (std::gcd(a, b) == 1 && a != b)
+        slopes.push_back({static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(b)});
+  return slopes;
+}
+
+/*!
+  Matches curve 2 to curve 1. With unit tangents u and lengths L the energy of a reparametrisation g is
+  `L1 + L2 - 2 sqrt(L1 L2) M(g)` with `M(g)` the integral of `sqrt(g') <u1, u2 o g>`; `M` is at most 1, so
+  `(sqrt L1 - sqrt L2)^2` bounds the energy from below whatever the grid.
+*/
+class Elastic_matcher
+{
+public:
+  Elastic_matcher(std::size_t number_of_samples, int largest_step)
+    : m_size(number_of_samples),
+      m_slopes(make_slopes(largest_step)),
+      m_dots(number_of_samples * number_of_samples),
+      m_best(number_of_samples * number_of_samples),
+      m_step(number_of_samples * number_of_samples),
+      m_gain(number_of_samples),
+      m_gamma(number_of_samples)
+  {
+  }
+
+  std::size_t number_of_samples() const { return m_size; }
+
+  /// Returns the largest `M`, at least 0, where `rotation` is applied to curve 2 first.
+  double
+  operator()(const Sampled_curve& one, const Sampled_curve& two, const Eigen::Matrix3d& rotation)
+  {
+    const std::size_t n = m_size;
+    const Eigen::Matrix3Xd turned = rotation * two.tangents;
+    Eigen::Map<Eigen::MatrixXd> dots(m_dots.data(),
+                                     static_cast<Eigen::Index>(n),
+                                     static_cast<Eigen::Index>(n));
+    dots.noalias() = turned.transpose() * one.tangents; // column i: all places of curve 2
+    std::fill(m_best.begin(), m_best.end(), -std::numeric_limits<double>::infinity());
+    m_best[0] = 0;
+    for (std::size_t i = 1; i < n; ++i)
+      for (std::size_t k = 0; k < m_slopes.size(); ++k)
+        if (m_slopes[k].a <= i)
+          take_step(i, k);
+    return std::max(0.0, m_best.back() / static_cast<double>(n - 1));
+  }
+
+  /// After a match: where the places of curve 1 are on curve 2, both as shares of the length, increasing from 0 to 1.
+  const std::vector<double>& gamma()
+  {
+    const std::size_t n = m_size;
+    std::size_t i = n - 1, j = n - 1;
+    m_gamma[i] = static_cast<double>(j);
+    while (i > 0) {
+      const Slope s = m_slopes[m_step[i * n + j]];
+      for (std::size_t x = 1; x <= s.a; ++x)
+        m_gamma[i - x] = static_cast<double>(j) - static_cast<double>(x * s.b) / s.a;
+      i -= s.a;
+      j -= s.b;
+    }
+    for (double& g : m_gamma)
+      g = std::max(0.0, g / static_cast<double>(n - 1));
+    return m_gamma;
+  }
+
+private:
+  /// Offers every cell of row `i` the step `k`; inner loops run along rows of the tables.
+  void take_step(std::size_t i, std::size_t k)
+  {
+    const std::size_t n = m_size, a = m_slopes[k].a, b = m_slopes[k].b;
+    const std::size_t count = n - b; // cells j = b ... n - 1, at [j - b]
+    double* const gain = m_gain.data();
+    std::fill(gain, gain + count, 0.0);
+    const double root = std::sqrt(static_cast<double>(b) / static_cast<double>(a));
+    for (std::size_t x = 0; x < a; ++x) {
+      const std::size_t whole = x * b / a;
+      const double f = static_cast<double>(x * b % a) / static_cast<double>(a);
+      const double* const row = m_dots.data() + (i - a + x) * n + whole;
+      const double w0 = root * (1 - f), w1 = root * f;
+      if (f == 0)
+        for (std::size_t j = 0; j < count; ++j)
+          gain[j] += w0 * row[j];
+      else
+        for (std::size_t j = 0; j < count; ++j)
+          gain[j] += w0 * row[j] + w1 * row[j + 1];
+    }
+    const double* const from = m_best.data() + (i - a) * n;
+    double* const to = m_best.data() + i * n + b;
+    std::uint8_t* const step = m_step.data() + i * n + b;
+    const auto id = static_cast<std::uint8_t>(k);
+    for (std::size_t j = 0; j < count; ++j) {
+      const double value = from[j] + gain[j];
+      const bool is_better = value > to[j];
+      to[j] = is_better ? value : to[j];
+      step[j] = is_better ? id : step[j];
+    }
+  }
+
+  std::size_t m_size;
+  Slopes m_slopes;
+  std::vector<double> m_dots, m_best;
+  std::vector<std::uint8_t> m_step;
+  std::vector<double> m_gain, m_gamma;
+};
+
+/// The value at `t` in [0, 1] of a function given at places of equal distance.
+inline double value_at(const std::vector<double>& gamma, double t)
+{
+  const double x = std::min(1.0, std::max(0.0, t)) * static_cast<double>(gamma.size() - 1);
+  const std::size_t i = std::min(gamma.size() - 2, static_cast<std::size_t>(x));
+  const double f = x - static_cast<double>(i);
+  return (1 - f) * gamma[i] + f * gamma[i + 1];
+}
+
+/// The inverse of such a function where it increases from 0 to 1.
+inline double inverse_at(const std::vector<double>& gamma, double y)
+{
+  const auto it = std::upper_bound(gamma.begin(), gamma.end(), y);
+  if (it == gamma.begin())
+    return 0;
+  if (it == gamma.end())
+    return 1;
+  const auto i = static_cast<std::size_t>(it - gamma.begin());
+  const double width = gamma[i] - gamma[i - 1];
+  const double f = width > 0 ? (y - gamma[i - 1]) / width : 0;
+  return (static_cast<double>(i - 1) + f) / static_cast<double>(gamma.size() - 1);
+}
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_ELASTIC_CURVES_H

@@ -1,0 +1,377 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Coordinates of two trees on their common topology, with frames whose twist does not count as a difference.
+
+#ifndef PCS_SHAPE_SPACE_EMBED_TREES_H
+#define PCS_SHAPE_SPACE_EMBED_TREES_H
+
+#include <pcs/shape_space/Common_topology.h>
+#include <pcs/shape_space/Orl_coordinates.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+
+/// Where a branch without partner points in the tree that does not have it.
+enum class Virtual_direction {
+  of_partner,  ///< as in the other tree: it grows in its direction
+  along_parent ///< along its parent: it grows upwards, then bends, as in the text
+};
+
+/// Edges of the common topology. Orientations at a fork refer to the edge before the mean attachment.
+inline Orl_layout make_layout(const std::vector<Common_branch>& branches)
+{
+  Orl_layout layout;
+  for (const Common_branch& b : branches) {
+    Orl_layout::Branch branch;
+    branch.parent = b.parent;
+    branch.first_edge = layout.parent_edge.size();
+    branch.number_of_edges = b.number_of_nodes() - 1;
+    if (b.parent != none) {
+      const Orl_layout::Branch& parent = layout.branches[b.parent];
+      const double t = std::ceil(0.5 * (b.attachment[0] + b.attachment[1])) - 1;
+      branch.reference_edge =
+          parent.first_edge +
+          std::min(parent.number_of_edges - 1, static_cast<std::size_t>(std::max(0.0, t)));
+    }
+    for (std::size_t j = 0; j < branch.number_of_edges; ++j)
+      layout.parent_edge.push_back(j == 0 ? branch.reference_edge : branch.first_edge + j - 1);
+    layout.branches.push_back(branch);
+  }
+  return layout;
+}
+
+namespace internal {
+
+/// Radius of a path at its node `k`; a branch does not begin thicker than its first edge.
+inline double path_radius(const Rooted_tree& tree, const Branch_path& path, std::size_t k)
+{
+  const std::size_t v = path.nodes[k];
+  if (k > 0 || path.is_trunk)
+    return tree.radii[v];
+  const std::size_t w = path.nodes[1];
+  return std::isfinite(tree.base_radii[w]) ? tree.base_radii[w]
+                                           : std::min(tree.radii[v], tree.radii[w]);
+}
+
+/// Position and radius at a share of the length of a path.
+inline std::pair<Vec3, double>
+node_at(const Rooted_tree& tree, const Branch_path& path, double share)
+{
+  const double s = share * path.length();
+  const auto it = std::lower_bound(path.arc.begin(), path.arc.end(), s);
+  auto k = static_cast<std::size_t>(it - path.arc.begin());
+  k = std::min(k, path.arc.size() - 1);
+  // a node itself, not a point near it
+  for (const std::size_t i : {k, k > 0 ? k - 1 : k})
+    if (std::abs(path.arc[i] - s) <= 1e-12 * path.length())
+      return {tree.points[path.nodes[i]], path_radius(tree, path, i)};
+  const double f = (s - path.arc[k - 1]) / (path.arc[k] - path.arc[k - 1]);
+  return {(1 - f) * tree.points[path.nodes[k - 1]] + f * tree.points[path.nodes[k]],
+          (1 - f) * path_radius(tree, path, k - 1) + f * path_radius(tree, path, k)};
+}
+
+/// Lengths, radii, attachments and directions of a tree; nothing for branches that it does not have.
+struct Embedding
+{
+  std::vector<Vec3> direction;   ///< per edge; null for edges that do not exist
+  std::vector<Quaternion> frame; ///< per edge
+  Orl_coordinates x;
+};
+
+inline Embedding embed(const Orl_layout& layout,
+                       const std::vector<Common_branch>& branches,
+                       const Rooted_tree& tree,
+                       const Branch_paths& paths,
+                       int t,
+                       const Vec3& shift)
+{
+  const std::size_t n = layout.number_of_edges(), m = branches.size();
+  Embedding result;
+  result.direction.assign(n, Vec3::Zero());
+  result.frame.assign(n, Quaternion::Identity());
+  Orl_coordinates& x = result.x;
+  x.root = tree.points[0] + shift;
+  x.orientation.assign(n, Quaternion::Identity());
+  x.length.assign(n, 0);
+  x.radius.assign(n, 0);
+  x.base_radius.assign(m, 0);
+  x.attachment.assign(m, 0);
+  const auto i = static_cast<std::size_t>(t);
+  for (std::size_t b = 0; b < m; ++b) {
+    x.attachment[b] = branches[b].attachment[i];
+    if (branches[b].is_virtual(t))
+      continue;
+    const Branch_path& path = paths.paths[branches[b].path[i]];
+    auto [from, radius] = node_at(tree, path, 0);
+    x.base_radius[b] = radius;
+    for (std::size_t j = 0; j < layout.branches[b].number_of_edges; ++j) {
+      const std::size_t e = layout.branches[b].first_edge + j;
+      const auto [to, end_radius] = node_at(tree, path, branches[b].node[i][j + 1]);
+      x.length[e] = (to - from).norm();
+      x.radius[e] = end_radius;
+      result.direction[e] = (to - from) / x.length[e];
+      from = to;
+    }
+  }
+  return result;
+}
+
+/// Turns frames along the edges that exist; `twist` is added to the transported frame.
+inline void set_frames(const Orl_layout& layout, const std::vector<double>& twist, Embedding& tree)
+{
+  for (std::size_t e = 0; e < layout.number_of_edges(); ++e)
+    if (tree.x.length[e] > 0) {
+      const std::size_t p = layout.parent_edge[e];
+      const Quaternion parent = p == none ? Quaternion::Identity() : tree.frame[p];
+      const Quaternion step = shortest_turn(Vec3::UnitZ(), parent.conjugate() * tree.direction[e]);
+      tree.frame[e] = parent * step * turn_about_z(twist[e]);
+      tree.frame[e].normalize();
+    }
+}
+
+/*!
+  The twist of the frames of tree 2 about its edges is free. It is chosen so that the sum over edges of weight times
+  angle between the orientations of both trees is least, by dynamic programming over a few angles: those by which many
+  edges of tree 2 stand about their parents further than those of tree 1. A branch that is turned as a whole has one
+  such angle, exactly, and then costs what it was turned by, and not one turn per edge.
+*/
+class Gauge
+{
+public:
+  static constexpr std::size_t most_angles = 12;
+
+  Gauge(const Orl_layout& layout, const Embedding& one, const Embedding& two)
+    : m_layout(layout), m_one(one), m_two(two)
+  {
+    for (std::size_t e = 0; e < layout.number_of_edges(); ++e)
+      if (one.x.length[e] > 0 && two.x.length[e] > 0)
+        m_edges.push_back(e);
+  }
+
+  /// Total twist of each edge's frame against the transported one, 0 where an edge is missing in either tree.
+  std::vector<double> run()
+  {
+    find_angles();
+    const std::size_t n = m_layout.number_of_edges(), k = m_angles.size();
+    std::vector<std::array<double, most_angles>> below(
+        n); // least cost of e and its subtree, by angle of the parent
+    std::vector<std::array<double, most_angles>> sum(n); // of the children of e, by angle of e
+    std::vector<std::array<std::size_t, most_angles>> choice(n);
+    for (auto& s : sum)
+      s.fill(0);
+    for (std::size_t i = m_edges.size(); i-- > 0;) {
+      const std::size_t e = m_edges[i], p = m_layout.parent_edge[e];
+      for (std::size_t a = 0; a < (p == none ? 1 : k); ++a) {
+        below[e][a] = std::numeric_limits<double>::infinity();
+        for (std::size_t c = 0; c < k; ++c) {
+          const double cost = weight(e) * angle(e, m_angles[a], m_angles[c]) + sum[e][c];
+          if (cost < below[e][a]) {
+            below[e][a] = cost;
+            choice[e][a] = c;
+          }
+        }
+        if (p != none)
+          sum[p][a] += below[e][a];
+      }
+    }
+    std::vector<double> twist(n, 0);
+    std::vector<std::size_t> chosen(n, 0);
+    for (const std::size_t e : m_edges) {
+      const std::size_t p = m_layout.parent_edge[e];
+      chosen[e] = choice[e][p == none ? 0 : chosen[p]];
+      twist[e] = m_angles[chosen[e]];
+    }
+    return twist;
+  }
+
+private:
+  double weight(std::size_t e) const { return 0.5 * (m_one.x.length[e] + m_two.x.length[e]); }
+
+  Quaternion parent_frame(const Embedding& tree, std::size_t e) const
+  {
+    const std::size_t p = m_layout.parent_edge[e];
+    return p == none ? Quaternion::Identity() : tree.frame[p];
+  }
+
+  /// Angle between the orientations of `e` in both trees, if the frames of tree 2 are twisted.
+  double angle(std::size_t e, double parent_twist, double twist) const
+  {
+    const Quaternion one = parent_frame(m_one, e).conjugate() * m_one.frame[e];
+    const Quaternion two = parent_frame(m_two, e).conjugate() * m_two.frame[e];
+    return angle_between(one, turn_about_z(-parent_twist) * two * turn_about_z(twist));
+  }
+
+  void find_angles()
+  {
+    struct Vote
+    {
+      double angle, weight;
+    };
+    constexpr double pi = static_cast<double>(EIGEN_PI), least_slant = 0.02, window = 0.01,
+                     gap = 0.1;
+    m_angles.assign(1, 0);
+    std::vector<Vote> votes;
+    for (const std::size_t e : m_edges) {
+      if (m_layout.parent_edge[e] == none)
+        continue;
+      const Vec3 a = parent_frame(m_one, e).conjugate() * m_one.direction[e];
+      const Vec3 b = parent_frame(m_two, e).conjugate() * m_two.direction[e];
+      const double slant = std::min(a.head<2>().norm(), b.head<2>().norm());
+      if (slant > least_slant)
+        votes.push_back(
+            {std::remainder(std::atan2(b.y(), b.x()) - std::atan2(a.y(), a.x()), 2 * pi),
+             slant * weight(e)});
+    }
+    std::sort(votes.begin(), votes.end(), [](const Vote& a, const Vote& b) {
+      return a.angle != b.angle ? a.angle < b.angle : a.weight < b.weight;
+    });
+    while (m_angles.size() < most_angles) {
+      // the window of angles with the greatest weight, not near one that is chosen already
+      std::size_t first = 0;
+      double sum = 0, most = 0;
+      std::size_t best_first = 0, best_last = 0;
+      const auto is_free = [&](double angle) {
+        for (const double a : m_angles)
+          if (std::abs(std::remainder(angle - a, 2 * pi)) < (a == 0 ? 1e-9 : gap))
+            return false;
+        return true;
+      };
+      std::vector<Vote> open;
+      for (const Vote& v : votes)
+        if (is_free(v.angle))
+          open.push_back(v);
+      for (std::size_t last = 0; last < open.size(); ++last) {
+        sum += open[last].weight;
+        while (open[last].angle - open[first].angle > window)
+          sum -= open[first++].weight;
+        if (sum > most * (1 + 1e-12)) {
+          most = sum;
+          best_first = first;
+          best_last = last;
+        }
+      }
+      if (open.empty())
+        break;
+      double half = 0;
+      std::size_t k = best_first;
+      for (; k < best_last; ++k)
+        if ((half += open[k].weight) >= 0.5 * most)
+          break;
+      m_angles.push_back(open[k].angle);
+    }
+  }
+
+  const Orl_layout& m_layout;
+  const Embedding& m_one;
+  const Embedding& m_two;
+  std::vector<std::size_t> m_edges; // of both trees
+  std::vector<double> m_angles;     // the first is 0
+};
+
+/// Orientations from frames; edges that a tree does not have take those of `other`.
+inline void set_orientations(const Orl_layout& layout,
+                             const std::vector<Common_branch>& branches,
+                             Orientation kind,
+                             Virtual_direction direction,
+                             int t,
+                             const Embedding& other,
+                             Embedding& tree)
+{
+  const auto own = [&](const Embedding& x, std::size_t e) {
+    const std::size_t p = layout.parent_edge[e];
+    return p == none ? x.frame[e] : relative(kind, x.frame[p], x.frame[e]);
+  };
+  for (std::size_t b = 0; b < branches.size(); ++b)
+    for (std::size_t j = 0; j < layout.branches[b].number_of_edges; ++j) {
+      const std::size_t e = layout.branches[b].first_edge + j;
+      const bool is_first_virtual =
+          j == 0 && branches[b].is_virtual(t) && !branches[branches[b].parent].is_virtual(t);
+      if (tree.x.length[e] > 0)
+        tree.x.orientation[e] = own(tree, e);
+      else if (is_first_virtual && direction == Virtual_direction::along_parent)
+        tree.x.orientation[e] = Quaternion::Identity();
+      else
+        tree.x.orientation[e] = own(other, e);
+    }
+}
+
+} // namespace internal
+
+/// Coordinates of both trees. `shift` is what brings the local coordinates of tree 2 to those of tree 1.
+inline std::array<Orl_coordinates, 2> embed_trees(const Orl_layout& layout,
+                                                  const std::vector<Common_branch>& branches,
+                                                  const std::array<const Rooted_tree*, 2>& trees,
+                                                  const std::array<Branch_paths, 2>& paths,
+                                                  Orientation kind,
+                                                  Virtual_direction direction)
+{
+  using namespace internal;
+  const Vec3 shift = trees[1]->origin - trees[0]->origin;
+  Embedding one = embed(layout, branches, *trees[0], paths[0], 0, Vec3::Zero());
+  Embedding two = embed(layout, branches, *trees[1], paths[1], 1, shift);
+  std::vector<double> twist(layout.number_of_edges(), 0);
+  if (kind == Orientation::world_axes) {
+    // v_c = q v_p q^-1 with the shortest turn q in the axes of the input; the frame is the product of these
+    for (Embedding* tree : {&one, &two})
+      for (std::size_t e = 0; e < layout.number_of_edges(); ++e)
+        if (tree->x.length[e] > 0) {
+          const std::size_t p = layout.parent_edge[e];
+          const Quaternion parent = p == none ? Quaternion::Identity() : tree->frame[p];
+          tree->frame[e] = shortest_turn(parent * Vec3::UnitZ(), tree->direction[e]) * parent;
+          tree->frame[e].normalize();
+        }
+  } else {
+    set_frames(layout, twist, one);
+    set_frames(layout, twist, two);
+    if (kind == Orientation::gauge_fixed) {
+      const std::vector<double> total = Gauge(layout, one, two).run();
+      for (std::size_t e = 0; e < layout.number_of_edges(); ++e) {
+        const std::size_t p = layout.parent_edge[e];
+        if (one.x.length[e] > 0) // else inherited from the parent by transport
+          twist[e] = total[e] - (p == none ? 0 : total[p]);
+      }
+      set_frames(layout, twist, two);
+    }
+  }
+  set_orientations(layout, branches, kind, direction, 0, two, one);
+  set_orientations(layout, branches, kind, direction, 1, one, two);
+  return {std::move(one.x), std::move(two.x)};
+}
+
+/// Weights in units of length: turns count with the mean length of the edge, all others 1; or all 1, as in the text.
+inline Orl_weights
+make_weights(const Orl_layout& layout, const std::array<Orl_coordinates, 2>& trees, bool is_text)
+{
+  Orl_weights w;
+  const std::size_t n = layout.number_of_edges(), m = layout.branches.size();
+  w.orientation.assign(n, 1);
+  w.length.assign(n, 1);
+  w.radius.assign(n, 1);
+  w.base_radius.assign(m, 1);
+  w.attachment.assign(m, 1);
+  if (is_text)
+    return w;
+  for (std::size_t e = 0; e < n; ++e)
+    w.orientation[e] = 0.5 * (trees[0].length[e] + trees[1].length[e]);
+  for (std::size_t b = 0; b < m; ++b)
+    if (const std::size_t p = layout.branches[b].parent; p != none) {
+      double length = 0;
+      for (std::size_t j = 0; j < layout.branches[p].number_of_edges; ++j)
+        length += w.orientation[layout.branches[p].first_edge + j];
+      w.attachment[b] = length / static_cast<double>(layout.branches[p].number_of_edges);
+    }
+  return w;
+}
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_EMBED_TREES_H

@@ -1,0 +1,242 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Transport against an independent solver, and recovery of a known correspondence.
+
+#include <pcs/shape_space/point_correspondences.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+using namespace pcs::shape_space;
+
+namespace {
+
+Transport_problem random_problem(std::mt19937& random, std::size_t n, std::size_t m, double density)
+{
+  std::uniform_real_distribution<double> uniform(0, 1);
+  Transport_problem problem;
+  for (std::size_t i = 0; i < n; ++i)
+    problem.supplies.push_back(0.1 + uniform(random));
+  for (std::size_t j = 0; j < m; ++j)
+    problem.demands.push_back(0.1 + uniform(random));
+  problem.supplies = pcs::shape_space::internal::to_shares(problem.supplies);
+  problem.demands = pcs::shape_space::internal::to_shares(problem.demands);
+  for (std::uint32_t i = 0; i < n; ++i)
+    for (std::uint32_t j = 0; j < m; ++j)
+      if (uniform(random) < density)
+        problem.arcs.push_back({i, j, uniform(random)});
+  return problem;
+}
+
+/// Successive shortest paths by Bellman and Ford, in doubles.
+double least_cost(const Transport_problem& problem)
+{
+  const std::size_t n = problem.supplies.size(), m = problem.demands.size();
+  std::vector<double> supply = problem.supplies, demand = problem.demands;
+  std::vector<double> flow(problem.arcs.size(), 0);
+  double cost = 0;
+  for (;;) {
+    std::vector<double> distance(n + m, std::numeric_limits<double>::infinity());
+    std::vector<std::size_t> arc(n + m, none);
+    for (std::size_t i = 0; i < n; ++i)
+      if (supply[i] > 1e-14)
+        distance[i] = 0;
+    for (bool is_changed = true; is_changed;) {
+      is_changed = false;
+      for (std::size_t k = 0; k < problem.arcs.size(); ++k) {
+        const auto& a = problem.arcs[k];
+        if (distance[a.source] + a.cost < distance[n + a.target] - 1e-13) {
+          distance[n + a.target] = distance[a.source] + a.cost;
+          arc[n + a.target] = k;
+          is_changed = true;
+        }
+        if (flow[k] > 1e-14 && distance[n + a.target] - a.cost < distance[a.source] - 1e-13) {
+          distance[a.source] = distance[n + a.target] - a.cost;
+          arc[a.source] = k;
+          is_changed = true;
+        }
+      }
+    }
+    std::size_t end = none;
+    for (std::size_t j = 0; j < m; ++j)
+      if (demand[j] > 1e-14 && (end == none || distance[n + j] < distance[n + end]))
+        end = j;
+    if (end == none || std::isinf(distance[n + end]))
+      return cost;
+    double step = demand[end];
+    std::size_t v = n + end;
+    while (arc[v] != none) {
+      const auto& a = problem.arcs[arc[v]];
+      if (v >= n)
+        v = a.source;
+      else {
+        step = std::min(step, flow[arc[v]]);
+        v = n + a.target;
+      }
+    }
+    step = std::min(step, supply[v]);
+    supply[v] -= step;
+    demand[end] -= step;
+    cost += step * distance[n + end];
+    for (v = n + end; arc[v] != none;) {
+      const auto& a = problem.arcs[arc[v]];
+      const bool is_forward = v >= n;
+      flow[arc[v]] += is_forward ? step : -step;
+      v = is_forward ? std::size_t(a.source) : n + a.target;
+    }
+  }
+}
+
+std::vector<Vec3> cylinder(std::mt19937& random, std::size_t n)
+{
+  std::uniform_real_distribution<double> uniform(0, 1);
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double angle = 2 * CGAL_PI * uniform(random);
+    points.push_back(Vec3(std::cos(angle), std::sin(angle), 6 * uniform(random)));
+  }
+  return points;
+}
+
+/// Mean distance to the nearest neighbour.
+double mean_spacing(const std::vector<Vec3>& points)
+{
+  const pcs::neighborhood::Nearest_neighbors search(points);
+  std::vector<pcs::neighborhood::Nearest_neighbors::Neighbor> found;
+  double sum = 0;
+  for (const Vec3& p : points) {
+    search(p, 2, found);
+    sum += std::sqrt(found[1].squared_distance);
+  }
+  return sum / static_cast<double>(points.size());
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(Transport_simplex)
+
+BOOST_AUTO_TEST_CASE(it_costs_as_little_as_another_solver_says)
+{
+  std::mt19937 random(1);
+  for (int repetition = 0; repetition < 50; ++repetition) {
+    const std::size_t n = 2 + random() % 12, m = 2 + random() % 12;
+    const Transport_problem problem = random_problem(random, n, m, 1);
+    const Transport_plan plan = pcs::shape_space::Transport_simplex()(problem);
+    BOOST_TEST(plan.is_complete);
+    BOOST_TEST(plan.violation <= 1e-9);
+    BOOST_TEST(plan.flows.size() <= n + m - 1);
+    BOOST_TEST(std::abs(plan.cost - least_cost(problem)) <= 1e-9);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(equal_masses_and_costs_come_to_an_end)
+{
+  Transport_problem problem; // everything degenerate
+  const std::size_t n = 60;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    problem.supplies.push_back(1.0 / n);
+    problem.demands.push_back(1.0 / n);
+    for (std::uint32_t j = 0; j < n; ++j)
+      problem.arcs.push_back({i, j, i == j ? 0.0 : 1.0});
+  }
+  const Transport_plan plan = pcs::shape_space::Transport_simplex()(problem);
+  BOOST_TEST(plan.is_complete);
+  BOOST_TEST(std::abs(plan.cost) < 1e-12);
+}
+
+BOOST_AUTO_TEST_CASE(mass_without_arcs_is_reported_and_not_hidden)
+{
+  Transport_problem problem;
+  problem.supplies = {0.5, 0.5};
+  problem.demands = {0.25, 0.75};
+  problem.arcs = {{0, 0, 1.0}, {1, 1, 1.0}};
+  const Transport_plan plan = pcs::shape_space::Transport_simplex()(problem);
+  BOOST_TEST(!plan.is_complete);
+  BOOST_TEST(std::abs(plan.violation - 0.5) < 1e-12);
+  BOOST_TEST(plan.is_unmet[0]);
+  BOOST_TEST(plan.is_unmet[3]);
+  const Transport_plan regularised = sinkhorn(problem, Sinkhorn_options());
+  BOOST_TEST(!regularised.is_complete);
+  BOOST_TEST(regularised.violation > 0.1);
+}
+
+BOOST_AUTO_TEST_CASE(skewed_densities_are_carried_with_area_weights)
+{
+  std::mt19937 random(2);
+  const std::vector<Vec3> one = cylinder(random, 600);
+  std::vector<Vec3> two = cylinder(random, 900);
+  for (Vec3& p : two) // four times as dense at one end
+    p.z() = 6 * (std::sqrt(1 + 15 * p.z() / 6) - 1) / 3;
+  Transport_problem problem;
+  const Transport_plan plan = match_points(one, two, Transport_options(), problem);
+  BOOST_TEST(plan.is_complete);
+  BOOST_TEST(plan.violation <= 1e-9);
+  std::vector<char> has_partner(one.size() + two.size(), 0);
+  const auto arcs = main_arcs(problem, plan);
+  for (const std::uint32_t k : arcs)
+    has_partner[problem.arcs[k].source] = has_partner[one.size() + problem.arcs[k].target] = 1;
+  BOOST_TEST(std::count(has_partner.begin(), has_partner.end(), 0) == 0);
+  BOOST_TEST(arcs.size() <= one.size() + two.size() - 1);
+}
+
+BOOST_AUTO_TEST_CASE(regularised_transport_approaches_the_exact_cost_from_above)
+{
+  std::mt19937 random(3);
+  const Transport_problem problem = random_problem(random, 30, 40, 1);
+  const double exact = pcs::shape_space::Transport_simplex()(problem).cost;
+  Sinkhorn_options options;
+  double last = std::numeric_limits<double>::infinity();
+  for (const double epsilon : {0.2, 0.05, 0.01}) {
+    options.regularization = epsilon;
+    options.iterations = 5000;
+    const Transport_plan plan = sinkhorn(problem, options);
+    BOOST_TEST(plan.violation < 1e-3);
+    BOOST_TEST(plan.cost > exact - 1e-3);
+    BOOST_TEST(plan.cost < last);
+    last = plan.cost;
+  }
+  BOOST_TEST(last < 1.1 * exact);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(point_recovery)
+
+BOOST_AUTO_TEST_CASE(the_correspondence_survives_rotation_and_anisotropic_scale)
+{
+  // the same points about an edge that is turned and stretched; noise in mean spacings
+  for (const std::size_t n : {std::size_t(500), std::size_t(3000)})
+    for (const auto& [noise, share] :
+         {std::make_pair(0.0, 1.0), std::make_pair(0.1, 0.98), std::make_pair(0.3, 0.78)}) {
+      std::mt19937 random(4);
+      std::normal_distribution<double> normal;
+      const std::vector<Vec3> local = cylinder(random, n);
+      const double spacing = mean_spacing(local);
+      const Eigen::Matrix3d r = Eigen::AngleAxisd(2, Vec3(1, 1, 2).normalized()).toRotationMatrix();
+      const Edge_cone one{Vec3::Zero(), Eigen::Matrix3d::Identity(), 6, 1, 1};
+      const Edge_cone two{Vec3(3, 4, 5), r, 6 * 0.6, 1.7, 1.7};
+      std::vector<Vec3> aligned, target;
+      for (const Vec3& p : local) {
+        aligned.push_back(point_of(two, tube_coordinates(one, p, true), true));
+        const double s = noise * spacing;
+        const Vec3 q = p + s * Vec3(normal(random), normal(random), normal(random));
+        target.push_back(two.from + r * Vec3(1.7 * q.x(), 1.7 * q.y(), 0.6 * q.z()));
+      }
+      Transport_options options;
+      options.weights = Point_weights::equal;
+      Transport_problem problem;
+      const Transport_plan plan = match_points(aligned, target, options, problem);
+      BOOST_TEST(plan.is_complete);
+      std::size_t right = 0;
+      for (const std::uint32_t k : main_arcs(problem, plan))
+        right += problem.arcs[k].source == problem.arcs[k].target ? 1 : 0;
+      BOOST_TEST_MESSAGE("n " << n << ", noise " << noise << ": " << right << " right");
+      BOOST_TEST_CONTEXT("n " << n << " noise " << noise)
+      BOOST_TEST(static_cast<double>(right) >= share * static_cast<double>(n));
+    }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

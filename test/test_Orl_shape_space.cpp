@@ -1,0 +1,640 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Laws of the shape space of trees: axioms, midpoints, ends, invariance, extrapolation, determinism, errors.
+
+#include <pcs/IO/read_correspondences.h>
+#include <pcs/IO/write_correspondences.h>
+#include <pcs/orl_geodesic.h>
+#include <support/archetypes.h>
+#include <support/exceptions.h>
+#include <support/orl_trees.h>
+#include <support/threads.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <filesystem>
+#include <limits>
+#include <set>
+#include <unistd.h>
+
+using namespace orl_test;
+using namespace pcs::shape_space;
+namespace np = pcs::parameters;
+using Space = pcs::Orl_shape_space<Kernel>;
+using pcs_test::message_has;
+
+namespace {
+
+Space make_space(const Tree& a, const Tree& b)
+{
+  Space space;
+  space.add_skeleton(a);
+  space.add_skeleton(b);
+  space.build();
+  return space;
+}
+
+/// Any coordinates on the layout of the space.
+Orl_coordinates random_coordinates(const Orl_layout& layout, std::mt19937& random)
+{
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform(0, 1);
+  Orl_coordinates x;
+  x.root = Vec3(normal(random), normal(random), normal(random));
+  for (std::size_t e = 0; e < layout.number_of_edges(); ++e) {
+    pcs::Quaternion q(normal(random), normal(random), normal(random), normal(random));
+    q.normalize(); // of either sign
+    x.orientation.push_back(q);
+    x.length.push_back(uniform(random) < 0.1 ? 0 : uniform(random));
+    x.radius.push_back(0.1 * uniform(random));
+  }
+  for (std::size_t b = 0; b < layout.branches.size(); ++b) {
+    x.base_radius.push_back(0.1 * uniform(random));
+    const std::size_t p = layout.branches[b].parent;
+    x.attachment.push_back(
+        p == none ? 0 : uniform(random) * static_cast<double>(layout.branches[p].number_of_edges));
+  }
+  return x;
+}
+
+struct Small_space : Space
+{
+  Small_space() : Space(make_space(random_tree(1, 3, 2), random_tree(2, 3, 2))) {}
+};
+
+double worst_end_error(const Space& space,
+                       const pcs::Orl_tree& tree,
+                       int end,
+                       const std::vector<Point>& scan,
+                       std::size_t& number_seen)
+{
+  std::vector<Point> points;
+  space.points(tree, points);
+  std::vector<char> is_seen(scan.size(), 0);
+  std::vector<double> error(points.size(), 0);
+  space.for_each_point(tree, [&](std::size_t i, std::size_t a, std::size_t b, double) {
+    const std::size_t k = end == 0 ? a : b;
+    if (k != pcs::npos)
+      error[i] = std::sqrt(CGAL::squared_distance(points[i], scan[k]));
+  });
+  space.for_each_point(tree, [&](std::size_t, std::size_t a, std::size_t b, double) {
+    const std::size_t k = end == 0 ? a : b;
+    if (k != pcs::npos)
+      is_seen[k] = 1;
+  });
+  number_seen = static_cast<std::size_t>(std::count(is_seen.begin(), is_seen.end(), 1));
+  return *std::max_element(error.begin(), error.end());
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(orl_laws)
+
+BOOST_AUTO_TEST_CASE(distances_are_symmetric_and_obey_the_triangle)
+{
+  const Small_space space;
+  std::mt19937 random(1);
+  std::size_t number_of_defects = 0;
+  for (const Orl_metric metric : {Orl_metric::sum, Orl_metric::square, Orl_metric::cone})
+    for (int i = 0; i < 10000 / 3; ++i) {
+      const auto x = random_coordinates(space.layout(), random);
+      const auto y = random_coordinates(space.layout(), random);
+      const auto z = random_coordinates(space.layout(), random);
+      const double xy = distance(x, y, space.weights(), metric);
+      const double yz = distance(y, z, space.weights(), metric);
+      const double xz = distance(x, z, space.weights(), metric);
+      if (distance(x, x, space.weights(), metric) != 0 || xy <= 0 ||
+          std::abs(xy - distance(y, x, space.weights(), metric)) > 1e-12 * xy ||
+          xz > (xy + yz) * (1 + 1e-12))
+        ++number_of_defects;
+    }
+  BOOST_TEST(number_of_defects == 0u);
+}
+
+BOOST_AUTO_TEST_CASE(the_path_has_constant_speed_whatever_the_signs_of_quaternions)
+{
+  const Small_space space;
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (const Orl_metric metric : {Orl_metric::sum, Orl_metric::square})
+    for (int i = 0; i < 20; ++i) {
+      const auto x = random_coordinates(space.layout(), random);
+      const auto y = random_coordinates(space.layout(), random);
+      const double d = distance(x, y, space.weights(), metric);
+      Orl_coordinates p, q;
+      const double s = uniform(random), t = i == 0 ? 0.5 : uniform(random);
+      coordinates_at(space.layout(), x, y, s, 1, p);
+      coordinates_at(space.layout(), x, y, t, 1, q);
+      BOOST_TEST(std::abs(distance(p, q, space.weights(), metric) - std::abs(s - t) * d) <=
+                 1e-12 * d);
+      BOOST_TEST(std::abs(distance(x, q, space.weights(), metric) - t * d) <= 1e-12 * d);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(the_ends_of_the_path_are_the_inputs)
+{
+  const Tree a = random_tree(3),
+             b = moved(random_tree(4), Eigen::Matrix3d::Identity(), {1e3, 2, 3});
+  const std::vector<Point> scans[2] = {tube_points(a, 6000, 5), tube_points(b, 4000, 6)};
+  Space space;
+  space.add(a, scans[0]);
+  space.add(b, scans[1]);
+  const auto report = space.build();
+  BOOST_TEST((report.status == pcs::Status::converged));
+  BOOST_TEST(report.worst_marginal_violation < 1e-9);
+  for (int end = 0; end < 2; ++end) {
+    const pcs::Orl_tree tree = space.tree(static_cast<std::size_t>(end));
+    std::size_t number_seen = 0;
+    BOOST_TEST(worst_end_error(space, tree, end, scans[end], number_seen) < 1e-12 * 1e3);
+    BOOST_TEST(number_seen == scans[end].size());
+    // every node of the input is a node of the output
+    Tree out;
+    space.skeleton(tree, out);
+    const Tree& in = end == 0 ? a : b;
+    for (const auto v : boost::make_iterator_range(vertices(in))) {
+      double least = 1e300;
+      for (const auto w : boost::make_iterator_range(vertices(out)))
+        least = std::min(least, CGAL::squared_distance(in[v].point, out[w].point));
+      BOOST_TEST(std::sqrt(least) < 1e-12 * 1e3);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(turning_and_moving_both_trees_changes_nothing_but_the_place)
+{
+  const Tree a = random_tree(7), b = random_tree(8);
+  const Eigen::Matrix3d r = Eigen::AngleAxisd(1.1, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  const Vec3 shift(5, -3, 2);
+  const Space space = make_space(a, b), other = make_space(moved(a, r, shift), moved(b, r, shift));
+  const double d = space.distance(0, 1);
+  // the first edge of the trunk is measured in the axes of the input, so only its part may differ
+  BOOST_TEST(std::abs(other.distance(0, 1) - d) < 0.02 * d);
+  Tree one, two;
+  space.skeleton(space.geodesic(0, 1, 0.3), one);
+  other.skeleton(other.geodesic(0, 1, 0.3), two);
+  BOOST_REQUIRE(num_vertices(one) == num_vertices(two));
+  // matching is by geometry, so the topologies agree
+  BOOST_TEST(space.matches().size() == other.matches().size());
+}
+
+BOOST_AUTO_TEST_CASE(a_tree_turned_as_a_whole_is_as_far_away_as_it_was_turned)
+{
+  const Tree a = random_tree(9);
+  const double angle = CGAL_PI / 3;
+  const Tree b = moved(a, Eigen::AngleAxisd(angle, Vec3::UnitZ()).toRotationMatrix(), {0, 0, 0});
+  Space space;
+  space.add_skeleton(a);
+  space.add_skeleton(b);
+  space.build(np::do_use_unit_weights(true));
+  BOOST_TEST(std::abs(space.distance(0, 1) - angle) < 1e-6);
+  // control: in the axes of the input nearly every edge pays for it
+  Space world;
+  world.add_skeleton(a);
+  world.add_skeleton(b);
+  world.build(np::do_use_unit_weights(true).orientation(Orientation::world_axes));
+  BOOST_TEST(world.distance(0, 1) > 10 * angle);
+}
+
+BOOST_AUTO_TEST_CASE(a_branch_that_is_turned_keeps_its_lengths_and_costs_its_angle)
+{
+  const std::vector<Branch> branches = random_branches(10, 4, 3);
+  const std::vector<char> all(branches.size(), 1);
+  Turns turns(branches.size(), Eigen::Matrix3d::Identity());
+  std::vector<std::size_t> tip_a, tip_b;
+  const Tree a = make_tree(branches, turns, all, tip_a);
+  for (const double degrees : {10., 30., 60., 90., 120., 150., 170.}) {
+    const double angle = degrees * CGAL_PI / 180;
+    turns[2] = Eigen::AngleAxisd(angle, Vec3(1, 0.3, 0.2).normalized()).toRotationMatrix();
+    const Tree b = make_tree(branches, turns, all, tip_b);
+    // what corresponds is known here, so it is not asked for
+    Space space = make_space(a, a);
+    pcs::Orl_correspondences known = space.correspondences();
+    Space turned;
+    turned.add_skeleton(a);
+    turned.add_skeleton(b);
+    turned.build();
+    known.fingerprint = turned.correspondences().fingerprint;
+    turned.build_from(known, np::do_use_unit_weights(true));
+    BOOST_TEST_CONTEXT(degrees << " degrees")
+    {
+      BOOST_TEST(std::abs(turned.distance(0, 1) - angle) < 1e-6);
+      const auto end = turned.tree(0), middle = turned.geodesic(0, 1, 0.5);
+      double worst = 0;
+      for (std::size_t e = 0; e < turned.layout().number_of_edges(); ++e)
+        worst =
+            std::max(worst, std::abs(end.coordinates().length[e] - middle.coordinates().length[e]));
+      BOOST_TEST(worst < 1e-12);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(beyond_the_ends_lengths_and_radii_stay_positive)
+{
+  const Space space = make_space(random_tree(11), random_tree(12));
+  for (double lambda = -0.5; lambda <= 1.5; lambda += 0.05) {
+    const auto tree = space.geodesic(0, 1, lambda, np::do_limit_radii(true));
+    const auto& x = tree.coordinates();
+    bool is_right = true;
+    for (std::size_t e = 0; e < x.length.size(); ++e)
+      is_right = is_right && x.length[e] >= 0 && x.radius[e] >= 0 && std::isfinite(x.length[e]) &&
+                 std::isfinite(x.radius[e]) && x.orientation[e].coeffs().allFinite();
+    BOOST_TEST(is_right);
+    Tree out;
+    space.skeleton(tree, out);
+    for (const auto e : boost::make_iterator_range(edges(out))) {
+      const auto u = source(e, out), v = target(e, out);
+      // a first node lies on the axis behind u, where the parent may be thinner than at u
+      if (out[v].radius > out[u].radius * (1 + 1e-12))
+        is_right = false;
+    }
+    BOOST_TEST(is_right);
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(orl_matching)
+
+BOOST_AUTO_TEST_CASE(a_pruned_and_turned_tree_is_matched_to_itself)
+{
+  double mean = 0, published = 0;
+  const int number = 5;
+  for (unsigned seed = 0; seed < number; ++seed) {
+    const std::vector<Branch> branches = random_branches(100 + seed);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    std::normal_distribution<double> normal;
+    Turns turns(branches.size(), Eigen::Matrix3d::Identity());
+    const Turns still = turns;
+    std::vector<char> all(branches.size(), 1), kept = all;
+    for (std::size_t b = 1; b < branches.size(); ++b) {
+      turns[b] =
+          Eigen::AngleAxisd(0.3 * normal(random),
+                            Vec3(normal(random), normal(random), normal(random)).normalized())
+              .toRotationMatrix();
+      kept[b] = uniform(random) > 0.3;
+    }
+    std::vector<std::size_t> tip_a, tip_b;
+    const Tree a = make_tree(branches, still, all, tip_a);
+    const Tree b = make_tree(branches, turns, kept, tip_b);
+    for (const bool is_published : {false, true}) {
+      Space space;
+      space.add_skeleton(a);
+      space.add_skeleton(b);
+      Matching_weights weights;
+      weights.is_published = is_published;
+      space.build(np::matching_weights(weights));
+      double right = 0, total = 0;
+      for (const auto& match : space.matches())
+        if (match.tip[1] != pcs::npos) {
+          total += 1;
+          for (std::size_t k = 0; k < branches.size(); ++k)
+            if (tip_b[k] == match.tip[1] && tip_a[k] == match.tip[0])
+              right += 1;
+        }
+      (is_published ? published : mean) += right / total / number;
+    }
+  }
+  BOOST_TEST_MESSAGE("right: " << mean << ", published energy: " << published);
+  BOOST_TEST(mean > 0.95);
+  BOOST_TEST(mean >= published);
+}
+
+BOOST_AUTO_TEST_CASE(a_fork_whose_longer_side_changes_keeps_its_branches)
+{
+  const auto fork = [](double left, double right) {
+    std::vector<Branch> branches(3);
+    for (int k = 0; k <= 4; ++k) {
+      branches[0].points.push_back(Vec3(0, 0, 0.5 * k));
+      branches[0].radii.push_back(0.1);
+    }
+    for (int side = 0; side < 2; ++side) {
+      Branch& b = branches[static_cast<std::size_t>(1 + side)];
+      b.parent = 0;
+      b.at = 4;
+      const Vec3 direction = Vec3(side == 0 ? -1 : 1, 0.2 * side, 1.5).normalized();
+      for (int k = 0; k <= 4; ++k) {
+        b.points.push_back(0.25 * k * (side == 0 ? left : right) * direction);
+        b.radii.push_back(0.05);
+      }
+    }
+    return branches;
+  };
+  std::vector<std::size_t> tip_a, tip_b;
+  const Turns still(3, Eigen::Matrix3d::Identity());
+  const Tree a = make_tree(fork(1, 1.02), still, {1, 1, 1}, tip_a);
+  const Tree b = make_tree(fork(1.02, 1), still, {1, 1, 1}, tip_b);
+  for (const auto& match : make_space(a, b).matches()) {
+    BOOST_TEST((match.tip[0] == tip_a[1]) == (match.tip[1] == tip_b[1]));
+    BOOST_TEST(match.tip[0] != pcs::npos);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_order_of_vertices_does_not_matter)
+{
+  const Tree a = random_tree(13), b = random_tree(14);
+  const auto reversed = [](const Tree& tree) {
+    const std::size_t n = num_vertices(tree);
+    Tree result(n);
+    for (std::size_t v = 0; v < n; ++v)
+      result[n - 1 - v] = tree[v];
+    std::vector<std::pair<std::size_t, std::size_t>> list;
+    for (const auto e : boost::make_iterator_range(edges(tree)))
+      list.emplace_back(n - 1 - source(e, tree), n - 1 - target(e, tree));
+    std::reverse(list.begin(), list.end());
+    for (const auto& [u, v] : list)
+      add_edge(u, v, result);
+    return result;
+  };
+  const auto matches = make_space(a, b).matches();
+  const auto others = make_space(reversed(a), reversed(b)).matches();
+  const auto as_set =
+      [](const std::vector<pcs::Branch_match>& list, std::size_t n, std::size_t m, bool flip) {
+        std::set<std::pair<std::size_t, std::size_t>> result;
+        for (const auto& match : list)
+          result.emplace(flip && match.tip[0] != pcs::npos ? n - 1 - match.tip[0] : match.tip[0],
+                         flip && match.tip[1] != pcs::npos ? m - 1 - match.tip[1] : match.tip[1]);
+        return result;
+      };
+  BOOST_TEST(
+      (as_set(matches, 0, 0, false) == as_set(others, num_vertices(a), num_vertices(b), true)));
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(orl_determinism)
+
+BOOST_AUTO_TEST_CASE(results_do_not_depend_on_the_number_of_threads)
+{
+  const Tree a = random_tree(15), b = random_tree(16);
+  const auto scan_a = tube_points(a, 5000, 1), scan_b = tube_points(b, 7000, 2);
+  std::vector<Point> expected;
+  {
+    pcs::Orl_shape_space<Kernel, CGAL::Sequential_tag> space;
+    space.add(a, scan_a);
+    space.add(b, scan_b);
+    space.build();
+    space.points(space.geodesic(0, 1, 0.4), expected);
+  }
+  for (const int n : pcs_test::thread_counts)
+    pcs_test::with_threads(n, [&] {
+      Tree tree;
+      std::vector<Point> points;
+      pcs::orl_geodesic(a, scan_a, b, scan_b, 0.4, tree, points);
+      BOOST_TEST((points == expected));
+    });
+}
+
+BOOST_AUTO_TEST_CASE(correspondences_survive_a_file)
+{
+  const Tree a = random_tree(17), b = random_tree(18);
+  const auto scan_a = tube_points(a, 3000, 1), scan_b = tube_points(b, 2000, 2);
+  Space space;
+  space.add(a, scan_a);
+  space.add(b, scan_b);
+  space.build();
+  const std::string path =
+      (std::filesystem::temp_directory_path() / ("pcs_orl_" + std::to_string(::getpid()) + ".txt"))
+          .string();
+  pcs::IO::write_correspondences(path, space.correspondences());
+  Space again;
+  again.add(a, scan_a);
+  again.add(b, scan_b);
+  again.build_from(pcs::IO::read_correspondences(path));
+  std::filesystem::remove(path);
+  std::vector<Point> one, two;
+  space.points(space.geodesic(0, 1, 0.7), one);
+  again.points(again.geodesic(0, 1, 0.7), two);
+  BOOST_TEST((one == two));
+
+  Space other;
+  other.add(b, scan_b);
+  other.add(a, scan_a);
+  BOOST_CHECK_EXCEPTION(other.build_from(space.correspondences()),
+                        pcs::Invalid_input,
+                        message_has("other trees"));
+  auto broken = space.correspondences();
+  broken.pairs.back().point[0] = 1000000;
+  BOOST_CHECK_THROW(again.build_from(broken), pcs::Invalid_input);
+  broken = space.correspondences();
+  broken.branches.back().parent = broken.branches.size();
+  BOOST_CHECK_THROW(again.build_from(broken), pcs::Invalid_input);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(orl_points)
+
+BOOST_AUTO_TEST_CASE(points_stay_at_the_surface_and_evenly_spread)
+{
+  const Tree a = random_tree(19, 4, 2), b = random_tree(20, 4, 2);
+  const auto scan_a = tube_points(a, 20000, 1), scan_b = tube_points(b, 20000, 2);
+  Space space;
+  space.add(a, scan_a);
+  space.add(b, scan_b);
+  space.build();
+  for (const double lambda : {0.25, 0.5, 0.75}) {
+    const auto tree = space.geodesic(0, 1, lambda);
+    std::vector<Point> points;
+    space.points(tree, points);
+    Tree skeleton;
+    space.skeleton(tree, skeleton);
+    std::size_t number_far = 0;
+    for (const Point& p : points) {
+      double least = 1e300; // distance from the axis in radii
+      for (const auto e : boost::make_iterator_range(edges(skeleton))) {
+        const auto &u = skeleton[source(e, skeleton)], &v = skeleton[target(e, skeleton)];
+        const Vec3 from = to_eigen(u.point), axis = to_eigen(v.point) - from;
+        if (axis.squaredNorm() == 0)
+          continue;
+        const double t = std::clamp((to_eigen(p) - from).dot(axis) / axis.squaredNorm(), 0., 1.);
+        const double r = (1 - t) * u.radius + t * v.radius;
+        least = std::min(least, (to_eigen(p) - from - t * axis).norm() / r);
+      }
+      number_far += least > 1.2 ? 1 : 0;
+    }
+    BOOST_TEST(number_far == 0u);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(sections_keep_their_size_where_virtual_edges_shrink_them)
+{
+  // a straight branch, and itself turned about its axis by a quarter in the pairing of its points
+  std::vector<Branch> branches(1);
+  for (int k = 0; k <= 1; ++k) {
+    branches[0].points.push_back(Vec3(0, 0, 10 * k));
+    branches[0].radii.push_back(1);
+  }
+  const Tree tree = make_tree(branches);
+  const std::vector<Point> one{Point(1, 0, 9)}, two{Point(0, 1, 9)};
+  Space space;
+  space.add(tree, one);
+  space.add(tree, two);
+  space.build();
+  std::vector<Point> points;
+  const auto middle = space.geodesic(0, 1, 0.5);
+  space.points(middle, points);
+  BOOST_TEST_REQUIRE(points.size() == 1u);
+  BOOST_TEST(std::abs(std::hypot(points[0].x(), points[0].y()) - 1) < 1e-12);
+  space.points(middle, points, np::point_path(Point_path::virtual_edges));
+  BOOST_TEST(std::hypot(points[0].x(), points[0].y()) < 0.75);
+}
+
+BOOST_AUTO_TEST_CASE(normals_follow_their_edges)
+{
+  const Tree a = random_tree(21, 3, 2);
+  const Eigen::Matrix3d r = Eigen::AngleAxisd(0.8, Vec3::UnitX()).toRotationMatrix();
+  const Tree b = moved(a, r, {0, 0, 0});
+  using Oriented = std::pair<Point, Kernel::Vector_3>;
+  std::vector<Oriented> scan_a, scan_b;
+  for (const Point& p : tube_points(a, 2000, 3)) {
+    scan_a.emplace_back(p, Kernel::Vector_3(p.x() + 1, p.y(), 1));
+    const Vec3 q = r * to_eigen(p), n = r * Vec3(p.x() + 1, p.y(), 1);
+    scan_b.emplace_back(to_cgal(q), Kernel::Vector_3(n.x(), n.y(), n.z()));
+  }
+  const auto maps = np::point_map(CGAL::First_of_pair_property_map<Oriented>())
+                        .normal_map(CGAL::Second_of_pair_property_map<Oriented>());
+  Space space;
+  space.add(a, scan_a, maps);
+  space.add(b, scan_b, maps);
+  space.build();
+  std::vector<Oriented> points;
+  const auto end = space.tree(1);
+  space.points(end, points, maps);
+  std::vector<double> error(points.size());
+  space.for_each_point(end, [&](std::size_t i, std::size_t, std::size_t k, double) {
+    const Kernel::Vector_3 n = scan_b[k].second;
+    error[i] = std::sqrt((points[i].second - n / std::sqrt(n.squared_length())).squared_length());
+  });
+  BOOST_TEST(*std::max_element(error.begin(), error.end()) < 1e-12);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(orl_errors)
+
+BOOST_AUTO_TEST_CASE(broken_trees_are_refused_with_a_reason)
+{
+  Space space;
+  const auto refuse = [&](const Tree& tree, const char* word) {
+    BOOST_CHECK_EXCEPTION(space.add_skeleton(tree), pcs::Invalid_input, message_has(word));
+  };
+  refuse(Tree(), "0 nodes");
+  refuse(Tree(1), "1 nodes");
+  Tree two_roots(3);
+  add_edge(0, 1, two_roots);
+  refuse(two_roots, "without parent");
+  Tree cycle(3);
+  add_edge(0, 1, cycle);
+  add_edge(1, 2, cycle);
+  add_edge(2, 0, cycle);
+  refuse(cycle, "no root");
+  Tree two_parents(3);
+  add_edge(0, 1, two_parents);
+  add_edge(0, 2, two_parents);
+  add_edge(2, 1, two_parents);
+  refuse(two_parents, "two parents");
+  Tree in_one_place(2);
+  add_edge(0, 1, in_one_place);
+  refuse(in_one_place, "span");
+  Tree good = random_tree(22, 2, 2), bad = good;
+  bad[3].point = Point(std::numeric_limits<double>::quiet_NaN(), 0, 0);
+  refuse(bad, "node 3");
+  bad = good;
+  bad[2].radius = -1;
+  refuse(bad, "radius of node 2");
+  BOOST_CHECK_EXCEPTION(
+      space.add(good, std::vector<Point>{Point(0, 0, std::numeric_limits<double>::infinity())}),
+      pcs::Invalid_input,
+      message_has("point 0"));
+  BOOST_CHECK_EXCEPTION(space.build(), pcs::Invalid_input, message_has("0 trees"));
+  space.add_skeleton(good);
+  space.add_skeleton(good);
+  BOOST_CHECK_EXCEPTION(space.add_skeleton(good), pcs::Invalid_input, message_has("two trees"));
+  BOOST_CHECK_EXCEPTION(space.tree(0), pcs::Invalid_input, message_has("build()"));
+  space.build();
+  BOOST_CHECK_THROW(space.geodesic(0, 2, 0.5), pcs::Invalid_input);
+  BOOST_CHECK_THROW(space.geodesic(0, 1, std::numeric_limits<double>::quiet_NaN()),
+                    pcs::Invalid_input);
+  BOOST_TEST(space.distance(0, 1) < 1e-9);
+}
+
+BOOST_AUTO_TEST_CASE(a_tree_of_one_edge_and_points_far_away_are_no_trouble)
+{
+  Tree edge(2);
+  edge[1].point = Point(0, 0, 1);
+  add_edge(0, 1, edge);
+  const std::vector<Point> scan{Point(0, 0, 0), Point(0, 0, 0), Point(100, 0, 0), Point(0, 0, 0.5)};
+  Tree out;
+  std::vector<Point> points;
+  const Tree other = random_tree(23);
+  const auto report =
+      pcs::orl_geodesic(edge, scan, other, tube_points(other, 100, 1), 0.5, out, points);
+  BOOST_TEST((report.status == pcs::Status::converged));
+  for (const Point& p : points)
+    BOOST_TEST(to_eigen(p).allFinite());
+}
+
+BOOST_AUTO_TEST_CASE(stems_may_part_at_the_root)
+{
+  Tree bush(5);
+  const double x[] = {0, 1, 2, -1, 0}, z[] = {0, 2, 4, 2, 3};
+  for (std::size_t v = 0; v < 5; ++v) {
+    bush[v].point = Point(x[v], 0, z[v]);
+    bush[v].radius = 0.1;
+  }
+  add_edge(0, 1, bush);
+  add_edge(1, 2, bush);
+  add_edge(0, 3, bush);
+  add_edge(0, 4, bush);
+  const Tree other = random_tree(26, 3, 2);
+  for (const bool is_first : {true, false}) {
+    const Space space = is_first ? make_space(bush, other) : make_space(other, bush);
+    std::size_t number = 0;
+    for (const auto& m : space.matches())
+      number += m.tip[is_first ? 0 : 1] != pcs::npos ? 1 : 0;
+    BOOST_TEST(number == 3u);
+    Tree out;
+    space.skeleton(space.tree(is_first ? 0 : 1), out);
+    BOOST_TEST(out[boost::graph_bundle].branches.size() == 3u);
+    Space again;
+    again.add_skeleton(is_first ? bush : other);
+    again.add_skeleton(is_first ? other : bush);
+    again.build_from(space.correspondences());
+    BOOST_TEST(again.distance(0, 1) == space.distance(0, 1));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(cancelling_leaves_outputs_and_the_space_as_they_were)
+{
+  const Tree a = random_tree(24), b = random_tree(25);
+  const auto scan = tube_points(a, 1000, 1);
+  int calls = 0;
+  Tree ignored;
+  std::vector<Point> ignored_points;
+  pcs::orl_geodesic(a, scan, b, scan, 0.5, ignored, ignored_points, np::callback([&](double) {
+                      return ++calls > 0;
+                    }));
+  BOOST_TEST(calls > 3);
+  for (int stop = 1; stop <= calls; ++stop) {
+    int count = 0;
+    double last = 0;
+    bool is_monotone = true;
+    Tree out(1);
+    std::vector<Point> points{Point(7, 7, 7)};
+    const auto report =
+        pcs::orl_geodesic(a, scan, b, scan, 0.5, out, points, np::callback([&](double f) {
+                            is_monotone = is_monotone && f >= last && f <= 1;
+                            last = f;
+                            return ++count < stop;
+                          }));
+    BOOST_TEST(is_monotone);
+    if (report.status == pcs::Status::cancelled) {
+      BOOST_TEST(num_vertices(out) == 1u);
+      BOOST_TEST((points == std::vector<Point>{Point(7, 7, 7)}));
+    } else
+      BOOST_TEST(stop == calls); // the last call comes when all is done
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
