@@ -136,7 +136,7 @@ private:
     std::mutex mutex;
     std::unordered_map<Question, Result, Hash> results;
   };
-  static constexpr double turn_step = 0.2; // [rad]
+  static constexpr double turn_step = 0.1; // [rad]
 
   Result match(std::size_t start_1, std::size_t start_2, const Eigen::Matrix3d& rotation)
   {
