@@ -101,6 +101,7 @@ public:
             return;
           const std::array<Edge_cone, 2> cone = {edge_cone(layout, geometry[0], m_branch_of[e], e),
                                                  edge_cone(layout, geometry[1], m_branch_of[e], e)};
+          m_is_relative[e] = m_is_relative[e] && are_near(e, cone, points) ? 1 : 0;
           for (std::size_t k = m_first[e]; k < m_first[e + 1]; ++k)
             set_pair(k, cone, points, normals);
         },
@@ -162,6 +163,23 @@ public:
   }
 
 private:
+  /// Whether no point is so far off that a thicker branch must not carry it further: scans of thin twigs are noise.
+  bool are_near(std::size_t e,
+                const std::array<Edge_cone, 2>& cone,
+                const std::array<std::vector<Vec3>, 2>& points) const
+  {
+    constexpr double farthest = 2; // radii
+    for (std::size_t k = m_first[e]; k < m_first[e + 1]; ++k)
+      for (std::size_t t = 0; t < 2; ++t)
+        if (m_pairs[k].point[t] != no_point) {
+          const Tube_coordinates c =
+              tube_coordinates(cone[t], points[t][m_pairs[k].point[t]], true);
+          if (!(c.distance <= farthest) || !(std::abs(c.overshoot) <= farthest))
+            return false;
+        }
+    return true;
+  }
+
   void set_pair(std::size_t k,
                 const std::array<Edge_cone, 2>& cone,
                 const std::array<std::vector<Vec3>, 2>& points,
@@ -181,6 +199,12 @@ private:
     for (std::size_t t = 0; t < 2; ++t)
       if (pair.point[t] == no_point) {
         c[t] = c[1 - t];
+        if (!is_relative(pair.edge)) { // the copy shrinks with the branch
+          const double here = cone[t].radius(c[t].t), there = cone[1 - t].radius(c[t].t);
+          const double f = !(cone[t].length > 0) ? 0 : there > 0 ? std::min(1.0, here / there) : 1;
+          c[t].distance *= f;
+          c[t].overshoot *= f;
+        }
         normal[t] = normal[1 - t];
       }
     m_lines[k] = {c[0].t,
