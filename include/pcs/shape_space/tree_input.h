@@ -81,7 +81,10 @@ struct Is_number_valued<
     Map,
     Key,
     std::void_t<decltype(CGAL::to_double(get(std::declval<const Map&>(), std::declval<Key>())))>>
-  : std::true_type
+  // CGAL::to_double() takes everything and returns a tag for what is no number
+  : std::is_convertible<decltype(CGAL::to_double(
+                            get(std::declval<const Map&>(), std::declval<Key>()))),
+                        double>
 {
 };
 
