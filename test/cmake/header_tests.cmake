@@ -40,7 +40,7 @@ pcs_add_build_test(headers.two_translation_units headers_two_translation_units)
 # <CGAL/license/...>, which stops the compiler under CGAL_LICENSE_ERROR, unless the macro of
 # a commercial licence is set. The second test proves that the first one can fail.
 pcs_generate(no_gpl.cpp "${include_all_but_IO}")
-pcs_generate(gpl.cpp "${include_all_but_IO}#include <CGAL/Kd_tree.h>\n")
+pcs_generate(gpl.cpp "#include <pcs/concepts.h>\n#include <CGAL/Kd_tree.h>\n")
 foreach(name no_gpl gpl)
   add_library(license_${name} OBJECT EXCLUDE_FROM_ALL ${generated}/${name}.cpp)
   target_link_libraries(license_${name} PRIVATE pcs_header_flags)

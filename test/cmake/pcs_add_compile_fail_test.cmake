@@ -13,12 +13,14 @@ endfunction()
 # pcs_add_compile_fail_test(<rule> <sentence>)
 #
 # With PCS_BREAK_THE_RULE defined, compile_fail/<rule>.cpp must make the compiler print <sentence> (a
-# regular expression). That it compiles as it is, pcs_add_compile_accepted_test() sees to.
+# regular expression) as its first error. That it compiles as it is, pcs_add_compile_accepted_test() sees to.
 function(pcs_add_compile_fail_test rule sentence)
   set_property(GLOBAL APPEND PROPERTY pcs_compile_fail_sources
     ${CMAKE_CURRENT_SOURCE_DIR}/compile_fail/${rule}.cpp)
   add_library(${rule}_rejected OBJECT EXCLUDE_FROM_ALL compile_fail/${rule}.cpp)
   target_link_libraries(${rule}_rejected PRIVATE pcs_header_flags)
+  target_compile_options(${rule}_rejected PRIVATE
+    $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-Wfatal-errors>)
   target_compile_definitions(${rule}_rejected PRIVATE PCS_BREAK_THE_RULE)
   pcs_add_build_test(compile_fail.${rule} ${rule}_rejected compile_fail)
   set_tests_properties(compile_fail.${rule} PROPERTIES PASS_REGULAR_EXPRESSION "${sentence}")

@@ -95,9 +95,10 @@ struct Is_listable_graph : std::false_type
 template <class Graph>
 struct Is_listable_graph<
     Graph,
-    std::void_t<typename boost::graph_traits<Graph>::vertex_descriptor,
-                decltype(num_vertices(std::declval<const Graph&>())),
+    std::void_t<decltype(num_vertices(std::declval<const Graph&>())),
                 decltype(vertices(std::declval<const Graph&>())),
+                // after these two: it is an error, not a "no", for what is no graph at all
+                typename boost::graph_traits<Graph>::vertex_descriptor,
                 decltype(out_edges(
                     std::declval<typename boost::graph_traits<Graph>::vertex_descriptor>(),
                     std::declval<const Graph&>()))>>
