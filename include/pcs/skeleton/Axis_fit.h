@@ -21,9 +21,10 @@ namespace skeleton {
 /// What the fit assumes. Lengths are in the unit of the scan.
 struct Fit_model
 {
-  double noise = 0;     ///< standard deviation of a point from the surface [L]
-  double bark = 0.04;   ///< the same relative to the radius [-]
-  double axis_bend = 0; ///< standard deviation of the curvature of an axis [1/L]
+  double noise = 0;         ///< standard deviation of a point from the surface [L]
+  double bark = 0.04;       ///< the same relative to the radius [-]
+  double axis_bend = 0;     ///< standard deviation of the curvature of an axis [1/L]
+  double thick_bend = 0.05; ///< the same relative to the radius: thick branches are stiff [-]
   double taper_offset = 0, taper_scale = 1; ///< radius'' = (taper_offset + r) / taper_scale^2 [L]
   double correlation = 1;                   ///< the length on which a bend is one event [L]
   double lowest_radius = 0;                 ///< [L]
@@ -109,6 +110,7 @@ private:
   using Matrix = linear_algebra::Banded_cholesky<bandwidth>;
 
   void assemble(double widening);
+  void hold_along_axis();
   void add_points(double widening);
   void add_smoothness();
   void add_priors();
@@ -133,12 +135,26 @@ inline void Axis_fit::assemble(double widening)
   add_points(widening);
   add_smoothness();
   add_priors();
-  // Damps the step, not the result: along the axis nothing else holds the nodes. Much more of it (0.1) keeps them from sliding at
-  // random and helps thin branches, but loses thick ones in dense scans.
-  constexpr double damping = 0.005;
-  const double position = damping / (m_model.noise * m_model.noise);
-  for (std::size_t i = 0; i < m_matrix.size(); ++i)
-    m_matrix(i, i) += position;
+  hold_along_axis();
+}
+
+/// Nothing but chance moves nodes along the axis: they stay in the planes across it. Damps steps, not the result.
+inline void Axis_fit::hold_along_axis()
+{
+  constexpr double everywhere = 0.005, along_axis = 100; // in points on the axis
+  const double across = everywhere / (m_model.noise * m_model.noise);
+  const double along = along_axis / (m_model.noise * m_model.noise);
+  const std::size_t n = m_axis.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vec3 chord = m_axis[std::min(n - 1, k + 1)].point - m_axis[k > 0 ? k - 1 : 0].point;
+    const double length = chord.norm();
+    const Vec3 t = length > 0 ? Vec3(chord / length) : Vec3(Vec3::Zero());
+    for (Eigen::Index i = 0; i < 3; ++i)
+      for (Eigen::Index j = 0; j <= i; ++j)
+        m_matrix(4 * k + static_cast<std::size_t>(i), 4 * k + static_cast<std::size_t>(j)) +=
+            along * t[i] * t[j] + (i == j ? across : 0);
+    m_matrix(4 * k + 3, 4 * k + 3) += across;
+  }
 }
 
 inline void Axis_fit::add_points(double widening)
@@ -188,8 +204,9 @@ inline void Axis_fit::add_smoothness()
     const double share = h / m_model.correlation;
     const double radius_bend =
         (m_model.taper_offset + m_axis[k].radius) / (m_model.taper_scale * m_model.taper_scale);
+    const double axis_bend = std::min(m_model.axis_bend, m_model.thick_bend / m_axis[k].radius);
     for (std::size_t d = 0; d < 4; ++d) {
-      const double deviation = d < 3 ? m_model.axis_bend : radius_bend;
+      const double deviation = d < 3 ? axis_bend : radius_bend;
       const double w = share / (deviation * deviation);
       double bend = 0;
       for (std::size_t m = 0; m < 3; ++m) {
