@@ -73,7 +73,16 @@ public:
     m_points = std::move(points);
     m_segments = std::move(segments);
     m_places.resize(m_points.size());
+    m_stride = 1;
   }
+  /// Every so many points only take part in the next steps, with as much weight as all; 1 finds the places of all again.
+  void use_every(std::size_t stride)
+  {
+    m_stride = stride;
+    if (stride == 1)
+      project();
+  }
+  std::size_t stride() const { return m_stride; }
   void set_priors(std::vector<Radius_prior> priors) { m_priors = std::move(priors); }
 
   const std::vector<Vec3>& points() const { return m_points; }
@@ -82,7 +91,7 @@ public:
   /// Finds the place of every point on the present axis.
   void project()
   {
-    for (std::size_t i = 0; i < m_points.size(); ++i) {
+    for (std::size_t i = 0; i < m_points.size(); i += m_stride) {
       m_places[i] = nearest_place(m_axis, m_segments[i], m_points[i]);
       m_segments[i] = m_places[i].segment;
     }
@@ -122,6 +131,7 @@ private:
   std::vector<Index> m_segments;
   std::vector<Axis_place> m_places;
   std::vector<Radius_prior> m_priors;
+  std::size_t m_stride = 1;
   Matrix m_matrix, m_factor;
   std::vector<double> m_gradient, m_step;
   std::vector<double> m_information; // of the points on each radius alone
@@ -159,7 +169,7 @@ inline void Axis_fit::hold_along_axis()
 
 inline void Axis_fit::add_points(double widening)
 {
-  for (std::size_t i = 0; i < m_points.size(); ++i) {
+  for (std::size_t i = 0; i < m_points.size(); i += m_stride) {
     const Axis_place& place = m_places[i];
     if (place.share < 0 || place.share > 1)
       continue; // before the base or beyond the tip
@@ -170,7 +180,7 @@ inline void Axis_fit::add_points(double widening)
     const double e = place.distance - radius, x = e / (tukey_constant * widening * sigma);
     if (x * x >= 1 || !(place.distance > 0))
       continue;
-    const double w = (1 - x * x) * (1 - x * x) / (sigma * sigma);
+    const double w = double(m_stride) * (1 - x * x) * (1 - x * x) / (sigma * sigma);
     const Vec3 n = (m_points[i] - point_at(m_axis, place)) / place.distance;
     // e(c, r) = |p - c| - r with c, r linear between the nodes
     const double j[8] = {-(1 - t) * n.x(),

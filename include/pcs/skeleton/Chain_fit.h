@@ -107,14 +107,16 @@ Chain_fit::counts(const Axis_fit& fit) const
   const std::size_t n = axis.size();
   std::vector<double> own(n, 0), length(n, 0);
   const double limit = tukey_constant * m_set.noise;
-  for (const Axis_place& p : fit.places()) {
+  const double weight = double(fit.stride());
+  for (std::size_t i = 0; i < fit.places().size(); i += fit.stride()) {
+    const Axis_place& p = fit.places()[i];
     if (p.share < 0 || p.share > 1)
       continue;
     const double r = radius_at(axis, p);
     if (std::abs(p.distance - r) > std::max(limit, tukey_constant * 0.04 * r))
       continue;
-    own[p.segment] += 1 - p.share;
-    own[p.segment + 1] += p.share;
+    own[p.segment] += weight * (1 - p.share);
+    own[p.segment + 1] += weight * p.share;
   }
   for (std::size_t k = 0; k + 1 < n; ++k) {
     const double l = 0.5 * (axis[k + 1].point - axis[k].point).norm();
@@ -203,10 +205,15 @@ inline void Chain_fit::set_priors(Axis_fit& fit) const
 
 inline bool Chain_fit::run(Axis_fit& fit, double widening) const
 {
-  for (int k = 0; k < m_rules.iterations; ++k) {
+  const int steps = m_rules.iterations;
+  fit.use_every(
+      std::max<std::size_t>(1, fit.points().size() / (m_rules.enough * fit.axis().size())));
+  for (int k = 0; k < steps; ++k) {
+    if (k == steps - m_rules.full_iterations)
+      fit.use_every(1);
     if (k % 2 == 0)
       set_priors(fit);
-    const double share = double(m_rules.iterations - 1 - k) / double(m_rules.iterations);
+    const double share = double(steps - 1 - k) / double(steps);
     if (!fit.iterate(1 + (widening - 1) * share))
       return false;
   }

@@ -43,6 +43,8 @@ struct Chain_rules
   double extension_share = 0.3; ///< share of the expected points that a prolongation needs
   std::size_t lowest_count = 3; ///< points of an axis
   int iterations = 8;           ///< of each of the two fits
+  int full_iterations = 2;      ///< the last of them, to all points
+  std::size_t enough = 32;      ///< points per node that the others use [count]
 };
 
 /// An axis that is not yet accepted.

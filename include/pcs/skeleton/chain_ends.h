@@ -62,6 +62,18 @@ struct Filling
     }
   }
 
+  /// Share of the points of the segments of [begin, end) that lies inside; 1 if there are too few to tell.
+  double share(std::size_t begin, std::size_t end) const
+  {
+    double a = 0, b = 0;
+    for (std::size_t k = begin; k < end; ++k) {
+      a += inside[k];
+      b += on[k];
+    }
+    constexpr double enough = 20;
+    return a + b >= enough ? a / (a + b) : 1;
+  }
+
   /// Whether more than the share lies inside, in the segments of [begin, end).
   bool is_filled(std::size_t begin, std::size_t end, double share) const
   {
@@ -75,19 +87,25 @@ struct Filling
   }
 };
 
-/// Wood is hollow to a scanner: a thick axis with points inside runs around a fork, and ends there.
+/*!
+  Wood is hollow to a scanner: where a thick axis that was hollow gets points inside, it runs around a fork, and ends. One
+  that never was hollow is an irregular stem, or seen badly, and stays.
+*/
 inline void cut_filled(const Chain_view& view, Axis_fit& fit)
 {
   constexpr std::size_t window = 4;
   Axis& axis = fit.axis();
   const Filling filling(view, fit);
-  for (std::size_t k = 0; k + window < axis.size(); ++k)
-    if (axis[k].radius >= view.rules.thick * view.scan.spacing &&
+  double least = 1; // share inside of the best stretch so far
+  for (std::size_t k = window; k + window < axis.size(); ++k) {
+    least = std::min(least, filling.share(k - window, k));
+    if (axis[k].radius >= view.rules.thick * view.scan.spacing && least < 0.5 * view.rules.filled &&
         filling.is_filled(k, k + window, view.rules.filled)) {
-      axis.resize(std::max<std::size_t>(k + 1, 2));
+      axis.resize(k + 1);
       fit.project();
       return;
     }
+  }
 }
 
 /// Cuts the ends where the points end: outwards from the places of `base` and `tip`, as far as there are enough.
