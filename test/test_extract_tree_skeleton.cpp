@@ -291,9 +291,9 @@ BOOST_AUTO_TEST_CASE(the_order_of_the_points_does_not_matter)
   BOOST_CHECK(are_equal(a, b));
 }
 
-// Positions along an axis are hardly determined, so rounding moves nodes along it, and now and then a twig differs: nine of
-// ten nodes must have one of the other tree, of its radius, within the distance of the points, which is 1.4 cm here.
-constexpr double share_of_nodes = 0.9, largest_distance = 0.014;
+// Positions along an axis are hardly determined, so rounding moves nodes along it, and now and then a twig differs: 98 of
+// 100 nodes must have one of the other tree, of its radius, within two thirds of the distance of the points, 1.4 cm here.
+constexpr double share_of_nodes = 0.98, largest_distance = 0.009;
 
 BOOST_AUTO_TEST_CASE(a_translation_moves_the_tree)
 {

@@ -21,9 +21,10 @@ namespace skeleton {
 /// What the fit assumes. Lengths are in the unit of the scan.
 struct Fit_model
 {
-  double noise = 0;     ///< standard deviation of a point from the surface [L]
-  double bark = 0.04;   ///< the same relative to the radius [-]
-  double axis_bend = 0; ///< standard deviation of the curvature of an axis [1/L]
+  double noise = 0;         ///< standard deviation of a point from the surface [L]
+  double bark = 0.04;       ///< the same relative to the radius [-]
+  double axis_bend = 0;     ///< standard deviation of the curvature of an axis [1/L]
+  double thick_bend = 0.05; ///< the same relative to the radius: thick branches are stiff [-]
   double taper_offset = 0, taper_scale = 1; ///< radius'' = (taper_offset + r) / taper_scale^2 [L]
   double correlation = 1;                   ///< the length on which a bend is one event [L]
   double lowest_radius = 0;                 ///< [L]
@@ -72,7 +73,16 @@ public:
     m_points = std::move(points);
     m_segments = std::move(segments);
     m_places.resize(m_points.size());
+    m_stride = 1;
   }
+  /// Every so many points only take part in the next steps, with as much weight as all; 1 finds the places of all again.
+  void use_every(std::size_t stride)
+  {
+    m_stride = stride;
+    if (stride == 1)
+      project();
+  }
+  std::size_t stride() const { return m_stride; }
   void set_priors(std::vector<Radius_prior> priors) { m_priors = std::move(priors); }
 
   const std::vector<Vec3>& points() const { return m_points; }
@@ -81,7 +91,7 @@ public:
   /// Finds the place of every point on the present axis.
   void project()
   {
-    for (std::size_t i = 0; i < m_points.size(); ++i) {
+    for (std::size_t i = 0; i < m_points.size(); i += m_stride) {
       m_places[i] = nearest_place(m_axis, m_segments[i], m_points[i]);
       m_segments[i] = m_places[i].segment;
     }
@@ -109,6 +119,7 @@ private:
   using Matrix = linear_algebra::Banded_cholesky<bandwidth>;
 
   void assemble(double widening);
+  void hold_along_axis();
   void add_points(double widening);
   void add_smoothness();
   void add_priors();
@@ -120,6 +131,7 @@ private:
   std::vector<Index> m_segments;
   std::vector<Axis_place> m_places;
   std::vector<Radius_prior> m_priors;
+  std::size_t m_stride = 1;
   Matrix m_matrix, m_factor;
   std::vector<double> m_gradient, m_step;
   std::vector<double> m_information; // of the points on each radius alone
@@ -133,17 +145,31 @@ inline void Axis_fit::assemble(double widening)
   add_points(widening);
   add_smoothness();
   add_priors();
-  // Damps the step, not the result: along the axis nothing else holds the nodes. Much more of it (0.1) keeps them from sliding at
-  // random and helps thin branches, but loses thick ones in dense scans.
-  constexpr double damping = 0.005;
-  const double position = damping / (m_model.noise * m_model.noise);
-  for (std::size_t i = 0; i < m_matrix.size(); ++i)
-    m_matrix(i, i) += position;
+  hold_along_axis();
+}
+
+/// Nothing but chance moves nodes along the axis: they stay in the planes across it. Damps steps, not the result.
+inline void Axis_fit::hold_along_axis()
+{
+  constexpr double everywhere = 0.005, along_axis = 100; // in points on the axis
+  const double across = everywhere / (m_model.noise * m_model.noise);
+  const double along = along_axis / (m_model.noise * m_model.noise);
+  const std::size_t n = m_axis.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vec3 chord = m_axis[std::min(n - 1, k + 1)].point - m_axis[k > 0 ? k - 1 : 0].point;
+    const double length = chord.norm();
+    const Vec3 t = length > 0 ? Vec3(chord / length) : Vec3(Vec3::Zero());
+    for (Eigen::Index i = 0; i < 3; ++i)
+      for (Eigen::Index j = 0; j <= i; ++j)
+        m_matrix(4 * k + static_cast<std::size_t>(i), 4 * k + static_cast<std::size_t>(j)) +=
+            along * t[i] * t[j] + (i == j ? across : 0);
+    m_matrix(4 * k + 3, 4 * k + 3) += across;
+  }
 }
 
 inline void Axis_fit::add_points(double widening)
 {
-  for (std::size_t i = 0; i < m_points.size(); ++i) {
+  for (std::size_t i = 0; i < m_points.size(); i += m_stride) {
     const Axis_place& place = m_places[i];
     if (place.share < 0 || place.share > 1)
       continue; // before the base or beyond the tip
@@ -154,7 +180,7 @@ inline void Axis_fit::add_points(double widening)
     const double e = place.distance - radius, x = e / (tukey_constant * widening * sigma);
     if (x * x >= 1 || !(place.distance > 0))
       continue;
-    const double w = (1 - x * x) * (1 - x * x) / (sigma * sigma);
+    const double w = double(m_stride) * (1 - x * x) * (1 - x * x) / (sigma * sigma);
     const Vec3 n = (m_points[i] - point_at(m_axis, place)) / place.distance;
     // e(c, r) = |p - c| - r with c, r linear between the nodes
     const double j[8] = {-(1 - t) * n.x(),
@@ -188,8 +214,9 @@ inline void Axis_fit::add_smoothness()
     const double share = h / m_model.correlation;
     const double radius_bend =
         (m_model.taper_offset + m_axis[k].radius) / (m_model.taper_scale * m_model.taper_scale);
+    const double axis_bend = std::min(m_model.axis_bend, m_model.thick_bend / m_axis[k].radius);
     for (std::size_t d = 0; d < 4; ++d) {
-      const double deviation = d < 3 ? m_model.axis_bend : radius_bend;
+      const double deviation = d < 3 ? axis_bend : radius_bend;
       const double w = share / (deviation * deviation);
       double bend = 0;
       for (std::size_t m = 0; m < 3; ++m) {

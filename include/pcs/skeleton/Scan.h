@@ -63,7 +63,9 @@ T median(std::vector<T>& values)
   return *middle;
 }
 
-/// An outlier is this much farther from its neighbours than these from theirs ...
+/// The neighbour whose distance tells outliers [count].
+constexpr std::size_t outlier_neighbor = 2;
+/// An outlier is this much farther from it than its neighbours are from their 4th ones ...
 constexpr double outlier_factor = 3;
 /// ... and than is usual in the cloud; or so far from all that nothing else matters.
 constexpr double outlier_global_factor = 2, outlier_far_factor = 20;
@@ -148,7 +150,10 @@ void mark_outliers(Scan& scan)
   std::vector<double> copy = scan.local_spacing;
   const double usual = median(copy);
   pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
-    const double own = scan.local_spacing[i];
+    // A point of a thin twig has two near neighbours, those next to it; an outlier has none.
+    const Index second = scan.neighbors[i][outlier_neighbor - 1];
+    const double own = second != none ? (scan.points[i] - scan.points[second]).norm()
+                                      : std::numeric_limits<double>::infinity();
     if (own <= outlier_global_factor * usual)
       return;
     std::array<double, neighbors_per_point> others;

@@ -31,6 +31,8 @@ struct Chain
 constexpr int direction_reach = 4;
 /// Added to the spread of a node, in spacings: thin nodes must not win by noise [-].
 constexpr double spread_offset = 0.4;
+/// Farther children than this many layers lie behind a gap; the way there must be this straight before and behind it [-].
+constexpr double gap_layers = 1.5, gap_cosine = 0.8;
 /// Added to the cosine between the parent's direction and a child's.
 constexpr double cosine_offset = 1.2;
 
@@ -77,6 +79,24 @@ inline std::vector<Chain> chains_of(const Scan& scan, const Layer_tree& tree)
       if (tree.parent[v] != none)
         child[next[tree.parent[v]]++] = v;
   }
+  // Where points are missing on the way to a child, only what lies straight ahead may belong to the same branch.
+  const auto is_crooked_gap = [&](Index v, Index c, const Vec3& along) {
+    const Vec3 jump = tree.center[c] - tree.center[v];
+    const double length = jump.norm();
+    if (length <= gap_layers * layer_thickness * scan.spacing + tree.spread[v] + tree.spread[c])
+      return false;
+    Index far = c;
+    for (int step = 0; step < direction_reach && first[far] < first[far + 1]; ++step) {
+      Index highest = child[first[far]];
+      for (Index k = first[far]; k < first[far + 1]; ++k)
+        if (height[child[k]] > height[highest])
+          highest = child[k];
+      far = highest;
+    }
+    const Vec3 behind = tree.center[far] - tree.center[c];
+    return along.dot(jump) < gap_cosine * length ||
+           behind.dot(jump) < gap_cosine * length * behind.norm();
+  };
   const auto main_child = [&](Index v) {
     const Index in_ring = tree.next_in_ring[v];
     if (in_ring != none)
@@ -91,6 +111,8 @@ inline std::vector<Chain> chains_of(const Scan& scan, const Layer_tree& tree)
         ahead = child[first[ahead]];
       const Vec3 d = tree.center[ahead] - tree.center[v];
       const double norm = d.norm(), cosine = norm > 0 ? along.dot(d) / norm : 0;
+      if (is_crooked_gap(v, c, along))
+        continue;
       const double score = std::sqrt(height[c] + layer_thickness * scan.spacing) *
                            (tree.spread[c] + spread_offset * scan.spacing) *
                            (cosine_offset + cosine);

@@ -31,6 +31,8 @@ struct Axis_rules
   //! replaces `Chain_rules::protrusion` in later passes, in spacings [-]
   double later_protrusion = 3;
   double first_noise = 0.3;      ///< noise before anything is known, in spacings [-]
+  int most_cuts = 4;             ///< how often what is left of a chain is tried again
+  std::size_t shortest_rest = 4; ///< layers that such a rest needs [count]
   std::size_t largest_wave = 64; ///< chains that are fitted side by side [count]
 };
 
@@ -88,6 +90,36 @@ inline bool accept(const Scan& scan,
   return true;
 }
 
+/// The stretches of a chain that nothing explains although a part of it was fitted.
+inline std::vector<Chain>
+rest_of(const Layer_tree& tree, const Axis_set& set, const Chain& chain, std::size_t fewest)
+{
+  std::vector<Chain> pieces;
+  Chain piece;
+  const auto finish = [&] {
+    if (piece.nodes.size() >= fewest && piece.nodes.size() < chain.nodes.size())
+      pieces.push_back(piece);
+    piece = Chain();
+  };
+  Index before = chain.parent_node;
+  for (const Index v : chain.nodes) {
+    std::size_t open = 0;
+    for (Index k = tree.first[v]; k < tree.first[v + 1]; ++k)
+      open += !set.is_covered(tree.point[k]);
+    if (2 * open >= tree.count(v)) {
+      if (piece.nodes.empty())
+        piece.parent_node = before;
+      else
+        piece.length += (tree.center[v] - tree.center[piece.nodes.back()]).norm();
+      piece.nodes.push_back(v);
+    } else
+      finish();
+    before = v;
+  }
+  finish();
+  return pieces;
+}
+
 /// Fits the chains of one tree of layers, in waves whose members do not see each other.
 /// Returns `false` as soon as `progress` does, which sees a share of the work.
 template <class ConcurrencyTag, class Progress>
@@ -98,7 +130,7 @@ bool fit_chains(const Scan& scan,
                 Axis_set& set,
                 const Progress& progress)
 {
-  const std::vector<Chain> chains = chains_of(scan, tree);
+  std::vector<Chain> chains = chains_of(scan, tree);
   std::vector<Index> axis_of_chain(chains.size(), none), chain_of_node(tree.size());
   for (Index c = 0; c < chains.size(); ++c)
     for (const Index v : chains[c].nodes)
@@ -111,24 +143,48 @@ bool fit_chains(const Scan& scan,
     }
     return none;
   };
+  // the next chains to fit, longest first
+  std::vector<Index> queue(chains.size());
+  for (Index c = 0; c < queue.size(); ++c)
+    queue[c] = c;
+  std::vector<int> depth(chains.size(), 0);
   std::size_t wave = 1;
-  for (std::size_t begin = 0; begin < chains.size();) {
-    const std::size_t end = std::min(chains.size(), begin + wave);
-    std::vector<Candidate> candidates(end - begin);
+  std::vector<Candidate> candidates;
+  for (std::size_t begin = 0; begin < queue.size();) {
+    const std::size_t end = std::min(queue.size(), begin + wave);
+    candidates.assign(end - begin, Candidate());
     pcs::internal::for_each_index<ConcurrencyTag>(
         end - begin,
         [&](std::size_t k) {
-          candidates[k] = Chain_fit(scan, set, rules.chains)(tree, chains[begin + k]);
+          candidates[k] = Chain_fit(scan, set, rules.chains)(tree, chains[queue[begin + k]]);
         },
         1);
+    std::vector<Index> pieces;
     for (std::size_t k = 0; k < candidates.size(); ++k) {
-      const Index c = static_cast<Index>(begin + k);
+      const Index c = queue[begin + k];
+
       if (accept(scan, rules.chains, candidates[k], parent_axis(c), set, statistics))
         axis_of_chain[c] = static_cast<Index>(set.axes.size() - 1);
+      if (depth[c] < rules.most_cuts)
+        for (Chain& piece : rest_of(tree, set, chains[c], rules.shortest_rest)) {
+          const Index number = static_cast<Index>(chains.size());
+          for (const Index v : piece.nodes)
+            chain_of_node[v] = number;
+          chains.push_back(std::move(piece));
+          axis_of_chain.push_back(none);
+          depth.push_back(depth[c] + 1);
+          pieces.push_back(number);
+        }
     }
     statistics.learn(set);
     begin = end;
-    if (!progress(double(end) / double(chains.size())))
+    if (!pieces.empty()) {
+      queue.insert(queue.end(), pieces.begin(), pieces.end());
+      std::stable_sort(queue.begin() + static_cast<std::ptrdiff_t>(begin),
+                       queue.end(),
+                       [&](Index x, Index y) { return chains[x].length > chains[y].length; });
+    }
+    if (!progress(double(end) / double(queue.size())))
       return false;
     wave = std::min(rules.largest_wave, 2 * wave);
   }

@@ -23,17 +23,18 @@ namespace skeleton {
 /// What a joint costs. Factors of the spacing unless said otherwise [-].
 struct Joint_rules
 {
-  double reach = 30;      ///< widest gap between the base of a branch and the surface of its parent
-  double base_length = 8; ///< length over which the direction of a base is taken
-  double lateral = 2;     ///< cost of missing the parent's axis, per length [-]
+  double reach = 30; ///< widest gap between the base of a branch and the surface of its parent
+  double long_reach = 0.2;        ///< ... or this share of the length of the branch [-]
+  double base_length = 8;         ///< length over which the direction of a base is taken
+  double lateral = 4;             ///< cost of missing the parent's axis, per length [-]
   double lateral_tolerance = 0.3; ///< of it free of charge, in radii of the parent
-  double tie = 0.02;       ///< of the whole distance: what costs nothing else is decided by it [-]
-  double steep_gap = 12;   ///< gaps longer than this cost more than their length
-  double radius = 4;       ///< for each time that the base is thicker than its parent
-  double backward = 3;     ///< for pointing to the root of the parent
-  double reversal = 6;     ///< for using the tip as the base
-  double path_bonus = 0.7; ///< factor where the paths to the root agree [-]
-  double bend = 6;         ///< for the angle at the tip of the parent
+  double tie = 0.02;     ///< of the whole distance: what costs nothing else is decided by it [-]
+  double steep_gap = 12; ///< gaps longer than this cost more than their length
+  double radius = 4;     ///< for each time that the base is thicker than its parent
+  double backward = 3;   ///< for pointing to the root of the parent
+  double reversal = 6;   ///< for using the tip as the base
+  double path_bonus = 1; ///< factor where the paths to the root agree; 1: geometry alone [-]
+  double bend = 6;       ///< for the angle at the tip of the parent
 };
 
 /// Where an axis sits on its parent.
@@ -90,14 +91,12 @@ public:
   Axis_joiner(const Axis_set& set, double spacing, const Joint_rules& rules)
     : m_set(set), m_spacing(spacing), m_rules(rules)
   {
-    double thickest = 0;
     for (Index a = 0; a < set.axes.size(); ++a)
       for (Index k = 0; k < set.axes[a].axis.size(); ++k) {
         m_nodes.push_back(set.axes[a].axis[k].point);
         m_place_of_node.emplace_back(a, k);
-        thickest = std::max(thickest, set.axes[a].axis[k].radius);
+        m_thickest = std::max(m_thickest, set.axes[a].axis[k].radius);
       }
-    m_reach = m_rules.reach * spacing + thickest;
   }
 
   /// A joint for every axis but the root; no cycles. Axes that nothing is near to have no parent.
@@ -119,8 +118,11 @@ public:
 
 private:
   /// The cheapest place on axis `b` near the given nodes of it.
-  Joint best_place(const internal::Axis_end& end, Index b, const std::vector<Index>& nodes) const;
-  double cost(const internal::Axis_end& end, Index b, const Axis_place& place) const;
+  Joint best_place(const internal::Axis_end& end,
+                   Index b,
+                   const std::vector<Index>& nodes,
+                   double reach) const;
+  double cost(const internal::Axis_end& end, Index b, const Axis_place& place, double reach) const;
   std::vector<Joint> options_of(Index a, const neighborhood::Nearest_neighbors& search) const;
   static std::vector<std::uint8_t> reached_from(Index root, const std::vector<Joint>& joints)
   {
@@ -142,20 +144,22 @@ private:
   static std::vector<Joint> choose(Index root, const std::vector<std::vector<Joint>>& options);
 
   const Axis_set& m_set;
-  double m_spacing, m_reach = 0;
+  double m_spacing, m_thickest = 0;
   Joint_rules m_rules;
   std::vector<Vec3> m_nodes;
   std::vector<std::pair<Index, Index>> m_place_of_node;
 };
 
-inline double
-Axis_joiner::cost(const internal::Axis_end& end, Index b, const Axis_place& place) const
+inline double Axis_joiner::cost(const internal::Axis_end& end,
+                                Index b,
+                                const Axis_place& place,
+                                double reach) const
 {
   const Axis& axis = m_set.axes[b].axis;
   const double u = m_spacing, radius = radius_at(axis, place);
   const Vec3 v = point_at(axis, place) - end.point;
   const double distance = v.norm(), gap = std::max(0.0, distance - radius);
-  if (gap > m_rules.reach * u)
+  if (gap > reach)
     return std::numeric_limits<double>::infinity();
   const double back = -v.dot(end.inward); // > 0: the parent lies behind the base
   const double lateral = (v + back * end.inward).norm();
@@ -174,7 +178,8 @@ Axis_joiner::cost(const internal::Axis_end& end, Index b, const Axis_place& plac
 
 inline Joint Axis_joiner::best_place(const internal::Axis_end& end,
                                      Index b,
-                                     const std::vector<Index>& nodes) const
+                                     const std::vector<Index>& nodes,
+                                     double reach) const
 {
   constexpr int parts = 6;
   const Axis& axis = m_set.axes[b].axis;
@@ -190,7 +195,7 @@ inline Joint Axis_joiner::best_place(const internal::Axis_end& end,
         Axis_place place;
         place.segment = s;
         place.share = double(k) / parts;
-        const double c = cost(end, b, place);
+        const double c = cost(end, b, place, reach);
         if (c < best.cost) {
           best.cost = c;
           best.place = place;
@@ -206,25 +211,26 @@ Axis_joiner::options_of(Index a, const neighborhood::Nearest_neighbors& search) 
   std::vector<Joint> options;
   std::vector<Index> near, nodes;
   const Axis& axis = m_set.axes[a].axis;
+  const double reach = std::max(m_rules.reach * m_spacing, m_rules.long_reach * length_of(axis));
   for (const bool is_tip : {false, true}) {
     const double length =
         std::min(std::max(m_rules.base_length * m_spacing, 2 * axis.front().radius),
                  0.7 * length_of(axis));
     const internal::Axis_end end = internal::end_of(axis, is_tip, length);
     near.clear();
-    search.within(end.point, m_reach, near); // by axis, then by node
+    search.within(end.point, reach + m_thickest, near); // by axis, then by node
     for (std::size_t i = 0; i < near.size();) {
       const Index b = m_place_of_node[near[i]].first;
       nodes.clear();
       for (; i < near.size() && m_place_of_node[near[i]].first == b; ++i) {
         const Index k = m_place_of_node[near[i]].second;
         const double gap = (m_nodes[near[i]] - end.point).norm() - m_set.axes[b].axis[k].radius;
-        if (gap < (m_rules.reach + 8) * m_spacing)
+        if (gap < reach + 8 * m_spacing)
           nodes.push_back(k);
       }
       if (b == a || nodes.empty())
         continue;
-      Joint joint = best_place(end, b, nodes);
+      Joint joint = best_place(end, b, nodes, reach);
       joint.is_reversed = is_tip;
       if (is_tip)
         joint.cost += m_rules.reversal * m_spacing;
@@ -237,7 +243,7 @@ Axis_joiner::options_of(Index a, const neighborhood::Nearest_neighbors& search) 
   std::stable_sort(options.begin(), options.end(), [](const Joint& x, const Joint& y) {
     return x.cost < y.cost;
   });
-  constexpr std::size_t enough = 24;
+  constexpr std::size_t enough = 400;
   if (options.size() > enough)
     options.resize(enough);
   return options;

@@ -1,0 +1,71 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Rules of the fit of one chain, what it works on, and what comes out of it.
+
+#ifndef PCS_SKELETON_CHAIN_RULES_H
+#define PCS_SKELETON_CHAIN_RULES_H
+
+#include <pcs/skeleton/Axis.h>
+#include <pcs/skeleton/Axis_set.h>
+#include <pcs/skeleton/Scan.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// Rules of the fit of one chain. Factors of the spacing unless said otherwise [-].
+struct Chain_rules
+{
+  Node_spacing node_spacing{0.6, 2, 8}; ///< the factor is of the radius
+  double gather_factor = 1.25;          ///< points within this many radii ...
+  double gather_offset = 1.7;           ///< ... and this many spacings are looked at again
+  double cover_factor = 0.15;     ///< points this many radii outside of the surface are explained,
+  double cover_offset = 1.1;      ///< ... or this many spacings
+  double explained = 0.4;         ///< share of its own points that a chain must explain
+  double protrusion = 3;          ///< how far an axis must leave those that are there
+  double protrusion_radius = 0.3; ///< ... and this many radii of those
+  int sectors = 5;                ///< of 12, that a circle must see to be a start
+  double circle_deviation = 0.25; ///< largest deviation of such a circle in radii
+  double circle_noise = 2.5;      ///< smallest radius of such a circle in noise
+  double expected_share =
+      0.25; ///< circles with fewer points than this share of the expected straddle several twigs
+  double prior_share = 0.5;   ///< standard deviation of the radius by counting, in radii ...
+  double prior_offset = 0.15; ///< ... and spacings
+  double noise_share = 0.2;   ///< r^2 is reduced by this many noise^2: noise inflates thin branches
+  double thick = 4;           ///< branches of at least this radius are followed beyond their tips
+  double filled = 0.08; ///< thick axes end where more than this share of the points lies inside ...
+  double filled_depth = 0.1;    ///< ... deeper than this many radii ...
+  double filled_noise = 4;      ///< ... and than this many times the noise
+  double extension = 3;         ///< how far both ends are prolonged on trial, in radii ...
+  double extension_offset = 4;  ///< ... and spacings
+  double extension_share = 0.3; ///< share of the expected points that a prolongation needs
+  std::size_t lowest_count = 3; ///< points of an axis
+  int iterations = 8;           ///< of each of the two fits
+  int full_iterations = 2;      ///< the last of them, to all points
+  std::size_t enough = 32;      ///< points per node that the others use [count]
+};
+
+/// An axis that is not yet accepted.
+struct Candidate
+{
+  Axis axis;                           ///< empty: none
+  std::vector<Index> points, segments; ///< what it explains, points in increasing order
+  std::size_t number_of_own_points = 0;
+  std::vector<double> deviations;
+  std::vector<Density_sample> densities;
+};
+
+/// What the fit of a chain sees; all of it outlives the fit.
+struct Chain_view
+{
+  const Scan& scan;
+  const Axis_set& set;
+  const Chain_rules& rules;
+};
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_CHAIN_RULES_H
