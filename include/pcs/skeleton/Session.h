@@ -87,8 +87,11 @@ public:
       m_scan.is_outlier[i] = !m_is_used[i];
     std::vector<Vec3>().swap(m_input);
     m_report.number_of_duplicates = m_report.number_of_points - n;
-    m_report.number_of_outliers =
-        static_cast<std::size_t>(std::count(m_scan.is_outlier.begin(), m_scan.is_outlier.end(), 1));
+    const auto number_of = [](const std::vector<std::uint8_t>& flags, std::uint8_t value) {
+      return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), value));
+    };
+    m_report.number_of_leaf_points = number_of(is_wood, 0);
+    m_report.number_of_outliers = number_of(m_scan.is_outlier, 1) - m_report.number_of_leaf_points;
     m_report.spacing = m_scan.spacing;
     m_report.seconds.neighbors = watch.lap();
     m_stage = 1;
@@ -104,6 +107,13 @@ public:
     pcs::internal::Stopwatch watch;
     std::vector<Link> links =
         neighbor_links<ConcurrencyTag>(m_scan, m_is_used, m_options.axes.links);
+    if (m_options.do_mark_ground && is_one_sheet(m_scan, m_is_used, m_options.ground)) {
+      m_report.number_of_ground_points =
+          static_cast<std::size_t>(std::count(m_is_used.begin(), m_is_used.end(), 1));
+      std::fill(m_is_used.begin(), m_is_used.end(), std::uint8_t(0));
+      m_stage = 2;
+      return progress(0.6);
+    }
     if (m_options.do_mark_ground) {
       m_report.number_of_ground_points =
           mark_ground(m_scan, links, m_options.up, m_options.ground, m_is_used);
@@ -138,6 +148,10 @@ public:
     if (m_stage >= 3)
       return true;
     pcs::internal::Stopwatch watch;
+    if (m_root.empty()) { // nothing is a tree
+      m_stage = 3;
+      return progress(0.9);
+    }
     if (m_options.method == Skeleton_method::sections) {
       const std::vector<Surface_frame> frames = principal_curvatures<ConcurrencyTag>(m_scan);
       if (!progress(0.7))
@@ -167,7 +181,7 @@ public:
     if (m_stage >= 4)
       return true;
     pcs::internal::Stopwatch watch;
-    if (m_options.method == Skeleton_method::sections) {
+    if (m_options.method == Skeleton_method::sections && !m_root.empty()) {
       m_tree = section_skeleton(m_scan, m_is_used, m_sections, m_root, m_options.section_tree);
       count();
       m_report.seconds.joints = watch.lap();
@@ -209,9 +223,12 @@ public:
   Index node_of_input(std::size_t i) const { return m_tree.node_of_point[m_point_of_input[i]]; }
 
   /// Distance of an input point from the surface of its branch; negative inside. It has a node.
-  double residual_of_input(std::size_t i) const
+  double residual_of_input(std::size_t i) const { return residual_of_point(m_point_of_input[i]); }
+
+private:
+  double residual_of_point(Index p) const
   {
-    const Index p = m_point_of_input[i], v = m_tree.node_of_point[p];
+    const Index v = m_tree.node_of_point[p];
     if (m_options.method == Skeleton_method::chains)
       return m_axes.height_above(p, m_scan.points[p]);
     const Branch_node& node = m_tree.nodes[v];
@@ -222,7 +239,6 @@ public:
     return (q - t * d).norm() - (1 - t) * below.radius - t * node.radius;
   }
 
-private:
   std::vector<Index> nearest_used(const Vec3& place) const
   {
     const auto found = m_scan.search->nearest_if(place - m_scan.origin,
@@ -265,6 +281,18 @@ private:
 
   void count();
 
+  /// Of some ten thousand points spread over all.
+  double median_residual() const
+  {
+    std::vector<double> distances;
+    constexpr std::size_t enough = 20000;
+    const std::size_t n = m_tree.node_of_point.size(), step = 1 + n / enough;
+    for (std::size_t i = 0; i < n; i += step)
+      if (m_tree.node_of_point[i] != none)
+        distances.push_back(std::abs(residual_of_point(static_cast<Index>(i))));
+    return median(distances);
+  }
+
   std::vector<Vec3> m_input;
   std::vector<std::uint8_t> m_is_wood, m_is_used;
   Session_options m_options;
@@ -300,6 +328,7 @@ void Session<ConcurrencyTag>::count()
     r.number_of_unexplained_points += !is_covered;
     r.number_of_unreached_points += is_covered && !has_node;
   }
+  r.residual = median_residual();
   for (const double b : size_bounds_by_breast_height)
     r.size_bounds.push_back(b * m_options.breast_height);
   r.by_size.resize(r.size_bounds.size() + 1);
