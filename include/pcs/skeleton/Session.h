@@ -9,11 +9,13 @@
 #include <pcs/internal/Stopwatch.h>
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Branch_tree.h>
+#include <pcs/skeleton/correct_beam.h>
 #include <pcs/skeleton/estimate_sections.h>
 #include <pcs/skeleton/find_root.h>
 #include <pcs/skeleton/fit_axes.h>
 #include <pcs/skeleton/join_axes.h>
 #include <pcs/skeleton/mark_ground.h>
+#include <pcs/skeleton/measure_given.h>
 #include <pcs/skeleton/merge_rings.h>
 #include <pcs/skeleton/section_skeleton.h>
 
@@ -39,7 +41,10 @@ enum class Skeleton_method {
 struct Session_options
 {
   Vec3 up = Vec3::UnitZ();
-  std::optional<Vec3> root; ///< in the coordinates of the input
+  std::optional<Vec3> root; ///< in the coordinates of the input, as the next two
+  std::vector<Vec3> scanners;
+  std::optional<Given_skeleton> given; ///< measured, instead of looking for branches
+  double beam_width = 0;               ///< of the scanners [rad]
   bool do_mark_ground = true;
   double breast_height = 1.3; ///< [L]
   Skeleton_method method = Skeleton_method::chains;
@@ -51,6 +56,8 @@ struct Session_options
   Ground_rules ground;
   Joint_rules joints;
   Section_rules sections;
+  Given_rules given_rules;
+  Beam_rules beam;
 };
 
 /// Runs the stages in order; each runs those before it that have not run yet, and stops when cancelled.
@@ -105,6 +112,12 @@ public:
     if (m_stage >= 2)
       return true;
     pcs::internal::Stopwatch watch;
+    for (Vec3& s : m_options.scanners)
+      s -= m_scan.origin;
+    if (m_options.given) {
+      m_stage = 2;
+      return progress(0.6);
+    }
     std::vector<Link> links =
         neighbor_links<ConcurrencyTag>(m_scan, m_is_used, m_options.axes.links);
     if (m_options.do_mark_ground && is_one_sheet(m_scan, m_is_used, m_options.ground)) {
@@ -148,7 +161,7 @@ public:
     if (m_stage >= 3)
       return true;
     pcs::internal::Stopwatch watch;
-    if (m_root.empty()) { // nothing is a tree
+    if (m_root.empty()) { // nothing is a tree, or it is known
       m_stage = 3;
       return progress(0.9);
     }
@@ -156,7 +169,7 @@ public:
       const std::vector<Surface_frame> frames = principal_curvatures<ConcurrencyTag>(m_scan);
       if (!progress(0.7))
         return false;
-      m_sections = detect_sections(m_scan, m_is_used, frames, m_options.slices);
+      m_sections = detect_sections(m_scan, m_is_used, frames, m_options.scanners, m_options.slices);
       m_report.seconds.axes = watch.lap();
       m_stage = 3;
       return progress(0.9);
@@ -181,14 +194,17 @@ public:
     if (m_stage >= 4)
       return true;
     pcs::internal::Stopwatch watch;
-    if (m_options.method == Skeleton_method::sections && !m_root.empty()) {
+    if (m_options.given) {
+      m_tree = measure_given(m_scan, m_is_used, *m_options.given, m_options.given_rules);
+    } else if (m_options.method == Skeleton_method::sections && !m_root.empty()) {
       m_tree = section_skeleton(m_scan, m_is_used, m_sections, m_root, m_options.section_tree);
+      correct_beam(m_options.scanners, m_options.beam_width, m_options.beam, m_tree);
       count();
       m_report.seconds.joints = watch.lap();
       m_stage = 4;
       return progress(0.97);
     }
-    if (!m_axes.axes.empty()) {
+    if (!m_axes.axes.empty()) { // none with a given skeleton
       const Index root = root_axis();
       m_joints =
           Axis_joiner(m_axes, m_scan.spacing, m_options.joints).template run<ConcurrencyTag>(root);
@@ -200,6 +216,7 @@ public:
     m_report.seconds.joints = watch.lap();
     if (!progress(0.97))
       return false;
+    correct_beam(m_options.scanners, m_options.beam_width, m_options.beam, m_tree);
     estimate_sections<ConcurrencyTag>(m_scan, m_axes.noise, m_options.sections, m_tree);
     count();
     m_report.seconds.sections = watch.lap();
@@ -229,7 +246,7 @@ private:
   double residual_of_point(Index p) const
   {
     const Index v = m_tree.node_of_point[p];
-    if (m_options.method == Skeleton_method::chains)
+    if (m_options.method == Skeleton_method::chains && !m_options.given)
       return m_axes.height_above(p, m_scan.points[p]);
     const Branch_node& node = m_tree.nodes[v];
     const Branch_node& below = m_tree.nodes[node.parent == none ? v : node.parent];
