@@ -19,6 +19,7 @@
 #include <pcs/extract_tree_skeleton.h>
 #include <pcs/internal/Stopwatch.h>
 #include <pcs/make_branch_surface.h>
+#include <pcs/make_leaf_surface.h>
 
 #include <CGAL/Simple_cartesian.h>
 
@@ -167,6 +168,15 @@ write_mesh(const std::string& path, const Skeleton_options& options, const Tree&
           {"separate_branches", report.number_of_separate}};
 }
 
+std::size_t write_leaves(const std::string& path, const Tree& tree)
+{
+  std::vector<Kernel::Point_3> points;
+  std::vector<std::array<std::size_t, 3>> triangles;
+  const std::size_t count = pcs::make_leaf_surface(tree, points, triangles);
+  pcs::IO::write_mesh(path, points, triangles);
+  return count;
+}
+
 /// With `do_commit` false only finds out whether the file could be written.
 void write_points_to(const std::string& path,
                      pcs::IO::Point_table table,
@@ -192,8 +202,12 @@ void write_points_to(const std::string& path,
 /// One scan; throws if there is no tree in it, or before the work if a result cannot be written.
 nlohmann::ordered_json run_one(const std::string& input, const Skeleton_options& options)
 {
-  for (const std::string* path :
-       {&options.swc, &options.mesh, &options.cylinders, &options.edges, &options.points})
+  for (const std::string* path : {&options.swc,
+                                  &options.mesh,
+                                  &options.leaves,
+                                  &options.cylinders,
+                                  &options.edges,
+                                  &options.points})
     if (!path->empty())
       const pcs::IO::internal::Output_file probe(*path); // never committed
   pcs::internal::Stopwatch watch;
@@ -213,6 +227,8 @@ nlohmann::ordered_json run_one(const std::string& input, const Skeleton_options&
   watch.lap();
   if (!options.mesh.empty())
     json["mesh"] = write_mesh(options.mesh, options, tree);
+  if (!options.leaves.empty())
+    json["leaves"] = write_leaves(options.leaves, tree);
   const double meshing = watch.lap();
   if (!options.cylinders.empty())
     pcs::IO::write_cylinders(options.cylinders, tree);

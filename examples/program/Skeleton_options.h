@@ -21,7 +21,7 @@ namespace program {
 struct Skeleton_options
 {
   std::vector<std::string> inputs, also;
-  std::string swc, mesh, cylinders, edges, points, report, folder;
+  std::string swc, mesh, leaves, cylinders, edges, points, report, folder;
   std::string up = "z", method = "chains", fit = "conic", wood, given;
   std::vector<double> root, scanners;
   double beam_milliradians = -1; // < 0: the default of the library
@@ -56,6 +56,7 @@ inline void declare(CLI::App& app, Skeleton_options& options)
   app.add_option("--input", options.inputs, "the scan of a tree, or several")->required();
   app.add_option("--swc", options.swc, "the skeleton");
   app.add_option("--mesh", options.mesh, "the closed surface, PLY or OBJ");
+  app.add_option("--leaves", options.leaves, "leaves made up on fine branches, PLY or OBJ");
   app.add_option("--cylinders", options.cylinders, "one row per piece of branch, CSV");
   app.add_option("--edges", options.edges, "the skeleton as vertices and edges, PLY");
   app.add_option("--points", options.points, "the scan with the branch of every point");
@@ -125,6 +126,7 @@ inline void check_single(const Skeleton_options& options)
     names.insert(fs::path(options.given).lexically_normal().string());
   for (const std::string* path : {&options.swc,
                                   &options.mesh,
+                                  &options.leaves,
                                   &options.cylinders,
                                   &options.edges,
                                   &options.points,
@@ -135,16 +137,19 @@ inline void check_single(const Skeleton_options& options)
     if (!names.insert(fs::path(*path).lexically_normal().string()).second)
       throw pcs::Invalid_input("two files have the same name: " + *path);
   }
-  const std::string extension = fs::path(options.mesh).extension().string();
-  if (!options.mesh.empty() && extension != ".ply" && extension != ".obj" && extension != ".PLY" &&
-      extension != ".OBJ")
-    throw pcs::IO_error(options.mesh, "the extension of a mesh must be .ply or .obj");
+  for (const std::string* path : {&options.mesh, &options.leaves}) {
+    const std::string extension = fs::path(*path).extension().string();
+    if (!path->empty() && extension != ".ply" && extension != ".obj" && extension != ".PLY" &&
+        extension != ".OBJ")
+      throw pcs::IO_error(*path, "the extension of a mesh must be .ply or .obj");
+  }
 }
 
 inline void check_batch(const Skeleton_options& options)
 {
   for (const std::string* path : {&options.swc,
                                   &options.mesh,
+                                  &options.leaves,
                                   &options.cylinders,
                                   &options.edges,
                                   &options.points,

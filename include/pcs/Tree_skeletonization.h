@@ -117,6 +117,18 @@ struct Is_tree_skeleton<boost::adjacency_list<boost::vecS,
 {
 };
 
+template <class T, class = void>
+struct Is_range_of_points : std::false_type
+{
+};
+template <class T>
+struct Is_range_of_points<T, std::enable_if_t<!std::is_void_v<typename Iterator_of<T>::type>>>
+  : Is_point<std::decay_t<decltype(*std::begin(std::declval<T&>()))>>
+{
+};
+template <class T>
+constexpr bool is_range_of_points_v = Is_range_of_points<T>::value;
+
 template <class Graph, class = void>
 struct Is_mutable_graph : std::false_type
 {
@@ -215,8 +227,7 @@ public:
       \np{root_position} a place near the foot of the trunk [L]
         \nptype a point with `x()`, `y()`, `z()`
         \npdefault none: the lower end of the thickest part near the lower end of the cloud
-      \np{scanner_positions} where the scanners stood; with `beam_width` they tell how much a beam widens thin branches, and in
-          the method `sections` on which side of the surface the wood is
+      \np{scanner_positions} where the scanners stood; with `beam_width` they tell how much a beam widens thin branches
         \nptype range of points with `x()`, `y()`, `z()`
         \npdefault none
       \np{beam_width} angle of the scanner's beam; 0: radii are left as they are. Read with `scanner_positions` [rad]
@@ -411,11 +422,17 @@ private:
   void read_scanners(skeleton::Session_options& options) const
   {
     if constexpr (internal::is_given_v<NamedParameters, internal_np::scanner_positions_t>) {
-      for (const auto& p : CGAL::parameters::get_parameter(m_np, internal_np::scanner_positions)) {
-        options.scanners.push_back(internal::to_vec3(p));
-        if (!options.scanners.back().allFinite())
-          throw Invalid_input(std::string(function) + ": a scanner position is not finite");
-      }
+      const auto positions = CGAL::parameters::get_parameter(m_np, internal_np::scanner_positions);
+      constexpr bool are_points_ok = internal::is_range_of_points_v<decltype(positions)>;
+      static_assert(are_points_ok,
+                    "pcs::extract_tree_skeleton(): named parameter `scanner_positions` must be a "
+                    "range of points with x(), y(), z()");
+      if constexpr (are_points_ok)
+        for (const auto& p : positions) {
+          options.scanners.push_back(internal::to_vec3(p));
+          if (!options.scanners.back().allFinite())
+            throw Invalid_input(std::string(function) + ": a scanner position is not finite");
+        }
       options.beam_width =
           static_cast<double>(internal::choose(m_np, internal_np::beam_width, default_beam_width));
       if (!std::isfinite(options.beam_width) || options.beam_width < 0)

@@ -113,7 +113,7 @@ BOOST_FIXTURE_TEST_SUITE(skeleton_program, Skeleton_run)
 BOOST_AUTO_TEST_CASE(all_results_agree)
 {
   const int code = run("--input tree.xyz --swc t.swc --mesh m.ply --cylinders c.csv --edges e.ply "
-                       "--points p.ply --report r.json");
+                       "--points p.ply --leaves l.ply --report r.json");
   BOOST_TEST_REQUIRE(code == 0, err);
   const Json json = Json::parse(content("r.json"));
   BOOST_TEST(json["status"] == "converged");
@@ -187,6 +187,10 @@ BOOST_AUTO_TEST_CASE(all_results_agree)
              std::string::npos);
   BOOST_TEST(mesh.find("element face " + std::to_string(json["mesh"]["triangles"].get<long>())) !=
              std::string::npos);
+  BOOST_TEST(json["leaves"].get<long>() > 0);
+  BOOST_TEST(
+      content("l.ply").find("element vertex " + std::to_string(4 * json["leaves"].get<long>())) !=
+      std::string::npos);
   double first[3];
   std::memcpy(first, mesh.data() + mesh.find("end_header\n") + 11, sizeof first);
   BOOST_TEST(std::abs(first[1] - far_y) < 0.2);

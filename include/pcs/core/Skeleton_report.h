@@ -44,12 +44,13 @@ struct Skeleton_report
 
   double spacing = 0; ///< median distance to the nearest neighbour [L]
   double noise = 0;   ///< standard deviation of the points from the surface [L]
-  //! median distance of the points from the surface of their branches; much more than `noise`: the cloud is no tree [L]
+  //! median distance of the points from the surface of their branches; several times `noise`: something is wrong [L]
   double residual = 0;
   double density = 0; ///< points per area of the surface of branches; 0: not known [1/L^2]
 
   double height = 0; ///< from the root to the highest node, along the up direction [L]
-  double diameter_at_breast_height = 0; ///< of the trunk; 0: the trunk is not that high [L]
+  //! of the trunk; where it ends below, of the thickest branch there; 0: nothing is that high [L]
+  double diameter_at_breast_height = 0;
   Wood total;
   std::vector<Wood> by_order; ///< trunk first
   //! upper bounds of the radius in the classes of `by_size`, the last class has none

@@ -100,6 +100,8 @@ public:
     m_report.number_of_leaf_points = number_of(is_wood, 0);
     m_report.number_of_outliers = number_of(m_scan.is_outlier, 1) - m_report.number_of_leaf_points;
     m_report.spacing = m_scan.spacing;
+    for (Vec3& s : m_options.scanners)
+      s -= m_scan.origin;
     m_report.seconds.neighbors = watch.lap();
     m_stage = 1;
     return progress(0.35);
@@ -112,8 +114,6 @@ public:
     if (m_stage >= 2)
       return true;
     pcs::internal::Stopwatch watch;
-    for (Vec3& s : m_options.scanners)
-      s -= m_scan.origin;
     if (m_options.given) {
       m_stage = 2;
       return progress(0.6);
@@ -169,7 +169,7 @@ public:
       const std::vector<Surface_frame> frames = principal_curvatures<ConcurrencyTag>(m_scan);
       if (!progress(0.7))
         return false;
-      m_sections = detect_sections(m_scan, m_is_used, frames, m_options.scanners, m_options.slices);
+      m_sections = detect_sections(m_scan, m_is_used, frames, m_options.slices);
       m_report.seconds.axes = watch.lap();
       m_stage = 3;
       return progress(0.9);
@@ -359,6 +359,7 @@ void Session<ConcurrencyTag>::count()
   if (m_tree.nodes.empty())
     return;
   const double ground = m_options.up.dot(m_tree.nodes[0].point);
+  double thickest = 0; // of all that crosses breast height
   for (Index v = 0; v < m_tree.nodes.size(); ++v) {
     const Branch_node& node = m_tree.nodes[v];
     r.height = std::max(r.height, m_options.up.dot(node.point) - ground);
@@ -377,9 +378,15 @@ void Session<ConcurrencyTag>::count()
     }
     const double h0 = m_options.up.dot(below.point) - ground - m_options.breast_height;
     const double h1 = m_options.up.dot(node.point) - ground - m_options.breast_height;
-    if (order == 0 && h0 <= 0 && h1 > 0 && r.diameter_at_breast_height == 0)
-      r.diameter_at_breast_height = 2 * (a + (b - a) * h0 / (h0 - h1));
+    if (h0 > 0 || h1 <= 0)
+      continue;
+    const double diameter = 2 * (a + (b - a) * h0 / (h0 - h1));
+    if (order == 0 && r.diameter_at_breast_height == 0)
+      r.diameter_at_breast_height = diameter;
+    thickest = std::max(thickest, diameter);
   }
+  if (r.diameter_at_breast_height == 0) // the trunk was lost below, among buttresses for example
+    r.diameter_at_breast_height = thickest;
 }
 
 } // namespace skeleton

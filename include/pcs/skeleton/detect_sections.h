@@ -52,9 +52,8 @@ public:
   Section_detector(const Scan& scan,
                    const std::vector<std::uint8_t>& is_used,
                    const std::vector<Surface_frame>& frames,
-                   const std::vector<Vec3>& scanners,
                    const Slice_rules& rules)
-    : m_scan(scan), m_is_used(is_used), m_frames(frames), m_scanners(scanners), m_rules(rules)
+    : m_scan(scan), m_is_used(is_used), m_frames(frames), m_rules(rules)
   {
   }
 
@@ -70,7 +69,7 @@ public:
         continue;
       Found_section s;
       s.point = i;
-      s.center = m_scan.points[i] + side_of_center(i) / f.k1 * f.normal;
+      s.center = m_scan.points[i] + f.normal / f.k1;
       s.along = f.e2;
       s.major = s.minor = std::abs(1 / f.k1);
       double score = 0;
@@ -91,16 +90,6 @@ public:
   }
 
 private:
-  /// -1 if the center would lie between the surface and every scanner: noise has turned the curvature over.
-  double side_of_center(Index i) const
-  {
-    const Vec3 inward = m_frames[i].normal / m_frames[i].k1;
-    for (const Vec3& s : m_scanners)
-      if (inward.dot(m_scan.points[i] - s) > 0)
-        return 1;
-    return m_scanners.empty() ? 1 : -1;
-  }
-
   /// Fits the slice at `s`, which is replaced; `score` is the sampling distance by the deviation.
   bool fit(Index i, Found_section& s, double& score)
   {
@@ -176,22 +165,19 @@ private:
   const Scan& m_scan;
   const std::vector<std::uint8_t>& m_is_used;
   const std::vector<Surface_frame>& m_frames;
-  const std::vector<Vec3>& m_scanners;
   Slice_rules m_rules;
   std::vector<Index> m_near, m_slice;
 };
 
 } // namespace internal
 
-/// The sections of all points that no earlier one speaks for. The order of the points decides, not the threads. `scanners`
-/// may be empty; they tell on which side of the surface the wood is.
+/// The sections of all points that no earlier one speaks for. The order of the points decides, not the threads.
 inline std::vector<Found_section> detect_sections(const Scan& scan,
                                                   const std::vector<std::uint8_t>& is_used,
                                                   const std::vector<Surface_frame>& frames,
-                                                  const std::vector<Vec3>& scanners,
                                                   const Slice_rules& rules)
 {
-  return internal::Section_detector(scan, is_used, frames, scanners, rules)();
+  return internal::Section_detector(scan, is_used, frames, rules)();
 }
 
 } // namespace skeleton

@@ -36,8 +36,10 @@ struct Given_rules
          reach_offset =
              4;    ///< points farther than this are no points of an edge, in radii and spacings
   int sectors = 5; ///< of 12, that a circle must see
-  double deviation = 0.25;      ///< largest deviation of a circle, in radii
-  double widening = 1.5;        ///< largest radius of a circle, in median distances from the edge
+  double deviation = 0.25; ///< largest deviation of a circle, in radii
+  double widening = 1.5;   ///< largest radius of a circle, in median distances from the edge
+  double inside =
+      1.3; ///< nodes of a branch this near to its base, in radii of the parent, lie in the parent
   std::size_t lowest_count = 3; ///< points of an edge that tell its radius
 };
 
@@ -70,6 +72,7 @@ public:
     fill_gaps(nodes);
     Branch_grouper group(std::move(nodes), m_scan.spacing);
     Branch_tree tree = group();
+    leave_parents(tree);
     tree.node_of_point.assign(m_scan.size(), none);
     for (std::size_t i = 0; i < m_scan.size(); ++i)
       if (m_edge_of_point[i] != none)
@@ -78,6 +81,27 @@ public:
   }
 
 private:
+  /// The base of a branch lies in its parent, whose points are no measure of it: its radius is that of the first node outside.
+  void leave_parents(Branch_tree& tree) const
+  {
+    for (const Branch& branch : tree.branches) {
+      if (branch.parent == none)
+        continue;
+      const Branch_node& base = tree.nodes[branch.nodes.front()];
+      const double inside = m_rules.inside * tree.nodes[base.parent].radius;
+      std::size_t k = 0;
+      while (k < branch.nodes.size() &&
+             (tree.nodes[branch.nodes[k]].point - base.point).norm() <= inside)
+        ++k;
+      for (std::size_t j = 0; j < k && k < branch.nodes.size(); ++j) {
+        Branch_node& node = tree.nodes[branch.nodes[j]];
+        node.radius = tree.nodes[branch.nodes[k]].radius;
+        node.radius_error = node.radius;
+        node.is_measured = false;
+      }
+    }
+  }
+
   /// Foot of a point on the edge to `v`; the edge of the root is a point.
   double distance(Index v, const Vec3& p) const
   {
