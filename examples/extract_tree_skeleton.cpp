@@ -5,16 +5,21 @@
 #include "program/Progress_line.h"
 #include "program/Report_file.h"
 #include "program/Skeleton_options.h"
+#include "program/check_output.h"
 #include "program/skeleton_report.h"
 #include <pcs/IO/Point_table.h>
+#include <pcs/IO/internal/Output_file.h>
 #include <pcs/IO/read_points.h>
+#include <pcs/IO/read_swc.h>
 #include <pcs/IO/write_cylinders.h>
 #include <pcs/IO/write_mesh.h>
 #include <pcs/IO/write_points.h>
 #include <pcs/IO/write_swc.h>
 #include <pcs/core/errors.h>
 #include <pcs/extract_tree_skeleton.h>
+#include <pcs/internal/Stopwatch.h>
 #include <pcs/make_branch_surface.h>
+#include <pcs/make_leaf_surface.h>
 
 #include <CGAL/Simple_cartesian.h>
 
@@ -34,9 +39,12 @@
 #include <fstream>
 #include <functional>
 #include <iostream>
+#include <memory>
 #include <new>
 #include <set>
 #include <string>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 namespace program {
@@ -68,6 +76,22 @@ struct Labels
   std::vector<std::uint8_t> dense;
 };
 
+template <class Range, class NamedParameters>
+pcs::Skeleton_report extract_with_scanners(const Range& indices,
+                                           const Skeleton_options& options,
+                                           Tree& tree,
+                                           const NamedParameters& np)
+{
+  if (options.scanners.empty())
+    return pcs::extract_tree_skeleton(indices, tree, np);
+  std::vector<Kernel::Point_3> scanners;
+  for (std::size_t k = 0; k + 2 < options.scanners.size(); k += 3)
+    scanners.emplace_back(options.scanners[k], options.scanners[k + 1], options.scanners[k + 2]);
+  const double beam =
+      options.beam_milliradians < 0 ? pcs::default_beam_width : options.beam_milliradians / 1000;
+  return pcs::extract_tree_skeleton(indices, tree, np.scanner_positions(scanners).beam_width(beam));
+}
+
 pcs::Skeleton_report extract(const pcs::IO::Point_table& table,
                              const Skeleton_options& options,
                              Tree& tree,
@@ -78,8 +102,11 @@ pcs::Skeleton_report extract(const pcs::IO::Point_table& table,
   labels.residual.assign(n, 0);
   labels.dense.assign(n, 0);
   std::vector<double> wood(n, 1);
-  if (table.has_property("wood"))
-    wood = table.property_as_double("wood");
+  const std::string name = options.wood.empty() ? "wood" : options.wood;
+  if (table.has_property(name))
+    wood = table.property_as_double(name);
+  else if (!options.wood.empty())
+    throw pcs::Invalid_input("the scan has no property '" + name + "'");
   // the points are numbers here, and everything about them is a map
   const auto indices = boost::make_iterator_range(boost::counting_iterator<std::size_t>(0),
                                                   boost::counting_iterator<std::size_t>(n));
@@ -113,25 +140,48 @@ pcs::Skeleton_report extract(const pcs::IO::Point_table& table,
                       .point_residual_map(residuals)
                       .point_is_dense_map(dense)
                       .callback(callback);
+  if (!options.given.empty()) {
+    Tree given;
+    pcs::IO::read_swc<Kernel>(options.given, given);
+    return extract_with_scanners(indices, options, tree, np.given_skeleton(std::cref(given)));
+  }
   if (options.root.empty())
-    return pcs::extract_tree_skeleton(indices, tree, np);
+    return extract_with_scanners(indices, options, tree, np);
   const Kernel::Point_3 root(options.root[0], options.root[1], options.root[2]);
-  return pcs::extract_tree_skeleton(indices, tree, np.root_position(root));
+  return extract_with_scanners(indices, options, tree, np.root_position(root));
 }
 
-void write_mesh(const std::string& path, const Skeleton_options& options, const Tree& tree)
+nlohmann::ordered_json
+write_mesh(const std::string& path, const Skeleton_options& options, const Tree& tree)
 {
   std::vector<Kernel::Point_3> points;
   std::vector<std::array<std::size_t, 3>> triangles;
   const auto np = pcs::parameters::do_join(!options.do_separate);
-  if (options.tolerance >= 0)
-    pcs::make_branch_surface(tree, points, triangles, np.tolerance(options.tolerance));
-  else
-    pcs::make_branch_surface(tree, points, triangles, np);
+  const pcs::Branch_surface_report report =
+      options.tolerance >= 0
+          ? pcs::make_branch_surface(tree, points, triangles, np.tolerance(options.tolerance))
+          : pcs::make_branch_surface(tree, points, triangles, np);
   pcs::IO::write_mesh(path, points, triangles);
+  return {{"vertices", report.number_of_points},
+          {"triangles", report.number_of_triangles},
+          {"joined_branches", report.number_of_joined},
+          {"separate_branches", report.number_of_separate}};
 }
 
-void write_points(const std::string& path, pcs::IO::Point_table table, const Labels& labels)
+std::size_t write_leaves(const std::string& path, const Tree& tree)
+{
+  std::vector<Kernel::Point_3> points;
+  std::vector<std::array<std::size_t, 3>> triangles;
+  const std::size_t count = pcs::make_leaf_surface(tree, points, triangles);
+  pcs::IO::write_mesh(path, points, triangles);
+  return count;
+}
+
+/// With `do_commit` false only finds out whether the file could be written.
+void write_points_to(const std::string& path,
+                     pcs::IO::Point_table table,
+                     const Labels& labels,
+                     bool do_commit)
 {
   std::vector<std::int32_t> branch;
   for (const std::size_t b : labels.branch)
@@ -143,43 +193,104 @@ void write_points(const std::string& path, pcs::IO::Point_table table, const Lab
   table.add_property("dense", labels.dense);
   table.add_property("residual",
                      std::vector<float>(labels.residual.begin(), labels.residual.end()));
-  pcs::IO::write_points(path, table);
+  if (do_commit)
+    pcs::IO::write_points(path, table);
+  else
+    check_output(path, table.schema());
 }
 
-/// One scan; throws if there is no tree in it.
+/// One scan; throws if there is no tree in it, or before the work if a result cannot be written.
 nlohmann::ordered_json run_one(const std::string& input, const Skeleton_options& options)
 {
+  for (const std::string* path : {&options.swc,
+                                  &options.mesh,
+                                  &options.leaves,
+                                  &options.cylinders,
+                                  &options.edges,
+                                  &options.points})
+    if (!path->empty())
+      const pcs::IO::internal::Output_file probe(*path); // never committed
+  pcs::internal::Stopwatch watch;
   pcs::IO::Point_table table = pcs::IO::read_points(input);
+  if (!options.points.empty()) {
+    pcs::IO::Point_table labelled(table.schema());
+    write_points_to(options.points, std::move(labelled), Labels(), false);
+  }
+  const double reading = watch.lap();
   Tree tree;
   Labels labels;
   const pcs::Skeleton_report report = extract(table, options, tree, labels);
   if (report.status != pcs::Status::converged)
     throw pcs::Invalid_input(input + ": there is no tree in this scan (" +
                              std::to_string(report.number_of_points) + " points)");
+  nlohmann::ordered_json json = to_json(input, report);
+  watch.lap();
   if (!options.mesh.empty())
-    write_mesh(options.mesh, options, tree);
+    json["mesh"] = write_mesh(options.mesh, options, tree);
+  if (!options.leaves.empty())
+    json["leaves"] = write_leaves(options.leaves, tree);
+  const double meshing = watch.lap();
   if (!options.cylinders.empty())
     pcs::IO::write_cylinders(options.cylinders, tree);
   if (!options.edges.empty())
     pcs::IO::write_ply_edges(options.edges, tree);
   if (!options.points.empty())
-    write_points(options.points, std::move(table), labels);
+    write_points_to(options.points, std::move(table), labels, true);
   pcs::IO::write_swc(options.swc, tree);
-  return to_json(input, report);
+  json["seconds"]["reading"] = reading;
+  json["seconds"]["mesh"] = meshing;
+  json["seconds"]["writing"] = watch.lap();
+  return json;
 }
 
 void run_single(const Skeleton_options& options)
 {
+  std::unique_ptr<Report_file> file;
+  if (!options.report.empty())
+    file = std::make_unique<Report_file>(options.report);
   const nlohmann::ordered_json json = run_one(options.inputs.front(), options);
-  if (!options.report.empty()) {
-    Report_file file(options.report);
-    file.commit(json.dump(2) + "\n");
-  }
+  if (file)
+    file->commit(json.dump(2) + "\n");
   if (!options.is_quiet)
     std::cout << "branches " << json["branches"] << ", nodes " << json["nodes"] << ", height "
               << json["height"] << ", diameter at breast height "
               << json["diameter_at_breast_height"] << ", length " << json["total"]["length"]
               << ", volume " << json["total"]["volume"] << '\n';
+}
+
+/// The names of the results of one scan of several.
+Skeleton_options options_of_one(const std::string& input, const Skeleton_options& options)
+{
+  Skeleton_options one = options;
+  const std::string name =
+      (std::filesystem::path(options.folder) / std::filesystem::path(input).stem()).string();
+  one.swc = name + ".swc";
+  for (const std::string& kind : options.also)
+    if (kind == "mesh")
+      one.mesh = name + "_mesh.ply";
+    else if (kind == "cylinders")
+      one.cylinders = name + "_cylinders.csv";
+    else if (kind == "edges")
+      one.edges = name + "_edges.ply";
+    else
+      one.points = name + "_points.ply";
+  return one;
+}
+
+/// The scans that have a line of success. The last line may be torn: a new line is begun behind it.
+std::set<std::string> read_log(const std::filesystem::path& log, bool& is_torn)
+{
+  std::set<std::string> done;
+  std::ifstream in(log);
+  is_torn = false;
+  for (std::string line; std::getline(in, line);) {
+    is_torn = in.eof();
+    const auto json = nlohmann::json::parse(line, nullptr, false);
+    if (json.is_object() && json.value("status", nlohmann::json()) == "converged" &&
+        json.contains("input") && json["input"].is_string())
+      done.insert(json["input"].get<std::string>());
+  }
+  return done;
 }
 
 /// Many scans; returns whether all are done.
@@ -191,24 +302,18 @@ bool run_batch(const Skeleton_options& options)
   fs::create_directories(folder, error);
   if (!fs::is_directory(folder))
     throw pcs::IO_error(options.folder, "is not a directory and cannot be made one");
-  std::set<std::string> done;
-  {
-    std::ifstream in(log);
-    for (std::string line; std::getline(in, line);) {
-      const auto json = nlohmann::json::parse(line, nullptr, false); // the last line may be torn
-      if (json.is_object() && json.value("status", "") == "converged")
-        done.insert(json.value("input", ""));
-    }
-  }
+  bool is_torn = false;
+  const std::set<std::string> done = read_log(log, is_torn);
   std::ofstream out(log, std::ios::app);
+  if (is_torn)
+    out << '\n';
   if (!out)
     throw pcs::IO_error(log.string(), "cannot be opened for writing");
   bool is_good = true;
   for (const std::string& input : options.inputs) {
-    if (done.count(input) != 0)
+    const Skeleton_options one = options_of_one(input, options);
+    if (done.count(input) != 0 && fs::exists(one.swc))
       continue;
-    Skeleton_options one = options;
-    one.swc = (folder / fs::path(input).stem()).string() + ".swc";
     nlohmann::ordered_json json;
     try {
       json = run_one(input, one);

@@ -9,21 +9,23 @@
 
 #include <CLI/CLI.hpp>
 
-#include <cmath>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace program {
 
 struct Skeleton_options
 {
-  std::vector<std::string> inputs;
-  std::string swc, mesh, cylinders, edges, points, report, folder, up = "z", method = "chains",
-                                                                   fit = "conic";
-  std::vector<double> root;
-  double tolerance = -1; // < 0: the default of the library
+  std::vector<std::string> inputs, also;
+  std::string swc, mesh, leaves, cylinders, edges, points, report, folder;
+  std::string up = "z", method = "chains", fit = "conic", wood, given;
+  std::vector<double> root, scanners;
+  double beam_milliradians = -1; // < 0: the default of the library
+  double tolerance = -1;         // < 0: the default of the library
   double breast_height = 1.3;
   bool do_keep_ground = false, do_separate = false, do_use_all = false, do_fit_all = false,
        is_quiet = false;
@@ -32,14 +34,17 @@ struct Skeleton_options
 inline const char* skeleton_help()
 {
   return R"(Scans: PLY, LAS, OFF, or text (xyz, txt, csv, asc, pts, pwn). A property `wood` (1: wood,
-0: leaf) is used if there is one. Lengths of all results are in the unit of the scan.
+0: leaf) is used if there is one. Lengths of all results are in the unit of the scan, positions
+in its coordinates.
 
 SWC rows: id, type, x, y, z, radius, parent (-1 for the root); type is 5 + the order of the branch.
 Cylinders: the columns of TreeQSM, and the standard error of the radius.
 Points: the scan with `branch` (-1: none), `dense` (1: the section was measured there) and `residual`.
 
-Several scans, with --folder DIR: for each one DIR/NAME.swc, and a line in DIR/batch.jsonl. What has
-a line there already is not done again; a scan that fails gets a line with its error.
+Several scans, with --folder DIR: for each one DIR/NAME.swc, what --also names (DIR/NAME_mesh.ply,
+DIR/NAME_cylinders.csv, DIR/NAME_edges.ply, DIR/NAME_points.ply), and a line of JSON in
+DIR/batch.jsonl. A scan that fails gets a line with its error and the others go on. Started again,
+the batch leaves out what has succeeded.
 
 Exit codes: 0 success, 1 bad input or usage, or a scan of several failed, 2 internal error.)";
 }
@@ -51,20 +56,32 @@ inline void declare(CLI::App& app, Skeleton_options& options)
   app.add_option("--input", options.inputs, "the scan of a tree, or several")->required();
   app.add_option("--swc", options.swc, "the skeleton");
   app.add_option("--mesh", options.mesh, "the closed surface, PLY or OBJ");
+  app.add_option("--leaves", options.leaves, "leaves made up on fine branches, PLY or OBJ");
   app.add_option("--cylinders", options.cylinders, "one row per piece of branch, CSV");
   app.add_option("--edges", options.edges, "the skeleton as vertices and edges, PLY");
   app.add_option("--points", options.points, "the scan with the branch of every point");
   app.add_option("--report", options.report, "counts, sizes and seconds, JSON");
   app.add_option("--folder", options.folder, "for the results of several scans");
+  app.add_option("--also", options.also, "with --folder: mesh, cylinders, edges, points")
+      ->check(CLI::IsMember({"mesh", "cylinders", "edges", "points"}))
+      ->delimiter(',');
   app.add_option("--up", options.up, "where the tree grows to: x, y, z, -x, -y or -z")
       ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))
       ->capture_default_str();
   app.add_option("--root", options.root, "x y z of the foot of the trunk")->expected(3);
+  app.add_option("--scanner", options.scanners, "x y z of a scanner; for several: x y z x y z ...");
+  app.add_option("--beam-milliradians",
+                 options.beam_milliradians,
+                 "width of the scanner's beam; widens thin branches, with --scanner")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--wood", options.wood, "property that tells wood (1) from leaves (0)");
+  app.add_option("--skeleton",
+                 options.given,
+                 "SWC: measure along this skeleton instead of looking for branches");
   app.add_option("--breast-height", options.breast_height, "height of the diameter in the report")
       ->capture_default_str();
-  app.add_option("--tolerance",
-                 options.tolerance,
-                 "largest distance of the mesh from the sections");
+  app.add_option("--tolerance", options.tolerance, "largest distance of the mesh from the sections")
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--method",
                  options.method,
                  "how branches are found; `sections` is the dissertation's way")
@@ -84,31 +101,83 @@ inline void declare(CLI::App& app, Skeleton_options& options)
   app.add_flag("--quiet", options.is_quiet, "print nothing but errors");
 }
 
-/// Checks what CLI11 cannot. Throws `pcs::Invalid_input`.
-inline void check(const Skeleton_options& options)
+/// Whether the folder of a result exists, and the name is a name. Throws `pcs::IO_error`.
+inline void check_folder_of(const std::string& path)
 {
-  const bool is_batch = !options.folder.empty();
-  if (!is_batch && options.inputs.size() > 1)
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  if (!folder.empty() && !std::filesystem::is_directory(folder, error))
+    throw pcs::IO_error(path, "there is no such folder");
+  if (std::filesystem::is_directory(path, error))
+    throw pcs::IO_error(path, "is a directory, expected a file name");
+}
+
+inline void check_single(const Skeleton_options& options)
+{
+  namespace fs = std::filesystem;
+  if (options.inputs.size() > 1)
     throw pcs::Invalid_input("several scans need --folder");
-  if (!is_batch && options.swc.empty())
+  if (options.swc.empty())
     throw pcs::Invalid_input("--swc is required");
-  std::set<std::string> names;
+  if (!options.also.empty())
+    throw pcs::Invalid_input("--also needs --folder");
+  std::set<std::string> names{fs::path(options.inputs.front()).lexically_normal().string()};
+  if (!options.given.empty())
+    names.insert(fs::path(options.given).lexically_normal().string());
   for (const std::string* path : {&options.swc,
                                   &options.mesh,
+                                  &options.leaves,
                                   &options.cylinders,
                                   &options.edges,
                                   &options.points,
                                   &options.report}) {
     if (path->empty())
       continue;
-    if (is_batch)
-      throw pcs::Invalid_input("with --folder the results have the names of the scans; leave " +
-                               *path + " out");
-    const std::string name = std::filesystem::path(*path).lexically_normal().string();
-    if (!names.insert(name).second ||
-        name == std::filesystem::path(options.inputs.front()).lexically_normal().string())
+    check_folder_of(*path);
+    if (!names.insert(fs::path(*path).lexically_normal().string()).second)
       throw pcs::Invalid_input("two files have the same name: " + *path);
   }
+  for (const std::string* path : {&options.mesh, &options.leaves}) {
+    const std::string extension = fs::path(*path).extension().string();
+    if (!path->empty() && extension != ".ply" && extension != ".obj" && extension != ".PLY" &&
+        extension != ".OBJ")
+      throw pcs::IO_error(*path, "the extension of a mesh must be .ply or .obj");
+  }
+}
+
+inline void check_batch(const Skeleton_options& options)
+{
+  for (const std::string* path : {&options.swc,
+                                  &options.mesh,
+                                  &options.leaves,
+                                  &options.cylinders,
+                                  &options.edges,
+                                  &options.points,
+                                  &options.report})
+    if (!path->empty())
+      throw pcs::Invalid_input("with --folder the results have the names of the scans; leave " +
+                               *path + " out");
+  if (!options.given.empty() || !options.root.empty() || !options.scanners.empty())
+    throw pcs::Invalid_input("--skeleton, --root and --scanner belong to one scan, not to several");
+  std::map<std::string, std::string> names;
+  for (const std::string& input : options.inputs) {
+    const auto [at, is_new] = names.emplace(std::filesystem::path(input).stem().string(), input);
+    if (!is_new)
+      throw pcs::Invalid_input("the results of " + at->second + " and " + input +
+                               " would have the same name");
+  }
+}
+
+/// Checks what CLI11 cannot. Throws `pcs::Invalid_input` or `pcs::IO_error`.
+inline void check(const Skeleton_options& options)
+{
+  if (options.scanners.size() % 3 != 0)
+    throw pcs::Invalid_input("--scanner takes three coordinates for each scanner, found " +
+                             std::to_string(options.scanners.size()) + " numbers");
+  if (options.folder.empty())
+    check_single(options);
+  else
+    check_batch(options);
 }
 
 } // namespace program

@@ -28,11 +28,13 @@ inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skele
   json["points"] = {{"all", r.number_of_points},
                     {"duplicates", r.number_of_duplicates},
                     {"outliers", r.number_of_outliers},
+                    {"leaves", r.number_of_leaf_points},
                     {"ground", r.number_of_ground_points},
                     {"unexplained", r.number_of_unexplained_points},
                     {"out_of_reach", r.number_of_unreached_points}};
   json["spacing"] = r.spacing;
   json["noise"] = r.noise;
+  json["residual"] = r.residual;
   json["nodes"] = r.number_of_nodes;
   json["branches"] = r.number_of_branches;
   json["branches_out_of_reach"] = r.number_of_unreached_branches;

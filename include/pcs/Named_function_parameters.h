@@ -44,6 +44,13 @@
   PCS_OWN(node_radius_map)                                                                         \
   PCS_OWN(skeleton_method)                                                                         \
   PCS_OWN(slice_rules)                                                                             \
+  PCS_OWN(scanner_positions)                                                                       \
+  PCS_OWN(beam_width)                                                                              \
+  PCS_OWN(given_skeleton)                                                                          \
+  PCS_OWN(given_point_map)                                                                         \
+  PCS_OWN(leaf_length)                                                                             \
+  PCS_OWN(leaves_per_length)                                                                       \
+  PCS_OWN(leaf_branch_radius)                                                                      \
   PCS_OWN(do_join)                                                                                 \
   PCS_OWN(node_index_map)                                                                          \
   PCS_OWN(matching_weights)                                                                        \

@@ -26,6 +26,7 @@
 #include <cstdint>
 #include <functional>
 #include <iterator>
+#include <map>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -40,12 +41,55 @@ constexpr std::size_t lowest_number_of_scan_points = 10;
 //! \ingroup PkgPcsSkeletonRef
 //! height above the root at which foresters measure the diameter of a trunk [m]
 constexpr double default_breast_height = 1.3;
+//! \ingroup PkgPcsSkeletonRef
+//! divergence of the beam of common terrestrial scanners [rad]
+constexpr double default_beam_width = 0.0003;
 
 namespace internal {
 
-struct No_skeleton_map
+template <class Point>
+skeleton::Vec3 to_vec3(const Point& p)
 {
-};
+  return {CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())};
+}
+
+/// The vertices of a graph in an order in which parents come first; throws unless it is one tree.
+template <class Graph, class PointMap>
+skeleton::Given_skeleton read_given(const Graph& graph, const PointMap& point_map)
+{
+  using Vertex = typename boost::graph_traits<Graph>::vertex_descriptor;
+  const std::string function = "pcs::extract_tree_skeleton(): given_skeleton ";
+  std::map<Vertex, Vertex> parent_of;
+  std::size_t count = 0;
+  for (auto [v, end] = vertices(graph); v != end; ++v, ++count)
+    for (auto [e, last] = out_edges(*v, graph); e != last; ++e)
+      if (!parent_of.emplace(target(*e, graph), *v).second)
+        throw Invalid_input(function + "has a node with two parents");
+  if (count < 2 || parent_of.size() + 1 != count)
+    throw Invalid_input(
+        function + "must be one tree with a root and at least one more node; it has " +
+        std::to_string(count) + " nodes and " + std::to_string(parent_of.size()) + " edges");
+  skeleton::Given_skeleton given;
+  std::vector<Vertex> order;
+  const auto add = [&](Vertex v, skeleton::Index parent) {
+    given.points.push_back(to_vec3(get(point_map, v)));
+    if (!given.points.back().allFinite())
+      throw Invalid_input(function + "has a position that is not finite");
+    given.parent.push_back(parent);
+    order.push_back(v);
+  };
+  for (auto [v, end] = vertices(graph); v != end; ++v)
+    if (parent_of.count(*v) == 0)
+      add(*v, skeleton::none);
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const Vertex v = order[k]; // `order` grows
+    for (auto [e, last] = out_edges(v, graph); e != last; ++e)
+      add(target(*e, graph), static_cast<skeleton::Index>(k));
+  }
+  if (order.size() != count)
+    throw Invalid_input(function + "has a cycle");
+  return given;
+}
 
 /// The types that a point range and a chain of named parameters stand for.
 template <class PointRange, class NamedParameters>
@@ -73,6 +117,18 @@ struct Is_tree_skeleton<boost::adjacency_list<boost::vecS,
 {
 };
 
+template <class T, class = void>
+struct Is_range_of_points : std::false_type
+{
+};
+template <class T>
+struct Is_range_of_points<T, std::enable_if_t<!std::is_void_v<typename Iterator_of<T>::type>>>
+  : Is_point<std::decay_t<decltype(*std::begin(std::declval<T&>()))>>
+{
+};
+template <class T>
+constexpr bool is_range_of_points_v = Is_range_of_points<T>::value;
+
 template <class Graph, class = void>
 struct Is_mutable_graph : std::false_type
 {
@@ -88,10 +144,15 @@ struct Is_mutable_graph<
 {
 };
 
-template <class Point>
-skeleton::Vec3 to_vec3(const Point& p)
+template <class T>
+const T& unwrapped(const T& value)
 {
-  return {CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())};
+  return value;
+}
+template <class T>
+const T& unwrapped(const std::reference_wrapper<T>& value)
+{
+  return value.get();
 }
 
 } // namespace internal
@@ -166,6 +227,20 @@ public:
       \np{root_position} a place near the foot of the trunk [L]
         \nptype a point with `x()`, `y()`, `z()`
         \npdefault none: the lower end of the thickest part near the lower end of the cloud
+      \np{scanner_positions} where the scanners stood; with `beam_width` they tell how much a beam widens thin branches
+        \nptype range of points with `x()`, `y()`, `z()`
+        \npdefault none
+      \np{beam_width} angle of the scanner's beam; 0: radii are left as they are. Read with `scanner_positions` [rad]
+        \nptype floating point, `>= 0`
+        \npdefault `default_beam_width`
+      \np{given_skeleton} a skeleton that is measured instead of looking for one: its positions stay, radii, sections and the
+          branches of points come from the scan
+        \nptype model of `VertexListGraph` and `IncidenceGraph` of Boost, a tree with edges from parent to child
+            (`std::cref()` of one saves the copy)
+        \npdefault none
+      \np{given_point_map} the positions of its vertices
+        \nptype model of `ReadablePropertyMap`, key: vertex descriptor, value: a point type
+        \npdefault the bundled property of `Tree_skeleton`; needed for other graphs
       \np{skeleton_method} how branches are found
         \nptype `skeleton::Skeleton_method`: `chains`, or `sections` for the dissertation's own way
         \npdefault `chains`
@@ -330,6 +405,8 @@ private:
       if (!options.root->allFinite())
         throw Invalid_input(std::string(function) + ": root_position must be finite");
     }
+    read_scanners(options);
+    read_given_skeleton(options);
     options.method = choose(m_np, internal_np::skeleton_method, skeleton::Skeleton_method::chains);
     options.slices = choose(m_np, internal_np::slice_rules, skeleton::Slice_rules());
     options.do_mark_ground = choose(m_np, internal_np::do_remove_ground, true);
@@ -340,6 +417,49 @@ private:
                           internal::to_text(options.breast_height) + "; it must be positive");
     m_callback = choose(m_np, CGAL::internal_np::callback, std::function<bool(double)>());
     return options;
+  }
+
+  void read_scanners(skeleton::Session_options& options) const
+  {
+    if constexpr (internal::is_given_v<NamedParameters, internal_np::scanner_positions_t>) {
+      const auto positions = CGAL::parameters::get_parameter(m_np, internal_np::scanner_positions);
+      constexpr bool are_points_ok = internal::is_range_of_points_v<decltype(positions)>;
+      static_assert(are_points_ok,
+                    "pcs::extract_tree_skeleton(): named parameter `scanner_positions` must be a "
+                    "range of points with x(), y(), z()");
+      if constexpr (are_points_ok)
+        for (const auto& p : positions) {
+          options.scanners.push_back(internal::to_vec3(p));
+          if (!options.scanners.back().allFinite())
+            throw Invalid_input(std::string(function) + ": a scanner position is not finite");
+        }
+      options.beam_width =
+          static_cast<double>(internal::choose(m_np, internal_np::beam_width, default_beam_width));
+      if (!std::isfinite(options.beam_width) || options.beam_width < 0)
+        throw Invalid_input(std::string(function) + ": beam_width is " +
+                            internal::to_text(options.beam_width) + "; it must not be negative");
+    }
+  }
+
+  void read_given_skeleton(skeleton::Session_options& options) const
+  {
+    if constexpr (internal::is_given_v<NamedParameters, internal_np::given_skeleton_t>) {
+      // a copy, or a reference in its wrapper
+      const auto held = CGAL::parameters::get_parameter(m_np, internal_np::given_skeleton);
+      const auto& given = internal::unwrapped(held);
+      using Given = std::decay_t<decltype(given)>;
+      constexpr bool has_map =
+          internal::is_given_v<NamedParameters, internal_np::given_point_map_t>;
+      static_assert(has_map || internal::Is_tree_skeleton<Given>::value,
+                    "pcs::extract_tree_skeleton(): a `given_skeleton` that is no "
+                    "pcs::Tree_skeleton needs the named parameter `given_point_map`");
+      if constexpr (has_map)
+        options.given = internal::read_given(
+            given,
+            CGAL::parameters::get_parameter(m_np, internal_np::given_point_map));
+      else if constexpr (internal::Is_tree_skeleton<Given>::value)
+        options.given = internal::read_given(given, get(&Given::vertex_bundled::point, given));
+    }
   }
 
   std::vector<skeleton::Vec3> read_points() const
@@ -370,7 +490,7 @@ private:
       if (some.size() == lowest_number_of_scan_points)
         return;
     }
-    throw Invalid_input(std::string(function) + ": there are " + std::to_string(some.size()) +
+    throw Invalid_input(std::string(function) + ": there are only " + std::to_string(some.size()) +
                         " different points; there must be at least " +
                         std::to_string(lowest_number_of_scan_points));
   }

@@ -20,10 +20,11 @@ namespace pcs {
   | scan | result |
   |---|---|
   | fewer than `lowest_number_of_scan_points` different points, or one that is not finite | `Invalid_input` |
-  | nothing that can be a branch | `Status::nothing_to_do`, `tree` untouched |
-  | a lamp post, a stick | one branch |
+  | a thin filled sheet (ground alone, a wall), unless `do_remove_ground(false)` | `Status::nothing_to_do`, `tree` untouched |
+  | a lamp post, a stick | the post is the trunk |
   | a bush | its thickest stem is the root; other stems within reach are branches of it |
-  | two trees in one cloud | the one with the thicker foot; the other one is counted as out of reach |
+  | two trees in one cloud | the one with more points at its foot, for its height; the other is counted as out of reach |
+  | a body that is no tree, such as a sphere | some tree within it |
 
   \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or `CGAL::Parallel_if_available_tag`
   \param points a model of `RandomAccessRange`

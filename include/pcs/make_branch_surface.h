@@ -42,10 +42,12 @@ struct Branch_surface_report
   \ingroup PkgPcsSkeletonRef
   \brief makes the surface of a tree: generalized cylinders along the branches, joined to one closed mesh.
 
-  Every branch is a tube through its sections, whose frames do not twist; tubes end in a lid at the tip. A branch is sewn into
-  a hole that is cut where it leaves its parent, so that there are no walls inside. Every edge has two triangles, which run
-  through it in opposite directions. Branches that do not leave the wood of their parent have no surface. Thin tubes that
-  touch or bend sharply may intersect themselves or each other.
+  Every branch is a tube through its sections, whose frames do not twist; the polygon of a ring has the area of its section,
+  and tubes end in a lid at the tip. Where the axis of a branch leaves the wood of its parent, its tube is prolonged backwards
+  to a loop on the parent's surface and sewn into a hole there, so that there are no walls inside. Every edge has two triangles,
+  which run through it in opposite directions. Branches that stay in the wood of their parent have no surface. Where siblings
+  leave no room for a hole, a branch is a closed tube that begins inside of its parent. Thin tubes that touch or bend sharply
+  may run through themselves or each other.
 
   \param tree a tree; positions and radii are finite
   \param points replaced by the vertices
@@ -121,7 +123,7 @@ Branch_surface_report make_branch_surface(const Tree_skeleton<Kernel>& tree,
   if (!std::isfinite(rules.tolerance) || rules.tolerance < 0)
     throw Invalid_input("pcs::make_branch_surface(): tolerance is " +
                         internal::to_text(rules.tolerance) + "; it must not be negative");
-  skeleton::Branch_surface surface = skeleton::Surface_builder(std::move(branches), rules)();
+  skeleton::Branch_surface surface = skeleton::Surface_builder(branches, rules)();
   std::vector<typename Kernel::Point_3> result;
   result.reserve(surface.points.size());
   for (const Vec3& q : surface.points) {

@@ -33,6 +33,7 @@ struct Skeleton_report
   std::size_t number_of_duplicates = 0; ///< points at the place of another one [count]
   std::size_t number_of_outliers =
       0; ///< points left out because they are far from all others [count]
+  std::size_t number_of_leaf_points = 0;        ///< points left out by `wood_map` [count]
   std::size_t number_of_ground_points = 0;      ///< points left out as ground [count]
   std::size_t number_of_unexplained_points = 0; ///< other points that no branch explains [count]
   std::size_t number_of_unreached_points =
@@ -43,10 +44,13 @@ struct Skeleton_report
 
   double spacing = 0; ///< median distance to the nearest neighbour [L]
   double noise = 0;   ///< standard deviation of the points from the surface [L]
+  //! median distance of the points from the surface of their branches; several times `noise`: something is wrong [L]
+  double residual = 0;
   double density = 0; ///< points per area of the surface of branches; 0: not known [1/L^2]
 
   double height = 0; ///< from the root to the highest node, along the up direction [L]
-  double diameter_at_breast_height = 0; ///< of the trunk; 0: the trunk is not that high [L]
+  //! of the trunk; where it ends below, of the thickest branch there; 0: nothing is that high [L]
+  double diameter_at_breast_height = 0;
   Wood total;
   std::vector<Wood> by_order; ///< trunk first
   //! upper bounds of the radius in the classes of `by_size`, the last class has none
@@ -64,12 +68,12 @@ inline std::ostream& operator<<(std::ostream& out, const Skeleton_report& r)
 {
   out << "status " << r.status << ", " << r.number_of_points << " points ("
       << r.number_of_duplicates << " duplicates, " << r.number_of_outliers << " outliers, "
-      << r.number_of_ground_points << " on the ground, " << r.number_of_unexplained_points
-      << " unexplained, " << r.number_of_unreached_points << " out of reach), "
-      << r.number_of_branches << " branches, " << r.number_of_nodes << " nodes, spacing "
-      << r.spacing << ", noise " << r.noise << ", height " << r.height
-      << ", diameter at breast height " << r.diameter_at_breast_height << ", length "
-      << r.total.length << ", volume " << r.total.volume << "; seconds: neighbors "
+      << r.number_of_leaf_points << " leaves, " << r.number_of_ground_points << " on the ground, "
+      << r.number_of_unexplained_points << " unexplained, " << r.number_of_unreached_points
+      << " out of reach), " << r.number_of_branches << " branches, " << r.number_of_nodes
+      << " nodes, spacing " << r.spacing << ", noise " << r.noise << ", residual " << r.residual
+      << ", height " << r.height << ", diameter at breast height " << r.diameter_at_breast_height
+      << ", length " << r.total.length << ", volume " << r.total.volume << "; seconds: neighbors "
       << r.seconds.neighbors << ", paths " << r.seconds.paths << ", axes " << r.seconds.axes
       << ", joints " << r.seconds.joints << ", sections " << r.seconds.sections;
   return out;

@@ -127,7 +127,10 @@ inline Axis resample(const Axis& axis, const Node_spacing& spacing)
     const double wanted = spacing(0.5 * (axis[k].radius + axis[k - 1].radius));
     steps[k] = steps[k - 1] + (axis[k].point - axis[k - 1].point).norm() / wanted;
   }
-  const std::size_t count = static_cast<std::size_t>(std::max(1.0, std::round(steps.back())));
+  // an axis across wide gaps has no use for more nodes than these: nothing is there
+  const double most = 4.0 * double(axis.size()) + 64;
+  const std::size_t count =
+      static_cast<std::size_t>(std::max(1.0, std::min(most, std::round(steps.back()))));
   Axis result;
   result.reserve(count + 1);
   result.push_back(axis.front());

@@ -9,11 +9,13 @@
 #include <pcs/internal/Stopwatch.h>
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Branch_tree.h>
+#include <pcs/skeleton/correct_beam.h>
 #include <pcs/skeleton/estimate_sections.h>
 #include <pcs/skeleton/find_root.h>
 #include <pcs/skeleton/fit_axes.h>
 #include <pcs/skeleton/join_axes.h>
 #include <pcs/skeleton/mark_ground.h>
+#include <pcs/skeleton/measure_given.h>
 #include <pcs/skeleton/merge_rings.h>
 #include <pcs/skeleton/section_skeleton.h>
 
@@ -39,7 +41,10 @@ enum class Skeleton_method {
 struct Session_options
 {
   Vec3 up = Vec3::UnitZ();
-  std::optional<Vec3> root; ///< in the coordinates of the input
+  std::optional<Vec3> root; ///< in the coordinates of the input, as the next two
+  std::vector<Vec3> scanners;
+  std::optional<Given_skeleton> given; ///< measured, instead of looking for branches
+  double beam_width = 0;               ///< of the scanners [rad]
   bool do_mark_ground = true;
   double breast_height = 1.3; ///< [L]
   Skeleton_method method = Skeleton_method::chains;
@@ -51,6 +56,8 @@ struct Session_options
   Ground_rules ground;
   Joint_rules joints;
   Section_rules sections;
+  Given_rules given_rules;
+  Beam_rules beam;
 };
 
 /// Runs the stages in order; each runs those before it that have not run yet, and stops when cancelled.
@@ -87,9 +94,14 @@ public:
       m_scan.is_outlier[i] = !m_is_used[i];
     std::vector<Vec3>().swap(m_input);
     m_report.number_of_duplicates = m_report.number_of_points - n;
-    m_report.number_of_outliers =
-        static_cast<std::size_t>(std::count(m_scan.is_outlier.begin(), m_scan.is_outlier.end(), 1));
+    const auto number_of = [](const std::vector<std::uint8_t>& flags, std::uint8_t value) {
+      return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), value));
+    };
+    m_report.number_of_leaf_points = number_of(is_wood, 0);
+    m_report.number_of_outliers = number_of(m_scan.is_outlier, 1) - m_report.number_of_leaf_points;
     m_report.spacing = m_scan.spacing;
+    for (Vec3& s : m_options.scanners)
+      s -= m_scan.origin;
     m_report.seconds.neighbors = watch.lap();
     m_stage = 1;
     return progress(0.35);
@@ -102,8 +114,19 @@ public:
     if (m_stage >= 2)
       return true;
     pcs::internal::Stopwatch watch;
+    if (m_options.given) {
+      m_stage = 2;
+      return progress(0.6);
+    }
     std::vector<Link> links =
         neighbor_links<ConcurrencyTag>(m_scan, m_is_used, m_options.axes.links);
+    if (m_options.do_mark_ground && is_one_sheet(m_scan, m_is_used, m_options.ground)) {
+      m_report.number_of_ground_points =
+          static_cast<std::size_t>(std::count(m_is_used.begin(), m_is_used.end(), 1));
+      std::fill(m_is_used.begin(), m_is_used.end(), std::uint8_t(0));
+      m_stage = 2;
+      return progress(0.6);
+    }
     if (m_options.do_mark_ground) {
       m_report.number_of_ground_points =
           mark_ground(m_scan, links, m_options.up, m_options.ground, m_is_used);
@@ -138,6 +161,10 @@ public:
     if (m_stage >= 3)
       return true;
     pcs::internal::Stopwatch watch;
+    if (m_root.empty()) { // nothing is a tree, or it is known
+      m_stage = 3;
+      return progress(0.9);
+    }
     if (m_options.method == Skeleton_method::sections) {
       const std::vector<Surface_frame> frames = principal_curvatures<ConcurrencyTag>(m_scan);
       if (!progress(0.7))
@@ -167,14 +194,17 @@ public:
     if (m_stage >= 4)
       return true;
     pcs::internal::Stopwatch watch;
-    if (m_options.method == Skeleton_method::sections) {
+    if (m_options.given) {
+      m_tree = measure_given(m_scan, m_is_used, *m_options.given, m_options.given_rules);
+    } else if (m_options.method == Skeleton_method::sections && !m_root.empty()) {
       m_tree = section_skeleton(m_scan, m_is_used, m_sections, m_root, m_options.section_tree);
+      correct_beam(m_options.scanners, m_options.beam_width, m_options.beam, m_tree);
       count();
       m_report.seconds.joints = watch.lap();
       m_stage = 4;
       return progress(0.97);
     }
-    if (!m_axes.axes.empty()) {
+    if (!m_axes.axes.empty()) { // none with a given skeleton
       const Index root = root_axis();
       m_joints =
           Axis_joiner(m_axes, m_scan.spacing, m_options.joints).template run<ConcurrencyTag>(root);
@@ -186,6 +216,7 @@ public:
     m_report.seconds.joints = watch.lap();
     if (!progress(0.97))
       return false;
+    correct_beam(m_options.scanners, m_options.beam_width, m_options.beam, m_tree);
     estimate_sections<ConcurrencyTag>(m_scan, m_axes.noise, m_options.sections, m_tree);
     count();
     m_report.seconds.sections = watch.lap();
@@ -209,10 +240,13 @@ public:
   Index node_of_input(std::size_t i) const { return m_tree.node_of_point[m_point_of_input[i]]; }
 
   /// Distance of an input point from the surface of its branch; negative inside. It has a node.
-  double residual_of_input(std::size_t i) const
+  double residual_of_input(std::size_t i) const { return residual_of_point(m_point_of_input[i]); }
+
+private:
+  double residual_of_point(Index p) const
   {
-    const Index p = m_point_of_input[i], v = m_tree.node_of_point[p];
-    if (m_options.method == Skeleton_method::chains)
+    const Index v = m_tree.node_of_point[p];
+    if (m_options.method == Skeleton_method::chains && !m_options.given)
       return m_axes.height_above(p, m_scan.points[p]);
     const Branch_node& node = m_tree.nodes[v];
     const Branch_node& below = m_tree.nodes[node.parent == none ? v : node.parent];
@@ -222,7 +256,6 @@ public:
     return (q - t * d).norm() - (1 - t) * below.radius - t * node.radius;
   }
 
-private:
   std::vector<Index> nearest_used(const Vec3& place) const
   {
     const auto found = m_scan.search->nearest_if(place - m_scan.origin,
@@ -265,6 +298,18 @@ private:
 
   void count();
 
+  /// Of some ten thousand points spread over all.
+  double median_residual() const
+  {
+    std::vector<double> distances;
+    constexpr std::size_t enough = 20000;
+    const std::size_t n = m_tree.node_of_point.size(), step = 1 + n / enough;
+    for (std::size_t i = 0; i < n; i += step)
+      if (m_tree.node_of_point[i] != none)
+        distances.push_back(std::abs(residual_of_point(static_cast<Index>(i))));
+    return median(distances);
+  }
+
   std::vector<Vec3> m_input;
   std::vector<std::uint8_t> m_is_wood, m_is_used;
   Session_options m_options;
@@ -300,6 +345,7 @@ void Session<ConcurrencyTag>::count()
     r.number_of_unexplained_points += !is_covered;
     r.number_of_unreached_points += is_covered && !has_node;
   }
+  r.residual = median_residual();
   for (const double b : size_bounds_by_breast_height)
     r.size_bounds.push_back(b * m_options.breast_height);
   r.by_size.resize(r.size_bounds.size() + 1);
@@ -313,6 +359,7 @@ void Session<ConcurrencyTag>::count()
   if (m_tree.nodes.empty())
     return;
   const double ground = m_options.up.dot(m_tree.nodes[0].point);
+  double thickest = 0; // of all that crosses breast height
   for (Index v = 0; v < m_tree.nodes.size(); ++v) {
     const Branch_node& node = m_tree.nodes[v];
     r.height = std::max(r.height, m_options.up.dot(node.point) - ground);
@@ -331,9 +378,15 @@ void Session<ConcurrencyTag>::count()
     }
     const double h0 = m_options.up.dot(below.point) - ground - m_options.breast_height;
     const double h1 = m_options.up.dot(node.point) - ground - m_options.breast_height;
-    if (order == 0 && h0 <= 0 && h1 > 0 && r.diameter_at_breast_height == 0)
-      r.diameter_at_breast_height = 2 * (a + (b - a) * h0 / (h0 - h1));
+    if (h0 > 0 || h1 <= 0)
+      continue;
+    const double diameter = 2 * (a + (b - a) * h0 / (h0 - h1));
+    if (order == 0 && r.diameter_at_breast_height == 0)
+      r.diameter_at_breast_height = diameter;
+    thickest = std::max(thickest, diameter);
   }
+  if (r.diameter_at_breast_height == 0) // the trunk was lost below, among buttresses for example
+    r.diameter_at_breast_height = thickest;
 }
 
 } // namespace skeleton

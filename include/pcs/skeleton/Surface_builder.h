@@ -5,7 +5,7 @@
 #ifndef PCS_SKELETON_SURFACE_BUILDER_H
 #define PCS_SKELETON_SURFACE_BUILDER_H
 
-#include <pcs/skeleton/Scan.h>
+#include <pcs/skeleton/Branch_surface.h>
 
 #include <Eigen/Geometry>
 
@@ -13,451 +13,422 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <utility>
 #include <vector>
 
 namespace pcs {
 namespace skeleton {
 
-/// A cross-section of a branch.
-struct Section
-{
-  Vec3 center = Vec3::Zero();
-  double radius = 0;
-  double major_radius = 0, minor_radius = 0; ///< 0: a circle
-  Vec3 major_axis = Vec3::Zero();
-};
-
-/// A branch whose surface is wanted; parents come before their children.
-struct Surface_branch
-{
-  std::size_t parent = static_cast<std::size_t>(-1); ///< none
-  std::vector<Section> sections;                     ///< from base to tip
-};
-
-struct Surface_rules
-{
-  double tolerance = 0; ///< distance of the mesh from the sections [L]
-  bool do_join = true;  ///< else every branch is a closed tube of its own
-  std::size_t fewest_sides = 4, most_sides = 48;
-};
-
-/// A mesh of triangles that look outwards.
-struct Branch_surface
-{
-  std::vector<Vec3> points;
-  std::vector<std::array<std::size_t, 3>> triangles;
-  std::size_t number_of_joined = 0;   ///< branches sewn into a hole of their parent [count]
-  std::size_t number_of_separate = 0; ///< branches that are closed tubes of their own [count]
-};
-
+/*!
+  A branch begins where its axis leaves the wood of its parent. There its tube is prolonged backwards to a loop on the surface
+  of the parent; the parent has rings just before and behind, so that a block of its quads holds the loop closely. The block is
+  taken out, and what is left of it around the loop is filled in the unrolled surface.
+*/
 class Surface_builder
 {
 public:
-  Surface_builder(std::vector<Surface_branch> branches, const Surface_rules& rules)
-    : m_branches(std::move(branches)), m_rules(rules), m_tubes(m_branches.size())
+  Surface_builder(const std::vector<Surface_branch>& branches, const Surface_rules& rules)
+    : m_rules(rules), m_tubes(branches.size()), m_exits(branches.size())
   {
+    for (const Surface_branch& b : branches) {
+      m_parent.push_back(b.parent);
+      m_lines.emplace_back(b.sections);
+    }
   }
 
   Branch_surface operator()()
   {
-    for (std::size_t b = 0; b < m_branches.size(); ++b)
-      make_tube(b);
-    for (std::size_t b = 0; b < m_branches.size(); ++b)
-      if (!m_tubes[b].rings.empty())
-        join(b);
-    for (std::size_t b = 0; b < m_branches.size(); ++b)
-      close(b);
+    const std::size_t n = m_tubes.size();
+    std::vector<std::vector<double>> rings(n);
+    for (std::size_t b = 0; b < n; ++b)
+      if (find_exit(b) && m_exits[b].is_there)
+        for (const double side : {-1.0, 1.0})
+          rings[m_parent[b]].push_back(m_exits[b].at + side * m_exits[b].half);
+    for (std::size_t b = 0; b < n; ++b)
+      make_tube(b, std::move(rings[b]));
+    for (std::size_t b = 0; b < n; ++b)
+      if (!m_tubes[b].rings.empty() && m_parent[b] < b && !join(b))
+        begin_inside(b);
+    for (std::size_t b = 0; b < n; ++b)
+      close(m_tubes[b]);
     drop_unused_points();
     return std::move(m_surface);
   }
 
 private:
   using Loop = std::vector<std::size_t>;
-  /// A grid of vertices: `sides` of them on each ring.
-  struct Tube
+  /// Where a branch leaves its parent.
+  struct Exit
   {
-    std::size_t sides = 0;
-    std::vector<Section> rings;
-    std::vector<Vec3> along, side;     ///< frame of each ring
-    std::size_t first = 0;             ///< number of the first vertex
-    std::vector<std::uint8_t> is_hole; ///< quads, ring by ring
-    bool is_joined = false;
-
-    std::size_t vertex(std::size_t ring, std::size_t k) const
-    {
-      return first + ring * sides + k % sides;
-    }
-    std::uint8_t& hole(std::size_t ring, std::size_t k)
-    {
-      return is_hole[ring * sides + k % sides];
-    }
+    bool is_there = false;
+    double at = 0, half = 0; ///< arc length on the parent, and how far the branch reaches along it
+    double start = 0;  ///< arc length on the branch where its own rings begin; < 0: no surface
+    double radius = 0; ///< of the branch
+    Vec3 point = Vec3::Zero(), direction = Vec3::Zero(), normal = Vec3::Zero();
+  };
+  /// A block of quads of a parent: rings [r0, r1), sides [c0, c0 + count).
+  struct Block
+  {
+    std::size_t r0 = 0, r1 = 0, c0 = 0, count = 0;
+  };
+  /// A place on the unrolled surface: sides, and arc length.
+  struct Place
+  {
+    double u = 0, s = 0;
   };
 
-  std::vector<Section> simplify(const std::vector<Section>& all) const;
-  void make_tube(std::size_t b);
-  void place_frames(Tube& tube) const;
-  Vec3 point_on(const Tube& tube, std::size_t ring, std::size_t k) const;
-  void join(std::size_t b);
-  bool
-  find_hole(Tube& parent, const Vec3& exit, double radius, std::array<std::size_t, 4>& hole) const;
-  Loop cut_hole(Tube& parent, const std::array<std::size_t, 4>& hole);
-  Loop narrow(const Tube& parent, const Loop& loop, const Vec3& exit, double radius);
-  void sew(const Loop& outer, const Loop& inner, const Vec3& center, const Vec3& along);
-  void close(std::size_t b);
+  bool find_exit(std::size_t b);
+  void make_tube(std::size_t b, std::vector<double> rings);
+  bool join(std::size_t b);
+  void begin_inside(std::size_t b);
+  bool find_block(Surface_tube& parent, const Place& center, double du, double ds, Block& block);
+  Vec3 on_grid(const Surface_tube& tube, const Place& place) const;
+  void sew(const Loop& outer,
+           const std::vector<Place>& outer_places,
+           const Loop& inner,
+           const std::vector<Place>& inner_places);
+  void close(Surface_tube& tube);
   void drop_unused_points();
   void add(std::size_t a, std::size_t b, std::size_t c)
   {
     m_surface.triangles.push_back({a, b, c});
   }
 
-  std::vector<Surface_branch> m_branches;
   Surface_rules m_rules;
-  std::vector<Tube> m_tubes;
+  std::vector<std::size_t> m_parent;
+  std::vector<Section_line> m_lines;
+  std::vector<Surface_tube> m_tubes;
+  std::vector<Exit> m_exits;
   Branch_surface m_surface;
 };
 
-/// Keeps the sections that are needed to stay within the tolerance (Douglas and Peucker, radius included).
-inline std::vector<Section> Surface_builder::simplify(const std::vector<Section>& all) const
+/// Follows the axis of a branch to the surface of its parent. Returns `false` for branches without surface.
+inline bool Surface_builder::find_exit(std::size_t b)
 {
-  std::vector<Section> distinct;
-  for (const Section& s : all)
-    if (distinct.empty() || (distinct.back().center - s.center).norm() > 1e-9 * (1 + s.radius))
-      distinct.push_back(s);
-  if (distinct.size() < 3 || !(m_rules.tolerance > 0))
-    return distinct;
-  std::vector<std::uint8_t> is_kept(distinct.size(), 0);
-  is_kept.front() = is_kept.back() = 1;
-  std::vector<std::pair<std::size_t, std::size_t>> stack{{0, distinct.size() - 1}};
-  while (!stack.empty()) {
-    const auto [a, b] = stack.back();
-    stack.pop_back();
-    const Vec3 d = distinct[b].center - distinct[a].center;
-    double worst = m_rules.tolerance;
-    std::size_t at = 0;
-    for (std::size_t k = a + 1; k < b; ++k) {
-      const double t =
-          d.squaredNorm() > 0
-              ? std::min(
-                    1.0,
-                    std::max(0.0, d.dot(distinct[k].center - distinct[a].center) / d.squaredNorm()))
-              : 0;
-      const double off =
-          (distinct[k].center - distinct[a].center - t * d).norm() +
-          std::abs(distinct[k].radius - (1 - t) * distinct[a].radius - t * distinct[b].radius);
-      if (off > worst) {
-        worst = off;
-        at = k;
-      }
-    }
-    if (at > 0) {
-      is_kept[at] = 1;
-      stack.emplace_back(a, at);
-      stack.emplace_back(at, b);
-    }
+  Exit& e = m_exits[b];
+  const Section_line& line = m_lines[b];
+  e.start = line.size() < 2 ? -1 : 0;
+  if (line.size() < 2 || !m_rules.do_join || m_parent[b] >= b || m_lines[m_parent[b]].size() < 2)
+    return e.start >= 0;
+  const Section_line& below = m_lines[m_parent[b]];
+  const auto outside = [&](double s) {
+    const Vec3 p = line.section(s).center;
+    const Section at = below.section(below.nearest(p));
+    return (p - at.center).norm() - at.radius;
+  };
+  double low = 0, high = -1;
+  for (std::size_t k = 0; k < line.size() && high < 0; ++k) {
+    if (outside(line.at(k)) > 0)
+      high = line.at(k);
+    else
+      low = line.at(k);
   }
-  std::vector<Section> result;
-  for (std::size_t k = 0; k < distinct.size(); ++k)
-    if (is_kept[k])
-      result.push_back(distinct[k]);
-  return result;
+  if (high < 0) { // hidden in its parent
+    e.start = -1;
+    return false;
+  }
+  for (int k = 0; k < 30 && high > 0; ++k) {
+    const double middle = 0.5 * (low + high);
+    (outside(middle) > 0 ? high : low) = middle;
+  }
+  const Section here = line.section(high);
+  e.point = here.center;
+  e.radius = here.radius;
+  e.at = below.nearest(here.center);
+  const Section at = below.section(e.at);
+  const Vec3 axis = below.direction(e.at);
+  Vec3 normal = here.center - at.center;
+  normal -= normal.dot(axis) * axis;
+  e.normal =
+      normal.norm() > 1e-9 * at.radius ? Vec3(normal.normalized()) : Vec3(axis.unitOrthogonal());
+  // flat branches are taken for steeper ones: their footprint would run far along the parent
+  const Vec3 d = line.direction(high);
+  const double sine = std::max(m_rules.steepest, d.dot(e.normal));
+  Vec3 flat = d - d.dot(e.normal) * e.normal;
+  flat = flat.norm() > 1e-9 ? Vec3(flat.normalized()) : Vec3(Vec3::Zero());
+  e.direction = (std::sqrt(1 - std::min(1.0, sine * sine)) * flat + sine * e.normal).normalized();
+  const double rise = std::abs(flat.dot(axis)); // part of the slope that runs along the parent
+  e.half = e.radius * ((1 - rise) + rise / sine) + m_rules.margin * e.radius;
+  const double slope = std::sqrt(1 - std::min(1.0, sine * sine)) / sine;
+  const double sag = at.radius > e.radius // the parent curves away from the branch
+                         ? at.radius - std::sqrt(at.radius * at.radius - e.radius * e.radius)
+                         : e.radius;
+  // the first ring of the branch lies outside of the parent as a whole
+  e.start = high + std::max(0.0, slope * e.radius - sag) + m_rules.margin * e.radius;
+  const double last = line.length();
+  if (e.start > high + 0.6 * (last - high))
+    e.start = high + 0.6 * (last - high);
+  e.is_there = last - e.start > 1e-6 * (1 + last) || high == 0;
+  if (!e.is_there)
+    e.start = -1;
+  return e.is_there;
 }
 
-/// Frames that do not twist: each is the one before, turned by the smallest rotation.
-inline void Surface_builder::place_frames(Tube& tube) const
+inline void Surface_builder::make_tube(std::size_t b, std::vector<double> rings)
 {
-  const std::size_t n = tube.rings.size();
-  tube.along.resize(n);
-  tube.side.resize(n);
-  for (std::size_t k = 0; k < n; ++k) {
-    const Vec3 d = tube.rings[std::min(n - 1, k + 1)].center - tube.rings[k > 0 ? k - 1 : 0].center;
-    tube.along[k] =
-        d.norm() > 0 ? Vec3(d.normalized()) : (k > 0 ? tube.along[k - 1] : Vec3(Vec3::UnitZ()));
-    if (k == 0)
-      tube.side[k] = tube.along[k].unitOrthogonal();
-    else {
-      const Eigen::Quaterniond turn =
-          Eigen::Quaterniond::FromTwoVectors(tube.along[k - 1], tube.along[k]);
-      const Vec3 s = turn * tube.side[k - 1];
-      tube.side[k] = (s - s.dot(tube.along[k]) * tube.along[k]).normalized();
-    }
-  }
-}
-
-inline Vec3 Surface_builder::point_on(const Tube& tube, std::size_t ring, std::size_t k) const
-{
-  const Section& s = tube.rings[ring];
-  const double angle = 2 * 3.14159265358979323846 * double(k) / double(tube.sides);
-  const Vec3 direction =
-      std::cos(angle) * tube.side[ring] + std::sin(angle) * tube.along[ring].cross(tube.side[ring]);
-  double radius = s.radius;
-  if (s.major_radius > 0 && s.minor_radius > 0) {
-    const double c = direction.dot(s.major_axis), c2 = std::min(1.0, c * c);
-    radius = 1 / std::sqrt(c2 / (s.major_radius * s.major_radius) +
-                           (1 - c2) / (s.minor_radius * s.minor_radius));
-  }
-  return s.center + radius * direction;
-}
-
-inline void Surface_builder::make_tube(std::size_t b)
-{
-  Tube& tube = m_tubes[b];
-  const Surface_branch& branch = m_branches[b];
-  std::vector<Section> rings = branch.sections;
-  const bool has_parent = m_rules.do_join && branch.parent < b;
-  if (has_parent) { // what lies in the wood of the parent has no surface
-    const std::vector<Section>& below = m_branches[branch.parent].sections;
-    std::size_t near = 0;
-    for (std::size_t k = 1; k < below.size(); ++k)
-      if ((below[k].center - rings[0].center).norm() <
-          (below[near].center - rings[0].center).norm())
-        near = k;
-    const Vec3 axis =
-        below[std::min(below.size() - 1, near + 1)].center - below[near > 0 ? near - 1 : 0].center;
-    const Vec3 along = axis.norm() > 0 ? Vec3(axis.normalized()) : Vec3(Vec3::UnitZ());
-    std::size_t k = 0;
-    for (; k < rings.size(); ++k) {
-      const Vec3 d = rings[k].center - below[near].center;
-      const double across = (d - d.dot(along) * along).norm();
-      if (across > below[near].radius + 0.3 * rings[k].radius)
-        break;
-    }
-    if (k + 1 >= rings.size())
-      return; // hidden in its parent
-    rings.erase(rings.begin(), rings.begin() + static_cast<std::ptrdiff_t>(k));
-  }
-  tube.rings = simplify(rings);
-  if (tube.rings.size() < 2) {
-    tube.rings.clear();
+  Surface_tube& tube = m_tubes[b];
+  const Section_line& line = m_lines[b];
+  const double start = m_exits[b].start;
+  if (start < 0 || line.size() < 2)
     return;
-  }
+  const double last = line.length();
+  for (const double s : line.simplified(m_rules.tolerance))
+    rings.push_back(s);
+  rings.push_back(start);
+  std::sort(rings.begin(), rings.end());
+  const double least = 1e-4 * (last - start);
+  for (const double s : rings)
+    if (s >= start && (tube.at.empty() || s - tube.at.back() > least) && s < last - least)
+      tube.at.push_back(s);
+  tube.at.push_back(last);
   double thickest = 0;
-  for (const Section& s : tube.rings)
-    thickest = std::max(thickest, s.radius);
+  for (const double s : tube.at) {
+    tube.rings.push_back(line.section(s));
+    thickest = std::max(thickest, tube.rings.back().radius);
+  }
   const double t = std::min(0.9, m_rules.tolerance / std::max(thickest, 1e-300));
   const double sides =
       t > 0 ? 3.14159265358979323846 / std::acos(1 - t) : double(m_rules.most_sides);
   tube.sides =
       static_cast<std::size_t>(std::min(double(m_rules.most_sides),
                                         std::max(double(m_rules.fewest_sides), std::ceil(sides))));
-  place_frames(tube);
+  tube.place_frames();
   tube.first = m_surface.points.size();
   for (std::size_t r = 0; r < tube.rings.size(); ++r)
     for (std::size_t k = 0; k < tube.sides; ++k)
-      m_surface.points.push_back(point_on(tube, r, k));
+      m_surface.points.push_back(tube.point_on(r, k));
   tube.is_hole.assign((tube.rings.size() - 1) * tube.sides, 0);
 }
 
-/// A free block of quads around `exit`, as rings [h0, h1) and sides [h2, h2 + h3).
-inline bool Surface_builder::find_hole(Tube& parent,
-                                       const Vec3& exit,
-                                       double radius,
-                                       std::array<std::size_t, 4>& hole) const
+/// The smallest free block that holds the place with some room; smaller ones where others are in the way.
+inline bool Surface_builder::find_block(Surface_tube& parent,
+                                        const Place& center,
+                                        double du,
+                                        double ds,
+                                        Block& block)
 {
   const std::size_t rows = parent.rings.size() - 1;
+  for (const double share : {1.0, 0.6, 0.3, 0.0}) {
+    const double low = center.s - share * ds, high = center.s + share * ds;
+    constexpr double slack = 1e-9;
+    std::size_t r0 = 0, r1 = 1;
+    while (r0 + 1 < rows && parent.at[r0 + 1] <= low + slack * ds)
+      ++r0;
+    r1 = r0 + 1;
+    while (r1 < rows && parent.at[r1] < high - slack * ds)
+      ++r1;
+    const double sides = double(parent.sides);
+    double from = std::floor(center.u - share * du), to = std::ceil(center.u + share * du);
+    to = std::max(to, from + 1);
+    const double most = std::max(1.0, std::floor(0.5 * sides));
+    if (to - from > most) {
+      from = std::round(center.u - 0.5 * most);
+      to = from + most;
+    }
+    block.r0 = r0;
+    block.r1 = r1;
+    block.count = static_cast<std::size_t>(to - from);
+    block.c0 = static_cast<std::size_t>(std::fmod(std::fmod(from, sides) + sides, sides));
+    bool is_free = true;
+    for (std::size_t r = r0; r < r1 && is_free; ++r)
+      for (std::size_t c = 0; c < block.count && is_free; ++c)
+        is_free = !parent.hole(r, block.c0 + c);
+    if (is_free)
+      return true;
+  }
+  return false;
+}
+
+/// The point of the grid at a place: bilinear in its quad.
+inline Vec3 Surface_builder::on_grid(const Surface_tube& tube, const Place& place) const
+{
+  const std::size_t rows = tube.rings.size() - 1;
+  std::size_t r = 0;
+  while (r + 1 < rows && tube.at[r + 1] <= place.s)
+    ++r;
+  const double t = (place.s - tube.at[r]) / (tube.at[r + 1] - tube.at[r]);
+  const double sides = double(tube.sides), u = std::fmod(std::fmod(place.u, sides) + sides, sides);
+  const std::size_t k = static_cast<std::size_t>(u);
+  const double f = u - double(k);
+  const auto& p = m_surface.points;
+  return (1 - t) * ((1 - f) * p[tube.vertex(r, k)] + f * p[tube.vertex(r, k + 1)]) +
+         t * ((1 - f) * p[tube.vertex(r + 1, k)] + f * p[tube.vertex(r + 1, k + 1)]);
+}
+
+inline bool Surface_builder::join(std::size_t b)
+{
+  Surface_tube &tube = m_tubes[b], &parent = m_tubes[m_parent[b]];
+  const Exit& e = m_exits[b];
+  if (!m_rules.do_join || !e.is_there || parent.rings.empty())
+    return false;
+  // the frame of the parent there
   std::size_t row = 0;
-  double best = -1;
-  for (std::size_t r = 0; r < rows; ++r) {
-    const Vec3 a = parent.rings[r].center, d = parent.rings[r + 1].center - a;
-    const double t =
-        std::min(1.0, std::max(0.0, d.dot(exit - a) / std::max(d.squaredNorm(), 1e-300)));
-    const double distance = (exit - a - t * d).norm();
-    if (best < 0 || distance < best) {
-      best = distance;
-      row = r;
-    }
+  while (row + 2 < parent.rings.size() && parent.at[row + 1] <= e.at)
+    ++row;
+  const Vec3 axis = m_lines[m_parent[b]].direction(e.at);
+  const Vec3 around = axis.cross(e.normal);
+  const Vec3 &e1 = parent.side[row], e2 = parent.along[row].cross(e1);
+  const double turn = parent.angle(1);
+  const double thick = std::max(m_lines[m_parent[b]].section(e.at).radius, 1e-300);
+  Place center{std::atan2(e.normal.dot(e2), e.normal.dot(e1)) / turn, e.at};
+  if (center.u < 0)
+    center.u += double(parent.sides);
+  // the tube of the branch, prolonged backwards to the surface
+  std::vector<Place> loop;
+  Vec3 s1 = tube.side.front() - tube.side.front().dot(e.direction) * e.direction;
+  s1 = s1.norm() > 1e-9 ? Vec3(s1.normalized()) : Vec3(e.direction.unitOrthogonal());
+  const Vec3 s2 = e.direction.cross(s1);
+  double du = 0, ds = 0;
+  for (std::size_t k = 0; k < tube.sides; ++k) {
+    const double a = tube.angle(double(k));
+    Vec3 o = e.radius * (std::cos(a) * s1 + std::sin(a) * s2);
+    o -= o.dot(e.normal) / e.direction.dot(e.normal) * e.direction;
+    loop.push_back({o.dot(around) / thick / turn, o.dot(axis)});
+    du = std::max(du, std::abs(loop.back().u));
+    ds = std::max(ds, std::abs(loop.back().s));
   }
-  const Vec3 a = parent.rings[row].center, e1 = parent.side[row], e2 = parent.along[row].cross(e1);
-  const double angle = std::atan2((exit - a).dot(e2), (exit - a).dot(e1));
-  const double turn = 2 * 3.14159265358979323846 / double(parent.sides);
-  const double at = (angle < 0 ? angle + 2 * 3.14159265358979323846 : angle) / turn;
-  const auto is_free = [&](std::size_t r0, std::size_t r1, std::size_t k, std::size_t count) {
-    for (std::size_t r = r0; r < r1; ++r)
-      for (std::size_t c = 0; c < count; ++c)
-        if (parent.hole(r, k + c))
-          return false;
-    return true;
-  };
-  // as wide as the branch, but no more than half of the way around
-  const double half =
-      std::asin(std::min(1.0, radius / std::max(parent.rings[row].radius, radius))) / turn;
-  std::size_t count = static_cast<std::size_t>(std::max(1.0, std::round(2 * half)));
-  count = std::min(count, std::max<std::size_t>(1, parent.sides / 2));
-  std::size_t first = static_cast<std::size_t>(std::llround(at - 0.5 * double(count)) +
-                                               static_cast<long long>(parent.sides)) %
-                      parent.sides;
-  std::size_t r0 = row, r1 = row + 1;
-  const auto height = [&](std::size_t r) {
-    return (parent.rings[r].center - exit).dot(parent.along[row]);
-  };
-  while (r0 > 0 && height(r0) > -radius)
-    --r0;
-  while (r1 < rows && height(r1) < radius)
-    ++r1;
-  if (is_free(r0, r1, first, count)) {
-    hole = {r0, r1, first, count};
-    return true;
+  if (!(du > 0) || !(ds > 0))
+    return false;
+  const double most_u = m_rules.widest / turn, scale_u = std::min(1.0, most_u / du);
+  const double room = 1 + m_rules.margin, from = parent.at.front(), to = parent.at.back();
+  const double half = std::min(room * ds, 0.5 * (to - from));
+  center.s = std::min(to - half, std::max(from + half, center.s));
+  Block block;
+  if (!find_block(parent, center, room * scale_u * du, half, block))
+    return false;
+  // the loop, scaled and moved into the block
+  const double s0 = parent.at[block.r0], s_1 = parent.at[block.r1];
+  double c0 = double(block.c0);
+  if (center.u < c0 - 1e-9 - 0.5 * double(block.count))
+    c0 -= double(parent.sides);
+  else if (center.u > c0 + 1.5 * double(block.count))
+    c0 += double(parent.sides);
+  const double c1 = c0 + double(block.count);
+  const double fit_u = std::min(scale_u, 0.5 * (c1 - c0) / (1.1 * du));
+  const double fit_s = std::min(1.0, 0.5 * (s_1 - s0) / (1.1 * ds));
+  center.u = std::min(c1 - 1.1 * fit_u * du, std::max(c0 + 1.1 * fit_u * du, center.u));
+  center.s = std::min(s_1 - 1.1 * fit_s * ds, std::max(s0 + 1.1 * fit_s * ds, center.s));
+  for (Place& p : loop) {
+    p = {center.u + fit_u * p.u, center.s + fit_s * p.s};
+    tube.base.push_back(m_surface.points.size());
+    m_surface.points.push_back(on_grid(parent, p));
   }
-  // else the free quad that is nearest
-  const std::size_t column = static_cast<std::size_t>(at) % parent.sides;
-  double nearest = -1;
-  for (std::size_t r = row >= 3 ? row - 3 : 0; r < std::min(rows, row + 4); ++r)
-    for (std::size_t c = 0; c < parent.sides; ++c) {
-      if (parent.hole(r, c))
-        continue;
-      const Vec3 middle = 0.25 * (m_surface.points[parent.vertex(r, c)] +
-                                  m_surface.points[parent.vertex(r, c + 1)] +
-                                  m_surface.points[parent.vertex(r + 1, c)] +
-                                  m_surface.points[parent.vertex(r + 1, c + 1)]);
-      const double distance = (middle - exit).norm() + (c == column ? 0 : 1e-9);
-      if (nearest < 0 || distance < nearest) {
-        nearest = distance;
-        hole = {r, r + 1, c, 1};
+  // the border of the block, counter-clockwise seen from outside
+  Loop border;
+  std::vector<Place> places;
+  const auto pass = [&](std::size_t r, std::size_t c) {
+    border.push_back(parent.vertex(r, block.c0 + c));
+    places.push_back({c0 + double(c), parent.at[r]});
+  };
+  for (std::size_t r = block.r0; r < block.r1; ++r)
+    for (std::size_t c = 0; c < block.count; ++c)
+      parent.hole(r, block.c0 + c) = 1;
+  for (std::size_t c = 0; c < block.count; ++c)
+    pass(block.r0, c);
+  for (std::size_t r = block.r0; r < block.r1; ++r)
+    pass(r, block.count);
+  for (std::size_t c = block.count; c > 0; --c)
+    pass(block.r1, c);
+  for (std::size_t r = block.r1; r > block.r0; --r)
+    pass(r, 0);
+  for (std::vector<Place>* list : {&places, &loop}) // units in which the loop is round
+    for (Place& p : *list)
+      p = {(p.u - center.u) / (fit_u * du), (p.s - center.s) / (fit_s * ds)};
+  sew(border, places, tube.base, loop);
+  ++m_surface.number_of_joined;
+  return true;
+}
+
+/// A branch for which there is no room is a tube of its own, whose first ring lies in the wood of its parent.
+inline void Surface_builder::begin_inside(std::size_t b)
+{
+  ++m_surface.number_of_separate;
+  Surface_tube& tube = m_tubes[b];
+  const Exit& e = m_exits[b];
+  if (!e.is_there)
+    return;
+  const Vec3 back = e.point - e.radius * e.direction - tube.rings.front().center;
+  tube.rings.front().center += back;
+  for (std::size_t k = 0; k < tube.sides; ++k)
+    m_surface.points[tube.vertex(0, k)] += back;
+}
+
+/// Triangles between two loops that run the same way around the origin, one around the other: the shorter diagonal, as long
+/// as the one loop sees the other.
+inline void Surface_builder::sew(const Loop& outer,
+                                 const std::vector<Place>& outer_places,
+                                 const Loop& inner,
+                                 const std::vector<Place>& inner_places)
+{
+  constexpr double pi = 3.14159265358979323846, sight = 1.75; // a little more than a right angle
+  const std::size_t n = outer.size(), m = inner.size();
+  const auto distance = [&](std::size_t i, std::size_t j) {
+    const Place &a = outer_places[i % n], &b = inner_places[j % m];
+    return std::hypot(a.u - b.u, a.s - b.s);
+  };
+  std::size_t i0 = 0, j0 = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < m; ++j)
+      if (distance(i, j) < distance(i0, j0)) {
+        i0 = i;
+        j0 = j;
       }
-    }
-  return nearest >= 0;
-}
-
-/// Marks the quads and returns the vertices around them, counter-clockwise from outside.
-inline Surface_builder::Loop Surface_builder::cut_hole(Tube& parent,
-                                                       const std::array<std::size_t, 4>& hole)
-{
-  const auto [r0, r1, first, count] = hole;
-  for (std::size_t r = r0; r < r1; ++r)
-    for (std::size_t c = 0; c < count; ++c)
-      parent.hole(r, first + c) = 1;
-  Loop loop;
-  for (std::size_t c = 0; c < count; ++c)
-    loop.push_back(parent.vertex(r0, first + c));
-  for (std::size_t r = r0; r < r1; ++r)
-    loop.push_back(parent.vertex(r, first + count));
-  for (std::size_t c = count; c > 0; --c)
-    loop.push_back(parent.vertex(r1, first + c));
-  for (std::size_t r = r1; r > r0; --r)
-    loop.push_back(parent.vertex(r, first));
-  return loop;
-}
-
-/// Where the hole is much wider than the branch, a smaller loop in it, on the surface.
-inline Surface_builder::Loop
-Surface_builder::narrow(const Tube&, const Loop& loop, const Vec3& exit, double radius)
-{
-  double widest = 0;
-  Vec3 middle = Vec3::Zero();
-  for (const std::size_t v : loop)
-    middle += m_surface.points[v];
-  middle /= double(loop.size());
-  for (const std::size_t v : loop)
-    widest = std::max(widest, (m_surface.points[v] - middle).norm());
-  if (widest < 3 * radius)
-    return loop;
-  const double share = 1.6 * radius / widest;
-  // towards the exit, but not over the border of the hole
-  Vec3 target = exit;
-  if ((target - middle).norm() > 0.5 * widest)
-    target = middle + 0.5 * widest * (target - middle).normalized();
-  Loop inner;
-  for (const std::size_t v : loop) {
-    inner.push_back(m_surface.points.size());
-    const Vec3 p = target + share * (m_surface.points[v] - middle);
-    m_surface.points.push_back(p);
-  }
-  for (std::size_t k = 0; k < loop.size(); ++k) {
-    const std::size_t l = (k + 1) % loop.size();
-    add(loop[k], loop[l], inner[l]);
-    add(loop[k], inner[l], inner[k]);
-  }
-  return inner;
-}
-
-/// Triangles between two loops that run the same way around `along`, the outer one below.
-inline void
-Surface_builder::sew(const Loop& outer, const Loop& inner, const Vec3& center, const Vec3& along)
-{
-  const Vec3 e1 = along.unitOrthogonal(), e2 = along.cross(e1);
-  const auto angle = [&](std::size_t v) {
-    const Vec3 d = m_surface.points[v] - center;
-    return std::atan2(d.dot(e2), d.dot(e1));
+  const auto angle = [](const Place& p) { return std::atan2(p.s, p.u); };
+  const auto difference = [&](const Place& a, const Place& b) { // from a to b, in (-pi, pi]
+    const double d = angle(b) - angle(a);
+    return d > pi ? d - 2 * pi : (d <= -pi ? d + 2 * pi : d);
   };
-  // start at the pair that is nearest
-  std::size_t start = 0, n = outer.size(), m = inner.size();
-  double best = -1;
-  for (std::size_t k = 0; k < m; ++k) {
-    double d = std::abs(angle(inner[k]) - angle(outer[0]));
-    d = std::min(d, 2 * 3.14159265358979323846 - d);
-    if (best < 0 || d < best) {
-      best = d;
-      start = k;
-    }
-  }
-  std::size_t i = 0, j = 0;
-  while (i < n || j < m) {
-    const std::size_t a = outer[i % n], a2 = outer[(i + 1) % n];
-    const std::size_t b = inner[(start + j) % m], b2 = inner[(start + j + 1) % m];
-    // in step: neither loop runs ahead
-    const bool is_outer =
-        j == m || (i < n && (double(i) + 0.5) / double(n) <= (double(j) + 0.5) / double(m));
+  double turned = difference(outer_places[i0], inner_places[j0]); // how far the inner loop is ahead
+  for (std::size_t i = 0, j = 0; i < n || j < m;) {
+    const std::size_t a = i0 + i, b = j0 + j;
+    const double outer_step = difference(outer_places[a % n], outer_places[(a + 1) % n]);
+    const double inner_step = difference(inner_places[b % m], inner_places[(b + 1) % m]);
+    const auto cost = [&](std::size_t x, std::size_t y, double ahead) {
+      return distance(x, y) + 1e3 * std::max(0.0, std::abs(ahead) - sight);
+    };
+    const bool is_outer = j == m || (i < n && cost(a + 1, b, turned - outer_step) <=
+                                                  cost(a, b + 1, turned + inner_step));
     if (is_outer) {
-      add(a, a2, b);
+      add(outer[a % n], outer[(a + 1) % n], inner[b % m]);
+      turned -= outer_step;
       ++i;
     } else {
-      add(a, b2, b);
+      add(outer[a % n], inner[(b + 1) % m], inner[b % m]);
+      turned += inner_step;
       ++j;
     }
   }
 }
 
-inline void Surface_builder::join(std::size_t b)
+/// The quads that are no hole, the neck to the parent, and lids on open ends.
+inline void Surface_builder::close(Surface_tube& tube)
 {
-  Tube& tube = m_tubes[b];
-  const std::size_t p = m_branches[b].parent;
-  if (!m_rules.do_join || p >= b || m_tubes[p].rings.empty()) {
-    if (p < b)
-      ++m_surface.number_of_separate;
-    return;
-  }
-  Tube& parent = m_tubes[p];
-  std::array<std::size_t, 4> hole{};
-  const Section& base = tube.rings.front();
-  const Vec3 exit = base.center;
-  if (!find_hole(parent, exit, base.radius, hole)) {
-    ++m_surface.number_of_separate;
-    return;
-  }
-  const Loop loop = narrow(parent, cut_hole(parent, hole), exit, base.radius);
-  Loop ring;
-  for (std::size_t k = 0; k < tube.sides; ++k)
-    ring.push_back(tube.vertex(0, k));
-  sew(loop, ring, exit, tube.along.front());
-  tube.is_joined = true;
-  ++m_surface.number_of_joined;
-}
-
-/// The quads that are no hole, and lids on open ends.
-inline void Surface_builder::close(std::size_t b)
-{
-  Tube& tube = m_tubes[b];
   if (tube.rings.empty())
     return;
-  const std::size_t rows = tube.rings.size() - 1;
+  const std::size_t rows = tube.rings.size() - 1, n = tube.sides;
+  const auto quad = [&](std::size_t a, std::size_t b, std::size_t c, std::size_t d) {
+    add(a, b, c);
+    add(a, c, d);
+  };
   for (std::size_t r = 0; r < rows; ++r)
-    for (std::size_t k = 0; k < tube.sides; ++k) {
-      if (tube.hole(r, k))
-        continue;
-      add(tube.vertex(r, k), tube.vertex(r, k + 1), tube.vertex(r + 1, k + 1));
-      add(tube.vertex(r, k), tube.vertex(r + 1, k + 1), tube.vertex(r + 1, k));
-    }
+    for (std::size_t k = 0; k < n; ++k)
+      if (!tube.hole(r, k))
+        quad(tube.vertex(r, k),
+             tube.vertex(r, k + 1),
+             tube.vertex(r + 1, k + 1),
+             tube.vertex(r + 1, k));
+  for (std::size_t k = 0; k < n && !tube.base.empty(); ++k)
+    quad(tube.base[k], tube.base[(k + 1) % n], tube.vertex(0, k + 1), tube.vertex(0, k));
   const std::size_t tip = m_surface.points.size();
   m_surface.points.push_back(tube.rings.back().center);
-  for (std::size_t k = 0; k < tube.sides; ++k)
+  for (std::size_t k = 0; k < n; ++k)
     add(tube.vertex(rows, k), tube.vertex(rows, k + 1), tip);
-  if (tube.is_joined)
+  if (!tube.base.empty())
     return;
-  const std::size_t base = m_surface.points.size();
+  const std::size_t foot = m_surface.points.size();
   m_surface.points.push_back(tube.rings.front().center);
-  for (std::size_t k = 0; k < tube.sides; ++k)
-    add(tube.vertex(0, k + 1), tube.vertex(0, k), base);
+  for (std::size_t k = 0; k < n; ++k)
+    add(tube.vertex(0, k + 1), tube.vertex(0, k), foot);
 }
 
 /// Inside of holes there are points of no triangle.

@@ -9,8 +9,14 @@
 #include <pcs/skeleton/Neighbor_graph.h>
 #include <pcs/skeleton/Scan.h>
 
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -25,9 +31,47 @@ struct Root_rules
   double band = 0.4; ///< height of the points that are the root, in half widths of the stem [-]
   double smallest_component =
       0.05; ///< share of the points that a part must have to hold the root [-]
+  double floating =
+      0.05; ///< such parts begin at most this high, relative to the extent upwards [-]
+  double lying_length = 6;  ///< a stem of this many heights of the slab lies on its side,
+  double lying_ratio = 3;   ///< ... if it is also longer than this many of its widths [-];
+  double lying_share = 0.3; ///< so does one with this share of its part's points in the slab,
+  double lying_side = 2;    ///< ... if it is longer than this many heights of the slab [-]
 };
 
 namespace internal {
+
+/// Mean and spread across `up` of a set of points.
+struct Slab_shape
+{
+  Vec3 mean = Vec3::Zero();
+  Vec3 along = Vec3::UnitX();   ///< the direction of the largest spread, to where the points rise
+  double length = 0, width = 0; ///< standard deviations along and across it
+
+  Slab_shape(const Scan& scan, const std::vector<Index>& points, const Vec3& up)
+  {
+    for (const Index i : points)
+      mean += scan.points[i];
+    mean /= double(points.size());
+    const Vec3 e1 = up.unitOrthogonal(), e2 = up.cross(e1);
+    Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+    for (const Index i : points) {
+      const Vec3 d = scan.points[i] - mean;
+      const Eigen::Vector2d q(d.dot(e1), d.dot(e2));
+      covariance += q * q.transpose();
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(covariance / double(points.size()));
+    const Eigen::Vector2d v = solver.eigenvectors().col(1);
+    along = v(0) * e1 + v(1) * e2;
+    double rise = 0;
+    for (const Index i : points)
+      rise += (scan.points[i] - mean).dot(along) * (scan.points[i] - mean).dot(up);
+    if (rise < 0)
+      along = -along;
+    width = std::sqrt(std::max(0.0, solver.eigenvalues()(0)));
+    length = std::sqrt(std::max(0.0, solver.eigenvalues()(1)));
+  }
+};
 
 /// The connected parts of the points of `is_used`: the set of each point, and the size of each set.
 struct Point_parts
@@ -51,8 +95,9 @@ struct Point_parts
 } // namespace internal
 
 /*!
-  The lowest layer of points of the thickest thing that stands at the lower end of a large connected part.
-  `links` are those between neighbours, without closed gaps. Never empty if a point is used.
+  The lowest layer of points of the thickest thing that stands at the lower end of a large connected part, the tall ones
+  first. Of a stem that lies on its side, or of a flat cloud, one end. `links` are those between neighbours, without closed
+  gaps. Never empty if a point is used.
 */
 inline std::vector<Index> find_root(const Scan& scan,
                                     const std::vector<std::uint8_t>& is_used,
@@ -64,46 +109,61 @@ inline std::vector<Index> find_root(const Scan& scan,
   const internal::Point_parts parts(is_used, links);
   const Index largest = *std::max_element(parts.size.begin(), parts.size.end());
   const double smallest = std::min(double(largest), rules.smallest_component * double(n));
-  std::vector<double> height(n);
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  const auto is_large = [&](Index i) {
-    return is_used[i] && parts.size[parts.part[i]] >= smallest;
-  };
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  std::vector<double> height(n), low_of(n, infinity), high_of(n, -infinity);
+  double low = infinity, high = -infinity;
   for (Index i = 0; i < n; ++i) {
     height[i] = up.dot(scan.points[i]);
-    if (is_large(i)) {
-      low = std::min(low, height[i]);
-      high = std::max(high, height[i]);
-    }
+    if (!is_used[i] || parts.size[parts.part[i]] < smallest)
+      continue;
+    low = std::min(low, height[i]);
+    high = std::max(high, height[i]);
+    low_of[parts.part[i]] = std::min(low_of[parts.part[i]], height[i]);
+    high_of[parts.part[i]] = std::max(high_of[parts.part[i]], height[i]);
   }
-  const double top = low + std::max(rules.slab * (high - low), rules.slab_spacings * scan.spacing);
+  const double slab = std::max(rules.slab * (high - low), rules.slab_spacings * scan.spacing);
+  const double floating = low + rules.floating * (high - low);
   std::vector<std::uint8_t> is_low(n, 0);
   for (Index i = 0; i < n; ++i)
-    is_low[i] = is_large(i) && height[i] <= top;
+    if (is_used[i] && low_of[parts.part[i]] <= floating)
+      is_low[i] = height[i] <= low_of[parts.part[i]] + slab;
   const internal::Point_parts low_parts(is_low, links);
-  const Index stem = static_cast<Index>(
-      std::max_element(low_parts.size.begin(), low_parts.size.end()) - low_parts.size.begin());
-  double foot = std::numeric_limits<double>::infinity(), count = 0;
-  Vec3 mean = Vec3::Zero();
-  for (Index i = 0; i < n; ++i)
-    if (low_parts.part[i] == stem) {
-      foot = std::min(foot, height[i]);
-      mean += scan.points[i];
-      count += 1;
+  Index stem = none;
+  double best = -1;
+  for (Index s = 0; s < n; ++s)
+    if (low_parts.size[s] > 0) {
+      const Index part = parts.part[s];
+      const double score =
+          double(low_parts.size[s]) * (high_of[part] - low_of[part] + scan.spacing);
+      if (score > best) {
+        best = score;
+        stem = s;
+      }
     }
-  mean /= count;
-  double spread = 0; // across `up`: all around a thick stem, or the layers above would be tilted
-  for (Index i = 0; i < n; ++i)
-    if (low_parts.part[i] == stem) {
-      const Vec3 d = scan.points[i] - mean;
-      spread += (d - up.dot(d) * up).squaredNorm();
-    }
-  const double band =
-      std::max(layer_thickness * scan.spacing, rules.band * std::sqrt(spread / count));
   std::vector<Index> root;
   for (Index i = 0; i < n; ++i)
-    if (low_parts.part[i] == stem && height[i] <= foot + band)
+    if (low_parts.part[i] == stem)
       root.push_back(i);
+  const internal::Slab_shape shape(scan, root, up);
+  const double length = std::sqrt(12.0) * shape.length; // of a line with this deviation
+  const bool is_long =
+      length > rules.lying_length * slab && shape.length > rules.lying_ratio * shape.width;
+  const bool is_most =
+      length > rules.lying_side * slab &&
+      double(root.size()) > rules.lying_share * double(parts.size[parts.part[stem]]);
+  const bool is_lying = is_long || is_most;
+  // all around a thick stem, or the layers above would be tilted; of a lying one the end
+  const double spread = is_lying ? shape.width : std::hypot(shape.length, shape.width);
+  const double band = std::max(layer_thickness * scan.spacing, rules.band * spread);
+  const auto place = [&](Index i) {
+    return is_lying ? shape.along.dot(scan.points[i]) : height[i];
+  };
+  double foot = infinity;
+  for (const Index i : root)
+    foot = std::min(foot, place(i));
+  root.erase(
+      std::remove_if(root.begin(), root.end(), [&](Index i) { return place(i) > foot + band; }),
+      root.end());
   return root;
 }
 

@@ -9,6 +9,8 @@
 #include <pcs/skeleton/Scan.h>
 #include <pcs/skeleton/find_root.h>
 
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -31,6 +33,8 @@ struct Ground_rules
   double keep = 2;     ///< what lies this many stem widths around the stem is kept [-]
   double filled = 0.4; ///< share of the cells of the sheet that hold points [-]
   int cells = 20;      ///< along the radius of the sheet
+  double thin = 0.1;   ///< of a cloud that is nothing else: deviation across it by that along it,
+  double full = 0.7;   ///< ... and share of its cells that hold points [-]
 };
 
 namespace internal {
@@ -74,6 +78,118 @@ inline bool is_filled_sheet(const Scan& scan,
   return all > 12 && double(cells.size()) >= rules.filled * all;
 }
 
+/// The low points of a scan in bins of equal height, from below.
+struct Low_bins
+{
+  double low = 0, high = 0, height = 0;    ///< nearly all points lie between `low` and `high`
+  std::vector<Index> bin;                  ///< of a point; `none`: too high, or not used
+  std::vector<std::vector<Index>> members; ///< points by bin
+
+  Low_bins(const Scan& scan,
+           const Vec3& up,
+           const Ground_rules& rules,
+           const std::vector<std::uint8_t>& is_used)
+    : bin(scan.size(), none), members(static_cast<std::size_t>(rules.bins))
+  {
+    const Index n = static_cast<Index>(scan.size());
+    std::vector<float> heights;
+    for (Index i = 0; i < n; ++i)
+      if (is_used[i])
+        heights.push_back(static_cast<float>(up.dot(scan.points[i])));
+    if (heights.empty())
+      return;
+    std::sort(heights.begin(), heights.end());
+    low = double(heights[heights.size() / 1000]);
+    high = double(heights[heights.size() - 1 - heights.size() / 1000]);
+    height = std::max(rules.bin * (high - low), 4 * scan.spacing);
+    for (Index i = 0; i < n; ++i) {
+      const double b = (up.dot(scan.points[i]) - low) / height;
+      if (is_used[i] && b < double(rules.bins)) {
+        bin[i] = static_cast<Index>(std::max(0.0, b));
+        members[bin[i]].push_back(i);
+      }
+    }
+  }
+};
+
+/// What of each bin belongs to the stem of the tallest thing above the bins: followed downwards from part to part.
+inline std::vector<std::vector<Index>> stem_in_bins(const Scan& scan,
+                                                    const std::vector<Link>& links,
+                                                    const Vec3& up,
+                                                    const std::vector<std::uint8_t>& is_used,
+                                                    const Low_bins& bins)
+{
+  const Index n = static_cast<Index>(scan.size());
+  const std::size_t count = bins.members.size();
+  Point_sets above(n), sets(n); // parts above all bins, and in each of them
+  std::vector<Link> across;
+  for (const Link& l : links) {
+    const Index a = bins.bin[l.first], b = bins.bin[l.second];
+    if (a == b)
+      (a == none ? above : sets).unite(l.first, l.second);
+    else
+      across.push_back(l);
+  }
+  std::vector<Index> size(n, 0);
+  std::vector<double> top(n, bins.low);
+  for (Index i = 0; i < n; ++i)
+    if (is_used[i]) {
+      ++size[bins.bin[i] == none ? above.find(i) : sets.find(i)];
+      if (bins.bin[i] == none)
+        top[above.find(i)] = std::max(top[above.find(i)], up.dot(scan.points[i]));
+    }
+  Index tallest = none;
+  const auto score = [&](Index i) { return double(size[i]) * (top[i] - bins.low); };
+  for (Index i = 0; i < n; ++i)
+    if (is_used[i] && bins.bin[i] == none &&
+        (tallest == none || score(above.find(i)) > score(tallest)))
+      tallest = above.find(i);
+  std::vector<std::vector<Index>> stem(count);
+  std::vector<std::uint8_t> is_stem(n, 0);
+  for (Index i = 0; i < n && tallest != none; ++i)
+    is_stem[i] = is_used[i] && bins.bin[i] == none && above.find(i) == tallest;
+  for (std::size_t b = count; b-- > 0;) {
+    Index part = none;
+    const auto offer = [&](Index i) {
+      const Index s = sets.find(i);
+      if (part == none || size[s] > size[part] || (size[s] == size[part] && s < part))
+        part = s;
+    };
+    for (const Link& l : across) {
+      if (bins.bin[l.first] == b && is_stem[l.second] && bins.bin[l.second] > b)
+        offer(l.first);
+      if (bins.bin[l.second] == b && is_stem[l.first] && bins.bin[l.first] > b)
+        offer(l.second);
+    }
+    if (part == none) // a gap: the thickest part
+      for (const Index i : bins.members[b])
+        offer(i);
+    for (const Index i : bins.members[b])
+      if (sets.find(i) == part) {
+        stem[b].push_back(i);
+        is_stem[i] = 1;
+      }
+  }
+  return stem;
+}
+
+inline Bin_extent extent_of(const Scan& scan, const std::vector<Index>& points, const Vec3& up)
+{
+  Bin_extent e;
+  e.count = points.size();
+  for (const Index i : points)
+    e.center += scan.points[i];
+  if (e.count > 0)
+    e.center /= double(e.count);
+  double sum = 0;
+  for (const Index i : points) {
+    const Vec3 d = scan.points[i] - e.center;
+    sum += (d - up.dot(d) * up).squaredNorm();
+  }
+  e.width = e.count > 0 ? std::sqrt(sum / double(e.count)) : 0;
+  return e;
+}
+
 } // namespace internal
 
 /*!
@@ -87,60 +203,16 @@ inline std::size_t mark_ground(const Scan& scan,
                                std::vector<std::uint8_t>& is_used)
 {
   const Index n = static_cast<Index>(scan.size());
-  std::vector<float> heights;
-  for (Index i = 0; i < n; ++i)
-    if (is_used[i])
-      heights.push_back(static_cast<float>(up.dot(scan.points[i])));
-  if (heights.size() < 200)
+  if (std::count(is_used.begin(), is_used.end(), 1) < 200)
     return 0;
-  std::sort(heights.begin(), heights.end());
-  const double low = double(heights[heights.size() / 1000]);
-  const double high = double(heights[heights.size() - 1 - heights.size() / 1000]);
-  const double bin = std::max(rules.bin * (high - low), 4 * scan.spacing);
-  const auto bin_of = [&](Index i) { return (up.dot(scan.points[i]) - low) / bin; };
-  // per bin, the largest connected part: where there is no ground that is the stem
-  std::vector<internal::Bin_extent> extent(static_cast<std::size_t>(rules.bins));
-  std::vector<std::vector<Index>> members(extent.size());
-  for (Index i = 0; i < n; ++i)
-    if (is_used[i] && bin_of(i) < double(rules.bins))
-      members[static_cast<std::size_t>(std::max(0.0, bin_of(i)))].push_back(i);
-  Point_sets sets(n);
-  std::vector<Index> bin_number(n, none);
-  for (std::size_t b = 0; b < members.size(); ++b)
-    for (const Index i : members[b])
-      bin_number[i] = static_cast<Index>(b);
-  for (const Link& l : links)
-    if (bin_number[l.first] != none && bin_number[l.first] == bin_number[l.second])
-      sets.unite(l.first, l.second);
-  std::vector<Index> size(n, 0);
-  for (std::size_t b = 0; b < members.size(); ++b) {
-    Index largest = none;
-    for (const Index i : members[b])
-      ++size[sets.find(i)];
-    for (const Index i : members[b])
-      if (largest == none || size[sets.find(i)] > size[largest])
-        largest = sets.find(i);
-    internal::Bin_extent& e = extent[b];
-    for (const Index i : members[b])
-      if (sets.find(i) == largest) {
-        e.center += scan.points[i];
-        ++e.count;
-      }
-    if (e.count == 0)
-      continue;
-    e.center /= double(e.count);
-    double sum = 0;
-    for (const Index i : members[b])
-      if (sets.find(i) == largest) {
-        const Vec3 d = scan.points[i] - e.center;
-        sum += (d - up.dot(d) * up).squaredNorm();
-      }
-    e.width = std::sqrt(sum / double(e.count));
-  }
+  const internal::Low_bins bins(scan, up, rules, is_used);
+  std::vector<internal::Bin_extent> extent;
   std::vector<double> widths;
-  for (const internal::Bin_extent& e : extent)
-    if (e.count >= 6)
-      widths.push_back(e.width);
+  for (const auto& points : internal::stem_in_bins(scan, links, up, is_used, bins)) {
+    extent.push_back(internal::extent_of(scan, points, up));
+    if (extent.back().count >= 6)
+      widths.push_back(extent.back().width);
+  }
   if (widths.size() < 4)
     return 0;
   std::sort(widths.begin(), widths.end());
@@ -155,7 +227,7 @@ inline std::size_t mark_ground(const Scan& scan,
   const double keep = rules.keep * stem + 4 * scan.spacing;
   bool is_wide = false;
   for (Index i = 0; i < n; ++i) {
-    if (!is_used[i] || !(bin_of(i) < double(first)))
+    if (bins.bin[i] >= first) // `none` is the largest number
       continue;
     const Vec3 d = scan.points[i] - center;
     const double across = (d - up.dot(d) * up).norm();
@@ -168,6 +240,31 @@ inline std::size_t mark_ground(const Scan& scan,
   for (const Index i : far)
     is_used[i] = 0;
   return far.size();
+}
+
+/// Whether all points together are one thin filled sheet, such as ground alone, or a wall.
+inline bool
+is_one_sheet(const Scan& scan, const std::vector<std::uint8_t>& is_used, const Ground_rules& rules)
+{
+  std::vector<Index> points;
+  Vec3 mean = Vec3::Zero();
+  for (Index i = 0; i < scan.size(); ++i)
+    if (is_used[i]) {
+      points.push_back(i);
+      mean += scan.points[i];
+    }
+  if (points.empty())
+    return false;
+  mean /= double(points.size());
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (const Index i : points)
+    covariance += (scan.points[i] - mean) * (scan.points[i] - mean).transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance / double(points.size()));
+  const Vec3 spread = solver.eigenvalues().cwiseMax(0).cwiseSqrt();
+  Ground_rules full = rules;
+  full.filled = rules.full;
+  return spread(0) < rules.thin * spread(1) &&
+         internal::is_filled_sheet(scan, points, mean, solver.eigenvectors().col(0), full);
 }
 
 } // namespace skeleton

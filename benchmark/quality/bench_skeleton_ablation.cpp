@@ -1,0 +1,237 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Table: the dissertation's variant of each step of the skeleton beside ours, on the same virtual scans.
+
+#include "measure_skeleton.h"
+#include "support/Table.h"
+#include "support/measuring.h"
+#include <pcs/generators/grow_tree.h>
+#include <pcs/generators/scan_tree.h>
+#include <pcs/internal/progress.h>
+#include <pcs/neighborhood/Nearest_neighbors.h>
+#include <pcs/skeleton/Session.h>
+
+#include <CGAL/Simple_cartesian.h>
+
+#include <CLI/CLI.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <exception>
+#include <functional>
+#include <iostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace {
+
+using Kernel = CGAL::Simple_cartesian<double>;
+using Tree = pcs::Tree_skeleton<Kernel>;
+using pcs::skeleton::Section_fit;
+using pcs::skeleton::Session_options;
+using pcs::skeleton::Skeleton_method;
+using pcs::skeleton::Vec3;
+
+struct Variant
+{
+  std::string name;
+  Session_options options;
+};
+
+/// All steps as in the dissertation.
+Session_options text()
+{
+  Session_options o;
+  o.method = Skeleton_method::sections;
+  o.section_tree.turn_cost = 0;
+  return o;
+}
+
+std::vector<Variant> variants()
+{
+  std::vector<Variant> result;
+  const auto add = [&](const char* name, Session_options o, const auto& change) {
+    change(o);
+    result.push_back({name, std::move(o)});
+  };
+  const auto nothing = [](Session_options&) {};
+  add("text: all steps", text(), nothing);
+  add("text, direct ellipse", text(), [](auto& o) { o.slices.fit = Section_fit::ellipse; });
+  add("text, circle", text(), [](auto& o) { o.slices.fit = Section_fit::circle; });
+  add("text, ellipse or circle by arc", text(), [](auto& o) {
+    o.slices.fit = Section_fit::by_arc;
+  });
+  add("text, all points of a slice", text(), [](auto& o) { o.slices.highest_count = 0; });
+  add("text, height by local spacing", text(), [](auto& o) { o.slices.is_height_local = true; });
+  add("text, no tilting", text(), [](auto& o) { o.slices.tilts = 0; });
+  add("text, no support marking", text(), [](auto& o) { o.slices.do_mark_support = false; });
+  add("text, cost of turns", text(), [](auto& o) { o.section_tree.turn_cost = 1; });
+  add("text, square-root radii", text(), [](auto& o) { o.section_tree.allometry = 0.5; });
+  add("text, all of these of ours", text(), [](auto& o) {
+    o.slices.fit = Section_fit::by_arc;
+    o.slices.highest_count = 0;
+    o.slices.is_height_local = true;
+    o.section_tree.turn_cost = 1;
+  });
+  add("ours: whole chains", Session_options(), nothing);
+  add("ours, one pass", Session_options(), [](auto& o) { o.axes.passes = 1; });
+  add("ours, arcs of rings apart", Session_options(), [](auto& o) { o.rings.smallest = 1e9; });
+  add("ours, gaps stay open", Session_options(), [](auto& o) { o.axes.links.gap = 0; });
+  add("ours, no noise correction", Session_options(), [](auto& o) {
+    o.axes.chains.noise_share = 0;
+  });
+  add("ours, no prior by counting", Session_options(), [](auto& o) {
+    o.axes.chains.prior_share = 1e6;
+  });
+  return result;
+}
+
+Tree to_tree(const pcs::skeleton::Branch_tree& from, const Vec3& origin)
+{
+  Tree tree;
+  for (const pcs::skeleton::Branch_node& n : from.nodes) {
+    pcs::Tree_node<Kernel> node;
+    const Vec3 p = n.point + origin;
+    node.point = Kernel::Point_3(p.x(), p.y(), p.z());
+    node.radius = n.radius;
+    node.branch = n.branch;
+    const auto v = add_vertex(node, tree);
+    if (n.parent != pcs::skeleton::none)
+      add_edge(n.parent, v, tree);
+  }
+  pcs::Tree_bundle& bundle = tree[boost::graph_bundle];
+  bundle.root = 0;
+  for (const pcs::skeleton::Branch& b : from.branches) {
+    pcs::Tree_branch branch;
+    if (b.parent != pcs::skeleton::none)
+      branch.parent = b.parent;
+    branch.order = b.order;
+    bundle.branches.push_back(branch);
+  }
+  return tree;
+}
+
+struct Scene
+{
+  Tree truth;
+  pcs::Virtual_scan<Kernel> scan;
+  double query_seconds = 0; ///< of tree and 25 nearest neighbours of all points, one thread
+};
+
+Scene make_scene(const std::string& preset, unsigned seed, std::size_t stations, double degrees)
+{
+  Scene scene;
+  for (const auto& [name, habit] : pcs::tree_habits())
+    if (name == preset)
+      pcs::grow_tree(scene.truth, habit, pcs::parameters::random_seed(seed));
+  if (num_vertices(scene.truth) == 0)
+    throw pcs::Invalid_input("there is no preset " + preset);
+  pcs::Virtual_scanner scanner;
+  scanner.number_of_stations = stations;
+  scanner.angular_step = degrees * CGAL_PI / 180;
+  pcs::scan_tree(scene.truth, scene.scan, scanner, pcs::parameters::random_seed(seed));
+  std::vector<Vec3> points;
+  for (const auto& p : scene.scan.points)
+    points.emplace_back(p.x(), p.y(), p.z());
+  const pcs_bench::Timer timer;
+  const pcs::neighborhood::Nearest_neighbors search(points);
+  std::vector<pcs::neighborhood::Nearest_neighbors::Neighbor> found;
+  for (const Vec3& p : points)
+    search(p, 25, found);
+  scene.query_seconds = timer.seconds();
+  return scene;
+}
+
+std::vector<std::string> row_of(const Scene& scene, const Variant& variant)
+{
+  std::vector<Vec3> points;
+  for (const auto& p : scene.scan.points)
+    points.emplace_back(p.x(), p.y(), p.z());
+  const pcs_bench::Timer timer;
+  pcs::skeleton::Session<CGAL::Parallel_if_available_tag> session(std::move(points),
+                                                                  {},
+                                                                  variant.options);
+  pcs::internal::Progress progress{std::function<bool(double)>()};
+  session.join(progress);
+  const double seconds = timer.seconds();
+  using pcs_bench::number;
+  std::vector<std::string> row{variant.name};
+  if (session.tree().nodes.size() < 2) {
+    row.insert(row.end(), 10, "-");
+    return row;
+  }
+  const Tree tree = to_tree(session.tree(), session.scan().origin);
+  const auto a = pcs_bench::measure_skeleton<Kernel>(scene.truth, scene.scan.hits, tree);
+  row.push_back(number(100 * a.at_distance.at(1).f1()));
+  row.push_back(number(100 * a.at_distance.at(0).f1()));
+  for (std::size_t k = 0; k < 4; ++k)
+    row.push_back(number(100 * a.size_classes.at(k).radius_error, 2));
+  row.push_back(number(100 * a.volume_error()));
+  row.push_back(std::to_string(session.report().number_of_branches));
+  row.push_back(number(seconds, 2));
+  row.push_back(number(seconds / scene.query_seconds, 2));
+  return row;
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+  std::vector<std::string> presets{"fruit", "broadleaf"};
+  std::vector<unsigned> seeds{41};
+  std::size_t stations = 4;
+  double degrees = 0.12;
+  std::string only, csv;
+  CLI::App app("The dissertation's variant of each step of the skeleton beside ours, on virtual "
+               "scans.",
+               "bench_skeleton_ablation");
+  app.add_option("--preset", presets, "trees")->capture_default_str();
+  app.add_option("--seed", seeds, "of trees and scans")->capture_default_str();
+  app.add_option("--stations", stations, "of the scanner")->capture_default_str();
+  app.add_option("--step-degrees", degrees, "between beams")->capture_default_str();
+  app.add_option("--only", only, "rows whose name holds this text");
+  app.add_option("--csv", csv, "write the rows here, too");
+  try {
+    app.parse(argc, argv);
+    const std::vector<std::string> header{"scan",
+                                          "way",
+                                          "F1 2.5 cm",
+                                          "1 cm",
+                                          "r > 5 [%]",
+                                          "2-5",
+                                          "1-2",
+                                          "0.5-1 cm",
+                                          "volume [%]",
+                                          "branches",
+                                          "seconds",
+                                          "/ kNN 25"};
+    pcs_bench::Table all(header);
+    for (const std::string& preset : presets)
+      for (const unsigned seed : seeds) {
+        const Scene scene = make_scene(preset, seed, stations, degrees);
+        const std::string name = preset + " " + std::to_string(seed);
+        std::cout << name << ": " << scene.scan.points.size() << " points, "
+                  << scene.truth[boost::graph_bundle].branches.size() << " branches\n\n";
+        pcs_bench::Table table(std::vector<std::string>(header.begin() + 1, header.end()));
+        for (const Variant& variant : variants()) {
+          if (variant.name.find(only) == std::string::npos)
+            continue;
+          std::cerr << name << ": " << variant.name << '\n';
+          std::vector<std::string> row = row_of(scene, variant);
+          table.add(row);
+          row.insert(row.begin(), name);
+          all.add(row);
+        }
+        table.print(std::cout);
+      }
+    if (!csv.empty())
+      all.write_csv(csv);
+    return 0;
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e);
+  } catch (const std::exception& e) {
+    std::cerr << "bench_skeleton_ablation: " << e.what() << '\n';
+    return 1;
+  }
+}

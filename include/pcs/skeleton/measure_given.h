@@ -1,0 +1,265 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Radii along a skeleton that is given: the points of each edge, a circle through them, and the nodes' radii from these.
+
+#ifndef PCS_SKELETON_MEASURE_GIVEN_H
+#define PCS_SKELETON_MEASURE_GIVEN_H
+
+#include <pcs/skeleton/Branch_tree.h>
+#include <pcs/skeleton/Scan.h>
+#include <pcs/skeleton/circle_fit.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// A rooted tree of positions; parents come before their children.
+struct Given_skeleton
+{
+  std::vector<Vec3> points;  ///< in the coordinates of the input
+  std::vector<Index> parent; ///< `none`: the root
+};
+
+/// How points are given to edges, and when a circle through them counts.
+struct Given_rules
+{
+  double reach = 2,
+         reach_offset =
+             4;    ///< points farther than this are no points of an edge, in radii and spacings
+  int sectors = 5; ///< of 12, that a circle must see
+  double deviation = 0.25; ///< largest deviation of a circle, in radii
+  double widening = 1.5;   ///< largest radius of a circle, in median distances from the edge
+  double inside =
+      1.3; ///< nodes of a branch this near to its base, in radii of the parent, lie in the parent
+  std::size_t lowest_count = 3; ///< points of an edge that tell its radius
+};
+
+namespace internal {
+
+class Given_measurement
+{
+public:
+  Given_measurement(const Scan& scan,
+                    const std::vector<std::uint8_t>& is_used,
+                    const Given_skeleton& given,
+                    const Given_rules& rules)
+    : m_scan(scan), m_is_used(is_used), m_parent(given.parent), m_rules(rules)
+  {
+    for (const Vec3& p : given.points)
+      m_nodes.push_back(p - scan.origin);
+  }
+
+  Branch_tree operator()()
+  {
+    const std::size_t n = m_nodes.size();
+    m_radius.assign(n, 0);
+    m_error.assign(n, 0);
+    m_is_measured.assign(n, 0);
+    assign_to_nearest();
+    measure();
+    assign_to_surfaces();
+    measure();
+    std::vector<Branch_node> nodes(n);
+    fill_gaps(nodes);
+    Branch_grouper group(std::move(nodes), m_scan.spacing);
+    Branch_tree tree = group();
+    leave_parents(tree);
+    tree.node_of_point.assign(m_scan.size(), none);
+    for (std::size_t i = 0; i < m_scan.size(); ++i)
+      if (m_edge_of_point[i] != none)
+        tree.node_of_point[i] = group.number()[m_edge_of_point[i]];
+    return tree;
+  }
+
+private:
+  /// The base of a branch lies in its parent, whose points are no measure of it: its radius is that of the first node outside.
+  void leave_parents(Branch_tree& tree) const
+  {
+    for (const Branch& branch : tree.branches) {
+      if (branch.parent == none)
+        continue;
+      const Branch_node& base = tree.nodes[branch.nodes.front()];
+      const double inside = m_rules.inside * tree.nodes[base.parent].radius;
+      std::size_t k = 0;
+      while (k < branch.nodes.size() &&
+             (tree.nodes[branch.nodes[k]].point - base.point).norm() <= inside)
+        ++k;
+      for (std::size_t j = 0; j < k && k < branch.nodes.size(); ++j) {
+        Branch_node& node = tree.nodes[branch.nodes[j]];
+        node.radius = tree.nodes[branch.nodes[k]].radius;
+        node.radius_error = node.radius;
+        node.is_measured = false;
+      }
+    }
+  }
+
+  /// Foot of a point on the edge to `v`; the edge of the root is a point.
+  double distance(Index v, const Vec3& p) const
+  {
+    const Vec3& a = m_nodes[m_parent[v] == none ? v : m_parent[v]];
+    const Vec3 d = m_nodes[v] - a;
+    const double l2 = d.squaredNorm();
+    const double t = l2 > 0 ? std::min(1.0, std::max(0.0, d.dot(p - a) / l2)) : 0;
+    return (p - a - t * d).norm();
+  }
+
+  /// First guess: the edge whose axis is nearest.
+  void assign_to_nearest()
+  {
+    std::vector<Vec3> samples;
+    std::vector<Index> edge;
+    for (Index v = 0; v < m_nodes.size(); ++v) {
+      const Vec3& a = m_nodes[m_parent[v] == none ? v : m_parent[v]];
+      const double length = (m_nodes[v] - a).norm();
+      constexpr double most = 1000;
+      const double steps = std::min(most, std::ceil(length / (2 * m_scan.spacing)));
+      for (double k = m_parent[v] == none ? 0 : 1; k <= steps; ++k) {
+        samples.push_back(a + k / std::max(1.0, steps) * (m_nodes[v] - a));
+        edge.push_back(v);
+      }
+    }
+    const neighborhood::Nearest_neighbors search(samples);
+    m_edge_of_point.assign(m_scan.size(), none);
+    for (Index i = 0; i < m_scan.size(); ++i)
+      if (m_is_used[i]) {
+        const auto near = search.nearest_if(m_scan.points[i],
+                                            std::numeric_limits<double>::max(),
+                                            [](Index) { return true; });
+        m_edge_of_point[i] = edge[near.index];
+      }
+  }
+
+  /// With radii known: the edge whose surface is nearest, if it is near.
+  void assign_to_surfaces()
+  {
+    std::vector<double> best(m_scan.size(), std::numeric_limits<double>::infinity());
+    std::vector<Index> near;
+    m_edge_of_point.assign(m_scan.size(), none);
+    for (Index v = 0; v < m_nodes.size(); ++v) {
+      if (m_parent[v] == none || !(m_radius[v] > 0))
+        continue;
+      const Vec3 &a = m_nodes[m_parent[v]], d = m_nodes[v] - a;
+      const double reach = m_rules.reach * m_radius[v] + m_rules.reach_offset * m_scan.spacing;
+      const double pieces = std::min(1000.0, std::max(1.0, std::ceil(d.norm() / (2 * reach))));
+      const double half = 0.5 * d.norm() / pieces;
+      for (double k = 0; k < pieces; ++k) {
+        near.clear();
+        m_scan.search->within(a + (k + 0.5) / pieces * d, std::hypot(half, reach), near);
+        for (const Index i : near) {
+          if (!m_is_used[i])
+            continue;
+          const double distance_i = distance(v, m_scan.points[i]);
+          const double off = std::abs(distance_i - m_radius[v]);
+          if (distance_i <= reach && off < best[i]) {
+            best[i] = off;
+            m_edge_of_point[i] = v;
+          }
+        }
+      }
+    }
+  }
+
+  /// The radius of each edge: of a circle through its points, or the median of their distances.
+  void measure()
+  {
+    const std::size_t n = m_nodes.size();
+    std::vector<std::vector<Index>> points(n);
+    for (Index i = 0; i < m_edge_of_point.size(); ++i)
+      if (m_edge_of_point[i] != none)
+        points[m_edge_of_point[i]].push_back(i);
+    for (Index v = 0; v < n; ++v) {
+      m_radius[v] = m_error[v] = 0;
+      m_is_measured[v] = 0;
+      if (m_parent[v] == none || points[v].size() < m_rules.lowest_count)
+        continue;
+      const Vec3 &a = m_nodes[m_parent[v]], d = m_nodes[v] - a;
+      std::vector<double> distances;
+      for (const Index i : points[v])
+        distances.push_back(distance(v, m_scan.points[i]));
+      const double count = double(distances.size());
+      m_radius[v] = median(distances);
+      double deviation = 0;
+      for (const double x : distances)
+        deviation += std::abs(x - m_radius[v]) / count;
+      m_error[v] = std::max(deviation, 1e-3 * m_scan.spacing) / std::sqrt(count);
+      m_radius[v] = std::max(m_radius[v], 0.05 * m_scan.spacing);
+      if (!(d.norm() > 0))
+        continue;
+      const Vec3 along = d.normalized(), e1 = along.unitOrthogonal(), e2 = along.cross(e1);
+      std::vector<Vec2> plane;
+      for (const Index i : points[v])
+        plane.emplace_back((m_scan.points[i] - a).dot(e1), (m_scan.points[i] - a).dot(e2));
+      const Circle c = fit_circle(plane);
+      if (!(c.radius > 0) || c.deviation > m_rules.deviation * c.radius ||
+          c.radius > m_rules.widening * m_radius[v] ||
+          covered_sectors(plane, c.center) < m_rules.sectors)
+        continue;
+      m_radius[v] = c.radius;
+      m_error[v] = std::max(c.deviation, 1e-3 * m_scan.spacing) / std::sqrt(count);
+      m_is_measured[v] = 1;
+    }
+  }
+
+  /// Radii at the nodes from those of the edges; where there are none, those of the parent or the nearest child.
+  void fill_gaps(std::vector<Branch_node>& nodes) const
+  {
+    const std::size_t n = m_nodes.size();
+    std::vector<Index> source(n, none); // the edge that a node takes its radius from
+    for (std::size_t v = n; v-- > 0;) {
+      if (m_radius[v] > 0)
+        source[v] = static_cast<Index>(v);
+      const Index p = m_parent[v];
+      // towards the root: the thickest of what the children know
+      if (p != none && source[v] != none && !(m_radius[p] > 0) &&
+          (source[p] == none || m_radius[source[v]] > m_radius[source[p]]))
+        source[p] = source[v];
+    }
+    for (std::size_t v = 0; v < n; ++v) {
+      Branch_node& node = nodes[v];
+      node.point = m_nodes[v];
+      node.parent = m_parent[v];
+      if (source[v] == none && m_parent[v] != none)
+        source[v] = source[m_parent[v]];
+      if (source[v] == none) {
+        node.radius = node.radius_error = m_scan.spacing; // no point at all is near
+        continue;
+      }
+      node.radius = m_radius[source[v]];
+      node.radius_error = source[v] == v ? m_error[v] : node.radius;
+      node.is_measured = source[v] == v && m_is_measured[v] != 0;
+    }
+  }
+
+  const Scan& m_scan;
+  const std::vector<std::uint8_t>& m_is_used;
+  std::vector<Vec3> m_nodes;
+  std::vector<Index> m_parent, m_edge_of_point;
+  Given_rules m_rules;
+  std::vector<double> m_radius, m_error;
+  std::vector<std::uint8_t> m_is_measured;
+};
+
+} // namespace internal
+
+/// Branches and radii along a skeleton whose positions stay. O(n log n) for edges that are about as long as thick.
+inline Branch_tree measure_given(const Scan& scan,
+                                 const std::vector<std::uint8_t>& is_used,
+                                 const Given_skeleton& given,
+                                 const Given_rules& rules)
+{
+  return internal::Given_measurement(scan, is_used, given, rules)();
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_MEASURE_GIVEN_H

@@ -1,0 +1,366 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The program extract_tree_skeleton: its files agree with each other, bad input is refused, a batch goes on.
+
+#include <pcs/IO/read_swc.h>
+
+#include <CGAL/Simple_cartesian.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <examples/Program_run.h>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+using Kernel = CGAL::Simple_cartesian<double>;
+using Tree = pcs::Tree_skeleton<Kernel>;
+
+namespace {
+
+/// Far from the origin, as maps have it: only doubles hold millimetres there.
+constexpr double far_x = 5e5, far_y = 5e6;
+
+/// A stem of radius 0.1 and height 2.5 with a branch of radius 0.03 to the side, as text with 17 digits.
+std::string fork_text(double scale = 1)
+{
+  std::string text;
+  char line[128];
+  const auto add = [&](double x, double y, double z) {
+    std::snprintf(line,
+                  sizeof line,
+                  "%.17g %.17g %.17g\n",
+                  far_x + scale * x,
+                  far_y + scale * y,
+                  scale * z);
+    text += line;
+  };
+  for (int i = 0; i < 6000; ++i) {
+    const double a = 2.39996322972865332 * i;
+    add(0.1 * std::cos(a), 0.1 * std::sin(a), 2.5 * (i + 0.5) / 6000);
+    if (i < 1500)
+      add(0.1 + 1.2 * (i + 0.5) / 1500, 0.03 * std::cos(a), 1.5 + 0.03 * std::sin(a));
+  }
+  return text;
+}
+
+struct Row
+{
+  long id, type, parent;
+  double x, y, z, radius;
+};
+
+std::vector<Row> rows_of(const std::string& swc)
+{
+  std::vector<Row> rows;
+  std::istringstream in(swc);
+  for (std::string line; std::getline(in, line);) {
+    if (line.empty() || line[0] == '#')
+      continue;
+    Row r{};
+    std::istringstream words(line);
+    words >> r.id >> r.type >> r.x >> r.y >> r.z >> r.radius >> r.parent;
+    BOOST_REQUIRE(!words.fail());
+    rows.push_back(r);
+  }
+  return rows;
+}
+
+std::size_t count_lines(const std::string& text)
+{
+  return std::size_t(std::count(text.begin(), text.end(), '\n'));
+}
+
+struct Skeleton_run : Program_run
+{
+  Skeleton_run() { write("tree.xyz", fork_text()); }
+
+  std::vector<Json> log() const
+  {
+    std::vector<Json> lines;
+    std::istringstream in(content("out/batch.jsonl"));
+    for (std::string line; std::getline(in, line);)
+      lines.push_back(Json::parse(line));
+    return lines;
+  }
+
+  void refuses(const std::string& arguments, const std::string& word)
+  {
+    write("old.swc", "an old file");
+    const std::size_t files = number_of_files();
+    const int code = run(arguments);
+    BOOST_TEST(code == 1, arguments << ": exit code " << code);
+    BOOST_TEST(err.find(word) != std::string::npos, word << " in " << err);
+    BOOST_TEST((count_lines(err) == 1 || count_lines(err) == 2), arguments << ": " << err);
+    BOOST_TEST(out == "");
+    BOOST_TEST(content("old.swc") == "an old file");
+    BOOST_TEST(number_of_files() == files, arguments);
+  }
+};
+
+} // namespace
+
+BOOST_FIXTURE_TEST_SUITE(skeleton_program, Skeleton_run)
+
+BOOST_AUTO_TEST_CASE(all_results_agree)
+{
+  const int code = run("--input tree.xyz --swc t.swc --mesh m.ply --cylinders c.csv --edges e.ply "
+                       "--points p.ply --leaves l.ply --report r.json");
+  BOOST_TEST_REQUIRE(code == 0, err);
+  const Json json = Json::parse(content("r.json"));
+  BOOST_TEST(json["status"] == "converged");
+  BOOST_TEST(json["branches"] == 2);
+  BOOST_TEST(std::abs(json["diameter_at_breast_height"].get<double>() - 0.2) < 0.004);
+  BOOST_TEST(std::abs(json["height"].get<double>() - 2.5) < 0.05);
+  BOOST_TEST(json["by_order"].size() == 2u);
+  double length = 0, volume = 0;
+  for (const Json& size : json["by_size"])
+    length += size["length"].get<double>(), volume += size["volume"].get<double>();
+  BOOST_TEST(std::abs(length - json["total"]["length"].get<double>()) < 1e-9);
+  BOOST_TEST(std::abs(volume - json["total"]["volume"].get<double>()) < 1e-9);
+  for (const char* stage :
+       {"reading", "neighbors", "paths", "axes", "joints", "sections", "mesh", "writing"})
+    BOOST_TEST(json["seconds"][stage].get<double>() >= 0);
+
+  // SWC: ids from 1, parents first, one root, original coordinates in full
+  const std::vector<Row> rows = rows_of(content("t.swc"));
+  BOOST_TEST_REQUIRE(rows.size() == json["nodes"].get<std::size_t>());
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    BOOST_TEST(rows[k].id == long(k) + 1);
+    BOOST_TEST(
+        (k == 0 ? rows[k].parent == -1 : rows[k].parent >= 1 && rows[k].parent < rows[k].id));
+    BOOST_TEST((rows[k].type == 5 || rows[k].type == 6));
+    BOOST_TEST(std::abs(rows[k].x - far_x) < 1.4);
+    BOOST_TEST(std::abs(rows[k].y - far_y) < (rows[k].type == 5 ? 0.003 : 0.01));
+    BOOST_TEST(std::abs(rows[k].radius - (rows[k].type == 5 ? 0.1 : 0.03)) < 0.006);
+  }
+  Tree tree;
+  pcs::IO::read_swc<Kernel>(path("t.swc"), tree);
+  BOOST_TEST(num_vertices(tree) == rows.size());
+
+  // cylinders: lengths and volumes are those of the report
+  std::istringstream table(content("c.csv"));
+  std::string line;
+  std::getline(table, line);
+  BOOST_TEST(line.rfind("sx,sy,sz,ax,ay,az,length,radius,parent,branch,order", 0) == 0u);
+  double total = 0;
+  long row = 0;
+  while (std::getline(table, line)) {
+    ++row;
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream words(line);
+    double v[13];
+    for (double& value : v)
+      BOOST_TEST_REQUIRE(bool(words >> value));
+    total += v[6];
+    BOOST_TEST(std::abs(v[3] * v[3] + v[4] * v[4] + v[5] * v[5] - 1) < 1e-9);
+    BOOST_TEST((v[8] >= 0 && v[8] < double(row)));
+    BOOST_TEST(std::abs(v[1] - far_y) < 0.2);
+  }
+  BOOST_TEST(std::abs(total - length) < 1e-9 * length);
+
+  // the points keep their order, and name branches that exist
+  const Table points = pcs::IO::read_points(path("p.ply"));
+  const Table scan = pcs::IO::read_points(path("tree.xyz"));
+  BOOST_TEST_REQUIRE(points.number_of_points() == scan.number_of_points());
+  BOOST_TEST((points.points() == scan.points()));
+  std::size_t explained = 0;
+  for (const std::int32_t b : points.property<std::int32_t>("branch")) {
+    BOOST_TEST((b >= -1 && b < 2));
+    explained += b >= 0;
+  }
+  BOOST_TEST(explained > 7000u);
+  BOOST_TEST(points.has_property("dense"));
+  BOOST_TEST(points.has_property("residual"));
+
+  // mesh and edges: the numbers in the headers, and the coordinates
+  const std::string mesh = content("m.ply"), edges = content("e.ply");
+  BOOST_TEST(mesh.find("element vertex " + std::to_string(json["mesh"]["vertices"].get<long>())) !=
+             std::string::npos);
+  BOOST_TEST(mesh.find("element face " + std::to_string(json["mesh"]["triangles"].get<long>())) !=
+             std::string::npos);
+  BOOST_TEST(json["leaves"].get<long>() > 0);
+  BOOST_TEST(
+      content("l.ply").find("element vertex " + std::to_string(4 * json["leaves"].get<long>())) !=
+      std::string::npos);
+  double first[3];
+  std::memcpy(first, mesh.data() + mesh.find("end_header\n") + 11, sizeof first);
+  BOOST_TEST(std::abs(first[1] - far_y) < 0.2);
+  BOOST_TEST(edges.find("element vertex " + std::to_string(rows.size())) != std::string::npos);
+  BOOST_TEST(edges.find("element edge " + std::to_string(rows.size() - 1)) != std::string::npos);
+
+  // the other format of a mesh has the same triangles
+  BOOST_TEST_REQUIRE(run("--quiet --input tree.xyz --swc t2.swc --mesh m.obj") == 0);
+  BOOST_TEST(out == "");
+  BOOST_TEST(content("t2.swc") == content("t.swc"));
+  const std::string obj = content("m.obj");
+  std::size_t faces = 0;
+  std::istringstream in(obj);
+  while (std::getline(in, line))
+    faces += line.rfind("f ", 0) == 0;
+  BOOST_TEST(faces == json["mesh"]["triangles"].get<std::size_t>());
+}
+
+BOOST_AUTO_TEST_CASE(options_change_what_they_say)
+{
+  const std::string base = "--quiet --input tree.xyz --report r.json ";
+  const auto report_of = [&](const std::string& more) {
+    const int code = run(base + more);
+    BOOST_TEST_REQUIRE(code == 0, more << ": " << err);
+    return Json::parse(content("r.json"));
+  };
+  const Json plain = report_of("--swc a.swc --mesh m.ply");
+  const Json coarse = report_of("--swc b.swc --mesh m.ply --tolerance 0.02");
+  BOOST_TEST(coarse["mesh"]["triangles"].get<long>() < plain["mesh"]["triangles"].get<long>());
+  const Json tubes = report_of("--swc b.swc --mesh m.ply --separate");
+  BOOST_TEST(tubes["mesh"]["joined_branches"] == 0);
+  BOOST_TEST(plain["mesh"]["joined_branches"] == 1);
+  const Json low = report_of("--swc b.swc --breast-height 3");
+  BOOST_TEST(low["diameter_at_breast_height"] == 0);
+  const Json sections = report_of("--swc b.swc --method sections");
+  BOOST_TEST(content("b.swc") != content("a.swc"));
+  BOOST_TEST(std::abs(sections["diameter_at_breast_height"].get<double>() - 0.2) < 0.02);
+  report_of("--swc b.swc --up -z");
+  BOOST_TEST(rows_of(content("b.swc"))[0].z > 2.3); // the root is at the other end
+  report_of("--swc b.swc --root 500001.3 5000000 1.5");
+  BOOST_TEST(rows_of(content("b.swc"))[0].x > far_x + 1.1);
+  const Json beam = report_of("--swc b.swc --scanner 500010 5000000 1 --beam-milliradians 5");
+  BOOST_TEST(beam["total"]["volume"].get<double>() < 0.99 * plain["total"]["volume"].get<double>());
+
+  // along a given skeleton: its nodes, the radii of the scan
+  write("given.swc",
+        "1 0 500000 5000000 0 9 -1\n2 0 500000 5000000 1.5 9 1\n3 0 500000 5000000 2.5 9 2\n"
+        "4 0 500001.3 5000000 1.5 9 2\n");
+  const Json given = report_of("--swc b.swc --skeleton given.swc");
+  BOOST_TEST(given["branches"] == 2);
+  BOOST_TEST(std::abs(given["diameter_at_breast_height"].get<double>() - 0.2) < 0.004);
+  BOOST_TEST(std::abs(given["total"]["length"].get<double>() - 3.8) < 1e-6);
+
+  // a property tells what is wood
+  std::istringstream in(fork_text());
+  std::ostringstream labelled;
+  labelled << "x y z is_branch\n";
+  std::size_t k = 0;
+  for (std::string line; std::getline(in, line); ++k)
+    labelled << line << ' ' << (k < 3000 && k % 2 == 1 ? 0 : 1) << '\n';
+  write("labelled.csv", labelled.str());
+  const int code = run("--quiet --input labelled.csv --wood is_branch --swc b.swc --report r.json");
+  BOOST_TEST_REQUIRE(code == 0, err);
+  const Json wood = Json::parse(content("r.json"));
+  BOOST_TEST(wood["branches"] == 1);
+  BOOST_TEST(wood["points"]["leaves"] == 1500);
+}
+
+BOOST_AUTO_TEST_CASE(lengths_are_in_the_unit_of_the_input)
+{
+  write("mm.xyz", fork_text(1000));
+  BOOST_TEST_REQUIRE(
+      run("--quiet --input mm.xyz --swc t.swc --breast-height 1300 --report r.json") == 0);
+  const Json json = Json::parse(content("r.json"));
+  BOOST_TEST(std::abs(json["diameter_at_breast_height"].get<double>() - 200) < 4);
+  const std::vector<Row> rows = rows_of(content("t.swc"));
+  BOOST_TEST(std::abs(rows[rows.size() / 3].radius - 100) < 5);
+}
+
+BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
+{
+  write("empty.ply", "");
+  write("torn.ply", content("in.ply").substr(0, 900));
+  write("one.xyz", "1 2 3\n");
+  write("nan.xyz", fork_text() + "nan 0 0\n");
+  write("words.xyz", "this is no point\n");
+  std::string flat;
+  for (int i = 0; i < 2500; ++i)
+    flat += std::to_string(0.02 * (i % 50)) + " " + std::to_string(0.02 * (i / 50)) + " 0\n";
+  write("flat.xyz", flat);
+  write("forest.swc", "1 0 0 0 0 1 -1\n2 0 0 0 0 1 -1\n");
+  std::filesystem::create_directory(path("folder"));
+  refuses("", "--input");
+  refuses("--input tree.xyz", "--swc is required");
+  refuses("--input missing.ply --swc old.swc", "missing.ply");
+  refuses("--input empty.ply --swc old.swc", "empty");
+  refuses("--input torn.ply --swc old.swc", "torn.ply");
+  refuses("--input one.xyz --swc old.swc", "only 1 different");
+  refuses("--input nan.xyz --swc old.swc", "finite");
+  refuses("--input words.xyz --swc old.swc", "words.xyz");
+  refuses("--input flat.xyz --swc old.swc", "there is no tree");
+  refuses("--input tree.xyz --swc old.swc --mesh no/m.ply", "there is no such folder");
+  refuses("--input tree.xyz --swc old.swc --mesh m.stl", "must be .ply or .obj");
+  refuses("--input tree.xyz --swc old.swc --points p.e57", "p.e57");
+  refuses("--input tree.xyz --swc old.swc --report folder", "is a directory");
+  refuses("--input tree.xyz --swc folder", "is a directory");
+  refuses("--input tree.xyz --swc old.swc --cylinders old.swc", "the same name");
+  refuses("--input tree.xyz --swc tree.xyz", "the same name");
+  refuses("--input tree.xyz in.ply --swc old.swc", "--folder");
+  refuses("--input tree.xyz --swc old.swc --also mesh", "--folder");
+  refuses("--input tree.xyz --swc old.swc --up w", "--up");
+  refuses("--input tree.xyz --swc old.swc --breast-height -1", "breast_height");
+  refuses("--input tree.xyz --swc old.swc --tolerance -1", "--tolerance");
+  refuses("--input tree.xyz --swc old.swc --root 1 2", "--root");
+  refuses("--input tree.xyz --swc old.swc --root nan 0 0", "root_position");
+  refuses("--input tree.xyz --swc old.swc --scanner 1 2 3 4", "three coordinates");
+  refuses("--input tree.xyz --swc old.swc --wood bark", "no property 'bark'");
+  refuses("--input tree.xyz --swc old.swc --skeleton forest.swc", "forest.swc");
+  refuses("--input tree.xyz --swc old.swc --method magic", "--method");
+  refuses("--input tree.xyz --folder out --swc old.swc", "leave old.swc out");
+  refuses("--input tree.xyz folder/tree.ply --folder out", "the same name");
+}
+
+BOOST_AUTO_TEST_CASE(a_batch_goes_on_and_resumes)
+{
+  write("good.xyz", fork_text());
+  write("bad.xyz", "1 2 3\n");
+  const std::string batch = "--quiet --input tree.xyz bad.xyz missing.ply good.xyz --folder out ";
+  BOOST_TEST(run(batch + "--also mesh,cylinders edges points") == 1);
+  BOOST_TEST(count_lines(err) == 2u);
+  std::vector<Json> lines = log();
+  BOOST_TEST_REQUIRE(lines.size() == 4u);
+  BOOST_TEST(lines[0]["status"] == "converged");
+  BOOST_TEST(lines[0]["branches"] == 2);
+  BOOST_TEST(lines[1]["status"] == "failed");
+  BOOST_TEST(lines[1]["error"].get<std::string>().find("different points") != std::string::npos);
+  BOOST_TEST(lines[2]["status"] == "failed");
+  BOOST_TEST(lines[3]["status"] == "converged");
+  for (const char* name : {"tree.swc",
+                           "tree_mesh.ply",
+                           "tree_cylinders.csv",
+                           "tree_edges.ply",
+                           "tree_points.ply",
+                           "good.swc"})
+    BOOST_TEST(exists(std::string("out/") + name), name);
+  BOOST_TEST(!exists("out/bad.swc"));
+  BOOST_TEST(!exists("out/bad_mesh.ply"));
+  BOOST_TEST(content("out/good.swc") == content("out/tree.swc"));
+
+  // again: only what failed; one of them is mended, and the last line was torn
+  write("bad.xyz", fork_text());
+  write("out/batch.jsonl", content("out/batch.jsonl") + "{\"input\": \"half");
+  const auto time = std::filesystem::last_write_time(path("out/tree.swc"));
+  BOOST_TEST(run(batch) == 1);
+  BOOST_TEST((std::filesystem::last_write_time(path("out/tree.swc")) == time));
+  BOOST_TEST(exists("out/bad.swc"));
+  std::istringstream in(content("out/batch.jsonl"));
+  std::size_t whole = 0, torn = 0;
+  for (std::string line; std::getline(in, line);)
+    ++(Json::accept(line) ? whole : torn);
+  BOOST_TEST(whole == 6u);
+  BOOST_TEST(torn == 1u);
+
+  // a result that is gone is made again
+  std::filesystem::remove(path("out/good.swc"));
+  std::filesystem::remove(path("missing.ply"));
+  write("missing.xyz", fork_text());
+  BOOST_TEST(run("--quiet --input tree.xyz bad.xyz good.xyz --folder out") == 0, err);
+  BOOST_TEST(exists("out/good.swc"));
+  BOOST_TEST(run("--quiet --input tree.xyz bad.xyz good.xyz --folder out") == 0, err);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,465 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// extract_tree_skeleton() on odd clouds: each has a defined result.
+
+#include <pcs/extract_tree_skeleton.h>
+#include <pcs/generators/tree_fixtures.h>
+#include <support/tree_clouds.h>
+
+#include <CGAL/squared_distance_3.h>
+
+#include <boost/property_map/property_map.hpp>
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <map>
+#include <random>
+#include <vector>
+
+using pcs_test::append;
+using pcs_test::check_is_a_tree;
+using pcs_test::cylinder;
+using pcs_test::Jitter;
+using pcs_test::Tree;
+using Kernel = pcs_test::Tree_kernel;
+using Point = pcs_test::Tree_point;
+using Vector = pcs_test::Tree_vector;
+using Cloud = std::vector<Point>;
+
+namespace {
+
+/// `n` points of a rectangle that stands on the middle of its lower side, or lies if `up` is horizontal.
+Cloud sheet(std::size_t n, double width, const Vector& across, const Vector& up, double noise)
+{
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> share(-0.5, 0.5);
+  Cloud points;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double a = share(random), b = share(random);
+    points.push_back(CGAL::ORIGIN + width * a * across + width * b * up);
+  }
+  return Jitter(noise)(points);
+}
+
+/// The branches of the result, by their number of points, for the points of one body.
+std::map<std::size_t, std::size_t>
+votes(const std::vector<std::size_t>& branch, std::size_t begin, std::size_t end)
+{
+  std::map<std::size_t, std::size_t> count;
+  for (std::size_t i = begin; i < end; ++i)
+    ++count[branch[i]];
+  return count;
+}
+
+std::size_t winner(const std::map<std::size_t, std::size_t>& votes)
+{
+  return std::max_element(votes.begin(),
+                          votes.end(),
+                          [](const auto& a, const auto& b) { return a.second < b.second; })
+      ->first;
+}
+
+pcs::Skeleton_report extract(const Cloud& points, Tree& tree, std::vector<std::size_t>& branch)
+{
+  branch.assign(points.size(), 0);
+  std::map<Point, std::size_t> found;
+  const auto report = pcs::extract_tree_skeleton(
+      points,
+      tree,
+      pcs::parameters::point_branch_map(boost::make_assoc_property_map(found)));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    branch[i] = found.at(points[i]);
+  return report;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(tree_skeleton_clouds)
+
+BOOST_AUTO_TEST_CASE(too_few_points_are_refused)
+{
+  Tree tree;
+  const Cloud none, one(1, Point(1, 2, 3)), same(100, Point(1, 2, 3));
+  for (const auto& points : {none, one, same, cylinder(9, 1, 1)})
+    BOOST_CHECK_THROW(pcs::extract_tree_skeleton(points, tree), pcs::Invalid_input);
+  BOOST_CHECK_EQUAL(num_vertices(tree), 0u);
+}
+
+BOOST_AUTO_TEST_CASE(values_that_are_no_numbers_are_refused)
+{
+  Tree tree;
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity(), 1e200}) {
+    Cloud points = cylinder(100, 0.1, 1);
+    points[50] = Point(0, bad, 0);
+    BOOST_CHECK_THROW(pcs::extract_tree_skeleton(points, tree), pcs::Invalid_input);
+  }
+  const auto points = cylinder(100, 0.1, 1);
+  BOOST_CHECK_THROW(
+      pcs::extract_tree_skeleton(points, tree, pcs::parameters::up_direction(Vector(0, 0, 0))),
+      pcs::Invalid_input);
+  BOOST_CHECK_THROW(pcs::extract_tree_skeleton(points, tree, pcs::parameters::breast_height(-1.0)),
+                    pcs::Invalid_input);
+}
+
+BOOST_AUTO_TEST_CASE(duplicates_change_nothing)
+{
+  const Cloud points = cylinder(3000, 0.1, 1);
+  Cloud twice = points;
+  append(twice, points);
+  Tree a, b;
+  pcs::extract_tree_skeleton(points, a);
+  const auto report = pcs::extract_tree_skeleton(twice, b);
+  BOOST_CHECK_EQUAL(report.number_of_duplicates, points.size());
+  BOOST_REQUIRE_EQUAL(num_vertices(a), num_vertices(b));
+  for (std::size_t v = 0; v < num_vertices(a); ++v)
+    BOOST_TEST((a[v].point == b[v].point && a[v].radius == b[v].radius));
+}
+
+BOOST_AUTO_TEST_CASE(a_block_of_returns_at_the_scanner_is_one_outlier)
+{
+  Cloud points = cylinder(8000, 0.1, 3, Point(5, 5, 0));
+  points.insert(points.end(), 40000, Point(0, 0, 0));
+  Tree tree;
+  const auto report = pcs::extract_tree_skeleton(points, tree);
+  BOOST_CHECK_EQUAL(report.number_of_duplicates, 39999u);
+  BOOST_CHECK_EQUAL(report.number_of_outliers, 1u);
+  BOOST_CHECK_EQUAL(report.number_of_branches, 1u);
+  BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.2, 2.0);
+}
+
+BOOST_AUTO_TEST_CASE(quantised_points_give_the_radius)
+{
+  Cloud points = Jitter(0.003)(cylinder(8000, 0.1, 3));
+  for (Point& p : points)
+    p = Point(0.01 * std::round(100 * p.x()),
+              0.01 * std::round(100 * p.y()),
+              0.01 * std::round(100 * p.z()));
+  Tree tree;
+  const auto report = pcs::extract_tree_skeleton(points, tree);
+  BOOST_CHECK_GT(report.number_of_duplicates, 50u);
+  BOOST_CHECK_EQUAL(report.number_of_branches, 1u);
+  BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.2, 2.0);
+}
+
+BOOST_AUTO_TEST_CASE(georeferenced_points_lose_no_digits)
+{
+  const Vector far(5e5, 5e6, 100);
+  Cloud points = Jitter(0.002)(cylinder(8000, 0.1, 3));
+  for (Point& p : points)
+    p = p + far;
+  Tree tree;
+  const auto report = pcs::extract_tree_skeleton(points, tree);
+  BOOST_CHECK_EQUAL(report.number_of_branches, 1u);
+  BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.2, 1.0);
+  for (std::size_t v = 0; v < num_vertices(tree); ++v) {
+    const Point p = tree[v].point - far;
+    BOOST_CHECK_SMALL(std::hypot(p.x(), p.y()), 0.002); // the noise
+  }
+}
+
+BOOST_AUTO_TEST_CASE(far_outliers_change_nothing)
+{
+  Cloud points = Jitter(0.002)(cylinder(8000, 0.1, 3));
+  Tree clean, tree;
+  const auto before = pcs::extract_tree_skeleton(points, clean);
+  append(points, {Point(1000, 0, 0), Point(0, -3000, 50), Point(0, 0, 1e6), Point(2, 0, -40)});
+  const auto after = pcs::extract_tree_skeleton(points, tree);
+  BOOST_CHECK_EQUAL(after.number_of_outliers, 4u);
+  BOOST_CHECK_EQUAL(after.number_of_branches, before.number_of_branches);
+  BOOST_CHECK_CLOSE(after.height, before.height, 0.5);
+  BOOST_CHECK_CLOSE(after.total.volume, before.total.volume, 0.5);
+}
+
+BOOST_AUTO_TEST_CASE(a_stick_and_a_line_are_one_branch)
+{
+  Tree stick, line;
+  const auto a = pcs::extract_tree_skeleton(Jitter(0.0005)(cylinder(600, 0.005, 1)), stick);
+  BOOST_CHECK_EQUAL(a.number_of_branches, 1u);
+  BOOST_CHECK_CLOSE(a.total.length, 1.0, 2.0);
+  BOOST_CHECK_CLOSE(stick[num_vertices(stick) / 2].radius, 0.005, 5.0);
+  Cloud points;
+  for (int i = 0; i < 200; ++i)
+    points.emplace_back(0.01 * i, 0, 0);
+  const auto b = pcs::extract_tree_skeleton(points, line);
+  check_is_a_tree(line);
+  BOOST_CHECK_EQUAL(b.number_of_branches, 1u);
+  BOOST_CHECK_CLOSE(b.total.length, 2.0, 3.0);
+  BOOST_CHECK_LT(line[num_vertices(line) / 2].radius, 0.001);
+}
+
+BOOST_AUTO_TEST_CASE(a_lying_stem_begins_at_its_end)
+{
+  Tree tree;
+  const auto report =
+      pcs::extract_tree_skeleton(Jitter(0.001)(cylinder(6000, 0.05, 2, Point(0, 0, 0), {1, 1, 0})),
+                                 tree);
+  BOOST_CHECK_EQUAL(report.number_of_branches, 1u);
+  BOOST_CHECK_CLOSE(report.total.length, 2.0, 3.0);
+  BOOST_CHECK_CLOSE(report.total.volume, CGAL_PI * 0.0025 * 2, 5.0);
+}
+
+BOOST_AUTO_TEST_CASE(a_hoop_is_one_long_branch)
+{
+  Tree tree;
+  Cloud points = cylinder(400, 1, 1e-9);
+  const auto report = pcs::extract_tree_skeleton(points, tree);
+  check_is_a_tree(tree);
+  BOOST_CHECK_CLOSE(report.total.length, 2 * CGAL_PI, 10.0);
+  BOOST_CHECK_LE(report.number_of_branches, 2u);
+}
+
+BOOST_AUTO_TEST_CASE(a_lamp_post_is_a_trunk)
+{
+  Cloud points = cylinder(9000, 0.06, 6);
+  append(points, cylinder(900, 0.03, 1.5, Point(0, 0, 5.95), Vector(1, 0, 0.1)));
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> x(1.3, 1.9), y(-0.15, 0.15), z(6.0, 6.2);
+  for (int i = 0; i < 800; ++i)
+    points.emplace_back(x(random), y(random), z(random));
+  Tree tree;
+  std::vector<std::size_t> branch;
+  points = Jitter(0.002)(points);
+  const auto report = extract(points, tree, branch);
+  check_is_a_tree(tree);
+  BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.12, 2.0);
+  BOOST_CHECK_CLOSE(report.height, 6.1, 5.0);
+  BOOST_CHECK_GT(votes(branch, 0, 9000)[0], 8800u); // the post is the trunk
+  const auto arm = votes(branch, 9000, 9900);
+  BOOST_CHECK_GT(arm.at(winner(arm)), 800u); // the arm is one thing, the trunk's end or a branch
+}
+
+BOOST_AUTO_TEST_CASE(the_stems_of_a_bush_are_branches)
+{
+  Cloud points;
+  constexpr std::size_t stems = 12, n = 900;
+  for (std::size_t k = 0; k < stems; ++k) {
+    const double azimuth = 2 * CGAL_PI * double(k) / stems, tilt = 0.2 + 0.03 * double(k);
+    const Vector out(std::cos(azimuth), std::sin(azimuth), 0);
+    append(points,
+           cylinder(n,
+                    0.012 + 0.0006 * double(k),
+                    1.5,
+                    CGAL::ORIGIN + 0.05 * out,
+                    std::sin(tilt) * out + Vector(0, 0, std::cos(tilt))));
+  }
+  Tree tree;
+  std::vector<std::size_t> branch;
+  points = Jitter(0.001)(points);
+  const auto report = extract(points, tree, branch);
+  check_is_a_tree(tree);
+  std::vector<std::size_t> winners;
+  for (std::size_t k = 0; k < stems; ++k) {
+    const auto count = votes(branch, k * n, (k + 1) * n);
+    winners.push_back(winner(count));
+    BOOST_CHECK_GT(count.at(winners.back()), n * 8 / 10);
+  }
+  std::sort(winners.begin(), winners.end());
+  BOOST_TEST((std::unique(winners.begin(), winners.end()) == winners.end()));
+  BOOST_CHECK_CLOSE(report.total.length, stems * 1.5, 10.0);
+}
+
+BOOST_AUTO_TEST_CASE(a_sheet_is_no_tree)
+{
+  const Vector x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  for (const Cloud& points : {sheet(4000, 2, x, y, 0),
+                              sheet(20000, 4, x, y, 0.01),
+                              sheet(4000, 2, x, z, 0.005),
+                              sheet(4000, 2, x, (y + z) / std::sqrt(2.0), 0.005)}) {
+    Tree tree;
+    const auto report = pcs::extract_tree_skeleton(points, tree);
+    BOOST_CHECK_EQUAL(report.status, pcs::Status::nothing_to_do);
+    BOOST_CHECK_EQUAL(report.number_of_ground_points, points.size());
+    BOOST_CHECK_EQUAL(num_vertices(tree), 0u);
+    BOOST_CHECK_EQUAL(report.number_of_branches, 0u);
+    const auto kept =
+        pcs::extract_tree_skeleton(points, tree, pcs::parameters::do_remove_ground(false));
+    BOOST_CHECK_EQUAL(kept.status, pcs::Status::converged);
+    check_is_a_tree(tree);
+  }
+}
+
+// Nothing says that these are no trees.
+BOOST_AUTO_TEST_CASE(bodies_give_some_tree_that_stays_within_them)
+{
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> share(-1, 1);
+  Cloud sphere, dust;
+  for (int i = 0; i < 3000; ++i) {
+    const Vector d(normal(random), normal(random), normal(random));
+    sphere.push_back(CGAL::ORIGIN + d / std::sqrt(d.squared_length()));
+    dust.emplace_back(share(random), share(random), share(random));
+  }
+  for (const Cloud& points : {sphere, dust}) {
+    Tree tree;
+    const auto report = pcs::extract_tree_skeleton(points, tree);
+    BOOST_CHECK_EQUAL(report.status, pcs::Status::converged);
+    check_is_a_tree(tree);
+    for (std::size_t v = 0; v < num_vertices(tree); ++v) {
+      const Point& p = tree[v].point;
+      BOOST_CHECK_LT(std::max({std::abs(p.x()), std::abs(p.y()), std::abs(p.z())}), 1.5);
+      BOOST_CHECK_LT(tree[v].radius, 2.0);
+    }
+    BOOST_CHECK_GT(report.residual, 0.0);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(of_two_trees_the_thicker_one_is_taken)
+{
+  Cloud points = cylinder(8000, 0.1, 2);
+  append(points, cylinder(3000, 0.05, 2, Point(5, 0, 0)));
+  Tree tree;
+  const auto report = pcs::extract_tree_skeleton(points, tree);
+  BOOST_CHECK_EQUAL(report.number_of_branches, 1u);
+  BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.2, 3.0);
+  BOOST_CHECK_GT(report.number_of_unreached_points + report.number_of_unexplained_points, 2500u);
+  BOOST_CHECK_GE(report.number_of_unreached_branches, 1u);
+  Tree second;
+  const auto chosen =
+      pcs::extract_tree_skeleton(points, second, pcs::parameters::root_position(Point(5, 0, 0)));
+  BOOST_CHECK_CLOSE(chosen.diameter_at_breast_height, 0.1, 5.0);
+}
+
+namespace {
+
+/// Two crossing bodies are two axes; `body` tells which of them a point lies on, -1: on none.
+void check_are_apart(const Cloud& points,
+                     const std::vector<int>& body,
+                     const std::vector<Kernel::Segment_3>& axes)
+{
+  Tree tree;
+  std::vector<std::size_t> branch;
+  extract(points, tree, branch);
+  check_is_a_tree(tree);
+  std::map<std::size_t, std::size_t> count[2];
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (body[i] >= 0)
+      ++count[body[i]][branch[i]];
+  const std::size_t mine[2] = {winner(count[0]), winner(count[1])};
+  BOOST_REQUIRE_NE(mine[0], mine[1]);
+  for (std::size_t k = 0; k < 2; ++k) {
+    std::size_t all = 0;
+    for (const auto& [b, c] : count[k])
+      all += c;
+    BOOST_CHECK_GT(count[k].at(mine[k]), all * 85 / 100);
+    BOOST_CHECK_LT(count[k][mine[1 - k]], all * 3 / 100);
+    const auto nodes = pcs::nodes_by_branch<Kernel>(tree)[mine[k]];
+    std::size_t near = 0;
+    for (const std::size_t v : nodes)
+      near += CGAL::squared_distance(tree[v].point, axes[k]) < 0.008 * 0.008;
+    BOOST_CHECK_GT(near, nodes.size() * 8 / 10);
+  }
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_CASE(crossing_branches_of_a_trunk_stay_apart)
+{
+  const Tree truth = pcs::make_crossing_branches_tree<Kernel>(1.0, 0.02, 0.01);
+  pcs::Virtual_scan<Kernel> scan;
+  pcs::Virtual_scanner scanner;
+  scanner.distance = 5;
+  scanner.registration_error = 0;
+  pcs::scan_tree(truth, scan, scanner);
+  const auto nodes = pcs::nodes_by_branch<Kernel>(truth);
+  std::vector<int> body(scan.points.size(), -1);
+  for (std::size_t i = 0; i < body.size(); ++i) {
+    const std::size_t b = scan.node[i] >= 0 ? truth[std::size_t(scan.node[i])].branch : 0;
+    body[i] = static_cast<int>(b) - 1;
+  }
+  const auto axis = [&](std::size_t b) {
+    return Kernel::Segment_3(truth[nodes[b].front()].point, truth[nodes[b].back()].point);
+  };
+  check_are_apart(scan.points, body, {axis(1), axis(2)});
+}
+
+BOOST_AUTO_TEST_CASE(crossing_sticks_stay_apart)
+{
+  constexpr std::size_t n = 4000;
+  const Kernel::Segment_3 a(Point(-1, 0, 1), Point(1, 0, 1)),
+      b(Point(0, -1, 1.05), Point(0, 1, 1.05));
+  Cloud points = cylinder(n, 0.02, 2, a.source(), a.to_vector());
+  append(points, cylinder(n, 0.02, 2, b.source(), b.to_vector()));
+  std::vector<int> body(2 * n, 0);
+  std::fill(body.begin() + n, body.end(), 1);
+  // one of them hangs on the other, in halves
+  Tree tree;
+  std::vector<std::size_t> branch;
+  points = Jitter(0.001)(points);
+  const auto report = extract(points, tree, branch);
+  check_is_a_tree(tree);
+  BOOST_CHECK_LE(report.number_of_branches, 3u);
+  BOOST_CHECK_CLOSE(report.total.length, 4.0, 5.0);
+  std::size_t mixed = 0; // points of one stick on a branch of the other
+  for (const auto& [name, count] : votes(branch, 0, n))
+    mixed += name == pcs::npos ? 0 : std::min(count, votes(branch, n, 2 * n)[name]);
+  BOOST_CHECK_LT(mixed, n * 2 / 100);
+}
+
+BOOST_AUTO_TEST_CASE(ground_is_left_out)
+{
+  Cloud points = cylinder(8000, 0.1, 3);
+  for (int i = 0; i < 100; ++i)
+    for (int j = 0; j < 100; ++j)
+      points.emplace_back(-1 + 0.02 * i + 0.001 * (j % 3), -1 + 0.02 * j, 0.01 * std::sin(0.3 * i));
+  Tree tree;
+  const auto report = pcs::extract_tree_skeleton(points, tree);
+  BOOST_CHECK_GT(report.number_of_ground_points, 7000u);
+  BOOST_CHECK_LE(report.number_of_branches, 4u);
+  BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.2, 3.0);
+}
+
+BOOST_AUTO_TEST_CASE(shrubs_on_the_ground_are_no_trunk)
+{
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> place(-1.8, 1.8), share(0, 1);
+  Cloud points = cylinder(8000, 0.1, 3);
+  append(points, sheet(20000, 4, Vector(1, 0, 0), Vector(0, 1, 0), 0.01));
+  for (int k = 0; k < 15; ++k) {
+    const Point foot(place(random), place(random), 0);
+    if ((foot - CGAL::ORIGIN).squared_length() < 0.25)
+      continue;
+    for (int stem = 0; stem < 6; ++stem) {
+      const double azimuth = 2 * CGAL_PI * share(random), tilt = 0.1 + 0.6 * share(random);
+      append(points,
+             cylinder(120,
+                      0.004,
+                      0.5,
+                      foot,
+                      Vector(std::sin(tilt) * std::cos(azimuth),
+                             std::sin(tilt) * std::sin(azimuth),
+                             std::cos(tilt))));
+    }
+  }
+  Tree tree;
+  const auto report = pcs::extract_tree_skeleton(points, tree);
+  check_is_a_tree(tree);
+  BOOST_CHECK_GT(report.number_of_ground_points, 15000u);
+  BOOST_CHECK_CLOSE(report.height, 3.0, 3.0);
+  BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.2, 3.0);
+}
+
+BOOST_AUTO_TEST_CASE(leaves_may_be_named)
+{
+  Cloud points = cylinder(4000, 0.1, 2);
+  const std::size_t n = points.size();
+  append(points, cylinder(4000, 0.05, 2, Point(0.2, 0, 0)));
+  std::map<Point, bool> is_wood;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    is_wood[points[i]] = i < n;
+  Tree tree;
+  const auto report = pcs::extract_tree_skeleton(
+      points,
+      tree,
+      pcs::parameters::wood_map(boost::make_assoc_property_map(is_wood)));
+  BOOST_CHECK_EQUAL(report.number_of_branches, 1u);
+  BOOST_CHECK_EQUAL(report.number_of_leaf_points, 4000u);
+  BOOST_CHECK_EQUAL(report.number_of_outliers, 0u);
+  BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.2, 3.0);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,174 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Hints to extract_tree_skeleton(): scanner positions, a given skeleton; and stopping it anywhere.
+
+#include <pcs/extract_tree_skeleton.h>
+#include <pcs/generators/scan_tree.h>
+#include <pcs/generators/tree_fixtures.h>
+#include <support/tree_clouds.h>
+
+#include <boost/graph/adjacency_list.hpp>
+#include <boost/property_map/property_map.hpp>
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <map>
+#include <vector>
+
+using pcs_test::append;
+using pcs_test::cylinder;
+using pcs_test::Tree;
+using Kernel = pcs_test::Tree_kernel;
+using Point = pcs_test::Tree_point;
+using Vector = pcs_test::Tree_vector;
+using Cloud = std::vector<Point>;
+
+BOOST_AUTO_TEST_SUITE(tree_skeleton_hints)
+
+BOOST_AUTO_TEST_CASE(scanner_positions_take_the_beam_out_of_thin_radii)
+{
+  const Tree truth = pcs::make_cylinder_tree<Kernel>(1.5, 0.006);
+  pcs::Virtual_scanner scanner;
+  scanner.beam_width = 0.0015;
+  scanner.angular_step = 0.03 * CGAL_PI / 180;
+  pcs::Virtual_scan<Kernel> scan;
+  pcs::scan_tree(truth, scan, scanner, pcs::parameters::random_seed(2));
+  Tree plain, corrected, none;
+  pcs::extract_tree_skeleton(scan.points, plain);
+  const auto np = pcs::parameters::scanner_positions(scan.stations);
+  pcs::extract_tree_skeleton(scan.points, corrected, np.beam_width(scanner.beam_width));
+  pcs::extract_tree_skeleton(scan.points, none, np.beam_width(0.0));
+  const std::size_t v = num_vertices(plain) / 2;
+  const double before = plain[v].radius - 0.006, after = corrected[v].radius - 0.006;
+  BOOST_TEST(before > 0.001);
+  BOOST_TEST(std::abs(after) < 0.6 * before);
+  BOOST_TEST(none[v].radius == plain[v].radius);
+  // a thick branch hardly changes
+  Tree trunk, same;
+  const Cloud thick = cylinder(4000, 0.2, 2);
+  pcs::extract_tree_skeleton(thick, trunk);
+  const std::vector<Point> station{Point(10, 0, 1)};
+  pcs::extract_tree_skeleton(thick, same, pcs::parameters::scanner_positions(station));
+  BOOST_CHECK_CLOSE(same[5].radius, trunk[5].radius, 0.1);
+  BOOST_TEST(same[5].radius < trunk[5].radius);
+}
+
+BOOST_AUTO_TEST_CASE(a_given_skeleton_is_measured_where_it_is)
+{
+  // a stem and a branch, and a graph of someone else along them, a little off the axis
+  Cloud points = cylinder(6000, 0.1, 2);
+  append(points, cylinder(1500, 0.03, 1, Point(0.1, 0, 1.2), Vector(1, 0, 0)));
+  struct Vertex
+  {
+    Point place;
+    float width = 0;
+  };
+  using Graph = boost::adjacency_list<boost::listS, boost::listS, boost::directedS, Vertex>;
+  Graph given;
+  const auto add = [&](double x, double z, auto parent) {
+    const auto v = add_vertex(given);
+    given[v].place = Point(x, 0.01, z);
+    add_edge(parent, v, given);
+    return v;
+  };
+  const auto root = add_vertex(given);
+  given[root].place = Point(0, 0.01, 0);
+  auto v = root, fork = root;
+  for (int k = 1; k <= 20; ++k) {
+    v = add(0, 0.1 * k, v);
+    if (k == 12)
+      fork = v;
+  }
+  for (int k = 1; k <= 10; ++k)
+    fork = add(0.11 * k, 1.2, fork);
+
+  Tree tree;
+  std::map<Point, std::size_t> branch;
+  const auto report =
+      pcs::extract_tree_skeleton(points,
+                                 tree,
+                                 pcs::parameters::given_skeleton(std::cref(given))
+                                     .given_point_map(get(&Vertex::place, given))
+                                     .point_branch_map(boost::make_assoc_property_map(branch)));
+  pcs_test::check_is_a_tree(tree);
+  BOOST_TEST(report.status == pcs::Status::converged);
+  BOOST_TEST(report.number_of_branches == 2u);
+  BOOST_CHECK_CLOSE(report.total.length, 2 + 1.1, 1e-6);
+  for (std::size_t w = 0; w < num_vertices(tree); ++w) {
+    BOOST_TEST(tree[w].point.y() == 0.01); // positions stay
+    BOOST_CHECK_CLOSE(tree[w].radius, tree[w].branch == 0 ? 0.1 : 0.03, 12.0);
+  }
+  std::size_t right = 0;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    right += branch.at(points[i]) == (i < 6000 ? 0u : 1u);
+  BOOST_TEST(right > points.size() * 95 / 100);
+
+  // a ready-made skeleton needs no map; its own result gives the same radii again
+  Tree found, again;
+  pcs::extract_tree_skeleton(points, found);
+  pcs::extract_tree_skeleton(points, again, pcs::parameters::given_skeleton(found));
+  BOOST_CHECK_CLOSE(again[num_vertices(again) / 4].radius, 0.1, 2.0);
+}
+
+BOOST_AUTO_TEST_CASE(hints_that_make_no_sense_are_refused)
+{
+  const Cloud points = cylinder(2000, 0.1, 2);
+  Tree tree, empty, forest(2), ring(2);
+  add_edge(0, 1, ring);
+  add_edge(1, 0, ring);
+  const double bad = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<Point> nowhere{Point(bad, 0, 0)}, station{Point(9, 0, 0)};
+  using namespace pcs::parameters;
+  BOOST_CHECK_THROW(pcs::extract_tree_skeleton(points, tree, given_skeleton(empty)),
+                    pcs::Invalid_input);
+  BOOST_CHECK_THROW(pcs::extract_tree_skeleton(points, tree, given_skeleton(forest)),
+                    pcs::Invalid_input);
+  BOOST_CHECK_THROW(pcs::extract_tree_skeleton(points, tree, given_skeleton(ring)),
+                    pcs::Invalid_input);
+  BOOST_CHECK_THROW(pcs::extract_tree_skeleton(points, tree, scanner_positions(nowhere)),
+                    pcs::Invalid_input);
+  BOOST_CHECK_THROW(
+      pcs::extract_tree_skeleton(points, tree, scanner_positions(station).beam_width(-0.1)),
+      pcs::Invalid_input);
+  BOOST_TEST(num_vertices(tree) == 0u);
+}
+
+// Every call of the callback of every way of working.
+BOOST_AUTO_TEST_CASE(stopping_anywhere_leaves_nothing_half_done)
+{
+  const Cloud points = cylinder(1500, 0.1, 2);
+  Tree given;
+  pcs::extract_tree_skeleton(points, given);
+  const auto check = [&](const auto& np) {
+    Tree full;
+    std::size_t calls = 0;
+    const std::function<bool(double)> count = [&](double) { return ++calls > 0; };
+    pcs::extract_tree_skeleton(points, full, np.callback(count));
+    BOOST_TEST(calls >= 5u);
+    for (std::size_t at = 1; at < calls; ++at) {
+      std::size_t left = at;
+      const std::function<bool(double)> stop = [&](double) { return --left > 0; };
+      Tree tree(3);
+      std::map<Point, std::size_t> branches;
+      for (const Point& p : points)
+        branches[p] = 77;
+      const auto report = pcs::extract_tree_skeleton(
+          points,
+          tree,
+          np.callback(stop).point_branch_map(boost::make_assoc_property_map(branches)));
+      BOOST_TEST(report.status == pcs::Status::cancelled);
+      BOOST_TEST(num_vertices(tree) == 3u);
+      for (const auto& [p, b] : branches)
+        BOOST_REQUIRE(b == 77u);
+    }
+  };
+  using namespace pcs::parameters;
+  check(breast_height(1.3));
+  check(skeleton_method(pcs::skeleton::Skeleton_method::sections));
+  check(given_skeleton(given));
+}
+
+BOOST_AUTO_TEST_SUITE_END()
