@@ -68,11 +68,20 @@ public:
   Branch_matching(const Rooted_tree& tree_1,
                   const Rooted_tree& tree_2,
                   const Matching_weights& weights)
+    : Branch_matching(tree_1, tree_2, weights, find_paths(tree_1, weights))
+  {
+  }
+
+  /// The same where tree 1 may be taken apart in the given way only.
+  Branch_matching(const Rooted_tree& tree_1,
+                  const Rooted_tree& tree_2,
+                  const Matching_weights& weights,
+                  Branch_paths paths_1)
     : m_weights(weights), m_trees{&tree_1, &tree_2}
   {
-    const std::size_t k = weights.is_published ? 1 : weights.number_of_paths;
+    m_paths[0] = std::move(paths_1);
+    m_paths[1] = find_paths(tree_2, weights);
     for (int t = 0; t < 2; ++t) {
-      m_paths[t] = find_branch_paths(*m_trees[t], weights.fork_ratio, k);
       m_curves[t].resize(m_paths[t].paths.size());
       pcs::internal::for_each_index<ConcurrencyTag>(
           m_curves[t].size(),
@@ -82,6 +91,13 @@ public:
           },
           16);
     }
+  }
+
+  static Branch_paths find_paths(const Rooted_tree& tree, const Matching_weights& weights)
+  {
+    return find_branch_paths(tree,
+                             weights.fork_ratio,
+                             weights.is_published ? 1 : weights.number_of_paths);
   }
 
   const Branch_paths& paths(int t) const { return m_paths[t]; }
