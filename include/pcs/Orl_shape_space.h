@@ -6,6 +6,7 @@
 #define PCS_ORL_SHAPE_SPACE_H
 
 #include <pcs/Named_function_parameters.h>
+#include <pcs/Orl_tree.h>
 #include <pcs/concepts.h>
 #include <pcs/core/Orl_correspondences.h>
 #include <pcs/core/Orl_report.h>
@@ -16,11 +17,12 @@
 #include <pcs/internal/text.h>
 #include <pcs/shape_space/Branch_matching.h>
 #include <pcs/shape_space/Common_topology.h>
-#include <pcs/shape_space/Point_instances.h>
-#include <pcs/shape_space/assign_points.h>
-#include <pcs/shape_space/embed_trees.h>
+#include <pcs/shape_space/Embedded_pair.h>
+#include <pcs/shape_space/check_options.h>
 #include <pcs/shape_space/point_correspondences.h>
+#include <pcs/shape_space/stored_topology.h>
 #include <pcs/shape_space/tree_input.h>
+#include <pcs/shape_space/write_skeleton.h>
 
 #include <CGAL/Simple_cartesian.h>
 
@@ -34,40 +36,6 @@
 #include <vector>
 
 namespace pcs {
-
-/*!
-  \ingroup PkgPcsShapeSpaceRef
-  \brief A tree of an `Orl_shape_space`: orientations, radii and lengths of the edges of its topology, a value.
-
-  Kept and assigned to again, it keeps its memory.
-*/
-class Orl_tree
-{
-public:
-  //! the place on the path it comes from: 0 and 1 are the ends [-]
-  double lambda() const { return m_lambda; }
-  //! number of points that `Orl_shape_space::points()` writes [count]
-  std::size_t number_of_points() const { return m_offset.empty() ? 0 : m_offset.back(); }
-  //! orientations, radii, lengths and attachments
-  const shape_space::Orl_coordinates& coordinates() const { return m_x; }
-
-private:
-  template <class, class>
-  friend class Orl_shape_space;
-  shape_space::Orl_coordinates m_x;
-  shape_space::Orl_geometry m_geometry;
-  std::vector<std::size_t> m_offset;
-  double m_lambda = 0;
-};
-
-//! \ingroup PkgPcsShapeSpaceRef
-//! two branches that correspond, named by the vertices at their tips
-struct Branch_match
-{
-  std::size_t parent = npos; ///< index of the parents' match, `npos` for the trunks
-  std::array<std::size_t, 2> tip = {npos,
-                                    npos}; ///< index of a vertex; `npos`: the tree lacks the branch
-};
 
 /*!
   \ingroup PkgPcsShapeSpaceRef
@@ -190,7 +158,7 @@ public:
         pcs::internal::choose(np, pcs::internal_np::assignment_options, Assignment_options());
     const auto transport =
         pcs::internal::choose(np, pcs::internal_np::transport_options, Transport_options());
-    check_options(weights, assignment, transport);
+    check_options(weights, assignment, transport, "pcs::Orl_shape_space::build()");
     pcs::internal::Progress progress(
         pcs::internal::choose(np, CGAL::internal_np::callback, std::function<bool(double)>()));
     check_inputs("build");
@@ -198,7 +166,7 @@ public:
     Orl_report report = new_report();
     pcs::internal::Stopwatch watch;
     progress.stage(0, 0.4);
-    Built built;
+    Embedded_pair built;
     read_form(np, built);
     {
       Branch_matching<ConcurrencyTag> matching(m_inputs[0].tree, m_inputs[1].tree, weights);
@@ -213,7 +181,7 @@ public:
                                                       built.topology.paths);
       built.topology.branches = builder.run(*trunk);
     }
-    embed(built);
+    shape_space::embed(inputs(), built);
     report.seconds.topology = watch.lap();
 
     progress.stage(0.4, 0.6);
@@ -221,7 +189,7 @@ public:
       return cancelled(report);
     std::array<std::vector<std::size_t>, 2> edges;
     for (std::size_t t = 0; t < 2; ++t) {
-      edges[t] = edges_of_points(built, t, assignment);
+      edges[t] = edges_of_points<ConcurrencyTag>(inputs(), built, t, assignment);
       if (!progress(0.5 * static_cast<double>(t + 1)))
         return cancelled(report);
     }
@@ -229,7 +197,8 @@ public:
 
     progress.stage(0.6, 1);
     Transport_summary summary;
-    const std::array<std::vector<Vec3>, 2> points = {m_inputs[0].points, points_of_second()};
+    const std::array<std::vector<Vec3>, 2> points = {m_inputs[0].points,
+                                                     points_of_second(inputs())};
     std::vector<Point_pair> pairs =
         Point_matching<ConcurrencyTag>(built.layout,
                                        built.geometry,
@@ -263,18 +232,21 @@ public:
     check_inputs("build_from");
     Orl_report report = new_report();
     pcs::internal::Stopwatch watch;
-    Built built;
+    shape_space::Embedded_pair built;
     read_form(np, built);
     built.topology = shape_space::restore_topology(correspondences,
-                                                   {&m_inputs[0], &m_inputs[1]},
+                                                   inputs(),
                                                    "pcs::Orl_shape_space::build_from()");
-    embed(built);
+    shape_space::embed(inputs(), built);
     report.seconds.topology = watch.lap();
     shape_space::check_pairs(correspondences,
                              built.layout.number_of_edges(),
                              {m_inputs[0].points.size(), m_inputs[1].points.size()},
                              "pcs::Orl_shape_space::build_from()");
-    finish(built, correspondences.pairs, {m_inputs[0].points, points_of_second()}, report);
+    finish(built,
+           correspondences.pairs,
+           {m_inputs[0].points, shape_space::points_of_second(inputs())},
+           report);
     report.seconds.instances = watch.lap();
     return report;
   }
@@ -283,9 +255,7 @@ public:
   Orl_correspondences correspondences() const
   {
     check_built("correspondences");
-    return shape_space::store_topology(m_built.topology,
-                                       {&m_inputs[0], &m_inputs[1]},
-                                       m_built.instances.pairs());
+    return shape_space::store_topology(m_built.topology, inputs(), m_built.instances.pairs());
   }
 
   //! branches that correspond, parents first; \pre it was built
@@ -512,42 +482,9 @@ public:
   const shape_space::Orl_weights& weights() const { return m_built.weights; }
 
 private:
-  struct Built
+  std::array<const shape_space::Tree_input*, 2> inputs() const
   {
-    shape_space::Orientation orientation = shape_space::Orientation::gauge_fixed;
-    shape_space::Virtual_direction direction = shape_space::Virtual_direction::of_partner;
-    bool has_unit_weights = false;
-    shape_space::Common_topology topology;
-    shape_space::Orl_layout layout;
-    std::array<shape_space::Orl_coordinates, 2> x;
-    std::array<shape_space::Orl_geometry, 2> geometry;
-    std::vector<char> is_relative;
-    shape_space::Orl_weights weights;
-    shape_space::Point_instances instances;
-  };
-
-  static void check_options(const shape_space::Matching_weights& w,
-                            const shape_space::Assignment_options& a,
-                            const shape_space::Transport_options& t)
-  {
-    const auto check = [](bool is_right, const char* what) {
-      if (!is_right)
-        throw Invalid_input(std::string("pcs::Orl_shape_space::build(): ") + what);
-    };
-    const auto is_weight = [](double x) { return x >= 0 && std::isfinite(x); };
-    check(w.curve > 0 && std::isfinite(w.curve), "the weight `curve` must be > 0 and finite");
-    check(is_weight(w.position) && is_weight(w.single) && is_weight(w.children) &&
-              is_weight(w.carried),
-          "the weights of the matching must be >= 0 and finite");
-    check(w.fork_ratio > 0 && w.fork_ratio <= 1, "`fork_ratio` must be in (0, 1]");
-    check(w.number_of_paths > 0 && w.number_of_trials > 0,
-          "`number_of_paths` and `number_of_trials` must be at least 1");
-    check(is_weight(a.noise) && a.normal_angle > 0, "`noise` must be >= 0, `normal_angle` > 0");
-    check(a.number_of_neighbors >= 3, "`number_of_neighbors` of the assignment must be >= 3");
-    check(t.number_of_neighbors > 0 && t.largest_window > 0,
-          "`number_of_neighbors` and `largest_window` of the transport must be at least 1");
-    check(t.sinkhorn.regularization > 0 && t.sinkhorn.iterations > 0,
-          "`regularization` and `iterations` must be > 0");
+    return {&m_inputs[0], &m_inputs[1]};
   }
 
   void check_inputs(const char* caller) const
@@ -579,7 +516,7 @@ private:
   }
 
   template <class NamedParameters>
-  static void read_form(const NamedParameters& np, Built& built)
+  static void read_form(const NamedParameters& np, shape_space::Embedded_pair& built)
   {
     built.orientation = pcs::internal::choose(np, pcs::internal_np::orientation, built.orientation);
     built.direction =
@@ -588,53 +525,7 @@ private:
         pcs::internal::choose(np, pcs::internal_np::do_use_unit_weights, built.has_unit_weights);
   }
 
-  void embed(Built& built) const
-  {
-    using namespace shape_space;
-    built.layout = make_layout(built.topology.branches);
-    built.x = embed_trees(built.layout,
-                          built.topology.branches,
-                          {&m_inputs[0].tree, &m_inputs[1].tree},
-                          built.topology.paths,
-                          built.orientation,
-                          built.direction);
-    for (std::size_t t = 0; t < 2; ++t)
-      build_geometry(built.layout, built.x[t], built.orientation, built.geometry[t]);
-    built.weights = make_weights(built.layout, built.x, built.has_unit_weights);
-    built.is_relative = edges_with_radius(built.layout, built.topology, built.geometry);
-  }
-
-  /// Points of the second tree in the local coordinates of the first.
-  std::vector<shape_space::Vec3> points_of_second() const
-  {
-    const shape_space::Vec3 shift = m_inputs[1].tree.origin - m_inputs[0].tree.origin;
-    std::vector<shape_space::Vec3> points(m_inputs[1].points);
-    for (shape_space::Vec3& p : points)
-      p += shift;
-    return points;
-  }
-
-  std::vector<std::size_t> edges_of_points(const Built& built,
-                                           std::size_t t,
-                                           const shape_space::Assignment_options& options) const
-  {
-    using namespace shape_space;
-    std::vector<std::size_t> edge_of_tube;
-    const Vec3 shift =
-        t == 0 ? Vec3(Vec3::Zero()) : Vec3(m_inputs[0].tree.origin - m_inputs[1].tree.origin);
-    const std::vector<Tube> tubes =
-        make_tubes(built.layout, built.topology, built.geometry[t], t, shift, edge_of_tube);
-    std::vector<std::size_t> result = assign_points<ConcurrencyTag>(m_inputs[t].points,
-                                                                    m_inputs[t].normals,
-                                                                    tubes,
-                                                                    m_inputs[t].tree.extent,
-                                                                    options);
-    for (std::size_t& e : result)
-      e = edge_of_tube[e];
-    return result;
-  }
-
-  void finish(Built& built,
+  void finish(shape_space::Embedded_pair& built,
               std::vector<shape_space::Point_pair> pairs,
               const std::array<std::vector<shape_space::Vec3>, 2>& points,
               Orl_report& report)
@@ -691,7 +582,7 @@ private:
   }
 
   std::vector<shape_space::Tree_input> m_inputs;
-  Built m_built;
+  shape_space::Embedded_pair m_built;
   bool m_is_built = false;
 };
 
