@@ -7,9 +7,11 @@
 
 #include <pcs/Named_function_parameters.h>
 #include <pcs/Orl_tree.h>
+#include <pcs/Orl_tree_family.h>
 #include <pcs/concepts.h>
 #include <pcs/core/Orl_correspondences.h>
 #include <pcs/core/Orl_report.h>
+#include <pcs/core/Orl_space_data.h>
 #include <pcs/core/Tree_skeleton.h>
 #include <pcs/core/errors.h>
 #include <pcs/internal/Stopwatch.h>
@@ -20,6 +22,7 @@
 #include <pcs/shape_space/Embedded_pair.h>
 #include <pcs/shape_space/check_options.h>
 #include <pcs/shape_space/point_correspondences.h>
+#include <pcs/shape_space/stored_family.h>
 #include <pcs/shape_space/stored_topology.h>
 #include <pcs/shape_space/tree_input.h>
 #include <pcs/shape_space/write_skeleton.h>
@@ -39,7 +42,7 @@ namespace pcs {
 
 /*!
   \ingroup PkgPcsShapeSpaceRef
-  \brief A shape space of two trees, with the points of their scans.
+  \brief A shape space of two trees or more, with the points of their scans.
 
   Follows chapter 4 of \cite aiteanu2022: branches are matched by elastic curves, both trees get one
   topology, points are matched by optimal transport along corresponding edges, and a tree is the list of orientations,
@@ -49,6 +52,11 @@ namespace pcs {
   Trees of any Boost.Graph type are added, then `build()` finds the correspondences, then trees of the space are made by
   `geodesic()` and turned into skeletons and points. Inputs are copied, nothing refers to them afterwards.
 
+  Two trees are represented exactly. More trees share the nodes of their branches: axes are straightened between them, by
+  `shape_space::axis_tolerance` of the length of a branch at most, and each branch has the points of one scan, so that
+  points have the same order in all trees. The order in which trees are added does not matter then, save for rounding. See
+  the base class for means, modes and new trees.
+
   \tparam Kernel a kernel of CGAL; computations are in double precision about a local origin
   \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or `CGAL::Parallel_if_available_tag`
   \par Determinism
@@ -57,14 +65,16 @@ namespace pcs {
 */
 template <class Kernel = CGAL::Simple_cartesian<double>,
           class ConcurrencyTag = CGAL::Parallel_if_available_tag>
-class Orl_shape_space
+class Orl_shape_space : public Orl_tree_family<ConcurrencyTag>
 {
+  using Family = Orl_tree_family<ConcurrencyTag>;
+
 public:
   using FT = typename Kernel::FT;
   using Point_3 = typename Kernel::Point_3;
   using Vector_3 = typename Kernel::Vector_3;
   //! names an added tree
-  using Handle = std::size_t;
+  using Handle = typename Family::Handle;
 
   Orl_shape_space() = default;
   Orl_shape_space(const Orl_shape_space&) = delete;
@@ -105,11 +115,13 @@ public:
   Handle
   add(const TreeGraph& tree, const PointRange& scan, const NamedParameters& np = NamedParameters())
   {
-    if (m_inputs.size() == 2)
-      throw Invalid_input("pcs::Orl_shape_space::add(): there are two trees already");
+    if (m_is_restored)
+      throw Invalid_input(
+          "pcs::Orl_shape_space::add(): the space was restored; add trees to a new one");
     m_inputs.push_back(
         shape_space::make_tree_input<Kernel>(tree, scan, np, "pcs::Orl_shape_space::add()"));
     m_is_built = false;
+    this->m_family = shape_space::Tree_family();
     return m_inputs.size() - 1;
   }
 
@@ -121,7 +133,7 @@ public:
   }
 
   /*!
-    \brief finds the correspondences of branches and points, and the coordinates of both trees.
+    \brief finds the correspondences of branches and points, and the coordinates of all trees.
 
     \npbegin
       \np{matching_weights} of the energy of matching branches
@@ -140,13 +152,20 @@ public:
       \np{do_use_unit_weights} whether all weights of the metric are 1, as in the text
         \nptype `bool`
         \npdefault `false`: turns count with the length of the edge, so that distances are lengths
+      \np{number_of_rounds} for more than two trees: how often all are matched to a tree in their middle
+        \nptype an integer, `>= 1`
+        \npdefault `3`
+      \np{points_of} for more than two trees: the tree whose scan gives the points of the branches that it has
+        \nptype `Handle`
+        \npdefault none: for each branch, the tree with most points there
       \np{callback} progress in [0, 1]; `false` cancels
         \nptype any `bool(double)`
     \npend
     \return a report; with `Status::cancelled` the space is as before
-    \throws pcs::Invalid_input unless two trees were added
+    \throws pcs::Invalid_input unless two trees were added at least
     \par Complexity
-    Branches: about the number of pairs of branches on the same level. Points: \f$O(n \log n)\f$ in practice.
+    Branches: about the number of pairs of branches on the same level, for more than two trees once per tree and round.
+    Points: \f$O(n \log n)\f$ in practice.
   */
   template <class NamedParameters = parameters::Default_named_parameters>
   Orl_report build(const NamedParameters& np = NamedParameters())
@@ -161,10 +180,32 @@ public:
     check_options(weights, assignment, transport, "pcs::Orl_shape_space::build()");
     pcs::internal::Progress progress(
         pcs::internal::choose(np, CGAL::internal_np::callback, std::function<bool(double)>()));
-    check_inputs("build");
+    const auto rounds = pcs::internal::choose(np, pcs::internal_np::number_of_rounds, 3);
+    static_assert(std::is_integral_v<std::decay_t<decltype(rounds)>>,
+                  "pcs::Orl_shape_space::build(): `number_of_rounds` must be an integer");
+    if (rounds < 1)
+      throw Invalid_input("pcs::Orl_shape_space::build(): `number_of_rounds` is " +
+                          std::to_string(rounds) + ", expected at least 1");
+    if (m_is_restored)
+      throw Invalid_input("pcs::Orl_shape_space::build(): the space was restored, it is built");
+    if (m_inputs.size() < 2)
+      throw Invalid_input("pcs::Orl_shape_space::build(): " + std::to_string(m_inputs.size()) +
+                          " trees were added, expected 2 at least");
+    const std::size_t points_of =
+        pcs::internal::choose(np, pcs::internal_np::points_of, shape_space::none);
+    if (points_of != none && points_of >= m_inputs.size())
+      throw Invalid_input("pcs::Orl_shape_space::build(): `points_of` is " +
+                          std::to_string(points_of) + ", but there is no such tree");
 
     Orl_report report = new_report();
     pcs::internal::Stopwatch watch;
+    if (m_inputs.size() > 2)
+      return build_many(np,
+                        weights,
+                        assignment,
+                        static_cast<std::size_t>(rounds),
+                        points_of,
+                        progress);
     progress.stage(0, 0.4);
     Embedded_pair built;
     read_form(np, built);
@@ -213,7 +254,7 @@ public:
     report.number_of_failed_windows = summary.number_of_failures;
     report.worst_marginal_violation = summary.worst_violation;
     report.mean_marginal_violation = summary.mean_violation;
-    finish(built, std::move(pairs), points, report);
+    finish(built, std::move(pairs), points, weights, report);
     report.seconds.instances = watch.lap();
     progress.finish();
     return report;
@@ -246,6 +287,7 @@ public:
     finish(built,
            correspondences.pairs,
            {m_inputs[0].points, shape_space::points_of_second(inputs())},
+           shape_space::Matching_weights(),
            report);
     report.seconds.instances = watch.lap();
     return report;
@@ -255,6 +297,7 @@ public:
   Orl_correspondences correspondences() const
   {
     check_built("correspondences");
+    check_inputs("correspondences");
     return shape_space::store_topology(m_built.topology, inputs(), m_built.instances.pairs());
   }
 
@@ -262,20 +305,17 @@ public:
   std::vector<Branch_match> matches() const
   {
     check_built("matches");
+    check_two("matches");
     std::vector<Branch_match> result;
-    for (const shape_space::Common_branch& b : m_built.topology.branches) {
+    for (std::size_t b = 0; b < this->m_family.layout.branches.size(); ++b) {
       Branch_match match;
-      match.parent = b.parent;
+      match.parent = this->m_family.layout.branches[b].parent;
       for (std::size_t t = 0; t < 2; ++t)
-        if (b.path[t] != shape_space::none)
-          match.tip[t] = m_inputs[t].tree.sources[m_built.topology.paths[t].paths[b.path[t]].tip()];
+        match.tip[t] = this->m_family.tip[t][b];
       result.push_back(match);
     }
     return result;
   }
-
-  //! an added tree as a tree of the space; \pre it was built
-  Orl_tree tree(Handle h) const { return geodesic(h, h == 0 ? 1 : 0, 0); }
 
   /*!
     \brief returns the tree at `lambda` on the geodesic from `a` (0) to `b` (1), or beyond its ends.
@@ -310,14 +350,17 @@ public:
                 const NamedParameters& np = NamedParameters()) const
   {
     check_built("geodesic");
-    if (a > 1 || b > 1)
-      throw Invalid_input("pcs::Orl_shape_space::geodesic(): there is no tree " +
-                          std::to_string(std::max(a, b)));
+    this->check_handle(std::max(a, b), "geodesic");
     if (a == b)
       lambda = 0;
     // one direction only, so that the path back is the same
-    const double t = a <= b && a == 0 ? lambda : a == b ? 1 : 1 - lambda;
-    make_tree(m_built.x[0], m_built.x[1], t, t, np, result);
+    const double t = a <= b ? lambda : 1 - lambda;
+    make_tree(this->m_family.x[std::min(a, b)],
+              this->m_family.x[std::max(a, b)],
+              t,
+              a == b ? (a == 1 ? 1 : 0) : t,
+              np,
+              result);
   }
 
   //! the same between trees of the space
@@ -334,29 +377,6 @@ public:
   }
 
   /*!
-    \brief the distance between two trees of the space.
-
-    \npbegin
-      \np{metric} sum of differences as in (4.7), root of their squares, or edges as vectors
-        \nptype `shape_space::Orl_metric`
-        \npdefault `sum`
-    \npend
-  */
-  template <class NamedParameters = parameters::Default_named_parameters>
-  double distance(const Orl_tree& a,
-                  const Orl_tree& b,
-                  const NamedParameters& np = NamedParameters()) const
-  {
-    check_built("distance");
-    return shape_space::distance(
-        a.m_x,
-        b.m_x,
-        m_built.weights,
-        pcs::internal::choose(np, pcs::internal_np::metric, shape_space::Orl_metric::sum));
-  }
-  double distance(Handle a, Handle b) const { return distance(tree(a), tree(b)); }
-
-  /*!
     \brief writes a tree of the space as a skeleton; branches of length 0 are left out.
 
     Every branch begins with a node of its own on the axis of its parent.
@@ -366,10 +386,11 @@ public:
   void skeleton(const Orl_tree& t, Tree_skeleton<OutKernel>& result) const
   {
     check_built("skeleton");
-    shape_space::write_skeleton(m_built.layout,
+    this->check_tree(t, "skeleton");
+    shape_space::write_skeleton(this->m_family.layout,
                                 t.m_x,
                                 t.m_geometry,
-                                m_inputs[0].tree.origin,
+                                this->m_family.origin,
                                 result);
   }
 
@@ -401,6 +422,7 @@ public:
   points(const Orl_tree& t, PointRange& result, const NamedParameters& np = NamedParameters()) const
   {
     check_built("points");
+    this->check_tree(t, "points");
     const std::size_t n = t.number_of_points();
     shape_space::internal::resize_range(result, n, "pcs::Orl_shape_space::points()");
     const auto point_map = pcs::internal::choose(
@@ -410,11 +432,11 @@ public:
     constexpr bool has_normals =
         pcs::internal::is_given_v<NamedParameters, CGAL::internal_np::normal_t>;
     const auto normal_map = pcs::internal::choose(np, CGAL::internal_np::normal_map, 0);
-    if (has_normals && !m_built.instances.has_normals())
+    if (has_normals && !(is_pair() ? m_built.instances.has_normals() : m_points.has_normals()))
       throw Invalid_input(
           "pcs::Orl_shape_space::points(): `normal_map` needs trees that were added with normals");
     using Point = Map_value<std::decay_t<decltype(point_map)>>;
-    const shape_space::Vec3 origin = m_inputs[0].tree.origin;
+    const shape_space::Vec3 origin = this->m_family.origin;
     const auto begin = std::begin(result);
     const auto put_point = [&, origin](std::size_t i,
                                        const shape_space::Vec3& p,
@@ -438,7 +460,16 @@ public:
       } else
         static_cast<void>(normal);
     };
-    m_built.instances.write(m_built.layout,
+    if (!is_pair()) {
+      m_points.write(this->m_family.layout,
+                     t.m_x,
+                     t.m_geometry,
+                     t.m_offset,
+                     put_point,
+                     ConcurrencyTag());
+      return n;
+    }
+    m_built.instances.write(this->m_family.layout,
                             t.m_x,
                             t.m_geometry,
                             t.m_lambda,
@@ -461,6 +492,8 @@ public:
   void for_each_point(const Orl_tree& t, const F& f) const
   {
     check_built("for_each_point");
+    check_two("for_each_point");
+    this->check_tree(t, "for_each_point");
     const double share = std::min(1.0, std::max(0.0, t.m_lambda));
     m_built.instances.for_each_pair(
         t.m_x,
@@ -476,10 +509,87 @@ public:
         ConcurrencyTag());
   }
 
-  //! the topology, for callers who look inside; \pre it was built
-  const shape_space::Orl_layout& layout() const { return m_built.layout; }
-  //! weights of the metric; \pre it was built
-  const shape_space::Orl_weights& weights() const { return m_built.weights; }
+  /*!
+    \brief calls `f(i, h, k)` for every point of a tree of a space of more than two trees: it comes from point `k` of the scan
+    of tree `h`, and has its attributes. `f` may be called concurrently.
+  */
+  template <class F>
+  void for_each_source(const Orl_tree& t, const F& f) const
+  {
+    check_built("for_each_source");
+    this->check_tree(t, "for_each_source");
+    if (is_pair())
+      throw Invalid_input(
+          "pcs::Orl_shape_space::for_each_source(): points of two trees come from both; use "
+          "for_each_point()");
+    const std::vector<std::size_t>& first = m_points.first();
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        t.m_x.length.size(),
+        [&](std::size_t e) {
+          if (t.m_x.length[e] > 0)
+            for (std::size_t k = first[e]; k < first[e + 1]; ++k) {
+              const shape_space::Family_source& s = m_points.sources()[k];
+              f(t.m_offset[e] + k - first[e], std::size_t(s.tree), std::size_t(s.point));
+            }
+        },
+        64);
+  }
+
+  /*!
+    \brief a tree that was not added, as a tree of the space.
+
+    It is matched to a tree in the middle of the added ones; its branches that find no partner are left out.
+    \param tree, np as for `add()`
+    \param share if not null: the share of its length that is represented [-]
+  */
+  template <class TreeGraph, class NamedParameters = parameters::Default_named_parameters>
+  Orl_tree embed(const TreeGraph& tree,
+                 const NamedParameters& np = parameters::default_values(),
+                 double* share = nullptr) const
+  {
+    check_built("embed");
+    const shape_space::Tree_input input =
+        shape_space::make_tree_input<Kernel>(tree,
+                                             std::vector<Point_3>(),
+                                             np,
+                                             "pcs::Orl_shape_space::embed()");
+    return this->make(shape_space::embed_tree<ConcurrencyTag>(this->m_family, input.tree, share));
+  }
+
+  //! the whole space as numbers, for `IO::write_shape_space()`; \pre it was built
+  Orl_space_data data() const
+  {
+    check_built("data");
+    Orl_space_data result = shape_space::store_family(this->m_family);
+    result.points = m_stored_points;
+    result.has_normals = is_pair() ? m_built.instances.has_normals() : m_points.has_normals();
+    if (is_pair()) {
+      result.pairs = m_built.instances.pairs();
+      const std::array<std::vector<shape_space::Vec3>, 2> points = {
+          m_inputs[0].points,
+          shape_space::points_of_second(inputs())};
+      for (std::size_t t = 0; t < 2; ++t) {
+        for (const shape_space::Vec3& p : points[t])
+          result.trees[t].point.push_back(shape_space::internal::to_array(p));
+        for (const shape_space::Vec3& v : m_inputs[t].normals)
+          result.trees[t].normal.push_back(shape_space::internal::to_array(v));
+      }
+    }
+    return result;
+  }
+
+  /*!
+    \brief makes the space that `data()` was taken from; all but `correspondences()`, `add()` and `build()` works as before.
+    \throws pcs::Invalid_input when the numbers do not make sense; the space is unchanged then
+  */
+  void restore(const Orl_space_data& stored)
+  {
+    Orl_shape_space space;
+    space.m_family = shape_space::restore_family(stored, "pcs::Orl_shape_space::restore()");
+    space.set_points(stored);
+    space.m_is_built = space.m_is_restored = true;
+    *this = std::move(space);
+  }
 
 private:
   std::array<const shape_space::Tree_input*, 2> inputs() const
@@ -487,8 +597,20 @@ private:
     return {&m_inputs[0], &m_inputs[1]};
   }
 
+  bool is_pair() const { return this->number_of_trees() == 2; }
+
+  void check_two(const char* caller) const
+  {
+    if (!is_pair())
+      throw Invalid_input(std::string("pcs::Orl_shape_space::") + caller +
+                          "(): for two trees only, there are " +
+                          std::to_string(this->number_of_trees()));
+  }
   void check_inputs(const char* caller) const
   {
+    if (m_is_restored)
+      throw Invalid_input(std::string("pcs::Orl_shape_space::") + caller +
+                          "(): the space was restored, the trees themselves are not there");
     if (m_inputs.size() != 2)
       throw Invalid_input(std::string("pcs::Orl_shape_space::") + caller + "(): " +
                           std::to_string(m_inputs.size()) + " trees were added, expected 2");
@@ -503,6 +625,7 @@ private:
   Orl_report new_report() const
   {
     Orl_report report;
+    report.number_of_trees = m_inputs.size();
     for (std::size_t t = 0; t < 2; ++t) {
       report.number_of_nodes[t] = m_inputs[t].tree.node_of_source.size();
       report.number_of_points[t] = m_inputs[t].points.size();
@@ -528,6 +651,7 @@ private:
   void finish(shape_space::Embedded_pair& built,
               std::vector<shape_space::Point_pair> pairs,
               const std::array<std::vector<shape_space::Vec3>, 2>& points,
+              const shape_space::Matching_weights& weights,
               Orl_report& report)
   {
     built.instances.set(built.layout,
@@ -538,8 +662,14 @@ private:
                         std::move(pairs),
                         ConcurrencyTag());
     m_built = std::move(built);
+    this->m_family = shape_space::make_family(m_built, inputs(), weights);
+    this->m_family.first_point =
+        shape_space::first_of_edges(m_built.instances.pairs(), m_built.layout.number_of_edges());
+    m_points = shape_space::Family_points();
+    m_stored_points.clear();
     m_is_built = true;
     report.status = Status::converged;
+    report.number_of_common_branches = m_built.topology.branches.size();
     for (const shape_space::Common_branch& b : m_built.topology.branches) {
       for (int t = 0; t < 2; ++t)
         report.number_of_branches[static_cast<std::size_t>(t)] += b.is_virtual(t) ? 0 : 1;
@@ -573,17 +703,150 @@ private:
     if (!(maximal_turn >= 0))
       throw Invalid_input("pcs::Orl_shape_space::geodesic(): `maximal_turn` is " +
                           pcs::internal::to_text(maximal_turn) + ", expected at least 0");
-    shape_space::coordinates_at(m_built.layout, a, b, t, maximal_turn, result.m_x);
+    const shape_space::Tree_family& family = this->m_family;
+    shape_space::coordinates_at(family.layout, a, b, t, maximal_turn, result.m_x);
     if (do_limit)
-      shape_space::limit_radii(m_built.layout, result.m_x);
+      shape_space::limit_radii(family.layout, result.m_x);
     result.m_lambda = lambda;
-    shape_space::build_geometry(m_built.layout, result.m_x, m_built.orientation, result.m_geometry);
-    m_built.instances.find_offsets(result.m_x, result.m_offset);
+    shape_space::build_geometry(family.layout, result.m_x, family.orientation, result.m_geometry);
+    family.find_offsets(result.m_x, result.m_offset);
+  }
+
+  template <class NamedParameters>
+  Orl_report build_many(const NamedParameters& np,
+                        const shape_space::Matching_weights& weights,
+                        const shape_space::Assignment_options& assignment,
+                        std::size_t number_of_rounds,
+                        std::size_t points_of,
+                        pcs::internal::Progress& progress)
+  {
+    using namespace shape_space;
+    Orl_report report = new_report();
+    pcs::internal::Stopwatch watch;
+    Embedded_pair form;
+    read_form(np, form);
+    std::vector<const Rooted_tree*> trees;
+    for (const Tree_input& input : m_inputs)
+      trees.push_back(&input.tree);
+    progress.stage(0, 0.8);
+    Shared_topology_builder<ConcurrencyTag> topology(trees, weights, number_of_rounds);
+    if (!topology.run(progress))
+      return cancelled(report);
+    report.seconds.matching = watch.lap();
+    Tree_family family = make_family<ConcurrencyTag>(topology,
+                                                     trees,
+                                                     weights,
+                                                     form.orientation,
+                                                     form.direction,
+                                                     form.has_unit_weights);
+    report.seconds.topology = watch.lap();
+
+    progress.stage(0.8, 1);
+    std::vector<std::vector<std::size_t>> edges;
+    std::vector<Orl_geometry> geometry(trees.size());
+    for (std::size_t t = 0; t < trees.size(); ++t) {
+      if (!progress(static_cast<double>(t) / static_cast<double>(trees.size())))
+        return cancelled(report);
+      build_geometry(family.layout, family.x[t], family.orientation, geometry[t]);
+      edges.push_back(
+          edges_of_points<ConcurrencyTag>(family, m_inputs[t], t, geometry[t], assignment));
+    }
+    report.seconds.assignment = watch.lap();
+    if (!progress(1))
+      return cancelled(report);
+    bool has_normals = true;
+    for (const Tree_input& input : m_inputs)
+      has_normals = has_normals && input.normals.size() == input.points.size();
+    std::vector<Orl_space_data::Point> points;
+    for (const Family_source& s : Family_points::choose(family.layout, edges, points_of)) {
+      const Tree_input& input = m_inputs[s.tree];
+      const Vec3 p = input.points[s.point] + (input.tree.origin - family.origin);
+      points.push_back({s.tree, s.point, s.edge, shape_space::internal::to_array(p), {0, 0, 0}});
+      if (has_normals)
+        points.back().normal = shape_space::internal::to_array(input.normals[s.point]);
+    }
+    this->m_family = std::move(family);
+    m_built = Embedded_pair();
+    set_family_points(std::move(points), has_normals);
+    m_is_built = true;
+    report.seconds.instances = watch.lap();
+    report.status = Status::converged;
+    for (std::size_t b = 0; b < this->m_family.layout.branches.size(); ++b) {
+      const bool has[2] = {this->m_family.has[0][b] != 0, this->m_family.has[1][b] != 0};
+      for (std::size_t t = 0; t < 2; ++t)
+        report.number_of_branches[t] += has[t] ? 1 : 0;
+      report.number_of_matched_branches += has[0] && has[1] ? 1 : 0;
+    }
+    report.number_of_common_branches = this->m_family.layout.branches.size();
+    report.number_of_edges = this->m_family.layout.number_of_edges();
+    report.share_of_changes = topology.share_of_changes();
+    report.distance = this->distance(Handle(0), Handle(1));
+    report.number_of_point_pairs = m_points.size();
+    progress.finish();
+    return report;
+  }
+
+  /// Points of a space of more than two trees, by edge.
+  void set_family_points(std::vector<Orl_space_data::Point> points, bool has_normals)
+  {
+    using namespace shape_space;
+    const Tree_family& family = this->m_family;
+    std::vector<Orl_geometry> geometry(family.x.size());
+    for (std::size_t t = 0; t < family.x.size(); ++t)
+      build_geometry(family.layout, family.x[t], family.orientation, geometry[t]);
+    m_points.set(family.layout, geometry, points, has_normals, ConcurrencyTag());
+    m_stored_points = std::move(points);
+    this->m_family.first_point = m_points.first();
+  }
+
+  /// What `data()` gave, once the family is there.
+  void set_points(const Orl_space_data& stored)
+  {
+    using namespace shape_space;
+    const char* const caller = "pcs::Orl_shape_space::restore()";
+    const std::size_t n = this->m_family.layout.number_of_edges();
+    if (this->number_of_trees() > 2) {
+      check_family_points(stored, n, caller);
+      set_family_points(stored.points, stored.has_normals);
+      return;
+    }
+    Orl_correspondences pairs;
+    pairs.pairs = stored.pairs;
+    check_pairs(pairs, n, {stored.trees[0].point.size(), stored.trees[1].point.size()}, caller);
+    m_inputs.resize(2);
+    std::array<std::vector<Vec3>, 2> points, normals;
+    for (std::size_t t = 0; t < 2; ++t) {
+      Tree_input& input = m_inputs[t];
+      input.tree.origin = this->m_family.origin;
+      input.points = points_of_stored(stored.trees[t].point, caller);
+      input.normals = points_of_stored(stored.trees[t].normal, caller);
+      if (!input.normals.empty() && input.normals.size() != input.points.size())
+        throw Invalid_input(std::string(caller) + ": a tree has more points than normals, or less");
+      points[t] = input.points;
+      normals[t] = input.normals;
+      m_built.x[t] = this->m_family.x[t];
+      build_geometry(this->m_family.layout,
+                     m_built.x[t],
+                     this->m_family.orientation,
+                     m_built.geometry[t]);
+    }
+    m_built.layout = this->m_family.layout;
+    m_built.is_relative = edges_with_radius(this->m_family, m_built.geometry);
+    m_built.instances.set(m_built.layout,
+                          m_built.geometry,
+                          points,
+                          normals,
+                          m_built.is_relative,
+                          stored.pairs,
+                          ConcurrencyTag());
+    this->m_family.first_point = first_of_edges(m_built.instances.pairs(), n);
   }
 
   std::vector<shape_space::Tree_input> m_inputs;
-  shape_space::Embedded_pair m_built;
-  bool m_is_built = false;
+  shape_space::Embedded_pair m_built;                 // of two trees
+  shape_space::Family_points m_points;                // of more
+  std::vector<Orl_space_data::Point> m_stored_points; // likewise
+  bool m_is_built = false, m_is_restored = false;
 };
 
 } // namespace pcs

@@ -33,6 +33,8 @@ public:
 private:
   template <class, class>
   friend class Orl_shape_space;
+  template <class>
+  friend class Orl_tree_family;
   shape_space::Orl_coordinates m_x;
   shape_space::Orl_geometry m_geometry;
   std::vector<std::size_t> m_offset;

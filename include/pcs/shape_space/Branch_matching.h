@@ -70,6 +70,11 @@ public:
 
   const Branch_paths& paths(int t) const { return m_paths[t]; }
 
+  /// Pairs of trunks that are matched with all their children; less than the default saves most of the time.
+  void set_number_of_trunk_trials(std::size_t n) { m_most_trunk_trials = n; }
+  /// The trunk of tree 2 is known: a path of `paths(1)`.
+  void set_second_trunk(std::size_t path) { m_paths[1].paths_of[0] = {path}; }
+
   /// Null when `progress` asks to stop.
   std::shared_ptr<const Matched_branch> run(pcs::internal::Progress& progress)
   {
@@ -313,7 +318,7 @@ private:
     std::sort(order.begin(), order.end());
     std::vector<Trial> chosen;
     const std::size_t most =
-        m_weights.number_of_trials * (start_1 == 0 && start_2 == 0 ? trunk_factor : 1);
+        start_1 == 0 && start_2 == 0 ? m_most_trunk_trials : m_weights.number_of_trials;
     for (std::size_t k = 0; k < order.size() && k < most; ++k)
       chosen.push_back(std::move(all[order[k].second]));
     return chosen;
@@ -419,6 +424,7 @@ private:
   }
 
   Matching_weights m_weights;
+  std::size_t m_most_trunk_trials = trunk_factor * m_weights.number_of_trials;
   const Rooted_tree* m_trees[2];
   Branch_paths m_paths[2];
   std::vector<Sampled_curve> m_curves[2];

@@ -65,7 +65,8 @@ public:
     connect(tree);
     std::fill(tree.weights.begin(), tree.weights.end(), 0.0);
     for (std::size_t v = tree.size(); v-- > 1;)
-      tree.weights[tree.parents[v]] += tree.weights[v] + support[m_branch_of[v]] * tree.edge_length(v);
+      tree.weights[tree.parents[v]] +=
+          tree.weights[v] + support[m_branch_of[v]] * tree.edge_length(v);
     return std::move(m_result);
   }
 
@@ -77,7 +78,8 @@ private:
     const auto k = std::min(n - 1, static_cast<std::size_t>(t));
     const double f = t - static_cast<double>(k);
     tree.points.push_back(place_on_branch(m_layout, m_geometry, b, t));
-    tree.radii.push_back((1 - f) * m_geometry.radius[first + k] + f * m_geometry.radius[first + k + 1]);
+    tree.radii.push_back((1 - f) * m_geometry.radius[first + k] +
+                         f * m_geometry.radius[first + k + 1]);
     tree.parents.push_back(parent);
     tree.sources.push_back(none);
     tree.base_radii.push_back(parent == none ? tree.radii.back()

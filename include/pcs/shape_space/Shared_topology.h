@@ -54,9 +54,8 @@ inline std::size_t number_of_straight_edges(const Rooted_tree& tree, const Branc
       const Vec3 a = point_at(tree, path, step * static_cast<double>(i));
       const Vec3 v = point_at(tree, path, step * static_cast<double>(i + 1)) - a;
       const Vec3 p = tree.points[path.nodes[k]] - a;
-      const double t = v.squaredNorm() > 0
-                           ? std::min(1.0, std::max(0.0, p.dot(v) / v.squaredNorm()))
-                           : 0;
+      const double t =
+          v.squaredNorm() > 0 ? std::min(1.0, std::max(0.0, p.dot(v) / v.squaredNorm())) : 0;
       worst = std::max(worst, (p - t * v).norm());
     }
     if (worst <= axis_tolerance * path.length())
@@ -132,8 +131,7 @@ inline Embedding embed(const Orl_layout& layout,
 }
 
 /// Frames whose twist differs as little as possible from those of `reference`, edge by edge.
-inline void
-set_fixed_frames(const Orl_layout& layout, const Embedding& reference, Embedding& tree)
+inline void set_fixed_frames(const Orl_layout& layout, const Embedding& reference, Embedding& tree)
 {
   std::vector<double> twist(layout.number_of_edges(), 0);
   set_frames(layout, twist, tree);
@@ -302,9 +300,8 @@ Embedded_trees embed_trees(const Orl_layout& layout,
 }
 
 /// Weights in units of length: turns count with the mean length of the edge, all others 1; or all 1, as in the text.
-inline Orl_weights make_weights(const Orl_layout& layout,
-                                const std::vector<Orl_coordinates>& trees,
-                                bool is_text)
+inline Orl_weights
+make_weights(const Orl_layout& layout, const std::vector<Orl_coordinates>& trees, bool is_text)
 {
   Orl_weights w;
   const std::size_t n = layout.number_of_edges(), m = layout.branches.size();

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -27,7 +28,8 @@ inline std::vector<std::size_t> canonical_nodes(const Rooted_tree& tree)
   while (!stack.empty()) {
     order.push_back(stack.back());
     stack.pop_back();
-    for (std::size_t c = tree.first_child[order.back()]; c < tree.first_child[order.back() + 1]; ++c)
+    for (std::size_t c = tree.first_child[order.back()]; c < tree.first_child[order.back() + 1];
+         ++c)
       stack.push_back(tree.children[c]);
   }
   return order;
@@ -112,12 +114,20 @@ public:
     for (std::size_t round = 0; round < m_number_of_rounds; ++round) {
       if (round > 0)
         begin_round();
-      for (const std::size_t t : order) {
+      const std::size_t step = round > 0 ? batch : 1;
+      for (std::size_t first = 0; first < order.size(); first += step) {
         if (!progress(done / total))
           return false;
-        if (!add_tree(t, round == 0))
-          return false;
-        ++done;
+        const std::size_t n = std::min(step, order.size() - first);
+        std::vector<std::shared_ptr<const Matched_branch>> trunks(n);
+        if (!m_branches.empty())
+          pcs::internal::for_each_index<ConcurrencyTag>(
+              n,
+              [&](std::size_t k) { trunks[k] = match(order[first + k], round > 1); },
+              1);
+        for (std::size_t k = 0; k < n; ++k)
+          add_tree(order[first + k], trunks[k].get(), round == 0);
+        done += static_cast<double>(n);
       }
       end_round();
     }
@@ -131,12 +141,10 @@ public:
                  std::vector<Shared_branch>& branches,
                  Branch_paths& paths)
   {
-    pcs::internal::Progress none_wanted;
     m_trees.assign(1, &tree);
     m_reference = reference;
-    Branch_matching<ConcurrencyTag> matching(m_reference.tree, tree, m_weights, m_reference.paths);
-    const auto trunk = matching.run(none_wanted);
-    m_paths.assign(1, matching.paths(1));
+    m_paths.assign(1, Branch_matching<ConcurrencyTag>::find_paths(tree, m_weights));
+    const auto trunk = match(0, false);
     m_branches = branches;
     for (Shared_branch& b : m_branches)
       clear(b);
@@ -233,28 +241,37 @@ private:
     return result;
   }
 
-  bool add_tree(std::size_t t, bool is_first_round)
+  static constexpr std::size_t batch = 16; // trees that are matched between calls of the callback
+
+  /// Pairs of trunks that are looked into: with all that two trees are given, most of the time would go there.
+  static constexpr std::size_t number_of_trunk_trials = 4;
+
+  /// Never null: the trunks are always matched. `is_trunk_known`: it is that of the last round.
+  std::shared_ptr<const Matched_branch> match(std::size_t t, bool is_trunk_known) const
+  {
+    pcs::internal::Progress none_wanted;
+    Branch_matching<ConcurrencyTag> matching(m_reference.tree,
+                                             *m_trees[t],
+                                             m_weights,
+                                             m_reference.paths);
+    matching.set_number_of_trunk_trials(number_of_trunk_trials);
+    if (is_trunk_known && m_last_members[0].has(t))
+      matching.set_second_trunk(m_last_members[0].path[t]);
+    return matching.run(none_wanted);
+  }
+
+  void add_tree(std::size_t t, const Matched_branch* trunk, bool is_first_round)
   {
     const std::size_t before = m_branches.size();
     std::vector<std::size_t> counts;
     for (const Shared_branch& b : m_branches)
       counts.push_back(b.number_of_members());
-    if (m_branches.empty())
-      add_single(t, 0, none, 0);
-    else {
-      pcs::internal::Progress none_wanted;
-      Branch_matching<ConcurrencyTag> matching(m_reference.tree,
-                                               *m_trees[t],
-                                               m_weights,
-                                               m_reference.paths);
-      const auto trunk = matching.run(none_wanted);
-      if (!trunk)
-        return false;
+    if (trunk)
       add_match(*trunk, t, 0);
-    }
-    const bool is_last_one_needed = is_first_round || m_branches.size() > before;
-    if (!is_last_one_needed)
-      return true;
+    else
+      add_single(t, 0, none, 0);
+    if (!is_first_round && m_branches.size() == before)
+      return;
     // the middle tree takes part of the new one: running means at first, new branches always
     const Orl_layout layout = make_layout(m_branches);
     internal::Embedding tree =
@@ -276,8 +293,8 @@ private:
       m_x = tree.x;
     else
       blend(layout, tree.x, t, counts, is_first_round);
-    m_reference = make_reference(layout, m_x, support());
-    return true;
+    if (is_first_round)
+      m_reference = make_reference(layout, m_x, support());
   }
 
   void blend(const Orl_layout& layout,
@@ -304,9 +321,9 @@ private:
       for (std::size_t e = first; e < first + layout.branches[b].number_of_edges; ++e) {
         mix(m_x.length[e], tree.length[e]);
         mix(m_x.radius[e], tree.radius[e]);
-        m_x.orientation[e] =
-            count == 0 ? tree.orientation[e]
-                       : orientation_at(m_x.orientation[e], tree.orientation[e], f, 0.0);
+        m_x.orientation[e] = count == 0
+                                 ? tree.orientation[e]
+                                 : orientation_at(m_x.orientation[e], tree.orientation[e], f, 0.0);
       }
     }
   }

@@ -34,9 +34,8 @@ inline Quaternion chordal_mean(const std::vector<Quaternion>& q, const std::vect
   return mean;
 }
 
-inline double sum_of_angles(const Quaternion& at,
-                            const std::vector<Quaternion>& q,
-                            const std::vector<double>& w)
+inline double
+sum_of_angles(const Quaternion& at, const std::vector<Quaternion>& q, const std::vector<double>& w)
 {
   double sum = 0;
   for (std::size_t i = 0; i < q.size(); ++i)
@@ -136,8 +135,8 @@ inline Quaternion l1_mean_rotation(const std::vector<Quaternion>& q, const std::
     const L1_step step = l1_step(best, q, w);
     if (step.gradient <= std::max(weight_here, 1e-13 * total))
       break;
-    Vec3 way = weight_here > 0 ? Vec3(step.weiszfeld * (1 - weight_here / step.gradient))
-                               : step.newton;
+    Vec3 way =
+        weight_here > 0 ? Vec3(step.weiszfeld * (1 - weight_here / step.gradient)) : step.newton;
     bool is_better = false;
     for (int attempt = 0; attempt < 40 && !is_better; ++attempt) {
       if (attempt == 1 && !(weight_here > 0))
