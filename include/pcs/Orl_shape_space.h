@@ -20,6 +20,7 @@
 #include <pcs/shape_space/Branch_matching.h>
 #include <pcs/shape_space/Common_topology.h>
 #include <pcs/shape_space/Embedded_pair.h>
+#include <pcs/shape_space/build_family.h>
 #include <pcs/shape_space/check_options.h>
 #include <pcs/shape_space/point_correspondences.h>
 #include <pcs/shape_space/stored_family.h>
@@ -201,10 +202,7 @@ public:
     pcs::internal::Stopwatch watch;
     if (m_inputs.size() > 2)
       return build_many(np,
-                        weights,
-                        assignment,
-                        static_cast<std::size_t>(rounds),
-                        points_of,
+                        {weights, assignment, static_cast<std::size_t>(rounds), points_of},
                         progress);
     progress.stage(0, 0.4);
     Embedded_pair built;
@@ -556,13 +554,24 @@ public:
     return this->make(shape_space::embed_tree<ConcurrencyTag>(this->m_family, input.tree, share));
   }
 
+  //! whether trees of the space have points; \pre it was built
+  bool has_points() const
+  {
+    return !this->m_family.first_point.empty() && this->m_family.first_point.back() > 0;
+  }
+  //! whether these have normals; \pre it was built
+  bool has_normals() const
+  {
+    return is_pair() ? m_built.instances.has_normals() : m_points.has_normals();
+  }
+
   //! the whole space as numbers, for `IO::write_shape_space()`; \pre it was built
   Orl_space_data data() const
   {
     check_built("data");
     Orl_space_data result = shape_space::store_family(this->m_family);
     result.points = m_stored_points;
-    result.has_normals = is_pair() ? m_built.instances.has_normals() : m_points.has_normals();
+    result.has_normals = has_normals();
     if (is_pair()) {
       result.pairs = m_built.instances.pairs();
       const std::array<std::vector<shape_space::Vec3>, 2> points = {
@@ -714,72 +723,29 @@ private:
 
   template <class NamedParameters>
   Orl_report build_many(const NamedParameters& np,
-                        const shape_space::Matching_weights& weights,
-                        const shape_space::Assignment_options& assignment,
-                        std::size_t number_of_rounds,
-                        std::size_t points_of,
+                        const shape_space::Family_options& options,
                         pcs::internal::Progress& progress)
   {
-    using namespace shape_space;
     Orl_report report = new_report();
-    pcs::internal::Stopwatch watch;
-    Embedded_pair form;
+    shape_space::Embedded_pair form;
     read_form(np, form);
-    std::vector<const Rooted_tree*> trees;
-    for (const Tree_input& input : m_inputs)
-      trees.push_back(&input.tree);
-    progress.stage(0, 0.8);
-    Shared_topology_builder<ConcurrencyTag> topology(trees, weights, number_of_rounds);
-    if (!topology.run(progress))
+    shape_space::Built_family built;
+    built.family.orientation = form.orientation;
+    if (!shape_space::build_family<ConcurrencyTag>(m_inputs,
+                                                   options,
+                                                   form.direction,
+                                                   form.has_unit_weights,
+                                                   progress,
+                                                   built,
+                                                   report))
       return cancelled(report);
-    report.seconds.matching = watch.lap();
-    Tree_family family = make_family<ConcurrencyTag>(topology,
-                                                     trees,
-                                                     weights,
-                                                     form.orientation,
-                                                     form.direction,
-                                                     form.has_unit_weights);
-    report.seconds.topology = watch.lap();
-
-    progress.stage(0.8, 1);
-    std::vector<std::vector<std::size_t>> edges;
-    std::vector<Orl_geometry> geometry(trees.size());
-    for (std::size_t t = 0; t < trees.size(); ++t) {
-      if (!progress(static_cast<double>(t) / static_cast<double>(trees.size())))
-        return cancelled(report);
-      build_geometry(family.layout, family.x[t], family.orientation, geometry[t]);
-      edges.push_back(
-          edges_of_points<ConcurrencyTag>(family, m_inputs[t], t, geometry[t], assignment));
-    }
-    report.seconds.assignment = watch.lap();
-    if (!progress(1))
-      return cancelled(report);
-    bool has_normals = true;
-    for (const Tree_input& input : m_inputs)
-      has_normals = has_normals && input.normals.size() == input.points.size();
-    std::vector<Orl_space_data::Point> points;
-    for (const Family_source& s : Family_points::choose(family.layout, edges, points_of)) {
-      const Tree_input& input = m_inputs[s.tree];
-      const Vec3 p = input.points[s.point] + (input.tree.origin - family.origin);
-      points.push_back({s.tree, s.point, s.edge, shape_space::internal::to_array(p), {0, 0, 0}});
-      if (has_normals)
-        points.back().normal = shape_space::internal::to_array(input.normals[s.point]);
-    }
-    this->m_family = std::move(family);
-    m_built = Embedded_pair();
-    set_family_points(std::move(points), has_normals);
+    pcs::internal::Stopwatch watch;
+    this->m_family = std::move(built.family);
+    m_built = shape_space::Embedded_pair();
+    set_family_points(std::move(built.points), built.has_normals);
     m_is_built = true;
     report.seconds.instances = watch.lap();
     report.status = Status::converged;
-    for (std::size_t b = 0; b < this->m_family.layout.branches.size(); ++b) {
-      const bool has[2] = {this->m_family.has[0][b] != 0, this->m_family.has[1][b] != 0};
-      for (std::size_t t = 0; t < 2; ++t)
-        report.number_of_branches[t] += has[t] ? 1 : 0;
-      report.number_of_matched_branches += has[0] && has[1] ? 1 : 0;
-    }
-    report.number_of_common_branches = this->m_family.layout.branches.size();
-    report.number_of_edges = this->m_family.layout.number_of_edges();
-    report.share_of_changes = topology.share_of_changes();
     report.distance = this->distance(Handle(0), Handle(1));
     report.number_of_point_pairs = m_points.size();
     progress.finish();
@@ -810,35 +776,7 @@ private:
       set_family_points(stored.points, stored.has_normals);
       return;
     }
-    Orl_correspondences pairs;
-    pairs.pairs = stored.pairs;
-    check_pairs(pairs, n, {stored.trees[0].point.size(), stored.trees[1].point.size()}, caller);
-    m_inputs.resize(2);
-    std::array<std::vector<Vec3>, 2> points, normals;
-    for (std::size_t t = 0; t < 2; ++t) {
-      Tree_input& input = m_inputs[t];
-      input.tree.origin = this->m_family.origin;
-      input.points = points_of_stored(stored.trees[t].point, caller);
-      input.normals = points_of_stored(stored.trees[t].normal, caller);
-      if (!input.normals.empty() && input.normals.size() != input.points.size())
-        throw Invalid_input(std::string(caller) + ": a tree has more points than normals, or less");
-      points[t] = input.points;
-      normals[t] = input.normals;
-      m_built.x[t] = this->m_family.x[t];
-      build_geometry(this->m_family.layout,
-                     m_built.x[t],
-                     this->m_family.orientation,
-                     m_built.geometry[t]);
-    }
-    m_built.layout = this->m_family.layout;
-    m_built.is_relative = edges_with_radius(this->m_family, m_built.geometry);
-    m_built.instances.set(m_built.layout,
-                          m_built.geometry,
-                          points,
-                          normals,
-                          m_built.is_relative,
-                          stored.pairs,
-                          ConcurrencyTag());
+    m_inputs = restore_pair<ConcurrencyTag>(stored, this->m_family, caller, m_built);
     this->m_family.first_point = first_of_edges(m_built.instances.pairs(), n);
   }
 

@@ -108,7 +108,7 @@ public:
           u *= pi / u.norm();
         x.orientation[e] = m_middle.orientation[e] * rotation_exp(u);
         x.orientation[e].normalize();
-        const bool is_kept = is_there && (parent == none || m_is_drawn_there(x, parent));
+        const bool is_kept = is_there && (parent == none || is_drawn_there(x, parent));
         x.length[e] = is_kept ? m_middle.length[e] *
                                     std::exp(o.spread * (z[k + 3] + length_score * m_own[k + 3]))
                               : 0;
@@ -132,7 +132,7 @@ private:
   {
     return static_cast<Eigen::Index>(5 * m_layout.number_of_edges() + 2 * b);
   }
-  bool m_is_drawn_there(const Orl_coordinates& x, std::size_t b) const
+  bool is_drawn_there(const Orl_coordinates& x, std::size_t b) const
   {
     return x.length[m_layout.branches[b].first_edge] > 0;
   }
@@ -296,8 +296,11 @@ private:
     for (Eigen::Index k = 0; k < z.cols(); ++k)
       fourth += gram(k, k) * gram(k, k);
     const double diagonal_fourth = z.array().pow(4).sum();
-    const Eigen::VectorXd mean_square = z.rowwise().squaredNorm() / n;
-    const double diagonal = mean_square.squaredNorm();
+    double diagonal = 0;
+    for (Eigen::Index i = 0; i < z.rows(); ++i) {
+      const double mean_square = z.row(i).squaredNorm() / n;
+      diagonal += mean_square * mean_square;
+    }
     // sums over pairs of different coordinates
     const double squares = all - diagonal;
     const double noise = ((fourth - diagonal_fourth) / n - squares) / (n - 1);

@@ -57,6 +57,15 @@ struct Tree_family
 
 namespace internal {
 
+inline std::array<double, 3> to_array(const Vec3& v)
+{
+  return {v.x(), v.y(), v.z()};
+}
+inline Vec3 to_vector(const std::array<double, 3>& a)
+{
+  return {a[0], a[1], a[2]};
+}
+
 inline void find_growth_direction(Tree_family& family)
 {
   Vec3 sum = Vec3::Zero();

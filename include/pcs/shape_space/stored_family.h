@@ -8,6 +8,7 @@
 #include <pcs/core/Orl_space_data.h>
 #include <pcs/core/errors.h>
 #include <pcs/shape_space/Tree_family.h>
+#include <pcs/shape_space/stored_topology.h>
 
 #include <array>
 #include <cmath>
@@ -19,15 +20,6 @@
 namespace pcs {
 namespace shape_space {
 namespace internal {
-
-inline std::array<double, 3> to_array(const Vec3& v)
-{
-  return {v.x(), v.y(), v.z()};
-}
-inline Vec3 to_vector(const std::array<double, 3>& a)
-{
-  return {a[0], a[1], a[2]};
-}
 
 inline Orl_space_data::Tree store(const Orl_coordinates& x)
 {
@@ -190,6 +182,43 @@ inline std::vector<Vec3> points_of_stored(const std::vector<std::array<double, 3
       throw Invalid_input(caller + ": a point or normal is not finite");
   }
   return result;
+}
+
+/// Points and pairs of a space of two trees; returns the scans, without trees.
+template <class ConcurrencyTag>
+std::vector<Tree_input> restore_pair(const Orl_space_data& stored,
+                                     const Tree_family& family,
+                                     const std::string& caller,
+                                     Embedded_pair& pair)
+{
+  Orl_correspondences pairs;
+  pairs.pairs = stored.pairs;
+  check_pairs(pairs,
+              family.layout.number_of_edges(),
+              {stored.trees[0].point.size(), stored.trees[1].point.size()},
+              caller);
+  std::vector<Tree_input> inputs(2);
+  std::array<std::vector<Vec3>, 2> points, normals;
+  for (std::size_t t = 0; t < 2; ++t) {
+    Tree_input& input = inputs[t];
+    input.tree.origin = family.origin;
+    input.points = points[t] = points_of_stored(stored.trees[t].point, caller);
+    input.normals = normals[t] = points_of_stored(stored.trees[t].normal, caller);
+    if (!input.normals.empty() && input.normals.size() != input.points.size())
+      throw Invalid_input(caller + ": a tree has more points than normals, or less");
+    pair.x[t] = family.x[t];
+    build_geometry(family.layout, pair.x[t], family.orientation, pair.geometry[t]);
+  }
+  pair.layout = family.layout;
+  pair.is_relative = edges_with_radius(family, pair.geometry);
+  pair.instances.set(pair.layout,
+                     pair.geometry,
+                     points,
+                     normals,
+                     pair.is_relative,
+                     stored.pairs,
+                     ConcurrencyTag());
+  return inputs;
 }
 
 inline void check_family_points(const Orl_space_data& stored,
