@@ -47,15 +47,17 @@ public:
       for (std::size_t j = 0; j < layout.branches[b].number_of_edges; ++j)
         branch_of[layout.branches[b].first_edge + j] = b;
     std::vector<std::size_t> carrier(layout.branches.size(), none), most(layout.branches.size(), 0);
+    std::vector<char> is_settled(layout.branches.size(), 0);
     for (std::size_t t = 0; t < edge.size(); ++t) {
       std::vector<std::size_t> count(layout.branches.size(), 0);
       for (const std::size_t e : edge[t])
         if (e != none)
           ++count[branch_of[e]];
       for (std::size_t b = 0; b < count.size(); ++b)
-        if (count[b] > 0 && carrier[b] != preferred && (count[b] > most[b] || t == preferred)) {
+        if (count[b] > 0 && (t == preferred || (count[b] > most[b] && !is_settled[b]))) {
           carrier[b] = t;
           most[b] = count[b];
+          is_settled[b] = t == preferred;
         }
     }
     std::vector<Family_source> result;

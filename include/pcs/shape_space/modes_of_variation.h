@@ -94,14 +94,15 @@ private:
   const Orl_weights* m_weights = nullptr;
 };
 
-/// Eigenvectors of the centred products of `n` vectors that belong to eigenvalues above rounding, largest first.
+/// Eigenvectors of the centred products of `n` vectors that belong to eigenvalues above rounding and `least`, largest
+/// first.
 struct Gram_modes
 {
   Eigen::MatrixXd vectors; ///< n x k, of unit length
   Eigen::VectorXd values;  ///< k, eigenvalues
 };
 
-inline Gram_modes gram_modes(const Eigen::MatrixXd& gram, std::size_t most)
+inline Gram_modes gram_modes(const Eigen::MatrixXd& gram, std::size_t most, double least = 0)
 {
   const Eigen::Index n = gram.rows();
   const Eigen::MatrixXd center =
@@ -111,7 +112,7 @@ inline Gram_modes gram_modes(const Eigen::MatrixXd& gram, std::size_t most)
   const double largest = n > 0 ? std::max(0.0, solver.eigenvalues()[n - 1]) : 0;
   Eigen::Index k = 0;
   while (k < n - 1 && k < static_cast<Eigen::Index>(most) && largest > 0 &&
-         solver.eigenvalues()[n - 1 - k] > 1e-12 * largest)
+         solver.eigenvalues()[n - 1 - k] > std::max(least, 1e-12 * largest))
     ++k;
   result.vectors = solver.eigenvectors().rightCols(k).rowwise().reverse();
   result.values = solver.eigenvalues().tail(k).reverse();
@@ -208,7 +209,10 @@ Modes_of_variation find_modes(const Orl_layout& layout,
   result.center = z.rowwise().mean();
   z.colwise() -= result.center;
   const Eigen::MatrixXd gram = z.transpose() * z;
-  const Gram_modes modes = gram_modes(gram, most);
+  double size = 0;
+  for (const double length : mean.length)
+    size += length;
+  const Gram_modes modes = gram_modes(gram, most, std::pow(1e-9 * size, 2)); // equal trees
   const double divisor = std::max(1.0, static_cast<double>(n - 1));
   result.total_variance = gram.trace() / divisor;
   result.directions.resize(tangent.dimension(), modes.values.size());

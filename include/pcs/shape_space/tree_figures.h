@@ -114,6 +114,9 @@ inline Tree_figures measure(const Orl_layout& layout,
   return result;
 }
 
+/// What is no difference between figures: trees may all be equally high. [-]
+constexpr double figure_tolerance = 1e-4;
+
 /// How far figures lie outside of what is between the least and the largest of others, as shares of these, added. Of
 /// angles only the means of orders that all of the others have.
 inline double excess(const Tree_figures& x, const std::vector<Tree_figures>& others)
@@ -126,9 +129,9 @@ inline double excess(const Tree_figures& x, const std::vector<Tree_figures>& oth
       high = std::max(high, get(other));
     }
     const double value = get(x);
-    if (value < low)
+    if (value < low * (1 - figure_tolerance))
       sum += (low - value) / low;
-    else if (value > high)
+    else if (value > high * (1 + figure_tolerance))
       sum += (value - high) / std::max(high, 1e-300);
   };
   add([](const Tree_figures& f) { return f.length; });
