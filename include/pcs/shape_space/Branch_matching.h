@@ -10,6 +10,7 @@
 #include <pcs/internal/progress.h>
 #include <pcs/shape_space/Branch_paths.h>
 #include <pcs/shape_space/Matched_branch.h>
+#include <pcs/shape_space/canonical_frame.h>
 #include <pcs/shape_space/elastic_curves.h>
 #include <pcs/shape_space/linear_assignment.h>
 
@@ -56,6 +57,7 @@ public:
           [&](std::size_t i) {
             m_curves[t][i] = sample_curve(*m_trees[t], m_paths[t].paths[i], number_of_samples);
             m_curves[t][i].length /= m_trees[t]->heights[0];
+            turn_curve(m_curves[t][i]);
           },
           16);
     }
@@ -125,7 +127,9 @@ private:
     std::mutex mutex;
     std::unordered_map<Question, Result, Hash> results;
   };
-  static constexpr double turn_step = 0.1; // [rad]
+  static constexpr double turn_step = 0.1;    // [rad]
+  static constexpr int number_of_passes = 3;  // of a turn by curve and children
+  static constexpr double rematch_turn = 0.4; // Frobenius norm: a turn by about 0.3 rad
 
   Result match(std::size_t start_1, std::size_t start_2, const Eigen::Matrix3d& rotation)
   {
@@ -153,6 +157,13 @@ private:
 
   const Branch_path& path(int t, std::size_t i) const { return m_paths[t].paths[i]; }
 
+  /// To the axes of tree 1: turns are rounded in these, so that it does not matter how the trees stand.
+  void turn_curve(Sampled_curve& curve) const
+  {
+    curve.tangents = (m_frame.transpose() * curve.tangents).eval();
+    curve.direction = (m_frame.transpose() * curve.direction).eval();
+  }
+
   /// Total length of what begins with the edge to `start`.
   double weight(int t, std::size_t start) const
   {
@@ -167,8 +178,44 @@ private:
     const Sampled_curve &a = m_curves[0][p1], &b = m_curves[1][p2];
     const double cosine = std::min(1.0, std::max(-1.0, a.direction.dot(rotation * b.direction)));
     const double angle = std::max(0.0, std::acos(cosine) - a.spread - b.spread);
-    return a.length + b.length -
-           2 * std::sqrt(a.length * b.length) * std::max(0.0, std::cos(angle)) * (1 + 1e-12);
+    if (m_weights.is_published || !m_weights.is_carried)
+      return a.length + b.length -
+             2 * std::sqrt(a.length * b.length) * std::max(0.0, std::cos(angle)) * (1 + 1e-12);
+    // the branch may turn by a part of the angle
+    const double t = m_weights.turn;
+    const double gain = std::sqrt(1 + t * t + 2 * t * std::cos(angle)) - t;
+    return a.length + b.length - 2 * std::sqrt(a.length * b.length) * gain * (1 + 1e-12) +
+           length_term(a.length, b.length);
+  }
+
+  double length_term(double a, double b) const
+  {
+    return m_weights.length * m_weights.single * std::abs(a - b);
+  }
+
+  /// The energy of two branches that turn with their parents by `carried`, and by themselves to `rotation`.
+  double turned_energy(const Trial& trial,
+                       const Eigen::Matrix3d& carried,
+                       const Eigen::Matrix3d& rotation) const
+  {
+    const Sampled_curve &one = m_curves[0][trial.path_1], &two = m_curves[1][trial.path_2];
+    const std::size_t n = number_of_samples;
+    double sum = 0;
+    for (std::size_t i = 0; i + 1 < n; ++i) {
+      const double x = trial.gamma[i] * static_cast<double>(n - 1);
+      const auto j = static_cast<Eigen::Index>(std::min(n - 1, static_cast<std::size_t>(x + 0.5)));
+      const double slope = (trial.gamma[i + 1] - trial.gamma[i]) * static_cast<double>(n - 1);
+      sum += std::sqrt(slope) *
+             one.tangents.col(static_cast<Eigen::Index>(i)).dot(rotation * two.tangents.col(j));
+    }
+    const double cosine = 0.5 * ((carried.transpose() * rotation).trace() - 1);
+    const double length = std::sqrt(one.length * two.length);
+    return m_weights.curve *
+               std::max(0.0,
+                        one.length + two.length -
+                            2 * length * std::max(0.0, sum / static_cast<double>(n - 1))) +
+           m_weights.curve * m_weights.turn * 2 * length * (1 - cosine) +
+           length_term(one.length, two.length);
   }
 
   double position_term(double w1, double w2, double s1, double s2, double parent_length) const
@@ -177,6 +224,8 @@ private:
     return m_weights.position *
            (m_weights.is_published ? parent_length * d * d : 0.5 * (w1 + w2) * std::abs(d));
   }
+
+  bool is_turned() const { return m_weights.is_carried && !m_weights.is_published; }
 
   double single_term(double w) const { return (m_weights.is_published ? 1 : m_weights.single) * w; }
 
@@ -206,8 +255,13 @@ private:
                     std::size_t j,
                     const Eigen::Matrix3d& rotation) const
   {
-    const double cosine = std::max(0.0, a.direction[i].dot(rotation * b.direction[j]));
-    return a.weight[i] + b.weight[j] - 2 * std::sqrt(a.weight[i] * b.weight[j]) * cosine;
+    double cosine = std::max(0.0, a.direction[i].dot(rotation * b.direction[j]));
+    if (is_turned()) {
+      const double t = m_weights.turn;
+      cosine = std::sqrt(1 + t * t + 2 * t * a.direction[i].dot(rotation * b.direction[j])) - t;
+    }
+    return a.weight[i] + b.weight[j] - 2 * std::sqrt(a.weight[i] * b.weight[j]) * cosine +
+           length_term(a.weight[i], b.weight[j]);
   }
 
   /// The assignment of children by quick costs; `cost` is what it leaves.
@@ -303,7 +357,7 @@ private:
         if (m_weights.curve * least_energy(p1, p2, rotation) >= limit)
           continue;
         Trial trial = match_curves(p1, p2, rotation);
-        if (trial.cost >= limit)
+        if (!is_turned() && trial.cost >= limit)
           continue;
         all.push_back(std::move(trial));
         double cost = 0;
@@ -312,6 +366,8 @@ private:
           const Children b = children_of(1, path(1, p2), &all.back().gamma);
           const Eigen::Matrix3d turned = turn(p1, p2, all.back().gamma, a, b, rotation, 0);
           quick_assignment(a, b, turned, m_curves[0][p1].length, &cost);
+          if (is_turned())
+            all.back().cost = turned_energy(all.back(), rotation, turned);
         }
         order.emplace_back(cost + all.back().cost, all.size() - 1);
       }
@@ -345,18 +401,31 @@ private:
   }
 
   /// Null as soon as it is known that the cost is not below `limit`.
-  Result match_children(const Trial& trial, const Eigen::Matrix3d& rotation, double limit)
+  Result match_children(Trial trial, const Eigen::Matrix3d& rotation, double limit)
   {
-    if (trial.cost >= limit)
+    if (!is_turned() && trial.cost >= limit)
       return nullptr;
     const Branch_path &path_1 = path(0, trial.path_1), &path_2 = path(1, trial.path_2);
     const Children a = children_of(0, path_1, nullptr);
-    const Children b = children_of(1, path_2, &trial.gamma);
+    Children b = children_of(1, path_2, &trial.gamma);
     auto result = std::make_shared<Matched_branch>();
     result->path_1 = trial.path_1;
     result->path_2 = trial.path_2;
     result->cost = trial.cost;
-    result->rotation = turn(trial.path_1, trial.path_2, trial.gamma, a, b, rotation, 3);
+    Eigen::Matrix3d turned =
+        turn(trial.path_1, trial.path_2, trial.gamma, a, b, rotation, number_of_passes);
+    if (is_turned()) {
+      if ((turned - rotation).norm() > rematch_turn) {
+        // what runs along what is seen better now
+        trial = match_curves(trial.path_1, trial.path_2, turned);
+        b = children_of(1, path_2, &trial.gamma);
+        turned = turn(trial.path_1, trial.path_2, trial.gamma, a, b, rotation, number_of_passes);
+      }
+      result->cost = turned_energy(trial, rotation, turned);
+    }
+    result->rotation = m_frame * turned * m_frame.transpose();
+    if (result->cost >= limit)
+      return nullptr;
     const std::size_t n = a.s.size(), m = b.s.size();
     for (const double w : a.weight)
       result->cost += single_term(w);
@@ -379,8 +448,7 @@ private:
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j < m; ++j)
         gain[i * m + j] =
-            least_cost(path_1.children[i].start, path_2.children[j].start, result->rotation) +
-            rest(i, j);
+            least_cost(path_1.children[i].start, path_2.children[j].start, turned) + rest(i, j);
     std::vector<std::size_t> partner, wanted;
     for (;;) {
       partner = assign_rows(n, m, gain);
@@ -400,8 +468,7 @@ private:
           wanted.size(),
           [&](std::size_t k) {
             const std::size_t i = wanted[k], j = partner[i];
-            exact[i * m + j] =
-                match(path_1.children[i].start, path_2.children[j].start, result->rotation);
+            exact[i * m + j] = match(path_1.children[i].start, path_2.children[j].start, turned);
             gain[i * m + j] = exact[i * m + j] ? exact[i * m + j]->cost + rest(i, j) : 0;
           },
           1);
@@ -426,6 +493,7 @@ private:
   Matching_weights m_weights;
   std::size_t m_most_trunk_trials = trunk_factor * m_weights.number_of_trials;
   const Rooted_tree* m_trees[2];
+  Eigen::Matrix3d m_frame = canonical_frame(*m_trees[0]);
   Branch_paths m_paths[2];
   std::vector<Sampled_curve> m_curves[2];
   std::array<Shard, 64> m_known;

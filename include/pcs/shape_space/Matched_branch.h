@@ -20,11 +20,14 @@ namespace shape_space {
 /// that size does not matter.
 struct Matching_weights
 {
-  double curve = 1;       ///< of the elastic energy of two branches [-]
-  double position = 1;    ///< of the distance of attachments, see `is_published` [-]
-  double single = 0.25;   ///< of the length of a subtree without partner [-]
-  double children = 1;    ///< of the children's shares in the turn that is carried on [-]
-  double carried = 0.1;   ///< of the parents' turn in that of their children [-]
+  double curve = 1;     ///< of the elastic energy of two branches [-]
+  double position = 1;  ///< of the distance of attachments, see `is_published` [-]
+  double single = 0.25; ///< of the length of a subtree without partner [-]
+  double children = 1;  ///< of the children's shares in the turn that is carried on [-]
+  double carried = 0.1; ///< of the parents' turn in that of their children [-]
+  double length =
+      1; ///< of the difference of lengths, in units of `single`: 1 deletes what is too long [-]
+  double turn = 0.2;      ///< of the turn of a branch against its parents [-]
   bool is_carried = true; ///< whether turns of parents are carried to their children
   bool is_published =
       false; ///< position term in units of the parent's length, no turns: the text's energy
