@@ -123,7 +123,7 @@ public:
         if (!m_branches.empty())
           pcs::internal::for_each_index<ConcurrencyTag>(
               n,
-              [&](std::size_t k) { trunks[k] = match(order[first + k], round > 1); },
+              [&](std::size_t k) { trunks[k] = match(order[first + k], round > 0); },
               1);
         for (std::size_t k = 0; k < n; ++k)
           add_tree(order[first + k], trunks[k].get(), round == 0);
@@ -215,7 +215,10 @@ private:
       }
     const Orl_layout layout = make_layout(m_branches);
     internal::Embedding x = internal::embed(layout, as_tree, old.tree, old.paths, 0, Vec3::Zero());
-    internal::set_frames(layout, std::vector<double>(layout.number_of_edges(), 0), x);
+    internal::set_frames(layout,
+                         std::vector<double>(layout.number_of_edges(), 0),
+                         Quaternion::Identity(),
+                         x);
     internal::set_own_orientations(layout, Orientation::gauge_fixed, x);
     m_x = std::move(x.x);
     m_last_members = m_branches;
@@ -277,7 +280,10 @@ private:
     internal::Embedding tree =
         internal::embed(layout, m_branches, *m_trees[t], m_paths[t], t, Vec3::Zero());
     if (before == 0)
-      internal::set_frames(layout, std::vector<double>(layout.number_of_edges(), 0), tree);
+      internal::set_frames(layout,
+                           std::vector<double>(layout.number_of_edges(), 0),
+                           Quaternion::Identity(),
+                           tree);
     else {
       const std::vector<Shared_branch> known(m_branches.begin(),
                                              m_branches.begin() +

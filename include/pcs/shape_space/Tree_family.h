@@ -218,7 +218,10 @@ Orl_coordinates embed_tree(const Tree_family& family, const Rooted_tree& tree, d
   if (family.orientation == Orientation::world_axes)
     internal::set_world_frames(family.layout, x);
   else if (family.orientation == Orientation::transported)
-    internal::set_frames(family.layout, std::vector<double>(x.frame.size(), 0), x);
+    internal::set_frames(family.layout,
+                         std::vector<double>(x.frame.size(), 0),
+                         Quaternion::Identity(),
+                         x);
   else
     internal::set_fixed_frames(family.layout,
                                internal::as_embedding(family.layout, family.reference),

@@ -75,7 +75,9 @@ inline Orl_space_data store_family(const Tree_family& family)
                      m.is_published ? 1.0 : 0.0,
                      m.fork_ratio,
                      static_cast<double>(m.number_of_paths),
-                     static_cast<double>(m.number_of_trials)};
+                     static_cast<double>(m.number_of_trials),
+                     m.length,
+                     m.turn};
   return result;
 }
 
@@ -168,6 +170,8 @@ inline Tree_family restore_family(const Orl_space_data& stored, const std::strin
   weights.fork_ratio = stored.matching[7];
   weights.number_of_paths = static_cast<std::size_t>(stored.matching[8]);
   weights.number_of_trials = static_cast<std::size_t>(stored.matching[9]);
+  weights.length = stored.matching[10];
+  weights.turn = stored.matching[11];
   internal::find_growth_direction(family);
   return family;
 }
