@@ -261,19 +261,21 @@ private:
   void pool_variances(const std::vector<double>& count)
   {
     constexpr double prior = 2;
-    std::vector<Eigen::Matrix<double, 7, 1>> sum, weight;
+    using Pool =
+        Eigen::Matrix<double, 12, 1>; // first edges, which turn the branch; other edges; branches
+    std::vector<Pool> sum, weight;
     const auto visit = [&](const auto& f) {
       for (std::size_t b = 0; b < m_layout.branches.size(); ++b) {
         const Orl_layout::Branch& branch = m_layout.branches[b];
         for (std::size_t e = branch.first_edge; e < branch.first_edge + branch.number_of_edges; ++e)
           for (Eigen::Index i = 0; i < 5; ++i)
-            f(b, 5 * static_cast<Eigen::Index>(e) + i, i);
-        f(b, base(b), 5);
-        f(b, base(b) + 1, 6);
+            f(b, 5 * static_cast<Eigen::Index>(e) + i, e == branch.first_edge ? i : i + 5);
+        f(b, base(b), 10);
+        f(b, base(b) + 1, 11);
       }
     };
     const std::size_t orders = 1 + *std::max_element(m_order.begin(), m_order.end());
-    sum.assign(orders, Eigen::Matrix<double, 7, 1>::Zero());
+    sum.assign(orders, Pool::Zero());
     weight = sum;
     visit([&](std::size_t b, Eigen::Index k, Eigen::Index i) {
       const double w = count[static_cast<std::size_t>(k)] - 1;
