@@ -32,7 +32,7 @@ template <class ConcurrencyTag>
 class Branch_matching
 {
 public:
-  static constexpr std::size_t number_of_samples = 33;
+  static constexpr std::size_t number_of_samples = 25;
 
   Branch_matching(const Rooted_tree& tree_1,
                   const Rooted_tree& tree_2,
@@ -127,7 +127,7 @@ private:
     std::mutex mutex;
     std::unordered_map<Question, Result, Hash> results;
   };
-  static constexpr double turn_step = 0.1;    // [rad]
+  static constexpr double turn_step = 0.25;    // [rad]
   static constexpr int number_of_passes = 3;  // of a turn by curve and children
   static constexpr double rematch_turn = 0.4; // Frobenius norm: a turn by about 0.3 rad
 
@@ -184,8 +184,24 @@ private:
     // the branch may turn by a part of the angle
     const double t = m_weights.turn;
     const double gain = std::sqrt(1 + t * t + 2 * t * std::cos(angle)) - t;
-    return a.length + b.length - 2 * std::sqrt(a.length * b.length) * gain * (1 + 1e-12) +
-           length_term(a.length, b.length);
+    return a.length + b.length - 2 * std::sqrt(a.length * b.length) * gain * (1 + 1e-12);
+  }
+
+  /// All that two subtrees cost at least: what one of them has more is stretched or single.
+  double least_cost(std::size_t start_1, std::size_t start_2, const Eigen::Matrix3d& rotation) const
+  {
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::size_t p1 : m_paths[0].paths_of[start_1])
+      for (const std::size_t p2 : m_paths[1].paths_of[start_2])
+        least = std::min(least, least_energy(p1, p2, rotation));
+    return m_weights.curve * least + least_difference(start_1, start_2);
+  }
+
+  double least_difference(std::size_t start_1, std::size_t start_2) const
+  {
+    return is_turned() ? m_weights.single * std::min(1.0, m_weights.length) *
+                             std::abs(weight(0, start_1) - weight(1, start_2)) * (1 - 1e-12)
+                       : 0;
   }
 
   double length_term(double a, double b) const
@@ -220,9 +236,11 @@ private:
 
   double position_term(double w1, double w2, double s1, double s2, double parent_length) const
   {
-    const double d = s1 - s2;
-    return m_weights.position *
-           (m_weights.is_published ? parent_length * d * d : 0.5 * (w1 + w2) * std::abs(d));
+    const double d = std::abs(s1 - s2);
+    if (m_weights.is_published)
+      return m_weights.position * parent_length * d * d;
+    // far is far: branches of other species are not single for their place alone
+    return m_weights.position * 0.5 * (w1 + w2) * d / (1 + d / m_weights.far);
   }
 
   bool is_turned() const { return m_weights.is_carried && !m_weights.is_published; }
@@ -233,6 +251,7 @@ private:
   struct Children
   {
     std::vector<double> s, weight;
+    std::vector<double> length; ///< of the longest path
     std::vector<Vec3> direction;
   };
 
@@ -243,6 +262,7 @@ private:
       const double s = path.arc[c.position] / path.length();
       result.s.push_back(gamma ? inverse_at(*gamma, s) : s);
       result.weight.push_back(weight(t, c.start));
+      result.length.push_back(m_curves[t][m_paths[t].paths_of[c.start].front()].length);
       result.direction.push_back(m_curves[t][m_paths[t].paths_of[c.start].front()].direction);
     }
     return result;
@@ -281,7 +301,7 @@ private:
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j < m; ++j)
         gain[i * m + j] = m_weights.curve * quick_cost(a, i, b, j, rotation) +
-                          position_term(a.weight[i], b.weight[j], a.s[i], b.s[j], parent_length) -
+                          position_term(a.length[i], b.length[j], a.s[i], b.s[j], parent_length) -
                           single_term(a.weight[i]) - single_term(b.weight[j]);
     std::vector<std::size_t> partner = assign_rows(n, m, gain);
     for (std::size_t i = 0; i < n; ++i)
@@ -350,11 +370,12 @@ private:
                                  double limit) const
   {
     const auto &paths_1 = m_paths[0].paths_of[start_1], &paths_2 = m_paths[1].paths_of[start_2];
+    const double difference = least_difference(start_1, start_2);
     std::vector<Trial> all;
     std::vector<std::pair<double, std::size_t>> order;
     for (const std::size_t p1 : paths_1)
       for (const std::size_t p2 : paths_2) {
-        if (m_weights.curve * least_energy(p1, p2, rotation) >= limit)
+        if (m_weights.curve * least_energy(p1, p2, rotation) + difference >= limit)
           continue;
         Trial trial = match_curves(p1, p2, rotation);
         if (!is_turned() && trial.cost >= limit)
@@ -438,8 +459,8 @@ private:
     std::vector<double> gain(n * m);
     std::vector<Result> exact(n * m);
     const auto rest = [&](std::size_t i, std::size_t j) {
-      return position_term(a.weight[i],
-                           b.weight[j],
+      return position_term(a.length[i],
+                           b.length[j],
                            a.s[i],
                            b.s[j],
                            m_curves[0][trial.path_1].length) -
@@ -479,15 +500,6 @@ private:
         result->pairs.push_back({i, partner[i], exact[i * m + partner[i]]});
       }
     return result;
-  }
-
-  double least_cost(std::size_t start_1, std::size_t start_2, const Eigen::Matrix3d& rotation) const
-  {
-    double least = std::numeric_limits<double>::infinity();
-    for (const std::size_t p1 : m_paths[0].paths_of[start_1])
-      for (const std::size_t p2 : m_paths[1].paths_of[start_2])
-        least = std::min(least, least_energy(p1, p2, rotation));
-    return m_weights.curve * least;
   }
 
   Matching_weights m_weights;

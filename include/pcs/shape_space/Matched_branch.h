@@ -21,20 +21,20 @@ namespace shape_space {
 struct Matching_weights
 {
   double curve = 1;     ///< of the elastic energy of two branches [-]
-  double position = 1;  ///< of the distance of attachments, see `is_published` [-]
-  double single = 0.25; ///< of the length of a subtree without partner [-]
+  double position = 1;  ///< of the distance of attachments, in units of the branches' lengths [-]
+  double far = 1;       ///< attachments so far apart, of the parent's length, cost half of that [-]
+  double single = 0.5;  ///< of the length of a subtree without partner [-]
+  double length = 1;    ///< of a difference of lengths, in units of `single` [-]
+  double turn = 0.2;    ///< of the turn of a branch against its parents [-]
   double children = 1;  ///< of the children's shares in the turn that is carried on [-]
   double carried = 0.1; ///< of the parents' turn in that of their children [-]
-  double length =
-      1; ///< of the difference of lengths, in units of `single`: 1 deletes what is too long [-]
-  double turn = 0.2;      ///< of the turn of a branch against its parents [-]
   bool is_carried = true; ///< whether turns of parents are carried to their children
   bool is_published =
-      false; ///< position term in units of the parent's length, no turns: the text's energy
+      false; ///< no turns, position in units of the parent's length, all else 1: the text's energy
   double fork_ratio = default_fork_ratio; ///< see `Branch_paths`
   std::size_t number_of_paths = 3; ///< candidates for the main path of a branch; 1: the longest
   std::size_t number_of_trials =
-      3; ///< pairs of candidates that are matched with all their children
+      2; ///< pairs of candidates that are matched with all their children
 };
 
 /// Two branches that correspond, and what hangs on them.

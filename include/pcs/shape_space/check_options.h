@@ -29,8 +29,9 @@ inline void check_options(const Matching_weights& w,
   const auto is_weight = [](double x) { return x >= 0 && std::isfinite(x); };
   check(w.curve > 0 && std::isfinite(w.curve), "the weight `curve` must be > 0 and finite");
   check(is_weight(w.position) && is_weight(w.single) && is_weight(w.children) &&
-            is_weight(w.carried),
+            is_weight(w.carried) && is_weight(w.turn) && is_weight(w.length),
         "the weights of the matching must be >= 0 and finite");
+  check(w.far > 0, "the distance `far` must be > 0");
   check(w.fork_ratio > 0 && w.fork_ratio <= 1, "`fork_ratio` must be in (0, 1]");
   check(w.number_of_paths > 0 && w.number_of_trials > 0,
         "`number_of_paths` and `number_of_trials` must be at least 1");
