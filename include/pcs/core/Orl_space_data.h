@@ -56,7 +56,7 @@ struct Orl_space_data
   std::vector<Tree> trees;
   Tree reference;
   Weights weights;
-  std::array<double, 12> matching = {}; ///< `shape_space::Matching_weights`
+  std::array<double, 13> matching = {}; ///< `shape_space::Matching_weights`
   std::vector<Orl_correspondences::Pair> pairs;
   bool has_normals = false;
   std::vector<Point> points;

@@ -40,8 +40,7 @@ public:
         m_children[layout.branches[b].parent].push_back(b);
   }
 
-  /// `support[b]`: the share of the trees that have a branch; branches count with it in the weights of subtrees.
-  Reference_tree run(const std::vector<double>& support)
+  Reference_tree run()
   {
     const std::size_t m = m_layout.branches.size();
     m_result.paths.paths.resize(m);
@@ -63,10 +62,6 @@ public:
     }
     tree.extent = (high - low).norm();
     connect(tree);
-    std::fill(tree.weights.begin(), tree.weights.end(), 0.0);
-    for (std::size_t v = tree.size(); v-- > 1;)
-      tree.weights[tree.parents[v]] +=
-          tree.weights[v] + support[m_branch_of[v]] * tree.edge_length(v);
     return std::move(m_result);
   }
 
@@ -84,7 +79,6 @@ private:
     tree.sources.push_back(none);
     tree.base_radii.push_back(parent == none ? tree.radii.back()
                                              : std::numeric_limits<double>::quiet_NaN());
-    m_branch_of.push_back(b);
     return tree.size() - 1;
   }
 
@@ -133,17 +127,14 @@ private:
   Orl_geometry m_geometry;
   std::vector<std::vector<std::size_t>> m_children;
   std::vector<std::size_t> m_base; // node that a branch begins at
-  std::vector<std::size_t> m_branch_of;
   Reference_tree m_result;
 };
 
 } // namespace internal
 
-inline Reference_tree make_reference(const Orl_layout& layout,
-                                     const Orl_coordinates& x,
-                                     const std::vector<double>& support)
+inline Reference_tree make_reference(const Orl_layout& layout, const Orl_coordinates& x)
 {
-  return internal::Reference_builder(layout, x).run(support);
+  return internal::Reference_builder(layout, x).run();
 }
 
 } // namespace shape_space

@@ -173,22 +173,10 @@ private:
     b.attachment.assign(m_trees.size(), 0);
   }
 
-  std::vector<double> support() const
-  {
-    std::vector<double> result;
-    for (const Shared_branch& b : m_last_members.empty() ? m_branches : m_last_members)
-      result.push_back(static_cast<double>(b.number_of_members()));
-    for (std::size_t b = result.size(); b < m_branches.size(); ++b)
-      result.push_back(static_cast<double>(m_branches[b].number_of_members()));
-    for (double& s : result)
-      s /= std::max(1.0, result[0]);
-    return result;
-  }
-
   /// Branches get as many edges as their members need; the middle tree gets them, too.
   void begin_round()
   {
-    const Reference_tree old = make_reference(make_layout(m_branches), m_x, support());
+    const Reference_tree old = make_reference(make_layout(m_branches), m_x);
     std::vector<Shared_branch> as_tree = m_branches; // the middle tree as the only member
     for (std::size_t b = 0; b < m_branches.size(); ++b) {
       Shared_branch& branch = m_branches[b];
@@ -222,7 +210,7 @@ private:
     internal::set_own_orientations(layout, Orientation::gauge_fixed, x);
     m_x = std::move(x.x);
     m_last_members = m_branches;
-    m_reference = make_reference(layout, m_x, support());
+    m_reference = make_reference(layout, m_x);
     for (Shared_branch& b : m_branches)
       clear(b);
   }
@@ -300,7 +288,7 @@ private:
     else
       blend(layout, tree.x, t, counts, is_first_round);
     if (is_first_round)
-      m_reference = make_reference(layout, m_x, support());
+      m_reference = make_reference(layout, m_x);
   }
 
   void blend(const Orl_layout& layout,

@@ -33,15 +33,6 @@ struct Tree_family
   Matching_weights matching;
   std::vector<std::size_t> first_point; ///< of each edge, and the number of all
 
-  std::vector<double> support() const
-  {
-    std::vector<double> result(layout.branches.size(), 0);
-    for (const auto& of_tree : has)
-      for (std::size_t b = 0; b < result.size(); ++b)
-        result[b] += of_tree[b] ? 1 / static_cast<double>(has.size()) : 0;
-    return result;
-  }
-
   /// First point of each edge that exists in `x`, in the output; the last element is the number of points there.
   void find_offsets(const Orl_coordinates& tree, std::vector<std::size_t>& offset) const
   {
@@ -207,10 +198,7 @@ Orl_coordinates embed_tree(const Tree_family& family, const Rooted_tree& tree, d
   Branch_paths paths;
   Shared_topology_builder<ConcurrencyTag> builder({&tree}, family.matching, 1);
   const double represented =
-      builder.project(tree,
-                      make_reference(family.layout, family.reference, family.support()),
-                      branches,
-                      paths);
+      builder.project(tree, make_reference(family.layout, family.reference), branches, paths);
   if (share)
     *share = represented;
   internal::Embedding x =

@@ -77,7 +77,8 @@ inline Orl_space_data store_family(const Tree_family& family)
                      static_cast<double>(m.number_of_paths),
                      static_cast<double>(m.number_of_trials),
                      m.length,
-                     m.turn};
+                     m.turn,
+                     m.far};
   return result;
 }
 
@@ -172,6 +173,7 @@ inline Tree_family restore_family(const Orl_space_data& stored, const std::strin
   weights.number_of_trials = static_cast<std::size_t>(stored.matching[9]);
   weights.length = stored.matching[10];
   weights.turn = stored.matching[11];
+  weights.far = stored.matching[12];
   internal::find_growth_direction(family);
   return family;
 }
