@@ -62,7 +62,14 @@
   PCS_OWN(maximal_turn)                                                                            \
   PCS_OWN(do_limit_radii)                                                                          \
   PCS_OWN(point_path)                                                                              \
-  PCS_OWN(metric)
+  PCS_OWN(metric)                                                                                  \
+  PCS_OWN(tree_mean)                                                                               \
+  PCS_OWN(tree_weights)                                                                            \
+  PCS_OWN(number_of_rounds)                                                                        \
+  PCS_OWN(points_of)                                                                               \
+  PCS_OWN(sampling_options)                                                                        \
+  PCS_OWN(is_monotone)                                                                             \
+  PCS_OWN(change_limits)
 namespace pcs {
 namespace internal_np {
 

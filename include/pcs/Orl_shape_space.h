@@ -6,9 +6,12 @@
 #define PCS_ORL_SHAPE_SPACE_H
 
 #include <pcs/Named_function_parameters.h>
+#include <pcs/Orl_tree.h>
+#include <pcs/Orl_tree_family.h>
 #include <pcs/concepts.h>
 #include <pcs/core/Orl_correspondences.h>
 #include <pcs/core/Orl_report.h>
+#include <pcs/core/Orl_space_data.h>
 #include <pcs/core/Tree_skeleton.h>
 #include <pcs/core/errors.h>
 #include <pcs/internal/Stopwatch.h>
@@ -16,11 +19,14 @@
 #include <pcs/internal/text.h>
 #include <pcs/shape_space/Branch_matching.h>
 #include <pcs/shape_space/Common_topology.h>
-#include <pcs/shape_space/Point_instances.h>
-#include <pcs/shape_space/assign_points.h>
-#include <pcs/shape_space/embed_trees.h>
+#include <pcs/shape_space/Embedded_pair.h>
+#include <pcs/shape_space/build_family.h>
+#include <pcs/shape_space/check_options.h>
 #include <pcs/shape_space/point_correspondences.h>
+#include <pcs/shape_space/stored_family.h>
+#include <pcs/shape_space/stored_topology.h>
 #include <pcs/shape_space/tree_input.h>
+#include <pcs/shape_space/write_skeleton.h>
 
 #include <CGAL/Simple_cartesian.h>
 
@@ -37,41 +43,7 @@ namespace pcs {
 
 /*!
   \ingroup PkgPcsShapeSpaceRef
-  \brief A tree of an `Orl_shape_space`: orientations, radii and lengths of the edges of its topology, a value.
-
-  Kept and assigned to again, it keeps its memory.
-*/
-class Orl_tree
-{
-public:
-  //! the place on the path it comes from: 0 and 1 are the ends [-]
-  double lambda() const { return m_lambda; }
-  //! number of points that `Orl_shape_space::points()` writes [count]
-  std::size_t number_of_points() const { return m_offset.empty() ? 0 : m_offset.back(); }
-  //! orientations, radii, lengths and attachments
-  const shape_space::Orl_coordinates& coordinates() const { return m_x; }
-
-private:
-  template <class, class>
-  friend class Orl_shape_space;
-  shape_space::Orl_coordinates m_x;
-  shape_space::Orl_geometry m_geometry;
-  std::vector<std::size_t> m_offset;
-  double m_lambda = 0;
-};
-
-//! \ingroup PkgPcsShapeSpaceRef
-//! two branches that correspond, named by the vertices at their tips
-struct Branch_match
-{
-  std::size_t parent = npos; ///< index of the parents' match, `npos` for the trunks
-  std::array<std::size_t, 2> tip = {npos,
-                                    npos}; ///< index of a vertex; `npos`: the tree lacks the branch
-};
-
-/*!
-  \ingroup PkgPcsShapeSpaceRef
-  \brief A shape space of two trees, with the points of their scans.
+  \brief A shape space of two trees or more, with the points of their scans.
 
   Follows chapter 4 of \cite aiteanu2022: branches are matched by elastic curves, both trees get one
   topology, points are matched by optimal transport along corresponding edges, and a tree is the list of orientations,
@@ -81,6 +53,11 @@ struct Branch_match
   Trees of any Boost.Graph type are added, then `build()` finds the correspondences, then trees of the space are made by
   `geodesic()` and turned into skeletons and points. Inputs are copied, nothing refers to them afterwards.
 
+  Two trees are represented exactly. More trees share the nodes of their branches: axes are straightened between them, by
+  `shape_space::axis_tolerance` of the length of a branch at most, and each branch has the points of one scan, so that
+  points have the same order in all trees. The order in which trees are added does not matter then, save for rounding. See
+  the base class for means, modes and new trees.
+
   \tparam Kernel a kernel of CGAL; computations are in double precision about a local origin
   \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or `CGAL::Parallel_if_available_tag`
   \par Determinism
@@ -89,14 +66,16 @@ struct Branch_match
 */
 template <class Kernel = CGAL::Simple_cartesian<double>,
           class ConcurrencyTag = CGAL::Parallel_if_available_tag>
-class Orl_shape_space
+class Orl_shape_space : public Orl_tree_family<ConcurrencyTag>
 {
+  using Family = Orl_tree_family<ConcurrencyTag>;
+
 public:
   using FT = typename Kernel::FT;
   using Point_3 = typename Kernel::Point_3;
   using Vector_3 = typename Kernel::Vector_3;
   //! names an added tree
-  using Handle = std::size_t;
+  using Handle = typename Family::Handle;
 
   Orl_shape_space() = default;
   Orl_shape_space(const Orl_shape_space&) = delete;
@@ -137,11 +116,13 @@ public:
   Handle
   add(const TreeGraph& tree, const PointRange& scan, const NamedParameters& np = NamedParameters())
   {
-    if (m_inputs.size() == 2)
-      throw Invalid_input("pcs::Orl_shape_space::add(): there are two trees already");
+    if (m_is_restored)
+      throw Invalid_input(
+          "pcs::Orl_shape_space::add(): the space was restored; add trees to a new one");
     m_inputs.push_back(
         shape_space::make_tree_input<Kernel>(tree, scan, np, "pcs::Orl_shape_space::add()"));
     m_is_built = false;
+    this->m_family = shape_space::Tree_family();
     return m_inputs.size() - 1;
   }
 
@@ -153,7 +134,7 @@ public:
   }
 
   /*!
-    \brief finds the correspondences of branches and points, and the coordinates of both trees.
+    \brief finds the correspondences of branches and points, and the coordinates of all trees.
 
     \npbegin
       \np{matching_weights} of the energy of matching branches
@@ -172,13 +153,20 @@ public:
       \np{do_use_unit_weights} whether all weights of the metric are 1, as in the text
         \nptype `bool`
         \npdefault `false`: turns count with the length of the edge, so that distances are lengths
+      \np{number_of_rounds} for more than two trees: how often all are matched to a tree in their middle
+        \nptype an integer, `>= 1`
+        \npdefault `3`
+      \np{points_of} for more than two trees: the tree whose scan gives the points of the branches that it has
+        \nptype `Handle`
+        \npdefault none: for each branch, the tree with most points there
       \np{callback} progress in [0, 1]; `false` cancels
         \nptype any `bool(double)`
     \npend
     \return a report; with `Status::cancelled` the space is as before
-    \throws pcs::Invalid_input unless two trees were added
+    \throws pcs::Invalid_input unless two trees were added at least
     \par Complexity
-    Branches: about the number of pairs of branches on the same level. Points: \f$O(n \log n)\f$ in practice.
+    Branches: about the number of pairs of branches on the same level, for more than two trees once per tree and round.
+    Points: \f$O(n \log n)\f$ in practice.
   */
   template <class NamedParameters = parameters::Default_named_parameters>
   Orl_report build(const NamedParameters& np = NamedParameters())
@@ -190,15 +178,34 @@ public:
         pcs::internal::choose(np, pcs::internal_np::assignment_options, Assignment_options());
     const auto transport =
         pcs::internal::choose(np, pcs::internal_np::transport_options, Transport_options());
-    check_options(weights, assignment, transport);
+    check_options(weights, assignment, transport, "pcs::Orl_shape_space::build()");
     pcs::internal::Progress progress(
         pcs::internal::choose(np, CGAL::internal_np::callback, std::function<bool(double)>()));
-    check_inputs("build");
+    const auto rounds = pcs::internal::choose(np, pcs::internal_np::number_of_rounds, 3);
+    static_assert(std::is_integral_v<std::decay_t<decltype(rounds)>>,
+                  "pcs::Orl_shape_space::build(): `number_of_rounds` must be an integer");
+    if (rounds < 1)
+      throw Invalid_input("pcs::Orl_shape_space::build(): `number_of_rounds` is " +
+                          std::to_string(rounds) + ", expected at least 1");
+    if (m_is_restored)
+      throw Invalid_input("pcs::Orl_shape_space::build(): the space was restored, it is built");
+    if (m_inputs.size() < 2)
+      throw Invalid_input("pcs::Orl_shape_space::build(): " + std::to_string(m_inputs.size()) +
+                          " trees were added, expected 2 at least");
+    const std::size_t points_of =
+        pcs::internal::choose(np, pcs::internal_np::points_of, shape_space::none);
+    if (points_of != none && points_of >= m_inputs.size())
+      throw Invalid_input("pcs::Orl_shape_space::build(): `points_of` is " +
+                          std::to_string(points_of) + ", but there is no such tree");
 
     Orl_report report = new_report();
     pcs::internal::Stopwatch watch;
+    if (m_inputs.size() > 2)
+      return build_many(np,
+                        {weights, assignment, static_cast<std::size_t>(rounds), points_of},
+                        progress);
     progress.stage(0, 0.4);
-    Built built;
+    Embedded_pair built;
     read_form(np, built);
     {
       Branch_matching<ConcurrencyTag> matching(m_inputs[0].tree, m_inputs[1].tree, weights);
@@ -213,7 +220,7 @@ public:
                                                       built.topology.paths);
       built.topology.branches = builder.run(*trunk);
     }
-    embed(built);
+    shape_space::embed(inputs(), built);
     report.seconds.topology = watch.lap();
 
     progress.stage(0.4, 0.6);
@@ -221,7 +228,7 @@ public:
       return cancelled(report);
     std::array<std::vector<std::size_t>, 2> edges;
     for (std::size_t t = 0; t < 2; ++t) {
-      edges[t] = edges_of_points(built, t, assignment);
+      edges[t] = edges_of_points<ConcurrencyTag>(inputs(), built, t, assignment);
       if (!progress(0.5 * static_cast<double>(t + 1)))
         return cancelled(report);
     }
@@ -229,7 +236,8 @@ public:
 
     progress.stage(0.6, 1);
     Transport_summary summary;
-    const std::array<std::vector<Vec3>, 2> points = {m_inputs[0].points, points_of_second()};
+    const std::array<std::vector<Vec3>, 2> points = {m_inputs[0].points,
+                                                     points_of_second(inputs())};
     std::vector<Point_pair> pairs =
         Point_matching<ConcurrencyTag>(built.layout,
                                        built.geometry,
@@ -244,7 +252,7 @@ public:
     report.number_of_failed_windows = summary.number_of_failures;
     report.worst_marginal_violation = summary.worst_violation;
     report.mean_marginal_violation = summary.mean_violation;
-    finish(built, std::move(pairs), points, report);
+    finish(built, std::move(pairs), points, weights, report);
     report.seconds.instances = watch.lap();
     progress.finish();
     return report;
@@ -263,18 +271,22 @@ public:
     check_inputs("build_from");
     Orl_report report = new_report();
     pcs::internal::Stopwatch watch;
-    Built built;
+    shape_space::Embedded_pair built;
     read_form(np, built);
     built.topology = shape_space::restore_topology(correspondences,
-                                                   {&m_inputs[0], &m_inputs[1]},
+                                                   inputs(),
                                                    "pcs::Orl_shape_space::build_from()");
-    embed(built);
+    shape_space::embed(inputs(), built);
     report.seconds.topology = watch.lap();
     shape_space::check_pairs(correspondences,
                              built.layout.number_of_edges(),
                              {m_inputs[0].points.size(), m_inputs[1].points.size()},
                              "pcs::Orl_shape_space::build_from()");
-    finish(built, correspondences.pairs, {m_inputs[0].points, points_of_second()}, report);
+    finish(built,
+           correspondences.pairs,
+           {m_inputs[0].points, shape_space::points_of_second(inputs())},
+           shape_space::Matching_weights(),
+           report);
     report.seconds.instances = watch.lap();
     return report;
   }
@@ -283,29 +295,25 @@ public:
   Orl_correspondences correspondences() const
   {
     check_built("correspondences");
-    return shape_space::store_topology(m_built.topology,
-                                       {&m_inputs[0], &m_inputs[1]},
-                                       m_built.instances.pairs());
+    check_inputs("correspondences");
+    return shape_space::store_topology(m_built.topology, inputs(), m_built.instances.pairs());
   }
 
   //! branches that correspond, parents first; \pre it was built
   std::vector<Branch_match> matches() const
   {
     check_built("matches");
+    check_two("matches");
     std::vector<Branch_match> result;
-    for (const shape_space::Common_branch& b : m_built.topology.branches) {
+    for (std::size_t b = 0; b < this->m_family.layout.branches.size(); ++b) {
       Branch_match match;
-      match.parent = b.parent;
+      match.parent = this->m_family.layout.branches[b].parent;
       for (std::size_t t = 0; t < 2; ++t)
-        if (b.path[t] != shape_space::none)
-          match.tip[t] = m_inputs[t].tree.sources[m_built.topology.paths[t].paths[b.path[t]].tip()];
+        match.tip[t] = this->m_family.tip[t][b];
       result.push_back(match);
     }
     return result;
   }
-
-  //! an added tree as a tree of the space; \pre it was built
-  Orl_tree tree(Handle h) const { return geodesic(h, h == 0 ? 1 : 0, 0); }
 
   /*!
     \brief returns the tree at `lambda` on the geodesic from `a` (0) to `b` (1), or beyond its ends.
@@ -340,14 +348,17 @@ public:
                 const NamedParameters& np = NamedParameters()) const
   {
     check_built("geodesic");
-    if (a > 1 || b > 1)
-      throw Invalid_input("pcs::Orl_shape_space::geodesic(): there is no tree " +
-                          std::to_string(std::max(a, b)));
+    this->check_handle(std::max(a, b), "geodesic");
     if (a == b)
       lambda = 0;
     // one direction only, so that the path back is the same
-    const double t = a <= b && a == 0 ? lambda : a == b ? 1 : 1 - lambda;
-    make_tree(m_built.x[0], m_built.x[1], t, t, np, result);
+    const double t = a <= b ? lambda : 1 - lambda;
+    make_tree(this->m_family.x[std::min(a, b)],
+              this->m_family.x[std::max(a, b)],
+              t,
+              a == b ? (a == 1 ? 1 : 0) : t,
+              np,
+              result);
   }
 
   //! the same between trees of the space
@@ -364,29 +375,6 @@ public:
   }
 
   /*!
-    \brief the distance between two trees of the space.
-
-    \npbegin
-      \np{metric} sum of differences as in (4.7), root of their squares, or edges as vectors
-        \nptype `shape_space::Orl_metric`
-        \npdefault `sum`
-    \npend
-  */
-  template <class NamedParameters = parameters::Default_named_parameters>
-  double distance(const Orl_tree& a,
-                  const Orl_tree& b,
-                  const NamedParameters& np = NamedParameters()) const
-  {
-    check_built("distance");
-    return shape_space::distance(
-        a.m_x,
-        b.m_x,
-        m_built.weights,
-        pcs::internal::choose(np, pcs::internal_np::metric, shape_space::Orl_metric::sum));
-  }
-  double distance(Handle a, Handle b) const { return distance(tree(a), tree(b)); }
-
-  /*!
     \brief writes a tree of the space as a skeleton; branches of length 0 are left out.
 
     Every branch begins with a node of its own on the axis of its parent.
@@ -396,10 +384,11 @@ public:
   void skeleton(const Orl_tree& t, Tree_skeleton<OutKernel>& result) const
   {
     check_built("skeleton");
-    shape_space::write_skeleton(m_built.layout,
+    this->check_tree(t, "skeleton");
+    shape_space::write_skeleton(this->m_family.layout,
                                 t.m_x,
                                 t.m_geometry,
-                                m_inputs[0].tree.origin,
+                                this->m_family.origin,
                                 result);
   }
 
@@ -431,6 +420,7 @@ public:
   points(const Orl_tree& t, PointRange& result, const NamedParameters& np = NamedParameters()) const
   {
     check_built("points");
+    this->check_tree(t, "points");
     const std::size_t n = t.number_of_points();
     shape_space::internal::resize_range(result, n, "pcs::Orl_shape_space::points()");
     const auto point_map = pcs::internal::choose(
@@ -440,11 +430,11 @@ public:
     constexpr bool has_normals =
         pcs::internal::is_given_v<NamedParameters, CGAL::internal_np::normal_t>;
     const auto normal_map = pcs::internal::choose(np, CGAL::internal_np::normal_map, 0);
-    if (has_normals && !m_built.instances.has_normals())
+    if (has_normals && !(is_pair() ? m_built.instances.has_normals() : m_points.has_normals()))
       throw Invalid_input(
           "pcs::Orl_shape_space::points(): `normal_map` needs trees that were added with normals");
     using Point = Map_value<std::decay_t<decltype(point_map)>>;
-    const shape_space::Vec3 origin = m_inputs[0].tree.origin;
+    const shape_space::Vec3 origin = this->m_family.origin;
     const auto begin = std::begin(result);
     const auto put_point = [&, origin](std::size_t i,
                                        const shape_space::Vec3& p,
@@ -468,7 +458,16 @@ public:
       } else
         static_cast<void>(normal);
     };
-    m_built.instances.write(m_built.layout,
+    if (!is_pair()) {
+      m_points.write(this->m_family.layout,
+                     t.m_x,
+                     t.m_geometry,
+                     t.m_offset,
+                     put_point,
+                     ConcurrencyTag());
+      return n;
+    }
+    m_built.instances.write(this->m_family.layout,
                             t.m_x,
                             t.m_geometry,
                             t.m_lambda,
@@ -491,6 +490,8 @@ public:
   void for_each_point(const Orl_tree& t, const F& f) const
   {
     check_built("for_each_point");
+    check_two("for_each_point");
+    this->check_tree(t, "for_each_point");
     const double share = std::min(1.0, std::max(0.0, t.m_lambda));
     m_built.instances.for_each_pair(
         t.m_x,
@@ -506,52 +507,119 @@ public:
         ConcurrencyTag());
   }
 
-  //! the topology, for callers who look inside; \pre it was built
-  const shape_space::Orl_layout& layout() const { return m_built.layout; }
-  //! weights of the metric; \pre it was built
-  const shape_space::Orl_weights& weights() const { return m_built.weights; }
-
-private:
-  struct Built
+  /*!
+    \brief calls `f(i, h, k)` for every point of a tree of a space of more than two trees: it comes from point `k` of the scan
+    of tree `h`, and has its attributes. `f` may be called concurrently.
+  */
+  template <class F>
+  void for_each_source(const Orl_tree& t, const F& f) const
   {
-    shape_space::Orientation orientation = shape_space::Orientation::gauge_fixed;
-    shape_space::Virtual_direction direction = shape_space::Virtual_direction::of_partner;
-    bool has_unit_weights = false;
-    shape_space::Common_topology topology;
-    shape_space::Orl_layout layout;
-    std::array<shape_space::Orl_coordinates, 2> x;
-    std::array<shape_space::Orl_geometry, 2> geometry;
-    std::vector<char> is_relative;
-    shape_space::Orl_weights weights;
-    shape_space::Point_instances instances;
-  };
-
-  static void check_options(const shape_space::Matching_weights& w,
-                            const shape_space::Assignment_options& a,
-                            const shape_space::Transport_options& t)
-  {
-    const auto check = [](bool is_right, const char* what) {
-      if (!is_right)
-        throw Invalid_input(std::string("pcs::Orl_shape_space::build(): ") + what);
-    };
-    const auto is_weight = [](double x) { return x >= 0 && std::isfinite(x); };
-    check(w.curve > 0 && std::isfinite(w.curve), "the weight `curve` must be > 0 and finite");
-    check(is_weight(w.position) && is_weight(w.single) && is_weight(w.children) &&
-              is_weight(w.carried),
-          "the weights of the matching must be >= 0 and finite");
-    check(w.fork_ratio > 0 && w.fork_ratio <= 1, "`fork_ratio` must be in (0, 1]");
-    check(w.number_of_paths > 0 && w.number_of_trials > 0,
-          "`number_of_paths` and `number_of_trials` must be at least 1");
-    check(is_weight(a.noise) && a.normal_angle > 0, "`noise` must be >= 0, `normal_angle` > 0");
-    check(a.number_of_neighbors >= 3, "`number_of_neighbors` of the assignment must be >= 3");
-    check(t.number_of_neighbors > 0 && t.largest_window > 0,
-          "`number_of_neighbors` and `largest_window` of the transport must be at least 1");
-    check(t.sinkhorn.regularization > 0 && t.sinkhorn.iterations > 0,
-          "`regularization` and `iterations` must be > 0");
+    check_built("for_each_source");
+    this->check_tree(t, "for_each_source");
+    if (is_pair())
+      throw Invalid_input(
+          "pcs::Orl_shape_space::for_each_source(): points of two trees come from both; use "
+          "for_each_point()");
+    const std::vector<std::size_t>& first = m_points.first();
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        t.m_x.length.size(),
+        [&](std::size_t e) {
+          if (t.m_x.length[e] > 0)
+            for (std::size_t k = first[e]; k < first[e + 1]; ++k) {
+              const shape_space::Family_source& s = m_points.sources()[k];
+              f(t.m_offset[e] + k - first[e], std::size_t(s.tree), std::size_t(s.point));
+            }
+        },
+        64);
   }
 
+  /*!
+    \brief a tree that was not added, as a tree of the space.
+
+    It is matched to a tree in the middle of the added ones; its branches that find no partner are left out.
+    \param tree, np as for `add()`
+    \param share if not null: the share of its length that is represented [-]
+  */
+  template <class TreeGraph, class NamedParameters = parameters::Default_named_parameters>
+  Orl_tree embed(const TreeGraph& tree,
+                 const NamedParameters& np = parameters::default_values(),
+                 double* share = nullptr) const
+  {
+    check_built("embed");
+    const shape_space::Tree_input input =
+        shape_space::make_tree_input<Kernel>(tree,
+                                             std::vector<Point_3>(),
+                                             np,
+                                             "pcs::Orl_shape_space::embed()");
+    return this->make(shape_space::embed_tree<ConcurrencyTag>(this->m_family, input.tree, share));
+  }
+
+  //! whether trees of the space have points; \pre it was built
+  bool has_points() const
+  {
+    return !this->m_family.first_point.empty() && this->m_family.first_point.back() > 0;
+  }
+  //! whether these have normals; \pre it was built
+  bool has_normals() const
+  {
+    return is_pair() ? m_built.instances.has_normals() : m_points.has_normals();
+  }
+
+  //! the whole space as numbers, for `IO::write_shape_space()`; \pre it was built
+  Orl_space_data data() const
+  {
+    check_built("data");
+    Orl_space_data result = shape_space::store_family(this->m_family);
+    result.points = m_stored_points;
+    result.has_normals = has_normals();
+    if (is_pair()) {
+      result.pairs = m_built.instances.pairs();
+      const std::array<std::vector<shape_space::Vec3>, 2> points = {
+          m_inputs[0].points,
+          shape_space::points_of_second(inputs())};
+      for (std::size_t t = 0; t < 2; ++t) {
+        for (const shape_space::Vec3& p : points[t])
+          result.trees[t].point.push_back(shape_space::internal::to_array(p));
+        for (const shape_space::Vec3& v : m_inputs[t].normals)
+          result.trees[t].normal.push_back(shape_space::internal::to_array(v));
+      }
+    }
+    return result;
+  }
+
+  /*!
+    \brief makes the space that `data()` was taken from; all but `correspondences()`, `add()` and `build()` works as before.
+    \throws pcs::Invalid_input when the numbers do not make sense; the space is unchanged then
+  */
+  void restore(const Orl_space_data& stored)
+  {
+    Orl_shape_space space;
+    space.m_family = shape_space::restore_family(stored, "pcs::Orl_shape_space::restore()");
+    space.set_points(stored);
+    space.m_is_built = space.m_is_restored = true;
+    *this = std::move(space);
+  }
+
+private:
+  std::array<const shape_space::Tree_input*, 2> inputs() const
+  {
+    return {&m_inputs[0], &m_inputs[1]};
+  }
+
+  bool is_pair() const { return this->number_of_trees() == 2; }
+
+  void check_two(const char* caller) const
+  {
+    if (!is_pair())
+      throw Invalid_input(std::string("pcs::Orl_shape_space::") + caller +
+                          "(): for two trees only, there are " +
+                          std::to_string(this->number_of_trees()));
+  }
   void check_inputs(const char* caller) const
   {
+    if (m_is_restored)
+      throw Invalid_input(std::string("pcs::Orl_shape_space::") + caller +
+                          "(): the space was restored, the trees themselves are not there");
     if (m_inputs.size() != 2)
       throw Invalid_input(std::string("pcs::Orl_shape_space::") + caller + "(): " +
                           std::to_string(m_inputs.size()) + " trees were added, expected 2");
@@ -566,6 +634,7 @@ private:
   Orl_report new_report() const
   {
     Orl_report report;
+    report.number_of_trees = m_inputs.size();
     for (std::size_t t = 0; t < 2; ++t) {
       report.number_of_nodes[t] = m_inputs[t].tree.node_of_source.size();
       report.number_of_points[t] = m_inputs[t].points.size();
@@ -579,7 +648,7 @@ private:
   }
 
   template <class NamedParameters>
-  static void read_form(const NamedParameters& np, Built& built)
+  static void read_form(const NamedParameters& np, shape_space::Embedded_pair& built)
   {
     built.orientation = pcs::internal::choose(np, pcs::internal_np::orientation, built.orientation);
     built.direction =
@@ -588,55 +657,10 @@ private:
         pcs::internal::choose(np, pcs::internal_np::do_use_unit_weights, built.has_unit_weights);
   }
 
-  void embed(Built& built) const
-  {
-    using namespace shape_space;
-    built.layout = make_layout(built.topology.branches);
-    built.x = embed_trees(built.layout,
-                          built.topology.branches,
-                          {&m_inputs[0].tree, &m_inputs[1].tree},
-                          built.topology.paths,
-                          built.orientation,
-                          built.direction);
-    for (std::size_t t = 0; t < 2; ++t)
-      build_geometry(built.layout, built.x[t], built.orientation, built.geometry[t]);
-    built.weights = make_weights(built.layout, built.x, built.has_unit_weights);
-    built.is_relative = edges_with_radius(built.layout, built.topology, built.geometry);
-  }
-
-  /// Points of the second tree in the local coordinates of the first.
-  std::vector<shape_space::Vec3> points_of_second() const
-  {
-    const shape_space::Vec3 shift = m_inputs[1].tree.origin - m_inputs[0].tree.origin;
-    std::vector<shape_space::Vec3> points(m_inputs[1].points);
-    for (shape_space::Vec3& p : points)
-      p += shift;
-    return points;
-  }
-
-  std::vector<std::size_t> edges_of_points(const Built& built,
-                                           std::size_t t,
-                                           const shape_space::Assignment_options& options) const
-  {
-    using namespace shape_space;
-    std::vector<std::size_t> edge_of_tube;
-    const Vec3 shift =
-        t == 0 ? Vec3(Vec3::Zero()) : Vec3(m_inputs[0].tree.origin - m_inputs[1].tree.origin);
-    const std::vector<Tube> tubes =
-        make_tubes(built.layout, built.topology, built.geometry[t], t, shift, edge_of_tube);
-    std::vector<std::size_t> result = assign_points<ConcurrencyTag>(m_inputs[t].points,
-                                                                    m_inputs[t].normals,
-                                                                    tubes,
-                                                                    m_inputs[t].tree.extent,
-                                                                    options);
-    for (std::size_t& e : result)
-      e = edge_of_tube[e];
-    return result;
-  }
-
-  void finish(Built& built,
+  void finish(shape_space::Embedded_pair& built,
               std::vector<shape_space::Point_pair> pairs,
               const std::array<std::vector<shape_space::Vec3>, 2>& points,
+              const shape_space::Matching_weights& weights,
               Orl_report& report)
   {
     built.instances.set(built.layout,
@@ -647,8 +671,14 @@ private:
                         std::move(pairs),
                         ConcurrencyTag());
     m_built = std::move(built);
+    this->m_family = shape_space::make_family(m_built, inputs(), weights);
+    this->m_family.first_point =
+        shape_space::first_of_edges(m_built.instances.pairs(), m_built.layout.number_of_edges());
+    m_points = shape_space::Family_points();
+    m_stored_points.clear();
     m_is_built = true;
     report.status = Status::converged;
+    report.number_of_common_branches = m_built.topology.branches.size();
     for (const shape_space::Common_branch& b : m_built.topology.branches) {
       for (int t = 0; t < 2; ++t)
         report.number_of_branches[static_cast<std::size_t>(t)] += b.is_virtual(t) ? 0 : 1;
@@ -682,17 +712,79 @@ private:
     if (!(maximal_turn >= 0))
       throw Invalid_input("pcs::Orl_shape_space::geodesic(): `maximal_turn` is " +
                           pcs::internal::to_text(maximal_turn) + ", expected at least 0");
-    shape_space::coordinates_at(m_built.layout, a, b, t, maximal_turn, result.m_x);
+    const shape_space::Tree_family& family = this->m_family;
+    shape_space::coordinates_at(family.layout, a, b, t, maximal_turn, result.m_x);
     if (do_limit)
-      shape_space::limit_radii(m_built.layout, result.m_x);
+      shape_space::limit_radii(family.layout, result.m_x);
     result.m_lambda = lambda;
-    shape_space::build_geometry(m_built.layout, result.m_x, m_built.orientation, result.m_geometry);
-    m_built.instances.find_offsets(result.m_x, result.m_offset);
+    shape_space::build_geometry(family.layout, result.m_x, family.orientation, result.m_geometry);
+    family.find_offsets(result.m_x, result.m_offset);
+  }
+
+  template <class NamedParameters>
+  Orl_report build_many(const NamedParameters& np,
+                        const shape_space::Family_options& options,
+                        pcs::internal::Progress& progress)
+  {
+    Orl_report report = new_report();
+    shape_space::Embedded_pair form;
+    read_form(np, form);
+    shape_space::Built_family built;
+    built.family.orientation = form.orientation;
+    if (!shape_space::build_family<ConcurrencyTag>(m_inputs,
+                                                   options,
+                                                   form.direction,
+                                                   form.has_unit_weights,
+                                                   progress,
+                                                   built,
+                                                   report))
+      return cancelled(report);
+    pcs::internal::Stopwatch watch;
+    this->m_family = std::move(built.family);
+    m_built = shape_space::Embedded_pair();
+    set_family_points(std::move(built.points), built.has_normals);
+    m_is_built = true;
+    report.seconds.instances = watch.lap();
+    report.status = Status::converged;
+    report.distance = this->distance(Handle(0), Handle(1));
+    report.number_of_point_pairs = m_points.size();
+    progress.finish();
+    return report;
+  }
+
+  /// Points of a space of more than two trees, by edge.
+  void set_family_points(std::vector<Orl_space_data::Point> points, bool has_normals)
+  {
+    using namespace shape_space;
+    const Tree_family& family = this->m_family;
+    std::vector<Orl_geometry> geometry(family.x.size());
+    for (std::size_t t = 0; t < family.x.size(); ++t)
+      build_geometry(family.layout, family.x[t], family.orientation, geometry[t]);
+    m_points.set(family.layout, geometry, points, has_normals, ConcurrencyTag());
+    m_stored_points = std::move(points);
+    this->m_family.first_point = m_points.first();
+  }
+
+  /// What `data()` gave, once the family is there.
+  void set_points(const Orl_space_data& stored)
+  {
+    using namespace shape_space;
+    const char* const caller = "pcs::Orl_shape_space::restore()";
+    const std::size_t n = this->m_family.layout.number_of_edges();
+    if (this->number_of_trees() > 2) {
+      check_family_points(stored, n, caller);
+      set_family_points(stored.points, stored.has_normals);
+      return;
+    }
+    m_inputs = restore_pair<ConcurrencyTag>(stored, this->m_family, caller, m_built);
+    this->m_family.first_point = first_of_edges(m_built.instances.pairs(), n);
   }
 
   std::vector<shape_space::Tree_input> m_inputs;
-  Built m_built;
-  bool m_is_built = false;
+  shape_space::Embedded_pair m_built;                 // of two trees
+  shape_space::Family_points m_points;                // of more
+  std::vector<Orl_space_data::Point> m_stored_points; // likewise
+  bool m_is_built = false, m_is_restored = false;
 };
 
 } // namespace pcs

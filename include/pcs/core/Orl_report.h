@@ -19,6 +19,11 @@ struct Orl_report
 {
   Status status = Status::nothing_to_do;
 
+  std::size_t number_of_trees = 2;           ///< figures of single trees are those of the first two
+  std::size_t number_of_common_branches = 0; ///< of the topology [count]
+  double share_of_changes =
+      0; ///< branches that got another partner in the last round, for more than two trees [-]
+
   std::array<std::size_t, 2> number_of_nodes = {0, 0};    ///< of the trees [count]
   std::array<std::size_t, 2> number_of_branches = {0, 0}; ///< of the trees, as matched [count]
   std::size_t number_of_matched_branches = 0;             ///< pairs of branches [count]
@@ -46,13 +51,14 @@ inline std::ostream& operator<<(std::ostream& out, const Orl_report& r)
 {
   out << "status " << r.status << ", " << r.number_of_branches[0] << " and "
       << r.number_of_branches[1] << " branches, " << r.number_of_matched_branches << " matched, "
-      << r.number_of_edges << " edges, distance " << r.distance << "; " << r.number_of_points[0]
-      << " and " << r.number_of_points[1] << " points, " << r.number_of_point_pairs << " pairs ("
-      << r.number_of_single_points << " single), " << r.number_of_windows << " windows ("
-      << r.number_of_failed_windows << " failed), marginal violation " << r.worst_marginal_violation
-      << "; seconds: matching " << r.seconds.matching << ", topology " << r.seconds.topology
-      << ", assignment " << r.seconds.assignment << ", transport " << r.seconds.transport
-      << ", instances " << r.seconds.instances;
+      << r.number_of_edges << " edges of " << r.number_of_trees << " trees, distance " << r.distance
+      << "; " << r.number_of_points[0] << " and " << r.number_of_points[1] << " points, "
+      << r.number_of_point_pairs << " pairs (" << r.number_of_single_points << " single), "
+      << r.number_of_windows << " windows (" << r.number_of_failed_windows
+      << " failed), marginal violation " << r.worst_marginal_violation << "; seconds: matching "
+      << r.seconds.matching << ", topology " << r.seconds.topology << ", assignment "
+      << r.seconds.assignment << ", transport " << r.seconds.transport << ", instances "
+      << r.seconds.instances;
   return out;
 }
 

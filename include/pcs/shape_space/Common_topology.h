@@ -18,11 +18,12 @@ namespace pcs {
 namespace shape_space {
 
 /// Nodes of the two trees closer than this share of a branch become one.
-constexpr double node_tolerance = 0.01;
+/// Here and below the numbers are not round, so that rounding does not decide where trees are made of round numbers.
+constexpr double node_tolerance = 0.010001;
 /// Forks that correspond may bend the elastic correspondence of their parents by this share of the branch.
-constexpr double fork_tolerance = 0.1;
+constexpr double fork_tolerance = 0.100001;
 /// Between two such forks the shares of the branch may differ by this factor.
-constexpr double steepest_forks = 5;
+constexpr double steepest_forks = 5.00001;
 
 /// A branch of the common topology. Its nodes stand at shares of the length of either branch, increasing from 0 to 1.
 struct Common_branch

@@ -14,6 +14,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -55,11 +56,19 @@ struct Rooted_tree
 
 namespace internal {
 
-/// A total order that does not depend on how the nodes are numbered, save for exact copies.
+/// A total order that does not depend on how the nodes are numbered, nor on rounding, nor on how the tree stands, save for
+/// copies of a branch that are turned against each other.
 inline bool is_before(const Rooted_tree& tree, std::size_t v, std::size_t w)
 {
-  const double a = tree.heights[v] + tree.edge_length(v);
-  const double b = tree.heights[w] + tree.edge_length(w);
+  const double step = 1e-9 * tree.extent; // lengths that differ by less are the same
+  const auto key = [&](std::size_t x) {
+    const double length = tree.edge_length(x);
+    return std::array<double, 4>{std::round((tree.heights[x] + length) / step),
+                                 std::round((tree.weights[x] + length) / step),
+                                 std::round(length / step),
+                                 std::round(tree.radii[x] / step)};
+  };
+  const auto a = key(v), b = key(w);
   if (a != b)
     return a > b;
   for (int i = 0; i < 3; ++i)

@@ -107,6 +107,9 @@ public:
 
   std::size_t number_of_samples() const { return m_size; }
 
+  /// A step that is better by less is not: rounding must not decide between equal ways along straight pieces.
+  static constexpr double least_gain = 1e-9;
+
   /// Returns the largest `M`, at least 0, where `rotation` is applied to curve 2 first.
   double
   operator()(const Sampled_curve& one, const Sampled_curve& two, const Eigen::Matrix3d& rotation)
@@ -171,7 +174,7 @@ private:
     const auto id = static_cast<std::uint8_t>(k);
     for (std::size_t j = 0; j < count; ++j) {
       const double value = from[j] + gain[j];
-      const bool is_better = value > to[j];
+      const bool is_better = value > to[j] + least_gain;
       to[j] = is_better ? value : to[j];
       step[j] = is_better ? id : step[j];
     }

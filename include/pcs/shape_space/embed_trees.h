@@ -124,13 +124,17 @@ inline Embedding embed(const Orl_layout& layout,
   return result;
 }
 
-/// Turns frames along the edges that exist; `twist` is added to the transported frame.
-inline void set_frames(const Orl_layout& layout, const std::vector<double>& twist, Embedding& tree)
+/// Turns frames along the edges that exist, from `root` at the beginning of the trunk; `twist` is added to the
+/// transported frame.
+inline void set_frames(const Orl_layout& layout,
+                       const std::vector<double>& twist,
+                       const Quaternion& root,
+                       Embedding& tree)
 {
   for (std::size_t e = 0; e < layout.number_of_edges(); ++e)
     if (tree.x.length[e] > 0) {
       const std::size_t p = layout.parent_edge[e];
-      const Quaternion parent = p == none ? Quaternion::Identity() : tree.frame[p];
+      const Quaternion parent = p == none ? root : tree.frame[p];
       const Quaternion step = shortest_turn(Vec3::UnitZ(), parent.conjugate() * tree.direction[e]);
       tree.frame[e] = parent * step * turn_about_z(twist[e]);
       tree.frame[e].normalize();
@@ -329,8 +333,10 @@ inline std::array<Orl_coordinates, 2> embed_trees(const Orl_layout& layout,
           tree->frame[e].normalize();
         }
   } else {
-    set_frames(layout, twist, one);
-    set_frames(layout, twist, two);
+    // the trunk of tree 2 refers to that of tree 1: how both stand in the axes of the input does not matter
+    set_frames(layout, twist, Quaternion::Identity(), one);
+    const Quaternion root = one.frame[0];
+    set_frames(layout, twist, root, two);
     if (kind == Orientation::gauge_fixed) {
       const std::vector<double> total = Gauge(layout, one, two).run();
       for (std::size_t e = 0; e < layout.number_of_edges(); ++e) {
@@ -338,7 +344,7 @@ inline std::array<Orl_coordinates, 2> embed_trees(const Orl_layout& layout,
         if (one.x.length[e] > 0) // else inherited from the parent by transport
           twist[e] = total[e] - (p == none ? 0 : total[p]);
       }
-      set_frames(layout, twist, two);
+      set_frames(layout, twist, root, two);
     }
   }
   set_orientations(layout, branches, kind, direction, 0, two, one);

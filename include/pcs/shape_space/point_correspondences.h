@@ -7,17 +7,15 @@
 
 #include <pcs/core/Orl_correspondences.h>
 #include <pcs/internal/parallel.h>
-#include <pcs/neighborhood/Nearest_neighbors.h>
 #include <pcs/shape_space/Orl_coordinates.h>
-#include <pcs/shape_space/Sinkhorn.h>
-#include <pcs/shape_space/Transport_simplex.h>
+#include <pcs/shape_space/match_points.h>
+#include <pcs/shape_space/tube_coordinates.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -29,75 +27,6 @@ constexpr std::uint32_t no_point = Orl_correspondences::no_point;
 /// A point of tree 1 and one of tree 2, on an edge. One of them may be missing.
 using Point_pair = Orl_correspondences::Pair;
 
-/// An edge as a cone around the z axis of a frame.
-struct Edge_cone
-{
-  Vec3 from;
-  Eigen::Matrix3d frame;
-  double length, from_radius, to_radius;
-
-  double radius(double t) const { return (1 - t) * from_radius + t * to_radius; }
-};
-
-inline Edge_cone edge_cone(const Orl_layout& layout,
-                           const Orl_geometry& geometry,
-                           std::size_t branch,
-                           std::size_t edge)
-{
-  const std::size_t node = layout.first_node(branch) + edge - layout.branches[branch].first_edge;
-  return {geometry.node[node],
-          geometry.frame[edge].toRotationMatrix(),
-          (geometry.node[node + 1] - geometry.node[node]).norm(),
-          geometry.radius[node],
-          geometry.radius[node + 1]};
-}
-
-/// A point relative to an edge: the share of the edge, how far it lies before or behind it, angle and distance from the
-/// axis. Lengths off the axis are shares of the radius if `is_relative`, so that detail grows with the branch.
-struct Tube_coordinates
-{
-  double t, overshoot, angle, distance;
-};
-
-inline Tube_coordinates tube_coordinates(const Edge_cone& edge, const Vec3& p, bool is_relative)
-{
-  const Vec3 q = edge.frame.transpose() * (p - edge.from);
-  const double t = edge.length > 0 ? std::min(1.0, std::max(0.0, q.z() / edge.length)) : 0;
-  const double unit = is_relative ? edge.radius(t) : 1;
-  return {t, (q.z() - t * edge.length) / unit, std::atan2(q.y(), q.x()), q.head<2>().norm() / unit};
-}
-
-inline Vec3 point_of(const Edge_cone& edge, const Tube_coordinates& c, bool is_relative)
-{
-  const double unit = is_relative ? edge.radius(c.t) : 1;
-  const Vec3 q(unit * c.distance * std::cos(c.angle),
-               unit * c.distance * std::sin(c.angle),
-               c.t * edge.length + unit * c.overshoot);
-  return edge.from + edge.frame * q;
-}
-
-enum class Point_transport {
-  exact,   ///< network simplex
-  sinkhorn ///< regularised, as in the text
-};
-
-enum class Point_weights {
-  area, ///< a point stands for the surface around it
-  equal ///< all points alike, as in the text
-};
-
-struct Transport_options
-{
-  Point_transport method = Point_transport::exact;
-  Point_weights weights = Point_weights::area;
-  bool is_squared =
-      true; ///< cost is the squared distance, as a 2-Wasserstein distance wants; the text's is not
-  std::size_t number_of_neighbors = 16; ///< candidates of each point in the other tree
-  std::size_t largest_window = 1000;    ///< points of a tree that are transported together
-  std::size_t least_window = 24;        ///< edges are joined until both trees have as many points
-  Sinkhorn_options sinkhorn;
-};
-
 struct Transport_summary
 {
   std::size_t number_of_windows = 0;
@@ -105,111 +34,6 @@ struct Transport_summary
   double worst_violation = 0;         ///< of the marginals of a window, whose mass is 1 [-]
   double mean_violation = 0;          ///< over windows
 };
-
-namespace internal {
-
-/// Squared distance to the fifth neighbour, within limits: the surface that a point stands for, up to a factor.
-inline std::vector<double> area_weights(const std::vector<Vec3>& points,
-                                        const neighborhood::Nearest_neighbors& search)
-{
-  constexpr std::size_t neighbor = 5;
-  std::vector<double> area(points.size(), 1);
-  std::vector<neighborhood::Nearest_neighbors::Neighbor> found;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    search(points[i], neighbor + 1, found);
-    area[i] = found.back().squared_distance;
-  }
-  std::vector<double> sorted(area);
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const double median = *middle;
-  for (double& a : area) // duplicates stand for little, outliers not for all
-    a = median > 0 ? std::min(16 * median, std::max(median / 64, a)) : 1;
-  return area;
-}
-
-inline std::vector<double> to_shares(std::vector<double> weights)
-{
-  double sum = 0;
-  for (const double w : weights)
-    sum += w;
-  for (double& w : weights)
-    w /= sum;
-  return weights;
-}
-
-} // namespace internal
-
-/// The arcs that carry most of what leaves a source or reaches a target: every point keeps a partner, and few have two.
-inline std::vector<std::uint32_t> main_arcs(const Transport_problem& problem,
-                                            const Transport_plan& plan)
-{
-  const std::size_t n = problem.supplies.size();
-  std::vector<std::size_t> best(n + problem.demands.size(), none); // index in flows
-  for (std::size_t k = 0; k < plan.flows.size(); ++k) {
-    const Transport_problem::Arc& a = problem.arcs[plan.flows[k].arc];
-    for (const std::size_t v : {std::size_t(a.source), n + a.target})
-      if (best[v] == none || plan.flows[k].mass > plan.flows[best[v]].mass)
-        best[v] = k;
-  }
-  std::sort(best.begin(), best.end());
-  best.erase(std::unique(best.begin(), best.end()), best.end());
-  std::vector<std::uint32_t> arcs;
-  for (const std::size_t k : best)
-    if (k != none)
-      arcs.push_back(plan.flows[k].arc);
-  return arcs;
-}
-
-/// Transport between two sets in the same place; every point gets a partner. Candidates are nearest neighbours both ways;
-/// for points whose mass they cannot carry more are taken, until all is carried.
-inline Transport_plan match_points(const std::vector<Vec3>& one,
-                                   const std::vector<Vec3>& two,
-                                   const Transport_options& options,
-                                   Transport_problem& problem)
-{
-  const neighborhood::Nearest_neighbors search_1(one), search_2(two);
-  const bool is_area = options.weights == Point_weights::area;
-  problem.supplies = internal::to_shares(is_area ? internal::area_weights(one, search_1)
-                                                 : std::vector<double>(one.size(), 1));
-  problem.demands = internal::to_shares(is_area ? internal::area_weights(two, search_2)
-                                                : std::vector<double>(two.size(), 1));
-  const std::size_t n = one.size(), m = two.size();
-  std::vector<std::size_t> wanted(n + m, options.number_of_neighbors);
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> arcs;
-  std::vector<neighborhood::Nearest_neighbors::Neighbor> found;
-  Transport_plan plan;
-  for (;;) {
-    arcs.clear();
-    for (std::size_t i = 0; i < n; ++i) {
-      search_2(one[i], wanted[i], found);
-      for (const auto& f : found)
-        arcs.emplace_back(static_cast<std::uint32_t>(i), f.index);
-    }
-    for (std::size_t j = 0; j < m; ++j) {
-      search_1(two[j], wanted[n + j], found);
-      for (const auto& f : found)
-        arcs.emplace_back(f.index, static_cast<std::uint32_t>(j));
-    }
-    std::sort(arcs.begin(), arcs.end());
-    arcs.erase(std::unique(arcs.begin(), arcs.end()), arcs.end());
-    problem.arcs.clear();
-    for (const auto& [i, j] : arcs)
-      problem.arcs.push_back(
-          {i, j, options.is_squared ? (one[i] - two[j]).squaredNorm() : (one[i] - two[j]).norm()});
-    if (options.method == Point_transport::sinkhorn)
-      return sinkhorn(problem, options.sinkhorn);
-    plan = Transport_simplex()(problem);
-    bool can_grow = false;
-    for (std::size_t v = 0; v < n + m; ++v)
-      if (plan.is_unmet[v] && wanted[v] < (v < n ? m : n)) {
-        wanted[v] *= 4;
-        can_grow = true;
-      }
-    if (!can_grow)
-      return plan;
-  }
-}
 
 /// Points of both trees on the edges of the common topology, and their partners.
 template <class ConcurrencyTag>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// From the caller's graphs and ranges to arrays, and back.
+// From the caller's graphs and ranges to arrays.
 
 #ifndef PCS_SHAPE_SPACE_TREE_INPUT_H
 #define PCS_SHAPE_SPACE_TREE_INPUT_H
@@ -10,18 +10,13 @@
 #include <pcs/core/Orl_correspondences.h>
 #include <pcs/core/Tree_skeleton.h>
 #include <pcs/core/errors.h>
-#include <pcs/shape_space/Common_topology.h>
-#include <pcs/shape_space/Orl_coordinates.h>
 #include <pcs/shape_space/Rooted_tree.h>
-#include <pcs/shape_space/assign_points.h>
 
 #include <CGAL/number_utils.h>
 #include <CGAL/property_map.h>
 
 #include <boost/graph/graph_concepts.hpp>
 
-#include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -245,201 +240,6 @@ Tree_input make_tree_input(const TreeGraph& graph,
     }
   }
   return result;
-}
-
-/// The edges of the common topology that a tree has, as pieces of surface.
-inline std::vector<Tube> make_tubes(const Orl_layout& layout,
-                                    const Common_topology& topology,
-                                    const Orl_geometry& geometry,
-                                    std::size_t tree,
-                                    const Vec3& shift,
-                                    std::vector<std::size_t>& edge_of_tube)
-{
-  std::vector<Tube> tubes;
-  for (std::size_t b = 0; b < layout.branches.size(); ++b)
-    for (std::size_t j = 0; !topology.branches[b].is_virtual(static_cast<int>(tree)) &&
-                            j < layout.branches[b].number_of_edges;
-         ++j) {
-      const std::size_t v = layout.first_node(b) + j;
-      tubes.push_back({geometry.node[v] + shift,
-                       geometry.node[v + 1] + shift,
-                       geometry.radius[v],
-                       geometry.radius[v + 1],
-                       b});
-      edge_of_tube.push_back(layout.branches[b].first_edge + j);
-    }
-  return tubes;
-}
-
-/// Edges whose radius is known at both ends in each tree that has them: there, detail is stored in units of the radius.
-inline std::vector<char> edges_with_radius(const Orl_layout& layout,
-                                           const Common_topology& topology,
-                                           const std::array<Orl_geometry, 2>& geometry)
-{
-  std::vector<char> result(layout.number_of_edges(), 1);
-  for (std::size_t b = 0; b < layout.branches.size(); ++b)
-    for (std::size_t j = 0; j < layout.branches[b].number_of_edges; ++j)
-      for (std::size_t t = 0; t < 2; ++t) {
-        const std::size_t v = layout.first_node(b) + j;
-        const double least = std::min(geometry[t].radius[v], geometry[t].radius[v + 1]);
-        const double most = std::max(geometry[t].radius[v], geometry[t].radius[v + 1]);
-        if (!topology.branches[b].is_virtual(static_cast<int>(t)) && !(least > 1e-3 * most))
-          result[layout.branches[b].first_edge + j] = 0;
-      }
-  return result;
-}
-
-/// What is needed to find the same topology again.
-inline Orl_correspondences store_topology(const Common_topology& topology,
-                                          const std::array<const Tree_input*, 2>& inputs,
-                                          const std::vector<Orl_correspondences::Pair>& pairs)
-{
-  Orl_correspondences result;
-  for (std::size_t t = 0; t < 2; ++t)
-    result.fingerprint[t] = inputs[t]->fingerprint;
-  for (const Common_branch& b : topology.branches) {
-    Orl_correspondences::Branch branch;
-    branch.parent = b.parent;
-    branch.nodes = b.node;
-    branch.attachment = b.attachment;
-    for (std::size_t t = 0; t < 2; ++t)
-      if (b.path[t] != none) {
-        const Branch_path& path = topology.paths[t].paths[b.path[t]];
-        branch.first[t] = path.nodes[path.is_trunk ? 0 : 1];
-        branch.tip[t] = path.tip();
-      }
-    result.branches.push_back(std::move(branch));
-  }
-  result.pairs = pairs;
-  return result;
-}
-
-/// Checks everything: correspondences may come from a file.
-inline Common_topology restore_topology(const Orl_correspondences& stored,
-                                        const std::array<const Tree_input*, 2>& inputs,
-                                        const std::string& caller)
-{
-  const auto check = [&](bool is_right, const char* what) {
-    if (!is_right)
-      throw Invalid_input(caller + ": " + what);
-  };
-  for (std::size_t t = 0; t < 2; ++t)
-    check(stored.fingerprint[t] == inputs[t]->fingerprint,
-          "the correspondences were computed for other trees");
-  check(!stored.branches.empty(), "there are no branches");
-  Common_topology result;
-  for (std::size_t i = 0; i < stored.branches.size(); ++i) {
-    const Orl_correspondences::Branch& b = stored.branches[i];
-    Common_branch branch;
-    check(i == 0 ? b.parent == none : b.parent < i, "a branch comes before its parent");
-    branch.parent = b.parent;
-    branch.node = b.nodes;
-    branch.attachment = b.attachment;
-    for (std::size_t t = 0; t < 2; ++t) {
-      const Rooted_tree& tree = inputs[t]->tree;
-      if (b.tip[t] == none) {
-        check(b.nodes[t].empty() && i > 0, "a branch that a tree lacks has nodes there");
-        continue;
-      }
-      check(b.tip[t] < tree.size() && b.first[t] < tree.size(), "there is no such node");
-      std::vector<std::size_t> nodes{b.tip[t]};
-      while (nodes.back() != b.first[t] && tree.parents[nodes.back()] != none)
-        nodes.push_back(tree.parents[nodes.back()]);
-      check(nodes.back() == b.first[t], "a branch does not lead to its tip");
-      if (b.first[t] != 0)
-        nodes.push_back(tree.parents[b.first[t]]);
-      std::reverse(nodes.begin(), nodes.end());
-      check(nodes.size() > 1, "a branch has no edge");
-      check((b.first[t] == 0) == (i == 0), "a branch begins with the root");
-      branch.path[t] = result.paths[t].paths.size();
-      result.paths[t].paths.push_back(internal::make_path(tree, std::move(nodes), b.first[t] == 0));
-      const std::vector<double>& s = b.nodes[t];
-      check(s.size() > 1 && s.front() == 0 && s.back() == 1, "a branch does not go from 0 to 1");
-      for (std::size_t k = 1; k < s.size(); ++k)
-        check(s[k] > s[k - 1], "the nodes of a branch do not increase");
-    }
-    check(branch.path[0] != none || branch.path[1] != none, "a branch is in neither tree");
-    check(b.nodes[0].empty() || b.nodes[1].empty() || b.nodes[0].size() == b.nodes[1].size(),
-          "a branch has different numbers of nodes in the two trees");
-    for (std::size_t t = 0; t < 2 && i > 0; ++t)
-      check(b.attachment[t] >= 0 &&
-                b.attachment[t] <=
-                    static_cast<double>(result.branches[b.parent].number_of_nodes() - 1),
-            "a branch is attached beyond its parent");
-    result.branches.push_back(std::move(branch));
-  }
-  return result;
-}
-
-inline void check_pairs(const Orl_correspondences& stored,
-                        std::size_t number_of_edges,
-                        const std::array<std::size_t, 2>& number_of_points,
-                        const std::string& caller)
-{
-  std::uint32_t last = 0;
-  for (const Orl_correspondences::Pair& p : stored.pairs) {
-    const bool has_points =
-        p.point[0] != Orl_correspondences::no_point || p.point[1] != Orl_correspondences::no_point;
-    bool is_right = p.edge >= last && p.edge < number_of_edges && has_points;
-    for (std::size_t t = 0; t < 2; ++t)
-      is_right = is_right &&
-                 (p.point[t] == Orl_correspondences::no_point || p.point[t] < number_of_points[t]);
-    if (!is_right)
-      throw Invalid_input(caller +
-                          ": a pair of points names what does not exist, or is out of order");
-    last = p.edge;
-  }
-}
-
-/// A tree of the space as a skeleton. Branches without length, and what hangs on them, are left out.
-template <class Kernel>
-void write_skeleton(const Orl_layout& layout,
-                    const Orl_coordinates& x,
-                    const Orl_geometry& geometry,
-                    const Vec3& origin,
-                    Tree_skeleton<Kernel>& result)
-{
-  using FT = typename Kernel::FT;
-  Tree_skeleton<Kernel> tree;
-  Tree_bundle& bundle = tree[boost::graph_bundle];
-  std::vector<std::size_t> vertex(layout.number_of_nodes(), npos);
-  std::vector<std::size_t> branch_of(layout.branches.size(), npos);
-  for (std::size_t b = 0; b < layout.branches.size(); ++b) {
-    const Orl_layout::Branch& branch = layout.branches[b];
-    double length = 0;
-    for (std::size_t j = 0; j < branch.number_of_edges; ++j)
-      length += x.length[branch.first_edge + j];
-    const bool is_trunk = branch.parent == none;
-    if (!is_trunk && (!(length > 0) || branch_of[branch.parent] == npos))
-      continue;
-    branch_of[b] = bundle.branches.size();
-    bundle.branches.push_back({is_trunk ? npos : branch_of[branch.parent],
-                               is_trunk ? 0 : bundle.branches[branch_of[branch.parent]].order + 1,
-                               b});
-    std::size_t previous = npos;
-    if (!is_trunk) {
-      const auto last = static_cast<double>(layout.branches[branch.parent].number_of_edges);
-      const double t = std::min(last, std::max(0.0, x.attachment[b]));
-      previous = vertex[layout.first_node(branch.parent) + static_cast<std::size_t>(t)];
-    }
-    for (std::size_t j = 0; j <= branch.number_of_edges; ++j) {
-      const std::size_t v = layout.first_node(b) + j;
-      const Vec3 p = geometry.node[v] + origin;
-      Tree_node<Kernel> node;
-      node.point = typename Kernel::Point_3(static_cast<FT>(p.x()),
-                                            static_cast<FT>(p.y()),
-                                            static_cast<FT>(p.z()));
-      node.radius = node.major_radius = node.minor_radius = static_cast<FT>(geometry.radius[v]);
-      node.branch = branch_of[b];
-      vertex[v] = add_vertex(node, tree);
-      if (previous != npos)
-        add_edge(previous, vertex[v], tree);
-      else
-        bundle.root = vertex[v];
-      previous = vertex[v];
-    }
-  }
-  result = std::move(tree);
 }
 
 } // namespace shape_space

@@ -1,0 +1,249 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Families of trees: seconds, modes against known parameters, new trees against the inputs, seconds per new tree.
+
+#include <pcs/IO/read_txtskl.h>
+#include <pcs/IO/write_points.h>
+#include <pcs/IO/write_swc.h>
+#include <pcs/Orl_shape_space.h>
+#include <pcs/generators/grow_tree.h>
+#include <pcs/internal/Random_stream.h>
+#include <pcs/internal/Stopwatch.h>
+
+#include <CGAL/Simple_cartesian.h>
+
+#include <CLI/CLI.hpp>
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <sys/resource.h>
+#include <vector>
+
+namespace {
+
+using Kernel = CGAL::Simple_cartesian<double>;
+using Tree = pcs::Tree_skeleton<Kernel>;
+using Point = Kernel::Point_3;
+using Space = pcs::Orl_shape_space<Kernel>;
+using namespace pcs::shape_space;
+namespace np = pcs::parameters;
+
+void write(const Space& space,
+           const pcs::Orl_tree& tree,
+           const std::string& folder,
+           const std::string& name)
+{
+  if (folder.empty())
+    return;
+  Tree skeleton;
+  space.skeleton(tree, skeleton);
+  pcs::IO::write_swc((std::filesystem::path(folder) / (name + ".swc")).string(), skeleton);
+}
+
+void print(const char* name, const Tree_figures& f)
+{
+  std::printf("%-8s length %9.2f height %8.3f width %8.3f branches %4zu angles",
+              name,
+              f.length,
+              f.height,
+              f.crown_width,
+              f.total_number_of_branches());
+  for (std::size_t k = 1; k < f.mean_angle.size(); ++k)
+    std::printf(" %.2f+-%.2f", f.mean_angle[k], f.angle_deviation[k]);
+  std::printf("\n");
+}
+
+void run_group(const std::vector<std::string>& files, const std::string& folder)
+{
+  Space space;
+  for (const std::string& file : files) {
+    Tree tree;
+    pcs::IO::read_txtskl<Kernel>(file, tree);
+    space.add_skeleton(tree);
+  }
+  pcs::internal::Stopwatch watch;
+  std::cout << space.build() << '\n';
+  std::printf("%zu trees, %zu branches, built in %.1f s\n",
+              files.size(),
+              space.layout().branches.size(),
+              watch.lap());
+  std::vector<Tree_figures> inputs;
+  for (std::size_t h = 0; h < files.size(); ++h) {
+    inputs.push_back(space.figures(space.tree(h)));
+    print("input", inputs.back());
+    write(space, space.tree(h), folder, "input_" + std::to_string(h));
+  }
+  watch.lap();
+  const pcs::Orl_tree mean = space.mean();
+  const pcs::Orl_tree square = space.mean(np::tree_mean(Tree_mean::least_squares));
+  std::printf("both means in %.3f s\n", watch.lap());
+  print("L1 mean", space.figures(mean));
+  print("L2 mean", space.figures(square));
+  write(space, mean, folder, "mean_1");
+  write(space, square, folder, "mean_2");
+  const auto modes = space.modes(files.size());
+  std::printf("modes in %.3f s; share of variance, left-out error:\n   0  0.000 %9.3f\n",
+              watch.lap(),
+              modes.left_out_error(0));
+  for (std::size_t k = 1; k <= modes.size(); ++k)
+    std::printf("%4zu  %.3f %9.3f\n", k, modes.share(k), modes.left_out_error(k));
+  for (std::size_t k = 0; k < std::min<std::size_t>(3, modes.size()); ++k)
+    for (const double side : {-2.0, 2.0}) {
+      std::vector<double> scores(k, 0);
+      scores.push_back(side);
+      write(space,
+            space.tree(modes, scores),
+            folder,
+            "mode_" + std::to_string(k + 1) + (side < 0 ? "_minus" : "_plus"));
+    }
+  const auto distribution = space.distribution();
+  std::printf("shrinkage %.2f\n", distribution.distribution.shrinkage());
+  std::size_t number_inside = 0;
+  for (std::uint64_t i = 0; i < 12; ++i) {
+    const pcs::Orl_tree tree = space.sample(distribution, 1, i);
+    const Tree_figures f = space.figures(tree);
+    number_inside += excess(f, inputs) == 0;
+    print("new", f);
+    write(space, tree, folder, "sample_" + std::to_string(i));
+  }
+  std::printf("%zu of 12 new trees are inside the range of the inputs\n", number_inside);
+}
+
+/// Trees of two parameters, size and crown angle, and how well the plane of the first two modes tells these.
+void run_parameters(std::size_t n)
+{
+  Space space;
+  Eigen::MatrixXd known(static_cast<Eigen::Index>(n), 2);
+  pcs::internal::Random_stream random(1);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double age = random.uniform(0.7, 1.3), angle = random.uniform(-0.3, 0.3);
+    pcs::Tree_habit habit = pcs::fruit_habit();
+    habit.number_of_orders = 2;
+    habit = habit.scaled(age);
+    for (pcs::Value_range* range : {&habit.insertion[0], &habit.insertion[1]}) {
+      range->least += angle;
+      range->largest += angle;
+    }
+    Tree tree;
+    pcs::grow_tree(tree, habit, np::random_seed(5));
+    space.add_skeleton(tree);
+    known.row(static_cast<Eigen::Index>(i)) << age, angle;
+  }
+  std::cout << space.build() << '\n';
+  const auto modes = space.modes(2);
+  for (Eigen::Index p = 0; p < 2; ++p) {
+    Eigen::VectorXd truth = known.col(p).array() - known.col(p).mean();
+    const Eigen::VectorXd fit = modes.scores * modes.scores.colPivHouseholderQr().solve(truth);
+    std::printf("%s: multiple correlation with the first two modes %.4f, with each %.3f %.3f\n",
+                p == 0 ? "size" : "crown angle",
+                fit.dot(truth) / (fit.norm() * truth.norm()),
+                modes.scores.col(0).dot(truth) / (modes.scores.col(0).norm() * truth.norm()),
+                modes.scores.col(1).dot(truth) / (modes.scores.col(1).norm() * truth.norm()));
+  }
+  std::printf("share of variance %.3f %.3f\n", modes.share(1), modes.share(2));
+}
+
+double megabytes()
+{
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+void run_speed(std::size_t number_of_points, std::size_t number_of_trees)
+{
+  Space space;
+  for (int i = 0; i < 3; ++i) {
+    Tree tree;
+    pcs::Tree_habit habit = pcs::fruit_habit();
+    habit.number_of_orders = 3;
+    pcs::grow_tree(tree, habit.scaled(0.9 + 0.1 * i), np::random_seed(2));
+    // evenly along the branches, so that all have their share
+    std::vector<Point> scan;
+    pcs::internal::Random_stream random(3, i);
+    std::vector<std::pair<std::size_t, std::size_t>> all;
+    for (const auto e : boost::make_iterator_range(edges(tree)))
+      all.emplace_back(source(e, tree), target(e, tree));
+    while (scan.size() < number_of_points) {
+      const auto& [a, b] = all[random.bits() % all.size()];
+      const double t = random.uniform(), angle = random.uniform(0, 2 * CGAL_PI);
+      const Kernel::Vector_3 v = tree[b].point - tree[a].point;
+      const Kernel::Vector_3 other =
+          std::abs(v.z()) > std::abs(v.x()) ? Kernel::Vector_3(1, 0, 0) : Kernel::Vector_3(0, 0, 1);
+      Kernel::Vector_3 x = CGAL::cross_product(v, other);
+      if (!(x.squared_length() > 0))
+        continue;
+      x = x / std::sqrt(x.squared_length());
+      const Kernel::Vector_3 y = CGAL::cross_product(v, x) / std::sqrt(v.squared_length());
+      scan.push_back(tree[a].point + t * v +
+                     tree[b].radius * (std::cos(angle) * x + std::sin(angle) * y));
+    }
+    space.add(tree, scan);
+  }
+  std::cout << space.build(np::points_of(std::size_t(1))) << '\n';
+  const auto distribution = space.distribution();
+  std::vector<Point> points;
+  double making = 0, writing = 0, before = 0;
+  std::size_t total = 0;
+  const std::string path =
+      (std::filesystem::temp_directory_path() / "pcs_bench_shape_space.ply").string();
+  for (std::uint64_t i = 0; i < number_of_trees; ++i) {
+    pcs::internal::Stopwatch watch;
+    const pcs::Orl_tree tree = space.sample(distribution, 1, i);
+    space.points(tree, points);
+    making += watch.lap();
+    pcs::IO::write_points(path, pcs::IO::Point_table(points));
+    writing += watch.lap();
+    total += points.size();
+    if (i == 2)
+      before = megabytes();
+  }
+  std::filesystem::remove(path);
+  const auto n = static_cast<double>(number_of_trees);
+  std::printf("%zu trees of %.0f points: %.1f ms to make one, %.1f ms to write one, ratio %.2f; "
+              "%.0f MB after 3 trees, %.0f MB after all\n",
+              number_of_trees,
+              static_cast<double>(total) / n,
+              1000 * making / n,
+              1000 * writing / n,
+              making / writing,
+              before,
+              megabytes());
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+  CLI::App app("Families of trees: means, modes and new trees.");
+  std::vector<std::string> files;
+  std::string folder;
+  std::size_t parameters = 0, points = 0, trees = 100;
+  app.add_option("files", files, ".txtskl skeletons of one group");
+  app.add_option("--output", folder, "write skeletons of means, modes and new trees here");
+  app.add_option("--parameters", parameters, "so many virtual trees of two known parameters");
+  app.add_option("--points", points, "seconds per new tree of so many points");
+  app.add_option("--trees", trees, "new trees for --points");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    if (!folder.empty())
+      std::filesystem::create_directories(folder);
+    if (files.size() > 1)
+      run_group(files, folder);
+    if (parameters > 2)
+      run_parameters(parameters);
+    if (points > 0 && trees > 0)
+      run_speed(points, trees);
+  } catch (const std::exception& e) {
+    std::cerr << "bench_shape_space: " << e.what() << '\n';
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,62 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// A family of trees: their mean, how they differ, and new trees like them, with points in one order.
+
+#include <pcs/Orl_shape_space.h>
+#include <pcs/generators/grow_tree.h>
+
+#include <CGAL/Simple_cartesian.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <iostream>
+#include <vector>
+
+using Kernel = CGAL::Simple_cartesian<double>;
+using Tree = pcs::Tree_skeleton<Kernel>;
+
+int main()
+{
+  //! [family]
+  pcs::Orl_shape_space<Kernel> space;
+  for (int i = 0; i < 5; ++i) {
+    pcs::Tree_habit habit = pcs::fruit_habit();
+    habit.number_of_orders = 2;
+    habit.height *= 0.8 + 0.1 * i;
+    Tree tree;
+    pcs::grow_tree(tree, habit, pcs::parameters::random_seed(3));
+    std::vector<Kernel::Point_3> scan;
+    for (std::size_t v = 0; v < num_vertices(tree); ++v)
+      scan.push_back(tree[v].point + Kernel::Vector_3(tree[v].radius, 0, 0));
+    space.add(tree, scan);
+  }
+  std::cout << space.build() << '\n';
+  const pcs::Orl_tree mean = space.mean();
+  std::cout << "the mean is " << space.figures(mean).height << " m high\n";
+  //! [family]
+
+  //! [modes]
+  const auto modes = space.modes(2);
+  std::cout << "the first mode has " << 100 * modes.share(1) << " % of the variance\n";
+  for (std::size_t h = 0; h < space.number_of_trees(); ++h)
+    std::cout << "tree " << h << ": score " << modes.scores(static_cast<Eigen::Index>(h), 0)
+              << '\n';
+  const pcs::Orl_tree extreme = space.tree(modes, {2}); // two standard deviations
+  //! [modes]
+
+  //! [samples]
+  const auto distribution = space.distribution();
+  std::vector<Kernel::Point_3> points; // its memory is used again
+  double shortest = space.figures(extreme).height;
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    const pcs::Orl_tree tree = space.sample(distribution, 42, i);
+    space.points(tree, points);
+    std::cout << "new tree " << i << ": " << space.figures(tree).height << " m high, "
+              << points.size() << " points\n";
+    shortest = std::min(shortest, space.figures(tree).height);
+  }
+  //! [samples]
+  return shortest > 0 && !points.empty() ? EXIT_SUCCESS : EXIT_FAILURE;
+}

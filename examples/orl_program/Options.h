@@ -1,0 +1,172 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The command line of the program for spaces of trees.
+
+#ifndef PCS_EXAMPLES_ORL_PROGRAM_OPTIONS_H
+#define PCS_EXAMPLES_ORL_PROGRAM_OPTIONS_H
+
+#include <pcs/core/errors.h>
+
+#include <CLI/CLI.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace orl_program {
+
+struct Options
+{
+  std::vector<std::string> trees, skeletons;
+  std::vector<double> lambda = {0, 0.25, 0.5, 0.75, 1};
+  std::string output, matches, report, correspondences;
+  std::string transport = "exact", orientation = "gauge-fixed";
+  double maximal_turn = 45;
+  bool do_limit_radii = false, is_published = false, is_quiet = false;
+
+  // families
+  bool has_lambda = false, do_mean = false, do_growth = false, do_mesh = false;
+  bool is_monotone = false, may_leave_range = false;
+  std::string mean_kind = "l1", load, save, changes, distances;
+  std::size_t number_of_modes = 0, number_of_samples = 0, number_of_frames = 11;
+  std::uint64_t seed = 1;
+  std::vector<double> weights, times;
+  double pipe_exponent = 0;
+
+  bool is_family() const
+  {
+    return do_mean || do_growth || number_of_modes > 0 || number_of_samples > 0 ||
+           !weights.empty() || !save.empty() || !load.empty() || !changes.empty() ||
+           !distances.empty();
+  }
+};
+
+inline void declare_family(CLI::App& app, Options& o)
+{
+  const char* const group = "Families of trees";
+  app.add_flag("--mean", o.do_mean, "the mean of all trees: mean.swc, mean.ply")->group(group);
+  app.add_option("--mean-kind", o.mean_kind, "least sum of distances, or of their squares")
+      ->check(CLI::IsMember({"l1", "l2"}))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--modes",
+                 o.number_of_modes,
+                 "so many modes of variation, at two standard deviations either way: "
+                 "mode_1_minus.swc, mode_1_plus.swc, ..., and modes.json")
+      ->group(group);
+  app.add_option("--sample", o.number_of_samples, "so many new trees: sample_0000.swc, ...")
+      ->check(CLI::Range(0, 10000))
+      ->group(group);
+  app.add_option("--seed", o.seed, "of new trees")->capture_default_str()->group(group);
+  app.add_flag("--any-range",
+               o.may_leave_range,
+               "new trees may be larger or smaller than all inputs")
+      ->group(group);
+  app.add_option("--pipe-model",
+                 o.pipe_exponent,
+                 "radii of new trees to this power do not add up to more at forks; 2 to 2.5")
+      ->check(CLI::Range(0.0, 10.0))
+      ->group(group);
+  app.add_option("--weights", o.weights, "one per tree: the tree between, combination.swc")
+      ->delimiter(',')
+      ->group(group);
+  app.add_flag("--growth", o.do_growth, "a smooth path through all trees: growth_0000.swc, ...")
+      ->group(group);
+  app.add_option("--times", o.times, "of the trees for --growth, increasing; 0,1,2,... otherwise")
+      ->delimiter(',')
+      ->group(group);
+  app.add_option("--frames", o.number_of_frames, "of the path")
+      ->check(CLI::Range(2, 100000))
+      ->capture_default_str()
+      ->group(group);
+  app.add_flag("--monotone", o.is_monotone, "nothing shrinks on the path")->group(group);
+  app.add_option("--changes", o.changes, "write what became of each branch here (CSV, two trees)")
+      ->group(group);
+  app.add_option("--distances", o.distances, "write the distances of all pairs here (CSV)")
+      ->group(group);
+  app.add_flag("--mesh", o.do_mesh, "write surfaces as well: NAME_surface.ply")->group(group);
+  app.add_option("--save-space", o.save, "write the space here")->group(group);
+  app.add_option("--load-space", o.load, "read a space from here, instead of trees")->group(group);
+}
+
+inline CLI::Option* declare(CLI::App& app, Options& o)
+{
+  app.footer(
+      R"(Give --tree and --skeleton once for each tree: twice at least. Points: PLY, LAS, OFF or
+text. Skeletons: SWC, or .txtskl with layers of branches. Without --skeleton, skeletons are
+extracted from the points; without --tree, only skeletons are made.
+
+DIR gets lambda_0.250.ply and lambda_0.250.swc for each place on the path between the first two
+trees: 0 is the first, 1 the second; places beyond are allowed. Properties that all point files
+have are kept. Means, modes and the like are made instead of the path, or with --lambda as well.
+
+Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
+  app.set_version_flag("--version", PCS_PROGRAM_VERSION);
+  app.add_option("--tree", o.trees, "points of a tree, once for each")->allow_extra_args(false);
+  app.add_option("--skeleton", o.skeletons, "skeleton of a tree, once for each")
+      ->allow_extra_args(false);
+  CLI::Option* const lambda =
+      app.add_option("--lambda", o.lambda, "places on the path, separated by commas")
+          ->delimiter(',')
+          ->capture_default_str();
+  app.add_option("--output", o.output, "folder for the results; it is made")->required();
+  app.add_option("--matches",
+                 o.matches,
+                 "write the ids of the tips of matched branches here (CSV)");
+  app.add_option("--report", o.report, "write distances, counts and seconds here (JSON)");
+  app.add_option("--correspondences",
+                 o.correspondences,
+                 "read what was computed before from this file, or write it if there is none");
+  app.add_option("--transport", o.transport, "how points are matched")
+      ->check(CLI::IsMember({"exact", "sinkhorn"}))
+      ->capture_default_str();
+  app.add_option("--orientation", o.orientation, "how orientations are measured")
+      ->check(CLI::IsMember({"gauge-fixed", "transported", "world-axes"}))
+      ->capture_default_str();
+  app.add_option("--maximal-turn", o.maximal_turn, "of an edge beyond the ends [degrees]")
+      ->check(CLI::Range(0.0, 180.0))
+      ->capture_default_str();
+  app.add_flag("--limit-radii", o.do_limit_radii, "no branch thicker than where it grows from");
+  app.add_flag("--published-energy", o.is_published, "match branches with the energy of the text");
+  app.add_flag("--quiet", o.is_quiet, "print nothing but errors");
+  declare_family(app, o);
+  return lambda;
+}
+
+inline void check(const Options& o)
+{
+  const auto fail = [](const std::string& what) { throw pcs::Invalid_input(what); };
+  if (!o.load.empty() && !(o.trees.empty() && o.skeletons.empty()))
+    fail("--load-space is given with trees, expected one of both");
+  if (o.load.empty()) {
+    if (o.trees.empty() && o.skeletons.empty())
+      fail("expected --tree or --skeleton, twice");
+    for (const auto& [name, files] :
+         {std::make_pair("--tree", &o.trees), std::make_pair("--skeleton", &o.skeletons)})
+      if (files->size() == 1)
+        fail(std::string(name) + " is given 1 times, expected 2 at least");
+    if (!o.trees.empty() && !o.skeletons.empty() && o.trees.size() != o.skeletons.size())
+      fail("--tree is given " + std::to_string(o.trees.size()) + " times, --skeleton " +
+           std::to_string(o.skeletons.size()) + " times, expected as many");
+    const std::size_t n = std::max(o.trees.size(), o.skeletons.size());
+    if (n > 2 && !o.is_family() && !o.has_lambda)
+      fail("for " + std::to_string(n) +
+           " trees say what is wanted: --mean, --modes, --sample, --weights, --growth, "
+           "--save-space or --lambda");
+    if (n > 2 && (!o.correspondences.empty() || !o.matches.empty()))
+      fail("--correspondences and --matches are for two trees; use --save-space");
+  } else if (!o.correspondences.empty() || !o.matches.empty())
+    fail("--correspondences and --matches need the trees, not --load-space");
+  for (const double l : o.lambda)
+    if (!std::isfinite(l) || std::abs(l) > 1000)
+      fail("--lambda must be finite numbers between -1000 and 1000");
+  if (!o.times.empty() && !o.do_growth)
+    fail("--times is for --growth");
+}
+
+} // namespace orl_program
+
+#endif // PCS_EXAMPLES_ORL_PROGRAM_OPTIONS_H

@@ -1,0 +1,152 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Reads a whole shape space of trees from a file.
+
+#ifndef PCS_IO_READ_SHAPE_SPACE_H
+#define PCS_IO_READ_SHAPE_SPACE_H
+
+#include <pcs/IO/internal/Word_reader.h>
+#include <pcs/core/Orl_space_data.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace pcs {
+namespace IO {
+namespace internal {
+
+class Space_reader
+{
+public:
+  explicit Space_reader(const std::string& path) : m_file(path) {}
+
+  Orl_space_data read()
+  {
+    Orl_space_data s;
+    m_file.expect("pcs_shape_space");
+    m_file.expect("1");
+    m_file.expect("orientation");
+    s.orientation = m_file.number<int>("the kind of orientations");
+    read_all(s.origin);
+    m_file.expect("matching");
+    read_all(s.matching);
+    m_file.expect("branches");
+    for (std::size_t n = m_file.count("the number of branches"); n > 0; --n) {
+      Orl_space_data::Branch b;
+      b.parent = index();
+      b.number_of_edges = m_file.count("the number of edges");
+      b.reference_edge = index();
+      s.branches.push_back(b);
+    }
+    m_file.expect("trees");
+    for (std::size_t n = m_file.count("the number of trees"); n > 0; --n)
+      s.trees.push_back(read_tree());
+    s.reference = read_tree();
+    m_file.expect("weights");
+    s.weights.root = m_file.real("a weight");
+    for (auto* values : {&s.weights.orientation,
+                         &s.weights.length,
+                         &s.weights.radius,
+                         &s.weights.base_radius,
+                         &s.weights.attachment})
+      *values = read_numbers();
+    m_file.expect("pairs");
+    for (std::size_t n = m_file.count("the number of pairs"); n > 0; --n) {
+      Orl_correspondences::Pair p{};
+      p.edge = m_file.number<std::uint32_t>("the number of an edge");
+      for (std::uint32_t& i : p.point)
+        i = m_file.skip("-") ? Orl_correspondences::no_point
+                             : m_file.number<std::uint32_t>("the number of a point");
+      s.pairs.push_back(p);
+    }
+    m_file.expect("points");
+    const std::size_t number_of_points = m_file.count("the number of points");
+    m_file.expect("normals");
+    s.has_normals = m_file.count("whether there are normals") != 0;
+    for (std::size_t n = number_of_points; n > 0; --n) {
+      Orl_space_data::Point p;
+      p.tree = m_file.number<std::uint32_t>("the number of a tree");
+      p.index = m_file.number<std::uint32_t>("the number of a point");
+      p.edge = m_file.number<std::uint32_t>("the number of an edge");
+      read_all(p.position);
+      if (s.has_normals)
+        read_all(p.normal);
+      s.points.push_back(p);
+    }
+    if (!m_file.is_at_end())
+      m_file.fail("expected the end of the file");
+    return s;
+  }
+
+private:
+  template <class Range>
+  void read_all(Range& values)
+  {
+    for (double& v : values)
+      v = m_file.real("a number");
+  }
+  std::size_t index()
+  {
+    return m_file.skip("-") ? Orl_space_data::none : m_file.count("the number of an element");
+  }
+  // a false count is found out by the end of the file, before it fills the memory
+  std::vector<double> read_numbers()
+  {
+    std::vector<double> values;
+    for (std::size_t n = m_file.count("the number of values"); n > 0; --n)
+      values.push_back(m_file.real("a number"));
+    return values;
+  }
+  std::vector<std::array<double, 3>> read_vectors()
+  {
+    std::vector<std::array<double, 3>> values;
+    for (std::size_t n = m_file.count("the number of points"); n > 0; --n) {
+      values.emplace_back();
+      read_all(values.back());
+    }
+    return values;
+  }
+  Orl_space_data::Tree read_tree()
+  {
+    Orl_space_data::Tree t;
+    m_file.expect("tree");
+    read_all(t.root);
+    for (std::size_t n = m_file.count("the number of edges"); n > 0; --n) {
+      t.orientation.emplace_back();
+      read_all(t.orientation.back());
+    }
+    for (auto* values : {&t.length, &t.radius, &t.base_radius, &t.attachment})
+      *values = read_numbers();
+    for (std::size_t n = m_file.count("the number of branches"); n > 0; --n)
+      t.tip.push_back(index());
+    for (std::size_t n = m_file.count("the number of branches"); n > 0; --n)
+      t.has.push_back(m_file.count("0 or 1") != 0 ? 1 : 0);
+    t.point = read_vectors();
+    t.normal = read_vectors();
+    return t;
+  }
+
+  Word_reader m_file;
+};
+
+} // namespace internal
+
+/*!
+  \ingroup PkgPcsIORef
+  \brief reads what `write_shape_space()` wrote.
+
+  Whether the numbers make sense together is checked by `Orl_shape_space::restore()`.
+  \throws pcs::IO_error naming the line and what was expected there
+*/
+inline Orl_space_data read_shape_space(const std::string& path)
+{
+  return internal::Space_reader(path).read();
+}
+
+} // namespace IO
+} // namespace pcs
+
+#endif // PCS_IO_READ_SHAPE_SPACE_H

@@ -1,0 +1,339 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// One set of branches and nodes for any number of trees, and the coordinates of the trees on it.
+
+#ifndef PCS_SHAPE_SPACE_SHARED_TOPOLOGY_H
+#define PCS_SHAPE_SPACE_SHARED_TOPOLOGY_H
+
+#include <pcs/internal/parallel.h>
+#include <pcs/shape_space/Reference_tree.h>
+#include <pcs/shape_space/embed_trees.h>
+#include <pcs/shape_space/mean_rotation.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+
+/// A branch of the topology of many trees. Its nodes divide it in parts that are alike in all trees; between
+/// them branches are straight, so that a bend has one place, not one in each tree.
+struct Shared_branch
+{
+  std::size_t parent = none; ///< index of a branch that comes before, or `none`
+  std::size_t number_of_edges = 1;
+  std::size_t reference_edge = 0;        ///< edge of the parent, counted from its first
+  std::vector<std::size_t> path;         ///< per tree, `none`: the tree does not have the branch
+  std::vector<std::vector<double>> node; ///< per tree: shares of its length; empty: none
+  std::vector<double> attachment; ///< per tree: number of a node of the parent, and share behind it
+
+  bool has(std::size_t tree) const { return path[tree] != none; }
+  std::size_t number_of_members() const
+  {
+    return path.size() - static_cast<std::size_t>(std::count(path.begin(), path.end(), none));
+  }
+};
+
+/// Largest distance of an axis from the straight edges between its nodes, as a share of the branch. [-]
+constexpr double axis_tolerance = 0.01;
+
+/// Edges of a branch: as many as the most winding of its members needs, out of these.
+inline std::size_t number_of_straight_edges(const Rooted_tree& tree, const Branch_path& path)
+{
+  constexpr std::size_t steps[] = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32};
+  for (const std::size_t n : steps) {
+    double worst = 0;
+    for (std::size_t k = 0; k < path.nodes.size(); ++k) {
+      const double s = path.arc[k] / path.length() * static_cast<double>(n);
+      const auto i = std::min(n - 1, static_cast<std::size_t>(s));
+      const double step = path.length() / static_cast<double>(n);
+      const Vec3 a = point_at(tree, path, step * static_cast<double>(i));
+      const Vec3 v = point_at(tree, path, step * static_cast<double>(i + 1)) - a;
+      const Vec3 p = tree.points[path.nodes[k]] - a;
+      const double t =
+          v.squaredNorm() > 0 ? std::min(1.0, std::max(0.0, p.dot(v) / v.squaredNorm())) : 0;
+      worst = std::max(worst, (p - t * v).norm());
+    }
+    if (worst <= axis_tolerance * path.length())
+      return n;
+  }
+  return steps[9];
+}
+
+inline Orl_layout make_layout(const std::vector<Shared_branch>& branches)
+{
+  Orl_layout layout;
+  for (const Shared_branch& b : branches) {
+    Orl_layout::Branch branch;
+    branch.parent = b.parent;
+    branch.first_edge = layout.parent_edge.size();
+    branch.number_of_edges = b.number_of_edges;
+    if (b.parent != none)
+      branch.reference_edge = layout.branches[b.parent].first_edge + b.reference_edge;
+    for (std::size_t j = 0; j < branch.number_of_edges; ++j)
+      layout.parent_edge.push_back(j == 0 ? branch.reference_edge : branch.first_edge + j - 1);
+    layout.branches.push_back(branch);
+  }
+  return layout;
+}
+
+namespace internal {
+
+/// Number of the edge before an attachment.
+inline std::size_t edge_before(double attachment, std::size_t number_of_edges)
+{
+  const double t = std::max(0.0, std::ceil(attachment) - 1);
+  return std::min(number_of_edges - 1, static_cast<std::size_t>(t));
+}
+
+/// Lengths, radii, attachments and directions of tree `t`; nothing for branches that it does not have.
+inline Embedding embed(const Orl_layout& layout,
+                       const std::vector<Shared_branch>& branches,
+                       const Rooted_tree& tree,
+                       const Branch_paths& paths,
+                       std::size_t t,
+                       const Vec3& shift)
+{
+  const std::size_t n = layout.number_of_edges(), m = branches.size();
+  Embedding result;
+  result.direction.assign(n, Vec3::Zero());
+  result.frame.assign(n, Quaternion::Identity());
+  Orl_coordinates& x = result.x;
+  x.root = tree.points[0] + shift;
+  x.orientation.assign(n, Quaternion::Identity());
+  x.length.assign(n, 0);
+  x.radius.assign(n, 0);
+  x.base_radius.assign(m, 0);
+  x.attachment.assign(m, 0);
+  for (std::size_t b = 0; b < m; ++b) {
+    if (!branches[b].has(t))
+      continue;
+    x.attachment[b] = branches[b].attachment[t];
+    const Branch_path& path = paths.paths[branches[b].path[t]];
+    auto [from, radius] = node_at(tree, path, 0);
+    x.base_radius[b] = radius;
+    for (std::size_t j = 0; j < layout.branches[b].number_of_edges; ++j) {
+      const std::size_t e = layout.branches[b].first_edge + j;
+      const auto [to, end_radius] = node_at(tree, path, branches[b].node[t][j + 1]);
+      // a path that comes back to where it was still has an edge there
+      x.length[e] = std::max((to - from).norm(), shortest_edge * tree.extent);
+      x.radius[e] = end_radius;
+      result.direction[e] =
+          (to - from).norm() > 0 ? Vec3((to - from).normalized()) : Vec3(Vec3::UnitZ());
+      from = to;
+    }
+  }
+  return result;
+}
+
+/// Frames whose twist differs as little as possible from those of `reference`, edge by edge.
+inline void set_fixed_frames(const Orl_layout& layout, const Embedding& reference, Embedding& tree)
+{
+  std::vector<double> twist(layout.number_of_edges(), 0);
+  const Quaternion& root =
+      reference.frame[0]; // how the trees stand in the axes of the input does not matter
+  set_frames(layout, twist, root, tree);
+  const std::vector<double> total = Gauge(layout, reference, tree).run();
+  for (std::size_t e = 0; e < layout.number_of_edges(); ++e) {
+    const std::size_t p = layout.parent_edge[e];
+    if (reference.x.length[e] > 0 && tree.x.length[e] > 0)
+      twist[e] = total[e] - (p == none ? 0 : total[p]);
+  }
+  set_frames(layout, twist, root, tree);
+}
+
+inline void set_world_frames(const Orl_layout& layout, Embedding& tree)
+{
+  for (std::size_t e = 0; e < layout.number_of_edges(); ++e)
+    if (tree.x.length[e] > 0) {
+      const std::size_t p = layout.parent_edge[e];
+      const Quaternion parent = p == none ? Quaternion::Identity() : tree.frame[p];
+      tree.frame[e] = shortest_turn(parent * Vec3::UnitZ(), tree.direction[e]) * parent;
+      tree.frame[e].normalize();
+    }
+}
+
+/// Orientations of the edges that a tree has, from its frames.
+inline void set_own_orientations(const Orl_layout& layout, Orientation kind, Embedding& tree)
+{
+  for (std::size_t e = 0; e < layout.number_of_edges(); ++e)
+    if (tree.x.length[e] > 0) {
+      const std::size_t p = layout.parent_edge[e];
+      tree.x.orientation[e] =
+          p == none ? tree.frame[e] : relative(kind, tree.frame[p], tree.frame[e]);
+    }
+}
+
+/// The coordinates as they would be found in the tree that they stand for.
+inline Embedding as_embedding(const Orl_layout& layout, const Orl_coordinates& x)
+{
+  Embedding result;
+  result.x = x;
+  Orl_geometry geometry;
+  build_geometry(layout, x, Orientation::gauge_fixed, geometry);
+  result.frame = geometry.frame;
+  for (const Quaternion& q : result.frame)
+    result.direction.push_back(q * Vec3::UnitZ());
+  return result;
+}
+
+inline double median(std::vector<double> values)
+{
+  if (values.empty())
+    return 0;
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return 0.5 * (values[(n - 1) / 2] + values[n / 2]); // the middle of the interval of medians
+}
+
+/*!
+  Values of a tree in the middle of those that have each branch: medians of lengths, radii and attachments, L1 means of
+  orientations. Trees that lack a branch do not count there.
+*/
+template <class ConcurrencyTag>
+Orl_coordinates middle_of_members(const Orl_layout& layout,
+                                  const std::vector<Shared_branch>& branches,
+                                  const std::vector<Embedding>& trees)
+{
+  Orl_coordinates x = trees.front().x;
+  pcs::internal::for_each_index<ConcurrencyTag>(
+      branches.size(),
+      [&](std::size_t b) {
+        std::vector<std::size_t> members;
+        for (std::size_t t = 0; t < trees.size(); ++t)
+          if (branches[b].has(t))
+            members.push_back(t);
+        std::vector<double> values(members.size());
+        const auto of_members = [&](const auto& get) {
+          for (std::size_t i = 0; i < members.size(); ++i)
+            values[i] = get(trees[members[i]].x);
+          return median(values);
+        };
+        x.base_radius[b] = of_members([&](const Orl_coordinates& y) { return y.base_radius[b]; });
+        x.attachment[b] = of_members([&](const Orl_coordinates& y) { return y.attachment[b]; });
+        std::vector<Quaternion> q(members.size());
+        const std::size_t first = layout.branches[b].first_edge;
+        for (std::size_t e = first; e < first + layout.branches[b].number_of_edges; ++e) {
+          x.length[e] = of_members([&](const Orl_coordinates& y) { return y.length[e]; });
+          x.radius[e] = of_members([&](const Orl_coordinates& y) { return y.radius[e]; });
+          for (std::size_t i = 0; i < members.size(); ++i)
+            q[i] = trees[members[i]].x.orientation[e];
+          x.orientation[e] = l1_mean_rotation(q, std::vector<double>(q.size(), 1));
+        }
+      },
+      8);
+  for (int i = 0; i < 3; ++i) {
+    std::vector<double> values;
+    for (const Embedding& tree : trees)
+      values.push_back(tree.x.root[i]);
+    x.root[i] = median(values);
+  }
+  return x;
+}
+
+} // namespace internal
+
+/// Trees on a shared topology.
+struct Embedded_trees
+{
+  std::vector<Orl_coordinates> x; ///< of each tree
+  Orl_coordinates reference;      ///< the middle of the trees that have each branch
+};
+
+/*!
+  Coordinates of all trees. Twists of frames follow those of a tree in their middle, so that they do not count as a
+  difference; a branch that a tree lacks has the length 0 there, and the orientation and attachment of the middle tree: a
+  median is not moved by it.
+*/
+template <class ConcurrencyTag>
+Embedded_trees embed_trees(const Orl_layout& layout,
+                           const std::vector<Shared_branch>& branches,
+                           const std::vector<const Rooted_tree*>& trees,
+                           const std::vector<Branch_paths>& paths,
+                           const Orl_coordinates& reference,
+                           Orientation kind,
+                           Virtual_direction direction)
+{
+  using namespace internal;
+  Embedded_trees result;
+  std::vector<Embedding> all(trees.size());
+  result.reference = reference;
+  constexpr int number_of_passes = 2;
+  for (int pass = 0; pass < number_of_passes; ++pass) {
+    const Embedding middle = as_embedding(layout, result.reference);
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        trees.size(),
+        [&](std::size_t t) {
+          const Vec3 shift = trees[t]->origin - trees[0]->origin;
+          all[t] = embed(layout, branches, *trees[t], paths[t], t, shift);
+          if (kind == Orientation::world_axes)
+            set_world_frames(layout, all[t]);
+          else if (kind == Orientation::transported)
+            set_frames(layout,
+                       std::vector<double>(layout.number_of_edges(), 0),
+                       Quaternion::Identity(),
+                       all[t]);
+          else
+            set_fixed_frames(layout, middle, all[t]);
+          set_own_orientations(layout, kind, all[t]);
+        },
+        1);
+    result.reference = middle_of_members<ConcurrencyTag>(layout, branches, all);
+    if (kind != Orientation::gauge_fixed)
+      break;
+  }
+  for (std::size_t t = 0; t < trees.size(); ++t) {
+    Orl_coordinates& x = all[t].x;
+    for (std::size_t b = 0; b < branches.size(); ++b)
+      if (!branches[b].has(t)) {
+        x.attachment[b] = result.reference.attachment[b];
+        const bool is_first = branches[branches[b].parent].has(t);
+        const std::size_t first = layout.branches[b].first_edge;
+        for (std::size_t j = 0; j < layout.branches[b].number_of_edges; ++j)
+          x.orientation[first + j] =
+              j == 0 && is_first && direction == Virtual_direction::along_parent
+                  ? Quaternion::Identity()
+                  : result.reference.orientation[first + j];
+      }
+    result.x.push_back(std::move(x));
+  }
+  return result;
+}
+
+/// Weights in units of length: turns count with the mean length of the edge, all others 1; or all 1, as in the text.
+inline Orl_weights
+make_weights(const Orl_layout& layout, const std::vector<Orl_coordinates>& trees, bool is_text)
+{
+  Orl_weights w;
+  const std::size_t n = layout.number_of_edges(), m = layout.branches.size();
+  w.orientation.assign(n, 1);
+  w.length.assign(n, 1);
+  w.radius.assign(n, 1);
+  w.base_radius.assign(m, 1);
+  w.attachment.assign(m, 1);
+  if (is_text)
+    return w;
+  for (std::size_t e = 0; e < n; ++e) {
+    double sum = 0;
+    for (const Orl_coordinates& x : trees)
+      sum += x.length[e];
+    w.orientation[e] = sum / static_cast<double>(trees.size());
+  }
+  for (std::size_t b = 0; b < m; ++b)
+    if (const std::size_t p = layout.branches[b].parent; p != none) {
+      double length = 0;
+      for (std::size_t j = 0; j < layout.branches[p].number_of_edges; ++j)
+        length += w.orientation[layout.branches[p].first_edge + j];
+      w.attachment[b] = length / static_cast<double>(layout.branches[p].number_of_edges);
+    }
+  return w;
+}
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_SHARED_TOPOLOGY_H

@@ -1,0 +1,880 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Families of trees: one topology, means, modes, new trees, growth, changes, saving.
+
+#include <pcs/IO/read_shape_space.h>
+#include <pcs/IO/write_shape_space.h>
+#include <pcs/Orl_shape_space.h>
+#include <support/exceptions.h>
+#include <support/orl_trees.h>
+#include <support/threads.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <unistd.h>
+
+using namespace orl_test;
+using namespace pcs::shape_space;
+namespace np = pcs::parameters;
+using Space = pcs::Orl_shape_space<Kernel>;
+using pcs::Quaternion;
+using pcs_test::message_has;
+
+namespace {
+
+/// Trees like each other: branches of one tree, turned, stretched, some cut.
+std::vector<Tree>
+relatives(std::size_t n, unsigned seed, double sigma = 0.15, double cut = 0.15, int orders = 3)
+{
+  std::vector<Tree> result;
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform(0, 1);
+  const std::vector<Branch> all = random_branches(seed, 5, orders);
+  for (std::size_t i = 0; i < n; ++i) {
+    std::vector<Branch> branches = all;
+    Turns turns(all.size(), Eigen::Matrix3d::Identity());
+    std::vector<char> is_kept(all.size(), 1);
+    for (std::size_t b = 1; b < all.size(); ++b) {
+      const Vec3 u = sigma * Vec3(normal(random), normal(random), normal(random));
+      turns[b] = Eigen::AngleAxisd(u.norm(), u.normalized()).toRotationMatrix();
+      const double stretch = std::exp(0.1 * normal(random));
+      for (Vec3& p : branches[b].points)
+        p *= stretch;
+      is_kept[b] = uniform(random) >= cut;
+    }
+    std::vector<std::size_t> tip;
+    result.push_back(make_tree(branches, turns, is_kept, tip));
+  }
+  return result;
+}
+
+Space make_space(const std::vector<Tree>& trees)
+{
+  Space space;
+  for (const Tree& tree : trees)
+    space.add_skeleton(tree);
+  space.build();
+  return space;
+}
+
+std::vector<Point> rings(const Tree& tree, int n = 8)
+{
+  std::vector<Point> points;
+  for (std::size_t v = 0; v < num_vertices(tree); ++v)
+    for (int k = 0; k < n; ++k)
+      points.push_back(tree[v].point +
+                       tree[v].radius * Kernel::Vector_3(std::cos(2 * CGAL_PI * k / n),
+                                                         std::sin(2 * CGAL_PI * k / n),
+                                                         0.1));
+  return points;
+}
+
+double total_length(const Orl_coordinates& x)
+{
+  double sum = 0;
+  for (const double l : x.length)
+    sum += l;
+  return sum;
+}
+
+double sum_of_distances(const Space& space, const Orl_coordinates& x, bool is_squared)
+{
+  double sum = 0;
+  for (std::size_t h = 0; h < space.number_of_trees(); ++h) {
+    const double d = distance(x,
+                              space.tree(h).coordinates(),
+                              space.weights(),
+                              is_squared ? Orl_metric::square : Orl_metric::sum);
+    sum += is_squared ? d * d : d;
+  }
+  return sum;
+}
+
+struct Family : Space
+{
+  explicit Family(std::size_t n = 6, unsigned seed = 3) : Space(make_space(relatives(n, seed))) {}
+};
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(orl_topology)
+
+BOOST_AUTO_TEST_CASE(branches_of_relatives_are_the_same_branches)
+{
+  // the original tree has 1 + 5 + 25 branches; wrong matches would add more
+  const Family space(8);
+  const std::size_t n = space.layout().branches.size();
+  BOOST_TEST(n >= 31u);
+  BOOST_TEST(n <= 33u);
+  for (std::size_t h = 0; h < 8; ++h)
+    BOOST_TEST(space.has_branch(h, 0));
+}
+
+BOOST_AUTO_TEST_CASE(trees_of_the_space_are_the_inputs)
+{
+  const std::vector<Tree> trees = relatives(5, 4);
+  const Space space = make_space(trees);
+  for (std::size_t h = 0; h < trees.size(); ++h) {
+    Tree back;
+    space.skeleton(space.tree(h), back);
+    const auto length = [](const Tree& tree) {
+      double sum = 0;
+      for (const auto e : boost::make_iterator_range(edges(tree)))
+        sum += std::sqrt(
+            CGAL::squared_distance(tree[source(e, tree)].point, tree[target(e, tree)].point));
+      return sum;
+    };
+    // axes are straight between nodes, and branches begin on them
+    BOOST_TEST(std::abs(total_length(space.tree(h).coordinates()) / length(trees[h]) - 1) < 0.03);
+    for (std::size_t b = 0; b < space.layout().branches.size(); ++b)
+      if (space.has_branch(h, b)) {
+        // tips are where they were, up to what the straight axes of the parents shift
+        const Point tip = trees[h][space.tip_of_branch(h, b)].point;
+        double least = 1e300;
+        for (std::size_t v = 0; v < num_vertices(back); ++v)
+          least = std::min(least, CGAL::squared_distance(back[v].point, tip));
+        BOOST_TEST(std::sqrt(least) < 0.03 * 10);
+      }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_axioms_hold_on_the_shared_topology)
+{
+  const Family space;
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  const auto draw = [&] {
+    std::vector<double> w(space.number_of_trees());
+    for (double& x : w)
+      x = std::abs(normal(random));
+    return space.combination(w);
+  };
+  for (int i = 0; i < 200; ++i) {
+    const pcs::Orl_tree x = draw(), y = draw(), z = draw();
+    for (const Orl_metric metric : {Orl_metric::sum, Orl_metric::square, Orl_metric::cone}) {
+      const auto d = [&](const pcs::Orl_tree& a, const pcs::Orl_tree& b) {
+        return space.distance(a, b, np::metric(metric));
+      };
+      BOOST_TEST(d(x, x) == 0);
+      BOOST_TEST(d(x, y) > 0);
+      BOOST_TEST(std::abs(d(x, y) - d(y, x)) <= 1e-12 * d(x, y));
+      BOOST_TEST(d(x, z) <= (d(x, y) + d(y, z)) * (1 + 1e-12));
+    }
+  }
+  const std::vector<double> all = space.distances();
+  for (std::size_t a = 0; a < 6; ++a)
+    for (std::size_t b = 0; b < 6; ++b) {
+      BOOST_TEST(all[a * 6 + b] == all[b * 6 + a]);
+      BOOST_TEST((a == b) == (all[a * 6 + b] == 0));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(the_order_of_the_trees_does_not_matter)
+{
+  const std::vector<Tree> trees = relatives(7, 5, 0.3, 0.3);
+  const Space space = make_space(trees);
+  std::mt19937 random(2);
+  for (int i = 0; i < 3; ++i) {
+    std::vector<std::size_t> order{0, 1, 2, 3, 4, 5, 6};
+    std::shuffle(order.begin(), order.end(), random);
+    std::vector<Tree> other;
+    for (const std::size_t k : order)
+      other.push_back(trees[k]);
+    const Space permuted = make_space(other);
+    BOOST_REQUIRE(permuted.layout().branches.size() == space.layout().branches.size());
+    for (std::size_t a = 0; a < 7; ++a)
+      for (std::size_t b = 0; b < a; ++b)
+        BOOST_TEST(std::abs(permuted.distance(a, b) - space.distance(order[a], order[b])) <
+                   1e-6 * space.distance(order[a], order[b]));
+    for (const Tree_mean kind : {Tree_mean::least_sum, Tree_mean::least_squares}) {
+      const pcs::Orl_tree m = space.mean(np::tree_mean(kind)),
+                          p = permuted.mean(np::tree_mean(kind));
+      // roots of both are in the axes of their first tree, which is at the same place here
+      BOOST_TEST(distance(m.coordinates(), p.coordinates(), space.weights(), Orl_metric::sum) <
+                 1e-6 * total_length(m.coordinates()));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(odd_groups_have_a_topology)
+{
+  Tree line;
+  const auto a = add_vertex(pcs::Tree_node<Kernel>(), line);
+  const auto b = add_vertex(pcs::Tree_node<Kernel>(), line);
+  line[b].point = Point(0, 0, 2);
+  add_edge(a, b, line);
+  // all alike, all a single branch, and no branch in common but the trunk
+  for (const std::vector<Tree>& trees :
+       {std::vector<Tree>(4, line),
+        std::vector<Tree>(3, relatives(1, 8)[0]),
+        std::vector<Tree>{line, relatives(1, 8)[0], relatives(1, 99)[0]}}) {
+    const Space space = make_space(trees);
+    const pcs::Orl_tree mean = space.mean();
+    BOOST_TEST(std::isfinite(total_length(mean.coordinates())));
+    const auto modes = space.modes(5);
+    BOOST_TEST(modes.size() < trees.size());
+    const auto tree = space.sample(1);
+    BOOST_TEST(std::isfinite(total_length(tree.coordinates())));
+    BOOST_TEST(total_length(tree.coordinates()) > 0);
+    if (trees[0][0].point == trees[1][0].point &&
+        num_vertices(trees[0]) == num_vertices(trees[2])) {
+      BOOST_TEST(modes.size() == 0u);
+      BOOST_TEST(space.distance(tree, space.tree(0)) < 1e-9);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_further_tree_finds_its_place)
+{
+  std::vector<Tree> trees = relatives(7, 6);
+  const Tree last = trees.back();
+  trees.pop_back();
+  const Space space = make_space(trees);
+  double share = 0;
+  const pcs::Orl_tree placed = space.embed(last, np::default_values(), &share);
+  BOOST_TEST(share > 0.95);
+  BOOST_TEST(share <= 1 + 1e-9);
+  // an added tree comes back
+  const pcs::Orl_tree own = space.embed(trees[2]);
+  BOOST_TEST(space.distance(own, space.tree(2)) < 0.1 * space.distance(own, space.tree(3)));
+  const auto modes = space.modes(3);
+  const double usual = space.outlier_score(modes, placed);
+  BOOST_TEST(usual > 0.3);
+  BOOST_TEST(usual < 2);
+  const pcs::Orl_tree strange = space.embed(relatives(1, 77)[0]);
+  BOOST_TEST(space.outlier_score(modes, strange) > 1.5 * usual);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(orl_means)
+
+BOOST_AUTO_TEST_CASE(no_tree_near_the_mean_is_better)
+{
+  const Family space(5);
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  for (const bool is_squared : {false, true}) {
+    const Orl_coordinates mean =
+        space.mean(np::tree_mean(is_squared ? Tree_mean::least_squares : Tree_mean::least_sum))
+            .coordinates();
+    const double least = sum_of_distances(space, mean, is_squared);
+    std::size_t number_better = 0;
+    for (int i = 0; i < 2000; ++i) {
+      Orl_coordinates x = mean;
+      const auto e = static_cast<std::size_t>(random()) % x.length.size();
+      const auto b = static_cast<std::size_t>(random()) % x.attachment.size();
+      const double scale = std::pow(10.0, -2 - 2 * (i % 2));
+      x.orientation[e] =
+          x.orientation[e] *
+          pcs::rotation_exp(scale * Vec3(normal(random), normal(random), normal(random)));
+      x.length[e] = std::max(0.0, x.length[e] + scale * normal(random));
+      x.radius[e] = std::max(0.0, x.radius[e] + scale * normal(random));
+      x.base_radius[b] += scale * normal(random);
+      x.attachment[b] += scale * normal(random);
+      x.root += scale * Vec3(normal(random), normal(random), normal(random));
+      number_better += sum_of_distances(space, x, is_squared) < least * (1 - 1e-12);
+    }
+    BOOST_TEST(number_better == 0u);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_mean_of_two_is_a_midpoint)
+{
+  const Space space = make_space(relatives(2, 9));
+  const double whole = space.distance(0, 1);
+  for (const Tree_mean kind : {Tree_mean::least_sum, Tree_mean::least_squares}) {
+    const pcs::Orl_tree mean = space.mean(np::tree_mean(kind));
+    BOOST_TEST(std::abs(space.distance(mean, space.tree(0)) - whole / 2) < 1e-9 * whole);
+    BOOST_TEST(std::abs(space.distance(mean, space.tree(1)) - whole / 2) < 1e-9 * whole);
+  }
+  const pcs::Orl_tree part = space.combination({3, 1});
+  BOOST_TEST(space.distance(part, space.geodesic(0, 1, 0.25)) < 1e-9 * whole);
+}
+
+BOOST_AUTO_TEST_CASE(gross_outliers_do_not_move_an_L1_rotation)
+{
+  std::mt19937 random(4);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 50; ++i) {
+    const Quaternion center =
+        pcs::rotation_exp(Vec3(normal(random), normal(random), normal(random)));
+    std::vector<Quaternion> q;
+    for (int k = 0; k < 10; ++k) {
+      const Vec3 u = k < 7
+                         ? 0.05 * Vec3(normal(random), normal(random), normal(random))
+                         : 1.4 * Vec3(normal(random), normal(random), normal(random)).normalized();
+      q.push_back(center * pcs::rotation_exp(u));
+      if (k % 2)
+        q.back().coeffs() = -q.back().coeffs();
+    }
+    const std::vector<double> w(q.size(), 1);
+    BOOST_TEST(angle_between(l1_mean_rotation(q, w), center) < 0.1);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(an_L1_rotation_may_be_a_data_point_or_the_middle_of_an_arc)
+{
+  const auto turn = [](double angle) { return pcs::rotation_exp(Vec3(0, 0, angle)); };
+  const auto mean = [](const std::vector<Quaternion>& q, const std::vector<double>& w) {
+    return l1_mean_rotation(q, w);
+  };
+  BOOST_TEST(angle_between(mean({turn(0), turn(0.2), turn(1)}, {1, 1, 1}), turn(0.2)) < 1e-12);
+  BOOST_TEST(angle_between(mean({turn(0), turn(0.2), turn(0.4), turn(1)}, {1, 1, 1, 1}),
+                           turn(0.3)) < 1e-9);
+  BOOST_TEST(angle_between(mean({turn(0), turn(1)}, {1, 1}), turn(0.5)) < 1e-9);
+  BOOST_TEST(angle_between(mean({turn(0), turn(1)}, {1, 3}), turn(1)) < 1e-9);
+  BOOST_TEST(angle_between(mean({turn(0.3)}, {1}), turn(0.3)) < 1e-12);
+  // heavier than the pull of all others, off the middle
+  const Quaternion a = pcs::rotation_exp(Vec3(0.5, 0, 0)), b = pcs::rotation_exp(Vec3(0, 0.6, 0));
+  BOOST_TEST(angle_between(mean({a, b, turn(0.1)}, {1, 1, 2.1}), turn(0.1)) < 1e-12);
+}
+
+BOOST_AUTO_TEST_CASE(combinations_are_between_and_directions_are_free)
+{
+  const Family space(4);
+  for (std::size_t h = 0; h < 4; ++h) {
+    std::vector<double> w(4, 0);
+    w[h] = 2;
+    BOOST_TEST(space.distance(space.combination(w), space.tree(h)) < 1e-9);
+  }
+  const pcs::Orl_tree half = space.combination({1, 1, 0, 0});
+  BOOST_TEST(space.distance(half, space.geodesic(0, 1, 0.5)) < 1e-9 * space.distance(0, 1));
+  const pcs::Orl_tree moved = space.displaced(space.tree(0), space.tree(0), space.tree(1), 1);
+  BOOST_TEST(space.distance(moved, space.tree(1)) < 1e-9 * space.distance(0, 1));
+  const pcs::Orl_tree same = space.displaced(space.tree(2), space.tree(0), space.tree(1), 0);
+  BOOST_TEST(space.distance(same, space.tree(2)) < 1e-9);
+  const pcs::Orl_tree beyond = space.combination({2, -1, 0.5, 0});
+  for (const double l : beyond.coordinates().length)
+    BOOST_TEST(l >= 0);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(orl_modes)
+
+BOOST_AUTO_TEST_CASE(all_modes_give_the_inputs_back)
+{
+  const Family space(6);
+  const auto modes = space.modes(100);
+  BOOST_TEST(modes.size() == 5u);
+  BOOST_TEST(std::abs(modes.share(5) - 1) < 1e-9);
+  for (std::size_t h = 0; h < 6; ++h) {
+    const pcs::Orl_tree tree = space.tree(h);
+    const double size = total_length(tree.coordinates());
+    BOOST_TEST(space.distance(space.reconstruct(modes, tree, 5), tree) < 1e-9 * size);
+    double last = 1e300;
+    for (std::size_t k = 1; k <= 5; ++k) {
+      const double d = space.project(space.modes(k), tree).distance;
+      BOOST_TEST(d < last + 1e-9 * size);
+      last = d;
+    }
+    BOOST_TEST(last < 1e-9 * size);
+  }
+  // uncorrelated, of unit variance, orthonormal
+  const Eigen::MatrixXd products = modes.scores.transpose() * modes.scores / 5;
+  BOOST_TEST((products - Eigen::MatrixXd::Identity(5, 5)).norm() < 1e-9);
+  BOOST_TEST(
+      (modes.directions.transpose() * modes.directions - Eigen::MatrixXd::Identity(5, 5)).norm() <
+      1e-9);
+}
+
+BOOST_AUTO_TEST_CASE(two_known_modes_are_found)
+{
+  // trees at random places of a plane through a mean
+  const Family base(5);
+  const Orl_coordinates mean = base.mean(np::tree_mean(Tree_mean::least_squares)).coordinates();
+  const Tangent_space tangent(base.layout(), mean, base.weights());
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd plane(tangent.dimension(), 2);
+  for (Eigen::Index i = 0; i < plane.size(); ++i)
+    plane.data()[i] = normal(random);
+  plane.col(0).normalize();
+  plane.col(1) = (plane.col(1) - plane.col(0).dot(plane.col(1)) * plane.col(0)).normalized();
+  std::vector<Orl_coordinates> trees;
+  std::vector<const Orl_coordinates*> pointers;
+  for (int i = 0; i < 20; ++i)
+    trees.push_back(
+        tangent.exp(0.06 * normal(random) * plane.col(0) + 0.03 * normal(random) * plane.col(1)));
+  for (const Orl_coordinates& x : trees)
+    pointers.push_back(&x);
+  using Tag = CGAL::Parallel_if_available_tag;
+  const Orl_coordinates middle =
+      mean_tree<Tag>(base.layout(), pointers, std::vector<double>(20, 1), Tree_mean::least_squares);
+  const auto modes = find_modes<Tag>(base.layout(), pointers, base.weights(), middle, 2);
+  BOOST_REQUIRE(modes.size() == 2u);
+  BOOST_TEST(modes.share(2) > 0.98);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(plane.transpose() * modes.directions);
+  const double cosine = svd.singularValues().minCoeff();
+  BOOST_TEST(std::acos(std::min(1.0, cosine)) < 5 * CGAL_PI / 180);
+}
+
+BOOST_AUTO_TEST_CASE(left_out_trees_are_nearer_with_more_modes)
+{
+  const Family space(7);
+  const auto modes = space.modes(6);
+  for (std::size_t k = 0; k < 5; ++k)
+    BOOST_TEST(modes.left_out_error(k + 1) < modes.left_out_error(k) * (1 + 1e-12));
+  BOOST_TEST(modes.left_out_error(5) < 0.999 * modes.left_out_error(0));
+  // against the definition, for one tree and two modes
+  const Family others(7);
+  std::vector<Orl_coordinates> x;
+  std::vector<const Orl_coordinates*> pointers;
+  for (std::size_t h = 0; h < 7; ++h)
+    x.push_back(space.tree(h).coordinates());
+  for (std::size_t h = 1; h < 7; ++h)
+    pointers.push_back(&x[h]);
+  const auto rest =
+      find_modes<CGAL::Sequential_tag>(space.layout(), pointers, space.weights(), modes.mean, 2);
+  const double d = project_on_modes(space.layout(), space.weights(), rest, x[0]).distance;
+  BOOST_TEST(std::abs(d - modes.left_out[0][2]) < 1e-6 * d);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(orl_samples)
+
+BOOST_AUTO_TEST_CASE(new_trees_are_different_and_within_the_inputs)
+{
+  const Family space(8);
+  const auto distribution = space.distribution();
+  std::vector<Tree_figures> inputs;
+  for (std::size_t h = 0; h < 8; ++h)
+    inputs.push_back(space.figures(space.tree(h)));
+  std::set<double> lengths;
+  for (std::uint64_t i = 0; i < 30; ++i) {
+    pcs::Sample_report report;
+    const pcs::Orl_tree tree = space.sample(distribution, 11, i, np::default_values(), &report);
+    // all trunks are alike here, so that the range of heights is nearly a point
+    BOOST_TEST(report.excess < 0.01);
+    BOOST_TEST(excess(space.figures(tree), inputs) == report.excess);
+    const Orl_coordinates& x = tree.coordinates();
+    lengths.insert(total_length(x));
+    for (std::size_t b = 0; b < space.layout().branches.size(); ++b) {
+      const auto& branch = space.layout().branches[b];
+      const bool is_there = x.length[branch.first_edge] > 0;
+      for (std::size_t e = branch.first_edge; e < branch.first_edge + branch.number_of_edges; ++e) {
+        BOOST_TEST((x.length[e] > 0) == is_there);
+        BOOST_TEST((x.radius[e] > 0) == is_there);
+      }
+      if (is_there && b > 0)
+        BOOST_TEST(x.length[space.layout().branches[branch.parent].first_edge] > 0);
+    }
+  }
+  BOOST_TEST(lengths.size() == 30u);
+}
+
+BOOST_AUTO_TEST_CASE(a_seed_gives_a_family_and_a_tree_does_not_depend_on_the_others)
+{
+  const Family space(4);
+  const auto d = space.distribution();
+  const pcs::Orl_tree a = space.sample(d, 5, 7), b = space.sample(space.distribution(), 5, 7);
+  BOOST_TEST(space.distance(a, b) == 0);
+  BOOST_TEST(space.distance(a, space.sample(d, 5, 8)) > 0);
+  BOOST_TEST(space.distance(a, space.sample(d, 6, 7)) > 0);
+}
+
+BOOST_AUTO_TEST_CASE(moments_of_new_trees_are_those_of_the_inputs)
+{
+  const Space space = make_space(relatives(12, 21, 0.15, 0)); // all branches everywhere
+  const auto distribution = space.distribution();
+  Sampling_options free;
+  free.do_keep_in_range = false;
+  free.truncation = 6;
+  const auto figures = [&](std::size_t e, const Orl_coordinates& x) {
+    return std::log(x.length[e]);
+  };
+  // logarithms of lengths: the means are those of the inputs, and so are variances on average
+  const std::size_t n = space.layout().number_of_edges(), m = 4000;
+  std::vector<double> mean(n, 0), square(n, 0), input_mean(n, 0), input_square(n, 0);
+  for (std::size_t i = 0; i < m; ++i) {
+    const Orl_coordinates x =
+        space.sample(distribution, 1, i, np::sampling_options(free)).coordinates();
+    for (std::size_t e = 0; e < n; ++e) {
+      mean[e] += figures(e, x) / static_cast<double>(m);
+      square[e] += figures(e, x) * figures(e, x) / static_cast<double>(m);
+    }
+  }
+  for (std::size_t h = 0; h < 12; ++h)
+    for (std::size_t e = 0; e < n; ++e) {
+      const double v = figures(e, space.tree(h).coordinates());
+      input_mean[e] += v / 12;
+      input_square[e] += v * v / 12;
+    }
+  double worst = 0, drawn = 0, given = 0;
+  for (std::size_t e = 0; e < n; ++e) {
+    const double variance = square[e] - mean[e] * mean[e];
+    drawn += variance;
+    given += (input_square[e] - input_mean[e] * input_mean[e]) * 12 / 11;
+    worst =
+        std::max(worst,
+                 std::abs(mean[e] - input_mean[e]) / std::sqrt(variance / static_cast<double>(m)));
+  }
+  BOOST_TEST(worst < 5); // standard errors
+  BOOST_TEST(std::abs(drawn / given - 1) < 0.1);
+}
+
+BOOST_AUTO_TEST_CASE(limits_hold_when_asked_for)
+{
+  const Family space(5);
+  const auto distribution = space.distribution();
+  const Orl_layout& layout = space.layout();
+  const auto radius_at = [&](const Orl_coordinates& x, std::size_t b, double t) {
+    const auto k = std::min(layout.branches[b].number_of_edges - 1, static_cast<std::size_t>(t));
+    const auto at = [&](std::size_t i) {
+      return i == 0 ? x.base_radius[b] : x.radius[layout.branches[b].first_edge + i - 1];
+    };
+    const double f = t - static_cast<double>(k);
+    return (1 - f) * at(k) + f * at(k + 1);
+  };
+  Sampling_options options;
+  options.do_limit_radii = true;
+  options.do_keep_in_range = false;
+  for (std::uint64_t i = 0; i < 10; ++i) {
+    const Orl_coordinates x =
+        space.sample(distribution, 2, i, np::sampling_options(options)).coordinates();
+    for (std::size_t b = 1; b < layout.branches.size(); ++b)
+      BOOST_TEST(x.base_radius[b] <=
+                 radius_at(x, layout.branches[b].parent, x.attachment[b]) * (1 + 1e-12));
+  }
+  options.pipe_exponent = 2;
+  options.do_limit_radii = false;
+  for (std::uint64_t i = 0; i < 10; ++i) {
+    const Orl_coordinates x =
+        space.sample(distribution, 2, i, np::sampling_options(options)).coordinates();
+    // what leaves the trunk and what is left at its tip
+    double sum = std::pow(x.radius[layout.branches[0].number_of_edges - 1], 2);
+    for (std::size_t b = 1; b < layout.branches.size(); ++b)
+      if (layout.branches[b].parent == 0)
+        sum += x.base_radius[b] * x.base_radius[b];
+    BOOST_TEST(sum <= x.base_radius[0] * x.base_radius[0] * (1 + 1e-9));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(points_follow_their_branches_in_one_order)
+{
+  const std::vector<Tree> trees = relatives(4, 31);
+  Space space;
+  std::vector<std::vector<Point>> scans;
+  for (const Tree& tree : trees) {
+    scans.push_back(rings(tree));
+    space.add(tree, scans.back());
+  }
+  space.build(np::points_of(std::size_t(2)));
+  // the tree whose scan is used gets it back
+  std::vector<Point> points;
+  const pcs::Orl_tree own = space.tree(2);
+  BOOST_TEST(space.points(own, points) == own.number_of_points());
+  std::vector<double> error(points.size(), -1);
+  std::vector<std::size_t> source(points.size(), 0);
+  space.for_each_source(own, [&](std::size_t i, std::size_t h, std::size_t k) {
+    source[i] = h;
+    error[i] = std::sqrt(CGAL::squared_distance(points[i], scans[h][k]));
+  });
+  std::size_t number_of_own = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    BOOST_TEST(source[i] == 2u);
+    BOOST_TEST(error[i] >= 0);
+    BOOST_TEST(error[i] < 1e-9);
+    number_of_own += source[i] == 2;
+  }
+  BOOST_TEST(number_of_own == scans[2].size());
+  // points of a new tree lie about its axes, as far as its radii say
+  const pcs::Orl_tree drawn = space.sample(3);
+  space.points(drawn, points);
+  std::vector<std::pair<std::size_t, std::size_t>> order;
+  order.resize(points.size());
+  space.for_each_source(drawn, [&](std::size_t i, std::size_t h, std::size_t k) {
+    order[i] = {h, k};
+  });
+  Tree skeleton;
+  space.skeleton(drawn, skeleton);
+  std::size_t number_far = 0;
+  for (const Point& p : points) {
+    double least = 1e300;
+    for (const auto e : boost::make_iterator_range(edges(skeleton))) {
+      const Vec3 a = to_eigen(skeleton[boost::source(e, skeleton)].point);
+      const Vec3 v = to_eigen(skeleton[boost::target(e, skeleton)].point) - a;
+      const double t =
+          std::min(1.0,
+                   std::max(0.0, (to_eigen(p) - a).dot(v) / std::max(1e-300, v.squaredNorm())));
+      least = std::min(least, (to_eigen(p) - a - t * v).norm());
+    }
+    number_far += least > 1.0; // the trunk is 0.3 thick
+  }
+  BOOST_TEST(number_far == 0u);
+  BOOST_TEST(points.size() > scans[0].size() / 2);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(orl_growth)
+
+BOOST_AUTO_TEST_CASE(the_path_goes_through_all_trees_smoothly)
+{
+  const Family space(4);
+  const std::vector<double> times{0, 1, 3, 4};
+  const auto path = space.growth({2, 0, 1, 3}, times);
+  const std::size_t order[] = {2, 0, 1, 3};
+  for (std::size_t i = 0; i < 4; ++i) {
+    Tree a, b;
+    space.skeleton(space.tree(path, times[i]), a);
+    space.skeleton(space.tree(order[i]), b);
+    BOOST_REQUIRE(num_vertices(a) == num_vertices(b));
+    for (std::size_t v = 0; v < num_vertices(a); ++v)
+      BOOST_TEST(CGAL::squared_distance(a[v].point, b[v].point) < 1e-16);
+  }
+  // the speed is the same on both sides of an inner tree
+  const double h = 1e-5;
+  const auto at = [&](double t) { return space.tree(path, t); };
+  const Orl_coordinates l = at(1 - h).coordinates(), m = at(1).coordinates(),
+                        r = at(1 + h).coordinates();
+  double worst = 0;
+  for (std::size_t e = 0; e < m.length.size(); ++e) {
+    worst =
+        std::max(worst, std::abs((r.length[e] - m.length[e]) - (m.length[e] - l.length[e])) / h);
+    const Vec3 before = pcs::rotation_log(l.orientation[e].conjugate() * m.orientation[e]);
+    const Vec3 after = pcs::rotation_log(m.orientation[e].conjugate() * r.orientation[e]);
+    worst = std::max(worst, (after - before).norm() / h);
+  }
+  BOOST_TEST(worst < 1e-3);
+  BOOST_TEST(space.distance(space.tree(path, -5), space.tree(path, 0)) == 0);
+}
+
+BOOST_AUTO_TEST_CASE(nothing_shrinks_when_asked)
+{
+  const Family space(5);
+  const auto path = space.growth({0, 1, 2, 3, 4}, {0, 1, 2, 3, 4}, np::is_monotone(true));
+  const auto free = space.growth({0, 1, 2, 3, 4}, {0, 1, 2, 3, 4});
+  Orl_coordinates last = space.tree(path, 0).coordinates();
+  Orl_coordinates last_free = space.tree(free, 0).coordinates();
+  std::size_t number_shrunk = 0, number_shrunk_free = 0;
+  for (int k = 1; k <= 80; ++k) {
+    const Orl_coordinates x = space.tree(path, 0.05 * k).coordinates();
+    const Orl_coordinates y = space.tree(free, 0.05 * k).coordinates();
+    for (std::size_t e = 0; e < x.length.size(); ++e) {
+      number_shrunk +=
+          x.length[e] < last.length[e] * (1 - 1e-12) || x.radius[e] < last.radius[e] * (1 - 1e-12);
+      number_shrunk_free += y.length[e] < last_free.length[e] * (1 - 1e-12);
+      BOOST_TEST(y.length[e] >= 0);
+    }
+    last = x;
+    last_free = y;
+  }
+  BOOST_TEST(number_shrunk == 0u);
+  BOOST_TEST(number_shrunk_free > 0u);
+}
+
+BOOST_AUTO_TEST_CASE(changes_are_named)
+{
+  const std::vector<Branch> all = random_branches(41, 4, 2);
+  std::vector<Branch> later = all;
+  Turns still(all.size(), Eigen::Matrix3d::Identity()), turned = still;
+  std::vector<char> first(all.size(), 1);
+  first[1] = 0; // new
+  for (Vec3& p : later[3].points)
+    p *= 1.3;
+  for (double& r : later[4].radii)
+    r *= 1.5;
+  turned[4] = Eigen::AngleAxisd(0.4, Vec3(0, 0, 1)).toRotationMatrix();
+  std::vector<std::size_t> tip_a, tip_b;
+  const Tree a = make_tree(all, still, first, tip_a),
+             b = make_tree(later, turned, std::vector<char>(all.size(), 1), tip_b);
+  const Space space = make_space({a, b});
+  const auto changes = space.changes(0, 1);
+  BOOST_TEST(changes.size() == 5u);
+  for (const Branch_change& c : changes) {
+    const std::size_t in_a = space.tip_of_branch(0, c.branch),
+                      in_b = space.tip_of_branch(1, c.branch);
+    std::size_t k = 0;
+    while (k < 5 && !(in_a != pcs::npos && tip_a[k] == in_a) &&
+           !(in_b != pcs::npos && tip_b[k] == in_b))
+      ++k;
+    BOOST_TEST_CONTEXT("branch " << k)
+    {
+      BOOST_TEST(c.is_new == (k == 1));
+      BOOST_TEST(!c.is_lost);
+      BOOST_TEST(c.is_longer == (k == 3));
+      BOOST_TEST(c.is_thicker == (k == 4));
+      BOOST_TEST(c.is_turned == (k == 4));
+      BOOST_TEST(!c.is_shorter);
+      BOOST_TEST(!c.is_thinner);
+      if (k == 3)
+        BOOST_TEST(std::abs(c.length[1] / c.length[0] - 1.3) < 1e-6);
+      if (k == 4)
+        BOOST_TEST(c.angle > 0.05);
+    }
+  }
+  // seen the other way
+  std::size_t number_lost = 0, number_shorter = 0, number_thinner = 0, number_new = 0;
+  for (const Branch_change& c : space.changes(1, 0)) {
+    number_lost += c.is_lost;
+    number_shorter += c.is_shorter;
+    number_thinner += c.is_thinner;
+    number_new += c.is_new;
+  }
+  BOOST_TEST(number_lost == 1u);
+  BOOST_TEST(number_shorter == 1u);
+  BOOST_TEST(number_thinner == 1u);
+  BOOST_TEST(number_new == 0u);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(orl_family_files)
+
+BOOST_AUTO_TEST_CASE(a_space_is_saved_and_restored)
+{
+  for (const std::size_t n : {std::size_t(2), std::size_t(4)}) {
+    const std::vector<Tree> trees = relatives(n, 51);
+    Space space;
+    for (const Tree& tree : trees)
+      space.add(tree, rings(tree));
+    space.build();
+    const std::string path = (std::filesystem::temp_directory_path() /
+                              ("pcs_space_" + std::to_string(getpid()) + ".txt"))
+                                 .string();
+    pcs::IO::write_shape_space(path, space.data());
+    Space other;
+    other.restore(pcs::IO::read_shape_space(path));
+    BOOST_TEST(other.number_of_trees() == n);
+    const pcs::Orl_tree a = space.sample(9), b = other.sample(9);
+    BOOST_TEST(space.distance(a, b) == 0);
+    std::vector<Point> p, q;
+    space.points(a, p);
+    other.points(b, q);
+    BOOST_TEST((p == q));
+    BOOST_TEST(p.size() > 100u);
+    BOOST_TEST(other.distance(0, 1) == space.distance(0, 1));
+    double share = 0;
+    BOOST_TEST(space.distance(space.embed(trees[0]),
+                              other.embed(trees[0], np::default_values(), &share)) == 0);
+    BOOST_CHECK_THROW(other.build(), pcs::Invalid_input);
+    BOOST_CHECK_THROW(other.add_skeleton(trees[0]), pcs::Invalid_input);
+
+    // half a file is refused
+    std::string text;
+    {
+      std::ifstream in(path);
+      text.assign(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+    }
+    std::ofstream(path) << text.substr(0, text.size() / 2);
+    BOOST_CHECK_THROW(pcs::IO::read_shape_space(path), pcs::IO_error);
+    std::filesystem::remove(path);
+
+    // and so are numbers that do not make sense
+    const pcs::Orl_space_data good = space.data();
+    const auto refuse = [&](const auto& spoil) {
+      pcs::Orl_space_data bad = good;
+      spoil(bad);
+      BOOST_CHECK_THROW(other.restore(bad), pcs::Invalid_input);
+    };
+    refuse([](auto& d) { d.branches[1].parent = 5; });
+    refuse([](auto& d) { d.branches[1].reference_edge = 100000; });
+    refuse([](auto& d) { d.trees[0].length[3] = -1; });
+    refuse([](auto& d) { d.trees[1].orientation[0] = {0, 0, 0, 0}; });
+    refuse([](auto& d) { d.trees[0].attachment[1] = 1000; });
+    refuse([](auto& d) { d.trees.resize(1); });
+    refuse([](auto& d) { d.weights.length.pop_back(); });
+    refuse([](auto& d) { d.matching[8] = 0; });
+    refuse([](auto& d) {
+      if (!d.pairs.empty())
+        d.pairs[0].edge = 1000000;
+      if (!d.points.empty())
+        d.points[0].tree = 77;
+    });
+    BOOST_TEST(other.distance(0, 1) == space.distance(0, 1)); // unchanged
+  }
+}
+
+BOOST_AUTO_TEST_CASE(threads_do_not_matter)
+{
+  const std::vector<Tree> trees = relatives(5, 61, 0.3, 0.3);
+  const auto run = [&](auto tag) {
+    pcs::Orl_shape_space<Kernel, decltype(tag)> space;
+    for (const Tree& tree : trees)
+      space.add(tree, rings(tree));
+    space.build();
+    std::vector<double> figures = space.distances();
+    for (const pcs::Orl_tree& tree : {space.mean(), space.sample(4)}) {
+      std::vector<Point> points;
+      space.points(tree, points);
+      for (const Point& p : points)
+        figures.push_back(p.x() + 3 * p.y() + 7 * p.z());
+    }
+    const auto modes = space.modes(3);
+    figures.insert(figures.end(), modes.scores.data(), modes.scores.data() + modes.scores.size());
+    return figures;
+  };
+  const std::vector<double> one = run(CGAL::Sequential_tag());
+  for (const int n : {1, 2, 4}) {
+    std::vector<double> many;
+    pcs_test::with_threads(n, [&] { many = run(CGAL::Parallel_if_available_tag()); });
+    BOOST_TEST((many == one));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_cancelled_build_leaves_no_space)
+{
+  Space space;
+  for (const Tree& tree : relatives(4, 71))
+    space.add(tree, rings(tree));
+  std::vector<double> seen;
+  const auto report = space.build(np::callback([&](double f) {
+    seen.push_back(f);
+    return f < 0.4;
+  }));
+  BOOST_TEST(report.status == pcs::Status::cancelled);
+  BOOST_TEST(std::is_sorted(seen.begin(), seen.end()));
+  BOOST_CHECK_THROW(space.mean(), pcs::Invalid_input);
+  BOOST_TEST(space.build().status == pcs::Status::converged);
+  BOOST_TEST(space.number_of_trees() == 4u);
+}
+
+BOOST_AUTO_TEST_CASE(wrong_values_are_named)
+{
+  Space space;
+  BOOST_CHECK_EXCEPTION(space.mean(), pcs::Invalid_input, message_has("call build() first"));
+  BOOST_CHECK_EXCEPTION(space.data(), pcs::Invalid_input, message_has("call build() first"));
+  for (const Tree& tree : relatives(3, 72))
+    space.add_skeleton(tree);
+  BOOST_CHECK_EXCEPTION(space.build(np::number_of_rounds(0)),
+                        pcs::Invalid_input,
+                        message_has("number_of_rounds"));
+  BOOST_CHECK_EXCEPTION(space.build(np::points_of(std::size_t(3))),
+                        pcs::Invalid_input,
+                        message_has("points_of"));
+  space.build();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  BOOST_CHECK_EXCEPTION(space.tree(3), pcs::Invalid_input, message_has("no tree 3"));
+  BOOST_CHECK_EXCEPTION(space.combination({1, 1}),
+                        pcs::Invalid_input,
+                        message_has("2 weights for 3"));
+  BOOST_CHECK_THROW(space.combination({1, nan, 1}), pcs::Invalid_input);
+  BOOST_CHECK_THROW(space.combination({1, -1, 0}), pcs::Invalid_input);
+  BOOST_CHECK_THROW(space.mean(np::tree_weights(std::vector<double>{1, -1, 3})),
+                    pcs::Invalid_input);
+  BOOST_CHECK_THROW(space.growth({0}, {0}), pcs::Invalid_input);
+  BOOST_CHECK_THROW(space.growth({0, 1}, {1, 1}), pcs::Invalid_input);
+  BOOST_CHECK_THROW(space.growth({0, 7}, {0, 1}), pcs::Invalid_input);
+  BOOST_CHECK_THROW(space.for_each_point(space.tree(0), [](auto...) {}), pcs::Invalid_input);
+  BOOST_CHECK_THROW(space.correspondences(), pcs::Invalid_input);
+  const auto modes = space.modes(2);
+  BOOST_CHECK_THROW(space.tree(modes, {1, 2, 3}), pcs::Invalid_input);
+  BOOST_CHECK_THROW(space.tree(modes, {nan}), pcs::Invalid_input);
+  Sampling_options options;
+  options.truncation = 0;
+  BOOST_CHECK_THROW(space.sample(1, np::sampling_options(options)), pcs::Invalid_input);
+  const Family other(4);
+  BOOST_CHECK_THROW(other.tree(modes, {1}), pcs::Invalid_input);
+  BOOST_CHECK_THROW(other.distance(space.tree(0), other.tree(0)), pcs::Invalid_input);
+  BOOST_CHECK_THROW(space.changes(0, 1, np::change_limits(Change_limits{nan, 0, 0})),
+                    pcs::Invalid_input);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
