@@ -1,0 +1,180 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The program orl_geodesic: its files agree with each other, and bad input is refused.
+
+#include <pcs/IO/read_swc.h>
+#include <pcs/IO/write_swc.h>
+#include <support/orl_trees.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <examples/Program_run.h>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+struct Two_trees : Program_run
+{
+  Two_trees()
+  {
+    using namespace orl_test;
+    const orl_test::Tree a = random_tree(61, 4, 2), b = random_tree(62, 4, 2);
+    pcs::IO::write_swc(path("a.swc"), a);
+    pcs::IO::write_swc(path("b.swc"), b);
+    pcs::IO::write_points(path("a.ply"), tube_points(a, 2000, 1));
+    pcs::IO::write_points(path("b.ply"), tube_points(b, 3000, 2));
+  }
+  const std::string trees = "--tree a.ply --skeleton a.swc --tree b.ply --skeleton b.swc ";
+
+  void succeeds(const std::string& arguments)
+  {
+    const int code = run(arguments);
+    BOOST_TEST_REQUIRE(code == 0, arguments << ": exit code " << code << ": " << err);
+  }
+  void refuses(const std::string& arguments, const std::string& word)
+  {
+    const int code = run(arguments);
+    BOOST_TEST(code == 1, arguments << ": exit code " << code);
+    BOOST_TEST(err.find(word) != std::string::npos, word << " in " << err);
+    const auto lines = std::count(err.begin(), err.end(), '\n');
+    BOOST_TEST((lines == 1 || lines == 2), arguments << ": " << err);
+    BOOST_TEST(out == "");
+  }
+  std::size_t number_in(const std::string& name) const
+  {
+    return exists(name) ? static_cast<std::size_t>(
+                              std::distance(std::filesystem::directory_iterator(folder / name), {}))
+                        : 0;
+  }
+  orl_test::Tree swc(const std::string& name) const
+  {
+    orl_test::Tree tree;
+    pcs::IO::read_swc<orl_test::Kernel>(path(name), tree);
+    return tree;
+  }
+};
+
+const std::string txtskl = "2\nLayer 0\n1\n-1 -1\n3\n0 0 0 0.1\n0 1 0 0.1\n0 2 0 0.05\n"
+                           "Layer 1\n1\n0 1\n2\n0 1 0 0.05\n1 1.5 0 0.02\n";
+
+} // namespace
+
+BOOST_FIXTURE_TEST_SUITE(orl_geodesic, Two_trees)
+
+BOOST_AUTO_TEST_CASE(every_place_on_the_path_has_points_and_a_skeleton)
+{
+  succeeds(trees + "--lambda 0,0.25,1.5,-0.5 --output out --matches m.csv --report r.json");
+  for (const std::string place : {"0.000", "0.250", "1.500", "-0.500"}) {
+    BOOST_TEST(pcs::IO::read_points(path("out/lambda_" + place + ".ply")).number_of_points() > 0u);
+    BOOST_TEST(num_vertices(swc("out/lambda_" + place + ".swc")) > 2u);
+  }
+  BOOST_TEST(number_in("out") == 8u);
+
+  // ids of tips in the files of the skeletons
+  std::istringstream lines(content("m.csv"));
+  std::string line;
+  std::getline(lines, line);
+  BOOST_TEST(line == "tip_a,tip_b");
+  const orl_test::Tree a = swc("a.swc"), b = swc("b.swc");
+  std::size_t both = 0, single = 0;
+  while (std::getline(lines, line)) {
+    const auto comma = line.find(',');
+    const long tip_a = std::stol(line.substr(0, comma)), tip_b = std::stol(line.substr(comma + 1));
+    BOOST_TEST((tip_a > 0 || tip_b > 0));
+    for (const auto& [tip, tree] : {std::make_pair(tip_a, &a), std::make_pair(tip_b, &b)})
+      if (tip != -1) {
+        BOOST_TEST_REQUIRE((tip >= 1 && static_cast<std::size_t>(tip) <= num_vertices(*tree)));
+        BOOST_TEST(out_degree(static_cast<std::size_t>(tip) - 1, *tree) == 0u);
+      }
+    ++(tip_a > 0 && tip_b > 0 ? both : single);
+  }
+  const Json r = Json::parse(content("r.json"));
+  BOOST_TEST(r["number_of_matched_branches"].get<std::size_t>() == both);
+  BOOST_TEST(r["number_of_branches"][0].get<std::size_t>() +
+                 r["number_of_branches"][1].get<std::size_t>() ==
+             2 * both + single);
+  BOOST_TEST(r["number_of_points"][0].get<std::size_t>() == 2000u);
+  BOOST_TEST(r["marginal_violation"]["worst"].get<double>() < 1e-9);
+  for (const std::string kind : {"sum", "square", "cone"})
+    BOOST_TEST(r["distance"][kind].get<double>() > 0);
+  for (const std::string stage :
+       {"matching", "topology", "assignment", "transport", "instances", "correspondences"})
+    BOOST_TEST(r["seconds"][stage].get<double>() >= 0);
+}
+
+BOOST_AUTO_TEST_CASE(skeletons_alone_give_skeletons_alone)
+{
+  write("a.txtskl", txtskl);
+  succeeds("--skeleton a.txtskl --skeleton b.swc --output out --quiet");
+  BOOST_TEST(number_in("out") == 5u);
+  BOOST_TEST(exists("out/lambda_0.500.swc"));
+  BOOST_TEST(out == "");
+}
+
+BOOST_AUTO_TEST_CASE(options_change_the_result)
+{
+  succeeds(trees + "--lambda 0.5 --output plain");
+  const std::string plain = content("plain/lambda_0.500.ply");
+  for (const std::string option : {"--transport sinkhorn", "--orientation world-axes"}) {
+    succeeds(trees + "--lambda 0.5 --output other " + option);
+    BOOST_TEST(content("other/lambda_0.500.ply") != plain, option);
+  }
+  succeeds(trees + "--lambda 1.5 --output plain --maximal-turn 90");
+  succeeds(trees + "--lambda 1.5 --output other --maximal-turn 0 --limit-radii");
+  BOOST_TEST(content("other/lambda_1.500.ply") != content("plain/lambda_1.500.ply"));
+  succeeds(trees + "--lambda 0.5 --output other --published-energy --orientation transported");
+}
+
+BOOST_AUTO_TEST_CASE(correspondences_are_kept)
+{
+  succeeds(trees + "--lambda 0.3 --output one --correspondences c.txt");
+  const std::string kept = content("c.txt");
+  BOOST_TEST(!kept.empty());
+  succeeds(trees + "--lambda 0.3 --output two --correspondences c.txt");
+  BOOST_TEST(content("one/lambda_0.300.ply") == content("two/lambda_0.300.ply"));
+  BOOST_TEST(content("c.txt") == kept);
+  refuses("--tree b.ply --skeleton b.swc --tree a.ply --skeleton a.swc --output three "
+          "--correspondences c.txt",
+          "other trees");
+  // a file that was cut, or changed
+  for (std::size_t k = 1; k < 20; ++k) {
+    write("c.txt", kept.substr(0, kept.size() * k / 20));
+    BOOST_TEST(run(trees + "--output three --correspondences c.txt") == 1);
+    std::string changed = kept;
+    changed[kept.size() * k / 20] = 'x';
+    write("c.txt", changed);
+    BOOST_TEST(run(trees + "--output three --correspondences c.txt") == 1);
+  }
+  BOOST_TEST(number_in("three") == 0u);
+}
+
+BOOST_AUTO_TEST_CASE(bad_input_is_refused_with_a_sentence)
+{
+  refuses("--output out", "--skeleton");
+  refuses(trees, "--output");
+  refuses("--skeleton a.swc --output out", "expected 2");
+  refuses(trees + "--skeleton a.swc --output out", "expected 2");
+  refuses("--skeleton a.swc --skeleton missing.swc --output out", "missing.swc");
+  refuses("--skeleton a.swc --skeleton a.ply --output out", "a.ply");
+  refuses(trees + "--lambda nan --output out", "lambda");
+  refuses(trees + "--lambda 0,x --output out", "lambda");
+  refuses(trees + "--transport fast --output out", "transport");
+  write("file", "");
+  refuses(trees + "--output file", "file");
+  refuses(trees + "--output out --report missing/r.json", "missing/r.json");
+  for (std::size_t k = 1; k < 10; ++k) {
+    write("cut.txtskl", txtskl.substr(0, txtskl.size() * k / 10));
+    BOOST_TEST(run("--skeleton cut.txtskl --skeleton b.swc --output out") == 1);
+  }
+  write("two_roots.swc", "1 1 0 0 0 1 -1\n2 1 0 0 1 1 1\n3 1 5 0 0 1 -1\n");
+  BOOST_TEST(run("--skeleton two_roots.swc --skeleton b.swc --output out") == 1);
+  write("cycle.swc", "1 1 0 0 0 1 2\n2 1 0 0 1 1 1\n");
+  BOOST_TEST(run("--skeleton cycle.swc --skeleton b.swc --output out") == 1);
+  BOOST_TEST(number_in("out") == 0u);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,191 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Trees and scans of odd shapes: long, wide, flat, without radii, in one place.
+
+#include <pcs/orl_geodesic.h>
+#include <support/exceptions.h>
+#include <support/orl_trees.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+using namespace orl_test;
+using pcs_test::message_has;
+
+namespace {
+
+std::size_t add_node(Tree& tree, std::size_t parent, const Vec3& p, double radius)
+{
+  pcs::Tree_node<Kernel> node;
+  node.point = to_cgal(p);
+  node.radius = radius;
+  const std::size_t v = add_vertex(node, tree);
+  if (parent != pcs::npos)
+    add_edge(parent, v, tree);
+  return v;
+}
+
+/// A trunk of `n` nodes, with a bend.
+Tree path(std::size_t n, double bend)
+{
+  Tree tree;
+  std::size_t last = pcs::npos;
+  for (std::size_t k = 0; k < n; ++k) {
+    const double t = static_cast<double>(k) / static_cast<double>(n - 1);
+    last = add_node(tree, last, Vec3(bend * t * t, 0, 5 * t), 0.1);
+  }
+  return tree;
+}
+
+/// `n` branches from the middle of a trunk.
+Tree star(std::size_t n, double turn)
+{
+  Tree tree = path(3, 0);
+  for (std::size_t k = 0; k < n; ++k) {
+    const double angle = 2.399963 * static_cast<double>(k) + turn;
+    const double z = static_cast<double>(k) / static_cast<double>(n);
+    const std::size_t v =
+        add_node(tree, 1, Vec3(0.5 * std::cos(angle), 0.5 * std::sin(angle), 2.5 + z), 0.02);
+    add_node(tree, v, Vec3(std::cos(angle), std::sin(angle), 2.5 + 2 * z), 0.01);
+  }
+  return tree;
+}
+
+/// Builds, and looks at a few places on the path.
+pcs::Orl_report morph(const Tree& a,
+                      const std::vector<Point>& scan_a,
+                      const Tree& b,
+                      const std::vector<Point>& scan_b)
+{
+  pcs::Orl_shape_space<Kernel> space;
+  space.add(a, scan_a);
+  space.add(b, scan_b);
+  const auto report = space.build();
+  BOOST_TEST((report.status == pcs::Status::converged));
+  for (const double lambda : {-0.5, 0., 0.5, 1., 1.5}) {
+    const auto tree = space.geodesic(0, 1, lambda);
+    std::vector<Point> points;
+    space.points(tree, points);
+    bool is_finite = true;
+    for (const Point& p : points)
+      is_finite = is_finite && to_eigen(p).allFinite();
+    Tree skeleton;
+    space.skeleton(tree, skeleton);
+    for (std::size_t v = 0; v < num_vertices(skeleton); ++v)
+      is_finite = is_finite && to_eigen(skeleton[v].point).allFinite() &&
+                  std::isfinite(skeleton[v].radius) && skeleton[v].radius >= 0;
+    BOOST_TEST(is_finite);
+    if (lambda == 0)
+      BOOST_TEST(points.size() >= scan_a.size());
+  }
+  return report;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(orl_robustness)
+
+BOOST_AUTO_TEST_CASE(a_path_of_fifty_thousand_nodes)
+{
+  const Tree a = path(50000, 1), b = path(20000, 2);
+  const auto report = morph(a, tube_points(a, 2000, 1), b, tube_points(b, 2000, 2));
+  BOOST_TEST(report.number_of_matched_branches == 1u);
+}
+
+BOOST_AUTO_TEST_CASE(a_branch_on_every_node_of_a_chain_of_branches)
+{
+  // every branch leaves its parent after the first edge: orders as deep as the tree has branches
+  const auto chain = [](std::size_t n) {
+    Tree tree;
+    std::size_t last = add_node(tree, pcs::npos, Vec3(0, 0, 0), 0.1);
+    Vec3 p = Vec3::Zero();
+    double length = 1;
+    for (std::size_t k = 0; k < n; ++k) {
+      const Vec3 side(k % 2 == 0 ? 1 : 0, k % 2 == 0 ? 0 : 1, 0.2);
+      const std::size_t v = add_node(tree, last, p + length * side, 0.05);
+      add_node(tree, v, p + 3 * length * side, 0.02);
+      p += length * side;
+      length *= 0.99;
+      last = v;
+    }
+    return tree;
+  };
+  morph(chain(300), {}, chain(250), {});
+}
+
+BOOST_AUTO_TEST_CASE(a_star_of_five_hundred_branches)
+{
+  const Tree a = star(500, 0), b = star(480, 0.05);
+  const auto report = morph(a, tube_points(a, 5000, 1), b, tube_points(b, 5000, 2));
+  BOOST_TEST(report.number_of_matched_branches > 400u);
+}
+
+BOOST_AUTO_TEST_CASE(equal_trees_are_in_one_place)
+{
+  const Tree a = random_tree(51);
+  const auto scan = tube_points(a, 2000, 1);
+  const auto report = morph(a, scan, a, scan);
+  BOOST_TEST(report.distance < 1e-9);
+  BOOST_TEST(report.number_of_matched_branches == report.number_of_branches[0]);
+  BOOST_TEST(report.number_of_single_points == 0u);
+}
+
+BOOST_AUTO_TEST_CASE(thousands_of_points_in_one_place)
+{
+  const Tree a = random_tree(52, 3, 2), b = random_tree(53, 3, 2);
+  std::vector<Point> same(5000, tube_points(a, 1, 1)[0]);
+  morph(a, same, b, tube_points(b, 1000, 2));
+  morph(a, same, b, std::vector<Point>(3000, tube_points(b, 1, 2)[0]));
+}
+
+BOOST_AUTO_TEST_CASE(all_points_of_a_large_scan_on_one_branch)
+{
+  const Tree a = path(2, 0), b = random_tree(54, 3, 2);
+  const auto report = morph(a, tube_points(a, 200000, 1), b, tube_points(b, 10000, 2));
+  BOOST_TEST(report.number_of_points[0] == 200000u);
+  BOOST_TEST(report.worst_marginal_violation < 1e-9);
+}
+
+BOOST_AUTO_TEST_CASE(trees_without_radii)
+{
+  Tree a = random_tree(55, 3, 2), b = random_tree(56, 3, 2);
+  const auto scan_a = tube_points(a, 2000, 1), scan_b = tube_points(b, 2000, 2);
+  for (Tree* tree : {&a, &b})
+    for (std::size_t v = 0; v < num_vertices(*tree); ++v)
+      (*tree)[v].radius = 0;
+  morph(a, scan_a, b, scan_b);
+}
+
+BOOST_AUTO_TEST_CASE(edges_without_length_change_nothing)
+{
+  const Tree a = random_tree(57, 3, 2), b = random_tree(58, 3, 2);
+  // every node twice, one behind the other
+  Tree doubled(2 * num_vertices(a));
+  for (std::size_t v = 0; v < num_vertices(a); ++v) {
+    doubled[2 * v] = doubled[2 * v + 1] = a[v];
+    add_edge(2 * v, 2 * v + 1, doubled);
+  }
+  for (const auto e : boost::make_iterator_range(edges(a)))
+    add_edge(2 * source(e, a) + 1, 2 * target(e, a), doubled);
+  const auto one = morph(a, {}, b, {}), two = morph(doubled, {}, b, {});
+  BOOST_TEST(one.number_of_matched_branches == two.number_of_matched_branches);
+  BOOST_TEST(std::abs(one.distance - two.distance) < 1e-9 * one.distance);
+}
+
+BOOST_AUTO_TEST_CASE(a_cycle_beside_the_root_is_refused)
+{
+  Tree tree(5);
+  add_edge(0, 1, tree);
+  add_edge(2, 3, tree);
+  add_edge(3, 4, tree);
+  add_edge(4, 2, tree);
+  for (std::size_t v = 0; v < 5; ++v)
+    tree[v].point = Point(0, 0, static_cast<double>(v));
+  pcs::Orl_shape_space<Kernel> space;
+  BOOST_CHECK_EXCEPTION(space.add_skeleton(tree), pcs::Invalid_input, message_has("cycle"));
+}
+
+BOOST_AUTO_TEST_SUITE_END()
