@@ -127,7 +127,7 @@ private:
     std::mutex mutex;
     std::unordered_map<Question, Result, Hash> results;
   };
-  static constexpr double turn_step = 0.25;    // [rad]
+  static constexpr double turn_step = 0.25;   // [rad]
   static constexpr int number_of_passes = 3;  // of a turn by curve and children
   static constexpr double rematch_turn = 0.4; // Frobenius norm: a turn by about 0.3 rad
 
