@@ -13,6 +13,7 @@
 #include <pcs/deformation/Upsampling.h>
 #include <pcs/deformation/interior_links.h>
 #include <pcs/deformation/octree_samples.h>
+#include <pcs/deformation/voronoi_graph.h>
 #include <pcs/internal/Stopwatch.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
@@ -238,6 +239,7 @@ private:
       static_cast<neighborhood::Proximity_graph&>(network.surface) = std::move(graph);
       sample_of_site = site_of_sample;
       set_edge_weights<ConcurrencyTag>(sites, network.surface);
+      network.surface = voronoi_graph<ConcurrencyTag>(sites, network.surface);
     }
     network.rest.resize(site_of_sample.size());
     for (std::size_t s = 0; s < site_of_sample.size(); ++s)

@@ -15,6 +15,7 @@
 #include <pcs/deformation/Sampled_body.h>
 #include <pcs/deformation/border_fade.h>
 #include <pcs/deformation/handle_boundary.h>
+#include <pcs/deformation/straighten_borders.h>
 
 #include <Eigen/Core>
 #include <Eigen/LU>
@@ -154,11 +155,14 @@ public:
       finer = &level.network();
       of_finer = &level.constraints();
     }
+    bool is_extended = m_body.is_sampled;
     if (m_body.is_sampled)
       m_network = with_boundary(constraints);
+    else
+      is_extended = straighten_borders(m_body.network, constraints, m_network);
     pcs::internal::invoke_both<ConcurrencyTag>(
         [&] {
-          m_is_constrained = m_solver.constrain(m_body.is_sampled ? m_network : m_body.network,
+          m_is_constrained = m_solver.constrain(is_extended ? m_network : m_body.network,
                                                 std::move(constraints),
                                                 stiffness);
         },
@@ -782,7 +786,8 @@ private:
   }
 
   Sampled_body<ConcurrencyTag> m_body;
-  Elastic_network m_network; ///< the samples and the borders of the handles, if sampled
+  Elastic_network
+      m_network; ///< the samples and the borders of the handles, if these are no samples
   Elastic_solver<ConcurrencyTag> m_solver;
   std::deque<Coarse_level<ConcurrencyTag>>
       m_coarse;                                  ///< the finest first; a deque does not move them
