@@ -202,14 +202,14 @@ BOOST_AUTO_TEST_CASE(a_lying_stem_begins_at_its_end)
   BOOST_CHECK_CLOSE(report.total.volume, CGAL_PI * 0.0025 * 2, 5.0);
 }
 
-BOOST_AUTO_TEST_CASE(a_hoop_is_one_long_branch)
+BOOST_AUTO_TEST_CASE(a_hoop_is_a_few_long_branches)
 {
   Tree tree;
   Cloud points = cylinder(400, 1, 1e-9);
   const auto report = pcs::extract_tree_skeleton(points, tree);
   check_is_a_tree(tree);
   BOOST_CHECK_CLOSE(report.total.length, 2 * CGAL_PI, 10.0);
-  BOOST_CHECK_LE(report.number_of_branches, 2u);
+  BOOST_CHECK_LE(report.number_of_branches, 3u);
 }
 
 BOOST_AUTO_TEST_CASE(a_lamp_post_is_a_trunk)
