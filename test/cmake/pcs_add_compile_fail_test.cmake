@@ -31,5 +31,8 @@ function(pcs_add_compile_accepted_test)
   get_property(sources GLOBAL PROPERTY pcs_compile_fail_sources)
   add_library(compile_fail_accepted OBJECT EXCLUDE_FROM_ALL ${sources})
   target_link_libraries(compile_fail_accepted PRIVATE pcs_header_flags)
+  # No code is written, which halves the time; there is nothing that a later build could use again.
+  target_compile_options(compile_fail_accepted PRIVATE
+    $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-fsyntax-only>)
   pcs_add_build_test(compile_fail.all_accepted compile_fail_accepted compile_fail)
 endfunction()
