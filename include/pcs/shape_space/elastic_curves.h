@@ -35,8 +35,8 @@ struct Sampled_curve
 inline Vec3 point_at(const Rooted_tree& tree, const Branch_path& path, double s)
 {
   const auto it = std::upper_bound(path.arc.begin(), path.arc.end(), s);
-  const auto k = std::min<std::size_t>(path.arc.size() - 1,
-                                       std::max<std::ptrdiff_t>(1, it - path.arc.begin()));
+  const auto behind = static_cast<std::size_t>(it - path.arc.begin());
+  const std::size_t k = std::min(path.arc.size() - 1, std::max<std::size_t>(1, behind));
   const double length = path.arc[k] - path.arc[k - 1];
   const double f = std::min(1.0, std::max(0.0, (s - path.arc[k - 1]) / length));
   return (1 - f) * tree.points[path.nodes[k - 1]] + f * tree.points[path.nodes[k]];
