@@ -3,7 +3,9 @@
 // Trees and scans of odd shapes: long, wide, flat, without radii, in one place.
 
 #include <pcs/orl_geodesic.h>
+#include <support/archetypes.h>
 #include <support/exceptions.h>
+#include <support/graph_archetypes.h>
 #include <support/orl_trees.h>
 
 #include <boost/test/unit_test.hpp>
@@ -186,6 +188,73 @@ BOOST_AUTO_TEST_CASE(a_cycle_beside_the_root_is_refused)
     tree[v].point = Point(0, 0, static_cast<double>(v));
   pcs::Orl_shape_space<Kernel> space;
   BOOST_CHECK_EXCEPTION(space.add_skeleton(tree), pcs::Invalid_input, message_has("cycle"));
+}
+
+BOOST_AUTO_TEST_CASE(archetypes_of_graph_maps_range_and_key)
+{
+  using Triple = pcs_test::Triple_archetype<double>;
+  const auto triples = [](const std::vector<Point>& points) {
+    std::vector<Triple> result;
+    for (const Point& p : points)
+      result.emplace_back(p.x(), p.y(), p.z());
+    return result;
+  };
+  const Tree trees[] = {random_tree(59, 3, 2), random_tree(60, 3, 2)};
+  const std::vector<Point> scans[] = {tube_points(trees[0], 500, 1), tube_points(trees[1], 600, 2)};
+  pcs::Orl_shape_space<Kernel> space, plain;
+  std::vector<Triple> normals;
+  for (int t = 0; t < 2; ++t) {
+    const Tree& tree = trees[t];
+    std::vector<std::pair<std::size_t, std::size_t>> list;
+    for (const auto e : boost::make_iterator_range(edges(tree)))
+      list.emplace_back(source(e, tree), target(e, tree));
+    std::vector<Point> node_points;
+    std::vector<float> radii; // as precise as here
+    std::vector<std::size_t> indices;
+    Tree rounded = tree;
+    for (std::size_t v = 0; v < num_vertices(tree); ++v) {
+      node_points.push_back(tree[v].point);
+      radii.push_back(static_cast<float>(tree[v].radius));
+      rounded[v].radius = static_cast<double>(radii.back());
+      indices.push_back(v);
+    }
+    const std::vector<Triple> nodes = triples(node_points);
+    std::vector<Triple> points = triples(scans[t]);
+    normals.assign(points.size(), Triple(0, 0, 1));
+    space.add(pcs_test::Tree_archetype(indices.size(), list),
+              pcs_test::Range_archetype(points.size()),
+              pcs::parameters::node_point_map(pcs_test::Vertex_map_archetype<Triple>(nodes))
+                  .node_radius_map(pcs_test::Vertex_map_archetype<float>(radii))
+                  .node_index_map(pcs_test::Vertex_map_archetype<std::size_t>(indices))
+                  .point_map(pcs_test::Map_archetype<Triple>(points))
+                  .normal_map(pcs_test::Map_archetype<Triple>(normals)));
+    std::vector<std::pair<Point, Kernel::Vector_3>> oriented;
+    for (const Point& p : scans[t])
+      oriented.emplace_back(p, Kernel::Vector_3(0, 0, 1));
+    using Oriented = std::pair<Point, Kernel::Vector_3>;
+    plain.add(rounded,
+              oriented,
+              pcs::parameters::point_map(CGAL::First_of_pair_property_map<Oriented>())
+                  .normal_map(CGAL::Second_of_pair_property_map<Oriented>()));
+  }
+  space.build();
+  plain.build();
+  const auto tree = space.geodesic(0, 1, 0.3);
+  std::vector<Triple> out(tree.number_of_points(), Triple(7, 7, 7));
+  normals = out;
+  pcs_test::Range_archetype range(out.size());
+  const auto maps = pcs::parameters::point_map(pcs_test::Map_archetype<Triple>(out))
+                        .normal_map(pcs_test::Map_archetype<Triple>(normals));
+  BOOST_TEST(space.points(tree, range, maps) == out.size());
+  std::vector<Point> expected;
+  plain.points(plain.geodesic(0, 1, 0.3), expected);
+  BOOST_TEST_REQUIRE(expected.size() == out.size());
+  bool is_same = true;
+  for (std::size_t i = 0; i < out.size(); ++i)
+    is_same = is_same && Point(out[i].x(), out[i].y(), out[i].z()) == expected[i];
+  BOOST_TEST(is_same);
+  pcs_test::Range_archetype small(out.size() - 1);
+  BOOST_CHECK_THROW(space.points(tree, small, maps), pcs::Invalid_input);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -69,7 +69,13 @@ inline void read_skeleton(const std::string& path, Tree_file& tree)
 inline void extract_skeleton(const std::string& points, Tree_file& tree)
 {
 #if PCS_CAN_EXTRACT_SKELETONS
-  const auto report = pcs::extract_tree_skeleton(tree.points.points(), tree.skeleton);
+  const auto report = [&] {
+    try {
+      return pcs::extract_tree_skeleton(tree.points.points(), tree.skeleton);
+    } catch (const pcs::Invalid_input& error) {
+      throw pcs::Invalid_input(points + ": " + error.what() + "; give a skeleton with --skeleton");
+    }
+  }();
   if (report.status != pcs::Status::converged || num_vertices(tree.skeleton) < 2)
     throw pcs::Invalid_input(points + ": no skeleton can be extracted (" +
                              pcs::to_string(report.status) + "); give one with --skeleton");

@@ -115,6 +115,38 @@ BOOST_AUTO_TEST_CASE(skeletons_alone_give_skeletons_alone)
   BOOST_TEST(out == "");
 }
 
+BOOST_AUTO_TEST_CASE(skeletons_are_extracted_where_none_are_given)
+{
+  for (const double x : {0.8, 1.2}) { // a trunk with a branch to each side
+    std::vector<orl_test::Branch> branches(3);
+    for (int k = 0; k <= 8; ++k)
+      branches[0].points.push_back(orl_test::Vec3(0, 0, 0.5 * k));
+    for (const int side : {1, 2}) {
+      branches[static_cast<std::size_t>(side)].parent = 0;
+      branches[static_cast<std::size_t>(side)].at = static_cast<std::size_t>(2 + 2 * side);
+      for (int k = 0; k <= 6; ++k)
+        branches[static_cast<std::size_t>(side)].points.push_back(
+            0.25 * k * orl_test::Vec3(side == 1 ? x : -x, 0, 1));
+    }
+    for (auto& b : branches)
+      b.radii.assign(b.points.size(), b.parent == pcs::npos ? 0.15 : 0.08);
+    pcs::IO::write_points(path(x < 1 ? "one.ply" : "two.ply"),
+                          orl_test::tube_points(orl_test::make_tree(branches), 20000, 1));
+  }
+  succeeds("--tree one.ply --tree two.ply --lambda 0,0.5 --output out --matches m.csv "
+           "--report r.json");
+  BOOST_TEST(number_in("out") == 4u);
+  const Json r = Json::parse(content("r.json"));
+  for (const int t : {0, 1}) {
+    BOOST_TEST(r["number_of_branches"][t].get<std::size_t>() >= 3u);
+    BOOST_TEST(r["number_of_points"][t].get<std::size_t>() == 20000u);
+  }
+  BOOST_TEST(r["number_of_matched_branches"].get<std::size_t>() >= 3u);
+  pcs::IO::write_points(path("few.ply"), std::vector<orl_test::Point>(3, orl_test::Point(1, 2, 3)));
+  refuses("--tree one.ply --tree few.ply --output three", "few.ply");
+  BOOST_TEST(number_in("three") == 0u);
+}
+
 BOOST_AUTO_TEST_CASE(options_change_the_result)
 {
   succeeds(trees + "--lambda 0.5 --output plain");

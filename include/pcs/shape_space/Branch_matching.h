@@ -10,6 +10,7 @@
 #include <pcs/internal/progress.h>
 #include <pcs/shape_space/Branch_paths.h>
 #include <pcs/shape_space/Matched_branch.h>
+#include <pcs/shape_space/best_turn.h>
 #include <pcs/shape_space/canonical_frame.h>
 #include <pcs/shape_space/elastic_curves.h>
 #include <pcs/shape_space/linear_assignment.h>
@@ -335,7 +336,7 @@ private:
     const double length = std::sqrt(one.length * two.length);
     covariance *= length / static_cast<double>(n);
     covariance += m_weights.carried * length * carried;
-    Quaternion q = improve_rotation(covariance, Quaternion(carried), 50);
+    Quaternion q = best_turn(covariance, Quaternion(carried));
     if (m_weights.children <= 0 || a.s.empty() || b.s.empty())
       return q.toRotationMatrix();
     for (int pass = 0; pass < passes; ++pass) {
@@ -347,7 +348,7 @@ private:
         if (partner[i] != none)
           all += m_weights.children * std::sqrt(a.weight[i] * b.weight[partner[i]]) *
                  a.direction[i] * b.direction[partner[i]].transpose();
-      q = improve_rotation(all, q, 50);
+      q = best_turn(all, q);
     }
     return q.toRotationMatrix();
   }

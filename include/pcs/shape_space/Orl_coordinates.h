@@ -190,6 +190,17 @@ inline double positive_value(double x, double y, double t)
   return end * std::exp(beyond * step / end);
 }
 
+/// The same for a quantity in [0, `last`]; beyond an end it nears the bound that it moves to, and never reaches it: branches
+/// that move along their parent do not gather at its end.
+inline double bounded_value(double x, double y, double t, double last)
+{
+  if (t >= 0 && t <= 1)
+    return (1 - t) * x + t * y;
+  const bool is_falling = t > 1 ? y < x : x < y;
+  return is_falling ? std::min(last, positive_value(x, y, t))
+                    : std::max(0.0, last - positive_value(last - x, last - y, t));
+}
+
 /// The orientation at `t`; beyond an end at most `maximal_turn` further. [rad]
 inline Quaternion
 orientation_at(const Quaternion& x, const Quaternion& y, double t, double maximal_turn)
@@ -233,8 +244,7 @@ inline void coordinates_at(const Orl_layout& layout,
     result.base_radius[b] = positive_value(x.base_radius[b], y.base_radius[b], t);
     const std::size_t p = layout.branches[b].parent;
     const double last = p == none ? 0 : static_cast<double>(layout.branches[p].number_of_edges);
-    result.attachment[b] =
-        std::min(last, std::max(0.0, (1 - t) * x.attachment[b] + t * y.attachment[b]));
+    result.attachment[b] = bounded_value(x.attachment[b], y.attachment[b], t, last);
   }
 }
 

@@ -35,8 +35,8 @@ struct Sampled_curve
 inline Vec3 point_at(const Rooted_tree& tree, const Branch_path& path, double s)
 {
   const auto it = std::upper_bound(path.arc.begin(), path.arc.end(), s);
-  const auto k = std::min<std::size_t>(path.arc.size() - 1,
-                                       std::max<std::ptrdiff_t>(1, it - path.arc.begin()));
+  const auto behind = static_cast<std::size_t>(it - path.arc.begin());
+  const std::size_t k = std::min(path.arc.size() - 1, std::max<std::size_t>(1, behind));
   const double length = path.arc[k] - path.arc[k - 1];
   const double f = std::min(1.0, std::max(0.0, (s - path.arc[k - 1]) / length));
   return (1 - f) * tree.points[path.nodes[k - 1]] + f * tree.points[path.nodes[k]];
@@ -96,7 +96,9 @@ class Elastic_matcher
 public:
   Elastic_matcher(std::size_t number_of_samples, int largest_step)
     : m_size(number_of_samples),
+      m_steepest(static_cast<std::size_t>(largest_step)),
       m_slopes(make_slopes(largest_step)),
+      m_turned(static_cast<Eigen::Index>(number_of_samples), 3),
       m_dots(number_of_samples * number_of_samples),
       m_best(number_of_samples * number_of_samples),
       m_step(number_of_samples * number_of_samples),
@@ -115,11 +117,13 @@ public:
   operator()(const Sampled_curve& one, const Sampled_curve& two, const Eigen::Matrix3d& rotation)
   {
     const std::size_t n = m_size;
-    const Eigen::Matrix3Xd turned = rotation * two.tangents;
+    m_turned.noalias() = two.tangents.transpose() * rotation.transpose();
     Eigen::Map<Eigen::MatrixXd> dots(m_dots.data(),
                                      static_cast<Eigen::Index>(n),
                                      static_cast<Eigen::Index>(n));
-    dots.noalias() = turned.transpose() * one.tangents; // column i: all places of curve 2
+    for (Eigen::Index i = 0; i < dots.cols(); ++i) // column i: all places of curve 2
+      dots.col(i) = m_turned.col(0) * one.tangents(0, i) + m_turned.col(1) * one.tangents(1, i) +
+                    m_turned.col(2) * one.tangents(2, i);
     std::fill(m_best.begin(), m_best.end(), -std::numeric_limits<double>::infinity());
     m_best[0] = 0;
     for (std::size_t i = 1; i < n; ++i)
@@ -148,18 +152,25 @@ public:
   }
 
 private:
-  /// Offers every cell of row `i` the step `k`; inner loops run along rows of the tables.
+  /// Offers the cells of row `i` the step `k`; inner loops run along rows of the tables. Cells that no path from one
+  /// corner to the other passes, for the steps are not steep enough, are left out.
   void take_step(std::size_t i, std::size_t k)
   {
-    const std::size_t n = m_size, a = m_slopes[k].a, b = m_slopes[k].b;
-    const std::size_t count = n - b; // cells j = b ... n - 1, at [j - b]
+    const std::size_t n = m_size, a = m_slopes[k].a, b = m_slopes[k].b, rest = n - 1 - i;
+    const std::size_t behind = m_steepest * rest; // cells that the steps left can pass
+    const std::size_t first =
+        std::max({b, (i + m_steepest - 1) / m_steepest, n - 1 > behind ? n - 1 - behind : 0});
+    const std::size_t last = std::min(m_steepest * i, n - 1 - (rest + m_steepest - 1) / m_steepest);
+    if (first > last)
+      return;
+    const std::size_t count = last - first + 1; // cells j = first ... last, at [j - first]
     double* const gain = m_gain.data();
     std::fill(gain, gain + count, 0.0);
     const double root = std::sqrt(static_cast<double>(b) / static_cast<double>(a));
     for (std::size_t x = 0; x < a; ++x) {
       const std::size_t whole = x * b / a;
       const double f = static_cast<double>(x * b % a) / static_cast<double>(a);
-      const double* const row = m_dots.data() + (i - a + x) * n + whole;
+      const double* const row = m_dots.data() + (i - a + x) * n + whole + first - b;
       const double w0 = root * (1 - f), w1 = root * f;
       if (f == 0)
         for (std::size_t j = 0; j < count; ++j)
@@ -168,9 +179,9 @@ private:
         for (std::size_t j = 0; j < count; ++j)
           gain[j] += w0 * row[j] + w1 * row[j + 1];
     }
-    const double* const from = m_best.data() + (i - a) * n;
-    double* const to = m_best.data() + i * n + b;
-    std::uint8_t* const step = m_step.data() + i * n + b;
+    const double* const from = m_best.data() + (i - a) * n + first - b;
+    double* const to = m_best.data() + i * n + first;
+    std::uint8_t* const step = m_step.data() + i * n + first;
     const auto id = static_cast<std::uint8_t>(k);
     for (std::size_t j = 0; j < count; ++j) {
       const double value = from[j] + gain[j];
@@ -180,8 +191,9 @@ private:
     }
   }
 
-  std::size_t m_size;
+  std::size_t m_size, m_steepest;
   Slopes m_slopes;
+  Eigen::Matrix<double, Eigen::Dynamic, 3> m_turned; // tangents of curve 2
   std::vector<double> m_dots, m_best;
   std::vector<std::uint8_t> m_step;
   std::vector<double> m_gain, m_gamma;

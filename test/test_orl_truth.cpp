@@ -1,0 +1,70 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Correspondences against the truth of virtual trees, and predictions against plants that were seen.
+
+#include <support/growth_series.h>
+#include <support/material_places.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <cstdlib>
+#include <string>
+
+using namespace orl_test;
+
+BOOST_AUTO_TEST_SUITE(orl_truth)
+
+BOOST_AUTO_TEST_CASE(points_of_a_younger_tree_find_their_branch)
+{
+  Tree tree;
+  pcs::grow_tree(tree, pcs::fruit_habit(), pcs::parameters::random_seed(11));
+  pcs::shape_space::Matching_weights published;
+  published.is_published = true;
+  for (const double age : {0.9, 0.7}) {
+    const auto own = measure_ages(tree, age, 11, 4, pcs::parameters::default_values());
+    const auto text = measure_ages(tree, age, 11, 4, pcs::parameters::matching_weights(published));
+    BOOST_TEST_MESSAGE("age " << age << ": right branch " << own.right_branch << ", same wood "
+                              << own.same_wood << "; published " << text.right_branch << ", "
+                              << text.same_wood);
+    BOOST_TEST(own.number_of_points > 500u);
+    BOOST_TEST(own.right_branch > 0.85);
+    BOOST_TEST(own.right_branch >= text.right_branch - 0.01);
+    BOOST_TEST(own.same_wood > 0.25);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_tree_that_did_not_grow_keeps_its_wood)
+{
+  // two scans of one tree; a radius of a twig is a few of the distances between points
+  Tree tree;
+  pcs::grow_tree(tree, pcs::fruit_habit(), pcs::parameters::random_seed(12));
+  const auto m = measure_ages(tree, 1, 12, 4, pcs::parameters::default_values());
+  BOOST_TEST_MESSAGE("right branch " << m.right_branch << ", same wood " << m.same_wood << " of "
+                                     << m.attainable);
+  BOOST_TEST(m.right_branch > 0.95);
+  BOOST_TEST(m.same_wood > 0.5 * m.attainable);
+  BOOST_TEST(m.same_wood == m.same_share);
+}
+
+BOOST_AUTO_TEST_CASE(a_plant_in_the_middle_is_predicted_from_the_ends)
+{
+  const char* data = std::getenv("PCS_TEST_DATA");
+  if (data == nullptr) {
+    BOOST_TEST_MESSAGE("skipped: PCS_TEST_DATA is not set");
+    return;
+  }
+  const std::string folder = std::string(data) + "/orl/tomato_series/";
+  const auto read = [&](const std::string& day, const std::string& extension) {
+    return read_plant(folder + day + extension, folder + day + ".graph.txt", 40000);
+  };
+  const Seen_plant first = read("03-05", ".xyz"), middle = read("03-08", ".ply"),
+                   last = read("03-10", ".ply");
+  const Prediction p = predict(first, middle, last, 3. / 5, Vec3::UnitZ());
+  BOOST_TEST_MESSAGE("geodesic " << p.geodesic << ", linear " << p.linear << ", no change "
+                                 << p.first << ", " << p.last);
+  BOOST_TEST(p.geodesic < p.linear);
+  BOOST_TEST(p.geodesic < p.first);
+  BOOST_TEST(p.geodesic < p.last);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
