@@ -3,14 +3,18 @@
 // Families of trees: one topology, means, modes, new trees, growth, changes, saving.
 
 #include <pcs/IO/read_shape_space.h>
+#include <pcs/IO/read_txtskl.h>
 #include <pcs/IO/write_shape_space.h>
 #include <pcs/Orl_shape_space.h>
+#include <support/archetypes.h>
 #include <support/exceptions.h>
 #include <support/orl_trees.h>
 #include <support/threads.h>
 
 #include <boost/test/unit_test.hpp>
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -25,7 +29,7 @@ using pcs_test::message_has;
 
 namespace {
 
-/// Trees like each other: branches of one tree, turned, stretched, some cut.
+/// Trees like each other: branches of one tree, turned, stretched, some cut; trunks lean and differ in height, too.
 std::vector<Tree>
 relatives(std::size_t n, unsigned seed, double sigma = 0.15, double cut = 0.15, int orders = 3)
 {
@@ -38,13 +42,14 @@ relatives(std::size_t n, unsigned seed, double sigma = 0.15, double cut = 0.15, 
     std::vector<Branch> branches = all;
     Turns turns(all.size(), Eigen::Matrix3d::Identity());
     std::vector<char> is_kept(all.size(), 1);
-    for (std::size_t b = 1; b < all.size(); ++b) {
-      const Vec3 u = sigma * Vec3(normal(random), normal(random), normal(random));
+    for (std::size_t b = 0; b < all.size(); ++b) {
+      const Vec3 u =
+          (b == 0 ? 0.3 : 1) * sigma * Vec3(normal(random), normal(random), normal(random));
       turns[b] = Eigen::AngleAxisd(u.norm(), u.normalized()).toRotationMatrix();
       const double stretch = std::exp(0.1 * normal(random));
       for (Vec3& p : branches[b].points)
         p *= stretch;
-      is_kept[b] = uniform(random) >= cut;
+      is_kept[b] = b == 0 || uniform(random) >= cut;
     }
     std::vector<std::size_t> tip;
     result.push_back(make_tree(branches, turns, is_kept, tip));
@@ -414,6 +419,56 @@ BOOST_AUTO_TEST_CASE(two_known_modes_are_found)
   BOOST_TEST(std::acos(std::min(1.0, cosine)) < 5 * CGAL_PI / 180);
 }
 
+BOOST_AUTO_TEST_CASE(age_and_crown_angle_of_trees_with_different_branches_are_found)
+{
+  // branches are born one after the other and grow from then on, some are lost, and all differ a little by themselves
+  std::mt19937 random(31);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform(0, 1);
+  const std::vector<Branch> all = random_branches(32, 6, 3);
+  std::vector<double> birth(all.size(), 0);
+  for (std::size_t b = 1; b < all.size(); ++b)
+    birth[b] = std::max(birth[all[b].parent], uniform(random));
+  const Eigen::Index n = 14;
+  Eigen::MatrixXd known(n, 2);
+  std::vector<Tree> trees;
+  std::set<std::size_t> counts;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double age = 0.7 + 0.6 * uniform(random), angle = 0.6 * uniform(random) - 0.3;
+    known.row(i) << age, angle;
+    std::vector<Branch> branches = all;
+    Turns turns(all.size(), Eigen::Matrix3d::Identity());
+    std::vector<char> is_kept(all.size(), 1);
+    for (std::size_t b = 0; b < all.size(); ++b) {
+      const double size = std::max(0.0, age - 0.9 * birth[b]) * std::exp(0.05 * normal(random));
+      for (Vec3& p : branches[b].points)
+        p *= size;
+      is_kept[b] = b == 0 || (size > 0.1 && uniform(random) > 0.08);
+      const Vec3 noise = 0.05 * Vec3(normal(random), normal(random), normal(random));
+      const Vec3 d = all[b].points.back().normalized();
+      if (b > 0)
+        turns[b] = (Eigen::AngleAxisd(noise.norm(), noise.normalized()) *
+                    Eigen::AngleAxisd(angle, Vec3::UnitZ().cross(d).normalized()))
+                       .toRotationMatrix();
+    }
+    std::vector<std::size_t> tip;
+    trees.push_back(make_tree(branches, turns, is_kept, tip));
+    counts.insert(num_vertices(trees.back()));
+  }
+  BOOST_TEST(counts.size() > 6u); // they are different trees
+  const Space space = make_space(trees);
+  const auto modes = space.modes(2);
+  BOOST_REQUIRE(modes.size() == 2u);
+  for (Eigen::Index p = 0; p < 2; ++p) {
+    const Eigen::VectorXd truth = known.col(p).array() - known.col(p).mean();
+    // scores are uncorrelated and of unit variance
+    const Eigen::VectorXd fit = modes.scores * (modes.scores.transpose() * truth) / double(n - 1);
+    const double correlation = fit.dot(truth) / (fit.norm() * truth.norm());
+    // branches that come and go vary as much as the angle does
+    BOOST_TEST(correlation > (p == 0 ? 0.95 : 0.5), (p == 0 ? "age " : "angle ") << correlation);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(left_out_trees_are_nearer_with_more_modes)
 {
   const Family space(7);
@@ -435,6 +490,42 @@ BOOST_AUTO_TEST_CASE(left_out_trees_are_nearer_with_more_modes)
   BOOST_TEST(std::abs(d - modes.left_out[0][2]) < 1e-6 * d);
 }
 
+BOOST_AUTO_TEST_CASE(a_tree_without_part_in_the_topology_is_nearer_with_more_modes)
+{
+  // lengths and angles of the branches follow two parameters, so that the other trees know something
+  std::mt19937 random(12);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const std::vector<Branch> all = random_branches(13, 5, 2);
+  std::vector<Tree> trees;
+  for (int i = 0; i < 9; ++i) {
+    const double size = uniform(random), slant = uniform(random);
+    std::vector<Branch> branches = all;
+    Turns turns(all.size(), Eigen::Matrix3d::Identity());
+    for (std::size_t b = 1; b < all.size(); ++b) {
+      for (Vec3& p : branches[b].points)
+        p *= std::exp(0.3 * (b % 2 ? size : -size) + 0.01 * normal(random));
+      const Vec3 d = all[b].points.back().normalized();
+      turns[b] = Eigen::AngleAxisd(0.3 * slant + 0.01 * normal(random),
+                                   Vec3::UnitZ().cross(d).normalized())
+                     .toRotationMatrix();
+    }
+    std::vector<std::size_t> tip;
+    trees.push_back(make_tree(branches, turns, std::vector<char>(all.size(), 1), tip));
+  }
+  double error[3] = {0, 0, 0};
+  for (std::size_t left = 0; left < 3; ++left) {
+    std::vector<Tree> others = trees;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(left));
+    const Space space = make_space(others);
+    const pcs::Orl_tree placed = space.embed(trees[left]);
+    for (std::size_t k = 0; k < 3; ++k)
+      error[k] += space.project(space.modes(k), placed).distance;
+  }
+  BOOST_TEST(error[1] < 0.9 * error[0]);
+  BOOST_TEST(error[2] < 0.4 * error[0]);
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(orl_samples)
@@ -447,12 +538,29 @@ BOOST_AUTO_TEST_CASE(new_trees_are_different_and_within_the_inputs)
   for (std::size_t h = 0; h < 8; ++h)
     inputs.push_back(space.figures(space.tree(h)));
   std::set<double> lengths;
+  std::size_t number_inside = 0, number_beyond = 0;
   for (std::uint64_t i = 0; i < 30; ++i) {
     pcs::Sample_report report;
     const pcs::Orl_tree tree = space.sample(distribution, 11, i, np::default_values(), &report);
-    // all trunks are alike here, so that the range of heights is nearly a point
-    BOOST_TEST(report.excess < 0.01);
-    BOOST_TEST(excess(space.figures(tree), inputs) == report.excess);
+    number_inside += report.excess == 0;
+    BOOST_TEST(report.excess < 0.1); // orders of few branches have narrow ranges
+    const Tree_figures f = space.figures(tree);
+    BOOST_TEST(excess(f, inputs) == report.excess);
+    // whatever `excess()` says
+    for (const auto& get : {+[](const Tree_figures& x) { return x.length; },
+                            +[](const Tree_figures& x) { return x.height; },
+                            +[](const Tree_figures& x) { return x.crown_width; },
+                            +[](const Tree_figures& x) { return x.mean_angle[1]; },
+                            +[](const Tree_figures& x) {
+                              return static_cast<double>(x.total_number_of_branches());
+                            }}) {
+      double low = 1e300, high = 0;
+      for (const Tree_figures& input : inputs) {
+        low = std::min(low, get(input));
+        high = std::max(high, get(input));
+      }
+      number_beyond += get(f) < low * 0.9999 || get(f) > high * 1.0001;
+    }
     const Orl_coordinates& x = tree.coordinates();
     lengths.insert(total_length(x));
     for (std::size_t b = 0; b < space.layout().branches.size(); ++b) {
@@ -467,6 +575,54 @@ BOOST_AUTO_TEST_CASE(new_trees_are_different_and_within_the_inputs)
     }
   }
   BOOST_TEST(lengths.size() == 30u);
+  BOOST_TEST(number_inside >= 27u);
+  BOOST_TEST(number_beyond <= 3u);
+}
+
+BOOST_AUTO_TEST_CASE(branches_keep_their_slant)
+{
+  // trees whose branches all stand at one slant, turned about a trunk that is upright: so do those of new trees
+  std::mt19937 random(8);
+  std::normal_distribution<double> normal;
+  std::vector<Tree> trees;
+  for (int i = 0; i < 6; ++i) {
+    std::vector<Branch> branches(9);
+    branches[0].points = {Vec3(0, 0, 0)};
+    for (int k = 1; k <= 10; ++k)
+      branches[0].points.push_back(Vec3(0, 0, k));
+    branches[0].radii.assign(11, 0.2);
+    for (std::size_t b = 1; b < 9; ++b) {
+      const double azimuth = 2.4 * static_cast<double>(b) + 0.3 * normal(random);
+      // shorter than what is left of the trunk
+      const Vec3 d =
+          (0.125 * static_cast<double>(9 - b)) * Vec3(std::cos(azimuth), std::sin(azimuth), 0.5);
+      branches[b].parent = 0;
+      branches[b].at = b + 1;
+      branches[b].points = {Vec3(0, 0, 0), d, 2 * d, (3 + 0.2 * normal(random)) * d};
+      branches[b].radii.assign(4, 0.1);
+    }
+    trees.push_back(make_tree(branches));
+  }
+  const Space space = make_space(trees);
+  const auto distribution = space.distribution();
+  Sampling_options free;
+  free.do_keep_in_range = false;
+  double spread = 0;
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    Tree drawn;
+    space.skeleton(space.sample(distribution, 4, i, np::sampling_options(free)), drawn);
+    for (const auto e : boost::make_iterator_range(edges(drawn))) {
+      const Vec3 v =
+          to_eigen(drawn[target(e, drawn)].point) - to_eigen(drawn[source(e, drawn)].point);
+      const double slant = std::atan2(v.head<2>().norm(), v.z());
+      if (v.norm() > 0 && slant > 0.3) {
+        // the direction of growth is that of the middle of the trees, not quite that of the trunk
+        BOOST_TEST(std::abs(slant - std::atan2(1, 0.5)) < 0.15);
+        spread = std::max(spread, v.head<2>().norm());
+      }
+    }
+  }
+  BOOST_TEST(spread > 1);
 }
 
 BOOST_AUTO_TEST_CASE(a_seed_gives_a_family_and_a_tree_does_not_depend_on_the_others)
@@ -566,13 +722,56 @@ BOOST_AUTO_TEST_CASE(points_follow_their_branches_in_one_order)
     space.add(tree, scans.back());
   }
   space.build(np::points_of(std::size_t(2)));
+  // every scan comes back where it has the branches: its own points, or partners of them
+  for (std::size_t h = 0; h < 4; ++h) {
+    std::vector<Point> again;
+    const pcs::Orl_tree tree = space.tree(h);
+    space.points(tree, again);
+    std::vector<double> weight(again.size(), 0);
+    std::vector<std::array<std::size_t, 2>> from(again.size(), {9, 0});
+    space.for_each_source(tree, [&](std::size_t i, std::size_t s, std::size_t k, double w) {
+      weight[i] += w;
+      from[i] = {s, k};
+    });
+    std::vector<std::size_t> used(scans[h].size(), 0);
+    double worst = 0;
+    for (std::size_t i = 0; i < again.size(); ++i) {
+      BOOST_TEST(weight[i] == 1);
+      BOOST_REQUIRE(from[i][0] == h);
+      ++used[from[i][1]];
+      worst = std::max(worst, std::sqrt(CGAL::squared_distance(again[i], scans[h][from[i][1]])));
+    }
+    BOOST_TEST(worst < 1e-5); // partners are kept in single precision
+    BOOST_TEST(std::count(used.begin(), used.end(), 0u) <
+               static_cast<std::ptrdiff_t>(used.size() / 4));
+  }
+  // the mean has part of all scans, each as much as is asked for
+  const std::vector<double> weights{1, 2, 3, 2};
+  const pcs::Orl_tree mean =
+      space.mean(np::tree_weights(weights).tree_mean(Tree_mean::least_squares));
+  std::vector<double> total(mean.number_of_points(), 0);
+  std::vector<std::array<double, 4>> share(total.size(), {0, 0, 0, 0});
+  space.for_each_source(mean, [&](std::size_t i, std::size_t h, std::size_t, double w) {
+    total[i] += w;
+    share[i][h] += w;
+  });
+  std::size_t number_of_all = 0;
+  for (std::size_t i = 0; i < total.size(); ++i) {
+    BOOST_TEST(std::abs(total[i] - 1) < 1e-12);
+    if (share[i][0] > 0 && share[i][1] > 0 && share[i][2] > 0 && share[i][3] > 0) {
+      ++number_of_all;
+      for (std::size_t h = 0; h < 4; ++h)
+        BOOST_TEST(std::abs(share[i][h] - weights[h] / 8) < 1e-12);
+    }
+  }
+  BOOST_TEST(number_of_all > total.size() / 5);
   // the tree whose scan is used gets it back
   std::vector<Point> points;
   const pcs::Orl_tree own = space.tree(2);
   BOOST_TEST(space.points(own, points) == own.number_of_points());
   std::vector<double> error(points.size(), -1);
   std::vector<std::size_t> source(points.size(), 0);
-  space.for_each_source(own, [&](std::size_t i, std::size_t h, std::size_t k) {
+  space.for_each_source(own, [&](std::size_t i, std::size_t h, std::size_t k, double) {
     source[i] = h;
     error[i] = std::sqrt(CGAL::squared_distance(points[i], scans[h][k]));
   });
@@ -587,11 +786,6 @@ BOOST_AUTO_TEST_CASE(points_follow_their_branches_in_one_order)
   // points of a new tree lie about its axes, as far as its radii say
   const pcs::Orl_tree drawn = space.sample(3);
   space.points(drawn, points);
-  std::vector<std::pair<std::size_t, std::size_t>> order;
-  order.resize(points.size());
-  space.for_each_source(drawn, [&](std::size_t i, std::size_t h, std::size_t k) {
-    order[i] = {h, k};
-  });
   Tree skeleton;
   space.skeleton(drawn, skeleton);
   std::size_t number_far = 0;
@@ -613,7 +807,90 @@ BOOST_AUTO_TEST_CASE(points_follow_their_branches_in_one_order)
 
 BOOST_AUTO_TEST_SUITE_END()
 
+BOOST_AUTO_TEST_SUITE(orl_real_groups)
+
+BOOST_AUTO_TEST_CASE(new_trees_of_a_real_group_are_within_it)
+{
+  const char* const data = std::getenv("PCS_TEST_DATA");
+  const std::filesystem::path folder =
+      data ? std::filesystem::path(data) / "orl" / "skel_collections" : std::filesystem::path();
+  std::vector<std::string> files;
+  if (data && std::filesystem::is_directory(folder))
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+      if (entry.path().filename().string().rfind("BS07a", 0) == 0)
+        files.push_back(entry.path().string());
+  if (files.size() < 3) {
+    BOOST_TEST_MESSAGE("skipped: PCS_TEST_DATA does not name a folder with orl/skel_collections");
+    return;
+  }
+  std::sort(files.begin(), files.end());
+  Space space;
+  for (const std::string& file : files) {
+    Tree tree;
+    pcs::IO::read_txtskl<Kernel>(file, tree);
+    space.add_skeleton(tree);
+  }
+  space.build();
+  std::vector<Tree_figures> inputs;
+  for (std::size_t h = 0; h < files.size(); ++h)
+    inputs.push_back(space.figures(space.tree(h)));
+  const Tree_figures mean = space.figures(space.mean());
+  BOOST_TEST(mean.length > 0.5 * inputs[0].length);
+  const auto distribution = space.distribution();
+  std::size_t number_inside = 0;
+  for (std::uint64_t i = 0; i < 12; ++i)
+    number_inside += excess(space.figures(space.sample(distribution, 1, i)), inputs) == 0;
+  BOOST_TEST(number_inside >= 10u);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
 BOOST_AUTO_TEST_SUITE(orl_growth)
+
+BOOST_AUTO_TEST_CASE(archetypes_of_graph_range_key_map_and_value)
+{
+  // a graph without properties, a scan that makes its keys, maps that read by value: all that is asked for
+  using Graph = boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS>;
+  using Bare_point = pcs_test::Triple_archetype<double>;
+  std::vector<std::vector<Bare_point>> nodes(3), scans(3);
+  std::vector<std::vector<float>> radii(3);
+  Space space;
+  for (std::size_t t = 0; t < 3; ++t) {
+    const Tree tree = relatives(3, 81)[t];
+    Graph graph(num_vertices(tree));
+    for (const auto e : boost::make_iterator_range(edges(tree)))
+      add_edge(source(e, tree), target(e, tree), graph);
+    for (std::size_t v = 0; v < num_vertices(tree); ++v) {
+      nodes[t].emplace_back(tree[v].point.x(), tree[v].point.y(), tree[v].point.z());
+      radii[t].push_back(static_cast<float>(tree[v].radius));
+    }
+    for (const Point& p : rings(tree))
+      scans[t].emplace_back(p.x(), p.y(), p.z());
+    const auto maps = [&](std::size_t i) {
+      return np::node_point_map(boost::make_iterator_property_map(nodes[i].begin(),
+                                                                  get(boost::vertex_index, graph)))
+          .node_radius_map(
+              boost::make_iterator_property_map(radii[i].begin(), get(boost::vertex_index, graph)));
+    };
+    space.add(graph,
+              pcs_test::Range_archetype(scans[t].size()),
+              maps(t).point_map(pcs_test::Map_archetype<Bare_point>(scans[t])));
+    if (t == 2) {
+      space.build();
+      BOOST_TEST(space.distance(space.embed(graph, maps(2)), space.tree(2)) <
+                 0.2 * space.distance(0, 2));
+    }
+  }
+  const pcs::Orl_tree tree = space.mean();
+  std::vector<Bare_point> out(tree.number_of_points(), Bare_point(0, 0, 0));
+  pcs_test::Range_archetype range(out.size());
+  BOOST_TEST(space.points(tree, range, np::point_map(pcs_test::Map_archetype<Bare_point>(out))) ==
+             out.size());
+  double high = 0;
+  for (const Bare_point& p : out)
+    high = std::max(high, p.z());
+  BOOST_TEST(high > 5);
+}
 
 BOOST_AUTO_TEST_CASE(the_path_goes_through_all_trees_smoothly)
 {
@@ -782,6 +1059,12 @@ BOOST_AUTO_TEST_CASE(a_space_is_saved_and_restored)
     refuse([](auto& d) { d.trees.resize(1); });
     refuse([](auto& d) { d.weights.length.pop_back(); });
     refuse([](auto& d) { d.matching[8] = 0; });
+    refuse([](auto& d) {
+      if (d.points.empty())
+        d.trees[0].has[0] = 0; // two trees have pairs, not partners
+      d.partners.emplace_back();
+      d.partners.back().point = 1u << 30;
+    });
     refuse([](auto& d) {
       if (!d.pairs.empty())
         d.pairs[0].edge = 1000000;

@@ -105,15 +105,47 @@ void run_group(const std::vector<std::string>& files, const std::string& folder)
     }
   const auto distribution = space.distribution();
   std::printf("shrinkage %.2f\n", distribution.distribution.shrinkage());
-  std::size_t number_inside = 0;
+  std::size_t number_inside = 0, number_alike = 0;
   for (std::uint64_t i = 0; i < 12; ++i) {
     const pcs::Orl_tree tree = space.sample(distribution, 1, i);
     const Tree_figures f = space.figures(tree);
-    number_inside += excess(f, inputs) == 0;
+    number_inside += excess(f, inputs, false) == 0;
+    number_alike += excess(f, inputs) == 0;
     print("new", f);
     write(space, tree, folder, "sample_" + std::to_string(i));
   }
-  std::printf("%zu of 12 new trees are inside the range of the inputs\n", number_inside);
+  std::printf("%zu of 12 new trees are inside the range of the inputs, %zu of them in numbers and "
+              "angles of branches of each order as well\n",
+              number_inside,
+              number_alike);
+}
+
+/// Each tree is left out of the topology, too, and then matched to the middle of the others.
+void run_left_out(const std::vector<std::string>& files)
+{
+  std::vector<Tree> trees(files.size());
+  for (std::size_t i = 0; i < files.size(); ++i)
+    pcs::IO::read_txtskl<Kernel>(files[i], trees[i]);
+  std::vector<double> error(files.size() - 1, 0);
+  double represented = 0;
+  for (std::size_t left = 0; left < trees.size(); ++left) {
+    Space space;
+    for (std::size_t i = 0; i < trees.size(); ++i)
+      if (i != left)
+        space.add_skeleton(trees[i]);
+    space.build();
+    double share = 0;
+    const pcs::Orl_tree placed = space.embed(trees[left], np::default_values(), &share);
+    represented += share / static_cast<double>(trees.size());
+    for (std::size_t k = 0; k < error.size(); ++k)
+      error[k] +=
+          space.project(space.modes(k), placed).distance / static_cast<double>(trees.size());
+  }
+  std::printf(
+      "left out of the topology, %.3f of the length is represented; modes and mean error:\n",
+      represented);
+  for (std::size_t k = 0; k < error.size(); ++k)
+    std::printf("%4zu %9.3f\n", k, error[k]);
 }
 
 /// Trees of two parameters, size and crown angle, and how well the plane of the first two modes tells these.
@@ -226,8 +258,10 @@ int main(int argc, char** argv)
   std::vector<std::string> files;
   std::string folder;
   std::size_t parameters = 0, points = 0, trees = 100;
+  bool is_left_out = false;
   app.add_option("files", files, ".txtskl skeletons of one group");
   app.add_option("--output", folder, "write skeletons of means, modes and new trees here");
+  app.add_flag("--left-out", is_left_out, "error of each tree by the modes of the others instead");
   app.add_option("--parameters", parameters, "so many virtual trees of two known parameters");
   app.add_option("--points", points, "seconds per new tree of so many points");
   app.add_option("--trees", trees, "new trees for --points");
@@ -235,8 +269,10 @@ int main(int argc, char** argv)
   try {
     if (!folder.empty())
       std::filesystem::create_directories(folder);
-    if (files.size() > 1)
+    if (files.size() > 1 && !is_left_out)
       run_group(files, folder);
+    if (files.size() > 2 && is_left_out)
+      run_left_out(files);
     if (parameters > 2)
       run_parameters(parameters);
     if (points > 0 && trees > 0)

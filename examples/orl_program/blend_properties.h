@@ -48,6 +48,36 @@ T mix_values(double a, double b, double w, bool has_color)
   return static_cast<T>(w < 0.5 ? a : b);
 }
 
+/// A value from many points with weights that add up to 1, in the same way.
+template <class T>
+class Mixed_value
+{
+public:
+  explicit Mixed_value(bool has_color) : m_has_color(has_color) {}
+
+  void add(double value, double w)
+  {
+    m_sum += w * value;
+    m_light += w * std::pow(std::max(0.0, value), gamma);
+    if (w > m_most) {
+      m_most = w;
+      m_main = value;
+    }
+  }
+  T get() const
+  {
+    if (std::is_floating_point_v<T>)
+      return static_cast<T>(m_sum);
+    return static_cast<T>(
+        m_has_color ? static_cast<double>(std::lround(std::pow(m_light, 1 / gamma))) : m_main);
+  }
+
+private:
+  static constexpr double gamma = 2.2;
+  bool m_has_color;
+  double m_sum = 0, m_light = 0, m_most = 0, m_main = 0;
+};
+
 /// Adds every property that both tables have to `out`, the points of `tree`, in the type of the first table.
 template <class Space>
 void blend_properties(const Space& space,

@@ -28,7 +28,7 @@ namespace orl_program {
 namespace np = pcs::parameters;
 using Space = pcs::Orl_shape_space<Kernel>;
 
-/// Properties that the points of all trees have, taken from the point that each comes from.
+/// Properties that the points of all trees have, mixed from the points that each comes from.
 inline void copy_properties(const Space& space,
                             const pcs::Orl_tree& tree,
                             const std::vector<Tree_file>& files,
@@ -46,10 +46,13 @@ inline void copy_properties(const Space& space,
     std::visit(
         [&](const auto& like) {
           using T = typename std::decay_t<decltype(like)>::value_type;
-          std::vector<T> own(out.number_of_points());
-          space.for_each_source(tree, [&](std::size_t i, std::size_t h, std::size_t k) {
-            own[i] = static_cast<T>(values[h][k]);
+          std::vector<Mixed_value<T>> mixed(out.number_of_points(), Mixed_value<T>(is_color(name)));
+          space.for_each_source(tree, [&](std::size_t i, std::size_t h, std::size_t k, double w) {
+            mixed[i].add(values[h][k], w);
           });
+          std::vector<T> own(mixed.size());
+          for (std::size_t i = 0; i < own.size(); ++i)
+            own[i] = mixed[i].get();
           out.add_property(name, std::move(own));
         },
         files[0].points.property_values(name));

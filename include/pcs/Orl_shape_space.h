@@ -54,8 +54,9 @@ namespace pcs {
   `geodesic()` and turned into skeletons and points. Inputs are copied, nothing refers to them afterwards.
 
   Two trees are represented exactly. More trees share the nodes of their branches: axes are straightened between them, by
-  `shape_space::axis_tolerance` of the length of a branch at most, and each branch has the points of one scan, so that
-  points have the same order in all trees. The order in which trees are added does not matter then, save for rounding. See
+  `shape_space::axis_tolerance` of the length of a branch at most. Each branch has as many points as in one scan, so that
+  points have the same order in all trees; each of them has a partner in every other scan of the branch, found by transport,
+  and lies between these. The order in which trees are added does not matter then, save for rounding. See
   the base class for means, modes and new trees.
 
   \tparam Kernel a kernel of CGAL; computations are in double precision about a local origin
@@ -156,7 +157,8 @@ public:
       \np{number_of_rounds} for more than two trees: how often all are matched to a tree in their middle
         \nptype an integer, `>= 1`
         \npdefault `3`
-      \np{points_of} for more than two trees: the tree whose scan gives the points of the branches that it has
+      \np{points_of} for more than two trees: the tree whose scan gives the points of the branches that it has, to which
+        those of other scans are matched
         \nptype `Handle`
         \npdefault none: for each branch, the tree with most points there
       \np{callback} progress in [0, 1]; `false` cancels
@@ -201,9 +203,10 @@ public:
     Orl_report report = new_report();
     pcs::internal::Stopwatch watch;
     if (m_inputs.size() > 2)
-      return build_many(np,
-                        {weights, assignment, static_cast<std::size_t>(rounds), points_of},
-                        progress);
+      return build_many(
+          np,
+          {weights, assignment, transport, static_cast<std::size_t>(rounds), points_of},
+          progress);
     progress.stage(0, 0.4);
     Embedded_pair built;
     read_form(np, built);
@@ -353,6 +356,12 @@ public:
       lambda = 0;
     // one direction only, so that the path back is the same
     const double t = a <= b ? lambda : 1 - lambda;
+    if (!is_pair()) {
+      result.m_share.assign(this->number_of_trees(), 0);
+      const double share = std::min(1.0, std::max(0.0, a == b ? 0.0 : lambda));
+      result.m_share[a] += 1 - share;
+      result.m_share[b] += share;
+    }
     make_tree(this->m_family.x[std::min(a, b)],
               this->m_family.x[std::max(a, b)],
               t,
@@ -370,6 +379,10 @@ public:
   {
     check_built("geodesic");
     Orl_tree result;
+    this->mix_shares(
+        {&a, &b},
+        {1 - std::min(1.0, std::max(0.0, lambda)), std::min(1.0, std::max(0.0, lambda))},
+        result);
     make_tree(a.m_x, b.m_x, lambda, (1 - lambda) * a.m_lambda + lambda * b.m_lambda, np, result);
     return result;
   }
@@ -463,6 +476,7 @@ public:
                      t.m_x,
                      t.m_geometry,
                      t.m_offset,
+                     t.m_share,
                      put_point,
                      ConcurrencyTag());
       return n;
@@ -508,8 +522,10 @@ public:
   }
 
   /*!
-    \brief calls `f(i, h, k)` for every point of a tree of a space of more than two trees: it comes from point `k` of the scan
-    of tree `h`, and has its attributes. `f` may be called concurrently.
+    \brief calls `f(i, h, k, w)` for every point of a tree of a space of more than two trees and every point it is made
+    from: point `k` of the scan of tree `h`, with a weight `w` in (0, 1]; weights of a point add up to 1.
+
+    Attributes are blended with it: `result[i] += w * scan[h][k]`. `f` may be called concurrently, but not for one `i`.
   */
   template <class F>
   void for_each_source(const Orl_tree& t, const F& f) const
@@ -525,10 +541,12 @@ public:
         t.m_x.length.size(),
         [&](std::size_t e) {
           if (t.m_x.length[e] > 0)
-            for (std::size_t k = first[e]; k < first[e + 1]; ++k) {
-              const shape_space::Family_source& s = m_points.sources()[k];
-              f(t.m_offset[e] + k - first[e], std::size_t(s.tree), std::size_t(s.point));
-            }
+            for (std::size_t k = first[e]; k < first[e + 1]; ++k)
+              m_points.for_each_source(k,
+                                       t.m_share,
+                                       [&](std::size_t h, std::size_t point, double w) {
+                                         f(t.m_offset[e] + k - first[e], h, point, w);
+                                       });
         },
         64);
   }
@@ -571,6 +589,7 @@ public:
     check_built("data");
     Orl_space_data result = shape_space::store_family(this->m_family);
     result.points = m_stored_points;
+    result.partners = m_stored_partners;
     result.has_normals = has_normals();
     if (is_pair()) {
       result.pairs = m_built.instances.pairs();
@@ -676,6 +695,7 @@ private:
         shape_space::first_of_edges(m_built.instances.pairs(), m_built.layout.number_of_edges());
     m_points = shape_space::Family_points();
     m_stored_points.clear();
+    m_stored_partners.clear();
     m_is_built = true;
     report.status = Status::converged;
     report.number_of_common_branches = m_built.topology.branches.size();
@@ -742,7 +762,7 @@ private:
     pcs::internal::Stopwatch watch;
     this->m_family = std::move(built.family);
     m_built = shape_space::Embedded_pair();
-    set_family_points(std::move(built.points), built.has_normals);
+    set_family_points(std::move(built.points), std::move(built.partners), built.has_normals);
     m_is_built = true;
     report.seconds.instances = watch.lap();
     report.status = Status::converged;
@@ -753,15 +773,18 @@ private:
   }
 
   /// Points of a space of more than two trees, by edge.
-  void set_family_points(std::vector<Orl_space_data::Point> points, bool has_normals)
+  void set_family_points(std::vector<Orl_space_data::Point> points,
+                         std::vector<Orl_space_data::Partner> partners,
+                         bool has_normals)
   {
     using namespace shape_space;
     const Tree_family& family = this->m_family;
     std::vector<Orl_geometry> geometry(family.x.size());
     for (std::size_t t = 0; t < family.x.size(); ++t)
       build_geometry(family.layout, family.x[t], family.orientation, geometry[t]);
-    m_points.set(family.layout, geometry, points, has_normals, ConcurrencyTag());
+    m_points.set(family.layout, geometry, points, partners, has_normals, ConcurrencyTag());
     m_stored_points = std::move(points);
+    m_stored_partners = std::move(partners);
     this->m_family.first_point = m_points.first();
   }
 
@@ -773,7 +796,7 @@ private:
     const std::size_t n = this->m_family.layout.number_of_edges();
     if (this->number_of_trees() > 2) {
       check_family_points(stored, n, caller);
-      set_family_points(stored.points, stored.has_normals);
+      set_family_points(stored.points, stored.partners, stored.has_normals);
       return;
     }
     m_inputs = restore_pair<ConcurrencyTag>(stored, this->m_family, caller, m_built);
@@ -784,6 +807,7 @@ private:
   shape_space::Embedded_pair m_built;                 // of two trees
   shape_space::Family_points m_points;                // of more
   std::vector<Orl_space_data::Point> m_stored_points; // likewise
+  std::vector<Orl_space_data::Partner> m_stored_partners;
   bool m_is_built = false, m_is_restored = false;
 };
 

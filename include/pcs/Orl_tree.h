@@ -34,11 +34,14 @@ private:
   template <class, class>
   friend class Orl_shape_space;
   template <class>
+  friend class Orl_tree_set;
+  template <class>
   friend class Orl_tree_family;
   shape_space::Orl_coordinates m_x;
   shape_space::Orl_geometry m_geometry;
   std::vector<std::size_t> m_offset;
   double m_lambda = 0;
+  std::vector<double> m_share; // of scans in the points, for more than two trees; empty: all alike
 };
 
 //! \ingroup PkgPcsShapeSpaceRef

@@ -7,12 +7,13 @@
 
 #include <pcs/Named_function_parameters.h>
 #include <pcs/Orl_tree.h>
+#include <pcs/Orl_tree_set.h>
 #include <pcs/core/errors.h>
+#include <pcs/internal/Random_stream.h>
 #include <pcs/internal/text.h>
 #include <pcs/shape_space/Tree_distribution.h>
-#include <pcs/shape_space/Tree_family.h>
-#include <pcs/shape_space/change_table.h>
 #include <pcs/shape_space/growth_path.h>
+#include <pcs/shape_space/limit_pipes.h>
 #include <pcs/shape_space/mean_tree.h>
 #include <pcs/shape_space/modes_of_variation.h>
 
@@ -53,81 +54,15 @@ struct Sample_report
   Same bits for every number of threads. Of a built space nothing changes: all functions may run concurrently.
 */
 template <class ConcurrencyTag>
-class Orl_tree_family
+class Orl_tree_family : public Orl_tree_set<ConcurrencyTag>
 {
+  using Set = Orl_tree_set<ConcurrencyTag>;
+
 public:
-  //! names an added tree
-  using Handle = std::size_t;
-
-  //! trees that were added when the space was built [count]
-  std::size_t number_of_trees() const { return m_family.x.size(); }
-
-  //! an added tree as a tree of the space
-  Orl_tree tree(Handle h) const
-  {
-    check_handle(h, "tree");
-    return make(m_family.x[h], h == 1 ? 1 : 0);
-  }
-
-  //! whether tree `h` has branch `b` of the topology
-  bool has_branch(Handle h, std::size_t b) const
-  {
-    check_handle(h, "has_branch");
-    return b < m_family.has[h].size() && m_family.has[h][b] != 0;
-  }
-
-  //! the number of the vertex at the tip of branch `b` in the graph of tree `h`, `npos` if it does not have it
-  std::size_t tip_of_branch(Handle h, std::size_t b) const
-  {
-    return has_branch(h, b) ? m_family.tip[h][b] : npos;
-  }
-
-  /*!
-    \brief the distance between two trees of the space.
-
-    \npbegin
-      \np{metric} sum of differences as in (4.7), root of their squares, or edges as vectors
-        \nptype `shape_space::Orl_metric`
-        \npdefault `sum`
-    \npend
-  */
-  template <class NamedParameters = parameters::Default_named_parameters>
-  double distance(const Orl_tree& a,
-                  const Orl_tree& b,
-                  const NamedParameters& np = NamedParameters()) const
-  {
-    check_tree(a, "distance");
-    check_tree(b, "distance");
-    return distance_of(a.m_x, b.m_x, np);
-  }
-  //! the same between two added trees
-  template <class NamedParameters = parameters::Default_named_parameters>
-  double distance(Handle a, Handle b, const NamedParameters& np = NamedParameters()) const
-  {
-    check_handle(a, "distance");
-    check_handle(b, "distance");
-    return distance_of(m_family.x[a], m_family.x[b], np);
-  }
-
-  //! distances of all pairs of added trees, row by row: that of `a` and `b` is at `a * number_of_trees() + b` [L]
-  template <class NamedParameters = parameters::Default_named_parameters>
-  std::vector<double> distances(const NamedParameters& np = NamedParameters()) const
-  {
-    check_family("distances");
-    const std::size_t n = number_of_trees();
-    std::vector<double> result(n * n, 0);
-    pcs::internal::for_each_index<ConcurrencyTag>(
-        n,
-        [&](std::size_t a) {
-          for (std::size_t b = 0; b < a; ++b)
-            result[a * n + b] = distance_of(m_family.x[a], m_family.x[b], np);
-        },
-        1);
-    for (std::size_t a = 0; a < n; ++a)
-      for (std::size_t b = 0; b < a; ++b)
-        result[b * n + a] = result[a * n + b];
-    return result;
-  }
+  using Handle = typename Set::Handle;
+  using Set::figures;
+  using Set::number_of_trees;
+  using Set::tree;
 
   /*!
     \brief the mean of the added trees.
@@ -159,7 +94,7 @@ public:
                               pcs::internal_np::tree_weights,
                               std::vector<double>(number_of_trees(), 1));
     check_weights(weights, false, "mean");
-    return make(mean_of(weights, kind));
+    return make(mean_of(weights, kind), -1, weights);
   }
 
   /*!
@@ -177,7 +112,8 @@ public:
     for (const double w : weights)
       total += w;
     return make(mean_of(weights, shape_space::Tree_mean::least_squares),
-                number_of_trees() == 2 ? weights[1] / total : 0);
+                number_of_trees() == 2 ? weights[1] / total : 0,
+                weights);
   }
 
   //! `t`, changed by `step` times what leads from `a` to `b`: any tree, any direction [-]
@@ -193,7 +129,7 @@ public:
     const Tangent_space at(m_family.layout, t.m_x, m_family.weights);
     shape_space::Orl_coordinates x = at.exp(step * from.log(b.m_x));
     x.root = t.m_x.root + step * (b.m_x.root - a.m_x.root);
-    return make(std::move(x));
+    return make(std::move(x), -1, t.m_share);
   }
 
   /*!
@@ -249,7 +185,7 @@ public:
     scores.resize(std::min(k, scores.size()));
     Orl_tree result = tree(modes, scores);
     result.m_x.root = t.m_x.root;
-    return make(std::move(result.m_x), result.m_lambda);
+    return make(std::move(result.m_x), result.m_lambda, t.m_share);
   }
 
   //! how unlike the added trees a tree is: about 1 for one like them, see `shape_space::outlier_score()` [-]
@@ -262,9 +198,13 @@ public:
   Orl_distribution distribution() const
   {
     check_family("distribution");
-    Orl_distribution result{
-        shape_space::Tree_distribution(m_family.layout, pointers(), m_family.has, ConcurrencyTag()),
-        {}};
+    Orl_distribution result{shape_space::Tree_distribution(m_family.layout,
+                                                           pointers(),
+                                                           m_family.has,
+                                                           m_family.orientation,
+                                                           m_family.up,
+                                                           ConcurrencyTag()),
+                            {}};
     for (std::size_t t = 0; t < number_of_trees(); ++t)
       result.figures.push_back(figures(tree(t)));
     return result;
@@ -302,18 +242,30 @@ public:
     Orl_tree best;
     Sample_report done;
     const std::size_t trials = o.do_keep_in_range ? o.number_of_trials : 1;
+    double least = 0;
+    Sampling_options nearer = o;
+    const std::vector<double> share = draw_shares(seed, index);
     for (std::size_t k = 0; k < trials; ++k) {
+      // the second half of the trials comes nearer and nearer to the middle tree
+      nearer.spread =
+          o.spread * std::min(1.0, 1.5 - static_cast<double>(k) / static_cast<double>(trials));
       // a trial is a stream of its own
-      Orl_coordinates x = from.distribution.draw(pcs::internal::mix_bits(seed) + k, index, o);
+      Orl_coordinates x = from.distribution.draw(pcs::internal::mix_bits(seed) + k, index, nearer);
       if (o.pipe_exponent > 0)
         limit_pipes(m_family.layout, o.pipe_exponent, x);
       if (o.do_limit_radii)
         limit_radii(m_family.layout, x);
-      Orl_tree candidate = make(std::move(x));
-      const double beyond = o.do_keep_in_range ? excess(figures(candidate), from.figures) : 0;
-      if (k == 0 || beyond < done.excess) {
+      Orl_tree candidate = make(std::move(x), -1, share);
+      double beyond = 0, whole = 0; // of all figures, and of those of the tree as a whole
+      if (o.do_keep_in_range) {
+        const Tree_figures f = figures(candidate);
+        beyond = excess(f, from.figures);
+        whole = excess(f, from.figures, false);
+      }
+      if (k == 0 || whole < least || (whole == least && beyond < done.excess)) {
         best = std::move(candidate);
         done.excess = beyond;
+        least = whole;
       }
       done.number_of_trials = k + 1;
       if (done.excess == 0)
@@ -363,12 +315,12 @@ public:
       x.push_back(m_family.x[trees[i]]);
       has.push_back(m_family.has[trees[i]]);
     }
-    return shape_space::Growth_path(
-        m_family.layout,
-        times,
-        std::move(x),
-        has,
-        pcs::internal::choose(np, pcs::internal_np::is_monotone, false));
+    return shape_space::Growth_path(m_family.layout,
+                                    times,
+                                    std::move(x),
+                                    has,
+                                    pcs::internal::choose(np, pcs::internal_np::is_monotone, false),
+                                    trees);
   }
 
   //! the tree of a path at a time; before its begin and after its end that of the begin and the end
@@ -379,100 +331,40 @@ public:
       throw Invalid_input("pcs::Orl_shape_space::tree(): the path is empty or `time` not finite");
     shape_space::Orl_coordinates x;
     path.at(time, x);
-    if (x.length.size() != m_family.layout.number_of_edges())
+    bool is_own = x.length.size() == m_family.layout.number_of_edges();
+    for (const std::size_t h : path.scans())
+      is_own = is_own && h < number_of_trees();
+    if (!is_own)
       throw Invalid_input("pcs::Orl_shape_space::tree(): the path is of another space");
-    return make(std::move(x));
+    return make(std::move(x), -1, shares_at(path, time));
   }
-
-  /*!
-    \brief what became of each branch from tree `a` to tree `b`: new, lost, longer, thicker, turned.
-
-    \npbegin
-      \np{change_limits} when a difference counts
-        \nptype `shape_space::Change_limits`
-    \npend
-  */
-  template <class NamedParameters = parameters::Default_named_parameters>
-  std::vector<shape_space::Branch_change>
-  changes(Handle a, Handle b, const NamedParameters& np = NamedParameters()) const
-  {
-    check_handle(a, "changes");
-    check_handle(b, "changes");
-    const auto limits =
-        pcs::internal::choose(np, pcs::internal_np::change_limits, shape_space::Change_limits());
-    for (const double x : {limits.length, limits.radius, limits.angle})
-      if (!(x >= 0))
-        throw Invalid_input("pcs::Orl_shape_space::changes(): a limit is " +
-                            pcs::internal::to_text(x) + ", expected at least 0");
-    return shape_space::find_changes(m_family.layout, m_family.x[a], m_family.x[b], limits);
-  }
-
-  //! length, height, width, branches and angles of a tree; height is measured along `growth_direction()`
-  shape_space::Tree_figures figures(const Orl_tree& t) const
-  {
-    check_tree(t, "figures");
-    return shape_space::measure(m_family.layout, t.m_x, t.m_geometry, m_family.up);
-  }
-
-  //! unit vector from the roots to the middle of the trees: upwards, if they grow that way
-  const shape_space::Vec3& growth_direction() const { return m_family.up; }
-  //! the topology, for callers who look inside; \pre it was built
-  const shape_space::Orl_layout& layout() const { return m_family.layout; }
-  //! weights of the metric; \pre it was built
-  const shape_space::Orl_weights& weights() const { return m_family.weights; }
 
 protected:
-  void check_family(const char* caller) const
-  {
-    if (m_family.x.empty())
-      throw Invalid_input(std::string("pcs::Orl_shape_space::") + caller +
-                          "(): call build() first");
-  }
-  void check_handle(Handle h, const char* caller) const
-  {
-    check_family(caller);
-    if (h >= number_of_trees())
-      throw Invalid_input(std::string("pcs::Orl_shape_space::") + caller + "(): there is no tree " +
-                          std::to_string(h));
-  }
-  void check_tree(const Orl_tree& t, const char* caller) const
-  {
-    check_family(caller);
-    if (t.m_x.length.size() != m_family.layout.number_of_edges() ||
-        t.m_x.attachment.size() != m_family.layout.branches.size())
-      throw Invalid_input(std::string("pcs::Orl_shape_space::") + caller +
-                          "(): the tree is of another space");
-  }
+  using Set::check_family;
+  using Set::check_handle;
+  using Set::check_tree;
+  using Set::m_family;
+  using Set::make;
 
-  /// `lambda` is the share of the second of two trees; negative: as the coordinates tell.
-  Orl_tree make(shape_space::Orl_coordinates x, double lambda = -1) const
+private:
+  /// Those of the scans before and after a time.
+  std::vector<double> shares_at(const shape_space::Growth_path& path, double time) const
   {
-    Orl_tree result;
-    result.m_x = std::move(x);
-    result.m_lambda = lambda >= 0              ? lambda
-                      : number_of_trees() == 2 ? share_of_second(result.m_x)
-                                               : 0;
-    shape_space::build_geometry(m_family.layout,
-                                result.m_x,
-                                m_family.orientation,
-                                result.m_geometry);
-    m_family.find_offsets(result.m_x, result.m_offset);
+    std::vector<double> result(number_of_trees(), 0);
+    const auto [k, f] = path.place(time);
+    result[path.scans()[k]] += 1 - f;
+    result[path.scans()[std::min(k + 1, path.scans().size() - 1)]] += f;
     return result;
   }
 
-  shape_space::Tree_family m_family;
-
-private:
-  template <class NamedParameters>
-  double distance_of(const shape_space::Orl_coordinates& a,
-                     const shape_space::Orl_coordinates& b,
-                     const NamedParameters& np) const
+  /// Evenly from all shares that add up to a whole.
+  std::vector<double> draw_shares(std::uint64_t seed, std::uint64_t index) const
   {
-    return shape_space::distance(
-        a,
-        b,
-        m_family.weights,
-        pcs::internal::choose(np, pcs::internal_np::metric, shape_space::Orl_metric::sum));
+    pcs::internal::Random_stream random(pcs::internal::mix_bits(~seed), index);
+    std::vector<double> result(number_of_trees());
+    for (double& s : result)
+      s = -std::log(1 - random.uniform());
+    return result;
   }
 
   void check_modes(const shape_space::Modes_of_variation& modes, const char* caller) const
@@ -530,15 +422,6 @@ private:
                                        shape_space::Tree_mean kind) const
   {
     return shape_space::mean_tree<ConcurrencyTag>(m_family.layout, pointers(), weights, kind);
-  }
-
-  /// The place of the nearest tree on the geodesic of two trees, in [0, 1].
-  double share_of_second(const shape_space::Orl_coordinates& x) const
-  {
-    const shape_space::Tangent_space tangent(m_family.layout, m_family.x[0], m_family.weights);
-    const Eigen::VectorXd way = tangent.log(m_family.x[1]);
-    const double length = way.squaredNorm();
-    return length > 0 ? std::min(1.0, std::max(0.0, tangent.log(x).dot(way) / length)) : 0;
   }
 };
 

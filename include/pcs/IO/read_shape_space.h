@@ -27,7 +27,7 @@ public:
   {
     Orl_space_data s;
     m_file.expect("pcs_shape_space");
-    m_file.expect("1");
+    m_file.expect("2");
     m_file.expect("orientation");
     s.orientation = m_file.number<int>("the kind of orientations");
     read_all(s.origin);
@@ -75,6 +75,17 @@ public:
       if (s.has_normals)
         read_all(p.normal);
       s.points.push_back(p);
+    }
+    m_file.expect("partners");
+    for (std::size_t n = m_file.count("the number of partners"); n > 0; --n) {
+      Orl_space_data::Partner p;
+      p.point = m_file.number<std::uint32_t>("the number of a point");
+      p.tree = m_file.number<std::uint32_t>("the number of a tree");
+      p.index = m_file.number<std::uint32_t>("the number of a point");
+      read_all(p.position);
+      if (s.has_normals)
+        read_all(p.normal);
+      s.partners.push_back(p);
     }
     if (!m_file.is_at_end())
       m_file.fail("expected the end of the file");

@@ -26,7 +26,7 @@ public:
 
   void write(const Orl_space_data& s)
   {
-    m_line = "pcs_shape_space 1\norientation";
+    m_line = "pcs_shape_space 2\norientation";
     add(s.orientation);
     add_all(s.origin);
     end();
@@ -67,6 +67,16 @@ public:
       add(p.tree);
       add(p.index);
       add(p.edge);
+      add_all(p.position);
+      if (s.has_normals)
+        add_all(p.normal);
+      end();
+    }
+    begin("partners", s.partners.size());
+    for (const Orl_space_data::Partner& p : s.partners) {
+      add(p.point);
+      add(p.tree);
+      add(p.index);
       add_all(p.position);
       if (s.has_normals)
         add_all(p.normal);

@@ -43,6 +43,12 @@ struct Orl_space_data
     std::uint32_t tree = 0, index = 0, edge = 0;
     std::array<double, 3> position = {0, 0, 0}, normal = {0, 0, 0};
   };
+  //! what a point of the family is in another scan
+  struct Partner
+  {
+    std::uint32_t point = 0, tree = 0, index = 0; ///< number in `points`, and place in the scan
+    std::array<double, 3> position = {0, 0, 0}, normal = {0, 0, 0};
+  };
   //! weights of the metric
   struct Weights
   {
@@ -60,6 +66,7 @@ struct Orl_space_data
   std::vector<Orl_correspondences::Pair> pairs;
   bool has_normals = false;
   std::vector<Point> points;
+  std::vector<Partner> partners; ///< by point, then by tree
 };
 
 } // namespace pcs

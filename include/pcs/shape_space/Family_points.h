@@ -1,15 +1,17 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The points of a family of trees: each branch carries those of one scan, whatever becomes of it.
+// The points of a family of trees: those of one scan on each branch, and their partners in all other scans.
 
 #ifndef PCS_SHAPE_SPACE_FAMILY_POINTS_H
 #define PCS_SHAPE_SPACE_FAMILY_POINTS_H
 
 #include <pcs/core/Orl_space_data.h>
 #include <pcs/internal/parallel.h>
+#include <pcs/shape_space/Point_instances.h>
 #include <pcs/shape_space/tube_coordinates.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -24,73 +26,83 @@ struct Family_source
   std::uint32_t tree, point, edge;
 };
 
+/// Of every branch the points of the scan that has most there, or of a preferred scan, by edge. `edge[t][i]`: of point i of
+/// scan t, `none`: left out. `preferred`: a scan, or `none`.
+inline std::vector<Family_source> choose_points(const Orl_layout& layout,
+                                                const std::vector<std::vector<std::size_t>>& edge,
+                                                std::size_t preferred)
+{
+  const std::size_t n = layout.number_of_edges(), m = layout.branches.size();
+  std::vector<std::size_t> branch_of(n);
+  for (std::size_t b = 0; b < m; ++b)
+    for (std::size_t j = 0; j < layout.branches[b].number_of_edges; ++j)
+      branch_of[layout.branches[b].first_edge + j] = b;
+  std::vector<std::size_t> carrier(m, none), most(m, 0);
+  std::vector<char> is_settled(m, 0);
+  for (std::size_t t = 0; t < edge.size(); ++t) {
+    std::vector<std::size_t> count(m, 0);
+    for (const std::size_t e : edge[t])
+      if (e != none)
+        ++count[branch_of[e]];
+    for (std::size_t b = 0; b < m; ++b)
+      if (count[b] > 0 && (t == preferred || (count[b] > most[b] && !is_settled[b]))) {
+        carrier[b] = t;
+        most[b] = count[b];
+        is_settled[b] = t == preferred;
+      }
+  }
+  std::vector<Family_source> result;
+  for (std::size_t t = 0; t < edge.size(); ++t)
+    for (std::size_t i = 0; i < edge[t].size(); ++i)
+      if (edge[t][i] != none && carrier[branch_of[edge[t][i]]] == t)
+        result.push_back({static_cast<std::uint32_t>(t),
+                          static_cast<std::uint32_t>(i),
+                          static_cast<std::uint32_t>(edge[t][i])});
+  std::stable_sort(result.begin(),
+                   result.end(),
+                   [](const Family_source& a, const Family_source& b) { return a.edge < b.edge; });
+  return result;
+}
+
 /*!
-  Points in tube coordinates of the tree that they were scanned on, by edge: of every branch those of the scan that has
-  most points there, or of a preferred scan. Their order is the same for all trees.
+  Points in the frames of their edges, each with partners in other scans. In a tree of the space a point lies at the mean of
+  the places of itself and its partners, weighted by the shares of their scans: along, around and away from the edge. The
+  order of points is the same for all trees.
 */
 class Family_points
 {
 public:
+  using Point = Orl_space_data::Point;
+  using Partner = Orl_space_data::Partner;
+
   std::size_t size() const { return m_source.size(); }
   const std::vector<Family_source>& sources() const { return m_source; }
   const std::vector<std::size_t>& first() const { return m_first; }
   bool has_normals() const { return m_has_normals; }
 
-  /// `edge[t][i]`: of point i of scan t, `none`: left out. `preferred`: a scan, or `none`.
-  static std::vector<Family_source> choose(const Orl_layout& layout,
-                                           const std::vector<std::vector<std::size_t>>& edge,
-                                           std::size_t preferred)
-  {
-    const std::size_t n = layout.number_of_edges();
-    std::vector<std::size_t> branch_of(n);
-    for (std::size_t b = 0; b < layout.branches.size(); ++b)
-      for (std::size_t j = 0; j < layout.branches[b].number_of_edges; ++j)
-        branch_of[layout.branches[b].first_edge + j] = b;
-    std::vector<std::size_t> carrier(layout.branches.size(), none), most(layout.branches.size(), 0);
-    std::vector<char> is_settled(layout.branches.size(), 0);
-    for (std::size_t t = 0; t < edge.size(); ++t) {
-      std::vector<std::size_t> count(layout.branches.size(), 0);
-      for (const std::size_t e : edge[t])
-        if (e != none)
-          ++count[branch_of[e]];
-      for (std::size_t b = 0; b < count.size(); ++b)
-        if (count[b] > 0 && (t == preferred || (count[b] > most[b] && !is_settled[b]))) {
-          carrier[b] = t;
-          most[b] = count[b];
-          is_settled[b] = t == preferred;
-        }
-    }
-    std::vector<Family_source> result;
-    for (std::size_t t = 0; t < edge.size(); ++t)
-      for (std::size_t i = 0; i < edge[t].size(); ++i)
-        if (edge[t][i] != none && carrier[branch_of[edge[t][i]]] == t)
-          result.push_back({static_cast<std::uint32_t>(t),
-                            static_cast<std::uint32_t>(i),
-                            static_cast<std::uint32_t>(edge[t][i])});
-    std::stable_sort(
-        result.begin(),
-        result.end(),
-        [](const Family_source& a, const Family_source& b) { return a.edge < b.edge; });
-    return result;
-  }
-
-  /// Points by edge, in the coordinates of the space; `geometry[t]`: of the tree with scan t.
+  /// Points by edge and partners by point, in the coordinates of the space; `geometry[t]`: of the tree with scan t.
   template <class ConcurrencyTag>
   void set(const Orl_layout& layout,
            const std::vector<Orl_geometry>& geometry,
-           const std::vector<Orl_space_data::Point>& points,
+           const std::vector<Point>& points,
+           const std::vector<Partner>& partners,
            bool has_normals,
            ConcurrencyTag)
   {
     const std::size_t n = layout.number_of_edges();
     m_first.assign(n + 1, 0);
     m_source.clear();
-    for (const Orl_space_data::Point& p : points) {
+    for (const Point& p : points) {
       m_source.push_back({p.tree, p.index, p.edge});
       ++m_first[p.edge + 1];
     }
     for (std::size_t e = 0; e < n; ++e)
       m_first[e + 1] += m_first[e];
+    m_first_partner.assign(points.size() + 1, 0);
+    for (const Partner& p : partners)
+      ++m_first_partner[p.point + 1];
+    for (std::size_t k = 0; k < points.size(); ++k)
+      m_first_partner[k + 1] += m_first_partner[k];
     m_branch_of.resize(n);
     for (std::size_t b = 0; b < layout.branches.size(); ++b)
       for (std::size_t j = 0; j < layout.branches[b].number_of_edges; ++j)
@@ -98,39 +110,26 @@ public:
     m_has_normals = has_normals && !points.empty();
     m_place.resize(points.size());
     m_normal.resize(m_has_normals ? points.size() : 0);
+    m_partner.resize(partners.size());
+    m_turn.resize(m_has_normals ? partners.size() : 0);
     m_is_relative.assign(n, 0);
     pcs::internal::for_each_index<ConcurrencyTag>(
         n,
         [&](std::size_t e) {
-          if (m_first[e] == m_first[e + 1])
-            return;
-          const Edge_cone cone =
-              edge_cone(layout, geometry[points[m_first[e]].tree], m_branch_of[e], e);
-          const auto position = [&](std::size_t k) {
-            const auto& p = points[k].position;
-            return Vec3(p[0], p[1], p[2]);
-          };
-          m_is_relative[e] = is_near(cone, e, position) ? 1 : 0;
-          for (std::size_t k = m_first[e]; k < m_first[e + 1]; ++k) {
-            const Tube_coordinates c = tube_coordinates(cone, position(k), m_is_relative[e] != 0);
-            m_place[k] = {c.distance * std::cos(c.angle),
-                          c.distance * std::sin(c.angle),
-                          c.t,
-                          c.overshoot};
-            const auto& v = points[k].normal;
-            if (m_has_normals)
-              m_normal[k] = cone.frame.transpose() * Vec3(v[0], v[1], v[2]);
-          }
+          if (m_first[e] < m_first[e + 1])
+            set_edge(layout, geometry, points, partners, e);
         },
         64);
   }
 
   /// Calls `put(i, point, normal, k)` for all points of a tree: `i` counts those of branches that it has, `k` all.
+  /// `share`: of each scan, `>= 0`; empty: all alike.
   template <class ConcurrencyTag, class Put>
   void write(const Orl_layout& layout,
              const Orl_coordinates& x,
              const Orl_geometry& geometry,
              const std::vector<std::size_t>& offset,
+             const std::vector<double>& share,
              const Put& put,
              ConcurrencyTag) const
   {
@@ -142,46 +141,151 @@ public:
           const Edge_cone cone = edge_cone(layout, geometry, m_branch_of[e], e);
           std::size_t i = offset[e];
           for (std::size_t k = m_first[e]; k < m_first[e + 1]; ++k, ++i) {
-            const Place& p = m_place[k];
-            const double unit = m_is_relative[e] ? cone.radius(p.t) : 1;
-            const Vec3 local(unit * p.x, unit * p.y, p.t * cone.length + unit * p.overshoot);
-            put(i,
-                Vec3(cone.from + cone.frame * local),
-                m_has_normals ? Vec3(cone.frame * m_normal[k]) : Vec3(Vec3::Zero()),
-                k);
+            Tube_coordinates p = m_place[k];
+            Vec3 normal = m_has_normals ? m_normal[k] : Vec3(Vec3::Zero());
+            for_each_share(k, share, [&](std::size_t j, double w) {
+              if (j == none)
+                return;
+              const Difference& d = m_partner[j];
+              p.t += w * d.t;
+              p.overshoot += w * d.overshoot;
+              p.angle += w * d.angle;
+              p.distance += w * d.distance;
+              if (m_has_normals)
+                normal += w * m_turn[j].template cast<double>();
+            });
+            const double t = std::min(1.0, std::max(0.0, p.t));
+            const double unit = m_is_relative[e] ? cone.radius(t) : 1;
+            double sine = 0, cosine = 1;
+            sine_cosine(p.angle, sine, cosine);
+            const Vec3 local(unit * p.distance * cosine,
+                             unit * p.distance * sine,
+                             t * cone.length + unit * p.overshoot);
+            if (m_has_normals)
+              normal = cone.frame * around(normal, sine, cosine).stableNormalized();
+            put(i, Vec3(cone.from + cone.frame * local), normal, k);
           }
         },
         64);
   }
 
-private:
-  /// Off the axis and beyond the ends in radii, or in units of length; along the edge as a share.
-  struct Place
+  /// Calls `f(tree, point, weight)` for a point and its partners that have a share; weights add up to 1.
+  template <class F>
+  void for_each_source(std::size_t k, const std::vector<double>& share, const F& f) const
   {
-    double x, y, t, overshoot;
+    for_each_share(k, share, [&](std::size_t j, double w) {
+      if (!(w > 0))
+        return;
+      if (j == none)
+        f(std::size_t(m_source[k].tree), std::size_t(m_source[k].point), w);
+      else
+        f(std::size_t(m_partner[j].tree), std::size_t(m_partner[j].index), w);
+    });
+  }
+
+private:
+  /// What leads from a point to its partner, and where the normal goes.
+  struct Difference
+  {
+    std::uint32_t tree, index;
+    float t, overshoot, angle, distance;
   };
 
-  /// Whether the radius is known and no point is so far off that a thicker branch must not carry it further.
-  template <class Position>
-  bool is_near(const Edge_cone& cone, std::size_t e, const Position& position) const
+  static Vec3 around(const Vec3& v, double sine, double cosine)
+  {
+    return Vec3(cosine * v.x() - sine * v.y(), sine * v.x() + cosine * v.y(), v.z());
+  }
+
+  /// Calls `f(none, w)` for the point and `f(j, w)` for partner j. If no scan of these has a share, it is the point's.
+  template <class F>
+  void for_each_share(std::size_t k, const std::vector<double>& share, const F& f) const
+  {
+    const std::size_t begin = m_first_partner[k], end = m_first_partner[k + 1];
+    const auto of = [&](std::size_t tree) { return share.empty() ? 1 : share[tree]; };
+    const double own = of(m_source[k].tree);
+    double sum = own;
+    for (std::size_t j = begin; j < end; ++j)
+      sum += of(m_partner[j].tree);
+    f(none, sum > 0 ? own / sum : 1);
+    for (std::size_t j = begin; sum > 0 && j < end; ++j)
+      if (const double w = of(m_partner[j].tree); w > 0)
+        f(j, w / sum);
+  }
+
+  static Vec3 position_of(const Orl_space_data::Point& p)
+  {
+    return Vec3(p.position[0], p.position[1], p.position[2]);
+  }
+  static Vec3 position_of(const Orl_space_data::Partner& p)
+  {
+    return Vec3(p.position[0], p.position[1], p.position[2]);
+  }
+
+  void set_edge(const Orl_layout& layout,
+                const std::vector<Orl_geometry>& geometry,
+                const std::vector<Point>& points,
+                const std::vector<Partner>& partners,
+                std::size_t e)
+  {
+    std::vector<Edge_cone> cone;
+    for (const Orl_geometry& g : geometry)
+      cone.push_back(edge_cone(layout, g, m_branch_of[e], e));
+    bool is_relative = true;
+    for (std::size_t k = m_first[e]; k < m_first[e + 1]; ++k) {
+      is_relative = is_relative && is_near(cone[points[k].tree], position_of(points[k]));
+      for (std::size_t j = m_first_partner[k]; j < m_first_partner[k + 1]; ++j)
+        is_relative = is_relative && is_near(cone[partners[j].tree], position_of(partners[j]));
+    }
+    m_is_relative[e] = is_relative;
+    for (std::size_t k = m_first[e]; k < m_first[e + 1]; ++k) {
+      const Edge_cone& own = cone[points[k].tree];
+      const Tube_coordinates p = m_place[k] =
+          tube_coordinates(own, position_of(points[k]), is_relative);
+      if (m_has_normals)
+        m_normal[k] = local_normal(own, points[k].normal, p.angle);
+      for (std::size_t j = m_first_partner[k]; j < m_first_partner[k + 1]; ++j) {
+        const Edge_cone& other = cone[partners[j].tree];
+        const Tube_coordinates q = tube_coordinates(other, position_of(partners[j]), is_relative);
+        constexpr double whole = 2 * static_cast<double>(EIGEN_PI);
+        m_partner[j] = {partners[j].tree,
+                        partners[j].index,
+                        static_cast<float>(q.t - p.t),
+                        static_cast<float>(q.overshoot - p.overshoot),
+                        static_cast<float>(std::remainder(q.angle - p.angle, whole)),
+                        static_cast<float>(q.distance - p.distance)};
+        if (m_has_normals)
+          m_turn[j] =
+              (local_normal(other, partners[j].normal, q.angle) - m_normal[k]).cast<float>();
+      }
+    }
+  }
+
+  /// Outwards, around and along.
+  static Vec3 local_normal(const Edge_cone& cone, const std::array<double, 3>& v, double angle)
+  {
+    return around(cone.frame.transpose() * Vec3(v[0], v[1], v[2]),
+                  -std::sin(angle),
+                  std::cos(angle));
+  }
+
+  /// Whether the radius is known and the point is not so far off that a thicker branch must not carry it further.
+  static bool is_near(const Edge_cone& cone, const Vec3& position)
   {
     constexpr double farthest = 2; // radii
     if (!(std::min(cone.from_radius, cone.to_radius) >
           1e-3 * std::max(cone.from_radius, cone.to_radius)))
       return false;
-    for (std::size_t k = m_first[e]; k < m_first[e + 1]; ++k) {
-      const Tube_coordinates c = tube_coordinates(cone, position(k), true);
-      if (!(c.distance <= farthest) || !(std::abs(c.overshoot) <= farthest))
-        return false;
-    }
-    return true;
+    const Tube_coordinates c = tube_coordinates(cone, position, true);
+    return c.distance <= farthest && std::abs(c.overshoot) <= farthest;
   }
 
   std::vector<Family_source> m_source; // by edge
-  std::vector<std::size_t> m_first, m_branch_of;
+  std::vector<std::size_t> m_first, m_first_partner, m_branch_of;
   std::vector<char> m_is_relative;
-  std::vector<Place> m_place;
-  std::vector<Vec3> m_normal; // in the frame of the edge
+  std::vector<Tube_coordinates> m_place; // off the axis in radii, or in units of length
+  std::vector<Vec3> m_normal;            // outwards, around and along
+  std::vector<Difference> m_partner;
+  std::vector<Eigen::Vector3f> m_turn; // of normals
   bool m_has_normals = false;
 };
 

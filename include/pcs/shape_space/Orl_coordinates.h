@@ -132,6 +132,24 @@ inline void build_geometry(const Orl_layout& layout,
   }
 }
 
+/// Orders of the branches of a tree, the trunk's is 0; `none` for branches without length, and for what hangs on them.
+inline std::vector<std::size_t> orders_of_branches(const Orl_layout& layout,
+                                                   const Orl_coordinates& x)
+{
+  std::vector<std::size_t> order(layout.branches.size(), none);
+  for (std::size_t b = 0; b < order.size(); ++b) {
+    const Orl_layout::Branch& branch = layout.branches[b];
+    double length = 0;
+    for (std::size_t j = 0; j < branch.number_of_edges; ++j)
+      length += x.length[branch.first_edge + j];
+    if (branch.parent == none)
+      order[b] = 0;
+    else if (length > 0 && order[branch.parent] != none)
+      order[b] = order[branch.parent] + 1;
+  }
+  return order;
+}
+
 /// Angle of the rotation between two orientations: in [0, pi], whatever the signs of the quaternions. [rad]
 inline double angle_between(const Quaternion& a, const Quaternion& b)
 {

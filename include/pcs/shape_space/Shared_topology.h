@@ -304,35 +304,6 @@ Embedded_trees embed_trees(const Orl_layout& layout,
   return result;
 }
 
-/// Weights in units of length: turns count with the mean length of the edge, all others 1; or all 1, as in the text.
-inline Orl_weights
-make_weights(const Orl_layout& layout, const std::vector<Orl_coordinates>& trees, bool is_text)
-{
-  Orl_weights w;
-  const std::size_t n = layout.number_of_edges(), m = layout.branches.size();
-  w.orientation.assign(n, 1);
-  w.length.assign(n, 1);
-  w.radius.assign(n, 1);
-  w.base_radius.assign(m, 1);
-  w.attachment.assign(m, 1);
-  if (is_text)
-    return w;
-  for (std::size_t e = 0; e < n; ++e) {
-    double sum = 0;
-    for (const Orl_coordinates& x : trees)
-      sum += x.length[e];
-    w.orientation[e] = sum / static_cast<double>(trees.size());
-  }
-  for (std::size_t b = 0; b < m; ++b)
-    if (const std::size_t p = layout.branches[b].parent; p != none) {
-      double length = 0;
-      for (std::size_t j = 0; j < layout.branches[p].number_of_edges; ++j)
-        length += w.orientation[layout.branches[p].first_edge + j];
-      w.attachment[b] = length / static_cast<double>(layout.branches[p].number_of_edges);
-    }
-  return w;
-}
-
 } // namespace shape_space
 } // namespace pcs
 

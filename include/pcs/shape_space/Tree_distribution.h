@@ -6,8 +6,8 @@
 #define PCS_SHAPE_SPACE_TREE_DISTRIBUTION_H
 
 #include <pcs/internal/Random_stream.h>
+#include <pcs/shape_space/Direction_chart.h>
 #include <pcs/shape_space/mean_tree.h>
-#include <pcs/shape_space/modes_of_variation.h>
 
 #include <algorithm>
 #include <cmath>
@@ -24,35 +24,41 @@ struct Sampling_options
 {
   double truncation = 2.5; ///< no score is further from 0, in standard deviations [-]
   double spread = 1;       ///< factor of all standard deviations; 0 gives middle trees only [-]
-  /// share of the variance that is drawn for each branch by itself, and not in the modes of the inputs, in [0, 1];
-  /// negative: as estimated from the inputs
+  /// share of the variance that is drawn for each branch by itself, and not for all branches together as they vary in the
+  /// inputs, in [0, 1]; negative: as estimated from the inputs
   double shrinkage = -1;
   bool do_draw_presence = true; ///< else all trees have the branches that most of the inputs have
   bool do_keep_in_range =
       true; ///< whether trees beyond the inputs in one of their figures are drawn again
-  std::size_t number_of_trials = 100; ///< for that
-  bool do_limit_radii = false;        ///< no branch thicker than where it grows from
+  std::size_t number_of_trials =
+      100; ///< for that; from the middle on, nearer and nearer to the middle tree
+  bool do_limit_radii = false; ///< no branch thicker than where it grows from
   double pipe_exponent =
       0; ///< > 0: radii to this power do not add up to more than that of the parent; 2 to 2.5 in nature
 };
 
 /*!
-  A Gaussian in a tangent space where lengths and radii are logarithms, so that they stay positive, and a chance for each
-  branch to be there if its parent is. Values of branches that an input lacks are unknown, not 0: they count as those of
-  the mean, and the deviations of the others are scaled up for it. For few trees the covariance is shrunk towards one where
-  branches vary by themselves (O. Ledoit, M. Wolf 2003; J. Schaefer, K. Strimmer 2005); variances of branches that few
-  trees have are drawn to those of all branches of their order.
+  A Gaussian in a space where lengths and radii are logarithms, so that they stay positive, and directions those of a
+  `Direction_chart`, so that branches keep their slant; and a chance for each branch to be there if its parent is.
+
+  A sum of the deviations of the inputs with normal weights has their covariance. For few trees this is shrunk towards one
+  where branches vary by themselves, but each as a whole, in the ways in which that branch varies in the inputs (O. Ledoit,
+  M. Wolf 2003; J. Schaefer, K. Strimmer 2005; their target has blocks here, not numbers). Branches that few trees have
+  are turned, stretched and thickened as a whole as those of their order are. Values of branches that an input lacks are
+  unknown, not 0: they count as those of the middle, and the deviations of the others are scaled up for it.
 */
 class Tree_distribution
 {
 public:
-  /// `has[t][b]`: whether tree `t` has branch `b`.
+  /// `has[t][b]`: whether tree `t` has branch `b`; `up`: direction of growth, of unit length.
   template <class ConcurrencyTag>
   Tree_distribution(const Orl_layout& layout,
                     const std::vector<const Orl_coordinates*>& trees,
                     const std::vector<std::vector<char>>& has,
+                    Orientation orientation,
+                    const Vec3& up,
                     ConcurrencyTag)
-    : m_layout(layout), m_has(has)
+    : m_layout(layout), m_has(has), m_orientation(orientation)
   {
     const std::size_t m = layout.branches.size();
     m_count.assign(m, 0);
@@ -64,10 +70,14 @@ public:
         m_order[b] = m_order[layout.branches[b].parent] + 1;
     }
     find_middle<ConcurrencyTag>(trees);
-    find_covariance(trees);
+    find_deviations(trees, up);
+    pool_variances();
+    if (trees.size() > 2)
+      estimate_shrinkage();
   }
 
   double shrinkage() const { return m_shrinkage; }
+  const Direction_chart& chart() const { return m_chart; }
 
   /// The tree number `index` of a family: the same for the same seed, whatever else is drawn.
   Orl_coordinates draw(std::uint64_t seed, std::uint64_t index, const Sampling_options& o) const
@@ -80,61 +90,82 @@ public:
       return std::min(o.truncation, std::max(-o.truncation, x));
     };
     const double shrinkage = o.shrinkage < 0 ? m_shrinkage : o.shrinkage;
-    Eigen::VectorXd z = Eigen::VectorXd::Zero(m_scale.size());
-    for (Eigen::Index k = 0; k < m_modes.cols(); ++k)
-      z += normal() * m_modes.col(k);
-    z = std::sqrt(1 - shrinkage) * z.cwiseProduct(m_scale);
-    const double own = std::sqrt(shrinkage);
+    const Eigen::VectorXd z = draw_deviations(shrinkage, normal);
     Orl_coordinates x = m_middle;
+    std::vector<Direction_chart::Pair> turns(m_layout.number_of_edges());
     for (std::size_t b = 0; b < m_layout.branches.size(); ++b) {
       const Orl_layout::Branch& branch = m_layout.branches[b];
-      // lengths and radii of a branch vary together: its edges are no things of their own
-      const double length_score = own * normal(), radius_score = own * normal();
       const std::size_t parent = branch.parent;
-      const double base_z = z[base(b)] + radius_score * m_own[base(b)];
-      const double place_z = z[base(b) + 1] + own * normal() * m_own[base(b) + 1];
-      const double chance = parent == none ? 1 : m_count[b] / m_count[parent];
       const bool is_usual = 2 * m_count[b] > static_cast<double>(m_has.size());
-      const bool is_there =
-          parent == none || (o.do_draw_presence ? random.uniform() < chance : is_usual);
+      bool is_there = true;
+      if (parent != none) {
+        const double chance = m_count[b] / m_count[parent], drawn = random.uniform();
+        is_there = x.length[m_layout.branches[parent].first_edge] > 0 &&
+                   (o.do_draw_presence ? drawn < chance : is_usual);
+      }
+      Eigen::Index k = first(b);
       double total = 0;
-      for (std::size_t e = branch.first_edge; e < branch.first_edge + branch.number_of_edges; ++e) {
-        const Eigen::Index k = 5 * static_cast<Eigen::Index>(e);
-        Vec3 u;
-        for (Eigen::Index i = 0; i < 3; ++i)
-          u[i] = o.spread * (z[k + i] + own * normal() * m_own[k + i]);
-        constexpr double pi = static_cast<double>(EIGEN_PI);
-        if (u.norm() > pi)
-          u *= pi / u.norm();
-        x.orientation[e] = m_middle.orientation[e] * rotation_exp(u);
-        x.orientation[e].normalize();
-        const bool is_kept = is_there && (parent == none || is_drawn_there(x, parent));
-        x.length[e] = is_kept ? m_middle.length[e] *
-                                    std::exp(o.spread * (z[k + 3] + length_score * m_own[k + 3]))
-                              : 0;
-        x.radius[e] = is_kept ? m_middle.radius[e] *
-                                    std::exp(o.spread * (z[k + 4] + radius_score * m_own[k + 4]))
-                              : 0;
+      for (std::size_t e = branch.first_edge; e < branch.first_edge + branch.number_of_edges;
+           ++e, k += 4) {
+        turns[e] = o.spread * z.segment<2>(k);
+        x.length[e] = is_there ? m_middle.length[e] * std::exp(o.spread * z[k + 2]) : 0;
+        x.radius[e] = is_there ? m_middle.radius[e] * std::exp(o.spread * z[k + 3]) : 0;
         total += x.length[e];
       }
-      x.base_radius[b] = total > 0 ? m_middle.base_radius[b] * std::exp(o.spread * base_z) : 0;
+      x.base_radius[b] = total > 0 ? m_middle.base_radius[b] * std::exp(o.spread * z[k]) : 0;
       if (parent != none) {
         const auto last = static_cast<double>(m_layout.branches[parent].number_of_edges);
         x.attachment[b] =
-            std::min(last, std::max(0.0, m_middle.attachment[b] + o.spread * place_z));
+            std::min(last, std::max(0.0, m_middle.attachment[b] + o.spread * z[k + 1]));
       }
+    }
+    const std::vector<Quaternion> frame = m_chart.exp(turns);
+    for (std::size_t e = 0; e < frame.size(); ++e) {
+      const std::size_t p = m_layout.parent_edge[e];
+      x.orientation[e] = p == none ? frame[e] : relative(m_orientation, frame[p], frame[e]);
     }
     return x;
   }
 
 private:
-  Eigen::Index base(std::size_t b) const
+  /// Four coordinates per edge, then two per branch: one block for each branch.
+  Eigen::Index first(std::size_t b) const
   {
-    return static_cast<Eigen::Index>(5 * m_layout.number_of_edges() + 2 * b);
+    return static_cast<Eigen::Index>(4 * m_layout.branches[b].first_edge + 2 * b);
   }
-  bool is_drawn_there(const Orl_coordinates& x, std::size_t b) const
+  Eigen::Index size(std::size_t b) const
   {
-    return x.length[m_layout.branches[b].first_edge] > 0;
+    return static_cast<Eigen::Index>(4 * m_layout.branches[b].number_of_edges + 2);
+  }
+
+  template <class Normal>
+  Eigen::VectorXd draw_deviations(double shrinkage, const Normal& normal) const
+  {
+    const auto n = static_cast<std::size_t>(m_deviations.cols());
+    const double divisor = std::sqrt(std::max(1.0, static_cast<double>(n) - 1));
+    Eigen::VectorXd z = Eigen::VectorXd::Zero(m_deviations.rows());
+    for (Eigen::Index t = 0; t < m_deviations.cols(); ++t)
+      z += normal() / divisor * m_deviations.col(t);
+    for (std::size_t b = 0; b < m_layout.branches.size(); ++b) {
+      const double members = m_count[b] - 1;
+      // all branches together: unknown values are 0, and vary too little
+      z.segment(first(b), size(b)) *=
+          std::sqrt((1 - shrinkage)) * divisor / std::sqrt(std::max(1.0, members));
+      // the branch by itself
+      const double own = std::sqrt(shrinkage / (members + prior));
+      for (std::size_t t = 0; t < n; ++t)
+        if (m_has[t][b] && members > 0)
+          z.segment(first(b), size(b)) +=
+              own * normal() *
+              m_deviations.col(static_cast<Eigen::Index>(t)).segment(first(b), size(b));
+      Pool score;
+      for (Eigen::Index i = 0; i < score.size(); ++i)
+        score[i] = own * std::sqrt(prior) * normal() * m_pool[m_order[b]][i];
+      for (Eigen::Index k = first(b); k < first(b) + size(b) - 2; k += 4)
+        z.segment<4>(k) += score.head<4>();
+      z.segment<2>(first(b) + size(b) - 2) += score.tail<2>();
+    }
+    return z;
   }
 
   /// Radii that are not known are 0, and stay so.
@@ -185,177 +216,115 @@ private:
         8);
   }
 
-  Eigen::VectorXd log(const Orl_coordinates& x, const std::vector<char>& has) const
+  /// Column t: tree t against the middle; 0 for branches that it does not have.
+  void find_deviations(const std::vector<const Orl_coordinates*>& trees, const Vec3& up)
   {
-    Eigen::VectorXd z = Eigen::VectorXd::Zero(base(m_layout.branches.size()));
-    for (std::size_t b = 0; b < m_layout.branches.size(); ++b) {
-      if (!has[b])
-        continue;
-      const Orl_layout::Branch& branch = m_layout.branches[b];
-      for (std::size_t e = branch.first_edge; e < branch.first_edge + branch.number_of_edges; ++e) {
-        const Eigen::Index k = 5 * static_cast<Eigen::Index>(e);
-        z.segment<3>(k) = rotation_log(m_middle.orientation[e].conjugate() * x.orientation[e]);
-        z[k + 3] = log_ratio(x.length[e], m_middle.length[e]);
-        z[k + 4] = log_ratio(x.radius[e], m_middle.radius[e]);
-      }
-      z[base(b)] = log_ratio(x.base_radius[b], m_middle.base_radius[b]);
-      z[base(b) + 1] = x.attachment[b] - m_middle.attachment[b];
+    const std::size_t n = trees.size();
+    std::vector<std::vector<Quaternion>> frame(n);
+    Orl_geometry geometry;
+    build_geometry(m_layout, m_middle, m_orientation, geometry);
+    const std::vector<Quaternion> middle = geometry.frame;
+    for (std::size_t t = 0; t < n; ++t) {
+      build_geometry(m_layout, *trees[t], m_orientation, geometry);
+      frame[t] = geometry.frame;
     }
-    return z;
-  }
-
-  void find_covariance(const std::vector<const Orl_coordinates*>& trees)
-  {
-    const auto n = static_cast<Eigen::Index>(trees.size());
-    const Eigen::Index d = base(m_layout.branches.size());
-    Eigen::MatrixXd z(d, n);
-    for (Eigen::Index i = 0; i < n; ++i)
-      z.col(i) = log(*trees[static_cast<std::size_t>(i)], m_has[static_cast<std::size_t>(i)]);
-    // coordinates that few trees have vary too little: unknown values are 0
-    m_scale.resize(d);
-    std::vector<double> count(static_cast<std::size_t>(d));
-    for (std::size_t b = 0; b < m_layout.branches.size(); ++b) {
-      const Orl_layout::Branch& branch = m_layout.branches[b];
-      const double f = std::sqrt((static_cast<double>(n) - 1) / std::max(1.0, m_count[b] - 1));
-      const auto set = [&](Eigen::Index k) {
-        m_scale[k] = f;
-        count[static_cast<std::size_t>(k)] = m_count[b];
-      };
-      for (std::size_t e = branch.first_edge; e < branch.first_edge + branch.number_of_edges; ++e)
-        for (Eigen::Index i = 0; i < 5; ++i)
-          set(5 * static_cast<Eigen::Index>(e) + i);
-      set(base(b));
-      set(base(b) + 1);
-    }
-    const double divisor = std::max(1.0, static_cast<double>(n - 1));
-    const Eigen::VectorXd variance = z.rowwise().squaredNorm() / divisor;
-    m_own = (variance.array() * m_scale.array().square()).matrix();
-    pool_variances(count);
-    m_own = m_own.cwiseSqrt();
-    // units: a turn counts with the length it carries, a logarithm with the length or radius itself
-    Eigen::VectorXd unit = Eigen::VectorXd::Ones(d);
-    for (std::size_t e = 0; e < m_layout.number_of_edges(); ++e) {
-      const Eigen::Index k = 5 * static_cast<Eigen::Index>(e);
-      unit.segment<4>(k).setConstant(m_middle.length[e]);
-      unit[k + 4] = m_middle.radius[e];
-    }
-    const double typical = std::max(1e-300, unit.head(d - unit_tail()).mean());
-    for (std::size_t b = 0; b < m_layout.branches.size(); ++b) {
-      unit[base(b)] = m_middle.base_radius[b];
-      unit[base(b) + 1] = typical;
-    }
-    const Eigen::MatrixXd weighted = unit.asDiagonal() * z;
-    const Eigen::MatrixXd gram = weighted.transpose() * weighted;
-    m_shrinkage = n > 2 ? estimate_shrinkage(weighted, gram) : 0.5;
-    const Gram_modes modes = gram_modes(gram, trees.size());
-    // column k: the mode times its standard deviation, in coordinates without units
-    m_modes = z * modes.vectors / std::sqrt(divisor);
-    const Eigen::VectorXd mean = z.rowwise().mean();
-    for (Eigen::Index k = 0; k < m_modes.cols(); ++k)
-      m_modes.col(k) -= mean * modes.vectors.col(k).sum() / std::sqrt(divisor);
-  }
-
-  Eigen::Index unit_tail() const { return 2 * static_cast<Eigen::Index>(m_layout.branches.size()); }
-
-  /// Variances as if each branch had two more members that vary like all branches of its order.
-  void pool_variances(const std::vector<double>& count)
-  {
-    constexpr double prior = 2;
-    using Pool =
-        Eigen::Matrix<double, 12, 1>; // first edges, which turn the branch; other edges; branches
-    std::vector<Pool> sum, weight;
-    const auto visit = [&](const auto& f) {
+    m_chart = Direction_chart(m_layout, up, middle, frame, m_has, m_middle.length);
+    m_deviations.setZero(
+        static_cast<Eigen::Index>(4 * m_layout.number_of_edges() + 2 * m_layout.branches.size()),
+        static_cast<Eigen::Index>(n));
+    for (std::size_t t = 0; t < n; ++t) {
+      std::vector<Vec3> direction;
+      for (const Quaternion& q : frame[t])
+        direction.push_back(q * Vec3::UnitZ());
+      const std::vector<Direction_chart::Pair> turns = m_chart.log(direction, m_has[t], t);
+      auto z = m_deviations.col(static_cast<Eigen::Index>(t));
       for (std::size_t b = 0; b < m_layout.branches.size(); ++b) {
+        if (!m_has[t][b])
+          continue;
         const Orl_layout::Branch& branch = m_layout.branches[b];
-        for (std::size_t e = branch.first_edge; e < branch.first_edge + branch.number_of_edges; ++e)
-          for (Eigen::Index i = 0; i < 5; ++i)
-            f(b, 5 * static_cast<Eigen::Index>(e) + i, e == branch.first_edge ? i : i + 5);
-        f(b, base(b), 10);
-        f(b, base(b) + 1, 11);
+        Eigen::Index k = first(b);
+        for (std::size_t e = branch.first_edge; e < branch.first_edge + branch.number_of_edges;
+             ++e, k += 4) {
+          z.segment<2>(k) = turns[e];
+          z[k + 2] = log_ratio(trees[t]->length[e], m_middle.length[e]);
+          z[k + 3] = log_ratio(trees[t]->radius[e], m_middle.radius[e]);
+        }
+        z[k] = log_ratio(trees[t]->base_radius[b], m_middle.base_radius[b]);
+        z[k + 1] = trees[t]->attachment[b] - m_middle.attachment[b];
       }
-    };
+    }
+  }
+
+  /// Standard deviations of branches as a whole, by order: means over their edges vary so.
+  void pool_variances()
+  {
     const std::size_t orders = 1 + *std::max_element(m_order.begin(), m_order.end());
-    sum.assign(orders, Pool::Zero());
-    weight = sum;
-    visit([&](std::size_t b, Eigen::Index k, Eigen::Index i) {
-      const double w = count[static_cast<std::size_t>(k)] - 1;
-      sum[m_order[b]][i] += w * m_own[k];
-      weight[m_order[b]][i] += w;
-    });
-    visit([&](std::size_t b, Eigen::Index k, Eigen::Index i) {
-      const double w = count[static_cast<std::size_t>(k)] - 1, all = weight[m_order[b]][i];
-      if (all > 0)
-        m_own[k] = (w * m_own[k] + prior * sum[m_order[b]][i] / all) / (w + prior);
-    });
+    m_pool.assign(orders, Pool::Zero());
+    std::vector<double> weight(orders, 0);
+    for (std::size_t b = 0; b < m_layout.branches.size(); ++b) {
+      const auto edges = static_cast<double>(m_layout.branches[b].number_of_edges);
+      for (Eigen::Index t = 0; t < m_deviations.cols(); ++t) {
+        Pool whole = Pool::Zero();
+        for (Eigen::Index k = first(b); k < first(b) + size(b) - 2; k += 4)
+          whole.head<4>() += m_deviations.col(t).segment<4>(k) / edges;
+        whole.tail<2>() = m_deviations.col(t).segment<2>(first(b) + size(b) - 2);
+        m_pool[m_order[b]] += whole.cwiseAbs2();
+      }
+      weight[m_order[b]] += m_count[b] - 1;
+    }
+    for (std::size_t k = 0; k < orders; ++k)
+      m_pool[k] = (m_pool[k] / std::max(1.0, weight[k])).cwiseSqrt();
   }
 
   /// The share that makes the expected error of the covariance least, from products of the data only.
-  static double estimate_shrinkage(const Eigen::MatrixXd& z, const Eigen::MatrixXd& gram)
+  void estimate_shrinkage()
   {
-    const auto n = static_cast<double>(z.cols());
-    const double all = gram.squaredNorm() / (n * n); // sum of squares of the mean products
-    double fourth = 0;
-    for (Eigen::Index k = 0; k < z.cols(); ++k)
-      fourth += gram(k, k) * gram(k, k);
-    const double diagonal_fourth = z.array().pow(4).sum();
-    double diagonal = 0;
-    for (Eigen::Index i = 0; i < z.rows(); ++i) {
-      const double mean_square = z.row(i).squaredNorm() / n;
-      diagonal += mean_square * mean_square;
+    // units: a turn counts with the length it carries, a logarithm with the length or radius itself
+    const Eigen::Index trees = m_deviations.cols();
+    const auto n = static_cast<double>(trees);
+    double typical = 0;
+    for (const double length : m_middle.length)
+      typical += length / static_cast<double>(m_middle.length.size());
+    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(trees, trees);
+    double own_squares = 0, own_fourth = 0; // of products within branches
+    for (std::size_t b = 0; b < m_layout.branches.size(); ++b) {
+      Eigen::MatrixXd z = m_deviations.middleRows(first(b), size(b));
+      const Orl_layout::Branch& branch = m_layout.branches[b];
+      Eigen::Index k = 0;
+      for (std::size_t e = branch.first_edge; e < branch.first_edge + branch.number_of_edges;
+           ++e, k += 4) {
+        z.middleRows<3>(k) *= m_middle.length[e];
+        z.row(k + 1) *= m_chart.reach(b, e);
+        z.row(k + 3) *= m_middle.radius[e];
+      }
+      z.row(k) *= m_middle.base_radius[b];
+      z.row(k + 1) *= typical;
+      const Eigen::MatrixXd own = z.transpose() * z;
+      own_squares += own.squaredNorm() / (n * n);
+      own_fourth += own.diagonal().squaredNorm();
+      gram += own;
     }
-    // sums over pairs of different coordinates
-    const double squares = all - diagonal;
-    const double noise = ((fourth - diagonal_fourth) / n - squares) / (n - 1);
-    return squares > 0 ? std::min(1.0, std::max(0.0, noise / squares)) : 0;
+    // sums over pairs of coordinates of different branches
+    const double squares = gram.squaredNorm() / (n * n) - own_squares;
+    const double noise = ((gram.diagonal().squaredNorm() - own_fourth) / n - squares) / (n - 1);
+    m_shrinkage = squares > 0 ? std::min(1.0, std::max(0.0, noise / squares)) : 0;
   }
+
+  static constexpr double prior = 2; // further members of each branch that vary like its order
+  // two numbers of direction, logarithms of length and radius, of the radius at the base, attachment
+  using Pool = Eigen::Matrix<double, 6, 1>;
 
   Orl_layout m_layout;
   std::vector<std::vector<char>> m_has;
+  Orientation m_orientation;
   std::vector<double> m_count; // trees that have each branch
   std::vector<std::size_t> m_order;
   Orl_coordinates m_middle;
-  Eigen::MatrixXd m_modes;
-  Eigen::VectorXd m_scale, m_own;
-  double m_shrinkage = 0;
+  Direction_chart m_chart;
+  Eigen::MatrixXd m_deviations;
+  std::vector<Pool> m_pool; // by order
+  double m_shrinkage = 0.5; // two trees do not tell
 };
-
-/// Makes radii fit at forks: those of branches, to a power, do not add up to more than that of the parent below them.
-inline void limit_pipes(const Orl_layout& layout, double exponent, Orl_coordinates& x)
-{
-  std::vector<std::vector<std::size_t>> children(layout.branches.size());
-  for (std::size_t b = 0; b < layout.branches.size(); ++b)
-    if (layout.branches[b].parent != none)
-      children[layout.branches[b].parent].push_back(b);
-  for (std::size_t b = 0; b < layout.branches.size(); ++b) {
-    const Orl_layout::Branch& branch = layout.branches[b];
-    std::vector<std::size_t> order = children[b];
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t c) {
-      return x.attachment[a] != x.attachment[c] ? x.attachment[a] < x.attachment[c] : a < c;
-    });
-    // from the base to the tip: what is left of the pipe, and of that the share of each branch
-    std::size_t next = 0;
-    for (std::size_t k = 0; k < branch.number_of_edges; ++k) {
-      const double before = k == 0 ? x.base_radius[b] : x.radius[branch.first_edge + k - 1];
-      double& after = x.radius[branch.first_edge + k];
-      after = std::min(after, before);
-      const std::size_t begin = next;
-      double taken = std::pow(after, exponent);
-      while (next < order.size() && (x.attachment[order[next]] <= static_cast<double>(k + 1) ||
-                                     k + 1 == branch.number_of_edges))
-        taken += std::pow(x.base_radius[order[next++]], exponent);
-      const double available = std::pow(before, exponent);
-      if (next == begin || !(taken > available))
-        continue;
-      const double f = std::pow(available / taken, 1 / exponent);
-      after *= f;
-      for (std::size_t i = begin; i < next; ++i) {
-        x.base_radius[order[i]] *= f;
-        for (std::size_t j = 0; j < layout.branches[order[i]].number_of_edges; ++j)
-          x.radius[layout.branches[order[i]].first_edge + j] *= f;
-      }
-    }
-  }
-}
 
 } // namespace shape_space
 } // namespace pcs

@@ -6,8 +6,8 @@
 #define PCS_SHAPE_SPACE_TREE_FAMILY_H
 
 #include <pcs/shape_space/Embedded_pair.h>
-#include <pcs/shape_space/Family_points.h>
 #include <pcs/shape_space/Shared_topology_builder.h>
+#include <pcs/shape_space/surface_pieces.h>
 #include <pcs/shape_space/tree_figures.h>
 
 #include <algorithm>
@@ -163,24 +163,6 @@ inline std::vector<std::size_t> first_of_edges(const std::vector<Point_pair>& pa
   return first;
 }
 
-/// Edges whose radius is known at both ends in each of two trees that has them.
-inline std::vector<char> edges_with_radius(const Tree_family& family,
-                                           const std::array<Orl_geometry, 2>& geometry)
-{
-  const Orl_layout& layout = family.layout;
-  std::vector<char> result(layout.number_of_edges(), 1);
-  for (std::size_t b = 0; b < layout.branches.size(); ++b)
-    for (std::size_t j = 0; j < layout.branches[b].number_of_edges; ++j)
-      for (std::size_t t = 0; t < 2; ++t) {
-        const std::size_t v = layout.first_node(b) + j;
-        const double least = std::min(geometry[t].radius[v], geometry[t].radius[v + 1]);
-        const double most = std::max(geometry[t].radius[v], geometry[t].radius[v + 1]);
-        if (family.has[t][b] && !(least > 1e-3 * most))
-          result[layout.branches[b].first_edge + j] = 0;
-      }
-  return result;
-}
-
 /// A further tree on the topology of a family. `share`, if not null: of its length that is represented. [-]
 template <class ConcurrencyTag>
 Orl_coordinates embed_tree(const Tree_family& family, const Rooted_tree& tree, double* share)
@@ -235,18 +217,13 @@ std::vector<std::size_t> edges_of_points(const Tree_family& family,
 {
   const Orl_layout& layout = family.layout;
   const Vec3 shift = family.origin - input.tree.origin;
-  std::vector<Tube> tubes;
   std::vector<std::size_t> edge_of_tube;
-  for (std::size_t b = 0; b < layout.branches.size(); ++b)
-    for (std::size_t j = 0; family.has[t][b] && j < layout.branches[b].number_of_edges; ++j) {
-      const std::size_t v = layout.first_node(b) + j;
-      tubes.push_back({geometry.node[v] + shift,
-                       geometry.node[v + 1] + shift,
-                       geometry.radius[v],
-                       geometry.radius[v + 1],
-                       b});
-      edge_of_tube.push_back(layout.branches[b].first_edge + j);
-    }
+  const std::vector<Tube> tubes = make_tubes(
+      layout,
+      geometry,
+      shift,
+      [&](std::size_t b) { return family.has[t][b] != 0; },
+      edge_of_tube);
   std::vector<std::size_t> result =
       assign_points<ConcurrencyTag>(input.points, input.normals, tubes, input.tree.extent, options);
   for (std::size_t& e : result)

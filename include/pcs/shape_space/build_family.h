@@ -9,7 +9,9 @@
 #include <pcs/core/Orl_space_data.h>
 #include <pcs/internal/Stopwatch.h>
 #include <pcs/internal/progress.h>
+#include <pcs/shape_space/Family_points.h>
 #include <pcs/shape_space/Tree_family.h>
+#include <pcs/shape_space/star_correspondences.h>
 
 #include <cstddef>
 #include <utility>
@@ -22,6 +24,7 @@ struct Family_options
 {
   Matching_weights weights;
   Assignment_options assignment;
+  Transport_options transport;
   std::size_t number_of_rounds = 3;
   std::size_t points_of = none; ///< scan that gives the points where it can
 };
@@ -29,7 +32,8 @@ struct Family_options
 struct Built_family
 {
   Tree_family family;
-  std::vector<Orl_space_data::Point> points; ///< by edge
+  std::vector<Orl_space_data::Point> points;     ///< by edge
+  std::vector<Orl_space_data::Partner> partners; ///< by point
   bool has_normals = false;
 };
 
@@ -47,7 +51,7 @@ bool build_family(const std::vector<Tree_input>& inputs,
   std::vector<const Rooted_tree*> trees;
   for (const Tree_input& input : inputs)
     trees.push_back(&input.tree);
-  progress.stage(0, 0.8);
+  progress.stage(0, 0.7);
   Shared_topology_builder<ConcurrencyTag> topology(trees,
                                                    options.weights,
                                                    options.number_of_rounds);
@@ -63,7 +67,7 @@ bool build_family(const std::vector<Tree_input>& inputs,
   const Tree_family& family = built.family;
   report.seconds.topology = watch.lap();
 
-  progress.stage(0.8, 1);
+  progress.stage(0.7, 0.8);
   std::vector<std::vector<std::size_t>> edges;
   Orl_geometry geometry;
   for (std::size_t t = 0; t < trees.size(); ++t) {
@@ -79,13 +83,30 @@ bool build_family(const std::vector<Tree_input>& inputs,
   built.has_normals = true;
   for (const Tree_input& input : inputs)
     built.has_normals = built.has_normals && input.normals.size() == input.points.size();
-  for (const Family_source& s : Family_points::choose(family.layout, edges, options.points_of)) {
+  const std::vector<Family_source> sources = choose_points(family.layout, edges, options.points_of);
+  for (const Family_source& s : sources) {
     const Tree_input& input = inputs[s.tree];
     const Vec3 p = input.points[s.point] + (input.tree.origin - family.origin);
     built.points.push_back({s.tree, s.point, s.edge, internal::to_array(p), {0, 0, 0}});
     if (built.has_normals)
       built.points.back().normal = internal::to_array(input.normals[s.point]);
   }
+  progress.stage(0.8, 1);
+  Transport_summary summary;
+  built.partners = find_partners<ConcurrencyTag>(family,
+                                                 inputs,
+                                                 edges,
+                                                 sources,
+                                                 options.transport,
+                                                 summary,
+                                                 [&](double f) { return !progress(f); });
+  report.seconds.transport = watch.lap();
+  if (progress.is_cancelled())
+    return false;
+  report.number_of_windows = summary.number_of_windows;
+  report.number_of_failed_windows = summary.number_of_failures;
+  report.worst_marginal_violation = summary.worst_violation;
+  report.mean_marginal_violation = summary.mean_violation;
   for (std::size_t b = 0; b < family.layout.branches.size(); ++b) {
     for (std::size_t t = 0; t < 2; ++t)
       report.number_of_branches[t] += family.has[t][b] ? 1 : 0;

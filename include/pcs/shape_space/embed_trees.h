@@ -353,8 +353,9 @@ inline std::array<Orl_coordinates, 2> embed_trees(const Orl_layout& layout,
 }
 
 /// Weights in units of length: turns count with the mean length of the edge, all others 1; or all 1, as in the text.
-inline Orl_weights
-make_weights(const Orl_layout& layout, const std::array<Orl_coordinates, 2>& trees, bool is_text)
+/// `trees`: a range of `Orl_coordinates`.
+template <class Trees>
+Orl_weights make_weights(const Orl_layout& layout, const Trees& trees, bool is_text)
 {
   Orl_weights w;
   const std::size_t n = layout.number_of_edges(), m = layout.branches.size();
@@ -365,8 +366,12 @@ make_weights(const Orl_layout& layout, const std::array<Orl_coordinates, 2>& tre
   w.attachment.assign(m, 1);
   if (is_text)
     return w;
-  for (std::size_t e = 0; e < n; ++e)
-    w.orientation[e] = 0.5 * (trees[0].length[e] + trees[1].length[e]);
+  for (std::size_t e = 0; e < n; ++e) {
+    double sum = 0;
+    for (const Orl_coordinates& x : trees)
+      sum += x.length[e];
+    w.orientation[e] = sum / static_cast<double>(trees.size());
+  }
   for (std::size_t b = 0; b < m; ++b)
     if (const std::size_t p = layout.branches[b].parent; p != none) {
       double length = 0;

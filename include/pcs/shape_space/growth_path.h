@@ -93,13 +93,14 @@ public:
   Growth_path() = default;
 
   /// Increasing times, one tree for each, at least 2. `has[i][b]`: whether tree `i` has branch `b`. If `is_monotone`, lengths
-  /// and radii are changed as little as possible so that none falls.
+  /// and radii are changed as little as possible so that none falls. `scans`: names of the trees, for the caller.
   Growth_path(const Orl_layout& layout,
               std::vector<double> times,
               std::vector<Orl_coordinates> trees,
               const std::vector<std::vector<char>>& has,
-              bool is_monotone)
-    : m_times(std::move(times)), m_trees(std::move(trees))
+              bool is_monotone,
+              std::vector<std::size_t> scans = std::vector<std::size_t>())
+    : m_times(std::move(times)), m_trees(std::move(trees)), m_scans(std::move(scans))
   {
     use_orientations_of_neighbors(layout, has);
     const std::size_t n = m_times.size();
@@ -130,15 +131,25 @@ public:
   }
 
   const std::vector<double>& times() const { return m_times; }
+  const std::vector<std::size_t>& scans() const { return m_scans; }
 
-  /// The tree at a time; before the first and after the last time that of the first and the last.
-  void at(double time, Orl_coordinates& x) const
+  /// The last tree not after a time, but not the last of all, and the share of the next one there.
+  std::pair<std::size_t, double> place(double time) const
   {
     const double t = std::min(m_times.back(), std::max(m_times.front(), time));
     std::size_t k = 0;
     while (k + 2 < m_times.size() && m_times[k + 1] <= t)
       ++k;
-    const double step = m_times[k + 1] - m_times[k], f = (t - m_times[k]) / step;
+    return {k, (t - m_times[k]) / (m_times[k + 1] - m_times[k])};
+  }
+
+  /// The tree at a time; before the first and after the last time that of the first and the last.
+  void at(double time, Orl_coordinates& x) const
+  {
+    const std::pair<std::size_t, double> where = place(time);
+    const std::size_t k = where.first;
+    const double f = where.second;
+    const double step = m_times[k + 1] - m_times[k];
     const Orl_coordinates &a = m_trees[k], &b = m_trees[k + 1], &da = m_slopes[k],
                           &db = m_slopes[k + 1];
     x = a;
@@ -239,6 +250,7 @@ private:
 
   std::vector<double> m_times;
   std::vector<Orl_coordinates> m_trees, m_slopes, m_before, m_after;
+  std::vector<std::size_t> m_scans;
 };
 
 } // namespace shape_space

@@ -216,7 +216,10 @@ std::vector<Tree_input> restore_pair(const Orl_space_data& stored,
     build_geometry(family.layout, pair.x[t], family.orientation, pair.geometry[t]);
   }
   pair.layout = family.layout;
-  pair.is_relative = edges_with_radius(family, pair.geometry);
+  pair.is_relative =
+      edges_with_radius(family.layout, pair.geometry, [&](std::size_t t, std::size_t b) {
+        return family.has[t][b] != 0;
+      });
   pair.instances.set(pair.layout,
                      pair.geometry,
                      points,
@@ -245,6 +248,20 @@ inline void check_family_points(const Orl_space_data& stored,
       throw Invalid_input(caller + ": a point is not finite, on no edge, or out of order");
     last = p.edge;
     tree = p.tree;
+  }
+  const Orl_space_data::Partner* before = nullptr;
+  for (const Orl_space_data::Partner& p : stored.partners) {
+    const bool is_right = p.point < stored.points.size() && p.tree < stored.trees.size() &&
+                          p.tree != stored.points[p.point].tree &&
+                          stored.trees[p.tree].has[branch_of[stored.points[p.point].edge]] &&
+                          (!before || before->point < p.point ||
+                           (before->point == p.point && before->tree < p.tree)) &&
+                          internal::to_vector(p.position).allFinite() &&
+                          internal::to_vector(p.normal).allFinite();
+    if (!is_right)
+      throw Invalid_input(caller +
+                          ": a partner of a point is not finite, of no scan, or out of order");
+    before = &p;
   }
 }
 

@@ -18,9 +18,12 @@ namespace shape_space {
 
 struct Tree_figures
 {
-  double length = 0;                           ///< of all branches [L]
-  double height = 0;                           ///< extent along the direction of growth [L]
-  double crown_width = 0;                      ///< extent across it, mean over all sides [L]
+  double length = 0;      ///< of all branches [L]
+  double height = 0;      ///< extent along the direction of growth [L]
+  double crown_width = 0; ///< extent across it, mean over all sides [L]
+  double depth = 0;       ///< of what hangs below the root [L]
+  double lean =
+      0; ///< of the middle of all branches from the root, across the direction of growth [L]
   std::vector<std::size_t> number_of_branches; ///< by order, the trunk first [count]
   std::vector<double>
       mean_angle; ///< between branches and their parents at the base, by order [rad]
@@ -70,31 +73,32 @@ inline Tree_figures measure(const Orl_layout& layout,
   std::vector<double> low(sides.size(), std::numeric_limits<double>::infinity()),
       high(sides.size());
   std::fill(high.begin(), high.end(), -std::numeric_limits<double>::infinity());
-  std::vector<std::size_t> order(layout.branches.size(), none);
+  const std::vector<std::size_t> order = orders_of_branches(layout, x);
   std::vector<double> squares;
+  Vec3 moment = Vec3::Zero();
   for (std::size_t b = 0; b < layout.branches.size(); ++b) {
     const Orl_layout::Branch& branch = layout.branches[b];
-    double length = 0;
-    for (std::size_t j = 0; j < branch.number_of_edges; ++j)
-      length += x.length[branch.first_edge + j];
-    const bool is_trunk = branch.parent == none;
-    if (!is_trunk && (!(length > 0) || order[branch.parent] == none))
+    if (order[b] == none)
       continue;
-    order[b] = is_trunk ? 0 : order[branch.parent] + 1;
     if (order[b] >= result.number_of_branches.size()) {
       result.number_of_branches.resize(order[b] + 1, 0);
       result.mean_angle.resize(order[b] + 1, 0);
       squares.resize(order[b] + 1, 0);
     }
     ++result.number_of_branches[order[b]];
-    result.length += length;
+    for (std::size_t j = 0; j < branch.number_of_edges; ++j) {
+      result.length += x.length[branch.first_edge + j];
+      const std::size_t v = layout.first_node(b) + j;
+      moment += 0.5 * x.length[branch.first_edge + j] *
+                (geometry.node[v] + geometry.node[v + 1] - 2 * geometry.node[0]);
+    }
     for (std::size_t j = 0; j <= branch.number_of_edges; ++j)
       for (std::size_t i = 0; i < sides.size(); ++i) {
         const double h = sides[i].dot(geometry.node[layout.first_node(b) + j]);
         low[i] = std::min(low[i], h);
         high[i] = std::max(high[i], h);
       }
-    if (!is_trunk) {
+    if (order[b] > 0) {
       const Vec3 parent = geometry.frame[branch.reference_edge] * Vec3::UnitZ();
       const Vec3 own = geometry.frame[branch.first_edge] * Vec3::UnitZ();
       const double angle = std::atan2(parent.cross(own).norm(), parent.dot(own));
@@ -108,7 +112,10 @@ inline Tree_figures measure(const Orl_layout& layout,
     result.angle_deviation.push_back(
         std::sqrt(std::max(0.0, squares[k] / n - result.mean_angle[k] * result.mean_angle[k])));
   }
+  if (result.length > 0)
+    result.lean = (moment - moment.dot(up) * up).norm() / result.length;
   result.height = high.back() - low.back();
+  result.depth = up.dot(geometry.node[0]) - low.back();
   for (std::size_t i = 0; i < number_of_sides; ++i)
     result.crown_width += (high[i] - low[i]) / number_of_sides;
   return result;
@@ -116,33 +123,46 @@ inline Tree_figures measure(const Orl_layout& layout,
 
 /// What is no difference between figures: trees may all be equally high. [-]
 constexpr double figure_tolerance = 1e-4;
+/// Trees may lean by this share of their width further than all others. [-]
+constexpr double upright_tolerance = 0.05;
 
-/// How far figures lie outside of what is between the least and the largest of others, as shares of these, added. Of
-/// angles only the means of orders that all of the others have.
-inline double excess(const Tree_figures& x, const std::vector<Tree_figures>& others)
+/// How far figures lie outside of what is between the least and the largest of others, as shares of these, added. By
+/// order, if wanted, those of orders that all of the others have. A tree may lean or hang down less than all others.
+inline double
+excess(const Tree_figures& x, const std::vector<Tree_figures>& others, bool has_orders = true)
 {
   double sum = 0;
-  const auto add = [&](const auto& get) {
+  const auto add = [&](const auto& get, bool may_be_less = false, double least = 1e-9) {
     double low = std::numeric_limits<double>::infinity(), high = 0;
     for (const Tree_figures& other : others) {
       low = std::min(low, get(other));
       high = std::max(high, get(other));
     }
     const double value = get(x);
-    if (value < low * (1 - figure_tolerance))
+    if (value < low * (1 - figure_tolerance) && !may_be_less)
       sum += (low - value) / low;
-    else if (value > high * (1 + figure_tolerance))
-      sum += (value - high) / std::max(high, 1e-300);
+    else if (value > high * (1 + figure_tolerance) + least)
+      sum += (value - high) / std::max(high, least);
   };
   add([](const Tree_figures& f) { return f.length; });
   add([](const Tree_figures& f) { return f.height; });
   add([](const Tree_figures& f) { return f.crown_width; });
+  add([](const Tree_figures& f) { return f.depth; }, true, figure_tolerance * x.length);
+  add([](const Tree_figures& f) { return f.lean; }, true, upright_tolerance * x.crown_width);
   add([](const Tree_figures& f) { return static_cast<double>(f.total_number_of_branches()); });
-  std::size_t orders = x.mean_angle.size();
+  std::size_t orders = std::numeric_limits<std::size_t>::max();
   for (const Tree_figures& other : others)
     orders = std::min(orders, other.mean_angle.size());
-  for (std::size_t k = 1; k < orders; ++k)
+  for (std::size_t k = 1; has_orders && k < orders; ++k) {
+    // an order that is missing has no branches, and no angles either
+    add([&](const Tree_figures& f) {
+      return k < f.number_of_branches.size() ? static_cast<double>(f.number_of_branches[k]) : 0.0;
+    });
+    if (k >= x.mean_angle.size())
+      continue;
     add([&](const Tree_figures& f) { return f.mean_angle[k]; });
+    add([&](const Tree_figures& f) { return f.angle_deviation[k]; });
+  }
   return sum;
 }
 

@@ -31,18 +31,15 @@ void write_skeleton(const Orl_layout& layout,
   Tree_bundle& bundle = tree[boost::graph_bundle];
   std::vector<std::size_t> vertex(layout.number_of_nodes(), npos);
   std::vector<std::size_t> branch_of(layout.branches.size(), npos);
+  const std::vector<std::size_t> order = orders_of_branches(layout, x);
   for (std::size_t b = 0; b < layout.branches.size(); ++b) {
     const Orl_layout::Branch& branch = layout.branches[b];
-    double length = 0;
-    for (std::size_t j = 0; j < branch.number_of_edges; ++j)
-      length += x.length[branch.first_edge + j];
-    const bool is_trunk = branch.parent == none;
-    if (!is_trunk && (!(length > 0) || branch_of[branch.parent] == npos))
+    if (order[b] == none)
       continue;
+    const bool is_trunk = branch.parent == none;
     branch_of[b] = bundle.branches.size();
-    bundle.branches.push_back({is_trunk ? npos : branch_of[branch.parent],
-                               is_trunk ? 0 : bundle.branches[branch_of[branch.parent]].order + 1,
-                               b});
+    bundle.branches.push_back(
+        {is_trunk ? npos : branch_of[branch.parent], static_cast<int>(order[b]), b});
     std::size_t previous = npos;
     if (!is_trunk) {
       const auto last = static_cast<double>(layout.branches[branch.parent].number_of_edges);
