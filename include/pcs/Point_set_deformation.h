@@ -702,7 +702,7 @@ private:
 
   void check_normals() const
   {
-    const auto is_finite = [this](std::size_t i) {
+    const auto is_finite = [&](std::size_t i) {
       bool result = true;
       if constexpr (Types::has_normals)
         result = normal_of(i).allFinite();

@@ -10,12 +10,13 @@ function(pcs_generate file text)
   file(GENERATE OUTPUT ${generated}/${file} CONTENT "${text}")
 endfunction()
 
-set(include_all "")
 set(include_all_but_IO "")
+set(include_IO "")
 set(one_source_per_header "")
 foreach(header IN LISTS headers)
-  string(APPEND include_all "#include <${header}>\n")
-  if(NOT header MATCHES "^pcs/IO/")
+  if(header MATCHES "^pcs/IO/")
+    string(APPEND include_IO "#include <${header}>\n")
+  else()
     string(APPEND include_all_but_IO "#include <${header}>\n")
   endif()
   string(MAKE_C_IDENTIFIER ${header} source)
@@ -27,14 +28,6 @@ endforeach()
 add_library(headers_self_contained OBJECT EXCLUDE_FROM_ALL ${one_source_per_header})
 target_link_libraries(headers_self_contained PRIVATE pcs_header_flags pcs_dev_flags)
 pcs_add_build_test(headers.self_contained headers_self_contained)
-
-# Two sources with all headers link together: no function lacks its `inline`.
-pcs_generate(first.cpp "${include_all}int second();\nint main() { return second(); }\n")
-pcs_generate(second.cpp "${include_all}int second();\nint second() { return 0; }\n")
-add_executable(headers_two_translation_units EXCLUDE_FROM_ALL
-  ${generated}/first.cpp ${generated}/second.cpp)
-target_link_libraries(headers_two_translation_units PRIVATE pcs_header_flags)
-pcs_add_build_test(headers.two_translation_units headers_two_translation_units)
 
 # The headers outside IO/ reach no CGAL package under the GPL. CGAL's GPL headers include
 # <CGAL/license/...>, which stops the compiler under CGAL_LICENSE_ERROR, unless the macro of
@@ -50,3 +43,23 @@ pcs_add_build_test(license.no_gpl license_no_gpl)
 pcs_add_build_test(license.gpl_is_detected license_gpl)
 set_tests_properties(license.gpl_is_detected PROPERTIES
   PASS_REGULAR_EXPRESSION "CGAL_SPATIAL_SEARCHING_COMMERCIAL_LICENSE is not defined")
+
+# Two sources with all headers would link together: no function or variable lacks its `inline`, so the objects hold weak
+# symbols only. The last source proves that the check can fail.
+pcs_generate(IO.cpp "${include_IO}")
+pcs_generate(not_inline.cpp "int not_inline() { return 0; }\n")
+foreach(name IO not_inline)
+  add_library(headers_${name} OBJECT EXCLUDE_FROM_ALL ${generated}/${name}.cpp)
+  target_link_libraries(headers_${name} PRIVATE pcs_header_flags)
+endforeach()
+if(CMAKE_NM)
+  foreach(name license_no_gpl headers_IO headers_not_inline)
+    add_custom_target(${name}_symbols
+      COMMAND ${CMAKE_COMMAND} -D NM=${CMAKE_NM} -D OBJECT=$<TARGET_OBJECTS:${name}>
+              -P ${CMAKE_CURRENT_SOURCE_DIR}/cmake/check_symbols.cmake)
+    add_dependencies(${name}_symbols ${name})
+    pcs_add_build_test(headers.inline.${name} ${name}_symbols)
+  endforeach()
+  set_tests_properties(headers.inline.headers_not_inline PROPERTIES
+    PASS_REGULAR_EXPRESSION "defined once only.*not_inline")
+endif()

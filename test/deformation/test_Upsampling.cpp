@@ -255,10 +255,12 @@ BOOST_AUTO_TEST_CASE(all_kernels_give_the_same_bits)
       check(internal::blend_block_avx2<Blend_outputs::gradients>,
             internal::blend_block_avx2<Blend_outputs::normals>,
             internal::blend_block_avx2<Blend_outputs::positions>);
+#ifdef PCS_HAS_AVX_ASSEMBLY
     if (pcs::internal::has_avx512())
       check(internal::blend_block_avx512<Blend_outputs::gradients>,
             internal::blend_block_avx512<Blend_outputs::normals>,
             internal::blend_block_avx512<Blend_outputs::positions>);
+#endif
   }
 }
 #endif

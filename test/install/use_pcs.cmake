@@ -11,7 +11,7 @@ endfunction()
 
 function(build_and_run_consumer)
   run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${WORK_DIR}/build -G ${GENERATOR}
-    -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_BUILD_TYPE=Release ${ARGV})
+    -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_FLAGS_RELEASE=-O0 ${ARGV})
   run(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
   run(${WORK_DIR}/build/consumer)
 endfunction()
@@ -27,7 +27,7 @@ elseif(WAY STREQUAL "add_subdirectory")
   build_and_run_consumer(-D PCS_ROOT=${PCS_ROOT} -D PCS_WITH_TBB=${PCS_WITH_TBB})
 else() # copied headers, the compiler alone, without oneTBB
   file(COPY ${PCS_ROOT}/include DESTINATION ${WORK_DIR})
-  run(${CXX} -std=c++17 -O1 -I ${WORK_DIR}/include -isystem ${EIGEN_INCLUDE_DIR}
+  run(${CXX} -std=c++17 -O0 -I ${WORK_DIR}/include -isystem ${EIGEN_INCLUDE_DIR}
     ${CMAKE_CURRENT_LIST_DIR}/consumer/consumer.cpp -o ${WORK_DIR}/consumer -lmpfr -lgmp)
   run(${WORK_DIR}/consumer)
 endif()

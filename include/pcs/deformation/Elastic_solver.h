@@ -14,8 +14,9 @@
 #include <pcs/deformation/rotation_field.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
+#include <pcs/linear_algebra/small_symmetric.h>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 
 #include <cmath>
 #include <cstddef>
@@ -437,18 +438,16 @@ private:
   Eigen::Matrix3d transverse_stretch(std::size_t i, double poisson_ratio) const
   {
     const Eigen::Matrix3d in_rest = m_frame[i].inverse() * deformation_gradient(i);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(
-        Eigen::Matrix3d(0.5 * (in_rest + in_rest.transpose())));
-    if (eigen.info() != Eigen::Success || !(eigen.eigenvalues().minCoeff() > 0))
+    const auto eigen = linear_algebra::symmetric_eigen<3>(0.5 * (in_rest + in_rest.transpose()));
+    if (!(eigen.values.minCoeff() > 0) || !eigen.values.allFinite())
       return Eigen::Matrix3d::Identity();
     int main = 0;
     for (int k = 1; k < 3; ++k)
-      if (std::abs(std::log(eigen.eigenvalues()[k])) >
-          std::abs(std::log(eigen.eigenvalues()[main])))
+      if (std::abs(std::log(eigen.values[k])) > std::abs(std::log(eigen.values[main])))
         main = k;
     // Beyond a factor of ten the network is torn, not stretched.
-    const double s1 = std::min(10.0, std::max(0.1, eigen.eigenvalues()[main]));
-    const Vec3 v = eigen.eigenvectors().col(main);
+    const double s1 = std::min(10.0, std::max(0.1, eigen.values[main]));
+    const Vec3 v = eigen.vectors.col(main);
     const double across = std::pow(s1, -poisson_ratio);
     return (s1 - across) * v * v.transpose() + across * Eigen::Matrix3d::Identity();
   }

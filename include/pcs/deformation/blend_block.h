@@ -194,7 +194,9 @@ PCS_TARGET_AVX2 void blend_block_avx2(const Block_input& in, Block_output& out)
 {
   blend_block<Outputs, pcs::internal::Avx2_arithmetic>(in, out);
 }
+#endif
 
+#ifdef PCS_HAS_AVX_ASSEMBLY
 template <Blend_outputs Outputs>
 PCS_TARGET_AVX512 void blend_block_avx512(const Block_input& in, Block_output& out)
 {
@@ -210,9 +212,11 @@ using Blend_block = void (*)(const Block_input&, Block_output&);
 template <Blend_outputs Outputs>
 Blend_block choose_blend_block()
 {
-#if PCS_HAS_RUNTIME_DISPATCH
+#ifdef PCS_HAS_AVX_ASSEMBLY
   if (pcs::internal::has_avx512())
     return &internal::blend_block_avx512<Outputs>;
+#endif
+#if PCS_HAS_RUNTIME_DISPATCH
   if (pcs::internal::has_avx2())
     return &internal::blend_block_avx2<Outputs>;
 #endif

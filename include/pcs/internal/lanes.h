@@ -206,7 +206,7 @@ struct Portable_arithmetic
   }
 };
 
-#if PCS_HAS_RUNTIME_DISPATCH
+#ifdef PCS_HAS_AVX_ASSEMBLY
 // Written out: whether a compiler fuses `x * y + z` depends on its options, and conversions it takes to pieces.
 PCS_ALWAYS_INLINE void read_weights(const std::uint16_t* from, Float8& to)
 {
@@ -260,6 +260,8 @@ struct Avx512_arithmetic
     __asm__("vcvtps2pd %1, %0" : "=v"(to) : "v"(from));
   }
 };
+#elif PCS_HAS_RUNTIME_DISPATCH
+using Avx2_arithmetic = Portable_arithmetic;
 #endif
 
 /// Sums `w[l] * d[k]` over pairs of weights `w` of eight lanes and numbers `d[k]`, for `k` below `N`.
@@ -281,7 +283,7 @@ struct Lane_sums
   PCS_ALWAYS_INLINE void finish() {}
 };
 
-#if PCS_HAS_RUNTIME_DISPATCH
+#ifdef PCS_HAS_AVX_ASSEMBLY
 /// Two numbers share a register, in turns: narrower ones would leave half of each unit idle.
 template <std::size_t N>
 struct Lane_sums<Avx512_arithmetic, N>

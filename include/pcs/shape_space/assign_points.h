@@ -6,10 +6,11 @@
 #define PCS_SHAPE_SPACE_ASSIGN_POINTS_H
 
 #include <pcs/internal/parallel.h>
+#include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/neighborhood/Nearest_neighbors.h>
 #include <pcs/shape_space/Rooted_tree.h>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <array>
@@ -165,8 +166,8 @@ inline Vec3 estimate_normal(const std::vector<Vec3>& points,
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (const auto& f : found)
     covariance += (points[f.index] - mean) * (points[f.index] - mean).transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
-  return solver.eigenvectors().col(0);
+  const auto eigen = linear_algebra::symmetric_eigen<3>(covariance);
+  return eigen.vectors.col(0);
 }
 
 } // namespace internal

@@ -5,10 +5,10 @@
 #ifndef PCS_SHAPE_SPACE_MEAN_ROTATION_H
 #define PCS_SHAPE_SPACE_MEAN_ROTATION_H
 
+#include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/shape_space/Orl_coordinates.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
@@ -25,9 +25,9 @@ inline Quaternion chordal_mean(const std::vector<Quaternion>& q, const std::vect
   Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
   for (std::size_t i = 0; i < q.size(); ++i)
     sum += w[i] * q[i].coeffs() * q[i].coeffs().transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(sum);
+  const auto eigen = linear_algebra::symmetric_eigen<4>(sum);
   Quaternion mean;
-  mean.coeffs() = solver.eigenvectors().col(3);
+  mean.coeffs() = eigen.vectors.col(3);
   if (mean.w() < 0)
     mean.coeffs() = -mean.coeffs();
   mean.normalize();
@@ -73,9 +73,8 @@ l1_step(const Quaternion& at, const std::vector<Quaternion>& q, const std::vecto
   if (!(sum > 0))
     return step;
   step.weiszfeld = pull / sum;
-  const Eigen::LDLT<Eigen::Matrix3d> solver(curvature);
-  const Vec3 newton = solver.solve(pull);
-  const bool is_solved = solver.isPositive() && newton.allFinite() &&
+  Vec3 newton;
+  const bool is_solved = linear_algebra::solve_symmetric(curvature, pull, newton) &&
                          (curvature * newton - pull).norm() <= 1e-6 * step.gradient;
   step.newton = is_solved ? newton : step.weiszfeld;
   return step;

@@ -6,9 +6,10 @@
 #define PCS_SHAPE_SPACE_MODES_OF_VARIATION_H
 
 #include <pcs/internal/parallel.h>
+#include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/shape_space/Orl_coordinates.h>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
@@ -107,15 +108,15 @@ inline Gram_modes gram_modes(const Eigen::MatrixXd& gram, std::size_t most, doub
   const Eigen::Index n = gram.rows();
   const Eigen::MatrixXd center =
       Eigen::MatrixXd::Identity(n, n) - Eigen::MatrixXd::Constant(n, n, 1 / static_cast<double>(n));
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(center * gram * center);
+  const auto eigen = linear_algebra::symmetric_eigen<Eigen::Dynamic>(center * gram * center);
   Gram_modes result;
-  const double largest = n > 0 ? std::max(0.0, solver.eigenvalues()[n - 1]) : 0;
+  const double largest = n > 0 ? std::max(0.0, eigen.values[n - 1]) : 0;
   Eigen::Index k = 0;
   while (k < n - 1 && k < static_cast<Eigen::Index>(most) && largest > 0 &&
-         solver.eigenvalues()[n - 1 - k] > std::max(least, 1e-12 * largest))
+         eigen.values[n - 1 - k] > std::max(least, 1e-12 * largest))
     ++k;
-  result.vectors = solver.eigenvectors().rightCols(k).rowwise().reverse();
-  result.values = solver.eigenvalues().tail(k).reverse();
+  result.vectors = eigen.vectors.rightCols(k).rowwise().reverse();
+  result.values = eigen.values.tail(k).reverse();
   return result;
 }
 

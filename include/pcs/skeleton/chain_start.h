@@ -5,11 +5,12 @@
 #ifndef PCS_SKELETON_CHAIN_START_H
 #define PCS_SKELETON_CHAIN_START_H
 
+#include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/Chain_rules.h>
 #include <pcs/skeleton/Layer_tree.h>
 #include <pcs/skeleton/chains.h>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
@@ -55,8 +56,8 @@ inline Chain_start start_of(const Chain_view& view, const Layer_tree& tree, cons
       const Vec3 d = view.scan.points[i] - axis[0].point;
       covariance += d * d.transpose();
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
-    Vec3 along = solver.eigenvectors().col(2);
+    const auto eigen = linear_algebra::symmetric_eigen<3>(covariance);
+    Vec3 along = eigen.vectors.col(2);
     const Vec3 from = chain.parent_node != none
                           ? Vec3(axis[0].point - tree.center[chain.parent_node])
                           : Vec3(Vec3::UnitZ());

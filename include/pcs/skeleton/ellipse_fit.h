@@ -5,12 +5,12 @@
 #ifndef PCS_SKELETON_ELLIPSE_FIT_H
 #define PCS_SKELETON_ELLIPSE_FIT_H
 
+#include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/circle_fit.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include <Eigen/Core>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -48,15 +48,15 @@ inline Ellipse ellipse_of_conic(double a, double b, double c, double d, double e
   const double at_center = f + 0.5 * (d * center.x() + e * center.y());
   Eigen::Matrix2d m;
   m << a, b / 2, b / 2, c;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(m);
-  const double s0 = -at_center / solver.eigenvalues()(0), s1 = -at_center / solver.eigenvalues()(1);
+  const auto eigen = linear_algebra::symmetric_eigen<2>(m);
+  const double s0 = -at_center / eigen.values(0), s1 = -at_center / eigen.values(1);
   if (!(s0 > 0) || !(s1 > 0) || !std::isfinite(s0) || !std::isfinite(s1))
     return result;
   const int large = s0 > s1 ? 0 : 1;
   result.center = center;
   result.major = std::sqrt(large == 0 ? s0 : s1);
   result.minor = std::sqrt(large == 0 ? s1 : s0);
-  result.direction = solver.eigenvectors().col(large);
+  result.direction = eigen.vectors.col(large);
   return result;
 }
 
@@ -70,10 +70,14 @@ inline Ellipse fit_conic(const std::vector<Vec2>& points)
     a += f * f.transpose();
     b -= f;
   }
-  const Eigen::Matrix<double, 5, 1> x = a.ldlt().solve(b);
-  return x.allFinite() ? ellipse_of_conic(x(0), x(1), x(2), x(3), x(4), 1) : Ellipse();
+  Eigen::Matrix<double, 5, 1> x;
+  return linear_algebra::solve_symmetric(a, b, x)
+             ? ellipse_of_conic(x(0), x(1), x(2), x(3), x(4), 1)
+             : Ellipse();
 }
 
+/// The least algebraic distance among ellipses: `v^T m v` for quadratic terms `v` with `4 a c - b^2 = 1`, where `m` is what
+/// the best linear terms leave. Halir and Flusser take eigenvectors of a matrix that is not symmetric; these are the same.
 inline Ellipse fit_direct(const std::vector<Vec2>& points)
 {
   Eigen::Matrix3d s1 = Eigen::Matrix3d::Zero(), s2 = s1, s3 = s1;
@@ -83,23 +87,23 @@ inline Ellipse fit_direct(const std::vector<Vec2>& points)
     s2 += q * l.transpose();
     s3 += l * l.transpose();
   }
-  const Eigen::Matrix3d t = -s3.ldlt().solve(s2.transpose());
-  const Eigen::Matrix3d m = s1 + s2 * t;
-  Eigen::Matrix3d reduced;
-  reduced.row(0) = m.row(2) / 2;
-  reduced.row(1) = -m.row(1);
-  reduced.row(2) = m.row(0) / 2;
-  if (!reduced.allFinite())
+  Eigen::Matrix3d t;
+  if (!linear_algebra::solve_symmetric(s3, Eigen::Matrix3d(s2.transpose()), t))
     return Ellipse();
-  const Eigen::EigenSolver<Eigen::Matrix3d> solver(reduced);
-  for (int k = 0; k < 3; ++k) {
-    const Eigen::Vector3d v = solver.eigenvectors().col(k).real();
-    if (4 * v(0) * v(2) - v(1) * v(1) > 0) {
-      const Eigen::Vector3d l = t * v;
-      return ellipse_of_conic(v(0), v(1), v(2), l(0), l(1), l(2));
-    }
-  }
-  return Ellipse();
+  const Eigen::Matrix3d rest = s1 - s2 * t;
+  auto left = linear_algebra::symmetric_eigen<3>(0.5 * (rest + rest.transpose()));
+  const double largest = left.values(2);
+  if (!(largest > 0) || !left.values.allFinite())
+    return Ellipse();
+  for (int k = 0; k < 3; ++k) // on an exact ellipse one of them vanishes
+    left.vectors.col(k) /= std::sqrt(std::max(left.values(k), 1e-15 * largest));
+  Eigen::Matrix3d discriminant = Eigen::Matrix3d::Zero();
+  discriminant(0, 2) = discriminant(2, 0) = 2;
+  discriminant(1, 1) = -1;
+  const auto right =
+      linear_algebra::symmetric_eigen<3>(left.vectors.transpose() * discriminant * left.vectors);
+  const Eigen::Vector3d v = left.vectors * right.vectors.col(2), l = -(t * v);
+  return ellipse_of_conic(v(0), v(1), v(2), l(0), l(1), l(2));
 }
 
 } // namespace internal

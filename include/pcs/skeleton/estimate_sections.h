@@ -6,10 +6,11 @@
 #define PCS_SKELETON_ESTIMATE_SECTIONS_H
 
 #include <pcs/internal/parallel.h>
+#include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/Branch_tree.h>
 #include <pcs/skeleton/circle_fit.h>
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -85,10 +86,9 @@ void estimate_sections(const Scan& scan,
       b += f * r;
       square += r * r;
     }
-    const Eigen::LDLT<Eigen::Matrix<double, 5, 5>> solver(a);
-    if (solver.info() != Eigen::Success)
+    Eigen::Matrix<double, 5, 1> x;
+    if (!linear_algebra::solve_symmetric(a, b, x))
       return;
-    const Eigen::Matrix<double, 5, 1> x = solver.solve(b);
     const double count = double(plane.size());
     const double variance = std::max(0.0, square - x.dot(b)) / (count - 5);
     const double size = std::hypot(x(3), x(4)), error = std::sqrt(2 * variance / count);

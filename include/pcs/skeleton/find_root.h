@@ -5,12 +5,12 @@
 #ifndef PCS_SKELETON_FIND_ROOT_H
 #define PCS_SKELETON_FIND_ROOT_H
 
+#include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/Layer_tree.h>
 #include <pcs/skeleton/Neighbor_graph.h>
 #include <pcs/skeleton/Scan.h>
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -60,16 +60,16 @@ struct Slab_shape
       const Eigen::Vector2d q(d.dot(e1), d.dot(e2));
       covariance += q * q.transpose();
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(covariance / double(points.size()));
-    const Eigen::Vector2d v = solver.eigenvectors().col(1);
+    const auto eigen = linear_algebra::symmetric_eigen<2>(covariance / double(points.size()));
+    const Eigen::Vector2d v = eigen.vectors.col(1);
     along = v(0) * e1 + v(1) * e2;
     double rise = 0;
     for (const Index i : points)
       rise += (scan.points[i] - mean).dot(along) * (scan.points[i] - mean).dot(up);
     if (rise < 0)
       along = -along;
-    width = std::sqrt(std::max(0.0, solver.eigenvalues()(0)));
-    length = std::sqrt(std::max(0.0, solver.eigenvalues()(1)));
+    width = std::sqrt(std::max(0.0, eigen.values(0)));
+    length = std::sqrt(std::max(0.0, eigen.values(1)));
   }
 };
 

@@ -5,12 +5,12 @@
 #ifndef PCS_SKELETON_MARK_GROUND_H
 #define PCS_SKELETON_MARK_GROUND_H
 
+#include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/Neighbor_graph.h>
 #include <pcs/skeleton/Scan.h>
 #include <pcs/skeleton/find_root.h>
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -259,12 +259,12 @@ is_one_sheet(const Scan& scan, const std::vector<std::uint8_t>& is_used, const G
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (const Index i : points)
     covariance += (scan.points[i] - mean) * (scan.points[i] - mean).transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance / double(points.size()));
-  const Vec3 spread = solver.eigenvalues().cwiseMax(0).cwiseSqrt();
+  const auto eigen = linear_algebra::symmetric_eigen<3>(covariance / double(points.size()));
+  const Vec3 spread = eigen.values.cwiseMax(0).cwiseSqrt();
   Ground_rules full = rules;
   full.filled = rules.full;
   return spread(0) < rules.thin * spread(1) &&
-         internal::is_filled_sheet(scan, points, mean, solver.eigenvectors().col(0), full);
+         internal::is_filled_sheet(scan, points, mean, eigen.vectors.col(0), full);
 }
 
 } // namespace skeleton

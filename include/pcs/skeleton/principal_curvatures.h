@@ -6,9 +6,9 @@
 #define PCS_SKELETON_PRINCIPAL_CURVATURES_H
 
 #include <pcs/internal/parallel.h>
+#include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/Scan.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
@@ -103,15 +103,15 @@ std::vector<Surface_frame> principal_curvatures(const Scan& scan)
       a += f * f.transpose();
       b += f * curvature;
     }
-    const Eigen::Vector3d w = a.ldlt().solve(b);
-    if (!w.allFinite())
+    Eigen::Vector3d w;
+    if (!linear_algebra::solve_symmetric(a, b, w))
       return;
     Eigen::Matrix2d weingarten;
     weingarten << w(0), w(1), w(1), w(2);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(weingarten);
-    const Eigen::Vector2d k = solver.eigenvalues();
+    const auto eigen = linear_algebra::symmetric_eigen<2>(weingarten);
+    const Eigen::Vector2d k = eigen.values;
     const int large = std::abs(k(0)) > std::abs(k(1)) ? 0 : 1;
-    const Eigen::Vector2d u = solver.eigenvectors().col(large);
+    const Eigen::Vector2d u = eigen.vectors.col(large);
     frame.k1 = k(large);
     frame.k2 = k(1 - large);
     frame.e1 = u(0) * x + u(1) * y;

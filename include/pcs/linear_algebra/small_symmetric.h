@@ -1,0 +1,169 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Eigenvectors and solutions of small dense symmetric systems, in loops over numbers: Eigen's decompositions work by
+// blocks, and to instantiate them took half the time of compiling these headers.
+
+#ifndef PCS_LINEAR_ALGEBRA_SMALL_SYMMETRIC_H
+#define PCS_LINEAR_ALGEBRA_SMALL_SYMMETRIC_H
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace pcs {
+namespace linear_algebra {
+
+/// Eigenvalues in ascending order, and their eigenvectors as orthonormal columns.
+template <int N>
+struct Symmetric_eigen
+{
+  Eigen::Matrix<double, N, 1> values;
+  Eigen::Matrix<double, N, N> vectors;
+};
+
+/*!
+  Eigenvalues and eigenvectors of a symmetric matrix by cyclic rotations of Jacobi, accurate to rounding relative to the
+  largest eigenvalue, and for equal eigenvalues as well. Both halves of `a` are expected. A matrix that is not finite has
+  eigenvalues that are not finite. `N` may be `Eigen::Dynamic`; O(n^3), some eight sweeps: meant for n up to a few hundred.
+*/
+template <int N>
+Symmetric_eigen<N> symmetric_eigen(const Eigen::Matrix<double, N, N>& matrix)
+{
+  const Eigen::Index n = matrix.rows();
+  Eigen::Matrix<double, N, N> a = matrix;
+  Symmetric_eigen<N> result;
+  result.values.resize(n);
+  auto& v = result.vectors;
+  v.resize(n, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j)
+      v(i, j) = i == j ? 1 : 0;
+
+  constexpr int most_sweeps = 60; // of a matrix that is not finite; others take fewer than ten
+  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+    bool is_diagonal = true;
+    for (Eigen::Index p = 0; p < n; ++p)
+      for (Eigen::Index q = p + 1; q < n; ++q) {
+        const double off = a(p, q);
+        const double size = std::abs(a(p, p)) + std::abs(a(q, q));
+        if (std::abs(off) <= 0.5 * std::numeric_limits<double>::epsilon() * size) {
+          a(p, q) = 0;
+          continue;
+        }
+        is_diagonal = false;
+        // tan of the angle that makes a(p, q) vanish, the smaller one
+        const double half = 0.5 * (a(q, q) - a(p, p));
+        const double t = (half < 0 ? -1 : 1) * off / (std::abs(half) + std::hypot(half, off));
+        const double c = 1 / std::sqrt(1 + t * t), s = t * c;
+        a(p, p) -= t * off;
+        a(q, q) += t * off;
+        a(p, q) = 0;
+        for (Eigen::Index k = 0; k < n; ++k) {
+          if (k != p && k != q) {
+            double& kp = k < p ? a(k, p) : a(p, k);
+            double& kq = k < q ? a(k, q) : a(q, k);
+            const double old = kp;
+            kp = c * old - s * kq;
+            kq = s * old + c * kq;
+          }
+          const double old = v(k, p);
+          v(k, p) = c * old - s * v(k, q);
+          v(k, q) = s * old + c * v(k, q);
+        }
+      }
+    if (is_diagonal)
+      break;
+  }
+
+  for (Eigen::Index i = 0; i < n; ++i)
+    result.values[i] = a(i, i);
+  for (Eigen::Index i = 0; i < n; ++i) { // n is small: by selection
+    Eigen::Index least = i;
+    for (Eigen::Index j = i + 1; j < n; ++j)
+      if (result.values[j] < result.values[least])
+        least = j;
+    if (least == i)
+      continue;
+    std::swap(result.values[i], result.values[least]);
+    for (Eigen::Index k = 0; k < n; ++k)
+      std::swap(v(k, i), v(k, least));
+  }
+  return result;
+}
+
+/*!
+  Solves `a x = b` for a symmetric positive semi-definite `a` by `L D L^T` with the largest pivot first. Directions in which
+  `a` vanishes, to rounding, get the value 0. `false` if a pivot is negative beyond rounding or something is not finite;
+  `x` is 0 then. O(n^3).
+*/
+template <int N, int Columns>
+bool solve_symmetric(const Eigen::Matrix<double, N, N>& matrix,
+                     const Eigen::Matrix<double, N, Columns>& b,
+                     Eigen::Matrix<double, N, Columns>& x)
+{
+  static_assert(N > 0, "small systems have a fixed size");
+  Eigen::Matrix<double, N, N> a = matrix;
+  x = b;
+  int order[N];
+  double largest = 0;
+  for (int i = 0; i < N; ++i) {
+    order[i] = i;
+    largest = std::max(largest, std::abs(a(i, i)));
+  }
+  const double least = 4 * N * std::numeric_limits<double>::epsilon() * largest;
+  bool is_solved = largest < std::numeric_limits<double>::infinity();
+  int rank = 0;
+  for (; rank < N && is_solved; ++rank) {
+    int pivot = rank;
+    for (int i = rank + 1; i < N; ++i)
+      if (std::abs(a(i, i)) > std::abs(a(pivot, pivot)))
+        pivot = i;
+    if (pivot != rank) {
+      std::swap(order[rank], order[pivot]);
+      for (int k = 0; k < N; ++k)
+        std::swap(a(rank, k), a(pivot, k));
+      for (int k = 0; k < N; ++k)
+        std::swap(a(k, rank), a(k, pivot));
+      for (int k = 0; k < Columns; ++k)
+        std::swap(x(rank, k), x(pivot, k));
+    }
+    const double d = a(rank, rank);
+    if (!(std::abs(d) > least)) {
+      is_solved = !std::isnan(d);
+      break;
+    }
+    is_solved = d > 0;
+    for (int i = rank + 1; i < N; ++i) {
+      const double l = a(i, rank) / d;
+      for (int k = rank + 1; k < N; ++k)
+        a(i, k) -= l * a(rank, k);
+      for (int k = 0; k < Columns; ++k)
+        x(i, k) -= l * x(rank, k);
+    }
+  }
+  for (int i = N; i-- > 0;)
+    for (int k = 0; k < Columns; ++k) {
+      double sum = 0;
+      if (i < rank) {
+        sum = x(i, k);
+        for (int j = i + 1; j < rank; ++j)
+          sum -= a(i, j) * x(j, k);
+        sum /= a(i, i);
+      }
+      x(i, k) = sum;
+      is_solved = is_solved && std::isfinite(sum);
+    }
+  Eigen::Matrix<double, N, Columns> sorted;
+  for (int i = 0; i < N; ++i)
+    for (int k = 0; k < Columns; ++k)
+      sorted(order[i], k) = is_solved ? x(i, k) : 0;
+  x = sorted;
+  return is_solved;
+}
+
+} // namespace linear_algebra
+} // namespace pcs
+
+#endif // PCS_LINEAR_ALGEBRA_SMALL_SYMMETRIC_H
