@@ -245,8 +245,9 @@ inline std::vector<Index> Chain_fit::gather(Axis_fit& fit) const
     for (std::size_t k = b; k < e; ++k) {
       const double before = k > 0 ? (axis[k].point - axis[k - 1].point).norm() : 0;
       const double behind = k + 1 < axis.size() ? (axis[k + 1].point - axis[k].point).norm() : 0;
-      half = std::max(half,
-                      (axis[k].point - axis[middle].point).norm() + 0.55 * std::max(before, behind));
+      half =
+          std::max(half,
+                   (axis[k].point - axis[middle].point).norm() + 0.55 * std::max(before, behind));
     }
     near.clear();
     m_scan.search->within(axis[middle].point, std::sqrt(widest * widest + half * half), near);

@@ -9,7 +9,6 @@
 #include <pcs/skeleton/Scan.h>
 
 #include <boost/graph/compressed_sparse_row_graph.hpp>
-#include <boost/property_map/function_property_map.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +20,7 @@
 namespace pcs {
 namespace skeleton {
 
-/// Compressed rows of Boost.Graph, every edge in both directions; weights come from the points.
+/// Compressed rows of Boost.Graph, every edge in both directions; costs come from the points.
 using Neighbor_graph = boost::compressed_sparse_row_graph<boost::directedS,
                                                           boost::no_property,
                                                           boost::no_property,
@@ -128,14 +127,15 @@ neighbor_links(const Scan& scan, const std::vector<std::uint8_t>& is_used, const
 }
 
 /*!
-  Joins components by the shortest links between them, in Boruvka's rounds, up to the widest gap of the rule. The
-  largest component never searches: the others find it. Appends to `links`.
+  The shortest links that join components, in Boruvka's rounds, up to the widest gap of the rule. The largest component
+  never searches: the others find it.
 */
-inline void close_gaps(const Scan& scan,
-                       const std::vector<std::uint8_t>& is_used,
-                       const Link_rule& rule,
-                       std::vector<Link>& links)
+inline std::vector<Link> links_across_gaps(const Scan& scan,
+                                           const std::vector<std::uint8_t>& is_used,
+                                           const Link_rule& rule,
+                                           const std::vector<Link>& links)
 {
+  std::vector<Link> across;
   const std::size_t n = scan.size();
   const double widest = rule.gap * scan.spacing;
   Point_sets sets(n);
@@ -179,12 +179,13 @@ inline void close_gaps(const Scan& scan,
     for (const Best& b : chosen)
       if (sets.find(b.link.first) != sets.find(b.link.second)) {
         sets.unite(b.link.first, b.link.second);
-        links.push_back(b.link);
+        across.push_back(b.link);
         is_joined = true;
       }
     if (!is_joined)
-      return;
+      break;
   }
+  return across;
 }
 
 /// Rows from links, each link in both directions.
@@ -211,15 +212,6 @@ inline Neighbor_graph graph_of(std::size_t n, const std::vector<Link>& links)
                         sources,
                         targets,
                         static_cast<Index>(n));
-}
-
-/// The cost of an edge as a property map over the edges of `graph`.
-inline auto step_cost_map(const Scan& scan, const Neighbor_graph& graph)
-{
-  using Edge = boost::graph_traits<Neighbor_graph>::edge_descriptor;
-  return boost::make_function_property_map<Edge>([&scan, &graph](const Edge& e) {
-    return step_cost(scan, source(e, graph), target(e, graph));
-  });
 }
 
 } // namespace skeleton
