@@ -250,7 +250,9 @@ inline std::vector<Index> Chain_fit::gather(Axis_fit& fit) const
                    (axis[k].point - axis[middle].point).norm() + 0.55 * std::max(before, behind));
     }
     near.clear();
-    m_scan.search->within(axis[middle].point, std::sqrt(widest * widest + half * half), near);
+    m_scan.search->append_within(axis[middle].point,
+                                 std::sqrt(widest * widest + half * half),
+                                 near);
     for (const Index i : near)
       if (!m_set.is_covered(i) && !m_scan.is_outlier[i])
         found.emplace_back(i, static_cast<Index>(middle));

@@ -9,6 +9,7 @@
 #include <pcs/skeleton/Scan.h>
 
 #include <boost/graph/compressed_sparse_row_graph.hpp>
+#include <boost/iterator/iterator_facade.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -188,6 +189,41 @@ inline std::vector<Link> links_across_gaps(const Scan& scan,
   return across;
 }
 
+namespace internal {
+
+/// The edges of all rows as pairs of source and target.
+class Row_iterator
+  : public boost::iterator_facade<Row_iterator, Link, boost::forward_traversal_tag, Link>
+{
+public:
+  Row_iterator(const std::vector<Index>& first, const std::vector<Index>& targets, std::size_t at)
+    : m_first(&first), m_targets(&targets), m_at(at)
+  {
+    find_row();
+  }
+
+private:
+  friend class boost::iterator_core_access;
+  void find_row()
+  {
+    while (m_at < m_targets->size() && (*m_first)[m_row + 1] <= m_at)
+      ++m_row;
+  }
+  void increment()
+  {
+    ++m_at;
+    find_row();
+  }
+  bool equal(const Row_iterator& other) const { return m_at == other.m_at; }
+  Link dereference() const { return {m_row, (*m_targets)[m_at]}; }
+
+  const std::vector<Index>*m_first, *m_targets;
+  std::size_t m_at;
+  Index m_row = 0;
+};
+
+} // namespace internal
+
 /// Rows from links, each link in both directions.
 inline Neighbor_graph graph_of(std::size_t n, const std::vector<Link>& links)
 {
@@ -198,20 +234,19 @@ inline Neighbor_graph graph_of(std::size_t n, const std::vector<Link>& links)
   }
   for (std::size_t i = 0; i < n; ++i)
     first[i + 1] += first[i];
-  std::vector<Index> sources(2 * links.size()), targets(2 * links.size());
+  std::vector<Index> targets(2 * links.size());
   {
     std::vector<Index> next(first.begin(), first.end() - 1);
     for (const Link& l : links) {
-      sources[next[l.first]] = l.first;
       targets[next[l.first]++] = l.second;
-      sources[next[l.second]] = l.second;
       targets[next[l.second]++] = l.first;
     }
   }
-  return Neighbor_graph(boost::construct_inplace_from_sources_and_targets,
-                        sources,
-                        targets,
-                        static_cast<Index>(n));
+  return Neighbor_graph(boost::edges_are_sorted,
+                        internal::Row_iterator(first, targets, 0),
+                        internal::Row_iterator(first, targets, targets.size()),
+                        static_cast<Index>(n),
+                        static_cast<Index>(targets.size()));
 }
 
 } // namespace skeleton

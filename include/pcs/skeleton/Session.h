@@ -183,17 +183,19 @@ public:
       m_stage = 3;
       return progress(0.9);
     }
-    bool is_running = true;
-    m_axes = skeleton::fit_axes<ConcurrencyTag>(m_scan, m_layers, m_options.axes, [&](double f) {
-      return is_running = progress(0.6 + 0.15 * f);
-    });
     const int rounds = m_options.do_find_leaves ? m_options.leaves.rounds : 0;
-    for (int round = 0; is_running && round < rounds && remove_leaves(round == 0); ++round)
+    for (bool is_running = true;;) {
+      const double from = m_leaf_rounds == 0 ? 0.6 : 0.75 + 0.15 * (m_leaf_rounds - 1) / rounds;
+      const double width = m_leaf_rounds == 0 ? 0.15 : 0.15 / rounds;
       m_axes = skeleton::fit_axes<ConcurrencyTag>(m_scan, m_layers, m_options.axes, [&](double f) {
-        return is_running = progress(0.75 + 0.15 * (double(round) + f) / double(rounds));
+        return is_running = progress(from + width * f);
       });
-    if (!is_running)
-      return false;
+      if (!is_running)
+        return false;
+      if (m_leaf_rounds >= rounds || !remove_leaves(m_leaf_rounds == 0))
+        break;
+      ++m_leaf_rounds; // stopped from here on, the work goes on with the wood
+    }
     m_report.noise = m_axes.noise;
     m_report.density = m_axes.density;
     m_report.seconds.axes = watch.lap();
@@ -415,7 +417,7 @@ private:
   std::vector<Vec3> m_input;
   std::vector<std::uint8_t> m_is_wood, m_is_used, m_is_leaf;
   Session_options m_options;
-  int m_stage = 0;
+  int m_stage = 0, m_leaf_rounds = 0;
   Scan m_scan;
   std::vector<Index> m_point_of_input, m_root;
   Shortest_paths m_paths;
