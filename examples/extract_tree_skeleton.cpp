@@ -140,7 +140,7 @@ pcs::Skeleton_report extract(const pcs::IO::Point_table& table,
                       .breast_height(options.breast_height)
                       .do_remove_ground(!options.do_keep_ground)
                       .wood_map(is_wood)
-                      .do_remove_leaves(!options.do_keep_leaves && !is_labelled)
+                      .do_remove_leaves(options.do_remove_leaves && !is_labelled)
                       .point_is_leaf_map(leaf)
                       .point_branch_map(branches)
                       .point_residual_map(residuals)

@@ -261,7 +261,7 @@ public:
           twice. Nothing happens unless leaves are a quarter of the length of all axes, and an eighth of the points is not
           explained. Lengths are relative to `breast_height`. For the method `chains`
         \nptype `bool`
-        \npdefault `true`, but `false` with `wood_map`
+        \npdefault `false`: scans of wood alone with many short or missing pieces look alike
       \np{point_branch_map} written by `extract()`: the branch of a point, an index in the result, or `npos`
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: `std::size_t`
         \npdefault none
@@ -423,8 +423,7 @@ private:
     options.method = choose(m_np, internal_np::skeleton_method, skeleton::Skeleton_method::chains);
     options.slices = choose(m_np, internal_np::slice_rules, skeleton::Slice_rules());
     options.do_mark_ground = choose(m_np, internal_np::do_remove_ground, true);
-    constexpr bool has_wood = internal::is_given_v<NamedParameters, internal_np::wood_map_t>;
-    options.do_find_leaves = choose(m_np, internal_np::do_remove_leaves, !has_wood);
+    options.do_find_leaves = choose(m_np, internal_np::do_remove_leaves, false);
     options.breast_height =
         static_cast<double>(choose(m_np, internal_np::breast_height, default_breast_height));
     if (!std::isfinite(options.breast_height) || !(options.breast_height > 0))

@@ -48,8 +48,8 @@ struct Session_options
   std::optional<Given_skeleton> given; ///< measured, instead of looking for branches
   double beam_width = 0;               ///< of the scanners [rad]
   bool do_mark_ground = true;
-  bool do_find_leaves = true; ///< by the method `chains`
-  double breast_height = 1.3; ///< [L]
+  bool do_find_leaves = false; ///< by the method `chains`
+  double breast_height = 1.3;  ///< [L]
   Skeleton_method method = Skeleton_method::chains;
   Slice_rules slices; ///< of the method `sections`, like the next
   Section_tree_rules section_tree;
