@@ -196,7 +196,8 @@ BOOST_AUTO_TEST_CASE(leaves_are_found_where_there_are_any)
   const auto found = pcs::extract_tree_skeleton(
       scan.points,
       with,
-      pcs::parameters::point_is_leaf_map(boost::make_assoc_property_map(leaf)));
+      pcs::parameters::point_is_leaf_map(boost::make_assoc_property_map(leaf))
+          .do_remove_leaves(true));
   const auto kept =
       pcs::extract_tree_skeleton(scan.points, without, pcs::parameters::do_remove_leaves(false));
   check_is_a_tree(with);
@@ -221,7 +222,10 @@ BOOST_AUTO_TEST_CASE(leaves_are_found_where_there_are_any)
   BOOST_CHECK_LT(std::abs(length_of(with) - truth), 0.5 * std::abs(length_of(without) - truth));
   // wood alone is left alone
   Tree bare;
-  BOOST_CHECK_EQUAL(pcs::extract_tree_skeleton(s.scan.points, bare).number_of_leaf_points, 0u);
+  BOOST_CHECK_EQUAL(
+      pcs::extract_tree_skeleton(s.scan.points, bare, pcs::parameters::do_remove_leaves(true))
+          .number_of_leaf_points,
+      0u);
 }
 
 BOOST_AUTO_TEST_CASE(any_mutable_graph_takes_the_result)
