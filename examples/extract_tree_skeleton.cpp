@@ -73,7 +73,7 @@ struct Labels
 {
   std::vector<std::size_t> branch;
   std::vector<double> residual;
-  std::vector<std::uint8_t> dense;
+  std::vector<std::uint8_t> dense, leaf;
 };
 
 template <class Range, class NamedParameters>
@@ -101,11 +101,14 @@ pcs::Skeleton_report extract(const pcs::IO::Point_table& table,
   labels.branch.assign(n, pcs::npos);
   labels.residual.assign(n, 0);
   labels.dense.assign(n, 0);
+  labels.leaf.assign(n, 0);
   std::vector<double> wood(n, 1);
+  bool is_labelled = false;
   const std::string name = options.wood.empty() ? "wood" : options.wood;
-  if (table.has_property(name))
+  if (table.has_property(name)) {
     wood = table.property_as_double(name);
-  else if (!options.wood.empty())
+    is_labelled = true;
+  } else if (!options.wood.empty())
     throw pcs::Invalid_input("the scan has no property '" + name + "'");
   // the points are numbers here, and everything about them is a map
   const auto indices = boost::make_iterator_range(boost::counting_iterator<std::size_t>(0),
@@ -115,6 +118,7 @@ pcs::Skeleton_report extract(const pcs::IO::Point_table& table,
   const auto branches = boost::make_iterator_property_map(labels.branch.begin(), identity);
   const auto residuals = boost::make_iterator_property_map(labels.residual.begin(), identity);
   const auto dense = boost::make_iterator_property_map(labels.dense.begin(), identity);
+  const auto leaf = boost::make_iterator_property_map(labels.leaf.begin(), identity);
   const auto is_wood = boost::make_function_property_map<std::size_t, bool>(
       [&](std::size_t i) { return wood[i] > 0.5; });
   Progress_line line(!options.is_quiet);
@@ -136,6 +140,8 @@ pcs::Skeleton_report extract(const pcs::IO::Point_table& table,
                       .breast_height(options.breast_height)
                       .do_remove_ground(!options.do_keep_ground)
                       .wood_map(is_wood)
+                      .do_remove_leaves(options.do_remove_leaves && !is_labelled)
+                      .point_is_leaf_map(leaf)
                       .point_branch_map(branches)
                       .point_residual_map(residuals)
                       .point_is_dense_map(dense)
@@ -186,13 +192,14 @@ void write_points_to(const std::string& path,
   std::vector<std::int32_t> branch;
   for (const std::size_t b : labels.branch)
     branch.push_back(b == pcs::npos ? -1 : static_cast<std::int32_t>(b));
-  for (const char* name : {"branch", "dense", "residual"})
+  for (const char* name : {"branch", "dense", "residual", "leaf"})
     if (table.has_property(name))
       table.remove_property(name);
   table.add_property("branch", branch);
   table.add_property("dense", labels.dense);
   table.add_property("residual",
                      std::vector<float>(labels.residual.begin(), labels.residual.end()));
+  table.add_property("leaf", labels.leaf);
   if (do_commit)
     pcs::IO::write_points(path, table);
   else

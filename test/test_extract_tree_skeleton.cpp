@@ -155,23 +155,77 @@ BOOST_AUTO_TEST_CASE(points_know_their_branch_and_distance)
   const std::vector<Point> points = cylinder(4000, 0.1, 1);
   std::map<Point, std::size_t> branch;
   std::map<Point, double> residual;
-  std::map<Point, bool> dense;
+  std::map<Point, bool> dense, leaf;
+  std::map<Point, Kernel::Vector_3> normal;
   Tree tree;
   pcs::extract_tree_skeleton(
       points,
       tree,
       pcs::parameters::point_branch_map(boost::make_assoc_property_map(branch))
           .point_residual_map(boost::make_assoc_property_map(residual))
-          .point_is_dense_map(boost::make_assoc_property_map(dense)));
+          .point_is_dense_map(boost::make_assoc_property_map(dense))
+          .point_is_leaf_map(boost::make_assoc_property_map(leaf))
+          .normal_map(boost::make_assoc_property_map(normal)));
   std::size_t explained = 0, measured = 0;
   for (const Point& p : points)
     if (branch.at(p) != pcs::npos) {
       ++explained;
       measured += dense.at(p);
       BOOST_CHECK_SMALL(residual.at(p), 0.03);
-    }
+      BOOST_CHECK(!leaf.at(p));
+      // the axis of the cylinder is the z-axis
+      const Kernel::Vector_3 across(p.x(), p.y(), 0);
+      BOOST_CHECK_GT(normal.at(p) * across, 0.95 * std::sqrt(across.squared_length()));
+      BOOST_CHECK_CLOSE(normal.at(p).squared_length(), 1.0, 1e-9);
+    } else
+      BOOST_CHECK_EQUAL(normal.at(p).squared_length(), 0.0);
   BOOST_CHECK_GT(explained, points.size() * 9 / 10);
   BOOST_CHECK_GT(measured, explained * 9 / 10);
+}
+
+BOOST_AUTO_TEST_CASE(leaves_are_found_where_there_are_any)
+{
+  const Small_scan& s = small_scan();
+  pcs::Virtual_scanner scanner;
+  scanner.angular_step = 0.1 * CGAL_PI / 180;
+  scanner.leaves_per_length = 20;
+  pcs::Virtual_scan<Kernel> scan;
+  pcs::scan_tree(s.truth, scan, scanner, pcs::parameters::random_seed(6));
+  std::map<Point, bool> leaf;
+  Tree with, without;
+  const auto found = pcs::extract_tree_skeleton(
+      scan.points,
+      with,
+      pcs::parameters::point_is_leaf_map(boost::make_assoc_property_map(leaf))
+          .do_remove_leaves(true));
+  const auto kept =
+      pcs::extract_tree_skeleton(scan.points, without, pcs::parameters::do_remove_leaves(false));
+  check_is_a_tree(with);
+  std::size_t leaves = 0, right = 0, wood = 0, wrong = 0, all = 0;
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    const bool is_found = leaf.at(scan.points[i]);
+    all += is_found;
+    if (scan.node[i] == -3) {
+      ++leaves;
+      right += is_found;
+    } else if (scan.node[i] >= 0) {
+      ++wood;
+      wrong += is_found;
+    }
+  }
+  BOOST_CHECK_EQUAL(all, found.number_of_leaf_points);
+  BOOST_CHECK_GT(2 * right, leaves);
+  BOOST_CHECK_LT(4 * wrong, wood);
+  BOOST_CHECK_EQUAL(kept.number_of_leaf_points, 0u);
+  BOOST_CHECK_LT(found.number_of_branches, kept.number_of_branches / 2);
+  const double truth = length_of(s.truth);
+  BOOST_CHECK_LT(std::abs(length_of(with) - truth), 0.5 * std::abs(length_of(without) - truth));
+  // wood alone is left alone
+  Tree bare;
+  BOOST_CHECK_EQUAL(
+      pcs::extract_tree_skeleton(s.scan.points, bare, pcs::parameters::do_remove_leaves(true))
+          .number_of_leaf_points,
+      0u);
 }
 
 BOOST_AUTO_TEST_CASE(any_mutable_graph_takes_the_result)

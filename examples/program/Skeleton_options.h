@@ -27,8 +27,8 @@ struct Skeleton_options
   double beam_milliradians = -1; // < 0: the default of the library
   double tolerance = -1;         // < 0: the default of the library
   double breast_height = 1.3;
-  bool do_keep_ground = false, do_separate = false, do_use_all = false, do_fit_all = false,
-       is_quiet = false;
+  bool do_keep_ground = false, do_remove_leaves = false, do_separate = false, do_use_all = false,
+       do_fit_all = false, is_quiet = false;
 };
 
 inline const char* skeleton_help()
@@ -39,7 +39,8 @@ in its coordinates.
 
 SWC rows: id, type, x, y, z, radius, parent (-1 for the root); type is 5 + the order of the branch.
 Cylinders: the columns of TreeQSM, and the standard error of the radius.
-Points: the scan with `branch` (-1: none), `dense` (1: the section was measured there) and `residual`.
+Points: the scan with `branch` (-1: none), `dense` (1: the section was measured there), `residual`,
+and `leaf` (1: left out as a leaf).
 
 Several scans, with --folder DIR: for each one DIR/NAME.swc, what --also names (DIR/NAME_mesh.ply,
 DIR/NAME_cylinders.csv, DIR/NAME_edges.ply, DIR/NAME_points.ply), and a line of JSON in
@@ -97,6 +98,7 @@ inline void declare(CLI::App& app, Skeleton_options& options)
                options.do_fit_all,
                "of the method `sections`: a slice for every point");
   app.add_flag("--keep-ground", options.do_keep_ground, "do not look for ground");
+  app.add_flag("--remove-leaves", options.do_remove_leaves, "look for leaves and leave them out");
   app.add_flag("--separate", options.do_separate, "mesh: every branch a closed tube of its own");
   app.add_flag("--quiet", options.is_quiet, "print nothing but errors");
 }

@@ -37,6 +37,8 @@
   PCS_OWN(breast_height)                                                                           \
   PCS_OWN(do_remove_ground)                                                                        \
   PCS_OWN(wood_map)                                                                                \
+  PCS_OWN(do_remove_leaves)                                                                        \
+  PCS_OWN(point_is_leaf_map)                                                                       \
   PCS_OWN(point_branch_map)                                                                        \
   PCS_OWN(point_residual_map)                                                                      \
   PCS_OWN(point_is_dense_map)                                                                      \

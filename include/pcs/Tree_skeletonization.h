@@ -256,6 +256,12 @@ public:
       \np{wood_map} whether a point may belong to a branch; others (leaves) are left out
         \nptype model of `ReadablePropertyMap`, key: element of `points`, value: `bool`
         \npdefault all points
+      \np{do_remove_leaves} whether points of leaves are looked for and left out. After the first fit, axes that end without
+          wood on them and are short, or short and wide, are leaves, like all that no axis explains; the rest is fitted again,
+          twice. Nothing happens unless leaves are a quarter of the length of all axes, and an eighth of the points is not
+          explained. Lengths are relative to `breast_height`. For the method `chains`
+        \nptype `bool`
+        \npdefault `false`: scans of wood alone with many short or missing pieces look alike
       \np{point_branch_map} written by `extract()`: the branch of a point, an index in the result, or `npos`
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: `std::size_t`
         \npdefault none
@@ -265,6 +271,13 @@ public:
         \npdefault none
       \np{point_is_dense_map} written by `extract()`: whether the point lies where the section of its branch was measured
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: `bool`
+        \npdefault none
+      \np{point_is_leaf_map} written by `extract()`: whether the point was left out as a leaf, by `wood_map` or `do_remove_leaves`
+        \nptype model of `WritablePropertyMap`, key: element of `points`, value: `bool`
+        \npdefault none
+      \np{normal_map} written by `extract()`: the unit vector from the axis of its branch to the point, which is the outward
+          normal of the branch; the null vector for points without a branch
+        \nptype model of `WritablePropertyMap`, key: element of `points`, value: a vector type
         \npdefault none
       \np{node_point_map} where the position of a vertex of the result is written
         \nptype model of `WritablePropertyMap`, key: vertex descriptor, value: a point type
@@ -410,6 +423,7 @@ private:
     options.method = choose(m_np, internal_np::skeleton_method, skeleton::Skeleton_method::chains);
     options.slices = choose(m_np, internal_np::slice_rules, skeleton::Slice_rules());
     options.do_mark_ground = choose(m_np, internal_np::do_remove_ground, true);
+    options.do_find_leaves = choose(m_np, internal_np::do_remove_leaves, false);
     options.breast_height =
         static_cast<double>(choose(m_np, internal_np::breast_height, default_breast_height));
     if (!std::isfinite(options.breast_height) || !(options.breast_height > 0))
@@ -616,6 +630,28 @@ private:
       for_each_point([&](auto&& key, std::size_t i, skeleton::Index v) {
         put(map, key, R(v == skeleton::none ? 0.0 : m_session->residual_of_input(i)));
       });
+    }
+    if constexpr (internal::is_given_v<NamedParameters, internal_np::point_is_leaf_map_t>) {
+      const auto map = CGAL::parameters::get_parameter(m_np, internal_np::point_is_leaf_map);
+      for_each_point([&](auto&& key, std::size_t i, skeleton::Index) {
+        put(map, key, m_session->is_leaf_of_input(i));
+      });
+    }
+    if constexpr (internal::is_given_v<NamedParameters, CGAL::internal_np::normal_t>) {
+      const auto map = CGAL::parameters::get_parameter(m_np, CGAL::internal_np::normal_map);
+      using V = pcs::Map_value<std::decay_t<decltype(map)>>;
+      constexpr bool is_vector_ok = is_point_or_vector_v<V>;
+      static_assert(is_vector_ok,
+                    "pcs::extract_tree_skeleton(): named parameter `normal_map` must store vectors "
+                    "with x(), y(), z() and a constructor from three coordinates");
+      if constexpr (is_vector_ok) {
+        using FT = std::decay_t<decltype(std::declval<const V&>().x())>;
+        for_each_point([&](auto&& key, std::size_t i, skeleton::Index v) {
+          const skeleton::Vec3 n = v == skeleton::none ? skeleton::Vec3(skeleton::Vec3::Zero())
+                                                       : m_session->normal_of_input(i);
+          put(map, key, V(FT(n.x()), FT(n.y()), FT(n.z())));
+        });
+      }
     }
     if constexpr (internal::is_given_v<NamedParameters, internal_np::point_is_dense_map_t>) {
       const auto map = CGAL::parameters::get_parameter(m_np, internal_np::point_is_dense_map);

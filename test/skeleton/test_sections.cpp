@@ -80,6 +80,10 @@ BOOST_AUTO_TEST_CASE(it_solves_what_a_dense_solver_solves)
   banded.solve(x);
   for (std::size_t i = 0; i < n; ++i)
     BOOST_CHECK_SMALL(x[i] - expected(Eigen::Index(i)), 1e-12);
+  const Eigen::MatrixXd inverse = dense.inverse();
+  const std::vector<double> diagonal = banded.inverse_diagonal();
+  for (std::size_t i = 0; i < n; ++i)
+    BOOST_CHECK_SMALL(diagonal[i] - inverse(Eigen::Index(i), Eigen::Index(i)), 1e-12);
 }
 
 BOOST_AUTO_TEST_CASE(it_refuses_what_is_not_definite)

@@ -33,7 +33,8 @@ struct Skeleton_report
   std::size_t number_of_duplicates = 0; ///< points at the place of another one [count]
   std::size_t number_of_outliers =
       0; ///< points left out because they are far from all others [count]
-  std::size_t number_of_leaf_points = 0;        ///< points left out by `wood_map` [count]
+  std::size_t number_of_leaf_points =
+      0; ///< points left out by `wood_map` or `do_remove_leaves` [count]
   std::size_t number_of_ground_points = 0;      ///< points left out as ground [count]
   std::size_t number_of_unexplained_points = 0; ///< other points that no branch explains [count]
   std::size_t number_of_unreached_points =

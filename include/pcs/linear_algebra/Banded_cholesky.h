@@ -74,6 +74,35 @@ public:
     }
   }
 
+  /*!
+    The diagonal of the inverse, after `factorize()`. O(size Bandwidth^2): of the inverse only the band is computed, from
+    the last row upwards (Takahashi's recurrence).
+  */
+  std::vector<double> inverse_diagonal() const
+  {
+    std::vector<double> diagonal(m_size);
+    // entry (i, j) of the inverse, i <= j <= i + Bandwidth, for the last rows computed
+    std::vector<double> band(width * width, 0.0);
+    const auto at = [&](std::size_t i, std::size_t j) -> double& {
+      return i <= j ? band[i % width * width + (j - i)] : band[j % width * width + (i - j)];
+    };
+    for (std::size_t i = m_size; i-- > 0;) {
+      const std::size_t end = std::min(m_size, i + width);
+      const double pivot = 1 / (*this)(i, i);
+      for (std::size_t j = end; j-- > i + 1;) {
+        double sum = 0;
+        for (std::size_t k = i + 1; k < end; ++k)
+          sum += (*this)(k, i) * at(k, j);
+        at(i, j) = -pivot * sum;
+      }
+      double sum = 0;
+      for (std::size_t k = i + 1; k < end; ++k)
+        sum += (*this)(k, i) * at(i, k);
+      diagonal[i] = at(i, i) = pivot * (pivot - sum);
+    }
+    return diagonal;
+  }
+
 private:
   static constexpr std::size_t width = Bandwidth + 1;
   std::size_t m_size = 0;

@@ -56,6 +56,11 @@ public:
     result.resize(found);
     for (std::size_t i = 0; i < found; ++i)
       result[i] = {indices[i], distances[i]};
+    bool has_tie = false; // they come nearest first
+    for (std::size_t i = 1; i < found; ++i)
+      has_tie = has_tie || !(result[i - 1].squared_distance < result[i].squared_distance);
+    if (!has_tie)
+      return;
     std::sort(result.begin(), result.end(), [&](const Neighbor& a, const Neighbor& b) {
       if (a.squared_distance != b.squared_distance)
         return a.squared_distance < b.squared_distance;
@@ -67,10 +72,16 @@ public:
   void within(const Vec3& query, double radius, std::vector<std::uint32_t>& result) const
   {
     const std::size_t before = result.size();
+    append_within(query, radius, result);
+    std::sort(result.begin() + static_cast<std::ptrdiff_t>(before), result.end());
+  }
+
+  /// The same in the order in which they are found.
+  void append_within(const Vec3& query, double radius, std::vector<std::uint32_t>& result) const
+  {
     Collector collector{radius * radius, &result};
     if (!m_adaptor.points.empty())
       m_tree.findNeighbors(collector, query.data(), nanoflann::SearchParams());
-    std::sort(result.begin() + static_cast<std::ptrdiff_t>(before), result.end());
   }
 
   /*!

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace pcs {
@@ -35,54 +36,124 @@ struct Axis_place
   double distance = 0; ///< from the place clamped to the axis [L]
 };
 
-/// The foot of `p` on segment `s`, clamped to it.
-inline Axis_place foot_on_segment(const Axis& axis, std::size_t s, const Vec3& p)
+/// A segment of an axis, prepared for many points.
+struct Axis_segment
 {
-  const Vec3 a = axis[s].point, d = axis[s + 1].point - a;
-  const double length2 = d.squaredNorm();
-  const double t = length2 > 0 ? d.dot(p - a) / length2 : 0;
-  const double clamped = std::min(1.0, std::max(0.0, t));
-  Axis_place place;
-  place.segment = static_cast<Index>(s);
-  place.distance = (p - a - clamped * d).norm();
-  const bool is_open = (s == 0 && t < 0) || (s + 2 == axis.size() && t > 1);
-  place.share = is_open ? t : clamped;
-  return place;
+  Vec3 base, along;
+  double inverse; ///< of the squared length; 0: no length [1/L^2]
+
+  Axis_segment(const Axis_node& a, const Axis_node& b) : base(a.point), along(b.point - a.point)
+  {
+    const double length2 = along.squaredNorm();
+    inverse = length2 > 0 ? 1 / length2 : 0;
+  }
+
+  /// Position of the foot of `p` on the line, not clamped.
+  double share(const Vec3& p) const { return along.dot(p - base) * inverse; }
+  double squared_distance(double share, const Vec3& p) const
+  {
+    const double clamped = std::min(1.0, std::max(0.0, share));
+    return (p - base - clamped * along).squaredNorm();
+  }
+};
+
+inline std::vector<Axis_segment> segments_of(const Axis& axis)
+{
+  std::vector<Axis_segment> segments;
+  segments.reserve(axis.size());
+  for (std::size_t s = 0; s + 1 < axis.size(); ++s)
+    segments.emplace_back(axis[s], axis[s + 1]);
+  return segments;
 }
 
-/// Walks from segment `guess` to the nearest one. The axis has at least two nodes.
+namespace internal {
+
+/// Keeps the segment that is nearest to a point; `segment_at(s)` tells a segment, `last` is the last one.
+template <class SegmentAt>
+class Place_search
+{
+public:
+  Place_search(std::size_t last, const SegmentAt& segment_at, const Vec3& p)
+    : m_last(last), m_segment_at(segment_at), m_p(p)
+  {
+  }
+
+  /// Whether segment `s` is nearer than all before.
+  bool offer(std::size_t s)
+  {
+    const Axis_segment& segment = m_segment_at(s);
+    const double t = segment.share(m_p), d = segment.squared_distance(t, m_p);
+    if (!(d < m_squared_distance))
+      return false;
+    m_squared_distance = d;
+    m_share = t;
+    m_segment = s;
+    return true;
+  }
+
+  /// Goes on from `s` until some segments in a row are not nearer.
+  template <bool IsForward>
+  void walk(std::size_t s)
+  {
+    constexpr int most_misses = 2;
+    for (int misses = 0; misses < most_misses && (IsForward ? s < m_last : s > 0);) {
+      s = IsForward ? s + 1 : s - 1;
+      misses = offer(s) ? 0 : misses + 1;
+    }
+  }
+
+  Axis_place place() const
+  {
+    Axis_place place;
+    place.segment = static_cast<Index>(m_segment);
+    place.distance = std::sqrt(m_squared_distance);
+    const bool is_open = (m_segment == 0 && m_share < 0) || (m_segment == m_last && m_share > 1);
+    place.share = is_open ? m_share : std::min(1.0, std::max(0.0, m_share));
+    return place;
+  }
+
+private:
+  std::size_t m_last, m_segment = 0;
+  const SegmentAt& m_segment_at;
+  const Vec3& m_p;
+  double m_squared_distance = std::numeric_limits<double>::infinity(), m_share = 0;
+};
+
+} // namespace internal
+
+/// Walks from segment `guess` to the nearest one. There is at least one segment.
+inline Axis_place
+nearest_place(const std::vector<Axis_segment>& segments, std::size_t guess, const Vec3& p)
+{
+  const auto segment_at = [&](std::size_t s) -> const Axis_segment& { return segments[s]; };
+  const std::size_t last = segments.size() - 1, s = std::min(guess, last);
+  internal::Place_search search(last, segment_at, p);
+  search.offer(s);
+  search.template walk<true>(s);
+  search.template walk<false>(s);
+  return search.place();
+}
+
+/// The same for a few points. The axis has at least two nodes.
 inline Axis_place nearest_place(const Axis& axis, std::size_t guess, const Vec3& p)
 {
-  const std::size_t last = axis.size() - 2;
-  std::size_t s = std::min(guess, last);
-  Axis_place best = foot_on_segment(axis, s, p);
-  const auto walk = [&](int step) {
-    int misses = 0;
-    for (std::size_t k = s; step > 0 ? k < last : k > 0;) {
-      k = step > 0 ? k + 1 : k - 1;
-      const Axis_place place = foot_on_segment(axis, k, p);
-      if (place.distance < best.distance) {
-        best = place;
-        misses = 0;
-      } else if (++misses == 2)
-        break;
-    }
-  };
-  walk(1);
-  walk(-1);
-  return best;
+  const auto segment_at = [&](std::size_t s) { return Axis_segment(axis[s], axis[s + 1]); };
+  const std::size_t last = axis.size() - 2, s = std::min(guess, last);
+  internal::Place_search search(last, segment_at, p);
+  search.offer(s);
+  search.template walk<true>(s);
+  search.template walk<false>(s);
+  return search.place();
 }
 
 /// The nearest of all segments. O(nodes).
 inline Axis_place nearest_place(const Axis& axis, const Vec3& p)
 {
-  Axis_place best = foot_on_segment(axis, 0, p);
-  for (std::size_t s = 1; s + 1 < axis.size(); ++s) {
-    const Axis_place place = foot_on_segment(axis, s, p);
-    if (place.distance < best.distance)
-      best = place;
-  }
-  return best;
+  const auto segment_at = [&](std::size_t s) { return Axis_segment(axis[s], axis[s + 1]); };
+  internal::Place_search search(axis.size() - 2, segment_at, p);
+  for (std::size_t s = 0; s + 1 < axis.size(); ++s)
+    search.offer(s);
+  return search.place();
 }
 
 inline double radius_at(const Axis& axis, const Axis_place& place)

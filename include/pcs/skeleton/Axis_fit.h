@@ -91,8 +91,9 @@ public:
   /// Finds the place of every point on the present axis.
   void project()
   {
+    const std::vector<Axis_segment> lines = segments_of(m_axis);
     for (std::size_t i = 0; i < m_points.size(); i += m_stride) {
-      m_places[i] = nearest_place(m_axis, m_segments[i], m_points[i]);
+      m_places[i] = nearest_place(lines, m_segments[i], m_points[i]);
       m_segments[i] = m_places[i].segment;
     }
   }
@@ -111,11 +112,12 @@ public:
     return true;
   }
 
-  /// Standard errors of the radii from the last system: the diagonal of the inverse, by blocks around a node.
+  /// Standard errors of the radii from the last system: the diagonal of its inverse.
   void estimate_errors();
 
 private:
-  static constexpr std::size_t bandwidth = 11;
+  //! second differences reach the same unknown two nodes back, points everything one node back
+  static constexpr std::size_t bandwidth = 8;
   using Matrix = linear_algebra::Banded_cholesky<bandwidth>;
 
   void assemble(double widening);
@@ -264,12 +266,9 @@ inline void Axis_fit::estimate_errors()
 {
   if (m_factor.size() != 4 * m_axis.size())
     return;
+  const std::vector<double> variance = m_factor.inverse_diagonal();
   for (std::size_t k = 0; k < m_axis.size(); ++k) {
-    // column of the inverse at this radius; far entries do not matter, the solution is needed at one place only
-    m_step.assign(4 * m_axis.size(), 0);
-    m_step[4 * k + 3] = 1;
-    m_factor.solve(m_step);
-    m_axis[k].radius_error = std::sqrt(std::max(0.0, m_step[4 * k + 3]));
+    m_axis[k].radius_error = std::sqrt(std::max(0.0, variance[4 * k + 3]));
     const bool has_prior = k < m_priors.size() && m_priors[k].deviation > 0;
     const double prior = has_prior ? 1 / (m_priors[k].deviation * m_priors[k].deviation) : 0;
     m_axis[k].is_measured = m_information[k] > prior && m_information[k] > 0;

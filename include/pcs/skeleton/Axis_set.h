@@ -70,13 +70,17 @@ public:
   }
 
   /// Updates noise and density where there is enough to go by.
-  void learn(Axis_set& set) const
+  void learn(Axis_set& set)
   {
-    if (m_deviations.size() >= enough_deviations) {
+    if (m_deviations.size() >= enough_deviations && m_deviations.size() != m_learned_deviations) {
+      m_learned_deviations = m_deviations.size();
       std::vector<double> copy = m_deviations;
       set.noise = 1.4826 * median(copy); // standard deviation from the median of |e|
     }
-    if (m_densities.size() >= enough_densities) {
+    if (m_densities.size() >= enough_densities &&
+        (m_densities.size() != m_learned_densities || set.noise != m_learned_noise)) {
+      m_learned_densities = m_densities.size();
+      m_learned_noise = set.noise;
       std::vector<double> thick, all;
       for (const Density_sample& s : m_densities) {
         all.push_back(s.density);
@@ -93,6 +97,9 @@ private:
       6; ///< in noise: here the radius, hence the density, has no bias
   std::vector<double> m_deviations;
   std::vector<Density_sample> m_densities;
+  // what the last lesson was from
+  std::size_t m_learned_deviations = 0, m_learned_densities = 0;
+  double m_learned_noise = 0;
 };
 
 } // namespace skeleton

@@ -229,7 +229,7 @@ private:
   {
     std::vector<std::pair<Index, Index>> stack{{root, none}}; // axis, node that it sits on
     while (!stack.empty()) {
-      const auto [a, seat] = stack.back();
+      const Index a = stack.back().first, seat = stack.back().second; // a lambda captures them
       stack.pop_back();
       const Axis& axis = m_set.axes[a].axis;
       std::vector<Inserted> seats;

@@ -225,20 +225,40 @@ inline std::vector<Index> Chain_fit::gather(Axis_fit& fit) const
   fit.axis() = resample(fit.axis(), m_spacing);
   const Axis& axis = fit.axis();
   const double u = m_scan.spacing;
-  std::vector<std::pair<Index, Index>> found; // point, node
+  // Stretches of the axis as long as it is thick: nodes of a trunk alone would find every point ten times.
+  std::vector<std::pair<Index, Index>> found; // point, middle node of a stretch
   std::vector<Index> near;
-  for (std::size_t k = 0; k < axis.size(); ++k) {
-    const double before = k > 0 ? (axis[k].point - axis[k - 1].point).norm() : 0;
-    const double behind = k + 1 < axis.size() ? (axis[k + 1].point - axis[k].point).norm() : 0;
-    const double across = m_rules.gather_factor * axis[k].radius + m_rules.gather_offset * u;
-    const double half = 0.55 * std::max(before, behind);
+  std::vector<double> across(axis.size());
+  for (std::size_t k = 0; k < axis.size(); ++k)
+    across[k] = m_rules.gather_factor * axis[k].radius + m_rules.gather_offset * u;
+  for (std::size_t b = 0, e = 0; b < axis.size(); b = e) {
+    double length = 0, widest = across[b];
+    for (e = b + 1; e < axis.size(); ++e) {
+      const double longer = length + (axis[e].point - axis[e - 1].point).norm();
+      if (longer > std::max(widest, across[e]))
+        break;
+      length = longer;
+      widest = std::max(widest, across[e]);
+    }
+    const std::size_t middle = b + (e - b - 1) / 2;
+    double half = 0;
+    for (std::size_t k = b; k < e; ++k) {
+      const double before = k > 0 ? (axis[k].point - axis[k - 1].point).norm() : 0;
+      const double behind = k + 1 < axis.size() ? (axis[k + 1].point - axis[k].point).norm() : 0;
+      half =
+          std::max(half,
+                   (axis[k].point - axis[middle].point).norm() + 0.55 * std::max(before, behind));
+    }
     near.clear();
-    m_scan.search->within(axis[k].point, std::sqrt(across * across + half * half), near);
+    m_scan.search->append_within(axis[middle].point,
+                                 std::sqrt(widest * widest + half * half),
+                                 near);
     for (const Index i : near)
       if (!m_set.is_covered(i) && !m_scan.is_outlier[i])
-        found.emplace_back(i, static_cast<Index>(k));
+        found.emplace_back(i, static_cast<Index>(middle));
   }
   std::sort(found.begin(), found.end());
+  const std::vector<Axis_segment> lines = segments_of(axis);
   std::vector<Index> points, segments;
   std::vector<Vec3> positions;
   for (std::size_t b = 0, e = 0; b < found.size(); b = e) {
@@ -255,7 +275,7 @@ inline std::vector<Index> Chain_fit::gather(Axis_fit& fit) const
         node = found[k].second;
       }
     }
-    const Axis_place place = nearest_place(axis, node, p);
+    const Axis_place place = nearest_place(lines, node, p);
     if (place.distance > m_rules.gather_factor * radius_at(axis, place) + m_rules.gather_offset * u)
       continue;
     points.push_back(found[b].first);

@@ -8,12 +8,13 @@
 #include <pcs/skeleton/Neighbor_graph.h>
 #include <pcs/skeleton/Scan.h>
 
-#include <boost/graph/dijkstra_shortest_paths.hpp>
+#include <boost/graph/detail/d_ary_heap.hpp>
 #include <boost/property_map/property_map.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <utility>
@@ -45,19 +46,36 @@ shortest_paths(const Scan& scan, const Neighbor_graph& graph, const std::vector<
     paths.distance[s] = 0;
   if (sources.empty())
     return paths;
+  // The loop of boost::dijkstra_shortest_paths(), which asks for the cost of every edge several times.
   const auto index = get(boost::vertex_index, graph);
-  boost::dijkstra_shortest_paths_no_init(
-      graph,
-      sources.begin(),
-      sources.end(),
-      boost::make_iterator_property_map(paths.predecessor.begin(), index),
-      boost::make_iterator_property_map(paths.distance.begin(), index),
-      step_cost_map(scan, graph),
-      index,
-      std::less<double>(),
-      std::plus<double>(),
-      0.0,
-      boost::dijkstra_visitor<>());
+  const auto distance = boost::make_iterator_property_map(paths.distance.begin(), index);
+  std::vector<Index> place(n, 0); // in the heap
+  const auto place_map = boost::make_iterator_property_map(place.begin(), index);
+  boost::d_ary_heap_indirect<Index, 4, decltype(place_map), decltype(distance), std::less<double>>
+      heap(distance, place_map);
+  for (const Index s : sources)
+    heap.push(s);
+  std::vector<std::uint8_t> is_done(n, 0);
+  while (!heap.empty()) {
+    const Index v = heap.top();
+    heap.pop();
+    is_done[v] = 1;
+    for (auto [w, end] = adjacent_vertices(v, graph); w != end; ++w) {
+      const Index to = static_cast<Index>(*w);
+      if (is_done[to])
+        continue;
+      const double d = paths.distance[v] + step_cost(scan, v, to);
+      if (!(d < paths.distance[to]))
+        continue;
+      const bool is_new = std::isinf(paths.distance[to]);
+      paths.distance[to] = d;
+      paths.predecessor[to] = v;
+      if (is_new)
+        heap.push(to);
+      else
+        heap.update(to);
+    }
+  }
   return paths;
 }
 

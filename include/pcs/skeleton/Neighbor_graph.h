@@ -9,7 +9,7 @@
 #include <pcs/skeleton/Scan.h>
 
 #include <boost/graph/compressed_sparse_row_graph.hpp>
-#include <boost/property_map/function_property_map.hpp>
+#include <boost/iterator/iterator_facade.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@
 namespace pcs {
 namespace skeleton {
 
-/// Compressed rows of Boost.Graph, every edge in both directions; weights come from the points.
+/// Compressed rows of Boost.Graph, every edge in both directions; costs come from the points.
 using Neighbor_graph = boost::compressed_sparse_row_graph<boost::directedS,
                                                           boost::no_property,
                                                           boost::no_property,
@@ -128,14 +128,15 @@ neighbor_links(const Scan& scan, const std::vector<std::uint8_t>& is_used, const
 }
 
 /*!
-  Joins components by the shortest links between them, in Boruvka's rounds, up to the widest gap of the rule. The
-  largest component never searches: the others find it. Appends to `links`.
+  The shortest links that join components, in Boruvka's rounds, up to the widest gap of the rule. The largest component
+  never searches: the others find it.
 */
-inline void close_gaps(const Scan& scan,
-                       const std::vector<std::uint8_t>& is_used,
-                       const Link_rule& rule,
-                       std::vector<Link>& links)
+inline std::vector<Link> links_across_gaps(const Scan& scan,
+                                           const std::vector<std::uint8_t>& is_used,
+                                           const Link_rule& rule,
+                                           const std::vector<Link>& links)
 {
+  std::vector<Link> across;
   const std::size_t n = scan.size();
   const double widest = rule.gap * scan.spacing;
   Point_sets sets(n);
@@ -179,13 +180,49 @@ inline void close_gaps(const Scan& scan,
     for (const Best& b : chosen)
       if (sets.find(b.link.first) != sets.find(b.link.second)) {
         sets.unite(b.link.first, b.link.second);
-        links.push_back(b.link);
+        across.push_back(b.link);
         is_joined = true;
       }
     if (!is_joined)
-      return;
+      break;
   }
+  return across;
 }
+
+namespace internal {
+
+/// The edges of all rows as pairs of source and target.
+class Row_iterator
+  : public boost::iterator_facade<Row_iterator, Link, boost::forward_traversal_tag, Link>
+{
+public:
+  Row_iterator(const std::vector<Index>& first, const std::vector<Index>& targets, std::size_t at)
+    : m_first(&first), m_targets(&targets), m_at(at)
+  {
+    find_row();
+  }
+
+private:
+  friend class boost::iterator_core_access;
+  void find_row()
+  {
+    while (m_at < m_targets->size() && (*m_first)[m_row + 1] <= m_at)
+      ++m_row;
+  }
+  void increment()
+  {
+    ++m_at;
+    find_row();
+  }
+  bool equal(const Row_iterator& other) const { return m_at == other.m_at; }
+  Link dereference() const { return {m_row, (*m_targets)[m_at]}; }
+
+  const std::vector<Index>*m_first, *m_targets;
+  std::size_t m_at;
+  Index m_row = 0;
+};
+
+} // namespace internal
 
 /// Rows from links, each link in both directions.
 inline Neighbor_graph graph_of(std::size_t n, const std::vector<Link>& links)
@@ -197,29 +234,19 @@ inline Neighbor_graph graph_of(std::size_t n, const std::vector<Link>& links)
   }
   for (std::size_t i = 0; i < n; ++i)
     first[i + 1] += first[i];
-  std::vector<Index> sources(2 * links.size()), targets(2 * links.size());
+  std::vector<Index> targets(2 * links.size());
   {
     std::vector<Index> next(first.begin(), first.end() - 1);
     for (const Link& l : links) {
-      sources[next[l.first]] = l.first;
       targets[next[l.first]++] = l.second;
-      sources[next[l.second]] = l.second;
       targets[next[l.second]++] = l.first;
     }
   }
-  return Neighbor_graph(boost::construct_inplace_from_sources_and_targets,
-                        sources,
-                        targets,
-                        static_cast<Index>(n));
-}
-
-/// The cost of an edge as a property map over the edges of `graph`.
-inline auto step_cost_map(const Scan& scan, const Neighbor_graph& graph)
-{
-  using Edge = boost::graph_traits<Neighbor_graph>::edge_descriptor;
-  return boost::make_function_property_map<Edge>([&scan, &graph](const Edge& e) {
-    return step_cost(scan, source(e, graph), target(e, graph));
-  });
+  return Neighbor_graph(boost::edges_are_sorted,
+                        internal::Row_iterator(first, targets, 0),
+                        internal::Row_iterator(first, targets, targets.size()),
+                        static_cast<Index>(n),
+                        static_cast<Index>(targets.size()));
 }
 
 } // namespace skeleton

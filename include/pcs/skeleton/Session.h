@@ -7,10 +7,12 @@
 
 #include <pcs/core/Skeleton_report.h>
 #include <pcs/internal/Stopwatch.h>
+#include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Branch_tree.h>
 #include <pcs/skeleton/correct_beam.h>
 #include <pcs/skeleton/estimate_sections.h>
+#include <pcs/skeleton/find_leaves.h>
 #include <pcs/skeleton/find_root.h>
 #include <pcs/skeleton/fit_axes.h>
 #include <pcs/skeleton/join_axes.h>
@@ -46,7 +48,8 @@ struct Session_options
   std::optional<Given_skeleton> given; ///< measured, instead of looking for branches
   double beam_width = 0;               ///< of the scanners [rad]
   bool do_mark_ground = true;
-  double breast_height = 1.3; ///< [L]
+  bool do_find_leaves = false; ///< by the method `chains`
+  double breast_height = 1.3;  ///< [L]
   Skeleton_method method = Skeleton_method::chains;
   Slice_rules slices; ///< of the method `sections`, like the next
   Section_tree_rules section_tree;
@@ -54,6 +57,7 @@ struct Session_options
   Ring_rules rings;
   Root_rules roots;
   Ground_rules ground;
+  Leaf_rules leaves;
   Joint_rules joints;
   Section_rules sections;
   Given_rules given_rules;
@@ -93,6 +97,9 @@ public:
     for (std::size_t i = 0; i < n; ++i)
       m_scan.is_outlier[i] = !m_is_used[i];
     std::vector<Vec3>().swap(m_input);
+    m_is_leaf.resize(n);
+    for (std::size_t i = 0; i < n; ++i)
+      m_is_leaf[i] = !is_wood[i];
     m_report.number_of_duplicates = m_report.number_of_points - n;
     const auto number_of = [](const std::vector<std::uint8_t>& flags, std::uint8_t value) {
       return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), value));
@@ -118,8 +125,7 @@ public:
       m_stage = 2;
       return progress(0.6);
     }
-    std::vector<Link> links =
-        neighbor_links<ConcurrencyTag>(m_scan, m_is_used, m_options.axes.links);
+    std::vector<Link> links = links_of_used();
     if (m_options.do_mark_ground && is_one_sheet(m_scan, m_is_used, m_options.ground)) {
       m_report.number_of_ground_points =
           static_cast<std::size_t>(std::count(m_is_used.begin(), m_is_used.end(), 1));
@@ -127,28 +133,31 @@ public:
       m_stage = 2;
       return progress(0.6);
     }
-    if (m_options.do_mark_ground) {
-      m_report.number_of_ground_points =
-          mark_ground(m_scan, links, m_options.up, m_options.ground, m_is_used);
-      if (m_report.number_of_ground_points > 0) {
-        for (std::size_t i = 0; i < m_scan.size(); ++i)
-          m_scan.is_outlier[i] = !m_is_used[i];
-        links = neighbor_links<ConcurrencyTag>(m_scan, m_is_used, m_options.axes.links);
-      }
+    std::vector<Link> gaps;
+    const auto find_root_and_gaps = [&] {
+      m_root = m_options.root ? nearest_used(*m_options.root)
+                              : find_root(m_scan, m_is_used, links, m_options.up, m_options.roots);
+      gaps = links_across_gaps(m_scan, m_is_used, m_options.axes.links, links);
+    };
+    // most scans have no ground, and what is found meanwhile stays
+    std::vector<std::uint8_t> is_above = m_is_used;
+    std::size_t ground = 0;
+    pcs::internal::invoke_both<ConcurrencyTag>(
+        [&] {
+          if (m_options.do_mark_ground)
+            ground = mark_ground(m_scan, links, m_options.up, m_options.ground, is_above);
+        },
+        find_root_and_gaps);
+    m_report.number_of_ground_points = ground;
+    if (ground > 0) {
+      use_only(is_above);
+      links = links_of_used();
+      find_root_and_gaps();
     }
-    m_root = m_options.root ? nearest_used(*m_options.root)
-                            : find_root(m_scan, m_is_used, links, m_options.up, m_options.roots);
     if (!progress(0.42))
       return false;
-    close_gaps(m_scan, m_is_used, m_options.axes.links, links);
-    {
-      const Neighbor_graph graph = graph_of(m_scan.size(), links);
-      m_paths = shortest_paths(m_scan, graph, m_root);
-    }
-    if (!progress(0.55))
-      return false;
-    m_layers = layer_tree(m_scan, links, m_paths);
-    merge_rings(m_scan, m_options.rings, m_layers);
+    links.insert(links.end(), gaps.begin(), gaps.end());
+    trace_paths(links);
     m_report.seconds.paths = watch.lap();
     m_stage = 2;
     return progress(0.6);
@@ -174,12 +183,19 @@ public:
       m_stage = 3;
       return progress(0.9);
     }
-    bool is_running = true;
-    m_axes = skeleton::fit_axes<ConcurrencyTag>(m_scan, m_layers, m_options.axes, [&](double f) {
-      return is_running = progress(0.6 + 0.3 * f);
-    });
-    if (!is_running)
-      return false;
+    const int rounds = m_options.do_find_leaves ? m_options.leaves.rounds : 0;
+    for (bool is_running = true;;) {
+      const double from = m_leaf_rounds == 0 ? 0.6 : 0.75 + 0.15 * (m_leaf_rounds - 1) / rounds;
+      const double width = m_leaf_rounds == 0 ? 0.15 : 0.15 / rounds;
+      m_axes = skeleton::fit_axes<ConcurrencyTag>(m_scan, m_layers, m_options.axes, [&](double f) {
+        return is_running = progress(from + width * f);
+      });
+      if (!is_running)
+        return false;
+      if (m_leaf_rounds >= rounds || !remove_leaves(m_leaf_rounds == 0))
+        break;
+      ++m_leaf_rounds; // stopped from here on, the work goes on with the wood
+    }
     m_report.noise = m_axes.noise;
     m_report.density = m_axes.density;
     m_report.seconds.axes = watch.lap();
@@ -239,10 +255,98 @@ public:
   /// The node that explains an input point, or `none`.
   Index node_of_input(std::size_t i) const { return m_tree.node_of_point[m_point_of_input[i]]; }
 
+  /// The unit vector across its branch from the axis to an input point; null on the axis. It has a node.
+  Vec3 normal_of_input(std::size_t i) const
+  {
+    const Index p = m_point_of_input[i];
+    const Vec3& point = m_scan.points[p];
+    Vec3 across;
+    if (m_options.method == Skeleton_method::chains && !m_options.given) {
+      const Axis& axis = m_axes.axes[m_axes.axis_of_point[p]].axis;
+      across = point - point_at(axis, nearest_place(axis, m_axes.segment_of_point[p], point));
+    } else {
+      const Branch_node& node = m_tree.nodes[m_tree.node_of_point[p]];
+      const Vec3& base = node.parent == none ? node.point : m_tree.nodes[node.parent].point;
+      const Vec3 along = node.point - base;
+      const double length2 = along.squaredNorm();
+      const double t = length2 > 0 ? (point - base).dot(along) / length2 : 0;
+      across = point - base - std::min(1.0, std::max(0.0, t)) * along;
+    }
+    const double length = across.norm();
+    return length > 0 ? Vec3(across / length) : Vec3(Vec3::Zero());
+  }
+
   /// Distance of an input point from the surface of its branch; negative inside. It has a node.
   double residual_of_input(std::size_t i) const { return residual_of_point(m_point_of_input[i]); }
 
+  /// Whether an input point is left out as a leaf, by the caller or because it was found to be one.
+  bool is_leaf_of_input(std::size_t i) const { return m_is_leaf[m_point_of_input[i]] != 0; }
+
 private:
+  std::vector<Link> links_of_used() const
+  {
+    return neighbor_links<ConcurrencyTag>(m_scan, m_is_used, m_options.axes.links);
+  }
+
+  /// The others stay where they are, for distances, and count as outliers.
+  void use_only(const std::vector<std::uint8_t>& is_used)
+  {
+    m_is_used = is_used;
+    for (std::size_t i = 0; i < m_scan.size(); ++i)
+      m_scan.is_outlier[i] = !m_is_used[i];
+  }
+
+  /// Paths from the root, and their layers. `links` close gaps, too.
+  void trace_paths(const std::vector<Link>& links)
+  {
+    {
+      const Neighbor_graph graph = graph_of(m_scan.size(), links);
+      m_paths = shortest_paths(m_scan, graph, m_root);
+    }
+    m_layers = layer_tree(m_scan, links, m_paths);
+    merge_rings(m_scan, m_options.rings, m_layers);
+  }
+
+  /// Takes the leaves out, and looks for paths over the rest. `false` if there is nothing to do: at first many of the axes
+  /// must be leaves.
+  bool remove_leaves(bool is_first)
+  {
+    const Leaves leaves =
+        find_leaves<ConcurrencyTag>(m_axes, m_scan, m_options.breast_height, m_options.leaves);
+    std::size_t used = 0, unexplained = 0, count = 0;
+    for (Index i = 0; i < m_scan.size(); ++i)
+      if (m_is_used[i]) {
+        ++used;
+        unexplained += !m_axes.is_covered(i);
+      }
+    const bool has_leaves = leaves.share >= m_options.leaves.share &&
+                            double(unexplained) >= m_options.leaves.unexplained * double(used);
+    if (m_axes.axes.empty() || (is_first && !has_leaves))
+      return false;
+    std::vector<std::uint8_t> is_wood = m_is_used;
+    for (Index i = 0; i < m_scan.size(); ++i)
+      if (m_is_used[i] && leaves.is_leaf(m_axes, i)) {
+        is_wood[i] = 0;
+        m_is_leaf[i] = 1;
+        ++count;
+      }
+    if (count == 0 || count == used)
+      return false;
+    use_only(is_wood);
+    m_report.number_of_leaf_points += count;
+    m_root.erase(
+        std::remove_if(m_root.begin(), m_root.end(), [&](Index i) { return !m_is_used[i]; }),
+        m_root.end());
+    std::vector<Link> links = links_of_used();
+    if (m_root.empty())
+      m_root = find_root(m_scan, m_is_used, links, m_options.up, m_options.roots);
+    const std::vector<Link> gaps =
+        links_across_gaps(m_scan, m_is_used, m_options.axes.links, links);
+    links.insert(links.end(), gaps.begin(), gaps.end());
+    trace_paths(links);
+    return true;
+  }
+
   double residual_of_point(Index p) const
   {
     const Index v = m_tree.node_of_point[p];
@@ -311,9 +415,9 @@ private:
   }
 
   std::vector<Vec3> m_input;
-  std::vector<std::uint8_t> m_is_wood, m_is_used;
+  std::vector<std::uint8_t> m_is_wood, m_is_used, m_is_leaf;
   Session_options m_options;
-  int m_stage = 0;
+  int m_stage = 0, m_leaf_rounds = 0;
   Scan m_scan;
   std::vector<Index> m_point_of_input, m_root;
   Shortest_paths m_paths;

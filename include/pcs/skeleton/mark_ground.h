@@ -98,9 +98,13 @@ struct Low_bins
         heights.push_back(static_cast<float>(up.dot(scan.points[i])));
     if (heights.empty())
       return;
-    std::sort(heights.begin(), heights.end());
-    low = double(heights[heights.size() / 1000]);
-    high = double(heights[heights.size() - 1 - heights.size() / 1000]);
+    const auto quantile = [&](std::size_t k) {
+      const auto at = heights.begin() + static_cast<std::ptrdiff_t>(k);
+      std::nth_element(heights.begin(), at, heights.end());
+      return double(*at);
+    };
+    low = quantile(heights.size() / 1000);
+    high = quantile(heights.size() - 1 - heights.size() / 1000);
     height = std::max(rules.bin * (high - low), 4 * scan.spacing);
     for (Index i = 0; i < n; ++i) {
       const double b = (up.dot(scan.points[i]) - low) / height;

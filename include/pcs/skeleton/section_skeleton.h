@@ -244,7 +244,8 @@ private:
     std::vector<std::uint8_t> is_used = m_is_used;
     Link_rule rule;
     std::vector<Link> links = neighbor_links<CGAL::Sequential_tag>(m_scan, is_used, rule);
-    close_gaps(m_scan, is_used, rule, links);
+    const std::vector<Link> gaps = links_across_gaps(m_scan, is_used, rule, links);
+    links.insert(links.end(), gaps.begin(), gaps.end());
     // all dense points are sources: every subtree of the rest begins where the dense region ends
     std::vector<Index> sources;
     for (Index i = 0; i < n; ++i)
