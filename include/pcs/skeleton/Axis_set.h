@@ -23,6 +23,7 @@ struct Fitted_axis
   Axis axis;
   Index parent = none; ///< axis that the paths to the root lead to
   std::size_t number_of_points = 0;
+  double direction = 1; ///< how sure its base is one: 0 if its pieces point to both sides alike [-]
 };
 
 struct Axis_set

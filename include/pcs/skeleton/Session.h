@@ -15,10 +15,12 @@
 #include <pcs/skeleton/find_leaves.h>
 #include <pcs/skeleton/find_root.h>
 #include <pcs/skeleton/fit_axes.h>
+#include <pcs/skeleton/fuse_axes.h>
 #include <pcs/skeleton/join_axes.h>
 #include <pcs/skeleton/mark_ground.h>
 #include <pcs/skeleton/measure_given.h>
 #include <pcs/skeleton/merge_rings.h>
+#include <pcs/skeleton/prune_stubs.h>
 #include <pcs/skeleton/section_skeleton.h>
 
 #include <algorithm>
@@ -54,11 +56,13 @@ struct Session_options
   Slice_rules slices; ///< of the method `sections`, like the next
   Section_tree_rules section_tree;
   Axis_rules axes;
+  Fuse_rules fusion;
   Ring_rules rings;
   Root_rules roots;
   Ground_rules ground;
   Leaf_rules leaves;
   Joint_rules joints;
+  Stub_rules stubs;
   Section_rules sections;
   Given_rules given_rules;
   Beam_rules beam;
@@ -196,6 +200,7 @@ public:
         break;
       ++m_leaf_rounds; // stopped from here on, the work goes on with the wood
     }
+    fuse_axes<ConcurrencyTag>(m_scan.spacing, m_options.fusion, m_axes);
     m_report.noise = m_axes.noise;
     m_report.density = m_axes.density;
     m_report.seconds.axes = watch.lap();
@@ -228,6 +233,7 @@ public:
         return false;
       m_joints[root].is_reversed = is_root_reversed(root);
       m_tree = branch_tree(m_axes, m_joints, root, m_scan.spacing);
+      prune_stubs(m_scan.spacing, m_options.stubs, m_tree);
     }
     m_report.seconds.joints = watch.lap();
     if (!progress(0.97))

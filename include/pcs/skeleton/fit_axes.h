@@ -84,7 +84,7 @@ inline bool accept(const Scan& scan,
     set.axis_of_point[i] = number;
     set.segment_of_point[i] = candidate.segments[k];
   }
-  set.axes.push_back({std::move(candidate.axis), parent, count});
+  set.axes.push_back({std::move(candidate.axis), parent, count, 1});
   statistics.add_deviations(candidate.deviations);
   statistics.add_densities(candidate.densities);
   return true;

@@ -233,7 +233,7 @@ Axis_joiner::options_of(Index a, const neighborhood::Nearest_neighbors& search) 
       Joint joint = best_place(end, b, nodes, reach);
       joint.is_reversed = is_tip;
       if (is_tip)
-        joint.cost += m_rules.reversal * m_spacing;
+        joint.cost += m_rules.reversal * m_set.axes[a].direction * m_spacing;
       if (m_set.axes[a].parent == b && !is_tip)
         joint.cost *= m_rules.path_bonus;
       if (std::isfinite(joint.cost))
