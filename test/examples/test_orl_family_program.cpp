@@ -1,0 +1,175 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The program orl_geodesic for families: means, modes, new trees, growth, changes, saved spaces, and bad input.
+
+#include <pcs/IO/read_swc.h>
+#include <pcs/IO/write_swc.h>
+#include <support/orl_trees.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <examples/Program_run.h>
+#include <string>
+#include <vector>
+
+namespace {
+
+struct Three_trees : Program_run
+{
+  Three_trees()
+  {
+    using namespace orl_test;
+    for (unsigned k = 0; k < 3; ++k) {
+      // one tree at three ages
+      orl_test::Tree tree = moved(random_tree(71, 4, 2),
+                                  Eigen::Matrix3d::Identity(),
+                                  Vec3(0, 0, 0),
+                                  1 + 0.2 * static_cast<double>(k));
+      const std::string name = "abc"[k] + std::string();
+      pcs::IO::write_swc(path(name + ".swc"), tree);
+      Table table(tube_points(tree, 1500 + 200 * k, k + 1));
+      table.add_property("height", std::vector<float>(table.number_of_points(), float(k)));
+      table.add_property("red", std::vector<std::uint8_t>(table.number_of_points(), 100));
+      table.add_property("label", std::vector<std::int32_t>(table.number_of_points(), 7));
+      pcs::IO::write_points(path(name + ".ply"), table);
+    }
+  }
+  const std::string skeletons = "--skeleton a.swc --skeleton b.swc --skeleton c.swc ";
+  const std::string trees = skeletons + "--tree a.ply --tree b.ply --tree c.ply ";
+
+  void succeeds(const std::string& arguments)
+  {
+    const int code = run(arguments);
+    BOOST_TEST_REQUIRE(code == 0, arguments << ": exit code " << code << ": " << err);
+  }
+  void refuses(const std::string& arguments, const std::string& word)
+  {
+    const int code = run(arguments);
+    BOOST_TEST(code == 1, arguments << ": exit code " << code);
+    BOOST_TEST(err.find(word) != std::string::npos, word << " in " << err);
+    const auto lines = std::count(err.begin(), err.end(), '\n');
+    BOOST_TEST((lines == 1 || lines == 2), arguments << ": " << err);
+  }
+  double length(const std::string& name) const
+  {
+    orl_test::Tree tree;
+    pcs::IO::read_swc<orl_test::Kernel>(path(name), tree);
+    double sum = 0;
+    for (const auto e : boost::make_iterator_range(edges(tree)))
+      sum += std::sqrt(
+          CGAL::squared_distance(tree[source(e, tree)].point, tree[target(e, tree)].point));
+    return sum;
+  }
+};
+
+} // namespace
+
+BOOST_FIXTURE_TEST_SUITE(orl_family_program, Three_trees)
+
+BOOST_AUTO_TEST_CASE(a_mean_mixes_points_and_properties)
+{
+  succeeds(trees + "--mean --mean-kind l2 --weights 0,1,0 --mesh --output out");
+  const Table mean = pcs::IO::read_points(path("out/mean.ply"));
+  BOOST_TEST(mean.number_of_points() >= 1500u);
+  std::size_t number_mixed = 0;
+  for (const double v : mean.property_as_double("height")) {
+    BOOST_TEST(v >= 0);
+    BOOST_TEST(v <= 2);
+    number_mixed += std::abs(v - 1) < 1e-3; // of 0, 1 and 2
+  }
+  BOOST_TEST(number_mixed > mean.number_of_points() * 8 / 10);
+  for (const double v : mean.property_as_double("red"))
+    BOOST_TEST(v == 100);
+  for (const double v : mean.property_as_double("label"))
+    BOOST_TEST(v == 7);
+  BOOST_TEST(std::abs(length("out/mean.swc") / length("b.swc") - 1) < 0.02);
+  BOOST_TEST(std::abs(length("out/combination.swc") / length("b.swc") - 1) < 0.02);
+  BOOST_TEST(exists("out/mean_surface.ply"));
+  BOOST_TEST(exists("out/combination_surface.ply"));
+}
+
+BOOST_AUTO_TEST_CASE(modes_and_new_trees_are_written)
+{
+  succeeds(skeletons + "--modes 2 --sample 3 --seed 5 --distances d.csv --output out");
+  const Json modes = Json::parse(content("out/modes.json"));
+  BOOST_TEST(modes["number_of_modes"].get<int>() == 2);
+  BOOST_TEST(modes["modes"].size() == 2u);
+  BOOST_TEST(modes["modes"][0]["scores"].size() == 3u);
+  BOOST_TEST(modes["outlier_scores"].size() == 3u);
+  // the size is what differs most
+  const double small = length("out/mode_1_minus.swc"), large = length("out/mode_1_plus.swc");
+  BOOST_TEST(std::max(small, large) > 1.3 * std::min(small, large));
+  for (const char* name : {"out/mode_2_minus.swc", "out/mode_2_plus.swc", "out/sample_0002.swc"})
+    BOOST_TEST(exists(name));
+  BOOST_TEST(!exists("out/sample_0003.swc"));
+  BOOST_TEST(!exists("out/mean.swc"));
+  BOOST_TEST(content("out/sample_0000.swc") != content("out/sample_0001.swc"));
+  const std::string distances = content("d.csv");
+  BOOST_TEST(std::count(distances.begin(), distances.end(), '\n') == 3);
+  BOOST_TEST(std::count(distances.begin(), distances.end(), ',') == 6);
+  // a seed is a family
+  succeeds(skeletons + "--sample 2 --seed 5 --output again");
+  BOOST_TEST(content("out/sample_0001.swc") == content("again/sample_0001.swc"));
+  succeeds(skeletons + "--sample 2 --seed 6 --output other");
+  BOOST_TEST(content("out/sample_0001.swc") != content("other/sample_0001.swc"));
+}
+
+BOOST_AUTO_TEST_CASE(growth_and_changes_are_written)
+{
+  succeeds(skeletons + "--growth --times 0,2,3 --frames 4 --monotone --output out");
+  double last = 0;
+  for (int k = 0; k < 4; ++k) {
+    const double now = length("out/growth_000" + std::to_string(k) + ".swc");
+    BOOST_TEST(now > last);
+    last = now;
+  }
+  BOOST_TEST(std::abs(last / length("c.swc") - 1) < 0.02);
+  succeeds("--skeleton a.swc --skeleton c.swc --changes c.csv --output two");
+  const std::string changes = content("c.csv");
+  BOOST_TEST(changes.find("longer") != std::string::npos);
+  BOOST_TEST(changes.find("new") == std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(a_saved_space_gives_the_same_trees)
+{
+  succeeds(trees + "--mean --sample 1 --save-space s.txt --output out");
+  succeeds("--load-space s.txt --mean --sample 1 --output again");
+  BOOST_TEST(content("out/mean.swc") == content("again/mean.swc"));
+  BOOST_TEST(content("out/sample_0000.swc") == content("again/sample_0000.swc"));
+  const Table one = pcs::IO::read_points(path("out/sample_0000.ply")),
+              two = pcs::IO::read_points(path("again/sample_0000.ply"));
+  BOOST_TEST((one.points() == two.points()));
+  const std::string text = content("s.txt");
+  for (std::size_t k = 1; k < 10; ++k) {
+    write("cut.txt", text.substr(0, text.size() * k / 10));
+    refuses("--load-space cut.txt --mean --output cut", "cut.txt");
+  }
+  BOOST_TEST(!exists("cut/mean.swc"));
+}
+
+BOOST_AUTO_TEST_CASE(bad_input_is_refused_with_a_sentence)
+{
+  refuses(skeletons + "--output out", "--mean");
+  refuses(skeletons + "--weights 1,2 --output out", "2 weights for 3");
+  refuses(skeletons + "--weights 1,-1,0 --output out", "sum of the weights");
+  refuses(skeletons + "--weights 1,x,0 --output out", "weights");
+  refuses(skeletons + "--growth --times 0,2,1 --output out", "increase");
+  refuses(skeletons + "--growth --times 0,1 --output out", "times");
+  refuses(skeletons + "--mean --times 0,1,2 --output out", "--growth");
+  refuses(skeletons + "--mean --mean-kind l3 --output out", "mean-kind");
+  refuses(skeletons + "--sample -1 --output out", "sample");
+  refuses(skeletons + "--mean --matches m.csv --output out", "two trees");
+  refuses(skeletons + "--load-space s.txt --mean --output out", "one of both");
+  refuses("--load-space missing.txt --mean --output out", "missing.txt");
+  refuses(skeletons + "--skeleton missing.swc --mean --output out", "missing.swc");
+  write("file", "");
+  refuses(skeletons + "--mean --output file", "file");
+  for (const char* name : {"mean", "combination", "growth_0000", "sample_0000"})
+    BOOST_TEST(!exists("out/" + std::string(name) + ".swc"));
+}
+
+BOOST_AUTO_TEST_SUITE_END()
