@@ -11,6 +11,7 @@
 #include <boost/graph/adjacency_list.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -18,7 +19,38 @@
 namespace pcs {
 namespace shape_space {
 
-/// A tree of the space as a skeleton. Branches without length, and what hangs on them, are left out.
+namespace internal {
+
+/// Where the children of a branch sit, in numbers of its nodes; those near a node sit at it.
+inline std::vector<std::vector<double>> seats_of_children(const Orl_layout& layout,
+                                                          const Orl_coordinates& x,
+                                                          const std::vector<std::size_t>& order,
+                                                          std::vector<double>& seat)
+{
+  constexpr double at_node = 1e-9;
+  std::vector<std::vector<double>> seats(layout.branches.size());
+  seat.assign(layout.branches.size(), 0);
+  for (std::size_t b = 0; b < layout.branches.size(); ++b) {
+    const std::size_t parent = layout.branches[b].parent;
+    if (parent == none || order[b] == none)
+      continue;
+    const auto last = static_cast<double>(layout.branches[parent].number_of_edges);
+    seat[b] = std::min(last, std::max(0.0, x.attachment[b]));
+    if (std::abs(seat[b] - std::round(seat[b])) < at_node)
+      seat[b] = std::round(seat[b]);
+    seats[parent].push_back(seat[b]);
+  }
+  for (auto& of_parent : seats) {
+    std::sort(of_parent.begin(), of_parent.end());
+    of_parent.erase(std::unique(of_parent.begin(), of_parent.end()), of_parent.end());
+  }
+  return seats;
+}
+
+} // namespace internal
+
+/// A tree of the space as a skeleton. An edge that carries a branch is divided there. Branches without length, and what
+/// hangs on them, are left out.
 template <class Kernel>
 void write_skeleton(const Orl_layout& layout,
                     const Orl_coordinates& x,
@@ -29,9 +61,12 @@ void write_skeleton(const Orl_layout& layout,
   using FT = typename Kernel::FT;
   Tree_skeleton<Kernel> tree;
   Tree_bundle& bundle = tree[boost::graph_bundle];
-  std::vector<std::size_t> vertex(layout.number_of_nodes(), npos);
   std::vector<std::size_t> branch_of(layout.branches.size(), npos);
   const std::vector<std::size_t> order = orders_of_branches(layout, x);
+  std::vector<double> seat;
+  const std::vector<std::vector<double>> seats =
+      internal::seats_of_children(layout, x, order, seat);
+  std::vector<std::vector<std::size_t>> vertex_of_seat(layout.branches.size());
   for (std::size_t b = 0; b < layout.branches.size(); ++b) {
     const Orl_layout::Branch& branch = layout.branches[b];
     if (order[b] == none)
@@ -42,25 +77,38 @@ void write_skeleton(const Orl_layout& layout,
         {is_trunk ? npos : branch_of[branch.parent], static_cast<int>(order[b]), b});
     std::size_t previous = npos;
     if (!is_trunk) {
-      const auto last = static_cast<double>(layout.branches[branch.parent].number_of_edges);
-      const double t = std::min(last, std::max(0.0, x.attachment[b]));
-      previous = vertex[layout.first_node(branch.parent) + static_cast<std::size_t>(t)];
+      const auto& of_parent = seats[branch.parent];
+      const auto k = std::lower_bound(of_parent.begin(), of_parent.end(), seat[b]);
+      previous = vertex_of_seat[branch.parent][static_cast<std::size_t>(k - of_parent.begin())];
     }
-    for (std::size_t j = 0; j <= branch.number_of_edges; ++j) {
-      const std::size_t v = layout.first_node(b) + j;
-      const Vec3 p = geometry.node[v] + origin;
+    const auto add = [&](const Vec3& local, double radius) {
+      const Vec3 p = local + origin;
       Tree_node<Kernel> node;
       node.point = typename Kernel::Point_3(static_cast<FT>(p.x()),
                                             static_cast<FT>(p.y()),
                                             static_cast<FT>(p.z()));
-      node.radius = node.major_radius = node.minor_radius = static_cast<FT>(geometry.radius[v]);
+      node.radius = node.major_radius = node.minor_radius = static_cast<FT>(radius);
       node.branch = branch_of[b];
-      vertex[v] = add_vertex(node, tree);
+      const std::size_t v = add_vertex(node, tree);
       if (previous != npos)
-        add_edge(previous, vertex[v], tree);
+        add_edge(previous, v, tree);
       else
-        bundle.root = vertex[v];
-      previous = vertex[v];
+        bundle.root = v;
+      previous = v;
+    };
+    auto next = seats[b].begin();
+    for (std::size_t j = 0; j <= branch.number_of_edges; ++j) {
+      const std::size_t v = layout.first_node(b) + j;
+      const auto place = static_cast<double>(j);
+      for (; next != seats[b].end() && *next < place; ++next) { // between this node and the last
+        const double f = *next - (place - 1);
+        add((1 - f) * geometry.node[v - 1] + f * geometry.node[v],
+            (1 - f) * geometry.radius[v - 1] + f * geometry.radius[v]);
+        vertex_of_seat[b].push_back(previous);
+      }
+      add(geometry.node[v], geometry.radius[v]);
+      for (; next != seats[b].end() && *next == place; ++next)
+        vertex_of_seat[b].push_back(previous);
     }
   }
   result = std::move(tree);
