@@ -13,20 +13,18 @@
 #include "program/check_output.h"
 #include "program/default_edit.h"
 #include "program/read_edit.h"
+#include "program/run_program.h"
 #include "program/run_session.h"
 #include <pcs/IO/Point_table.h>
 #include <pcs/IO/read_points.h>
 #include <pcs/IO/write_points.h>
 #include <pcs/core/Similarity.h>
-#include <pcs/core/errors.h>
 
 #include <CLI/CLI.hpp>
 
 #include <cstddef>
 #include <cstdint>
-#include <exception>
 #include <iostream>
-#include <new>
 #include <optional>
 #include <string>
 #include <utility>
@@ -112,38 +110,17 @@ void run(const Options& options)
     print_summary(std::cout, run, options);
 }
 
-int fail(int exit_code, const std::string& what)
-{
-  std::cerr << "deform_point_set: " << what << '\n';
-  return exit_code;
-}
-
 } // namespace program
 
 int main(int argc, char** argv)
 {
-  constexpr int bad_input = 1, internal_error = 2;
   program::Options options;
   CLI::App app(
       "Moves a few handles of a point cloud; the other points follow and keep their shape.",
       "deform_point_set");
   program::declare(app, options);
-  try {
-    app.parse(argc, argv);
+  return program::run_program(app, argc, argv, [&] {
     program::run(options);
-    return 0;
-  } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0)
-      return app.exit(e); // --help, --version
-    return program::fail(bad_input,
-                         std::string(e.what()) + "\nRun with --help for more information.");
-  } catch (const pcs::IO_error& e) {
-    return program::fail(bad_input, e.what());
-  } catch (const pcs::Invalid_input& e) {
-    return program::fail(bad_input, e.what());
-  } catch (const std::bad_alloc&) {
-    return program::fail(internal_error, "not enough memory");
-  } catch (const std::exception& e) {
-    return program::fail(internal_error, std::string("internal error: ") + e.what());
-  }
+    return true;
+  });
 }

@@ -6,6 +6,7 @@
 #include "program/Report_file.h"
 #include "program/Skeleton_options.h"
 #include "program/check_output.h"
+#include "program/run_program.h"
 #include "program/skeleton_report.h"
 #include <pcs/IO/Point_table.h>
 #include <pcs/IO/internal/Output_file.h>
@@ -40,7 +41,6 @@
 #include <functional>
 #include <iostream>
 #include <memory>
-#include <new>
 #include <set>
 #include <string>
 #include <system_error>
@@ -336,41 +336,19 @@ bool run_batch(const Skeleton_options& options)
   return is_good;
 }
 
-int fail(int exit_code, const std::string& what)
-{
-  std::cerr << "extract_tree_skeleton: " << what << '\n';
-  return exit_code;
-}
-
 } // namespace program
 
 int main(int argc, char** argv)
 {
-  constexpr int bad_input = 1, internal_error = 2;
   program::Skeleton_options options;
   CLI::App app("Finds the branches of a tree in a scan: their axes, radii and connection.",
                "extract_tree_skeleton");
   program::declare(app, options);
-  try {
-    app.parse(argc, argv);
+  return program::run_program(app, argc, argv, [&] {
     program::check(options);
-    if (options.folder.empty())
-      program::run_single(options);
-    else if (!program::run_batch(options))
-      return bad_input;
-    return 0;
-  } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0)
-      return app.exit(e); // --help, --version
-    return program::fail(bad_input,
-                         std::string(e.what()) + "\nRun with --help for more information.");
-  } catch (const pcs::IO_error& e) {
-    return program::fail(bad_input, e.what());
-  } catch (const pcs::Invalid_input& e) {
-    return program::fail(bad_input, e.what());
-  } catch (const std::bad_alloc&) {
-    return program::fail(internal_error, "not enough memory");
-  } catch (const std::exception& e) {
-    return program::fail(internal_error, std::string("internal error: ") + e.what());
-  }
+    if (!options.folder.empty())
+      return program::run_batch(options);
+    program::run_single(options);
+    return true;
+  });
 }

@@ -4,6 +4,7 @@
 
 #include "orl_program/Tree_file.h"
 #include "orl_program/write_family.h"
+#include "program/run_program.h"
 #include <pcs/IO/read_correspondences.h>
 #include <pcs/IO/read_shape_space.h>
 #include <pcs/IO/write_correspondences.h>
@@ -14,13 +15,11 @@
 
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iostream>
 #include <limits>
-#include <new>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -204,37 +203,16 @@ void run(const Options& o)
     std::cout << report << '\n';
 }
 
-int fail(int exit_code, const std::string& what)
-{
-  std::cerr << "orl_geodesic: " << what << '\n';
-  return exit_code;
-}
-
 } // namespace orl_program
 
 int main(int argc, char** argv)
 {
-  constexpr int bad_input = 1, internal_error = 2;
   orl_program::Options options;
   CLI::App app("Makes trees between scanned trees, beyond them, and like them.", "orl_geodesic");
   const CLI::Option* const lambda = orl_program::declare(app, options);
-  try {
-    app.parse(argc, argv);
+  return program::run_program(app, argc, argv, [&] {
     options.has_lambda = lambda->count() > 0;
     orl_program::run(options);
-    return 0;
-  } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0)
-      return app.exit(e); // --help, --version
-    return orl_program::fail(bad_input,
-                             std::string(e.what()) + "\nRun with --help for more information.");
-  } catch (const pcs::IO_error& e) {
-    return orl_program::fail(bad_input, e.what());
-  } catch (const pcs::Invalid_input& e) {
-    return orl_program::fail(bad_input, e.what());
-  } catch (const std::bad_alloc&) {
-    return orl_program::fail(internal_error, "not enough memory");
-  } catch (const std::exception& e) {
-    return orl_program::fail(internal_error, std::string("internal error: ") + e.what());
-  }
+    return true;
+  });
 }

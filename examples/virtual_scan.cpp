@@ -6,6 +6,7 @@
 #include "program/Report_file.h"
 #include "program/Scan_options.h"
 #include "program/check_output.h"
+#include "program/run_program.h"
 #include <pcs/IO/Point_table.h>
 #include <pcs/IO/read_swc.h>
 #include <pcs/IO/read_tree_csv.h>
@@ -25,10 +26,8 @@
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
-#include <exception>
 #include <filesystem>
 #include <iostream>
-#include <new>
 #include <optional>
 #include <string>
 #include <utility>
@@ -155,37 +154,16 @@ void run(Scan_options& options)
               << report << '\n';
 }
 
-int fail(int exit_code, const std::string& what)
-{
-  std::cerr << "virtual_scan: " << what << '\n';
-  return exit_code;
-}
-
 } // namespace program
 
 int main(int argc, char** argv)
 {
-  constexpr int bad_input = 1, internal_error = 2;
   program::Scan_options options;
   CLI::App app("Grows a virtual tree and scans it: points with labels, and the truth.",
                "virtual_scan");
   program::declare(app, options);
-  try {
-    app.parse(argc, argv);
+  return program::run_program(app, argc, argv, [&] {
     program::run(options);
-    return 0;
-  } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0)
-      return app.exit(e); // --help, --version
-    return program::fail(bad_input,
-                         std::string(e.what()) + "\nRun with --help for more information.");
-  } catch (const pcs::IO_error& e) {
-    return program::fail(bad_input, e.what());
-  } catch (const pcs::Invalid_input& e) {
-    return program::fail(bad_input, e.what());
-  } catch (const std::bad_alloc&) {
-    return program::fail(internal_error, "not enough memory");
-  } catch (const std::exception& e) {
-    return program::fail(internal_error, std::string("internal error: ") + e.what());
-  }
+    return true;
+  });
 }

@@ -3,60 +3,12 @@
 // Memory that runs out at any allocation leaves the points untouched.
 
 #include <pcs/deform_point_set.h>
+#include <support/allocations.h>
 #include <support/point_clouds.h>
 
 #include <boost/test/unit_test.hpp>
 
-#include <atomic>
-#include <cstdlib>
 #include <new>
-
-namespace {
-
-// Allocations left before one fails; negative: none fails. Threads may share it.
-std::atomic<long> allocations_left{-1};
-std::atomic<bool> has_failed{false};
-
-void* allocate(std::size_t size, std::size_t alignment)
-{
-  if (allocations_left.load() >= 0 && allocations_left.fetch_sub(1) == 0) {
-    allocations_left = -1;
-    has_failed = true;
-    throw std::bad_alloc();
-  }
-  const std::size_t rounded = (size + alignment) / alignment * alignment; // and never nothing
-  void* result = std::aligned_alloc(alignment, rounded);
-  if (!result)
-    throw std::bad_alloc();
-  return result;
-}
-
-} // namespace
-
-void* operator new(std::size_t size)
-{
-  return allocate(size, alignof(std::max_align_t));
-}
-void* operator new(std::size_t size, std::align_val_t alignment)
-{
-  return allocate(size, static_cast<std::size_t>(alignment));
-}
-void operator delete(void* p) noexcept
-{
-  std::free(p);
-}
-void operator delete(void* p, std::size_t) noexcept
-{
-  std::free(p);
-}
-void operator delete(void* p, std::align_val_t) noexcept
-{
-  std::free(p);
-}
-void operator delete(void* p, std::size_t, std::align_val_t) noexcept
-{
-  std::free(p);
-}
 
 namespace {
 
@@ -72,8 +24,8 @@ int fail_everywhere(int number_of_samples)
   int failures = 0;
   for (long i = 0;; ++i) {
     points = rest;
-    has_failed = false;
-    allocations_left = i;
+    pcs_test::has_failed = false;
+    pcs_test::allocations_left = i;
     bool has_thrown = false;
     try {
       pcs::deform_point_set<CGAL::Sequential_tag>(
@@ -85,8 +37,8 @@ int fail_everywhere(int number_of_samples)
     } catch (const std::bad_alloc&) {
       has_thrown = true;
     }
-    allocations_left = -1;
-    if (!has_failed)
+    pcs_test::allocations_left = -1;
+    if (!pcs_test::has_failed)
       return failures;
     ++failures;
     if (has_thrown)

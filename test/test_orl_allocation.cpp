@@ -3,56 +3,13 @@
 // A tree of the space and its points are written again and again without any allocation.
 
 #include <pcs/Orl_shape_space.h>
+#include <support/allocations.h>
 #include <support/orl_trees.h>
 
 #include <boost/test/unit_test.hpp>
 
-#include <atomic>
 #include <cstddef>
-#include <cstdlib>
-#include <new>
 #include <vector>
-
-namespace {
-
-std::atomic<long> number_of_allocations{0};
-
-void* allocate(std::size_t size, std::size_t alignment)
-{
-  ++number_of_allocations;
-  const std::size_t rounded = (size + alignment) / alignment * alignment; // and never nothing
-  void* result = std::aligned_alloc(alignment, rounded);
-  if (!result)
-    throw std::bad_alloc();
-  return result;
-}
-
-} // namespace
-
-void* operator new(std::size_t size)
-{
-  return allocate(size, alignof(std::max_align_t));
-}
-void* operator new(std::size_t size, std::align_val_t alignment)
-{
-  return allocate(size, static_cast<std::size_t>(alignment));
-}
-void operator delete(void* p) noexcept
-{
-  std::free(p);
-}
-void operator delete(void* p, std::size_t) noexcept
-{
-  std::free(p);
-}
-void operator delete(void* p, std::align_val_t) noexcept
-{
-  std::free(p);
-}
-void operator delete(void* p, std::size_t, std::align_val_t) noexcept
-{
-  std::free(p);
-}
 
 BOOST_AUTO_TEST_SUITE(orl_allocation)
 
@@ -70,13 +27,13 @@ BOOST_AUTO_TEST_CASE(trees_and_points_are_written_without_allocation)
   points.reserve(space.geodesic(0, 1, 0.5).number_of_points()); // the ends have fewer
   space.geodesic(0, 1, 0.5, tree);
   space.points(tree, points);
-  const long before = number_of_allocations;
+  const long before = pcs_test::number_of_allocations;
   BOOST_TEST(before > 0); // they are counted
   for (const double lambda : {0.25, 0., 0.75, 1., 0.5}) {
     space.geodesic(0, 1, lambda, tree);
     space.points(tree, points);
   }
-  const long after = number_of_allocations;
+  const long after = pcs_test::number_of_allocations;
   BOOST_TEST(after == before);
   BOOST_TEST(points.size() == tree.number_of_points());
 }

@@ -24,11 +24,15 @@ struct Three_trees : Program_run
   {
     using namespace orl_test;
     for (unsigned k = 0; k < 3; ++k) {
-      // one tree at three ages
+      // one tree at three ages, the second of them with a wider crown
       orl_test::Tree tree = moved(random_tree(71, 4, 2),
                                   Eigen::Matrix3d::Identity(),
                                   Vec3(0, 0, 0),
                                   1 + 0.2 * static_cast<double>(k));
+      if (k == 1)
+        for (const auto v : boost::make_iterator_range(vertices(tree)))
+          tree[v].point =
+              Kernel::Point_3(1.1 * tree[v].point.x(), 1.1 * tree[v].point.y(), tree[v].point.z());
       const std::string name = "abc"[k] + std::string();
       pcs::IO::write_swc(path(name + ".swc"), tree);
       Table table(tube_points(tree, 1500 + 200 * k, k + 1));

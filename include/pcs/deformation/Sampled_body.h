@@ -85,6 +85,11 @@ struct Sampled_body
   std::size_t number_of_points() const { return input_of_place.size(); }
   std::size_t number_of_sites() const { return component_of_site.size(); }
   std::size_t number_of_components() const { return component_size.size(); }
+  std::size_t first_place(std::size_t site) const
+  {
+    return place_of_site.empty() ? site : place_of_site[site];
+  }
+  Vec3 rest_of_site(std::size_t site) const { return upsampling.rest(first_place(site)); }
 
   /// Builds everything from finite points in the caller's coordinates. Returns `false` if cancelled.
   bool build(std::vector<Vec3> points,

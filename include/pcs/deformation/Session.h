@@ -11,9 +11,10 @@
 #include <pcs/core/rotations.h>
 #include <pcs/deformation/Coarse_level.h>
 #include <pcs/deformation/Elastic_solver.h>
+#include <pcs/deformation/Handle_fades.h>
 #include <pcs/deformation/Point_carrier.h>
 #include <pcs/deformation/Sampled_body.h>
-#include <pcs/deformation/border_fade.h>
+#include <pcs/deformation/affine_maps.h>
 #include <pcs/deformation/handle_boundary.h>
 #include <pcs/deformation/straighten_borders.h>
 
@@ -168,7 +169,7 @@ public:
         },
         [&] {
           if (m_body.is_sampled)
-            find_fades();
+            m_fades.find(m_body, [&](std::size_t site) { return exact_handle(site); });
         });
     m_is_constrained = m_is_constrained && is_regular;
     m_report.seconds.factorization = watch.lap();
@@ -270,10 +271,9 @@ public:
     const auto put_blended =
         [&](std::size_t place, const Vec3& p, const Vec3& normal, const Eigen::Matrix3d& gradient)
             PCS_LAMBDA_INLINE { write_point(body.input_of_place[place], p, normal, gradient); };
-    const bool is_faded = body.is_sampled && !m_place_fades.empty() && !m_local_transforms.empty();
     const auto fade_block = [&](std::size_t block, Block_output& out) {
-      if (is_faded && m_first_fade[block] != m_first_fade[block + 1])
-        fade<HasGradients>(block, out);
+      if (!m_local_transforms.empty() && m_fades.touches(block))
+        m_fades.apply<HasGradients>(block, m_local_transforms, body, out);
     };
     if (body.is_sampled)
       m_body.upsampling.template apply<ConcurrencyTag, HasGradients>(
@@ -315,10 +315,10 @@ public:
       const Affine_map map = h == outlier         ? outlier_map(site)
                              : !m_body.is_sampled ? m_maps[site]
                                                   : m_carrier->map_at(local, site, m_maps);
-      Eigen::Matrix3d a = Eigen::Map<const Row_major>(map.a);
+      Eigen::Matrix3d a = Eigen::Map<const Row_major_matrix>(map.a);
       Vec3 moved = a * local + Eigen::Map<const Vec3>(map.t), turned = turn_normal(a, normal);
       if (m_body.is_sampled && h != outlier && !m_local_transforms.empty())
-        fade(site, local, normal, moved, turned, a);
+        m_fades.apply(site, m_local_transforms, local, normal, moved, turned, a);
       point = m_body.frame.to_world(moved);
       normal = turned;
     }
@@ -361,7 +361,7 @@ public:
       return m_body.frame.to_local(position(m_body.input_of_place[place]));
     });
     for (std::size_t s = 0; s < m_maps.size(); ++s) {
-      const Eigen::Map<const Row_major> a(m_maps[s].a);
+      const Eigen::Map<const Row_major_matrix> a(m_maps[s].a);
       m_body.network.rest[s] =
           a * m_body.network.rest[s] + Vec3(m_maps[s].t[0], m_maps[s].t[1], m_maps[s].t[2]);
     }
@@ -381,13 +381,6 @@ public:
   }
 
 private:
-  using Row_major = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-  struct Place_fade
-  {
-    std::uint32_t place;
-    Node_constraint handle;
-    double weight;
-  };
   static constexpr Node_constraint outside = -3;
   static constexpr Node_constraint outlier =
       -4; ///< of a site: follows its host as if they were one rigid body
@@ -421,12 +414,7 @@ private:
     }
   }
 
-  std::size_t first_place(std::size_t site) const
-  {
-    return m_body.place_of_site.empty() ? site : m_body.place_of_site[site];
-  }
-
-  Vec3 rest_of_site(std::size_t site) const { return m_body.upsampling.rest(first_place(site)); }
+  Vec3 rest_of_site(std::size_t site) const { return m_body.rest_of_site(site); }
 
   void update_centroids()
   {
@@ -567,25 +555,13 @@ private:
       if (s == no_sample)
         return;
       const Affine_map& map = m_maps[s];
-      const Eigen::Matrix3d a = Eigen::Map<const Row_major>(map.a);
+      const Eigen::Matrix3d a = Eigen::Map<const Row_major_matrix>(map.a);
       const Vec3 center = m_body.network.rest[s];
-      const Eigen::Matrix3d similarity = std::cbrt(std::abs(a.determinant())) * rotation_of(a);
-      Eigen::Map<Row_major>(m_outlier_maps[o].a) = similarity;
+      const Eigen::Matrix3d similarity = std::cbrt(std::abs(a.determinant())) * nearest_rotation(a);
+      Eigen::Map<Row_major_matrix>(m_outlier_maps[o].a) = similarity;
       Eigen::Map<Vec3>(m_outlier_maps[o].t) =
           a * center + Eigen::Map<const Vec3>(map.t) - similarity * center;
     });
-  }
-
-  /// The rotation nearest to `a`; the identity if `a` is not invertible.
-  static Eigen::Matrix3d rotation_of(const Eigen::Matrix3d& a)
-  {
-    const Vec3 x = a.col(0).normalized(), z = a.col(0).cross(a.col(1)).normalized();
-    Eigen::Matrix3d start;
-    start << x, z.cross(x), z;
-    if (!(a.determinant() > 0) || !start.allFinite())
-      return Eigen::Matrix3d::Identity();
-    constexpr int number_of_steps = 20; // it stops by itself after a few
-    return improve_rotation(a, Quaternion(start), number_of_steps).toRotationMatrix();
   }
 
   const Affine_map& outlier_map(std::size_t site) const
@@ -612,17 +588,6 @@ private:
     return is_written;
   }
 
-  static Vec3 turn_normal(const Eigen::Matrix3d& a, const Vec3& normal)
-  {
-    Eigen::Matrix3d cofactor;
-    cofactor.row(0) = a.row(1).cross(a.row(2));
-    cofactor.row(1) = a.row(2).cross(a.row(0));
-    cofactor.row(2) = a.row(0).cross(a.row(1));
-    const Vec3 turned = cofactor * normal;
-    const double length = turned.norm();
-    return length > 0 ? Vec3(normal.norm() / length * turned) : normal;
-  }
-
   template <class Put>
   void put_rigid(std::size_t place, std::size_t handle, const Put& put) const
   {
@@ -636,21 +601,11 @@ private:
   template <class Put>
   void put_mapped(std::size_t place, const Affine_map& map, const Put& put) const
   {
-    const Eigen::Matrix3d a = Eigen::Map<const Row_major>(map.a);
+    const Eigen::Matrix3d a = Eigen::Map<const Row_major_matrix>(map.a);
     Vec3 normal = Vec3::Zero();
     if (m_body.upsampling.has_normals())
       normal = turn_normal(a, m_body.upsampling.rest_normal(place));
     put(place, a * m_body.upsampling.rest(place) + Eigen::Map<const Vec3>(map.t), normal, a);
-  }
-
-  static Affine_map identity_map() { return {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}}; }
-
-  static bool all_finite(const std::vector<Affine_map>& maps)
-  {
-    return std::all_of(maps.begin(), maps.end(), [](const Affine_map& map) {
-      return Eigen::Map<const Row_major>(map.a).allFinite() &&
-             Eigen::Map<const Vec3>(map.t).allFinite();
-    });
   }
 
   /// The samples' maps: the deformation gradient, which carries stretch as well, about the new position.
@@ -673,7 +628,7 @@ private:
           const Vec3 t =
               is_rigid ? m_local_transforms[static_cast<std::size_t>(h)].translation()
                        : Vec3(m_solver.positions()[s] - a * m_body.upsampling.sample_points()[s]);
-          Eigen::Map<Row_major>(m_next_maps[s].a) = a;
+          Eigen::Map<Row_major_matrix>(m_next_maps[s].a) = a;
           Eigen::Map<Vec3>(m_next_maps[s].t) = t;
         },
         512);
@@ -703,88 +658,6 @@ private:
         constraints);
   }
 
-  void find_fades()
-  {
-    const Weighted_graph& graph = m_body.network.surface;
-    std::vector<double> spacing(graph.size(), 0);
-    for (std::size_t s = 0; s < spacing.size(); ++s) {
-      for (auto t = graph.begin(s); t != graph.end(s); ++t)
-        spacing[s] += (m_body.network.rest[*t] - m_body.network.rest[s]).norm();
-      spacing[s] /= std::max<double>(1, static_cast<double>(graph.degree(s)));
-    }
-    m_fades = border_fades(
-        m_body.site_graph,
-        m_body.sample_of_site,
-        spacing,
-        [&](std::size_t site) { return exact_handle(site); },
-        [&](std::size_t site) { return rest_of_site(site); });
-    m_place_fades.clear();
-    m_first_fade.assign(m_body.upsampling.number_of_blocks() + 1, 0);
-    for (const Border_fade& f : m_fades)
-      for (std::size_t place = first_place(f.site);
-           place < m_body.number_of_points() && m_body.site_of_place[place] == f.site;
-           ++place) {
-        m_place_fades.push_back({static_cast<std::uint32_t>(place), f.handle, f.weight});
-        ++m_first_fade[place / lanes + 1];
-      }
-    for (std::size_t block = 0; block + 1 < m_first_fade.size(); ++block)
-      m_first_fade[block + 1] += m_first_fade[block];
-  }
-
-  /// The same as below for the faded points of a block, whose positions are in the caller's coordinates.
-  template <bool HasGradients>
-  void fade(std::size_t block, Block_output& out) const
-  {
-    const auto& upsampling = m_body.upsampling;
-    for (std::size_t k = m_first_fade[block]; k < m_first_fade[block + 1]; ++k) {
-      const Place_fade& f = m_place_fades[k];
-      const std::size_t l = f.place % lanes;
-      const Similarity& t = m_local_transforms[static_cast<std::size_t>(f.handle)];
-      const Vec3 target = m_body.frame.to_world(t(upsampling.rest(f.place)));
-      for (int c = 0; c < 3; ++c)
-        out.position.value[c][l] += f.weight * (target[c] - out.position.value[c][l]);
-      if (upsampling.has_normals()) {
-        const Vec3 rest = upsampling.rest_normal(f.place), turned = t.rotation() * rest;
-        Vec3 mixed;
-        for (int c = 0; c < 3; ++c)
-          mixed[c] = out.normal.value[c][l] + f.weight * (turned[c] - out.normal.value[c][l]);
-        const double squared = mixed.squaredNorm();
-        if (squared > 0) {
-          const double scale = std::sqrt(rest.squaredNorm() / squared);
-          for (int c = 0; c < 3; ++c)
-            out.normal.value[c][l] = scale * mixed[c];
-        }
-      }
-      if constexpr (HasGradients)
-        for (int e = 0; e < 9; ++e)
-          out.gradient[e][l] +=
-              f.weight * (t.scale() * t.rotation()(e / 3, e % 3) - out.gradient[e][l]);
-    }
-  }
-
-  /// Draws what the samples say about a point towards the motion of the handle next to it.
-  void fade(std::size_t site,
-            const Vec3& rest,
-            const Vec3& rest_normal,
-            Vec3& p,
-            Vec3& normal,
-            Eigen::Matrix3d& gradient) const
-  {
-    const auto f = std::lower_bound(m_fades.begin(),
-                                    m_fades.end(),
-                                    site,
-                                    [](const Border_fade& a, std::size_t s) { return a.site < s; });
-    if (f == m_fades.end() || f->site != site)
-      return;
-    const Similarity& t = m_local_transforms[static_cast<std::size_t>(f->handle)];
-    p += f->weight * (t(rest) - p);
-    gradient += f->weight * (t.scale() * t.rotation() - gradient);
-    const Vec3 mixed = normal + f->weight * (t.rotation() * rest_normal - normal);
-    const double length = mixed.norm();
-    if (length > 0)
-      normal = rest_normal.norm() / length * mixed;
-  }
-
   Sampled_body<ConcurrencyTag> m_body;
   Elastic_network
       m_network; ///< the samples and the borders of the handles, if these are no samples
@@ -794,9 +667,7 @@ private:
   std::vector<Node_constraint> m_handle_of_site; ///< as the caller said
   std::vector<Node_constraint> m_constraint_of_site; ///< as it is written
   std::vector<std::uint8_t> m_is_blended;            ///< one bit per place
-  std::vector<Border_fade> m_fades;                  ///< increasing by site
-  std::vector<Place_fade> m_place_fades;             ///< the same by place
-  std::vector<std::uint32_t> m_first_fade; ///< of each block in `m_place_fades`, and the end
+  Handle_fades m_fades;
   std::vector<Similarity> m_transforms, m_local_transforms;
   std::vector<double> m_weight;
   std::vector<char> m_is_used, m_was_moved, m_was_reached;

@@ -1,0 +1,58 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+
+#include <support/allocations.h>
+
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+
+#if defined(__GNUC__) && !defined(__clang__)
+// GCC 12 takes an inlined operator delete for a call of free() on memory of the operator new that it replaces.
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
+#endif
+
+namespace {
+
+void* allocate(std::size_t size, std::size_t alignment)
+{
+  using namespace pcs_test;
+  ++number_of_allocations;
+  if (allocations_left.load() >= 0 && allocations_left.fetch_sub(1) == 0) {
+    allocations_left = -1;
+    has_failed = true;
+    throw std::bad_alloc();
+  }
+  const std::size_t rounded = (size + alignment) / alignment * alignment; // and never nothing
+  void* result = std::aligned_alloc(alignment, rounded);
+  if (!result)
+    throw std::bad_alloc();
+  return result;
+}
+
+} // namespace
+
+void* operator new(std::size_t size)
+{
+  return allocate(size, alignof(std::max_align_t));
+}
+void* operator new(std::size_t size, std::align_val_t alignment)
+{
+  return allocate(size, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* p) noexcept
+{
+  std::free(p);
+}
+void operator delete(void* p, std::size_t) noexcept
+{
+  std::free(p);
+}
+void operator delete(void* p, std::align_val_t) noexcept
+{
+  std::free(p);
+}
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept
+{
+  std::free(p);
+}

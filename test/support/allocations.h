@@ -1,0 +1,19 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// A test executable with support/allocations.cpp counts its allocations, and one of them may fail.
+
+#ifndef PCS_TEST_SUPPORT_ALLOCATIONS_H
+#define PCS_TEST_SUPPORT_ALLOCATIONS_H
+
+#include <atomic>
+
+namespace pcs_test {
+
+// Threads may share them.
+inline std::atomic<long> number_of_allocations{0};
+inline std::atomic<long> allocations_left{-1}; ///< before one fails; negative: none fails
+inline std::atomic<bool> has_failed{false};
+
+} // namespace pcs_test
+
+#endif // PCS_TEST_SUPPORT_ALLOCATIONS_H
