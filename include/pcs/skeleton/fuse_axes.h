@@ -291,9 +291,11 @@ std::size_t fuse_axes(double spacing, const Fuse_rules& rules, Axis_set& set)
     s = part[a].first + (part[a].is_reversed ? last_segment[a] - std::min(s, last_segment[a]) : s);
     set.axis_of_point[i] = part[a].axis;
   }
-  for (Fitted_axis& f : fused)
-    if (f.parent != none)
-      f.parent = part[f.parent].axis;
+  for (Index k = 0; k < fused.size(); ++k)
+    if (fused[k].parent != none) {
+      const Index parent = part[fused[k].parent].axis;
+      fused[k].parent = parent != k ? parent : none; // found on another piece of itself
+    }
   const std::size_t fewer = n - fused.size();
   set.axes = std::move(fused);
   return fewer;
