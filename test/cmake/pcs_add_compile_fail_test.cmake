@@ -1,7 +1,10 @@
-# Nothing of this is run: compile without optimisation.
+# Nothing of this is run: compile without optimisation, or even without code where no object is looked at.
 add_library(pcs_header_flags INTERFACE)
 target_link_libraries(pcs_header_flags INTERFACE pcs::pcs)
 target_compile_options(pcs_header_flags INTERFACE $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-O0>)
+add_library(pcs_syntax_flags INTERFACE)
+target_link_libraries(pcs_syntax_flags INTERFACE pcs_header_flags)
+target_compile_options(pcs_syntax_flags INTERFACE $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-fsyntax-only>)
 
 # A test that builds a target of this build tree, one at a time.
 function(pcs_add_build_test test target)
@@ -18,12 +21,16 @@ function(pcs_add_compile_fail_test rule sentence)
   set_property(GLOBAL APPEND PROPERTY pcs_compile_fail_sources
     ${CMAKE_CURRENT_SOURCE_DIR}/compile_fail/${rule}.cpp)
   add_library(${rule}_rejected OBJECT EXCLUDE_FROM_ALL compile_fail/${rule}.cpp)
-  target_link_libraries(${rule}_rejected PRIVATE pcs_header_flags)
+  set_target_properties(${rule}_rejected PROPERTIES EXPORT_COMPILE_COMMANDS ON)
+  target_link_libraries(${rule}_rejected PRIVATE pcs_syntax_flags)
   target_compile_options(${rule}_rejected PRIVATE
     $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-Wfatal-errors>)
   target_compile_definitions(${rule}_rejected PRIVATE PCS_BREAK_THE_RULE)
-  pcs_add_build_test(compile_fail.${rule} ${rule}_rejected compile_fail)
-  set_tests_properties(compile_fail.${rule} PROPERTIES PASS_REGULAR_EXPRESSION "${sentence}")
+  add_test(NAME compile_fail.${rule} COMMAND ${CMAKE_COMMAND}
+    -D COMMANDS=${CMAKE_BINARY_DIR}/compile_commands.json -D TARGET=${rule}_rejected
+    -P ${CMAKE_CURRENT_SOURCE_DIR}/cmake/check_rejected.cmake)
+  set_tests_properties(compile_fail.${rule} PROPERTIES
+    PASS_REGULAR_EXPRESSION "${sentence}" LABELS "static;compile_fail")
 endfunction()
 
 # One test that builds all sources of the rules as they are: those with the same first header of pcs side by side in
@@ -59,6 +66,6 @@ function(pcs_add_compile_accepted_test)
     list(APPEND generated ${file})
   endforeach()
   add_library(compile_fail_accepted OBJECT EXCLUDE_FROM_ALL ${alone} ${generated})
-  target_link_libraries(compile_fail_accepted PRIVATE pcs_header_flags)
+  target_link_libraries(compile_fail_accepted PRIVATE pcs_syntax_flags)
   pcs_add_build_test(compile_fail.all_accepted compile_fail_accepted compile_fail)
 endfunction()

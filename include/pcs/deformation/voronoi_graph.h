@@ -11,11 +11,13 @@
 #include <pcs/neighborhood/Proximity_graph.h>
 
 #include <boost/pending/disjoint_sets.hpp>
+#include <boost/property_map/property_map.hpp>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <numeric>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -66,7 +68,11 @@ Weighted_graph star_graph(const Voronoi_stars& stars,
   });
 
   // Weak edges hold nothing together: there, the heaviest proximity edges stay as they are.
-  boost::disjoint_sets_with_storage<> parts(n);
+  using Index_map = boost::typed_identity_property_map<std::uint32_t>;
+  std::vector<std::uint32_t> rank(n, 0), parent(n);
+  std::iota(parent.begin(), parent.end(), std::uint32_t(0));
+  boost::disjoint_sets parts(boost::make_iterator_property_map(rank.begin(), Index_map()),
+                             boost::make_iterator_property_map(parent.begin(), Index_map()));
   const auto share = [&](std::uint32_t i, std::uint32_t j) {
     return 0.5 * proximity_share * (weakness[i] + weakness[j]);
   };
