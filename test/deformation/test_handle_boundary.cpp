@@ -49,10 +49,13 @@ struct Plate
   {
     const auto handle_of_site = [&](std::size_t site) { return handle_at(sites[site]); };
     const auto position = [&](std::size_t site) { return sites[site]; };
+    const auto border = Border_finder(graph).find<Tag>(graph, [&](std::size_t site) {
+      return handle_of_site(site) >= 0;
+    });
     return with_boundary_nodes(
         Boundary_input<decltype(handle_of_site), decltype(position)>{network,
                                                                      weight_unit,
-                                                                     graph,
+                                                                     border,
                                                                      sample_of_site,
                                                                      handle_of_site,
                                                                      position},
@@ -145,7 +148,7 @@ BOOST_AUTO_TEST_CASE(without_handle_nothing_is_added)
   const auto network =
       with_boundary_nodes(Boundary_input<decltype(none), decltype(position)>{plate.network,
                                                                              plate.weight_unit,
-                                                                             plate.graph,
+                                                                             {},
                                                                              plate.sample_of_site,
                                                                              none,
                                                                              position},

@@ -58,6 +58,7 @@ public:
                                               number_of_sample_neighbors,
                                               Sample_weights::compact);
     m_sample_of_node = std::move(regions.sample_of_point);
+    m_border_finder = Border_finder(finer.surface);
     for (const auto node : m_node_of_sample) {
       m_network.rest.push_back(finer.rest[node]);
       m_component.push_back(component[node]);
@@ -81,11 +82,15 @@ public:
       return of_finer.is_prescribed(node) ? of_finer.handle_of_node[node] : free_node;
     };
     const auto position = [&](std::size_t node) { return finer.rest[node]; };
+    const std::vector<Border_edge> border =
+        m_border_finder.find<ConcurrencyTag>(finer.surface, [&](std::size_t node) {
+          return of_finer.is_prescribed(node);
+        });
     Node_constraints constraints = m_constraints;
     m_bounded = with_boundary_nodes(
         Boundary_input<decltype(handle_of_node), decltype(position)>{m_network,
                                                                      m_weight_unit,
-                                                                     finer.surface,
+                                                                     border,
                                                                      m_sample_of_node,
                                                                      handle_of_node,
                                                                      position},
@@ -119,7 +124,8 @@ public:
 
 private:
   std::vector<std::uint32_t> m_node_of_sample, m_sample_of_node, m_component;
-  Elastic_network m_network; ///< over the samples
+  Elastic_network m_network;     ///< over the samples
+  Border_finder m_border_finder; ///< of the finer network's surface
   double m_weight_unit = 1;
   Sample_links m_links; ///< from the finer nodes to the samples
   Node_constraints m_constraints;

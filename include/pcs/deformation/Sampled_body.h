@@ -7,6 +7,7 @@
 
 #include <pcs/core/Deformation_report.h>
 #include <pcs/core/errors.h>
+#include <pcs/deformation/Border_finder.h>
 #include <pcs/deformation/Elastic_network.h>
 #include <pcs/deformation/Sample_links.h>
 #include <pcs/deformation/Sample_regions.h>
@@ -75,10 +76,12 @@ struct Sampled_body
       sample_of_site; ///< nearest along the surface; `no_sample` where there is none
   neighborhood::Proximity_graph
       site_graph;                       ///< kept for the borders of handles; empty if not sampled
+  Border_finder border_finder;          ///< of `site_graph`
   Elastic_network network;              ///< over the samples
   double weight_unit = 1;               ///< see `sample_graph()`
   Upsampling upsampling;                ///< over the places
   std::size_t number_of_short_cuts = 0; ///< links dropped between sheets
+  bool has_fragments = false;           ///< whether there are sites without a sample
   std::vector<neighborhood::Outlier> outliers; ///< sites that hang on one other
   bool is_sampled = true;                      ///< whether there are fewer samples than sites
 
@@ -239,7 +242,10 @@ private:
                                                         options.number_of_sample_neighbors,
                                                         options.sample_weights);
       sample_of_site = std::move(regions.sample_of_point);
+      has_fragments = std::find(sample_of_site.begin(), sample_of_site.end(), no_sample) !=
+                      sample_of_site.end();
       site_graph = std::move(graph);
+      border_finder = Border_finder(site_graph);
     } else {
       static_cast<neighborhood::Proximity_graph&>(network.surface) = std::move(graph);
       sample_of_site = site_of_sample;

@@ -106,6 +106,13 @@ public:
     m_transforms.emplace_back();
     m_weight.push_back(weight);
     m_is_used.push_back(1);
+    std::vector<char> is_reached(m_body.number_of_components(), 0);
+    for (const auto i : indices)
+      is_reached[m_body.component_of_site[m_body.site_of_input[i]]] = 1;
+    m_components_of_handle.emplace_back();
+    for (std::size_t c = 0; c < is_reached.size(); ++c)
+      if (is_reached[c])
+        m_components_of_handle.back().push_back(static_cast<std::uint32_t>(c));
     Vec3 sum = Vec3::Zero();
     for (const auto i : indices)
       sum += rest_of_site(m_body.site_of_input[i]);
@@ -157,9 +164,13 @@ public:
       of_finer = &level.constraints();
     }
     bool is_extended = m_body.is_sampled;
-    if (m_body.is_sampled)
-      m_network = with_boundary(constraints);
-    else
+    std::vector<Border_edge> border;
+    if (m_body.is_sampled) {
+      border = m_body.border_finder.template find<ConcurrencyTag>(
+          m_body.site_graph,
+          [&](std::size_t site) { return exact_handle(site) >= 0; });
+      m_network = with_boundary(border, constraints);
+    } else
       is_extended = straighten_borders(m_body.network, constraints, m_network);
     pcs::internal::invoke_both<ConcurrencyTag>(
         [&] {
@@ -169,7 +180,7 @@ public:
         },
         [&] {
           if (m_body.is_sampled)
-            m_fades.find(m_body, [&](std::size_t site) { return exact_handle(site); });
+            m_fades.find(m_body, border, [&](std::size_t site) { return exact_handle(site); });
         });
     m_is_constrained = m_is_constrained && is_regular;
     m_report.seconds.factorization = watch.lap();
@@ -271,9 +282,11 @@ public:
     const auto put_blended =
         [&](std::size_t place, const Vec3& p, const Vec3& normal, const Eigen::Matrix3d& gradient)
             PCS_LAMBDA_INLINE { write_point(body.input_of_place[place], p, normal, gradient); };
+    m_fades.set_transforms(m_local_transforms, body.frame);
+    const bool has_transforms = !m_local_transforms.empty();
     const auto fade_block = [&](std::size_t block, Block_output& out) {
-      if (!m_local_transforms.empty() && m_fades.touches(block))
-        m_fades.apply<HasGradients>(block, m_local_transforms, body, out);
+      if (has_transforms && m_fades.touches(block))
+        m_fades.apply<HasGradients>(block, body.upsampling, out);
     };
     if (body.is_sampled)
       m_body.upsampling.template apply<ConcurrencyTag, HasGradients>(
@@ -464,9 +477,10 @@ private:
     if (m_has_outside)
       constraints.softness_weight.push_back(0);
     std::vector<char> is_reached(body.number_of_components(), 0);
-    for (std::size_t site = 0; site < body.number_of_sites(); ++site)
-      if (m_handle_of_site[site] >= 0)
-        is_reached[body.component_of_site[site]] = 1;
+    for (std::size_t h = 0; h < m_is_used.size(); ++h)
+      if (m_is_used[h])
+        for (const auto component : m_components_of_handle[h])
+          is_reached[component] = 1;
 
     auto& of_sample = constraints.handle_of_node;
     of_sample.assign(m_maps.size(), free_node);
@@ -485,7 +499,10 @@ private:
     }
     // A soft handle between the samples draws those in whose regions its points lie; an exact one has nodes on its
     // border.
-    for (std::size_t site = 0; site < body.number_of_sites(); ++site) {
+    bool has_soft_handles = false;
+    for (std::size_t h = 0; h < m_is_used.size(); ++h)
+      has_soft_handles = has_soft_handles || (m_is_used[h] && m_weight[h] > 0);
+    for (std::size_t site = 0; has_soft_handles && site < body.number_of_sites(); ++site) {
       const Node_constraint h = m_handle_of_site[site];
       if (!is_soft(h) || body.sample_of_site[site] == no_sample ||
           has_sample.count({h, body.component_of_site[site]}) > 0)
@@ -509,7 +526,7 @@ private:
       }
     // Fragments too small for a sample of their own follow the handle that touches them.
     std::vector<Node_constraint> follows(body.number_of_components(), unreached_node);
-    for (std::size_t site = 0; site < body.number_of_sites(); ++site) {
+    for (std::size_t site = 0; body.has_fragments && site < body.number_of_sites(); ++site) {
       Node_constraint& f = follows[body.component_of_site[site]];
       if (m_handle_of_site[site] >= 0 && f == unreached_node)
         f = m_handle_of_site[site];
@@ -517,7 +534,7 @@ private:
     // What was written once goes back to rest when its last handle is removed.
     m_was_reached.resize(body.number_of_components(), 0);
     m_constraint_of_site.resize(body.number_of_sites());
-    for (std::size_t site = 0; site < body.number_of_sites(); ++site) {
+    pcs::internal::for_each_index<ConcurrencyTag>(body.number_of_sites(), [&](std::size_t site) {
       const std::size_t component = body.component_of_site[site];
       Node_constraint h = m_handle_of_site[site];
       if (h == outside)
@@ -529,7 +546,7 @@ private:
       else if (is_soft(h))
         h = free_node;
       m_constraint_of_site[site] = h;
-    }
+    });
     if (body.is_sampled)
       for (const neighborhood::Outlier& o : body.outliers)
         if (m_constraint_of_site[o.point] == free_node)
@@ -537,11 +554,15 @@ private:
     for (std::size_t c = 0; c < is_reached.size(); ++c)
       m_was_reached[c] = m_was_reached[c] || is_reached[c] ? 1 : 0;
     // Eight places share a byte, as eight points share a block of the upsampling.
-    m_is_blended.assign(body.upsampling.number_of_blocks(), 0);
-    for (std::size_t place = 0; place < body.number_of_points(); ++place)
-      if (m_constraint_of_site[body.site_of_place[place]] == free_node)
-        m_is_blended[place / lanes] =
-            static_cast<std::uint8_t>(m_is_blended[place / lanes] | 1u << place % lanes);
+    m_is_blended.resize(body.upsampling.number_of_blocks());
+    pcs::internal::for_each_index<ConcurrencyTag>(m_is_blended.size(), [&](std::size_t block) {
+      unsigned bits = 0;
+      const std::size_t begin = block * lanes;
+      for (std::size_t l = 0; l < lanes && begin + l < body.number_of_points(); ++l)
+        if (m_constraint_of_site[body.site_of_place[begin + l]] == free_node)
+          bits |= 1u << l;
+      m_is_blended[block] = static_cast<std::uint8_t>(bits);
+    });
   }
 
   /// The similarity nearest to the map of the sample that an outlier hangs on: far away, a stretch would be a throw.
@@ -644,14 +665,15 @@ private:
   }
 
   /// The sample network with nodes on the borders of the handles.
-  Elastic_network with_boundary(Node_constraints& constraints) const
+  Elastic_network with_boundary(const std::vector<Border_edge>& border,
+                                Node_constraints& constraints) const
   {
     const auto handle_of_site = [&](std::size_t site) { return exact_handle(site); };
     const auto position = [&](std::size_t site) { return rest_of_site(site); };
     return with_boundary_nodes(
         Boundary_input<decltype(handle_of_site), decltype(position)>{m_body.network,
                                                                      m_body.weight_unit,
-                                                                     m_body.site_graph,
+                                                                     border,
                                                                      m_body.sample_of_site,
                                                                      handle_of_site,
                                                                      position},
@@ -670,6 +692,7 @@ private:
   Handle_fades m_fades;
   std::vector<Similarity> m_transforms, m_local_transforms;
   std::vector<double> m_weight;
+  std::vector<std::vector<std::uint32_t>> m_components_of_handle;
   std::vector<char> m_is_used, m_was_moved, m_was_reached;
   std::vector<Vec3> m_centroid;
   std::unique_ptr<Point_carrier> m_carrier;

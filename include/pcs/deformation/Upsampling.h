@@ -7,6 +7,7 @@
 
 #include <pcs/deformation/Sample_links.h>
 #include <pcs/deformation/blend_block.h>
+#include <pcs/internal/Huge_page_allocator.h>
 #include <pcs/internal/parallel.h>
 
 #include <Eigen/Core>
@@ -89,6 +90,8 @@ public:
 
   Vec3 rest(std::size_t i) const { return lane(m_rest, i); }
   Vec3 rest_normal(std::size_t i) const { return lane(m_normal, i); }
+  const Lane_vectors& rest_of_block(std::size_t block) const { return m_rest[block]; }
+  const Lane_vectors& normals_of_block(std::size_t block) const { return m_normal[block]; }
 
   /// From the coordinates of the points to those that are written.
   struct Output_frame
@@ -140,14 +143,13 @@ private:
     std::uint32_t sample;
     std::array<float, lanes> weight;
   };
-  static constexpr std::size_t blocks_in_flight = 4;
   struct Sample_pair
   {
     std::uint32_t base, sample;
   };
 
   template <class Vector_at>
-  void pack(const Vector_at& vector, std::vector<Lane_vectors>& packed) const
+  void pack(const Vector_at& vector, pcs::internal::Huge_vector<Lane_vectors>& packed) const
   {
     packed.resize(number_of_blocks());
     for (std::size_t i = 0; i < packed.size() * lanes; ++i) {
@@ -157,7 +159,7 @@ private:
     }
   }
 
-  static Vec3 lane(const std::vector<Lane_vectors>& vectors, std::size_t i)
+  static Vec3 lane(const pcs::internal::Huge_vector<Lane_vectors>& vectors, std::size_t i)
   {
     const auto& v = vectors[i / lanes].value;
     return {v[0][i % lanes], v[1][i % lanes], v[2][i % lanes]};
@@ -221,18 +223,13 @@ private:
         m_base.size(),
         256,
         [&](std::size_t begin, std::size_t end) {
-          // A few blocks are blended, then written: stores that miss the caches do not hold up the arithmetic.
-          std::array<Block_output, blocks_in_flight> out{};
-          for (std::size_t start = begin; start < end; start += blocks_in_flight) {
-            const std::size_t stop = std::min(end, start + blocks_in_flight);
-            for (std::size_t block = start; block < stop; ++block)
-              if (is_blended[block] != 0)
-                blend(block_input(maps, frame, block), out[block - start]);
-            for (std::size_t block = start; block < stop; ++block) {
-              if (is_blended[block] != 0)
-                edit(block, out[block - start]);
-              write_block<Outputs>(block, is_blended[block], out[block - start], write, other);
+          Block_output out{};
+          for (std::size_t block = begin; block < end; ++block) {
+            if (is_blended[block] != 0) {
+              blend(block_input(maps, frame, block), out);
+              edit(block, out);
             }
+            write_block<Outputs>(block, is_blended[block], out, write, other);
           }
         });
   }
@@ -279,9 +276,9 @@ private:
 
   std::size_t m_size = 0;
   std::vector<Vec3> m_sample_points;
-  std::vector<Lane_vectors> m_rest, m_normal;
+  pcs::internal::Huge_vector<Lane_vectors> m_rest, m_normal;
   std::vector<std::uint32_t> m_base, m_first;
-  std::vector<Block_entry> m_entry;
+  pcs::internal::Huge_vector<Block_entry> m_entry;
   std::vector<Sample_pair> m_pairs;
   std::vector<Map_difference> m_differences;
 };

@@ -5,10 +5,10 @@
 #ifndef PCS_DEFORMATION_HANDLE_BOUNDARY_H
 #define PCS_DEFORMATION_HANDLE_BOUNDARY_H
 
+#include <pcs/deformation/Border_finder.h>
 #include <pcs/deformation/Elastic_network.h>
 #include <pcs/deformation/Harmonic_system.h>
 #include <pcs/deformation/Sample_regions.h>
-#include <pcs/neighborhood/Proximity_graph.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -24,13 +24,13 @@ namespace deformation {
 /// A boundary node is taken to lie at least this far from its sample, in units of `typical_edge()`.
 constexpr double shortest_boundary_edge = 0.1;
 
-/// What `with_boundary_nodes()` reads. `handle_of_site(site)` is the handle that prescribes a site, or negative.
+/// What `with_boundary_nodes()` reads. `handle_of_site(site)` is the handle that prescribes a site on a border.
 template <class HandleOfSite, class SitePosition>
 struct Boundary_input
 {
   const Elastic_network& network; ///< over the samples
   double weight_unit;             ///< weight of an edge whose border is as long as itself
-  const neighborhood::Proximity_graph& site_graph;
+  const std::vector<Border_edge>& border;
   const std::vector<std::uint32_t>& sample_of_site;
   HandleOfSite handle_of_site;
   SitePosition site_position;
@@ -65,18 +65,14 @@ Elastic_network with_boundary_nodes(const Boundary_input<HandleOfSite, SitePosit
   const std::size_t number_of_samples = in.network.size();
   const Weighted_graph& base = in.network.surface;
   std::vector<Border_crossing> crossings;
-  for (std::size_t site = 0; site < in.site_graph.size(); ++site) {
-    const Node_constraint h = in.handle_of_site(site);
-    if (h < 0 || in.sample_of_site[site] == no_sample)
-      continue;
-    for (auto j = in.site_graph.begin(site); j != in.site_graph.end(site); ++j)
-      if (in.handle_of_site(*j) < 0)
-        crossings.push_back({in.sample_of_site[*j],
-                             in.sample_of_site[site],
-                             h,
-                             static_cast<std::uint32_t>(site),
-                             (in.site_position(*j) - in.site_position(site)).norm()});
-  }
+  crossings.reserve(in.border.size());
+  for (const Border_edge& e : in.border)
+    if (in.sample_of_site[e.inside] != no_sample)
+      crossings.push_back({in.sample_of_site[e.outside],
+                           in.sample_of_site[e.inside],
+                           in.handle_of_site(e.inside),
+                           e.inside,
+                           (in.site_position(e.outside) - in.site_position(e.inside)).norm()});
   std::sort(crossings.begin(),
             crossings.end(),
             [](const Border_crossing& a, const Border_crossing& b) {

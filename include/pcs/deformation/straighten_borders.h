@@ -100,13 +100,13 @@ inline bool straighten_borders(const Elastic_network& network,
 {
   const Weighted_graph& graph = network.surface;
   const std::size_t n = network.size();
-  struct Border_edge
+  struct Held_edge
   {
     std::size_t free, held; ///< half-edges, by number
     std::uint32_t node, handle_node;
     double share;
   };
-  std::vector<Border_edge> edges;
+  std::vector<Held_edge> edges;
   for (std::uint32_t j = 0; j < n; ++j) {
     if (!constraints.is_prescribed(j))
       continue;
@@ -131,11 +131,11 @@ inline bool straighten_borders(const Elastic_network& network,
     return false;
 
   // The rows of the free nodes lead to the new nodes; the held halves of the edges go.
-  std::sort(edges.begin(), edges.end(), [](const Border_edge& a, const Border_edge& b) {
+  std::sort(edges.begin(), edges.end(), [](const Held_edge& a, const Held_edge& b) {
     return a.free < b.free;
   });
   std::vector<char> is_dropped(graph.neighbor.size(), 0);
-  for (const Border_edge& b : edges)
+  for (const Held_edge& b : edges)
     is_dropped[b.free] = is_dropped[b.held] = 1;
   result = Elastic_network();
   result.rest = network.rest;
@@ -144,7 +144,7 @@ inline bool straighten_borders(const Elastic_network& network,
   surface.neighbor.reserve(graph.neighbor.size());
   surface.weight.reserve(graph.neighbor.size());
   auto next = edges.begin();
-  const auto new_weight = [&](const Border_edge& b) {
+  const auto new_weight = [&](const Held_edge& b) {
     return representable_weight(graph.weight[b.free] / (1 - b.share));
   };
   for (std::size_t i = 0; i < n; ++i) {
@@ -162,7 +162,7 @@ inline bool straighten_borders(const Elastic_network& network,
     }
     surface.first.push_back(static_cast<std::uint32_t>(surface.neighbor.size()));
   }
-  for (const Border_edge& b : edges) {
+  for (const Held_edge& b : edges) {
     surface.neighbor.push_back(b.node);
     surface.weight.push_back(new_weight(b));
     surface.first.push_back(static_cast<std::uint32_t>(surface.neighbor.size()));

@@ -1,0 +1,76 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Large arrays that are read from end to end: on pages of 2 MB where the system has them.
+
+#ifndef PCS_INTERNAL_HUGE_PAGE_ALLOCATOR_H
+#define PCS_INTERNAL_HUGE_PAGE_ALLOCATOR_H
+
+#include <cstddef>
+#include <limits>
+#include <new>
+#include <vector>
+
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
+namespace pcs {
+namespace internal {
+
+/// Like `std::allocator`. Blocks of several huge pages begin at the border of one, and Linux is told to use them: a walk
+/// through 50 MB misses the cache of page addresses 12,000 times otherwise.
+template <class T>
+struct Huge_page_allocator
+{
+  using value_type = T;
+
+  Huge_page_allocator() = default;
+  template <class U>
+  Huge_page_allocator(const Huge_page_allocator<U>&)
+  {
+  }
+
+  T* allocate(std::size_t n)
+  {
+    if (n > std::numeric_limits<std::size_t>::max() / sizeof(T))
+      throw std::bad_array_new_length();
+    const std::size_t bytes = n * sizeof(T);
+    void* memory = ::operator new(bytes, alignment_of(bytes));
+#if defined(__linux__) && defined(MADV_HUGEPAGE)
+    if (bytes >= least_size)
+      madvise(memory, bytes - bytes % huge_page, MADV_HUGEPAGE); // a wish: it may be refused
+#endif
+    return static_cast<T*>(memory);
+  }
+
+  void deallocate(T* memory, std::size_t n) noexcept
+  {
+    ::operator delete(memory, alignment_of(n * sizeof(T)));
+  }
+
+  friend bool operator==(const Huge_page_allocator&, const Huge_page_allocator&)
+  {
+    return true;
+  }
+  friend bool operator!=(const Huge_page_allocator&, const Huge_page_allocator&)
+  {
+    return false;
+  }
+
+private:
+  static constexpr std::size_t huge_page = std::size_t(1) << 21;
+  static constexpr std::size_t least_size = 4 * huge_page;
+
+  static std::align_val_t alignment_of(std::size_t bytes)
+  {
+    return std::align_val_t(bytes >= least_size ? huge_page : alignof(std::max_align_t));
+  }
+};
+
+template <class T>
+using Huge_vector = std::vector<T, Huge_page_allocator<T>>;
+
+} // namespace internal
+} // namespace pcs
+
+#endif // PCS_INTERNAL_HUGE_PAGE_ALLOCATOR_H
