@@ -10,6 +10,7 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -53,6 +54,31 @@ Tree star(std::size_t n, double turn)
         add_node(tree, 1, Vec3(0.5 * std::cos(angle), 0.5 * std::sin(angle), 2.5 + z), 0.02);
     add_node(tree, v, Vec3(std::cos(angle), std::sin(angle), 2.5 + 2 * z), 0.01);
   }
+  return tree;
+}
+
+/// A tube of six edges, each bent by `bend` against the one before.
+Tree bent_tube(double bend, double radius)
+{
+  Tree tree;
+  Vec3 p = Vec3::Zero();
+  std::size_t last = add_node(tree, pcs::npos, p, radius);
+  for (int k = 0; k < 6; ++k) {
+    p += Vec3(std::sin(bend * k), 0, std::cos(bend * k));
+    last = add_node(tree, last, p, radius);
+  }
+  return tree;
+}
+
+/// A trunk with a side branch near its end; `rest` and `side` are the lengths beyond the fork.
+Tree forked_end(double rest, double side)
+{
+  Tree tree = path(2, 0);
+  const std::size_t fork = add_node(tree, 1, Vec3(0, 0, 10), 0.1);
+  add_node(tree, fork, Vec3(0, 0, 10 + rest), 0.05);
+  add_node(tree, fork, Vec3(side, 0, 10), 0.05);
+  for (int k = 1; k < 4; ++k)
+    add_node(tree, 1, Vec3(k == 1, k == 2, 5 + (k == 3)), 0.02);
   return tree;
 }
 
@@ -255,6 +281,69 @@ BOOST_AUTO_TEST_CASE(archetypes_of_graph_maps_range_and_key)
   BOOST_TEST(is_same);
   pcs_test::Range_archetype small(out.size() - 1);
   BOOST_CHECK_THROW(space.points(tree, small, maps), pcs::Invalid_input);
+}
+
+BOOST_AUTO_TEST_CASE(the_end_of_a_trunk_is_the_end_whatever_twig_is_longest)
+{
+  pcs::Orl_shape_space<Kernel> space;
+  const Tree a = forked_end(0.5, 0.3), b = forked_end(0.3, 0.5);
+  space.add_skeleton(a);
+  space.add_skeleton(b);
+  space.build();
+  int number_found = 0;
+  for (const pcs::Branch_match& m : space.matches())
+    if (m.tip[0] == 3 || m.tip[1] == 3) { // the node straight above the fork
+      BOOST_TEST(m.tip[0] == m.tip[1]);
+      ++number_found;
+    }
+  BOOST_TEST(number_found == 1);
+}
+
+BOOST_AUTO_TEST_CASE(surfaces_do_not_tear_where_bends_grow)
+{
+  const double radius = 0.3, bend = 0.5;
+  const Tree straight = bent_tube(0, radius), bent = bent_tube(bend, radius);
+  pcs::Orl_shape_space<Kernel> space;
+  space.add(straight, whole_tube_points(straight, 20000, 1));
+  space.add(bent, whole_tube_points(bent, 20000, 2));
+  space.build();
+  const double spacing = std::sqrt(2 * CGAL_PI * radius * 6 / 20000);
+  for (double lambda = -0.5; lambda <= 1.5; lambda += 0.25) {
+    const pcs::Orl_tree tree = space.geodesic(0, 1, lambda);
+    std::vector<Point> points;
+    space.points(tree, points);
+    Tree skeleton;
+    space.skeleton(tree, skeleton);
+    std::vector<Vec3> axis{to_eigen(skeleton[skeleton[boost::graph_bundle].root].point)};
+    for (std::size_t v = skeleton[boost::graph_bundle].root; out_degree(v, skeleton) > 0;) {
+      v = target(*out_edges(v, skeleton).first, skeleton);
+      axis.push_back(to_eigen(skeleton[v].point));
+    }
+    BOOST_TEST_REQUIRE(axis.size() >= 7u);
+    // sections keep their size: the distance from the line of some edge is about the radius
+    double worst = 0;
+    for (const Point& p : points) {
+      double least = 1;
+      for (std::size_t k = 0; k + 1 < axis.size(); ++k) {
+        const Vec3 d = (axis[k + 1] - axis[k]).normalized();
+        least = std::min(least, std::abs((to_eigen(p) - axis[k]).cross(d).norm() - radius));
+      }
+      worst = std::max(worst, least);
+    }
+    BOOST_TEST(worst < 0.1 * radius);
+    // no gap on the outer side of bends, where both tubes meet
+    for (std::size_t k = 1; k + 1 < axis.size(); ++k) {
+      const Vec3 d = (axis[k] - axis[k - 1]).normalized(), e = (axis[k + 1] - axis[k]).normalized();
+      if ((d - e).norm() < 0.1)
+        continue;
+      const Vec3 outermost =
+          axis[k] + radius / std::sqrt(0.5 * (1 + d.dot(e))) * (d - e).normalized();
+      double nearest = 1;
+      for (const Point& p : points)
+        nearest = std::min(nearest, (to_eigen(p) - outermost).norm());
+      BOOST_TEST(nearest < 3 * spacing);
+    }
+  }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

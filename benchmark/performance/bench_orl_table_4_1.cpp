@@ -37,7 +37,7 @@ std::vector<Point> sample(Tree tree, std::size_t n, unsigned seed)
   remove_edge_if(
       [&](const auto& e) { return tree[source(e, tree)].branch != tree[target(e, tree)].branch; },
       tree);
-  return orl_test::tube_points(tree, n, seed);
+  return orl_test::whole_tube_points(tree, n, seed);
 }
 
 /// One slerp per point and nothing else.

@@ -167,18 +167,26 @@ inline std::vector<Vec3> thinned(const std::vector<Vec3>& points, std::size_t mo
   return result;
 }
 
-/// The pose that lays `points` on `target`: turned about `up` by all angles, then improved with nearest points both ways.
+/// The pose that lays `points` on `target`: turned about `up` by all angles, with both centers in one place, then improved
+/// with nearest points both ways.
 inline Pose align(const std::vector<Vec3>& points, const std::vector<Vec3>& target, const Vec3& up)
 {
   const std::vector<Vec3> few = thinned(points, 1000), seen = thinned(target, 1000);
   const pcs::neighborhood::Nearest_neighbors in_seen(seen);
   std::vector<pcs::neighborhood::Nearest_neighbors::Neighbor> found;
   constexpr int starts = 24, steps = 30;
+  const auto center = [](const std::vector<Vec3>& all) {
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& p : all)
+      sum += p;
+    return Vec3(sum / static_cast<double>(all.size()));
+  };
   Pose best;
   double least = chamfer(few, seen);
   for (int k = 0; k < starts; ++k) {
     Pose pose;
     pose.rotation = Eigen::AngleAxisd(2 * CGAL_PI * k / starts, up).toRotationMatrix();
+    pose.shift = center(seen) - pose.rotation * center(few);
     for (int step = 0; step < steps; ++step) {
       const std::vector<Vec3> now = pose(few);
       const pcs::neighborhood::Nearest_neighbors in_now(now);

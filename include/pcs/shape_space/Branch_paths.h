@@ -18,11 +18,12 @@ namespace shape_space {
 /// At a fork, a child whose continuation has at least this share of the longest one may continue the branch.
 constexpr double default_fork_ratio = 0.8;
 
-/// Share of a branch that must lie beyond a fork for the choice there to matter.
-constexpr double smallest_alternative = 0.1;
+/// So may a child that shortens the branch by this share of its length at most: which twig is the tip is a matter of chance,
+/// and all twigs beyond the fork hang on that choice.
+constexpr double tip_share = 0.05;
 
 /// All else depends on the trunk: so many times more candidates are looked at.
-constexpr std::size_t trunk_factor = 4;
+constexpr std::size_t trunk_factor = 6;
 
 /// A branch begins with an edge; the node at its end names the place. Several paths may begin there.
 struct Branch_path
@@ -96,12 +97,11 @@ inline std::vector<std::vector<std::size_t>> candidate_paths(const Rooted_tree& 
     if (v != start && k == 0)
       continue; // the node on the parent branch
     const double rest = tree.heights[v];
-    if (rest < smallest_alternative * total)
-      break;
+    const double most_lost = std::max((1 - fork_ratio) * rest, tip_share * total);
     for (std::size_t c = tree.first_child[v] + 1; c < tree.first_child[v + 1]; ++c) {
       const std::size_t w = tree.children[c];
       const double length = tree.edge_length(w) + tree.heights[w];
-      if (length < fork_ratio * rest)
+      if (rest - length > most_lost)
         break;
       std::vector<std::size_t> path(longest.begin(),
                                     longest.begin() + static_cast<std::ptrdiff_t>(k + 1));

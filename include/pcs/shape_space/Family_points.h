@@ -158,9 +158,10 @@ public:
             const double unit = m_is_relative[e] ? cone.radius(t) : 1;
             double sine = 0, cosine = 1;
             sine_cosine(p.angle, sine, cosine);
-            const Vec3 local(unit * p.distance * cosine,
-                             unit * p.distance * sine,
-                             t * cone.length + unit * p.overshoot);
+            const double across_x = unit * p.distance * cosine, across_y = unit * p.distance * sine;
+            const Vec3 local(across_x,
+                             across_y,
+                             cone.height(across_x, across_y, t) + unit * p.overshoot);
             if (m_has_normals)
               normal = cone.frame * around(normal, sine, cosine).stableNormalized();
             put(i, Vec3(cone.from + cone.frame * local), normal, k);

@@ -32,9 +32,9 @@ struct Matching_weights
   bool is_published =
       false; ///< no turns, position in units of the parent's length, all else 1: the text's energy
   double fork_ratio = default_fork_ratio; ///< see `Branch_paths`
-  std::size_t number_of_paths = 3; ///< candidates for the main path of a branch; 1: the longest
+  std::size_t number_of_paths = 6; ///< candidates for the main path of a branch; 1: the longest
   std::size_t number_of_trials =
-      2; ///< pairs of candidates that are matched with all their children
+      3; ///< pairs of candidates that are matched with all their children
 };
 
 /// Two branches that correspond, and what hangs on them.

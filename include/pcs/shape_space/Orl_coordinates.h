@@ -196,8 +196,12 @@ inline double distance(const Orl_coordinates& x,
   return metric == Orl_metric::square ? std::sqrt(total) : total;
 }
 
+/// What shrinks beyond an end of the path keeps this share of what it is there: where some edges of a branch all but
+/// vanish, everything that grows on these gathers in one place.
+constexpr double least_beyond_end = 0.5;
+
 /// The value at `t` of a quantity that is not negative: linear between `x` and `y`, and beyond an end where it grows;
-/// where it shrinks beyond an end it decays with the same slope at that end, and never reaches 0.
+/// where it shrinks beyond an end it decays with the same slope at that end, and nears its least share.
 inline double positive_value(double x, double y, double t)
 {
   if (t >= 0 && t <= 1)
@@ -205,11 +209,12 @@ inline double positive_value(double x, double y, double t)
   const double end = t > 1 ? y : x, step = t > 1 ? y - x : x - y, beyond = t > 1 ? t - 1 : -t;
   if (step >= 0 || end <= 0)
     return end > 0 ? end + beyond * step : 0;
-  return end * std::exp(beyond * step / end);
+  constexpr double rest = 1 - least_beyond_end;
+  return end * (least_beyond_end + rest * std::exp(beyond * step / (rest * end)));
 }
 
-/// The same for a quantity in [0, `last`]; beyond an end it nears the bound that it moves to, and never reaches it: branches
-/// that move along their parent do not gather at its end.
+/// The same for a quantity in [0, `last`]; beyond an end it nears a place on the way to the bound that it moves to, and never
+/// reaches the bound: branches that move along their parent do not gather at its end.
 inline double bounded_value(double x, double y, double t, double last)
 {
   if (t >= 0 && t <= 1)

@@ -250,7 +250,7 @@ private:
         cosines[i] = cosine;
         px[i] = rho * cosine;
         py[i] = rho * sine;
-        pz[i] = t * edge.length + unit * (line[i].overshoot + s * line[i].d_overshoot);
+        pz[i] = edge.height(px[i], py[i], t) + unit * (line[i].overshoot + s * line[i].d_overshoot);
       }
       for (std::size_t i = 0; i < n; ++i) {
         const Vec3 p = edge.from + edge.frame * Vec3(px[i], py[i], pz[i]);
@@ -277,9 +277,8 @@ private:
       const double unit = is_relative ? edge.radius(t) : 1;
       const double rho = unit * (line.distance + f * line.d_distance);
       const double angle = line.angle + f * line.d_angle;
-      return Vec3(rho * std::cos(angle),
-                  rho * std::sin(angle),
-                  t * edge.length + unit * (line.overshoot + f * line.d_overshoot));
+      const double x = rho * std::cos(angle), y = rho * std::sin(angle);
+      return Vec3(x, y, edge.height(x, y, t) + unit * (line.overshoot + f * line.d_overshoot));
     };
     const Vec3 a = local(0), b = local(1);
     const double la = a.norm(), lb = b.norm();

@@ -172,6 +172,24 @@ inline Vec3 estimate_normal(const std::vector<Vec3>& points,
 
 } // namespace internal
 
+/// Beyond the end of a piece and before the next of its branch, on the outer side of a bend, both are as near: there the plane
+/// that halves the angle between them decides. `tube` is either of them.
+inline std::size_t side_of_bend(const std::vector<Tube>& tubes, std::size_t tube, const Vec3& p)
+{
+  const auto is_next = [&](std::size_t k) {
+    return k + 1 < tubes.size() && tubes[k].branch == tubes[k + 1].branch &&
+           tubes[k].to == tubes[k + 1].from;
+  };
+  for (const std::size_t k : {tube, tube - 1})
+    if (k < tubes.size() && is_next(k)) {
+      const Vec3 one = tubes[k].to - tubes[k].from, two = tubes[k + 1].to - tubes[k + 1].from;
+      const Vec3 off = p - tubes[k].to;
+      if (off.dot(one) >= 0 && off.dot(two) <= 0)
+        return off.dot(one.stableNormalized() + two.stableNormalized()) < 0 ? k : k + 1;
+    }
+  return tube;
+}
+
 /*!
   The tube of each point. A point belongs to the branch whose surface it is nearest to, in units of the noise; where
   several branches are about as near, at forks, the deviation of the point's normal from the direction away from the axis
@@ -245,9 +263,12 @@ std::vector<std::size_t> assign_points(const std::vector<Vec3>& points,
     is_ambiguous[i] = found.size() > 1;
   });
   const neighborhood::Nearest_neighbors search(points);
+  const auto settle = [&](std::size_t i) { result[i] = side_of_bend(tubes, result[i], points[i]); };
   pcs::internal::for_each_index<ConcurrencyTag>(points.size(), [&](std::size_t i) {
-    if (!is_ambiguous[i])
+    if (!is_ambiguous[i]) {
+      settle(i);
       return;
+    }
     thread_local std::vector<Candidate> found;
     candidates(i, found);
     const Vec3 normal =
@@ -265,6 +286,7 @@ std::vector<std::size_t> assign_points(const std::vector<Vec3>& points,
         result[i] = c.tube;
       }
     }
+    settle(i);
   });
   return result;
 }

@@ -1,0 +1,314 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// What it costs to make one branch another: bending, stretching, turning, moving along the parent, or growing alone.
+
+#ifndef PCS_SHAPE_SPACE_MATCHING_ENERGY_H
+#define PCS_SHAPE_SPACE_MATCHING_ENERGY_H
+
+#include <pcs/core/rotations.h>
+#include <pcs/internal/parallel.h>
+#include <pcs/shape_space/Branch_paths.h>
+#include <pcs/shape_space/Matched_branch.h>
+#include <pcs/shape_space/best_turn.h>
+#include <pcs/shape_space/canonical_frame.h>
+#include <pcs/shape_space/elastic_curves.h>
+#include <pcs/shape_space/linear_assignment.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+
+/// All terms of the energy of a matching of two trees, for any of the ways to take them apart. Lengths are in units of the
+/// longest path of each tree.
+class Matching_energy
+{
+public:
+  static constexpr std::size_t number_of_samples = 25; ///< of a curve
+  static constexpr std::size_t few_samples = 13; ///< where many are only compared: every other one
+
+  /// Two curves, matched.
+  struct Trial
+  {
+    std::size_t path_1, path_2;
+    double cost;
+    std::vector<double> gamma;
+  };
+
+  /// Attachments of the children, as shares of the first curve.
+  struct Children
+  {
+    std::vector<double> s, weight;
+    std::vector<double> length; ///< of the longest path
+    std::vector<Vec3> direction;
+  };
+
+  template <class ConcurrencyTag>
+  Matching_energy(const Rooted_tree& tree_1,
+                  const Rooted_tree& tree_2,
+                  const Matching_weights& weights,
+                  std::array<Branch_paths, 2> paths,
+                  ConcurrencyTag)
+    : m_weights(weights), m_trees{&tree_1, &tree_2}, m_paths(std::move(paths))
+  {
+    for (std::size_t t = 0; t < 2; ++t) {
+      m_curves[t].resize(m_paths[t].paths.size());
+      m_coarse[t].resize(m_paths[t].paths.size());
+      pcs::internal::for_each_index<ConcurrencyTag>(
+          m_curves[t].size(),
+          [&](std::size_t i) {
+            Sampled_curve& curve = m_curves[t][i];
+            curve = sample_curve(*m_trees[t], m_paths[t].paths[i], number_of_samples);
+            curve.length /= m_trees[t]->heights[0];
+            turn_curve(curve);
+            m_coarse[t][i] = curve;
+            for (std::size_t k = 0; k < few_samples; ++k)
+              m_coarse[t][i].tangents.col(static_cast<Eigen::Index>(k)) =
+                  curve.tangents.col(static_cast<Eigen::Index>(2 * k));
+            m_coarse[t][i].tangents.conservativeResize(3, few_samples);
+          },
+          16);
+    }
+  }
+
+  const Matching_weights& weights() const { return m_weights; }
+  const Branch_paths& paths(int t) const { return m_paths[static_cast<std::size_t>(t)]; }
+  const Branch_path& path(int t, std::size_t i) const { return paths(t).paths[i]; }
+  /// Of a path, in units of the longest one of the tree.
+  double length(int t, std::size_t path) const { return curves(t)[path].length; }
+  /// Tree 2 has no other trunk than this path of it.
+  void set_second_trunk(std::size_t path) { m_paths[1].paths_of[0] = {path}; }
+  /// The axes of tree 1 in those of the caller: rotations here are in these.
+  const Eigen::Matrix3d& frame() const { return m_frame; }
+
+  /// Total length of what begins with the edge to `start`.
+  double weight(int t, std::size_t start) const
+  {
+    const Rooted_tree& tree = *m_trees[static_cast<std::size_t>(t)];
+    return (tree.weights[start] + (tree.parents[start] == none ? 0 : tree.edge_length(start))) /
+           tree.heights[0];
+  }
+
+  /// A bound for the elastic energy: no pair of tangents is closer than the cones around the mean directions allow.
+  double least_energy(std::size_t p1, std::size_t p2, const Eigen::Matrix3d& rotation) const
+  {
+    const Sampled_curve &a = m_curves[0][p1], &b = m_curves[1][p2];
+    const double cosine = std::min(1.0, std::max(-1.0, a.direction.dot(rotation * b.direction)));
+    const double angle = std::max(0.0, std::acos(cosine) - a.spread - b.spread);
+    if (m_weights.is_published || !m_weights.is_carried)
+      return a.length + b.length -
+             2 * std::sqrt(a.length * b.length) * std::max(0.0, std::cos(angle)) * (1 + 1e-12);
+    // the branch may turn by a part of the angle
+    const double t = m_weights.turn;
+    const double gain = std::sqrt(1 + t * t + 2 * t * std::cos(angle)) - t;
+    return a.length + b.length - 2 * std::sqrt(a.length * b.length) * gain * (1 + 1e-12);
+  }
+
+  /// All that two subtrees cost at least: what one of them has more is stretched or single.
+  double least_cost(std::size_t start_1, std::size_t start_2, const Eigen::Matrix3d& rotation) const
+  {
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::size_t p1 : m_paths[0].paths_of[start_1])
+      for (const std::size_t p2 : m_paths[1].paths_of[start_2])
+        least = std::min(least, least_energy(p1, p2, rotation));
+    return m_weights.curve * least + least_difference(start_1, start_2);
+  }
+
+  double least_difference(std::size_t start_1, std::size_t start_2) const
+  {
+    return is_turned() ? m_weights.single * std::min(1.0, m_weights.length) *
+                             std::abs(weight(0, start_1) - weight(1, start_2)) * (1 - 1e-12)
+                       : 0;
+  }
+
+  /// The energy of two branches that turn with their parents by `carried`, and by themselves to `rotation`.
+  double turned_energy(const Trial& trial,
+                       const Eigen::Matrix3d& carried,
+                       const Eigen::Matrix3d& rotation) const
+  {
+    const std::size_t n = trial.gamma.size();
+    const Sampled_curve &one = curve(0, trial.path_1, n), &two = curve(1, trial.path_2, n);
+    double sum = 0;
+    for (std::size_t i = 0; i + 1 < n; ++i) {
+      const double x = trial.gamma[i] * static_cast<double>(n - 1);
+      const auto j = static_cast<Eigen::Index>(std::min(n - 1, static_cast<std::size_t>(x + 0.5)));
+      const double slope = (trial.gamma[i + 1] - trial.gamma[i]) * static_cast<double>(n - 1);
+      sum += std::sqrt(slope) *
+             one.tangents.col(static_cast<Eigen::Index>(i)).dot(rotation * two.tangents.col(j));
+    }
+    const double cosine = 0.5 * ((carried.transpose() * rotation).trace() - 1);
+    const double length = std::sqrt(one.length * two.length);
+    return m_weights.curve *
+               std::max(0.0,
+                        one.length + two.length -
+                            2 * length * std::max(0.0, sum / static_cast<double>(n - 1))) +
+           m_weights.curve * m_weights.turn * 2 * length * (1 - cosine) +
+           length_term(one.length, two.length);
+  }
+
+  double position_term(double w1, double w2, double s1, double s2, double parent_length) const
+  {
+    const double d = std::abs(s1 - s2);
+    if (m_weights.is_published)
+      return m_weights.position * parent_length * d * d;
+    // far is far: branches of other species are not single for their place alone
+    return m_weights.position * 0.5 * (w1 + w2) * d / (1 + d / m_weights.far);
+  }
+
+  bool is_turned() const { return m_weights.is_carried && !m_weights.is_published; }
+
+  double single_term(double w) const { return (m_weights.is_published ? 1 : m_weights.single) * w; }
+
+  Children children_of(int t, const Branch_path& path, const std::vector<double>* gamma) const
+  {
+    Children result;
+    for (const Branch_path::Child& c : path.children) {
+      const double s = path.arc[c.position] / path.length();
+      result.s.push_back(gamma ? inverse_at(*gamma, s) : s);
+      result.weight.push_back(weight(t, c.start));
+      result.length.push_back(curves(t)[paths(t).paths_of[c.start].front()].length);
+      result.direction.push_back(curves(t)[paths(t).paths_of[c.start].front()].direction);
+    }
+    return result;
+  }
+
+  /// The assignment of children by quick costs; `cost` is what it leaves.
+  std::vector<std::size_t> quick_assignment(const Children& a,
+                                            const Children& b,
+                                            const Eigen::Matrix3d& rotation,
+                                            double parent_length,
+                                            double* cost) const
+  {
+    const std::size_t n = a.s.size(), m = b.s.size();
+    std::vector<double> gain(n * m);
+    double total = 0;
+    for (const double w : a.weight)
+      total += single_term(w);
+    for (const double w : b.weight)
+      total += single_term(w);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < m; ++j)
+        gain[i * m + j] = m_weights.curve * quick_cost(a, i, b, j, rotation) +
+                          position_term(a.length[i], b.length[j], a.s[i], b.s[j], parent_length) -
+                          single_term(a.weight[i]) - single_term(b.weight[j]);
+    std::vector<std::size_t> partner = assign_rows(n, m, gain);
+    for (std::size_t i = 0; i < n; ++i)
+      if (partner[i] != none)
+        total += gain[i * m + partner[i]];
+    if (cost)
+      *cost = total;
+    return partner;
+  }
+
+  /// The turn that carries branch 2 to branch 1, from the curves, the children, and what the parents say.
+  Eigen::Matrix3d turn(std::size_t p1,
+                       std::size_t p2,
+                       const std::vector<double>& gamma,
+                       const Children& a,
+                       const Children& b,
+                       const Eigen::Matrix3d& carried,
+                       int passes) const
+  {
+    if (!m_weights.is_carried || m_weights.is_published)
+      return carried;
+    const std::size_t n = gamma.size();
+    const Sampled_curve &one = curve(0, p1, n), &two = curve(1, p2, n);
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    for (std::size_t i = 0; i < n; ++i) {
+      const double x = gamma[i] * static_cast<double>(n - 1);
+      const auto j = static_cast<Eigen::Index>(std::min(n - 1, static_cast<std::size_t>(x + 0.5)));
+      covariance +=
+          one.tangents.col(static_cast<Eigen::Index>(i)) * two.tangents.col(j).transpose();
+    }
+    const double length = std::sqrt(one.length * two.length);
+    covariance *= length / static_cast<double>(n);
+    covariance += m_weights.carried * length * carried;
+    Quaternion q = best_turn(covariance, Quaternion(carried));
+    if (m_weights.children <= 0 || a.s.empty() || b.s.empty())
+      return q.toRotationMatrix();
+    for (int pass = 0; pass < passes; ++pass) {
+      const Eigen::Matrix3d rotation = q.toRotationMatrix();
+      const std::vector<std::size_t> partner =
+          quick_assignment(a, b, rotation, one.length, nullptr);
+      Eigen::Matrix3d all = covariance;
+      for (std::size_t i = 0; i < partner.size(); ++i)
+        if (partner[i] != none)
+          all += m_weights.children * std::sqrt(a.weight[i] * b.weight[partner[i]]) *
+                 a.direction[i] * b.direction[partner[i]].transpose();
+      q = best_turn(all, q);
+    }
+    return q.toRotationMatrix();
+  }
+
+  /// Energy and reparametrisation of two paths.
+  Trial match_curves(std::size_t p1,
+                     std::size_t p2,
+                     const Eigen::Matrix3d& rotation,
+                     std::size_t samples = number_of_samples) const
+  {
+    thread_local Elastic_matcher fine(number_of_samples, 3), coarse(few_samples, 3);
+    Elastic_matcher& matcher = samples == number_of_samples ? fine : coarse;
+    const Sampled_curve &one = curve(0, p1, samples), &two = curve(1, p2, samples);
+    const double m = matcher(one, two, rotation);
+    const double energy = one.length + two.length - 2 * std::sqrt(one.length * two.length) * m;
+    return {p1, p2, m_weights.curve * std::max(0.0, energy), matcher.gamma()};
+  }
+
+private:
+  const std::vector<Sampled_curve>& curves(int t) const
+  {
+    return m_curves[static_cast<std::size_t>(t)];
+  }
+  const Sampled_curve& curve(int t, std::size_t path, std::size_t samples) const
+  {
+    const auto i = static_cast<std::size_t>(t);
+    return samples == number_of_samples ? m_curves[i][path] : m_coarse[i][path];
+  }
+
+  /// To the axes of tree 1: turns are rounded in these, so that it does not matter how the trees stand.
+  void turn_curve(Sampled_curve& curve) const
+  {
+    curve.tangents = (m_frame.transpose() * curve.tangents).eval();
+    curve.direction = (m_frame.transpose() * curve.direction).eval();
+  }
+
+  double length_term(double a, double b) const
+  {
+    return m_weights.length * m_weights.single * std::abs(a - b);
+  }
+
+  /// Cost of two subtrees as if each were one straight branch.
+  double quick_cost(const Children& a,
+                    std::size_t i,
+                    const Children& b,
+                    std::size_t j,
+                    const Eigen::Matrix3d& rotation) const
+  {
+    double cosine = std::max(0.0, a.direction[i].dot(rotation * b.direction[j]));
+    if (is_turned()) {
+      const double t = m_weights.turn;
+      cosine = std::sqrt(1 + t * t + 2 * t * a.direction[i].dot(rotation * b.direction[j])) - t;
+    }
+    return a.weight[i] + b.weight[j] - 2 * std::sqrt(a.weight[i] * b.weight[j]) * cosine +
+           length_term(a.weight[i], b.weight[j]);
+  }
+
+  Matching_weights m_weights;
+  std::array<const Rooted_tree*, 2> m_trees;
+  Eigen::Matrix3d m_frame = canonical_frame(*m_trees[0]);
+  std::array<Branch_paths, 2> m_paths;
+  std::array<std::vector<Sampled_curve>, 2> m_curves, m_coarse;
+};
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_MATCHING_ENERGY_H
