@@ -272,13 +272,15 @@ public:
     Sampling_options nearer = o;
     const std::vector<double> share = draw_shares(seed, index);
     for (std::size_t k = 0; k < trials; ++k) {
-      // the second half of the trials comes nearer and nearer to the middle tree
+      // the second half of the trials comes nearer and nearer to the middle tree, and is stretched to the inputs
       nearer.spread =
           o.spread * std::min(1.0, 1.5 - static_cast<double>(k) / static_cast<double>(trials));
       // a trial is a stream of its own
       Orl_coordinates x = from.distribution.draw(pcs::internal::mix_bits(seed) + k, index, nearer);
       if (o.do_keep_in_range)
-        keep_in_range(m_family.layout, m_family.orientation, m_family.up, from.figures, x);
+        limit_angles(m_family.layout, m_family.orientation, from.figures, x);
+      if (o.do_keep_in_range && 2 * k >= trials)
+        limit_lengths(m_family.layout, m_family.orientation, m_family.up, from.figures, x);
       if (o.pipe_exponent > 0)
         limit_pipes(m_family.layout, o.pipe_exponent, x);
       if (o.do_limit_radii)

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -28,8 +29,9 @@ struct Sampling_options
   /// inputs, in [0, 1]; negative: as estimated from the inputs
   double shrinkage = -1;
   bool do_draw_presence = true; ///< else all trees have the branches that most of the inputs have
-  /// whether trees keep to the range of the inputs in their figures: in numbers of branches by order, in angles and lengths
-  /// by the least change of what was drawn, in others by drawing again
+  /// whether trees keep to the range of the inputs: branches sit on those parts of others where they do in the inputs,
+  /// numbers and angles of branches of an order are brought into their range by the least change, and trees that are beyond
+  /// them in other figures are drawn again
   bool do_keep_in_range = true;
   std::size_t number_of_trials =
       100; ///< for that; from the middle on, nearer and nearer to the middle tree
@@ -71,6 +73,7 @@ public:
         m_order[b] = m_order[layout.branches[b].parent] + 1;
     }
     find_counts();
+    find_seats(trees);
     find_middle<ConcurrencyTag>(trees);
     find_deviations(trees, up);
     pool_variances();
@@ -111,9 +114,11 @@ public:
       }
       x.base_radius[b] = total > 0 ? m_middle.base_radius[b] * std::exp(o.spread * z[k]) : 0;
       if (parent != none) {
-        const auto last = static_cast<double>(m_layout.branches[parent].number_of_edges);
+        const double last = static_cast<double>(m_layout.branches[parent].number_of_edges);
+        const double low = o.do_keep_in_range ? m_lowest_seat[parent] : 0,
+                     high = o.do_keep_in_range ? m_highest_seat[parent] : last;
         x.attachment[b] =
-            std::min(last, std::max(0.0, m_middle.attachment[b] + o.spread * z[k + 1]));
+            std::min(high, std::max(low, m_middle.attachment[b] + o.spread * z[k + 1]));
       }
     }
     const std::vector<Quaternion> frame = m_chart.exp(turns);
@@ -226,6 +231,19 @@ private:
         m_most[k] = std::max(m_most[k], count[k]);
       }
     }
+  }
+
+  /// The part of each branch that carries branches in an input.
+  void find_seats(const std::vector<const Orl_coordinates*>& trees)
+  {
+    m_lowest_seat.assign(m_order.size(), std::numeric_limits<double>::infinity());
+    m_highest_seat.assign(m_order.size(), 0);
+    for (std::size_t b = 0; b < m_order.size(); ++b)
+      for (std::size_t t = 0; t < trees.size(); ++t)
+        if (const std::size_t parent = m_layout.branches[b].parent; parent != none && m_has[t][b]) {
+          m_lowest_seat[parent] = std::min(m_lowest_seat[parent], trees[t]->attachment[b]);
+          m_highest_seat[parent] = std::max(m_highest_seat[parent], trees[t]->attachment[b]);
+        }
   }
 
   /// Middle of the trees that have each branch: geometric means, Frechet means of orientations.
@@ -372,7 +390,8 @@ private:
   Orientation m_orientation;
   std::vector<double> m_count; // trees that have each branch
   std::vector<std::size_t> m_order;
-  std::vector<std::size_t> m_fewest, m_most; // branches of each order in an input
+  std::vector<std::size_t> m_fewest, m_most;         // branches of each order in an input
+  std::vector<double> m_lowest_seat, m_highest_seat; // on each branch
   Orl_coordinates m_middle;
   Direction_chart m_chart;
   Eigen::MatrixXd m_deviations;

@@ -54,7 +54,10 @@ limit_moments(const Figure_range& mean, const Figure_range& deviation, std::vect
   }
 }
 
-/// Turns each branch, with all that hangs on it, towards its parent or away from it.
+} // namespace internal
+
+/// Brings mean and standard deviation of the angles of branches, by order, into the range of others: turns each branch, with
+/// all that hangs on it, towards its parent or away from it.
 inline void limit_angles(const Orl_layout& layout,
                          Orientation kind,
                          const std::vector<Tree_figures>& others,
@@ -66,7 +69,7 @@ inline void limit_angles(const Orl_layout& layout,
     orders = std::max(orders, k == none ? 0 : k + 1);
   Orl_geometry geometry;
   for (std::size_t k = 1; k < orders; ++k) {
-    Figure_range mean, deviation;
+    internal::Figure_range mean, deviation;
     for (const Tree_figures& f : others)
       if (k < f.mean_angle.size()) {
         mean.add(f.mean_angle[k]);
@@ -84,7 +87,7 @@ inline void limit_angles(const Orl_layout& layout,
         angles.push_back(std::atan2(parent.cross(own).norm(), parent.dot(own)));
       }
     const std::vector<double> drawn = angles;
-    limit_moments(mean, deviation, angles);
+    internal::limit_moments(mean, deviation, angles);
     for (std::size_t i = 0; i < of_order.size(); ++i) {
       if (angles[i] == drawn[i])
         continue;
@@ -102,7 +105,8 @@ inline void limit_angles(const Orl_layout& layout,
   }
 }
 
-/// Stretches the trunk to the height, the branches on it to the width of the crown, and all others to the total length.
+/// Brings height, width of the crown and total length into the range of others, as far as they can be had together:
+/// stretches the trunk to the height, the branches on it to the width of the crown, and all others to the total length.
 inline void limit_lengths(const Orl_layout& layout,
                           Orientation kind,
                           const Vec3& up,
@@ -110,7 +114,7 @@ inline void limit_lengths(const Orl_layout& layout,
                           Orl_coordinates& x)
 {
   constexpr int number_of_passes = 8;
-  Figure_range height, width, length;
+  internal::Figure_range height, width, length;
   for (const Tree_figures& f : others) {
     height.add(f.height);
     width.add(f.crown_width);
@@ -141,20 +145,6 @@ inline void limit_lengths(const Orl_layout& layout,
       return;
     for_each_edge([&](double& l, std::size_t k) { l *= factor[k]; });
   }
-}
-
-} // namespace internal
-
-/// Brings a tree into the range of others in angles of branches by order, height, width of the crown and total length, as
-/// far as these can be had together.
-inline void keep_in_range(const Orl_layout& layout,
-                          Orientation kind,
-                          const Vec3& up,
-                          const std::vector<Tree_figures>& others,
-                          Orl_coordinates& x)
-{
-  internal::limit_angles(layout, kind, others, x);
-  internal::limit_lengths(layout, kind, up, others, x);
 }
 
 } // namespace shape_space
