@@ -137,9 +137,16 @@ void run_left_out(const std::vector<std::string>& files)
     double share = 0;
     const pcs::Orl_tree placed = space.embed(trees[left], np::default_values(), &share);
     represented += share / static_cast<double>(trees.size());
+    const auto modes = space.modes(trees.size());
     for (std::size_t k = 0; k < error.size(); ++k)
-      error[k] +=
-          space.project(space.modes(k), placed).distance / static_cast<double>(trees.size());
+      error[k] += project_on_modes(space.layout(),
+                                   space.weights(),
+                                   Orientation::gauge_fixed,
+                                   modes,
+                                   placed.coordinates(),
+                                   k)
+                      .distance /
+                  static_cast<double>(trees.size());
   }
   std::printf(
       "left out of the topology, %.3f of the length is represented; modes and mean error:\n",
