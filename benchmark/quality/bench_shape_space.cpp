@@ -9,11 +9,11 @@
 #include <pcs/generators/grow_tree.h>
 #include <pcs/internal/Random_stream.h>
 #include <pcs/internal/Stopwatch.h>
+#include <support/trees_of_parameters.h>
 
 #include <CGAL/Simple_cartesian.h>
 
 #include <CLI/CLI.hpp>
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -137,9 +137,16 @@ void run_left_out(const std::vector<std::string>& files)
     double share = 0;
     const pcs::Orl_tree placed = space.embed(trees[left], np::default_values(), &share);
     represented += share / static_cast<double>(trees.size());
+    const auto modes = space.modes(trees.size());
     for (std::size_t k = 0; k < error.size(); ++k)
-      error[k] +=
-          space.project(space.modes(k), placed).distance / static_cast<double>(trees.size());
+      error[k] += project_on_modes(space.layout(),
+                                   space.weights(),
+                                   Orientation::gauge_fixed,
+                                   modes,
+                                   placed.coordinates(),
+                                   k)
+                      .distance /
+                  static_cast<double>(trees.size());
   }
   std::printf(
       "left out of the topology, %.3f of the length is represented; modes and mean error:\n",
@@ -148,38 +155,34 @@ void run_left_out(const std::vector<std::string>& files)
     std::printf("%4zu %9.3f\n", k, error[k]);
 }
 
-/// Trees of two parameters, size and crown angle, and how well the plane of the first two modes tells these.
-void run_parameters(std::size_t n)
+/// Trees of two parameters, and how well the plane of the first two modes tells these.
+void run_parameters(std::size_t n, std::uint64_t seed)
 {
-  Space space;
-  Eigen::MatrixXd known(static_cast<Eigen::Index>(n), 2);
-  pcs::internal::Random_stream random(1);
-  for (std::size_t i = 0; i < n; ++i) {
-    const double age = random.uniform(0.7, 1.3), angle = random.uniform(-0.3, 0.3);
-    pcs::Tree_habit habit = pcs::fruit_habit();
-    habit.number_of_orders = 2;
-    habit = habit.scaled(age);
-    for (pcs::Value_range* range : {&habit.insertion[0], &habit.insertion[1]}) {
-      range->least += angle;
-      range->largest += angle;
+  using namespace orl_test;
+  std::printf("| habit | second parameter | age, by branches | second | age, by metric | second | "
+              "seconds |\n|---|---|---|---|---|---|---|\n");
+  for (auto [name, habit] : pcs::tree_habits())
+    for (const Second_parameter second :
+         {Second_parameter::crown_angle, Second_parameter::tropism}) {
+      habit.number_of_orders = 3;
+      const Trees_of_parameters family = grow_trees(habit, second, seed, static_cast<int>(n));
+      Space space;
+      for (const Tree& tree : family.trees)
+        space.add_skeleton(tree);
+      space.build();
+      std::printf("| %s | %s |",
+                  name.c_str(),
+                  second == Second_parameter::tropism ? "tropism" : "crown angle");
+      pcs::internal::Stopwatch watch;
+      for (const Mode_measure measure : {Mode_measure::branches, Mode_measure::metric}) {
+        const auto modes = space.modes(2, np::mode_measure(measure));
+        std::printf(" %.3f | %.3f |",
+                    correlation(modes.scores, family.known.col(0)),
+                    correlation(modes.scores, family.known.col(1)));
+      }
+      std::printf(" %.2f |\n", watch.lap());
+      std::fflush(stdout);
     }
-    Tree tree;
-    pcs::grow_tree(tree, habit, np::random_seed(5));
-    space.add_skeleton(tree);
-    known.row(static_cast<Eigen::Index>(i)) << age, angle;
-  }
-  std::cout << space.build() << '\n';
-  const auto modes = space.modes(2);
-  for (Eigen::Index p = 0; p < 2; ++p) {
-    Eigen::VectorXd truth = known.col(p).array() - known.col(p).mean();
-    const Eigen::VectorXd fit = modes.scores * modes.scores.colPivHouseholderQr().solve(truth);
-    std::printf("%s: multiple correlation with the first two modes %.4f, with each %.3f %.3f\n",
-                p == 0 ? "size" : "crown angle",
-                fit.dot(truth) / (fit.norm() * truth.norm()),
-                modes.scores.col(0).dot(truth) / (modes.scores.col(0).norm() * truth.norm()),
-                modes.scores.col(1).dot(truth) / (modes.scores.col(1).norm() * truth.norm()));
-  }
-  std::printf("share of variance %.3f %.3f\n", modes.share(1), modes.share(2));
 }
 
 double megabytes()
@@ -258,11 +261,13 @@ int main(int argc, char** argv)
   std::vector<std::string> files;
   std::string folder;
   std::size_t parameters = 0, points = 0, trees = 100;
+  std::uint64_t seed = 1;
   bool is_left_out = false;
   app.add_option("files", files, ".txtskl skeletons of one group");
   app.add_option("--output", folder, "write skeletons of means, modes and new trees here");
   app.add_flag("--left-out", is_left_out, "error of each tree by the modes of the others instead");
   app.add_option("--parameters", parameters, "so many virtual trees of two known parameters");
+  app.add_option("--seed", seed, "of virtual and new trees")->capture_default_str();
   app.add_option("--points", points, "seconds per new tree of so many points");
   app.add_option("--trees", trees, "new trees for --points");
   CLI11_PARSE(app, argc, argv);
@@ -274,7 +279,7 @@ int main(int argc, char** argv)
     if (files.size() > 2 && is_left_out)
       run_left_out(files);
     if (parameters > 2)
-      run_parameters(parameters);
+      run_parameters(parameters, seed);
     if (points > 0 && trees > 0)
       run_speed(points, trees);
   } catch (const std::exception& e) {

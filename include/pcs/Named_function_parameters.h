@@ -67,6 +67,7 @@
   PCS_OWN(metric)                                                                                  \
   PCS_OWN(tree_mean)                                                                               \
   PCS_OWN(tree_weights)                                                                            \
+  PCS_OWN(mode_measure)                                                                            \
   PCS_OWN(number_of_rounds)                                                                        \
   PCS_OWN(points_of)                                                                               \
   PCS_OWN(sampling_options)                                                                        \

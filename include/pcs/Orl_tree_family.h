@@ -13,6 +13,7 @@
 #include <pcs/internal/text.h>
 #include <pcs/shape_space/Tree_distribution.h>
 #include <pcs/shape_space/growth_path.h>
+#include <pcs/shape_space/keep_in_range.h>
 #include <pcs/shape_space/limit_pipes.h>
 #include <pcs/shape_space/mean_tree.h>
 #include <pcs/shape_space/modes_of_variation.h>
@@ -135,13 +136,24 @@ public:
   /*!
     \brief the directions in which the added trees differ most from their least-squares mean.
 
-    Principal components in the tangent space at the mean, in units of the metric `Orl_metric::square`; where trees stand
-    is left out. With all `number_of_trees() - 1` modes the inputs are reproduced.
+    Directions in the tangent space at the mean; where trees stand is left out. With all `number_of_trees() - 1` modes the
+    inputs are reproduced. What makes a mode large is how branches differ in the trees that have them, each branch with one
+    vote (Tyler's estimator; EM for branches that are not there), or the metric `Orl_metric::square`, where absent
+    branches and long edges prevail.
     \param most modes that are wanted; there are fewer if the trees do not differ in so many ways
+    \param np
+    \npbegin
+      \np{mode_measure} what modes explain
+        \nptype `shape_space::Mode_measure`
+        \npdefault `branches`
+    \npend
     \par Complexity
-    \f$O(n^2 e + n^4)\f$ for `n` trees and `e` edges, memory \f$O(n e)\f$.
+    \f$O(n^4 b + n^2 e)\f$ for `n` trees, `b` branches and `e` edges, most of it for the errors of trees that are left out;
+    memory \f$O(n e)\f$, by each thread.
   */
-  shape_space::Modes_of_variation modes(std::size_t most) const
+  template <class NamedParameters = parameters::Default_named_parameters>
+  shape_space::Modes_of_variation modes(std::size_t most,
+                                        const NamedParameters& np = NamedParameters()) const
   {
     check_family("modes");
     const std::vector<double> ones(number_of_trees(), 1);
@@ -149,8 +161,12 @@ public:
         m_family.layout,
         pointers(),
         m_family.weights,
+        m_family.orientation,
         mean_of(ones, shape_space::Tree_mean::least_squares),
-        most);
+        most,
+        pcs::internal::choose(np,
+                              pcs::internal_np::mode_measure,
+                              shape_space::Mode_measure::branches));
   }
 
   //! the tree with given scores, in standard deviations of the modes; missing scores are 0
@@ -167,22 +183,32 @@ public:
     return make(shape_space::tree_of_modes(m_family.layout, m_family.weights, modes, scores));
   }
 
-  //! where a tree lies in the space of the modes, and how far from it
+  //! where a tree lies in the space of the modes, and how far from it; branches that it lacks do not count
   shape_space::Mode_coordinates project(const shape_space::Modes_of_variation& modes,
                                         const Orl_tree& t) const
   {
     check_modes(modes, "project");
     check_tree(t, "project");
-    return shape_space::project_on_modes(m_family.layout, m_family.weights, modes, t.m_x);
+    return shape_space::project_on_modes(m_family.layout,
+                                         m_family.weights,
+                                         m_family.orientation,
+                                         modes,
+                                         t.m_x);
   }
 
   //! the tree in the space of the first `k` modes that is nearest to `t`
   Orl_tree
   reconstruct(const shape_space::Modes_of_variation& modes, const Orl_tree& t, std::size_t k) const
   {
-    const shape_space::Mode_coordinates at = project(modes, t);
-    std::vector<double> scores(at.scores.data(), at.scores.data() + at.scores.size());
-    scores.resize(std::min(k, scores.size()));
+    check_modes(modes, "reconstruct");
+    check_tree(t, "reconstruct");
+    const shape_space::Mode_coordinates at = shape_space::project_on_modes(m_family.layout,
+                                                                           m_family.weights,
+                                                                           m_family.orientation,
+                                                                           modes,
+                                                                           t.m_x,
+                                                                           k);
+    const std::vector<double> scores(at.scores.data(), at.scores.data() + at.scores.size());
     Orl_tree result = tree(modes, scores);
     result.m_x.root = t.m_x.root;
     return make(std::move(result.m_x), result.m_lambda, t.m_share);
@@ -246,11 +272,15 @@ public:
     Sampling_options nearer = o;
     const std::vector<double> share = draw_shares(seed, index);
     for (std::size_t k = 0; k < trials; ++k) {
-      // the second half of the trials comes nearer and nearer to the middle tree
+      // the second half of the trials comes nearer and nearer to the middle tree, and is stretched to the inputs
       nearer.spread =
           o.spread * std::min(1.0, 1.5 - static_cast<double>(k) / static_cast<double>(trials));
       // a trial is a stream of its own
       Orl_coordinates x = from.distribution.draw(pcs::internal::mix_bits(seed) + k, index, nearer);
+      if (o.do_keep_in_range)
+        limit_angles(m_family.layout, m_family.orientation, from.figures, x);
+      if (o.do_keep_in_range && 2 * k >= trials)
+        limit_lengths(m_family.layout, m_family.orientation, m_family.up, from.figures, x);
       if (o.pipe_exponent > 0)
         limit_pipes(m_family.layout, o.pipe_exponent, x);
       if (o.do_limit_radii)

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -28,8 +29,10 @@ struct Sampling_options
   /// inputs, in [0, 1]; negative: as estimated from the inputs
   double shrinkage = -1;
   bool do_draw_presence = true; ///< else all trees have the branches that most of the inputs have
-  bool do_keep_in_range =
-      true; ///< whether trees beyond the inputs in one of their figures are drawn again
+  /// whether trees keep to the range of the inputs: branches sit on those parts of others where they do in the inputs,
+  /// numbers and angles of branches of an order are brought into their range by the least change, and trees that are beyond
+  /// them in other figures are drawn again
+  bool do_keep_in_range = true;
   std::size_t number_of_trials =
       100; ///< for that; from the middle on, nearer and nearer to the middle tree
   bool do_limit_radii = false; ///< no branch thicker than where it grows from
@@ -69,6 +72,8 @@ public:
       if (layout.branches[b].parent != none)
         m_order[b] = m_order[layout.branches[b].parent] + 1;
     }
+    find_counts();
+    find_seats(trees);
     find_middle<ConcurrencyTag>(trees);
     find_deviations(trees, up);
     pool_variances();
@@ -91,18 +96,13 @@ public:
     };
     const double shrinkage = o.shrinkage < 0 ? m_shrinkage : o.shrinkage;
     const Eigen::VectorXd z = draw_deviations(shrinkage, normal);
+    const std::vector<char> presence = draw_presence(o, [&] { return random.uniform(); });
     Orl_coordinates x = m_middle;
     std::vector<Direction_chart::Pair> turns(m_layout.number_of_edges());
     for (std::size_t b = 0; b < m_layout.branches.size(); ++b) {
       const Orl_layout::Branch& branch = m_layout.branches[b];
       const std::size_t parent = branch.parent;
-      const bool is_usual = 2 * m_count[b] > static_cast<double>(m_has.size());
-      bool is_there = true;
-      if (parent != none) {
-        const double chance = m_count[b] / m_count[parent], drawn = random.uniform();
-        is_there = x.length[m_layout.branches[parent].first_edge] > 0 &&
-                   (o.do_draw_presence ? drawn < chance : is_usual);
-      }
+      const bool is_there = presence[b] != 0;
       Eigen::Index k = first(b);
       double total = 0;
       for (std::size_t e = branch.first_edge; e < branch.first_edge + branch.number_of_edges;
@@ -114,9 +114,11 @@ public:
       }
       x.base_radius[b] = total > 0 ? m_middle.base_radius[b] * std::exp(o.spread * z[k]) : 0;
       if (parent != none) {
-        const auto last = static_cast<double>(m_layout.branches[parent].number_of_edges);
+        const double last = static_cast<double>(m_layout.branches[parent].number_of_edges);
+        const double low = o.do_keep_in_range ? m_lowest_seat[parent] : 0,
+                     high = o.do_keep_in_range ? m_highest_seat[parent] : last;
         x.attachment[b] =
-            std::min(last, std::max(0.0, m_middle.attachment[b] + o.spread * z[k + 1]));
+            std::min(high, std::max(low, m_middle.attachment[b] + o.spread * z[k + 1]));
       }
     }
     const std::vector<Quaternion> frame = m_chart.exp(turns);
@@ -136,6 +138,45 @@ private:
   Eigen::Index size(std::size_t b) const
   {
     return static_cast<Eigen::Index>(4 * m_layout.branches[b].number_of_edges + 2);
+  }
+
+  /// Which branches are there, order by order. Where there are more or fewer than in all inputs, the branches change that
+  /// were drawn with the least odds.
+  template <class Uniform>
+  std::vector<char> draw_presence(const Sampling_options& o, const Uniform& uniform) const
+  {
+    const std::size_t m = m_layout.branches.size();
+    std::vector<char> result(m, 1);
+    std::vector<double> odds(m,
+                             0); // how much the chance is greater than what was drawn, as logarithm
+    for (std::size_t b = 0; b < m; ++b)
+      if (const std::size_t parent = m_layout.branches[b].parent; parent != none) {
+        const double chance = m_count[b] / m_count[parent], drawn = uniform();
+        odds[b] = o.do_draw_presence
+                      ? std::log(chance / (1 - chance)) - std::log(drawn / (1 - drawn))
+                      : m_count[b] - 0.5 * static_cast<double>(m_has.size());
+      }
+    std::vector<std::size_t> open;
+    for (std::size_t k = 1; k < m_fewest.size(); ++k) {
+      open.clear();
+      for (std::size_t b = 0; b < m; ++b)
+        if (m_order[b] == k) {
+          result[b] = 0;
+          if (result[m_layout.branches[b].parent])
+            open.push_back(b);
+        }
+      std::stable_sort(open.begin(), open.end(), [&](std::size_t a, std::size_t b) {
+        return odds[a] > odds[b];
+      });
+      std::size_t count = 0;
+      while (count < open.size() && odds[open[count]] > 0)
+        ++count;
+      if (o.do_draw_presence && o.do_keep_in_range)
+        count = std::min({open.size(), m_most[k], std::max(count, m_fewest[k])});
+      for (std::size_t i = 0; i < count; ++i)
+        result[open[i]] = 1;
+    }
+    return result;
   }
 
   template <class Normal>
@@ -173,6 +214,36 @@ private:
   {
     constexpr double least = 1e-6;
     return middle > 0 ? std::log(std::max(value, least * middle) / middle) : 0;
+  }
+
+  /// Least and largest number of branches of each order in the inputs.
+  void find_counts()
+  {
+    const std::size_t orders = 1 + *std::max_element(m_order.begin(), m_order.end());
+    m_fewest.assign(orders, m_order.size());
+    m_most.assign(orders, 0);
+    for (const std::vector<char>& has : m_has) {
+      std::vector<std::size_t> count(orders, 0);
+      for (std::size_t b = 0; b < m_order.size(); ++b)
+        count[m_order[b]] += has[b] ? 1 : 0;
+      for (std::size_t k = 0; k < orders; ++k) {
+        m_fewest[k] = std::min(m_fewest[k], count[k]);
+        m_most[k] = std::max(m_most[k], count[k]);
+      }
+    }
+  }
+
+  /// The part of each branch that carries branches in an input.
+  void find_seats(const std::vector<const Orl_coordinates*>& trees)
+  {
+    m_lowest_seat.assign(m_order.size(), std::numeric_limits<double>::infinity());
+    m_highest_seat.assign(m_order.size(), 0);
+    for (std::size_t b = 0; b < m_order.size(); ++b)
+      for (std::size_t t = 0; t < trees.size(); ++t)
+        if (const std::size_t parent = m_layout.branches[b].parent; parent != none && m_has[t][b]) {
+          m_lowest_seat[parent] = std::min(m_lowest_seat[parent], trees[t]->attachment[b]);
+          m_highest_seat[parent] = std::max(m_highest_seat[parent], trees[t]->attachment[b]);
+        }
   }
 
   /// Middle of the trees that have each branch: geometric means, Frechet means of orientations.
@@ -319,6 +390,8 @@ private:
   Orientation m_orientation;
   std::vector<double> m_count; // trees that have each branch
   std::vector<std::size_t> m_order;
+  std::vector<std::size_t> m_fewest, m_most;         // branches of each order in an input
+  std::vector<double> m_lowest_seat, m_highest_seat; // on each branch
   Orl_coordinates m_middle;
   Direction_chart m_chart;
   Eigen::MatrixXd m_deviations;

@@ -7,179 +7,60 @@
 
 #include <pcs/internal/parallel.h>
 #include <pcs/linear_algebra/small_symmetric.h>
-#include <pcs/shape_space/Orl_coordinates.h>
+#include <pcs/shape_space/Tangent_space.h>
+#include <pcs/shape_space/Tree_covariance.h>
+#include <pcs/shape_space/Tree_features.h>
 
 #include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <utility>
 #include <vector>
 
 namespace pcs {
 namespace shape_space {
 
-/*!
-  The tangent space at a tree. A vector has three coordinates per edge for its turn, one for its length and one for its
-  radius, then per branch the radius at the base and the attachment, each times its weight in the metric: its length is
-  the distance `Orl_metric::square` from the base, but for the root, which has no part: where a tree stands is not its
-  shape.
-*/
-class Tangent_space
+/// The space of modes as seen in features of trees.
+struct Mode_features
 {
-public:
-  Tangent_space() = default;
-  Tangent_space(const Orl_layout& layout, const Orl_coordinates& base, const Orl_weights& weights)
-    : m_layout(&layout), m_base(base), m_weights(&weights)
-  {
-  }
-
-  const Orl_coordinates& base() const { return m_base; }
-  Eigen::Index dimension() const
-  {
-    return static_cast<Eigen::Index>(5 * m_layout->number_of_edges() +
-                                     2 * m_layout->branches.size());
-  }
-
-  Eigen::VectorXd log(const Orl_coordinates& x) const
-  {
-    const std::size_t n = x.length.size(), m = x.attachment.size();
-    Eigen::VectorXd z(dimension());
-    Eigen::Index k = 0;
-    for (std::size_t e = 0; e < n; ++e) {
-      z.segment<3>(k) = m_weights->orientation[e] *
-                        rotation_log(m_base.orientation[e].conjugate() * x.orientation[e]);
-      z[k + 3] = m_weights->length[e] * (x.length[e] - m_base.length[e]);
-      z[k + 4] = m_weights->radius[e] * (x.radius[e] - m_base.radius[e]);
-      k += 5;
-    }
-    for (std::size_t b = 0; b < m; ++b, k += 2) {
-      z[k] = m_weights->base_radius[b] * (x.base_radius[b] - m_base.base_radius[b]);
-      z[k + 1] = m_weights->attachment[b] * (x.attachment[b] - m_base.attachment[b]);
-    }
-    return z;
-  }
-
-  /// The tree at the end of a tangent vector. Lengths and radii end at 0, turns at pi, attachments on the parent.
-  Orl_coordinates exp(const Eigen::VectorXd& z) const
-  {
-    Orl_coordinates x = m_base;
-    const std::size_t n = x.length.size(), m = x.attachment.size();
-    const auto over = [](double value, double weight) { return weight > 0 ? value / weight : 0; };
-    Eigen::Index k = 0;
-    for (std::size_t e = 0; e < n; ++e, k += 5) {
-      Vec3 u = m_weights->orientation[e] > 0 ? Vec3(z.segment<3>(k) / m_weights->orientation[e])
-                                             : Vec3(Vec3::Zero());
-      constexpr double pi = static_cast<double>(EIGEN_PI);
-      if (u.norm() > pi)
-        u *= pi / u.norm();
-      x.orientation[e] = m_base.orientation[e] * rotation_exp(u);
-      x.orientation[e].normalize();
-      x.length[e] = std::max(0.0, x.length[e] + over(z[k + 3], m_weights->length[e]));
-      x.radius[e] = std::max(0.0, x.radius[e] + over(z[k + 4], m_weights->radius[e]));
-    }
-    for (std::size_t b = 0; b < m; ++b, k += 2) {
-      x.base_radius[b] = std::max(0.0, x.base_radius[b] + over(z[k], m_weights->base_radius[b]));
-      const std::size_t p = m_layout->branches[b].parent;
-      const double last =
-          p == none ? 0 : static_cast<double>(m_layout->branches[p].number_of_edges);
-      const double place = x.attachment[b] + over(z[k + 1], m_weights->attachment[b]);
-      x.attachment[b] = std::min(last, std::max(0.0, place));
-    }
-    return x;
-  }
-
-private:
-  const Orl_layout* m_layout = nullptr;
-  Orl_coordinates m_base;
-  const Orl_weights* m_weights = nullptr;
+  Mode_measure measure = Mode_measure::branches;
+  Eigen::VectorXd mean;                 ///< [L]
+  Eigen::MatrixXd directions;           ///< per standard deviation of each mode (column) [L]
+  std::vector<double> weight, variance; ///< per block, see `Tree_covariance`
 };
 
-/// Eigenvectors of the centred products of `n` vectors that belong to eigenvalues above rounding and `least`, largest
-/// first.
-struct Gram_modes
+/// Where a tree lies in the space of the modes.
+struct Mode_coordinates
 {
-  Eigen::MatrixXd vectors; ///< n x k, of unit length
-  Eigen::VectorXd values;  ///< k, eigenvalues
+  Eigen::VectorXd scores; ///< in standard deviations [-]
+  /// From the space of the modes: root of the mean square over the branches of the tree, each in units of how much it
+  /// varies; the inputs are 1 from their mean. [-]
+  double distance = 0;
 };
-
-inline Gram_modes gram_modes(const Eigen::MatrixXd& gram, std::size_t most, double least = 0)
-{
-  const Eigen::Index n = gram.rows();
-  const Eigen::MatrixXd center =
-      Eigen::MatrixXd::Identity(n, n) - Eigen::MatrixXd::Constant(n, n, 1 / static_cast<double>(n));
-  const auto eigen = linear_algebra::symmetric_eigen<Eigen::Dynamic>(center * gram * center);
-  Gram_modes result;
-  const double largest = n > 0 ? std::max(0.0, eigen.values[n - 1]) : 0;
-  Eigen::Index k = 0;
-  while (k < n - 1 && k < static_cast<Eigen::Index>(most) && largest > 0 &&
-         eigen.values[n - 1 - k] > std::max(least, 1e-12 * largest))
-    ++k;
-  result.vectors = eigen.vectors.rightCols(k).rowwise().reverse();
-  result.values = eigen.values.tail(k).reverse();
-  return result;
-}
-
-/*!
-  Distances of trees from the space of `k` modes of all others, for k = 0, 1, ...; each is left out in turn. `gram` has the
-  products of the tangent vectors of all trees. Element `[i][k]`. [L]
-*/
-inline std::vector<std::vector<double>> left_out_distances(const Eigen::MatrixXd& gram,
-                                                           std::size_t most)
-{
-  const Eigen::Index n = gram.rows();
-  std::vector<std::vector<double>> result;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    std::vector<Eigen::Index> others;
-    for (Eigen::Index j = 0; j < n; ++j)
-      if (j != i)
-        others.push_back(j);
-    const Eigen::Index m = n - 1;
-    Eigen::MatrixXd sub(m, m);
-    Eigen::VectorXd cross(m);
-    for (Eigen::Index a = 0; a < m; ++a) {
-      cross[a] = gram(i, others[static_cast<std::size_t>(a)]);
-      for (Eigen::Index b = 0; b < m; ++b)
-        sub(a, b) = gram(others[static_cast<std::size_t>(a)], others[static_cast<std::size_t>(b)]);
-    }
-    const Gram_modes modes = gram_modes(sub, most);
-    // products of (z_i - mean of the others) with (z_j - mean)
-    const Eigen::VectorXd to_mean = sub.rowwise().mean();
-    const double mean_mean = to_mean.mean();
-    const Eigen::VectorXd product = cross.array() - cross.mean() - to_mean.array() + mean_mean;
-    double rest = gram(i, i) - 2 * cross.mean() + mean_mean;
-    std::vector<double> distances{std::sqrt(std::max(0.0, rest))};
-    for (Eigen::Index k = 0; k < modes.values.size(); ++k) {
-      const double c = modes.vectors.col(k).dot(product);
-      rest -= c * c / modes.values[k];
-      distances.push_back(std::sqrt(std::max(0.0, rest)));
-    }
-    result.push_back(std::move(distances));
-  }
-  return result;
-}
 
 /// Directions in which trees differ most, at their mean.
 struct Modes_of_variation
 {
   Orl_coordinates mean;       ///< least squares
-  Eigen::MatrixXd directions; ///< one column per mode, of unit length
-  Eigen::VectorXd deviations; ///< standard deviation of each mode, largest first [L]
+  Eigen::MatrixXd directions; ///< tangent vectors at the mean, one column per mode, of unit length
+  Eigen::VectorXd deviations; ///< change of a tree by one standard deviation of each mode [L]
+  Eigen::VectorXd shares;     ///< of the variance, largest first [-]
   Eigen::MatrixXd scores;     ///< of each tree (row) for each mode, in standard deviations [-]
   Eigen::VectorXd center;     ///< mean of the tangent vectors; rounding if the mean is exact
-  double total_variance = 0;  ///< of all modes, also of those that were not asked for [L^2]
+  Mode_features features;
   std::vector<std::vector<double>>
-      left_out; ///< distance of each tree from the space of k modes of all others [L]
+      left_out; ///< distance of each tree from the space of k modes of all others [-]
 
   std::size_t size() const { return static_cast<std::size_t>(deviations.size()); }
   /// Share of the variance that the first `k` modes have. [-]
   double share(std::size_t k) const
   {
-    return total_variance > 0
-               ? deviations.head(static_cast<Eigen::Index>(k)).squaredNorm() / total_variance
-               : 1;
+    return size() > 0 ? shares.head(static_cast<Eigen::Index>(std::min(k, size()))).sum() : 1;
   }
-  /// Root of the mean square of the left-out distances for `k` modes of the others. [L]
+  /// Root of the mean square of the left-out distances for `k` modes of the others. [-]
   double left_out_error(std::size_t k) const
   {
     double sum = 0;
@@ -189,70 +70,245 @@ struct Modes_of_variation
   }
 };
 
-/// At most `most` modes; fewer if the trees do not have so many. The sign of a mode is such that its largest coordinate is
-/// positive.
+namespace internal {
+
+struct Principal_scores
+{
+  Eigen::MatrixXd vectors; ///< n x k, of unit length
+  Eigen::VectorXd shares;  ///< k, of the trace
+};
+
+/// Eigenvectors of a covariance of trees about their mean that belong to eigenvalues above rounding, largest first.
+inline Principal_scores principal_scores(const Eigen::MatrixXd& covariance)
+{
+  const Eigen::Index n = covariance.rows();
+  const Eigen::MatrixXd center =
+      Eigen::MatrixXd::Identity(n, n) - Eigen::MatrixXd::Constant(n, n, 1 / static_cast<double>(n));
+  const auto eigen = linear_algebra::symmetric_eigen<Eigen::Dynamic>(center * covariance * center);
+  Principal_scores result;
+  const double largest = n > 0 ? std::max(0.0, eigen.values[n - 1]) : 0;
+  Eigen::Index k = 0;
+  while (k < n - 1 && largest > 0 && eigen.values[n - 1 - k] > 1e-12 * largest)
+    ++k;
+  result.vectors = eigen.vectors.rightCols(k).rowwise().reverse();
+  result.shares = eigen.values.tail(k).reverse() / std::max(1e-300, eigen.values.sum());
+  return result;
+}
+
+/// `distance[k]`: of a tree from the space of the first k modes.
+struct Mode_fit
+{
+  Eigen::VectorXd scores;
+  std::vector<double> distance;
+};
+
+/// Weighted least squares over the blocks that the tree has, by modified Gram-Schmidt, so that k modes come before k + 1.
+inline Mode_fit fit_modes(const Tree_features& features,
+                          const Mode_features& modes,
+                          const Eigen::VectorXd& values,
+                          const std::vector<char>& has)
+{
+  Eigen::VectorXd root = Eigen::VectorXd::Zero(values.size());
+  double scale = 0; // expected square for no modes
+  for (std::size_t b = 0; b < features.number_of_blocks(); ++b)
+    if (has[b]) {
+      root.segment(features.first(b), features.size(b)).setConstant(std::sqrt(modes.weight[b]));
+      scale += modes.weight[b] * modes.variance[b];
+    }
+  Eigen::VectorXd rest = root.cwiseProduct(values - modes.mean);
+  const Eigen::Index k = modes.directions.cols();
+  Eigen::MatrixXd q = root.asDiagonal() * modes.directions, r = Eigen::MatrixXd::Zero(k, k);
+  Eigen::VectorXd c = Eigen::VectorXd::Zero(k);
+  Mode_fit result;
+  double apart = 0; // of trees without spread
+  if (!(scale > 0))
+    for (std::size_t b = 0; b < features.number_of_blocks(); ++b)
+      if (has[b] && (values - modes.mean).segment(features.first(b), features.size(b)).norm() >
+                        1e-9 * modes.mean.norm())
+        apart = std::numeric_limits<double>::infinity();
+  const auto add_distance = [&] {
+    result.distance.push_back(scale > 0 ? std::sqrt(rest.squaredNorm() / scale) : apart);
+  };
+  add_distance();
+  for (Eigen::Index j = 0; j < k; ++j) {
+    const double whole = q.col(j).norm();
+    for (int pass = 0; pass < 2; ++pass)
+      for (Eigen::Index i = 0; i < j; ++i) {
+        const double d = q.col(i).dot(q.col(j));
+        q.col(j) -= d * q.col(i);
+        r(i, j) += d;
+      }
+    r(j, j) = q.col(j).norm();
+    if (r(j, j) > 1e-8 * whole) { // else the tree does not tell it from the modes before
+      q.col(j) /= r(j, j);
+      for (int pass = 0; pass < 2; ++pass) {
+        const double d = q.col(j).dot(rest);
+        rest -= d * q.col(j);
+        c[j] += d;
+      }
+    } else {
+      q.col(j).setZero();
+      r(j, j) = 0;
+    }
+    add_distance();
+  }
+  result.scores = Eigen::VectorXd::Zero(k);
+  for (Eigen::Index j = k; j-- > 0;) {
+    double sum = c[j];
+    for (Eigen::Index i = j + 1; i < k; ++i)
+      sum -= r(j, i) * result.scores[i];
+    result.scores[j] = r(j, j) > 0 ? sum / r(j, j) : 0;
+  }
+  return result;
+}
+
+/// The part of `modes` that is seen in features, from deviations of trees and their scores.
+inline void set_features(const Tree_features& features,
+                         const Tree_covariance& covariance,
+                         const Eigen::MatrixXd& scores,
+                         Mode_features& modes)
+{
+  modes.mean = covariance.mean();
+  modes.directions =
+      covariance.deviations() * scores / std::max(1.0, static_cast<double>(scores.rows() - 1));
+  modes.weight.clear();
+  modes.variance.clear();
+  for (std::size_t b = 0; b < features.number_of_blocks(); ++b) {
+    modes.weight.push_back(covariance.weight(b));
+    modes.variance.push_back(covariance.variance(b));
+  }
+}
+
+} // namespace internal
+
+/*!
+  At most `most` modes; fewer if the trees do not differ in so many ways. The sign of a mode is such that its largest
+  coordinate is positive.
+
+  Scores are the principal components of the `Tree_covariance` of `Tree_features`: what trees show of the branches that
+  they have. A mode is the change of tangent vectors with its score, by least squares: lengths of branches that come and
+  go change with it, too. All modes together give all trees.
+*/
 template <class ConcurrencyTag>
 Modes_of_variation find_modes(const Orl_layout& layout,
                               const std::vector<const Orl_coordinates*>& trees,
                               const Orl_weights& weights,
+                              Orientation orientation,
                               const Orl_coordinates& mean,
-                              std::size_t most)
+                              std::size_t most,
+                              Mode_measure measure = Mode_measure::branches)
 {
   const Tangent_space tangent(layout, mean, weights);
+  const Tree_features features(layout, weights, orientation, mean, measure);
   const auto n = static_cast<Eigen::Index>(trees.size());
-  Eigen::MatrixXd z(tangent.dimension(), n);
+  Eigen::MatrixXd z(tangent.dimension(), n), values(features.dimension(), n);
+  std::vector<std::vector<char>> has(trees.size());
   pcs::internal::for_each_index<ConcurrencyTag>(
       trees.size(),
-      [&](std::size_t i) { z.col(static_cast<Eigen::Index>(i)) = tangent.log(*trees[i]); },
+      [&](std::size_t t) {
+        z.col(static_cast<Eigen::Index>(t)) = tangent.log(*trees[t]);
+        values.col(static_cast<Eigen::Index>(t)) = features(*trees[t], has[t]);
+      },
       1);
   Modes_of_variation result;
   result.mean = mean;
   result.center = z.rowwise().mean();
   z.colwise() -= result.center;
-  const Eigen::MatrixXd gram = z.transpose() * z;
   double size = 0;
   for (const double length : mean.length)
     size += length;
-  const Gram_modes modes = gram_modes(gram, most, std::pow(1e-9 * size, 2)); // equal trees
-  const double divisor = std::max(1.0, static_cast<double>(n - 1));
-  result.total_variance = gram.trace() / divisor;
-  result.directions.resize(tangent.dimension(), modes.values.size());
-  result.deviations = (modes.values / divisor).cwiseSqrt();
-  result.scores.resize(n, modes.values.size());
-  for (Eigen::Index k = 0; k < modes.values.size(); ++k) {
-    Eigen::VectorXd u = z * modes.vectors.col(k);
-    u.normalize();
+  const double least = 1e-9 * size; // of equal trees
+  const Tree_covariance covariance(features,
+                                   values,
+                                   has,
+                                   least,
+                                   Eigen::MatrixXd(),
+                                   ConcurrencyTag());
+  const internal::Principal_scores principal = internal::principal_scores(covariance.covariance());
+  const double divisor = std::sqrt(std::max(1.0, static_cast<double>(n - 1)));
+  Eigen::MatrixXd directions(tangent.dimension(), 0);
+  std::vector<double> deviations, shares;
+  result.scores.resize(n, 0);
+  for (Eigen::Index k = 0; k < principal.shares.size() && deviations.size() < most; ++k) {
+    Eigen::VectorXd score = principal.vectors.col(k) * divisor;
+    Eigen::VectorXd u = z * score / (divisor * divisor);
+    const double deviation = u.norm();
+    if (!(deviation > least))
+      continue;
+    u /= deviation;
     Eigen::Index largest = 0;
     u.cwiseAbs().maxCoeff(&largest);
-    if (u[largest] < 0)
+    if (u[largest] < 0) {
       u = -u;
-    result.directions.col(k) = u;
-    result.scores.col(k) = z.transpose() * u / result.deviations[k];
+      score = -score;
+    }
+    const auto i = static_cast<Eigen::Index>(deviations.size());
+    directions.conservativeResize(Eigen::NoChange, i + 1);
+    result.scores.conservativeResize(Eigen::NoChange, i + 1);
+    directions.col(i) = u;
+    result.scores.col(i) = score;
+    deviations.push_back(deviation);
+    shares.push_back(principal.shares[k]);
   }
-  if (n > 2)
-    result.left_out = left_out_distances(gram, most);
+  result.directions = std::move(directions);
+  result.deviations =
+      Eigen::Map<Eigen::VectorXd>(deviations.data(), static_cast<Eigen::Index>(deviations.size()));
+  result.shares =
+      Eigen::Map<Eigen::VectorXd>(shares.data(), static_cast<Eigen::Index>(shares.size()));
+  result.features.measure = measure;
+  internal::set_features(features, covariance, result.scores, result.features);
+  if (n > 2) {
+    result.left_out.resize(trees.size());
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        trees.size(),
+        [&](std::size_t t) {
+          std::vector<Eigen::Index> others;
+          std::vector<std::vector<char>> of_others;
+          for (std::size_t i = 0; i < trees.size(); ++i)
+            if (i != t) {
+              others.push_back(static_cast<Eigen::Index>(i));
+              of_others.push_back(has[i]);
+            }
+          Eigen::MatrixXd x(values.rows(), n - 1), start(n - 1, n - 1);
+          for (Eigen::Index i = 0; i < n - 1; ++i) {
+            x.col(i) = values.col(others[static_cast<std::size_t>(i)]);
+            for (Eigen::Index j = 0; j < n - 1; ++j)
+              start(i, j) = covariance.covariance()(others[static_cast<std::size_t>(i)],
+                                                    others[static_cast<std::size_t>(j)]);
+          }
+          const Tree_covariance rest(features, x, of_others, least, start, CGAL::Sequential_tag());
+          const internal::Principal_scores p = internal::principal_scores(rest.covariance());
+          const Eigen::Index k = std::min(p.vectors.cols(), static_cast<Eigen::Index>(most));
+          Mode_features modes;
+          internal::set_features(features,
+                                 rest,
+                                 p.vectors.leftCols(k) * std::sqrt(static_cast<double>(n - 2)),
+                                 modes);
+          result.left_out[t] =
+              internal::fit_modes(features, modes, values.col(static_cast<Eigen::Index>(t)), has[t])
+                  .distance;
+        },
+        1);
+  }
   return result;
 }
 
-/// Where a tree lies in the space of the modes.
-struct Mode_coordinates
-{
-  Eigen::VectorXd scores; ///< in standard deviations [-]
-  double distance = 0;    ///< from the space of the modes [L]
-};
-
+/// Scores that explain the branches of a tree best, by the first `most` modes.
 inline Mode_coordinates project_on_modes(const Orl_layout& layout,
                                          const Orl_weights& weights,
+                                         Orientation orientation,
                                          const Modes_of_variation& modes,
-                                         const Orl_coordinates& x)
+                                         const Orl_coordinates& x,
+                                         std::size_t most = none)
 {
-  const Tangent_space tangent(layout, modes.mean, weights);
-  const Eigen::VectorXd z = tangent.log(x) - modes.center;
-  const Eigen::VectorXd c = modes.directions.transpose() * z;
-  Mode_coordinates result;
-  result.distance = (z - modes.directions * c).norm();
-  result.scores = c.cwiseQuotient(modes.deviations);
-  return result;
+  const Tree_features features(layout, weights, orientation, modes.mean, modes.features.measure);
+  std::vector<char> has;
+  const Eigen::VectorXd values = features(x, has);
+  Mode_features first = modes.features;
+  if (most < modes.size())
+    first.directions.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(most));
+  internal::Mode_fit fit = internal::fit_modes(features, first, values, has);
+  return {std::move(fit.scores), fit.distance.back()};
 }
 
 /// The tree with given scores; missing ones are 0.
@@ -279,16 +335,13 @@ inline double outlier_score(const Modes_of_variation& modes, const Mode_coordina
 {
   const double inside =
       at.scores.size() > 0 ? at.scores.squaredNorm() / static_cast<double>(at.scores.size()) : 0;
+  if (at.distance <= 1e-9) // rounding
+    return std::sqrt(0.5 * inside);
   std::vector<double> usual;
   for (const auto& d : modes.left_out)
     usual.push_back(d[std::min(modes.size(), d.size() - 1)]);
   std::sort(usual.begin(), usual.end());
-  const double scale = usual.empty() ? std::sqrt(modes.total_variance) : usual[usual.size() / 2];
-  double size = 0;
-  for (const double length : modes.mean.length)
-    size += length;
-  if (at.distance <= 1e-9 * size) // rounding
-    return std::sqrt(0.5 * inside);
+  const double scale = usual.empty() ? 1 : usual[usual.size() / 2];
   const double outside = at.distance / scale; // infinite without spread
   return std::sqrt(0.5 * (inside + outside * outside));
 }
