@@ -146,8 +146,10 @@ inline Tree random_tree(unsigned seed, int children = 6, int orders = 3)
   return make_tree(random_branches(seed, children, orders));
 }
 
-/// Points spread evenly over the tubes of all edges that have a length.
-inline std::vector<Point> tube_points(const Tree& tree, std::size_t n, unsigned seed)
+/// `place(u, v, s, off)` at random shares `s` of edges, at `off` from their axes, evenly over the tubes of all edges that
+/// have a length.
+template <class Place>
+std::vector<Point> sample_tubes(const Tree& tree, std::size_t n, unsigned seed, const Place& place)
 {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(0, 1);
@@ -170,37 +172,39 @@ inline std::vector<Point> tube_points(const Tree& tree, std::size_t n, unsigned 
         ends.size() - 1,
         static_cast<std::size_t>(std::lower_bound(sum.begin(), sum.end(), x) - sum.begin()));
     const auto &a = tree[ends[k].first], &b = tree[ends[k].second];
-    const Vec3 from = to_eigen(a.point), axis = to_eigen(b.point) - from;
+    const Vec3 axis = to_eigen(b.point) - to_eigen(a.point);
     const Vec3 e1 = axis.unitOrthogonal(), e2 = axis.normalized().cross(e1);
     const double s = uniform(random), angle = 2 * CGAL_PI * uniform(random);
     const double r = (1 - s) * a.radius + s * b.radius;
-    result.push_back(to_cgal(from + s * axis + r * (std::cos(angle) * e1 + std::sin(angle) * e2)));
+    const Vec3 off = r * (std::cos(angle) * e1 + std::sin(angle) * e2);
+    result.push_back(to_cgal(place(ends[k].first, ends[k].second, s, off)));
   }
   return result;
 }
 
-/// The same where the surface is whole: where one edge goes on as another, both tubes end at
-/// the plane that halves the angle between them, so that the surface is whole on the outer side of bends.
+/// Every tube is as long as its edge.
+inline std::vector<Point> tube_points(const Tree& tree, std::size_t n, unsigned seed)
+{
+  return sample_tubes(tree, n, seed, [&](std::size_t u, std::size_t v, double s, const Vec3& off) {
+    const Vec3 from = to_eigen(tree[u].point), axis = to_eigen(tree[v].point) - from;
+    return Vec3(from + s * axis + off);
+  });
+}
+
+/// Where one edge goes on as another, both tubes end at the plane that halves the angle between them: the surface is
+/// whole on the outer side of bends, and overlaps on the inner side.
 inline std::vector<Point> whole_tube_points(const Tree& tree, std::size_t n, unsigned seed)
 {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> uniform(0, 1);
-  std::vector<double> sum;
-  std::vector<std::pair<std::size_t, std::size_t>> ends;
   std::vector<std::vector<Vec3>> into(num_vertices(tree)), out_of(num_vertices(tree));
-  double total = 0;
   for (const auto e : boost::make_iterator_range(edges(tree))) {
     const std::size_t u = source(e, tree), v = target(e, tree);
-    const double length = (to_eigen(tree[v].point) - to_eigen(tree[u].point)).norm();
-    if (length <= 0)
-      continue;
-    total += length * (tree[u].radius + tree[v].radius);
-    sum.push_back(total);
-    ends.emplace_back(u, v);
-    into[v].push_back((to_eigen(tree[v].point) - to_eigen(tree[u].point)) / length);
-    out_of[u].push_back(into[v].back());
+    const Vec3 axis = to_eigen(tree[v].point) - to_eigen(tree[u].point);
+    if (axis.norm() > 0) {
+      into[v].push_back(axis.normalized());
+      out_of[u].push_back(into[v].back());
+    }
   }
-  // how far the tube reaches beyond an end of its edge, at `off` from the axis; inner sides of bends overlap
+  // how far the tube reaches beyond an end of its edge, at `off` from the axis
   const auto reach = [&](std::size_t v, const Vec3& direction, const Vec3& off) {
     if (into[v].size() != 1 || out_of[v].size() != 1)
       return 0.0;
@@ -208,24 +212,13 @@ inline std::vector<Point> whole_tube_points(const Tree& tree, std::size_t n, uns
     const double up = normal.dot(direction);
     return up > 0.4 ? -normal.dot(off) / up : 0.0;
   };
-  std::vector<Point> result;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double x = (static_cast<double>(i) + uniform(random)) / static_cast<double>(n) * total;
-    const auto k = std::min<std::size_t>(
-        ends.size() - 1,
-        static_cast<std::size_t>(std::lower_bound(sum.begin(), sum.end(), x) - sum.begin()));
-    const auto &a = tree[ends[k].first], &b = tree[ends[k].second];
-    const Vec3 from = to_eigen(a.point), axis = to_eigen(b.point) - from;
-    const Vec3 e1 = axis.unitOrthogonal(), e2 = axis.normalized().cross(e1);
-    const double s = uniform(random), angle = 2 * CGAL_PI * uniform(random);
-    const double r = (1 - s) * a.radius + s * b.radius;
-    const Vec3 off = r * (std::cos(angle) * e1 + std::sin(angle) * e2);
+  return sample_tubes(tree, n, seed, [&](std::size_t u, std::size_t v, double s, const Vec3& off) {
+    const Vec3 from = to_eigen(tree[u].point), axis = to_eigen(tree[v].point) - from;
     const Vec3 direction = axis.normalized();
-    const double begin = std::min(0.0, reach(ends[k].first, direction, off));
-    const double end = std::max(0.0, reach(ends[k].second, direction, off)) + axis.norm();
-    result.push_back(to_cgal(from + (begin + s * (end - begin)) * direction + off));
-  }
-  return result;
+    const double begin = std::min(0.0, reach(u, direction, off));
+    const double end = std::max(0.0, reach(v, direction, off)) + axis.norm();
+    return Vec3(from + (begin + s * (end - begin)) * direction + off);
+  });
 }
 
 /// The tree turned and moved.
