@@ -62,6 +62,18 @@ BOOST_AUTO_TEST_CASE(all_edges_out_of_handles_are_found_in_order)
     BOOST_TEST((found[e].inside == all[e].inside && found[e].outside == all[e].outside));
 }
 
+BOOST_AUTO_TEST_CASE(edges_between_whole_blocks_are_found)
+{
+  const Cloud cloud;
+  const auto is_inside = [](std::size_t site) { return site / 256 % 3 == 0; };
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < cloud.graph.size(); ++i)
+    for (auto j = cloud.graph.begin(i); j != cloud.graph.end(i); ++j)
+      count += is_inside(i) && !is_inside(*j) ? 1 : 0;
+  BOOST_TEST(count > 100u);
+  BOOST_TEST(Border_finder(cloud.graph).find<Tag>(cloud.graph, is_inside).size() == count);
+}
+
 BOOST_AUTO_TEST_CASE(one_site_and_none_have_no_borders)
 {
   const pcs::neighborhood::Proximity_graph none, one{{0, 0}, {}};
