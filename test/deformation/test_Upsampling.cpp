@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // Blending the samples' maps: the plain formula in double precision, rigid motions, both kernels.
 
+#include <pcs/core/Similarity.h>
 #include <pcs/core/rotations.h>
 #include <pcs/deformation/Upsampling.h>
 #include <pcs/deformation/octree_samples.h>
@@ -72,7 +73,10 @@ struct Setup
   }
 
   template <class Tag>
-  void apply(const std::vector<Affine_map>& maps, Points& p, Points& n)
+  void apply(const std::vector<Affine_map>& maps,
+             Points& p,
+             Points& n,
+             const pcs::deformation::Upsampling::Fades& fades = {})
   {
     p.assign(points.size(), Vec3::Zero());
     n.assign(points.size(), Vec3::Zero());
@@ -82,7 +86,7 @@ struct Setup
         maps,
         {},
         all,
-        [](std::size_t, const auto&) {},
+        fades,
         [&](std::size_t i, const Vec3& position, const Vec3& normal, const Eigen::Matrix3d& g) {
           p[i] = position;
           n[i] = normal;
@@ -146,6 +150,53 @@ BOOST_AUTO_TEST_CASE(a_rigid_motion_is_exact)
   BOOST_TEST(normal_error < 1e-12);
 }
 
+BOOST_AUTO_TEST_CASE(points_around_handles_are_drawn_to_where_these_take_them)
+{
+  using namespace pcs::deformation;
+  Setup s(pcs_test::sphere(1003), 60, true);
+  const auto maps = s.random_maps(0.3, 7);
+  Points p, n;
+  s.apply<Any_tag>(maps, p, n);
+  const Points without = p, normals_without = n;
+  const std::vector<Eigen::Matrix3d> gradients_without = s.gradients;
+  std::vector<Handle_map> handles(2);
+  std::vector<pcs::Similarity> motions;
+  for (std::size_t h = 0; h < 2; ++h) {
+    motions.push_back(pcs::rotation(Vec3(1, double(h), 2), 0.4, Vec3(0.1, 0, 0)) *
+                      pcs::scaling(1.5, Vec3(0, 0, 0)));
+    Eigen::Map<Row_major>(handles[h].turn) = motions[h].rotation();
+    handles[h].map = affine(motions[h].scale() * motions[h].rotation(), motions[h].translation());
+  }
+  // The first handle draws the first half of every third block, the second one the point after.
+  const auto share = [](std::size_t i) { return i % 24 < 4 ? 0.25 * double(i % 24 + 1) : 0.0; };
+  std::vector<std::uint32_t> first(1, 0);
+  std::vector<Block_fade> entries;
+  for (std::size_t block = 0; block < s.upsampling.number_of_blocks(); ++block) {
+    if (block % 3 == 0) {
+      entries.push_back({0, {}});
+      for (std::size_t l = 0; l < 4; ++l)
+        entries.back().weight[l] = share(l);
+      entries.push_back({1, {0, 0, 0, 0, 0.5, 0, 0, 0}});
+    }
+    first.push_back(static_cast<std::uint32_t>(entries.size()));
+  }
+  s.apply<Any_tag>(maps, p, n, {first.data(), entries.data(), handles.data()});
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const std::size_t h = i % 24 == 4 ? 1 : 0;
+    const double w = h == 1 ? 0.5 : share(i);
+    const Vec3 position = without[i] + w * (motions[h](s.points[i]) - without[i]);
+    Vec3 normal =
+        normals_without[i] + w * (motions[h].rotation() * s.normals[i] - normals_without[i]);
+    normal *= s.normals[i].norm() / normal.norm();
+    const Eigen::Matrix3d linear = motions[h].scale() * motions[h].rotation();
+    BOOST_TEST((p[i] - position).norm() < 1e-14);
+    BOOST_TEST((n[i] - normal).norm() < 1e-13);
+    BOOST_TEST(
+        (s.gradients[i] - gradients_without[i] - w * (linear - gradients_without[i])).norm() <
+        1e-14);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(points_that_are_not_blended_are_passed_on)
 {
   Setup s(pcs_test::sphere(101), 20, false);
@@ -157,7 +208,7 @@ BOOST_AUTO_TEST_CASE(points_that_are_not_blended_are_passed_on)
       s.random_maps(1, 2),
       {},
       mask,
-      [](std::size_t, const auto&) {},
+      {},
       [&](std::size_t i, const Vec3&, const Vec3& normal, const Eigen::Matrix3d&) {
         ++written[i];
         BOOST_TEST((normal == Vec3::Zero()));
@@ -225,6 +276,17 @@ BOOST_AUTO_TEST_CASE(all_kernels_give_the_same_bits)
         rest.value[c][l] = pcs_test::uniform(random);
         normal.value[c][l] = pcs_test::uniform(random);
       }
+    std::vector<Handle_map> handles(3);
+    std::vector<Block_fade> fades;
+    for (Handle_map& handle : handles) {
+      handle.map = map();
+      std::copy_n(map().a, 9, handle.turn);
+    }
+    for (std::uint32_t h = 0; h < random() % 3; ++h) {
+      fades.push_back({h, {}});
+      for (auto& w : fades.back().weight)
+        w = random() % 2 ? pcs_test::uniform(random) : 0;
+    }
     const Block_input in{&base,
                          origin.data(),
                          differences.data(),
@@ -233,7 +295,10 @@ BOOST_AUTO_TEST_CASE(all_kernels_give_the_same_bits)
                          &rest,
                          &normal,
                          0.25,
-                         frame_origin.data()};
+                         frame_origin.data(),
+                         fades.data(),
+                         fades.data() + fades.size(),
+                         handles.data()};
     Block_output all{};
     internal::blend_block_default<Blend_outputs::gradients>(in, all);
     const auto check = [&](Blend_block gradients, Blend_block normals, Blend_block positions) {

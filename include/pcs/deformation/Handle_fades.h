@@ -9,6 +9,7 @@
 #include <pcs/deformation/Elastic_network.h>
 #include <pcs/deformation/Sampled_body.h>
 #include <pcs/deformation/Upsampling.h>
+#include <pcs/deformation/affine_maps.h>
 #include <pcs/deformation/blend_block.h>
 #include <pcs/deformation/border_fade.h>
 
@@ -63,52 +64,22 @@ public:
     }
   }
 
-  /// The present transformations of the handles, for the points of blocks.
-  void set_transforms(const std::vector<Similarity>& transforms, const Local_frame& frame)
+  /// For the blocks of the upsampling, at the present transformations; valid until the next call. None before `find()`.
+  Upsampling::Fades of_blocks(const std::vector<Similarity>& transforms)
   {
-    m_targets.resize(transforms.size());
+    if (m_of_blocks.empty() || transforms.empty())
+      return {};
+    m_maps.resize(transforms.size());
     for (std::size_t h = 0; h < transforms.size(); ++h) {
-      Target& target = m_targets[h];
-      target.turn = transforms[h].rotation();
-      target.linear = transforms[h].scale() * target.turn;
-      target.offset = frame.to_world(transforms[h].translation());
+      const Eigen::Matrix3d turn = transforms[h].rotation();
+      Eigen::Map<Row_major_matrix>(m_maps[h].turn) = turn;
+      Eigen::Map<Row_major_matrix>(m_maps[h].map.a) = transforms[h].scale() * turn;
+      Eigen::Map<Vec3>(m_maps[h].map.t) = transforms[h].translation();
     }
-    m_unit = frame.unit;
+    return {m_first.data(), m_of_blocks.data(), m_maps.data()};
   }
 
-  /// Whether a point of the block is drawn. Never, before `find()`.
-  bool touches(std::size_t block) const
-  {
-    return !m_of_blocks.empty() && m_first[block] != m_first[block + 1];
-  }
-
-  /// Draws the points of a block that the samples have moved, in the caller's coordinates, to where
-  /// `set_transforms()` takes them.
-  template <bool HasGradients>
-  void apply(std::size_t block, const Upsampling& upsampling, Block_output& out) const
-  {
-    const Lane_vectors& rest = upsampling.rest_of_block(block);
-    for (std::size_t k = m_first[block]; k < m_first[block + 1]; ++k) {
-      const Block_fade& f = m_of_blocks[k];
-      const Target& target = m_targets[static_cast<std::size_t>(f.handle)];
-      for (int c = 0; c < 3; ++c)
-        for (std::size_t l = 0; l < lanes; ++l) {
-          const double local = target.linear(c, 0) * rest.value[0][l] +
-                               target.linear(c, 1) * rest.value[1][l] +
-                               target.linear(c, 2) * rest.value[2][l];
-          out.position.value[c][l] +=
-              f.weight[l] * (local * m_unit + target.offset[c] - out.position.value[c][l]);
-        }
-      if (upsampling.has_normals())
-        draw_normals(f, target.turn, upsampling.normals_of_block(block), out.normal);
-      if constexpr (HasGradients)
-        for (int e = 0; e < 9; ++e)
-          for (std::size_t l = 0; l < lanes; ++l)
-            out.gradient[e][l] += f.weight[l] * (target.linear(e / 3, e % 3) - out.gradient[e][l]);
-    }
-  }
-
-  /// The same for one point near `site`, in local coordinates.
+  /// Draws one point near `site` that the samples have moved, in local coordinates.
   void apply(std::size_t site,
              const std::vector<Similarity>& transforms,
              const Vec3& rest,
@@ -133,58 +104,21 @@ public:
   }
 
 private:
-  /// Where a handle takes a point: `unit * linear * x + offset` in the caller's coordinates.
-  struct Target
-  {
-    Eigen::Matrix3d linear, turn;
-    Vec3 offset;
-  };
-  /// The share of one handle in the points of a block; zero for those it does not draw.
-  struct Block_fade
-  {
-    Node_constraint handle;
-    double weight[lanes];
-  };
-
   void add(const Border_fade& fade, std::size_t lane)
   {
     auto f = m_of_blocks.begin() + m_first.back();
-    while (f != m_of_blocks.end() && f->handle != fade.handle)
+    const auto handle = static_cast<std::uint32_t>(fade.handle);
+    while (f != m_of_blocks.end() && f->handle != handle)
       ++f;
     if (f == m_of_blocks.end())
-      f = m_of_blocks.insert(f, {fade.handle, {}});
+      f = m_of_blocks.insert(f, {handle, {}});
     f->weight[lane] = fade.weight;
-  }
-
-  static void draw_normals(const Block_fade& f,
-                           const Eigen::Matrix3d& turn,
-                           const Lane_vectors& rest,
-                           Lane_vectors& normal)
-  {
-    Lane_vectors mixed;
-    double squared[lanes] = {}, rest_squared[lanes] = {};
-    for (int c = 0; c < 3; ++c)
-      for (std::size_t l = 0; l < lanes; ++l) {
-        const double turned = turn(c, 0) * rest.value[0][l] + turn(c, 1) * rest.value[1][l] +
-                              turn(c, 2) * rest.value[2][l];
-        const double present = normal.value[c][l];
-        mixed.value[c][l] = present + f.weight[l] * (turned - present);
-        squared[l] += mixed.value[c][l] * mixed.value[c][l];
-        rest_squared[l] += rest.value[c][l] * rest.value[c][l];
-      }
-    for (std::size_t l = 0; l < lanes; ++l)
-      if (f.weight[l] > 0 && squared[l] > 0) {
-        const double scale = std::sqrt(rest_squared[l] / squared[l]);
-        for (int c = 0; c < 3; ++c)
-          normal.value[c][l] = scale * mixed.value[c][l];
-      }
   }
 
   std::vector<Border_fade> m_of_sites; ///< increasing by site
   std::vector<Block_fade> m_of_blocks; ///< the same by block
   std::vector<std::uint32_t> m_first;  ///< of each block in `m_of_blocks`, and the end
-  std::vector<Target> m_targets;       ///< of the handles
-  double m_unit = 1;                   ///< length of one unit of the points at rest [L]
+  std::vector<Handle_map> m_maps;      ///< of the handles
 };
 
 } // namespace deformation

@@ -282,18 +282,12 @@ public:
     const auto put_blended =
         [&](std::size_t place, const Vec3& p, const Vec3& normal, const Eigen::Matrix3d& gradient)
             PCS_LAMBDA_INLINE { write_point(body.input_of_place[place], p, normal, gradient); };
-    m_fades.set_transforms(m_local_transforms, body.frame);
-    const bool has_transforms = !m_local_transforms.empty();
-    const auto fade_block = [&](std::size_t block, Block_output& out) {
-      if (has_transforms && m_fades.touches(block))
-        m_fades.apply<HasGradients>(block, body.upsampling, out);
-    };
     if (body.is_sampled)
       m_body.upsampling.template apply<ConcurrencyTag, HasGradients>(
           m_maps,
           {body.frame.unit, body.frame.origin},
           m_is_blended,
-          fade_block,
+          m_fades.of_blocks(m_local_transforms),
           put_blended,
           put_other);
     else

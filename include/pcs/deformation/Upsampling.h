@@ -17,6 +17,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -100,41 +101,43 @@ public:
     Vec3 origin = Vec3::Zero();
   };
 
+  /// Which handles draw the points of a block: those from `entry[first[block]]` to `entry[first[block + 1]]`. None
+  /// draws any if `first` is null.
+  struct Fades
+  {
+    const std::uint32_t* first = nullptr;
+    const Block_fade* entry = nullptr;
+    const Handle_map* handles = nullptr;
+  };
+
   /*!
-    Calls `edit(block, out)` for blocks with a set bit, then `write(i, position, normal, gradient)` for the points whose bit is set in `is_blended[i / 8]`, and `other(i)`
+    Calls `write(i, position, normal, gradient)` for the points whose bit is set in `is_blended[i / 8]`, and `other(i)`
     for all others, in blocks side by side. `normal` is zero without normals, `gradient` only set if `HasGradients`.
     Blocks without a set bit cost nothing.
   */
-  template <class ConcurrencyTag, bool HasGradients, class Edit, class Write, class Other>
+  template <class ConcurrencyTag, bool HasGradients, class Write, class Other>
   void apply(const std::vector<Affine_map>& maps,
              const Output_frame& frame,
              const std::vector<std::uint8_t>& is_blended,
-             const Edit& edit,
+             const Fades& fades,
              const Write& write,
              const Other& other)
   {
     update_pairs<ConcurrencyTag>(maps);
+    const auto apply_to_all = [&](auto outputs) {
+      apply_blocks<ConcurrencyTag, decltype(outputs)::value>(maps,
+                                                             frame,
+                                                             is_blended,
+                                                             fades,
+                                                             write,
+                                                             other);
+    };
     if constexpr (HasGradients)
-      apply_blocks<ConcurrencyTag, Blend_outputs::gradients>(maps,
-                                                             frame,
-                                                             is_blended,
-                                                             edit,
-                                                             write,
-                                                             other);
+      apply_to_all(std::integral_constant<Blend_outputs, Blend_outputs::gradients>());
     else if (has_normals())
-      apply_blocks<ConcurrencyTag, Blend_outputs::normals>(maps,
-                                                           frame,
-                                                           is_blended,
-                                                           edit,
-                                                           write,
-                                                           other);
+      apply_to_all(std::integral_constant<Blend_outputs, Blend_outputs::normals>());
     else
-      apply_blocks<ConcurrencyTag, Blend_outputs::positions>(maps,
-                                                             frame,
-                                                             is_blended,
-                                                             edit,
-                                                             write,
-                                                             other);
+      apply_to_all(std::integral_constant<Blend_outputs, Blend_outputs::positions>());
   }
 
 private:
@@ -210,11 +213,11 @@ private:
     });
   }
 
-  template <class ConcurrencyTag, Blend_outputs Outputs, class Edit, class Write, class Other>
+  template <class ConcurrencyTag, Blend_outputs Outputs, class Write, class Other>
   void apply_blocks(const std::vector<Affine_map>& maps,
                     const Output_frame& frame,
                     const std::vector<std::uint8_t>& is_blended,
-                    const Edit& edit,
+                    const Fades& fades,
                     const Write& write,
                     const Other& other) const
   {
@@ -225,13 +228,24 @@ private:
         [&](std::size_t begin, std::size_t end) {
           Block_output out{};
           for (std::size_t block = begin; block < end; ++block) {
-            if (is_blended[block] != 0) {
-              blend(block_input(maps, frame, block), out);
-              edit(block, out);
-            }
+            prefetch(block + blocks_ahead);
+            if (is_blended[block] != 0)
+              blend(block_input(maps, frame, fades, block), out);
             write_block<Outputs>(block, is_blended[block], out, write, other);
           }
         });
+  }
+
+  /// Asks for what a later block reads: the processor foresees it only up to the next page of 4 KB.
+  PCS_ALWAYS_INLINE void prefetch(std::size_t block) const
+  {
+    if (block >= m_base.size())
+      return;
+    pcs::internal::prefetch(&m_rest[block], sizeof(Lane_vectors));
+    if (has_normals())
+      pcs::internal::prefetch(&m_normal[block], sizeof(Lane_vectors));
+    pcs::internal::prefetch(m_entry.data() + m_first[block],
+                            (m_first[block + 1] - m_first[block]) * sizeof(Block_entry));
   }
 
   template <Blend_outputs Outputs, class Write, class Other>
@@ -261,8 +275,10 @@ private:
 
   Block_input block_input(const std::vector<Affine_map>& maps,
                           const Output_frame& frame,
+                          const Fades& fades,
                           std::size_t block) const
   {
+    const bool has_fades = fades.first != nullptr;
     return {&maps[m_base[block]],
             m_sample_points[m_base[block]].data(),
             m_differences.data(),
@@ -271,8 +287,13 @@ private:
             &m_rest[block],
             has_normals() ? &m_normal[block] : nullptr,
             frame.unit,
-            frame.origin.data()};
+            frame.origin.data(),
+            has_fades ? fades.entry + fades.first[block] : nullptr,
+            has_fades ? fades.entry + fades.first[block + 1] : nullptr,
+            fades.handles};
   }
+
+  static constexpr std::size_t blocks_ahead = 6;
 
   std::size_t m_size = 0;
   std::vector<Vec3> m_sample_points;

@@ -59,6 +59,20 @@ struct Block_entry
   std::uint16_t weight[lanes];
 };
 
+/// Where a handle takes the points around it, and `turn`, row by row, their normals.
+struct Handle_map
+{
+  Affine_map map;
+  double turn[9];
+};
+
+/// How far the points of a block are drawn to one handle; zero for those that are not. No point is drawn to two.
+struct Block_fade
+{
+  std::uint32_t handle;
+  double weight[lanes];
+};
+
 struct Block_input
 {
   const Affine_map* base;
@@ -68,6 +82,8 @@ struct Block_input
   const Lane_vectors *rest, *normal;
   double frame_unit;          ///< positions are multiplied by it, then
   const double* frame_origin; ///< moved by this
+  const Block_fade *fade, *fade_end;
+  const Handle_map* handles;
 };
 
 /// The difference of `sample` to `base` around `origin`, formed in double precision.
@@ -89,6 +105,63 @@ map_difference(const Affine_map& base, const Affine_map& sample, const double* o
 
 namespace internal {
 
+/// Three coordinates of the points of one register, from `first` on.
+template <class Doubles>
+PCS_ALWAYS_INLINE void load_vectors(const Lane_vectors& from, std::size_t first, Doubles* v)
+{
+  pcs::internal::unroll<3>(
+      [&](auto c) PCS_LAMBDA_INLINE { pcs::internal::load(from.value[c] + first, v[c]); });
+}
+
+/// `image += row . v`, where the row is the same for all points.
+template <class Arithmetic, class Doubles>
+PCS_ALWAYS_INLINE void add_image(const double* row, const Doubles* v, Doubles& image)
+{
+  pcs::internal::unroll<3>([&](auto c) PCS_LAMBDA_INLINE {
+    Doubles factor;
+    pcs::internal::fill(row[c], factor);
+    Arithmetic::fma(factor, v[c], image);
+  });
+}
+
+template <class Arithmetic, class Doubles>
+PCS_ALWAYS_INLINE void squared_length(const Doubles* v, Doubles& result)
+{
+  result = v[0] * v[0];
+  Arithmetic::fma(v[1], v[1], result);
+  Arithmetic::fma(v[2], v[2], result);
+}
+
+/// The factor that gives `v` the length of which `squared` is the square; finite, and of no effect, where `v` is zero.
+template <class Arithmetic, class Doubles>
+PCS_ALWAYS_INLINE void scale_to_length(const Doubles& squared, const Doubles* v, Doubles& scale)
+{
+  Doubles present, product;
+  squared_length<Arithmetic>(v, present);
+  pcs::internal::fill(1e-290, product);
+  Arithmetic::fma(squared, present, product);
+  pcs::internal::reciprocal_root<Arithmetic>(product, scale);
+  scale = scale * squared;
+}
+
+/// `result = cofactor matrix of g, times v`.
+template <class Arithmetic, class Doubles>
+PCS_ALWAYS_INLINE void multiply_by_cofactors(const Doubles* g, const Doubles* v, Doubles* result)
+{
+  pcs::internal::unroll<3>([&](auto row) PCS_LAMBDA_INLINE {
+    constexpr std::size_t r = 3 * ((decltype(row)::value + 1) % 3);
+    constexpr std::size_t s = 3 * ((decltype(row)::value + 2) % 3);
+    Doubles cx = g[r + 1] * g[s + 2], cy = g[r + 2] * g[s], cz = g[r] * g[s + 1];
+    Arithmetic::subtract_product(g[r + 2], g[s + 1], cx);
+    Arithmetic::subtract_product(g[r], g[s + 2], cy);
+    Arithmetic::subtract_product(g[r + 1], g[s], cz);
+    Doubles& n = result[row];
+    n = cx * v[0];
+    Arithmetic::fma(cy, v[1], n);
+    Arithmetic::fma(cz, v[2], n);
+  });
+}
+
 /*!
   Equations (2.4) and (2.5) of the dissertation for one block. With `sum w = 1`,
 
@@ -97,12 +170,15 @@ namespace internal {
 
   for any base sample `b` of the block and its position `o`. `G` and `g` hold differences between neighbouring samples
   only, so that they may be blended in single precision and a rigid motion stays exact; the rest is in double
-  precision. Normals get the cofactor matrix of the blended map, and keep their length.
+  precision. Normals get the cofactor matrix of the blended map, and keep their length. Last, points around handles are
+  drawn towards these.
 */
 template <Blend_outputs Outputs, class Arithmetic>
 PCS_ALWAYS_INLINE void blend_block(const Block_input& in, Block_output& out)
 {
+  using pcs::internal::fill;
   using pcs::internal::load;
+  using pcs::internal::store;
   using pcs::internal::unroll;
   using Doubles = typename Arithmetic::Doubles;
   constexpr std::size_t width = sizeof(Doubles) / sizeof(double);
@@ -118,13 +194,9 @@ PCS_ALWAYS_INLINE void blend_block(const Block_input& in, Block_output& out)
         std::fma(a[3 * r], o[0], std::fma(a[3 * r + 1], o[1], std::fma(a[3 * r + 2], o[2], t[r])));
   unroll<lanes / width>([&](auto part) PCS_LAMBDA_INLINE {
     constexpr std::size_t first = width * decltype(part)::value;
-    Doubles x, y, z, g[12];
-    load(in.rest->value[0] + first, x);
-    load(in.rest->value[1] + first, y);
-    load(in.rest->value[2] + first, z);
-    x = x - o[0];
-    y = y - o[1];
-    z = z - o[2];
+    Doubles v[3], g[12], position[3];
+    load_vectors(*in.rest, first, v);
+    unroll<3>([&](auto c) PCS_LAMBDA_INLINE { v[c] = v[c] - o[c]; });
     unroll<12>([&](auto k) PCS_LAMBDA_INLINE {
       Arithmetic::template to_double<decltype(part)::value>(m.sum[k], g[k]);
       if constexpr (decltype(k)::value < 9)
@@ -132,53 +204,66 @@ PCS_ALWAYS_INLINE void blend_block(const Block_input& in, Block_output& out)
     });
     unroll<3>([&](auto row) PCS_LAMBDA_INLINE {
       constexpr std::size_t r = decltype(row)::value;
-      Doubles local = g[9 + r] + center[r];
-      Arithmetic::fma(g[3 * r + 2], z, local);
-      Arithmetic::fma(g[3 * r + 1], y, local);
-      Arithmetic::fma(g[3 * r], x, local);
-      Doubles unit, written;
-      pcs::internal::fill(in.frame_unit, unit);
-      pcs::internal::fill(in.frame_origin[r], written);
-      Arithmetic::fma(local, unit, written);
-      pcs::internal::store(written, out.position.value[r] + first);
+      position[r] = g[9 + r] + center[r];
+      Arithmetic::fma(g[3 * r + 2], v[2], position[r]);
+      Arithmetic::fma(g[3 * r + 1], v[1], position[r]);
+      Arithmetic::fma(g[3 * r], v[0], position[r]);
     });
-    if constexpr (Outputs != Blend_outputs::positions) {
-      if constexpr (Outputs == Blend_outputs::gradients) {
-        unroll<9>([&](auto k)
-                      PCS_LAMBDA_INLINE { pcs::internal::store(g[k], out.gradient[k] + first); });
-        if (!in.normal)
-          return;
-      }
-      load(in.normal->value[0] + first, x);
-      load(in.normal->value[1] + first, y);
-      load(in.normal->value[2] + first, z);
-      Doubles turned[3];
-      unroll<3>([&](auto row) PCS_LAMBDA_INLINE { // of the cofactor matrix
-        constexpr std::size_t r = 3 * ((decltype(row)::value + 1) % 3);
-        constexpr std::size_t s = 3 * ((decltype(row)::value + 2) % 3);
-        Doubles cx = -(g[r + 2] * g[s + 1]), cy = -(g[r] * g[s + 2]), cz = -(g[r + 1] * g[s]);
-        Arithmetic::fma(g[r + 1], g[s + 2], cx);
-        Arithmetic::fma(g[r + 2], g[s], cy);
-        Arithmetic::fma(g[r], g[s + 1], cz);
-        Doubles& n = turned[row];
-        n = cx * x;
-        Arithmetic::fma(cy, y, n);
-        Arithmetic::fma(cz, z, n);
-      });
-      // Length over new length; where a map crushes the surface to a line, the normal becomes zero.
-      Doubles squared = x * x, new_squared = turned[0] * turned[0], product, scale;
-      Arithmetic::fma(y, y, squared);
-      Arithmetic::fma(z, z, squared);
-      Arithmetic::fma(turned[1], turned[1], new_squared);
-      Arithmetic::fma(turned[2], turned[2], new_squared);
-      pcs::internal::fill(1e-290, product);
-      Arithmetic::fma(squared, new_squared, product);
-      pcs::internal::reciprocal_root<Arithmetic>(product, scale);
-      scale = scale * squared;
+    for (const Block_fade* f = in.fade; f != in.fade_end; ++f) {
+      const Affine_map& map = in.handles[f->handle].map;
+      Doubles weight;
+      load(f->weight + first, weight);
+      load_vectors(*in.rest, first, v);
       unroll<3>([&](auto r) PCS_LAMBDA_INLINE {
-        pcs::internal::store(Doubles(turned[r] * scale), out.normal.value[r] + first);
+        Doubles target;
+        fill(map.t[r], target);
+        add_image<Arithmetic>(map.a + 3 * r, v, target);
+        Arithmetic::fma(weight, Doubles(target - position[r]), position[r]);
       });
     }
+    unroll<3>([&](auto r) PCS_LAMBDA_INLINE {
+      Doubles unit, written;
+      fill(in.frame_unit, unit);
+      fill(in.frame_origin[r], written);
+      Arithmetic::fma(position[r], unit, written);
+      store(written, out.position.value[r] + first);
+    });
+    if constexpr (Outputs != Blend_outputs::positions) {
+      if (Outputs == Blend_outputs::normals || in.normal) {
+        Doubles turned[3], squared, scale;
+        load_vectors(*in.normal, first, v);
+        squared_length<Arithmetic>(v, squared);
+        multiply_by_cofactors<Arithmetic>(g, v, turned);
+        scale_to_length<Arithmetic>(squared, turned, scale);
+        unroll<3>([&](auto r) PCS_LAMBDA_INLINE { turned[r] = turned[r] * scale; });
+        if (in.fade != in.fade_end) {
+          for (const Block_fade* f = in.fade; f != in.fade_end; ++f) {
+            Doubles weight, rest_weight;
+            load(f->weight + first, weight);
+            rest_weight = 1.0 - weight;
+            unroll<3>([&](auto r) PCS_LAMBDA_INLINE {
+              Doubles target{};
+              add_image<Arithmetic>(in.handles[f->handle].turn + 3 * r, v, target);
+              turned[r] = turned[r] * rest_weight;
+              Arithmetic::fma(weight, target, turned[r]);
+            });
+          }
+          scale_to_length<Arithmetic>(squared, turned, scale);
+          unroll<3>([&](auto r) PCS_LAMBDA_INLINE { turned[r] = turned[r] * scale; });
+        }
+        unroll<3>([&](auto r) PCS_LAMBDA_INLINE { store(turned[r], out.normal.value[r] + first); });
+      }
+    }
+    if constexpr (Outputs == Blend_outputs::gradients)
+      unroll<9>([&](auto k) PCS_LAMBDA_INLINE {
+        for (const Block_fade* f = in.fade; f != in.fade_end; ++f) {
+          Doubles weight, target;
+          load(f->weight + first, weight);
+          fill(in.handles[f->handle].map.a[k], target);
+          Arithmetic::fma(weight, Doubles(target - g[k]), g[k]);
+        }
+        store(g[k], out.gradient[k] + first);
+      });
   });
 }
 

@@ -53,17 +53,11 @@ PCS_ALWAYS_INLINE void to_double(const Float8& from, Double4& to)
   to = __builtin_convertvector(part, Double4);
 }
 
-PCS_ALWAYS_INLINE void fill(double value, Double4& to)
+/// All lanes alike. A list of eight equal values would be put together one by one.
+template <class T, class Lanes>
+PCS_ALWAYS_INLINE void fill(T value, Lanes& to)
 {
-  to = Double4{value, value, value, value};
-}
-PCS_ALWAYS_INLINE void fill(double value, Double8& to)
-{
-  to = Double8{value, value, value, value, value, value, value, value};
-}
-PCS_ALWAYS_INLINE void fill(float value, Float8& to)
-{
-  to = Float8{value, value, value, value, value, value, value, value};
+  to = value - Lanes{};
 }
 
 #else
@@ -166,6 +160,18 @@ PCS_ALWAYS_INLINE void store(const Lanes& from, T* to)
   std::memcpy(to, &from, sizeof(Lanes));
 }
 
+/// Asks for `bytes` of memory that are read soon.
+PCS_ALWAYS_INLINE void prefetch([[maybe_unused]] const void* memory,
+                                [[maybe_unused]] std::size_t bytes)
+{
+#if defined(__GNUC__) || defined(__clang__)
+  constexpr std::size_t cache_line = 64;
+  const char* begin = static_cast<const char*>(memory);
+  for (std::size_t b = 0; b < bytes; b += cache_line)
+    __builtin_prefetch(begin + b);
+#endif
+}
+
 /// Calls `f(std::integral_constant<std::size_t, I>)` for I = 0 ... N - 1, unrolled: arrays of lanes that are
 /// indexed by constants live in registers.
 template <class F, std::size_t... I>
@@ -181,17 +187,29 @@ PCS_ALWAYS_INLINE void unroll(const F& f)
 
 /*!
   How a kernel computes, on the doubles that fit a register: `fma` is `x * y + z` with one rounding, and nothing else is
-  fused, so that all kernels give the same bits. `to_float` reads eight weights, `to_double` widens a part of them.
+  fused, so that all kernels give the same bits; `subtract_product` is `z - x * y`. `to_float` reads eight weights,
+  `to_double` widens a part of them.
 */
 struct Portable_arithmetic
 {
   using Doubles = Double4;
+
+  static PCS_ALWAYS_INLINE void subtract_product(double x, double y, double& z)
+  {
+    z = std::fma(-x, y, z);
+  }
 
   template <class Lanes>
   static PCS_ALWAYS_INLINE void fma(const Lanes& x, const Lanes& y, Lanes& z)
   {
     for (std::size_t i = 0; i < sizeof(Lanes) / sizeof(x[0]); ++i)
       z[i] = std::fma(x[i], y[i], z[i]);
+  }
+  template <class Lanes>
+  static PCS_ALWAYS_INLINE void subtract_product(const Lanes& x, const Lanes& y, Lanes& z)
+  {
+    for (std::size_t i = 0; i < sizeof(Lanes) / sizeof(x[0]); ++i)
+      z[i] = std::fma(-x[i], y[i], z[i]);
   }
   static PCS_ALWAYS_INLINE void to_float(const std::uint16_t* from, Float8& to)
   {
@@ -219,6 +237,10 @@ struct Avx2_arithmetic
 {
   using Doubles = Double4;
 
+  static PCS_ALWAYS_INLINE void subtract_product(double x, double y, double& z)
+  {
+    z = std::fma(-x, y, z);
+  }
   static PCS_ALWAYS_INLINE void fma(const Float8& x, const Float8& y, Float8& z)
   {
     __asm__("vfmadd231ps %2, %1, %0" : "+x"(z) : "x"(x), "x"(y));
@@ -226,6 +248,10 @@ struct Avx2_arithmetic
   static PCS_ALWAYS_INLINE void fma(const Double4& x, const Double4& y, Double4& z)
   {
     __asm__("vfmadd231pd %2, %1, %0" : "+x"(z) : "x"(x), "x"(y));
+  }
+  static PCS_ALWAYS_INLINE void subtract_product(const Double4& x, const Double4& y, Double4& z)
+  {
+    __asm__("vfnmadd231pd %2, %1, %0" : "+x"(z) : "x"(x), "x"(y));
   }
   static PCS_ALWAYS_INLINE void to_float(const std::uint16_t* from, Float8& to)
   {
@@ -246,6 +272,10 @@ struct Avx512_arithmetic
 {
   using Doubles = Double8;
 
+  static PCS_ALWAYS_INLINE void subtract_product(double x, double y, double& z)
+  {
+    z = std::fma(-x, y, z);
+  }
   static PCS_ALWAYS_INLINE void fma(const Float16& x, const Float16& y, Float16& z)
   {
     __asm__("vfmadd231ps %2, %1, %0" : "+v"(z) : "v"(x), "v"(y));
@@ -253,6 +283,10 @@ struct Avx512_arithmetic
   static PCS_ALWAYS_INLINE void fma(const Double8& x, const Double8& y, Double8& z)
   {
     __asm__("vfmadd231pd %2, %1, %0" : "+v"(z) : "v"(x), "v"(y));
+  }
+  static PCS_ALWAYS_INLINE void subtract_product(const Double8& x, const Double8& y, Double8& z)
+  {
+    __asm__("vfnmadd231pd %2, %1, %0" : "+v"(z) : "v"(x), "v"(y));
   }
   template <std::size_t Part>
   static PCS_ALWAYS_INLINE void to_double(const Float8& from, Double8& to)
@@ -317,8 +351,10 @@ struct Lane_sums<Avx512_arithmetic, N>
 #endif
 
 /*!
-  `1 / sqrt(x)` to one or two units in the last place, by Newton's method from a guess on the bits of `x`: neither a
-  division nor a root, which take longer than all else in a kernel. `x` must be positive.
+  `1 / sqrt(x)` to one or two units in the last place, from a guess on the bits of `x`: neither a division nor a root,
+  which take longer than all else in a kernel. `x` must be positive. With `d = 1 - x y^2`, the series
+  `1 / sqrt(x) = y (1 + d / 2 + 3 d^2 / 8 + 5 d^3 / 16 + ...)` is cut after `d^3`, then once more after `d^2`: from an
+  error of 3.5 % to 7e-6 and to 1e-15, in a shorter chain than four steps of Newton.
 */
 template <class Arithmetic>
 PCS_ALWAYS_INLINE void reciprocal_root(const typename Arithmetic::Doubles& x,
@@ -327,15 +363,23 @@ PCS_ALWAYS_INLINE void reciprocal_root(const typename Arithmetic::Doubles& x,
   using Doubles = typename Arithmetic::Doubles;
   // M. Robertson, "A Brief History of InvSqrt" (2012): the constant for doubles.
   guess_reciprocal_root(x, y);
-  Doubles half;
-  fill(-0.5, half);
-  for (int step = 0; step < 4; ++step) {
-    const Doubles squared = y * y;
-    Doubles factor;
-    fill(1.5, factor);
-    Arithmetic::fma(half * x, squared, factor);
-    y = y * factor;
-  }
+  Doubles half, cubic;
+  fill(0.5, half);
+  fill(0.375, cubic);
+  unroll<2>([&](auto step) PCS_LAMBDA_INLINE {
+    Doubles d, factor = cubic;
+    fill(1.0, d);
+    Arithmetic::subtract_product(x, Doubles(y * y), d);
+    if constexpr (decltype(step)::value == 0) {
+      Doubles quartic;
+      fill(0.3125, quartic);
+      Arithmetic::fma(quartic, d, factor);
+    }
+    const Doubles correction = y * d;
+    Doubles sum = half;
+    Arithmetic::fma(factor, d, sum);
+    Arithmetic::fma(sum, correction, y);
+  });
 }
 
 } // namespace internal
