@@ -8,6 +8,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include <Eigen/Cholesky>
+#include <Eigen/SparseCholesky>
 
 namespace {
 
@@ -63,7 +64,7 @@ BOOST_AUTO_TEST_SUITE(Sparse_cholesky)
 
 BOOST_AUTO_TEST_CASE(solutions_agree_with_the_dense_factor_for_1_3_and_4_right_hand_sides)
 {
-  for (const Eigen::Index n : {1, 2, 5, 60, 300}) {
+  for (const Eigen::Index n : {1, 2, 5, 60, 300, 1000}) {
     const auto a = random_spd(n, static_cast<unsigned>(n));
     Cholesky factor;
     BOOST_REQUIRE(factor.factorize(lower(a)));
@@ -128,19 +129,16 @@ BOOST_AUTO_TEST_CASE(the_factor_works_again_after_a_refusal)
   BOOST_TEST(largest_error<3>(factor, a) < 1e-11);
 }
 
-BOOST_AUTO_TEST_CASE(a_kept_pattern_gives_the_factor_of_the_new_values)
+BOOST_AUTO_TEST_CASE(a_shared_pattern_gives_the_factor_of_the_new_values)
 {
   const auto a = random_spd(50, 3);
   Eigen::MatrixXd b = 2 * a;
   b.diagonal().array() += 1;
-  Cholesky factor;
+  Cholesky factor, other;
   BOOST_REQUIRE(factor.factorize(lower(a)));
-  BOOST_REQUIRE(factor.factorize(lower(b), true));
-  BOOST_TEST(largest_error<3>(factor, b) < 1e-11);
-  // another size cannot keep it
-  const auto c = random_spd(20, 4);
-  BOOST_REQUIRE(factor.factorize(lower(c), true));
-  BOOST_TEST(largest_error<3>(factor, c) < 1e-11);
+  BOOST_REQUIRE(other.factorize(lower(b), factor.pattern()));
+  BOOST_TEST(largest_error<3>(factor, a) < 1e-11);
+  BOOST_TEST(largest_error<3>(other, b) < 1e-11);
 }
 
 BOOST_AUTO_TEST_CASE(a_factor_can_be_moved)
@@ -150,6 +148,94 @@ BOOST_AUTO_TEST_CASE(a_factor_can_be_moved)
   BOOST_REQUIRE(factor.factorize(lower(a)));
   const Cholesky moved = std::move(factor);
   BOOST_TEST(largest_error<3>(moved, a) < 1e-11);
+}
+
+BOOST_AUTO_TEST_CASE(the_factor_of_a_grid_has_few_zeros_and_keeps_columns_together)
+{
+  // Laplacian of a 40 x 40 grid, one corner held: supernodes of several columns, fill between distant ones.
+  const Eigen::Index side = 40, n = side * side;
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);
+  const auto link = [&](Eigen::Index i, Eigen::Index j) {
+    a(i, i) += 1;
+    a(j, j) += 1;
+    a(i, j) = a(j, i) = -1;
+  };
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (i % side + 1 < side)
+      link(i, i + 1);
+    if (i + side < n)
+      link(i, i + side);
+  }
+  a(0, 0) += 1;
+  Cholesky factor;
+  BOOST_REQUIRE(factor.factorize(lower(a)));
+  BOOST_TEST(largest_error<3>(factor, a) < 1e-8);
+  Eigen::SimplicialLDLT<Cholesky::Matrix> simplicial(lower(a));
+  const auto exact = static_cast<std::size_t>(simplicial.matrixL().nestedExpression().nonZeros());
+  BOOST_TEST(factor.number_of_nonzeros() >= exact);
+  BOOST_TEST(double(factor.number_of_nonzeros()) < 1.3 * double(exact));
+  BOOST_TEST(factor.pattern()->number_of_supernodes() < std::size_t(n) / 2);
+}
+
+BOOST_AUTO_TEST_CASE(what_stands_above_the_diagonal_is_ignored)
+{
+  const auto a = random_spd(60, 8);
+  Cholesky factor;
+  BOOST_REQUIRE(factor.factorize(Cholesky::Matrix(a.sparseView())));
+  BOOST_TEST(largest_error<3>(factor, a) < 1e-11);
+}
+
+BOOST_AUTO_TEST_CASE(all_kernels_give_the_same_bits)
+{
+  using namespace pcs::linear_algebra;
+  std::mt19937 random(9);
+  for (std::size_t width = 1; width <= 23; ++width)
+    for (const std::size_t below : {0, 1, 3, 8, 21, 40}) {
+      const std::size_t height = width + below;
+      const Eigen::MatrixXd spd = random_spd(static_cast<Eigen::Index>(height), unsigned(width));
+      const Eigen::MatrixXd panel = spd.leftCols(static_cast<Eigen::Index>(width));
+      const auto run = [&](Factorize_front kernel, Eigen::MatrixXd& p, Eigen::MatrixXd& rest) {
+        p = panel;
+        rest = spd.bottomRightCorner(static_cast<Eigen::Index>(below),
+                                     static_cast<Eigen::Index>(below));
+        Eigen::MatrixXd scaled = p;
+        Eigen::VectorXd diagonal = spd.diagonal();
+        const bool is_regular = kernel({p.data(), height},
+                                       {scaled.data(), height},
+                                       height,
+                                       width,
+                                       {rest.data(), below},
+                                       {diagonal.data(), diagonal.data() + width});
+        rest.diagonal() = diagonal.tail(rest.rows());
+        return is_regular;
+      };
+      Eigen::MatrixXd p, rest, q, other;
+      BOOST_REQUIRE(run(internal::factorize_front_default, p, rest));
+      // A Schur complement, up to rounding.
+      const Eigen::MatrixXd l = p.bottomRows(static_cast<Eigen::Index>(below));
+      const Eigen::MatrixXd expected = spd.bottomRightCorner(rest.rows(), rest.cols()) -
+                                       l * p.diagonal().asDiagonal() * l.transpose();
+      const Eigen::MatrixXd difference = (rest - expected).triangularView<Eigen::Lower>();
+      BOOST_TEST(difference.norm() < 1e-12);
+      const auto same =
+          [&](Factorize_front kernel, const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+            BOOST_REQUIRE(run(kernel, q, other));
+            const Eigen::MatrixXd lower_q = q.triangularView<Eigen::Lower>();
+            const Eigen::MatrixXd lower_a = a.triangularView<Eigen::Lower>();
+            const Eigen::MatrixXd lower_other = other.triangularView<Eigen::Lower>();
+            const Eigen::MatrixXd lower_b = b.triangularView<Eigen::Lower>();
+            BOOST_TEST((lower_q == lower_a && lower_other == lower_b));
+          };
+      same(internal::factorize_front_default, p, rest);
+#ifdef PCS_HAS_AVX_ASSEMBLY
+      if (pcs::internal::has_avx2()) {
+        Eigen::MatrixXd fused, fused_rest;
+        BOOST_REQUIRE(run(internal::factorize_front_avx2, fused, fused_rest));
+        if (pcs::internal::has_avx512())
+          same(internal::factorize_front_avx512, fused, fused_rest);
+      }
+#endif
+    }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

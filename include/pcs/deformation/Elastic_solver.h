@@ -20,6 +20,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -108,13 +109,19 @@ public:
     const Weighted_graph* surface = &m_network->surface;
     const bool has_links = !m_network->links.neighbor.empty();
     bool field_ok = false, smoothing_ok = false, position_ok = true;
+    const Eigen::SparseMatrix<double> of_field = assemble({surface}, soft);
+    std::shared_ptr<const linear_algebra::Cholesky_pattern> pattern;
     pcs::internal::invoke_both<ConcurrencyTag>(
+        [&] { pattern = std::make_shared<const linear_algebra::Cholesky_pattern>(of_field); },
         [&] {
-          field_ok = m_field_factor.factorize(assemble({surface}, soft));
           if (has_links)
             position_ok = m_link_factor.factorize(assemble({surface, &m_network->links}, soft));
-        },
-        [&] { smoothing_ok = m_smoothing_factor.factorize(assemble({surface}, smoothing)); });
+        });
+    pcs::internal::invoke_both<ConcurrencyTag>(
+        [&] { field_ok = m_field_factor.factorize(of_field, pattern); },
+        [&] {
+          smoothing_ok = m_smoothing_factor.factorize(assemble({surface}, smoothing), pattern);
+        });
     m_position = network.rest;
     m_frame.assign(network.size(), Eigen::Matrix3d::Identity());
     return field_ok && smoothing_ok && position_ok;

@@ -1,0 +1,392 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Where a sparse Cholesky factor has entries: elimination order and tree, supernodes, rows of each.
+
+#ifndef PCS_LINEAR_ALGEBRA_CHOLESKY_PATTERN_H
+#define PCS_LINEAR_ALGEBRA_CHOLESKY_PATTERN_H
+
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseCore>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace linear_algebra {
+
+/*!
+  The symbolic half of a Cholesky factorisation. Columns of the factor with (almost) the same rows are kept side by
+  side as one dense *panel*, a supernode: its own `w` rows first, then `m` rows below, which lie in its ancestors.
+  Panels are stored column by column, `(w + m) w` values each.
+
+  Order: minimum degree (Amestoy, Davis, Duff 1996), then postorder of the elimination tree (Liu 1990). Column counts:
+  Gilbert, Ng, Peyton 1994. Linear in the entries of the matrix but for the order, and in the rows of the supernodes.
+*/
+class Cholesky_pattern
+{
+public:
+  using Matrix = Eigen::SparseMatrix<double>;
+  static constexpr std::uint32_t none = ~std::uint32_t(0);
+
+  std::vector<std::uint32_t>
+      new_of_old;                   ///< place of each row of the matrix in the order of elimination
+  std::vector<std::uint32_t> first; ///< column of each supernode, and the end
+  std::vector<std::uint32_t> parent;    ///< supernode, or `none`
+  std::vector<std::size_t> first_row;   ///< of each supernode in `row`, and the end
+  std::vector<std::uint32_t> row;       ///< rows below the supernodes, increasing
+  std::vector<std::uint32_t> in_parent; ///< the place of each of these among the rows of the parent
+  std::vector<std::size_t> first_value; ///< of each panel, and the end
+  std::vector<std::size_t> place; ///< in the panels, of every entry of the matrix's lower triangle
+  std::size_t stack_size = 0;     ///< values that wait for their parent, at most
+  std::size_t largest_number_of_rows_below = 0;
+  std::size_t largest_panel = 0; ///< values
+
+  Cholesky_pattern() = default;
+
+  /// \param a square; what stands above its diagonal is ignored
+  explicit Cholesky_pattern(const Matrix& a)
+  {
+    new_of_old = minimum_degree_order(a);
+    std::vector<std::uint32_t> tree = elimination_tree(adjacency(a)), count;
+    renumber(postorder(tree, {}), tree, count); // which the counts need
+    count = column_counts(adjacency(a), tree);
+    renumber(postorder(tree, count), tree, count);
+    find_supernodes(tree, count);
+    const Adjacency graph = adjacency(a);
+    find_rows(graph);
+    find_places(a);
+  }
+
+  std::size_t size() const { return new_of_old.size(); }
+  std::size_t number_of_supernodes() const { return parent.size(); }
+  std::size_t width(std::size_t s) const { return first[s + 1] - first[s]; }
+  std::size_t number_of_rows_below(std::size_t s) const { return first_row[s + 1] - first_row[s]; }
+  std::size_t number_of_values() const { return first_value.empty() ? 0 : first_value.back(); }
+
+private:
+  /// Both triangles without the diagonal, in the present order.
+  struct Adjacency
+  {
+    std::vector<std::size_t> first;
+    std::vector<std::uint32_t> neighbor;
+  };
+
+  static std::vector<std::uint32_t> minimum_degree_order(const Matrix& a)
+  {
+    Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> old_of_new;
+    Eigen::AMDOrdering<int>()(a.selfadjointView<Eigen::Lower>(), old_of_new);
+    std::vector<std::uint32_t> result(static_cast<std::size_t>(a.rows()));
+    for (std::size_t i = 0; i < result.size(); ++i)
+      result[static_cast<std::size_t>(old_of_new.indices()[static_cast<Eigen::Index>(i)])] =
+          static_cast<std::uint32_t>(i);
+    return result;
+  }
+
+  template <class F>
+  void for_each_entry_below_diagonal(const Matrix& a, const F& f) const
+  {
+    for (Eigen::Index column = 0; column < a.outerSize(); ++column)
+      for (Matrix::InnerIterator entry(a, column); entry; ++entry)
+        if (entry.row() > column)
+          f(new_of_old[static_cast<std::size_t>(entry.row())],
+            new_of_old[static_cast<std::size_t>(column)]);
+  }
+
+  Adjacency adjacency(const Matrix& a) const
+  {
+    Adjacency g;
+    g.first.assign(size() + 1, 0);
+    for_each_entry_below_diagonal(a, [&](std::uint32_t i, std::uint32_t j) {
+      ++g.first[i + 1];
+      ++g.first[j + 1];
+    });
+    std::partial_sum(g.first.begin(), g.first.end(), g.first.begin());
+    g.neighbor.resize(g.first.back());
+    std::vector<std::size_t> at(g.first.begin(), g.first.end() - 1);
+    for_each_entry_below_diagonal(a, [&](std::uint32_t i, std::uint32_t j) {
+      g.neighbor[at[i]++] = j;
+      g.neighbor[at[j]++] = i;
+    });
+    return g;
+  }
+
+  /// Applies an order to all that is known of the columns. The counts may be missing.
+  void renumber(const std::vector<std::uint32_t>& order,
+                std::vector<std::uint32_t>& tree,
+                std::vector<std::uint32_t>& count)
+  {
+    for (auto& i : new_of_old)
+      i = order[i];
+    std::vector<std::uint32_t> new_tree(tree.size(), none), new_count(count.size());
+    for (std::size_t i = 0; i < tree.size(); ++i) {
+      if (tree[i] != none)
+        new_tree[order[i]] = order[tree[i]];
+      if (!count.empty())
+        new_count[order[i]] = count[i];
+    }
+    tree.swap(new_tree);
+    count.swap(new_count);
+  }
+
+  /// The parent of each column: the first row below its diagonal in the factor.
+  static std::vector<std::uint32_t> elimination_tree(const Adjacency& g)
+  {
+    const std::size_t n = g.first.size() - 1;
+    std::vector<std::uint32_t> tree(n, none), ancestor(n, none);
+    for (std::uint32_t i = 0; i < n; ++i)
+      for (std::size_t e = g.first[i]; e < g.first[i + 1]; ++e)
+        for (std::uint32_t k = g.neighbor[e]; k < i;) {
+          const std::uint32_t next = ancestor[k];
+          ancestor[k] = i;
+          if (next == none) {
+            tree[k] = i;
+            break;
+          }
+          k = next;
+        }
+    return tree;
+  }
+
+  /// New number of each column: children before parents, subtrees together; the child with the largest `count` last.
+  static std::vector<std::uint32_t> postorder(const std::vector<std::uint32_t>& tree,
+                                              const std::vector<std::uint32_t>& count)
+  {
+    const std::size_t n = tree.size();
+    std::vector<std::uint32_t> child(n, none), sibling(n, none), order(n);
+    const auto put_first = [&](std::size_t j) {
+      if (tree[j] != none) {
+        sibling[j] = child[tree[j]];
+        child[tree[j]] = static_cast<std::uint32_t>(j);
+      }
+    };
+    for (std::size_t j = n; j-- > 0;)
+      put_first(j);
+    if (!count.empty())
+      for (std::size_t p = 0; p < n; ++p) { // move the largest child to the end
+        std::uint32_t largest = none, before_largest = none, last = none;
+        for (std::uint32_t c = child[p], before = none; c != none; before = c, c = sibling[c]) {
+          if (largest == none || count[c] >= count[largest]) {
+            largest = c;
+            before_largest = before;
+          }
+          last = c;
+        }
+        if (largest == last)
+          continue;
+        (before_largest == none ? child[p] : sibling[before_largest]) = sibling[largest];
+        sibling[last] = largest;
+        sibling[largest] = none;
+      }
+    std::uint32_t next = 0;
+    std::vector<std::uint32_t> stack;
+    for (std::uint32_t root = 0; root < n; ++root) {
+      if (tree[root] != none)
+        continue;
+      stack.push_back(root);
+      while (!stack.empty()) {
+        const std::uint32_t j = stack.back();
+        if (child[j] == none) {
+          order[j] = next++;
+          stack.pop_back();
+        } else {
+          const std::uint32_t c = child[j];
+          child[j] = sibling[c];
+          stack.push_back(c);
+        }
+      }
+    }
+    return order;
+  }
+
+  /// Entries of each column of the factor, the diagonal included. The columns are in postorder.
+  static std::vector<std::uint32_t> column_counts(const Adjacency& g,
+                                                  const std::vector<std::uint32_t>& tree)
+  {
+    const std::size_t n = tree.size();
+    std::vector<std::uint32_t> descendant(n), ancestor(n), largest_first(n, none),
+        previous_leaf(n, none);
+    std::vector<std::int64_t> count(n, 1);
+    std::iota(descendant.begin(), descendant.end(), 0u); // the first one
+    std::iota(ancestor.begin(), ancestor.end(), 0u);
+    for (std::size_t j = 0; j < n; ++j)
+      if (tree[j] != none) {
+        descendant[tree[j]] = std::min(descendant[tree[j]], descendant[j]);
+        count[tree[j]] = 0;
+      }
+    for (std::uint32_t j = 0; j < n; ++j) {
+      if (tree[j] != none)
+        --count[tree[j]];
+      for (std::size_t e = g.first[j]; e < g.first[j + 1]; ++e) {
+        const std::uint32_t i = g.neighbor[e];
+        if (i < j || (largest_first[i] != none && descendant[j] <= largest_first[i]))
+          continue; // no leaf of the subtree of row i
+        largest_first[i] = descendant[j];
+        ++count[j];
+        const std::uint32_t previous = previous_leaf[i];
+        previous_leaf[i] = j;
+        if (previous == none)
+          continue;
+        std::uint32_t root = previous; // where the paths from both leaves meet
+        while (ancestor[root] != root)
+          root = ancestor[root];
+        for (std::uint32_t k = previous; k != root;)
+          k = std::exchange(ancestor[k], root);
+        --count[root];
+      }
+      if (tree[j] != none)
+        ancestor[j] = tree[j];
+    }
+    std::vector<std::uint32_t> result(n);
+    for (std::size_t j = 0; j < n; ++j) {
+      result[j] = static_cast<std::uint32_t>(count[j]);
+      if (tree[j] != none)
+        count[tree[j]] += count[j];
+    }
+    return result;
+  }
+
+  /// Whether a supernode of `width` columns may hold `zeros` among its `values`: wide ones are worth some.
+  static bool is_worth(std::size_t width, std::size_t zeros, std::size_t values)
+  {
+    const double share = static_cast<double>(zeros) / static_cast<double>(values);
+    return share < (width <= 8 ? 0.25 : width <= 32 ? 0.12 : 0.05);
+  }
+
+  void find_supernodes(const std::vector<std::uint32_t>& tree,
+                       const std::vector<std::uint32_t>& count)
+  {
+    const std::size_t n = tree.size();
+    struct Group
+    {
+      std::uint32_t first;
+      std::size_t zeros;
+    };
+    std::vector<Group> groups; // a stack: the last ones end at the present column
+    const auto height = [&](const Group& g, std::size_t last) {
+      return last - g.first + count[last]; // rows of its panel
+    };
+    for (std::uint32_t j = 0; j < n; ++j) {
+      groups.push_back({j, 0});
+      // The group before ends with column j - 1. It may become part of this one if j is the parent of that.
+      while (groups.size() > 1) {
+        const Group own = groups.back(), before = groups[groups.size() - 2];
+        if (own.first == 0 || tree[own.first - 1] == none || tree[own.first - 1] > j)
+          break;
+        const std::size_t last = own.first - 1, width = j + 1 - before.first;
+        const std::size_t added =
+            (own.first - before.first) * (height({before.first, 0}, j) - height(before, last));
+        const std::size_t zeros = own.zeros + before.zeros + added;
+        const bool is_same = added == 0 && own.first == j;
+        const std::size_t values = height({before.first, 0}, j) * width;
+        if (!is_same && !is_worth(width, zeros, values))
+          break;
+        groups.pop_back();
+        groups.back().zeros = zeros;
+      }
+    }
+    std::vector<std::uint32_t> of_column(n);
+    for (const Group& g : groups)
+      first.push_back(g.first);
+    const std::size_t m = first.size();
+    first.push_back(static_cast<std::uint32_t>(n));
+    for (std::uint32_t s = 0; s < m; ++s)
+      std::fill(of_column.begin() + first[s], of_column.begin() + first[s + 1], s);
+    parent.assign(m, none);
+    for (std::size_t s = 0; s < m; ++s)
+      if (tree[first[s + 1] - 1] != none)
+        parent[s] = of_column[tree[first[s + 1] - 1]];
+  }
+
+  void find_rows(const Adjacency& g)
+  {
+    const std::size_t m = number_of_supernodes();
+    std::vector<std::uint32_t> mark(size(), none), child(m, none), sibling(m, none);
+    first_row.assign(1, 0);
+    for (std::uint32_t s = 0; s < m; ++s) {
+      const std::uint32_t end = first[s + 1];
+      const auto add = [&](std::uint32_t i) {
+        if (i >= end && mark[i] != s) {
+          mark[i] = s;
+          row.push_back(i);
+        }
+      };
+      for (std::uint32_t j = first[s]; j < end; ++j)
+        for (std::size_t e = g.first[j]; e < g.first[j + 1]; ++e)
+          add(g.neighbor[e]);
+      for (std::uint32_t c = child[s]; c != none; c = sibling[c])
+        for (std::size_t r = first_row[c]; r < first_row[c + 1]; ++r)
+          add(row[r]);
+      std::sort(row.begin() + static_cast<std::ptrdiff_t>(first_row[s]), row.end());
+      first_row.push_back(row.size());
+      if (parent[s] != none)
+        sibling[s] = std::exchange(child[parent[s]], s);
+    }
+    first_value.assign(1, 0);
+    for (std::size_t s = 0; s < m; ++s) {
+      const std::size_t values = (width(s) + number_of_rows_below(s)) * width(s);
+      largest_panel = std::max(largest_panel, values);
+      first_value.push_back(first_value.back() + values);
+    }
+    in_parent.resize(row.size());
+    for (std::size_t s = 0; s < m; ++s) {
+      const std::uint32_t p = parent[s];
+      if (p == none)
+        continue;
+      std::size_t at = first_row[p];
+      for (std::size_t r = first_row[s]; r < first_row[s + 1]; ++r)
+        if (row[r] < first[p + 1])
+          in_parent[r] = row[r] - first[p];
+        else {
+          while (row[at] != row[r])
+            ++at;
+          in_parent[r] = static_cast<std::uint32_t>(width(p) + at - first_row[p]);
+        }
+    }
+    // In postorder, what waits is a stack: the children of a supernode lie on top of it.
+    std::size_t waiting = 0;
+    std::vector<std::size_t> of_children(m, 0);
+    for (std::size_t s = 0; s < m; ++s) {
+      const std::size_t below = number_of_rows_below(s), own = below * below;
+      largest_number_of_rows_below = std::max(largest_number_of_rows_below, below);
+      stack_size = std::max(stack_size, waiting + own);
+      waiting += own;
+      waiting -= of_children[s];
+      if (parent[s] != none)
+        of_children[parent[s]] += own;
+    }
+  }
+
+  void find_places(const Matrix& a)
+  {
+    std::vector<std::uint32_t> of_column(size());
+    for (std::uint32_t s = 0; s < number_of_supernodes(); ++s)
+      std::fill(of_column.begin() + first[s], of_column.begin() + first[s + 1], s);
+    place.reserve(static_cast<std::size_t>(a.nonZeros()));
+    for (Eigen::Index column = 0; column < a.outerSize(); ++column)
+      for (Matrix::InnerIterator entry(a, column); entry; ++entry) {
+        if (entry.row() < column)
+          continue;
+        std::uint32_t i = new_of_old[static_cast<std::size_t>(entry.row())];
+        std::uint32_t j = new_of_old[static_cast<std::size_t>(column)];
+        if (i < j)
+          std::swap(i, j);
+        const std::size_t s = of_column[j];
+        std::size_t r = i - first[s];
+        if (i >= first[s + 1]) {
+          const auto begin = row.begin() + static_cast<std::ptrdiff_t>(first_row[s]);
+          const auto end = row.begin() + static_cast<std::ptrdiff_t>(first_row[s + 1]);
+          r = width(s) + static_cast<std::size_t>(std::lower_bound(begin, end, i) - begin);
+        }
+        place.push_back(first_value[s] + (j - first[s]) * (width(s) + number_of_rows_below(s)) + r);
+      }
+  }
+};
+
+} // namespace linear_algebra
+} // namespace pcs
+
+#endif // PCS_LINEAR_ALGEBRA_CHOLESKY_PATTERN_H

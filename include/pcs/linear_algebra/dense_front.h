@@ -1,0 +1,248 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The dense half of a sparse Cholesky factorisation: one panel at a time.
+
+#ifndef PCS_LINEAR_ALGEBRA_DENSE_FRONT_H
+#define PCS_LINEAR_ALGEBRA_DENSE_FRONT_H
+
+#include <pcs/internal/instruction_set.h>
+#include <pcs/internal/lanes.h>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace pcs {
+namespace linear_algebra {
+
+/// The part of the diagonal that is not eliminated yet: of the panel's own rows, and of the rows below. It is kept apart,
+/// because updates of updates would first be added up, and lose what is small beside them: one difference at a time
+/// keeps the pivots of Laplacians positive, however far apart the weights lie.
+struct Present_diagonal
+{
+  double *own, *below;
+};
+
+/// A matrix by columns.
+struct Dense_columns
+{
+  double* value;
+  std::size_t stride; ///< from column to column
+
+  double* at(std::size_t row, std::size_t column) const { return value + row + column * stride; }
+};
+
+namespace internal {
+
+/// For machines without a fused multiply-add.
+struct Plain_arithmetic
+{
+  using Doubles = pcs::internal::Double4;
+
+  template <class Lanes>
+  static PCS_ALWAYS_INLINE void subtract_product(const Lanes& x, const Lanes& y, Lanes& z)
+  {
+    z = z - x * y;
+  }
+};
+
+/// Two matrices of as many columns, of which the rows of one are multiplied by rows of the other.
+struct Dense_product
+{
+  Dense_columns left, right;
+};
+
+/// `c -= left(rows) right(columns)^T` for `Vectors` registers of rows from `row` on and `Columns` columns of `c`, of
+/// which the first belongs to row `column` of the right matrix; over `count` columns of both.
+template <class Arithmetic, class Lanes, std::size_t Vectors, std::size_t Columns>
+PCS_ALWAYS_INLINE void subtract_tile(const Dense_product& l,
+                                     std::size_t row,
+                                     std::size_t column,
+                                     std::size_t count,
+                                     double* c,
+                                     std::size_t stride)
+{
+  using pcs::internal::unroll;
+  constexpr std::size_t width = sizeof(Lanes) / sizeof(double);
+  Lanes sum[Vectors * Columns];
+  unroll<Vectors * Columns>([&](auto k) PCS_LAMBDA_INLINE {
+    pcs::internal::load(c + k / Columns * width + k % Columns * stride, sum[k]);
+  });
+  const double *a = l.left.at(row, 0), *b = l.right.at(column, 0);
+  for (std::size_t k = 0; k < count; ++k, a += l.left.stride, b += l.right.stride) {
+    Lanes rows[Vectors], factor;
+    unroll<Vectors>([&](auto v) PCS_LAMBDA_INLINE { pcs::internal::load(a + v * width, rows[v]); });
+    unroll<Columns>([&](auto j) PCS_LAMBDA_INLINE {
+      pcs::internal::fill(b[j], factor);
+      unroll<Vectors>([&](auto v) PCS_LAMBDA_INLINE {
+        Arithmetic::subtract_product(rows[v], factor, sum[v * Columns + j]);
+      });
+    });
+  }
+  unroll<Vectors * Columns>([&](auto k) PCS_LAMBDA_INLINE {
+    pcs::internal::store(sum[k], c + k / Columns * width + k % Columns * stride);
+  });
+}
+
+/// The same for the rows from `row` to `end`: large tiles, then smaller ones. Every entry is summed in the same order.
+template <class Arithmetic, std::size_t Columns>
+PCS_ALWAYS_INLINE void subtract_strip(const Dense_product& l,
+                                      std::size_t row,
+                                      std::size_t end,
+                                      std::size_t column,
+                                      std::size_t count,
+                                      double* c,
+                                      std::size_t stride)
+{
+  using Doubles = typename Arithmetic::Doubles;
+  constexpr std::size_t width = sizeof(Doubles) / sizeof(double);
+  for (; row + 2 * width <= end; row += 2 * width, c += 2 * width)
+    subtract_tile<Arithmetic, Doubles, 2, Columns>(l, row, column, count, c, stride);
+  for (; row + width <= end; row += width, c += width)
+    subtract_tile<Arithmetic, Doubles, 1, Columns>(l, row, column, count, c, stride);
+  for (; row < end; ++row, ++c)
+    for (std::size_t j = 0; j < Columns; ++j) {
+      double sum = c[j * stride];
+      for (std::size_t k = 0; k < count; ++k)
+        Arithmetic::subtract_product(*l.left.at(row, k), *l.right.at(column + j, k), sum);
+      c[j * stride] = sum;
+    }
+}
+
+/*!
+  Factorises a panel of `width` columns and `height` rows in place: `D` on the diagonal of its upper part, `L` below.
+  `scaled` gets `L D`. Subtracts what the panel leaves to the rows below from the lower triangle of `rest`, `height - width`
+  square. Returns `false` if a pivot is not positive.
+*/
+template <class Arithmetic>
+PCS_ALWAYS_INLINE bool factorize_front(const Dense_columns& panel,
+                                       const Dense_columns& scaled,
+                                       std::size_t height,
+                                       std::size_t width,
+                                       const Dense_columns& rest,
+                                       const Present_diagonal& diagonal)
+{
+  constexpr std::size_t strip = 4;
+  const Dense_product all{panel, scaled};
+  for (std::size_t begin = 0; begin < width; begin += strip) {
+    const std::size_t end = std::min(width, begin + strip);
+    if (end == begin + strip)
+      subtract_strip<Arithmetic, strip>(all,
+                                        begin,
+                                        height,
+                                        begin,
+                                        begin,
+                                        panel.at(begin, begin),
+                                        panel.stride);
+    else
+      for (std::size_t j = begin; j < end; ++j)
+        subtract_strip<Arithmetic, 1>(all, j, height, j, begin, panel.at(j, j), panel.stride);
+    const Dense_product own{{panel.at(0, begin), panel.stride},
+                            {scaled.at(0, begin), scaled.stride}};
+    for (std::size_t j = begin; j < end; ++j) {
+      subtract_strip<Arithmetic, 1>(own, j, height, j, j - begin, panel.at(j, j), panel.stride);
+      double *column = panel.at(0, j), *unscaled = scaled.at(0, j);
+      const double pivot = column[j] = diagonal.own[j];
+      if (!(pivot > 0))
+        return false;
+      for (std::size_t i = j + 1; i < height; ++i) {
+        unscaled[i] = column[i];
+        column[i] /= pivot;
+      }
+      for (std::size_t i = j + 1; i < width; ++i)
+        Arithmetic::subtract_product(column[i], unscaled[i], diagonal.own[i]);
+      for (std::size_t i = width; i < height; ++i)
+        Arithmetic::subtract_product(column[i], unscaled[i], diagonal.below[i - width]);
+    }
+  }
+  const std::size_t below = height - width;
+  std::size_t j = 0;
+  for (; j + strip <= below; j += strip)
+    subtract_strip<Arithmetic, strip>(all,
+                                      width + j,
+                                      height,
+                                      width + j,
+                                      width,
+                                      rest.at(j, j),
+                                      rest.stride);
+  for (; j < below; ++j)
+    subtract_strip<Arithmetic, 1>(all,
+                                  width + j,
+                                  height,
+                                  width + j,
+                                  width,
+                                  rest.at(j, j),
+                                  rest.stride);
+  return true;
+}
+
+inline bool factorize_front_default(const Dense_columns& panel,
+                                    const Dense_columns& scaled,
+                                    std::size_t height,
+                                    std::size_t width,
+                                    const Dense_columns& rest,
+                                    const Present_diagonal& diagonal)
+{
+  return factorize_front<Plain_arithmetic>(panel, scaled, height, width, rest, diagonal);
+}
+
+#if PCS_HAS_RUNTIME_DISPATCH
+PCS_TARGET_AVX2 inline bool factorize_front_avx2(const Dense_columns& panel,
+                                                 const Dense_columns& scaled,
+                                                 std::size_t height,
+                                                 std::size_t width,
+                                                 const Dense_columns& rest,
+                                                 const Present_diagonal& diagonal)
+{
+  return factorize_front<pcs::internal::Avx2_arithmetic>(panel,
+                                                         scaled,
+                                                         height,
+                                                         width,
+                                                         rest,
+                                                         diagonal);
+}
+#endif
+
+#ifdef PCS_HAS_AVX_ASSEMBLY
+PCS_TARGET_AVX512 inline bool factorize_front_avx512(const Dense_columns& panel,
+                                                     const Dense_columns& scaled,
+                                                     std::size_t height,
+                                                     std::size_t width,
+                                                     const Dense_columns& rest,
+                                                     const Present_diagonal& diagonal)
+{
+  return factorize_front<pcs::internal::Avx512_arithmetic>(panel,
+                                                           scaled,
+                                                           height,
+                                                           width,
+                                                           rest,
+                                                           diagonal);
+}
+#endif
+
+} // namespace internal
+
+using Factorize_front = bool (*)(const Dense_columns&,
+                                 const Dense_columns&,
+                                 std::size_t,
+                                 std::size_t,
+                                 const Dense_columns&,
+                                 const Present_diagonal&);
+
+/// The kernel for this machine. Those with a fused multiply-add give the same bits.
+inline Factorize_front choose_factorize_front()
+{
+#ifdef PCS_HAS_AVX_ASSEMBLY
+  if (pcs::internal::has_avx512())
+    return &internal::factorize_front_avx512;
+#endif
+#if PCS_HAS_RUNTIME_DISPATCH
+  if (pcs::internal::has_avx2())
+    return &internal::factorize_front_avx2;
+#endif
+  return &internal::factorize_front_default;
+}
+
+} // namespace linear_algebra
+} // namespace pcs
+
+#endif // PCS_LINEAR_ALGEBRA_DENSE_FRONT_H
