@@ -23,7 +23,7 @@ struct Chain_rules
   double gather_offset = 1.7;           ///< ... and this many spacings are looked at again
   double cover_factor = 0.15;     ///< points this many radii outside of the surface are explained,
   double cover_offset = 1.1;      ///< ... or this many spacings
-  double explained = 0.45;        ///< share of its own points that a chain must explain
+  double explained = 0.4;         ///< share of its own points that a chain must explain
   double protrusion = 3;          ///< how far an axis must leave those that are there
   double protrusion_radius = 0.3; ///< ... and this many radii of those
   int sectors = 5;                ///< of 12, that a circle must see to be a start
