@@ -633,18 +633,27 @@ private:
     }
     if constexpr (internal::is_given_v<NamedParameters, internal_np::point_is_leaf_map_t>) {
       const auto map = CGAL::parameters::get_parameter(m_np, internal_np::point_is_leaf_map);
-      for_each_point([&](auto&& key, std::size_t i, skeleton::Index) {
-        put(map, key, m_session->is_leaf_of_input(i));
-      });
+      constexpr bool is_map_ok =
+          is_map_for_v<std::decay_t<decltype(map)>, typename Types::Element, bool>;
+      static_assert(is_map_ok,
+                    "pcs::extract_tree_skeleton(): named parameter `point_is_leaf_map` must be "
+                    "writable, accept an element of `points` as key, and store bool");
+      if constexpr (is_map_ok)
+        for_each_point([&](auto&& key, std::size_t i, skeleton::Index) {
+          put(map, key, m_session->is_leaf_of_input(i));
+        });
     }
     if constexpr (internal::is_given_v<NamedParameters, CGAL::internal_np::normal_t>) {
       const auto map = CGAL::parameters::get_parameter(m_np, CGAL::internal_np::normal_map);
       using V = pcs::Map_value<std::decay_t<decltype(map)>>;
-      constexpr bool is_vector_ok = is_point_or_vector_v<V>;
-      static_assert(is_vector_ok,
-                    "pcs::extract_tree_skeleton(): named parameter `normal_map` must store vectors "
-                    "with x(), y(), z() and a constructor from three coordinates");
-      if constexpr (is_vector_ok) {
+      constexpr bool is_map_ok =
+          is_point_or_vector_v<V> &&
+          is_map_for_v<std::decay_t<decltype(map)>, typename Types::Element, V>;
+      static_assert(is_map_ok,
+                    "pcs::extract_tree_skeleton(): named parameter `normal_map` must be writable, "
+                    "accept an element of `points` as key, and store vectors with x(), y(), z() "
+                    "and a constructor from three coordinates");
+      if constexpr (is_map_ok) {
         using FT = std::decay_t<decltype(std::declval<const V&>().x())>;
         for_each_point([&](auto&& key, std::size_t i, skeleton::Index v) {
           const skeleton::Vec3 n = v == skeleton::none ? skeleton::Vec3(skeleton::Vec3::Zero())

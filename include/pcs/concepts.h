@@ -131,6 +131,11 @@ using Map_value = typename internal::Map_value<Map>::type;
 template <class Map, class Key, class Value>
 constexpr bool is_readable_map_v = internal::Is_readable_map<Map, Key, Value>::value;
 
+//! whether `put(map, key, value)` takes what converts from `Value`
+template <class Map, class Key, class Value>
+constexpr bool is_map_for_v = internal::Is_writable_map<Map, Key, Map_value<Map>>::value&&
+    std::is_convertible<Value, Map_value<Map>>::value;
+
 //! whether `get(map, key)` gives a `Value` and `put(map, key, value)` takes one
 template <class Map, class Key, class Value>
 constexpr bool is_read_write_map_v =

@@ -7,6 +7,7 @@
 #include <pcs/skeleton/Axis_fit.h>
 #include <pcs/skeleton/ellipse_fit.h>
 #include <pcs/skeleton/principal_curvatures.h>
+#include <pcs/skeleton/section_counts.h>
 
 #include <CGAL/Simple_cartesian.h>
 
@@ -213,6 +214,65 @@ BOOST_AUTO_TEST_CASE(a_wrong_start_finds_the_axis_of_half_a_tube)
     BOOST_CHECK_CLOSE(node.radius, 0.1, 2.0);
     BOOST_CHECK_SMALL(std::hypot(node.point.x(), node.point.y()), 0.002);
   }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(section_counts)
+
+// A branch of radius 0.03 from the axis of a stem of radius 0.1; what lies on the stem is the stem's.
+BOOST_AUTO_TEST_CASE(radii_are_counted_where_the_parent_hides_a_part)
+{
+  namespace sk = pcs::skeleton;
+  constexpr double thick = 0.1, thin = 0.03, reach = 0.5;
+  std::vector<Vec3> points = tube(thick, 1, 4000);
+  const double density = double(points.size()) / (2 * pi * thick);
+  std::vector<Vec3> branch;
+  for (const Vec3& p : tube(thin, reach, std::size_t(2 * pi * thin * reach * density))) {
+    const Vec3 q(p.z(), p.x(), 0.5 + p.y());
+    if (std::hypot(q.x(), q.y()) > thick + 0.01)
+      branch.push_back(q);
+  }
+  points.insert(points.end(), branch.begin(), branch.end());
+  sk::Scan scan;
+  sk::prepare_scan<CGAL::Sequential_tag>(points, scan);
+  for (Vec3& p : branch)
+    p -= scan.origin;
+
+  sk::Axis_set set;
+  set.noise = 0.002;
+  set.density = density;
+  set.axis_of_point.assign(scan.size(), sk::none);
+  set.segment_of_point.assign(scan.size(), 0);
+  sk::Axis stem(2), axis;
+  stem[0].point = -scan.origin;
+  stem[1].point = Vec3(0, 0, 1) - scan.origin;
+  stem[0].radius = stem[1].radius = thick;
+  set.axes.push_back({stem, sk::none, 4000, 1});
+  for (std::size_t i = 0; i < 4000; ++i)
+    set.axis_of_point[scan.point_of_input[i]] = 0;
+  for (int k = 0; k <= 25; ++k) {
+    sk::Axis_node node;
+    node.point = Vec3(0.02 * k, 0, 0.5) - scan.origin;
+    node.radius = thin;
+    axis.push_back(node);
+  }
+  const sk::Chain_rules rules;
+  const sk::Chain_view view{scan, set, rules};
+  sk::Axis_fit fit(axis, sk::Fit_model::of(scan.spacing, set.noise));
+  fit.set_points(branch, std::vector<sk::Index>(branch.size(), 0));
+  fit.project();
+
+  const std::vector<double> visible = sk::visible_shares(view, fit);
+  BOOST_CHECK_EQUAL(visible[2], 0);
+  BOOST_CHECK_EQUAL(visible[20], 1);
+  const sk::Section_counts all = sk::section_counts(view, fit, std::vector<double>(axis.size(), 1));
+  const sk::Section_counts outside = sk::section_counts(view, fit, visible);
+  constexpr std::size_t base = 6; // 2 cm outside of the stem; the window reaches into it
+  BOOST_CHECK_LT(all.radius(base, density), 0.8 * thin);
+  BOOST_CHECK_CLOSE(outside.radius(base, density), thin, 15.0);
+  BOOST_CHECK_CLOSE(outside.radius(20, density), thin, 10.0);
+  BOOST_CHECK_EQUAL(outside.length[base], all.visible_length[base]);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

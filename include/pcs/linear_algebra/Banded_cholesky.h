@@ -22,37 +22,32 @@ public:
   void reset(std::size_t n)
   {
     m_size = n;
-    m_rows.assign(n * width, 0.0);
+    m_columns.assign((n + Bandwidth) * width, 0.0);
   }
 
   std::size_t size() const { return m_size; }
 
   /// Entry of the lower half: `j <= i <= j + Bandwidth`.
-  double& operator()(std::size_t i, std::size_t j)
-  {
-    return m_rows[i * width + Bandwidth - (i - j)];
-  }
-  double operator()(std::size_t i, std::size_t j) const
-  {
-    return m_rows[i * width + Bandwidth - (i - j)];
-  }
+  double& operator()(std::size_t i, std::size_t j) { return m_columns[j * width + (i - j)]; }
+  double operator()(std::size_t i, std::size_t j) const { return m_columns[j * width + (i - j)]; }
 
   /// Replaces the matrix by its factor. `false` if it is not positive definite.
   bool factorize()
   {
-    for (std::size_t i = 0; i < m_size; ++i) {
-      const std::size_t begin = i > Bandwidth ? i - Bandwidth : 0;
-      for (std::size_t j = begin; j <= i; ++j) {
-        const std::size_t from = std::max(begin, j > Bandwidth ? j - Bandwidth : 0);
-        double sum = (*this)(i, j);
-        for (std::size_t k = from; k < j; ++k)
-          sum -= (*this)(i, k) * (*this)(j, k);
-        if (j < i)
-          (*this)(i, j) = sum / (*this)(j, j);
-        else if (sum > 0 && std::isfinite(sum))
-          (*this)(i, i) = std::sqrt(sum);
-        else
-          return false;
+    for (std::size_t j = 0; j < m_size; ++j) {
+      double* column = &m_columns[j * width];
+      if (!(column[0] > 0 && std::isfinite(column[0])))
+        return false;
+      column[0] = std::sqrt(column[0]);
+      const double inverse = 1 / column[0];
+      for (std::size_t i = 1; i < width; ++i)
+        column[i] *= inverse;
+      // its share of the columns behind it; loops of fixed lengths over neighbouring numbers
+      for (std::size_t k = 1; k < width; ++k) {
+        double* other = column + k * width;
+        const double factor = column[k];
+        for (std::size_t i = 0; i < width - k; ++i)
+          other[i] -= factor * column[k + i];
       }
     }
     return true;
@@ -61,16 +56,19 @@ public:
   /// Solves in place, after `factorize()`.
   void solve(std::vector<double>& x) const
   {
-    for (std::size_t i = 0; i < m_size; ++i) {
-      for (std::size_t k = i > Bandwidth ? i - Bandwidth : 0; k < i; ++k)
-        x[i] -= (*this)(i, k) * x[k];
-      x[i] /= (*this)(i, i);
+    for (std::size_t j = 0; j < m_size; ++j) {
+      const double* column = &m_columns[j * width];
+      x[j] /= column[0];
+      const std::size_t count = std::min(width, m_size - j);
+      for (std::size_t i = 1; i < count; ++i)
+        x[j + i] -= column[i] * x[j];
     }
-    for (std::size_t i = m_size; i-- > 0;) {
-      const std::size_t end = std::min(m_size, i + Bandwidth + 1);
-      for (std::size_t k = i + 1; k < end; ++k)
-        x[i] -= (*this)(k, i) * x[k];
-      x[i] /= (*this)(i, i);
+    for (std::size_t j = m_size; j-- > 0;) {
+      const double* column = &m_columns[j * width];
+      const std::size_t count = std::min(width, m_size - j);
+      for (std::size_t i = 1; i < count; ++i)
+        x[j] -= column[i] * x[j + i];
+      x[j] /= column[0];
     }
   }
 
@@ -106,7 +104,7 @@ public:
 private:
   static constexpr std::size_t width = Bandwidth + 1;
   std::size_t m_size = 0;
-  std::vector<double> m_rows;
+  std::vector<double> m_columns; // each from its diagonal downwards; behind the last ones, zeros
 };
 
 } // namespace linear_algebra

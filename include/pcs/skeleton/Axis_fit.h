@@ -102,11 +102,10 @@ public:
   bool iterate(double widening)
   {
     assemble(widening);
-    m_factor = m_matrix;
-    if (!m_factor.factorize())
+    if (!m_matrix.factorize())
       return false;
     m_step = m_gradient;
-    m_factor.solve(m_step);
+    m_matrix.solve(m_step);
     apply_step();
     project();
     return true;
@@ -134,7 +133,7 @@ private:
   std::vector<Axis_place> m_places;
   std::vector<Radius_prior> m_priors;
   std::size_t m_stride = 1;
-  Matrix m_matrix, m_factor;
+  Matrix m_matrix; // its factor after a step
   std::vector<double> m_gradient, m_step;
   std::vector<double> m_information; // of the points on each radius alone
 };
@@ -184,19 +183,20 @@ inline void Axis_fit::add_points(double widening)
       continue;
     const double w = double(m_stride) * (1 - x * x) * (1 - x * x) / (sigma * sigma);
     const Vec3 n = (m_points[i] - point_at(m_axis, place)) / place.distance;
-    // e(c, r) = |p - c| - r with c, r linear between the nodes
-    const double j[8] = {-(1 - t) * n.x(),
-                         -(1 - t) * n.y(),
-                         -(1 - t) * n.z(),
-                         -(1 - t),
-                         -t * n.x(),
-                         -t * n.y(),
-                         -t * n.z(),
-                         -t};
-    for (std::size_t a = 0; a < 8; ++a) {
-      m_gradient[4 * s + a] -= w * j[a] * e;
-      for (std::size_t b = 0; b <= a; ++b)
-        m_matrix(4 * s + a, 4 * s + b) += w * j[a] * j[b];
+    // e(c, r) = |p - c| - r with c, r linear between the nodes, so its derivatives are -(1 - t) d and -t d
+    const double d[4] = {n.x(), n.y(), n.z(), 1};
+    const double w00 = w * (1 - t) * (1 - t), w10 = w * t * (1 - t), w11 = w * t * t;
+    for (std::size_t a = 0; a < 4; ++a) {
+      m_gradient[4 * s + a] += w * (1 - t) * d[a] * e;
+      m_gradient[4 * s + 4 + a] += w * t * d[a] * e;
+      for (std::size_t b = 0; b < 4; ++b) {
+        const double dd = d[a] * d[b];
+        m_matrix(4 * s + 4 + b, 4 * s + a) += w10 * dd;
+        if (b < a)
+          continue;
+        m_matrix(4 * s + b, 4 * s + a) += w00 * dd;
+        m_matrix(4 * s + 4 + b, 4 * s + 4 + a) += w11 * dd;
+      }
     }
     m_information[s] += w * (1 - t);
     m_information[s + 1] += w * t;
@@ -264,9 +264,9 @@ inline void Axis_fit::apply_step()
 
 inline void Axis_fit::estimate_errors()
 {
-  if (m_factor.size() != 4 * m_axis.size())
+  if (m_matrix.size() != 4 * m_axis.size())
     return;
-  const std::vector<double> variance = m_factor.inverse_diagonal();
+  const std::vector<double> variance = m_matrix.inverse_diagonal();
   for (std::size_t k = 0; k < m_axis.size(); ++k) {
     m_axis[k].radius_error = std::sqrt(std::max(0.0, variance[4 * k + 3]));
     const bool has_prior = k < m_priors.size() && m_priors[k].deviation > 0;

@@ -12,6 +12,7 @@
 #include <pcs/skeleton/chain_start.h>
 #include <pcs/skeleton/chains.h>
 #include <pcs/skeleton/circle_fit.h>
+#include <pcs/skeleton/section_counts.h>
 
 #include <Eigen/Geometry>
 
@@ -68,13 +69,11 @@ public:
 private:
   void place_own_points(const Chain_start& start, Axis_fit& fit) const;
   void start_at_circles(Axis_fit& fit) const;
-  void set_priors(Axis_fit& fit) const;
+  void set_priors(const std::vector<double>& visible, Axis_fit& fit) const;
   bool run(Axis_fit& fit, double widening) const;
   std::vector<Index> gather(Axis_fit& fit) const;
   bool follow(Axis_fit& fit) const;
   void judge(Axis_fit& fit, const std::vector<Index>& points, Candidate& candidate) const;
-  /// Points of each node, and the length of axis they stand for, over a window of nodes.
-  std::pair<std::vector<double>, std::vector<double>> counts(const Axis_fit& fit) const;
 
   Chain_view m_view;
   const Scan& m_scan;
@@ -98,40 +97,6 @@ inline void Chain_fit::place_own_points(const Chain_start& start, Axis_fit& fit)
   }
   fit.set_points(std::move(points), std::move(segments));
   fit.project();
-}
-
-inline std::pair<std::vector<double>, std::vector<double>>
-Chain_fit::counts(const Axis_fit& fit) const
-{
-  const Axis& axis = fit.axis();
-  const std::size_t n = axis.size();
-  std::vector<double> own(n, 0), length(n, 0);
-  const double limit = tukey_constant * m_set.noise;
-  const double weight = double(fit.stride());
-  for (std::size_t i = 0; i < fit.places().size(); i += fit.stride()) {
-    const Axis_place& p = fit.places()[i];
-    if (p.share < 0 || p.share > 1)
-      continue;
-    const double r = radius_at(axis, p);
-    if (std::abs(p.distance - r) > std::max(limit, tukey_constant * 0.04 * r))
-      continue;
-    own[p.segment] += weight * (1 - p.share);
-    own[p.segment + 1] += weight * p.share;
-  }
-  for (std::size_t k = 0; k + 1 < n; ++k) {
-    const double l = 0.5 * (axis[k + 1].point - axis[k].point).norm();
-    length[k] += l;
-    length[k + 1] += l;
-  }
-  std::vector<double> count(n), window(n);
-  for (std::size_t k = 0; k < n; ++k) {
-    const std::size_t begin = k >= 2 ? k - 2 : 0, end = std::min(n, k + 3);
-    for (std::size_t i = begin; i < end; ++i) {
-      count[k] += own[i];
-      window[k] += length[i];
-    }
-  }
-  return {std::move(count), std::move(window)};
 }
 
 inline void Chain_fit::start_at_circles(Axis_fit& fit) const
@@ -174,28 +139,27 @@ inline void Chain_fit::start_at_circles(Axis_fit& fit) const
     if (is_good && double(plane.size()) >= m_rules.expected_share * expected)
       circles[k] = c;
   }
-  const auto priors = counts(fit);
+  const Section_counts counts = section_counts(m_view, fit, visible_shares(m_view, fit));
   for (std::size_t k = 0; k < n; ++k) {
     if (circles[k].radius > 0) {
       axis[k].point += circles[k].center.x() * e1[k] + circles[k].center.y() * e2[k];
       axis[k].radius = circles[k].radius;
-    } else if (m_set.density > 0 && priors.second[k] > 0) {
-      const double r =
-          priors.first[k] / (2 * 3.14159265358979323846 * m_set.density * priors.second[k]);
+    } else if (m_set.density > 0 && counts.visible_length[k] > 0) {
+      const double r = counts.radius(k, m_set.density);
       axis[k].radius = std::max(0.1 * u, std::min(axis[k].radius, r));
     }
   }
   fit.project();
 }
 
-inline void Chain_fit::set_priors(Axis_fit& fit) const
+inline void Chain_fit::set_priors(const std::vector<double>& visible, Axis_fit& fit) const
 {
   std::vector<Radius_prior> priors(fit.axis().size());
   if (m_set.density > 0) {
-    const auto [count, length] = counts(fit);
+    const Section_counts counts = section_counts(m_view, fit, visible);
     for (std::size_t k = 0; k < priors.size(); ++k)
-      if (length[k] > 0) {
-        priors[k].radius = count[k] / (2 * 3.14159265358979323846 * m_set.density * length[k]);
+      if (counts.visible_length[k] > m_rules.visible * counts.length[k]) {
+        priors[k].radius = counts.radius(k, m_set.density);
         priors[k].deviation =
             m_rules.prior_share * priors[k].radius + m_rules.prior_offset * m_scan.spacing;
       }
@@ -206,13 +170,14 @@ inline void Chain_fit::set_priors(Axis_fit& fit) const
 inline bool Chain_fit::run(Axis_fit& fit, double widening) const
 {
   const int steps = m_rules.iterations;
+  const std::vector<double> visible = visible_shares(m_view, fit);
   fit.use_every(
       std::max<std::size_t>(1, fit.points().size() / (m_rules.enough * fit.axis().size())));
   for (int k = 0; k < steps; ++k) {
     if (k == steps - m_rules.full_iterations)
       fit.use_every(1);
     if (k % 2 == 0)
-      set_priors(fit);
+      set_priors(visible, fit);
     const double share = double(steps - 1 - k) / double(steps);
     if (!fit.iterate(1 + (widening - 1) * share))
       return false;
@@ -337,7 +302,7 @@ Chain_fit::judge(Axis_fit& fit, const std::vector<Index>& points, Candidate& can
 {
   const Axis& axis = fit.axis();
   const double u = m_scan.spacing, s = m_set.noise;
-  const auto [count, length] = counts(fit);
+  const Section_counts counts = section_counts(m_view, fit, visible_shares(m_view, fit));
   for (std::size_t k = 0; k < points.size(); ++k) {
     const Axis_place& p = fit.places()[k];
     const double r = radius_at(axis, p);
@@ -354,11 +319,10 @@ Chain_fit::judge(Axis_fit& fit, const std::vector<Index>& points, Candidate& can
     return;
   for (std::size_t k = 2; k + 2 < axis.size(); ++k)
     if (axis[k].is_measured && axis[k].radius > 2.5 * s &&
-        axis[k].radius_error < 0.15 * axis[k].radius)
+        axis[k].radius_error < 0.15 * axis[k].radius &&
+        counts.visible_length[k] > m_rules.visible * counts.length[k])
       candidate.densities.push_back(
-          {count[k] / (2 * 3.14159265358979323846 * axis[k].radius * length[k]),
-           axis[k].radius,
-           axis[k].point});
+          {counts.density(k, axis[k].radius), axis[k].radius, axis[k].point});
   candidate.axis = axis;
   for (Axis_node& node : candidate.axis) {
     const double r2 = node.radius * node.radius - m_rules.noise_share * s * s;

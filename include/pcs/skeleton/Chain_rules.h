@@ -33,6 +33,10 @@ struct Chain_rules
       0.25; ///< circles with fewer points than this share of the expected straddle several twigs
   double prior_share = 0.5;   ///< standard deviation of the radius by counting, in radii ...
   double prior_offset = 0.15; ///< ... and spacings
+  double visible = 0.5;       ///< share of a section that such a radius must be counted on [-]
+  double counted_share = 0.7; ///< of the expected points: below, other axes may hide a section [-]
+  double hiding_radius = 4;   ///< how far such an axis is looked for, in radii ...
+  double hiding_offset = 6;   ///< ... and spacings
   double noise_share = 0.2;   ///< r^2 is reduced by this many noise^2: noise inflates thin branches
   double thick = 4;           ///< branches of at least this radius are followed beyond their tips
   double filled = 0.08; ///< thick axes end where more than this share of the points lies inside ...

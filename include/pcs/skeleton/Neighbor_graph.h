@@ -191,35 +191,28 @@ inline std::vector<Link> links_across_gaps(const Scan& scan,
 
 namespace internal {
 
-/// The edges of all rows as pairs of source and target.
-class Row_iterator
-  : public boost::iterator_facade<Row_iterator, Link, boost::forward_traversal_tag, Link>
+/// Every link in both directions.
+class Edge_iterator
+  : public boost::iterator_facade<Edge_iterator, Link, boost::forward_traversal_tag, Link>
 {
 public:
-  Row_iterator(const std::vector<Index>& first, const std::vector<Index>& targets, std::size_t at)
-    : m_first(&first), m_targets(&targets), m_at(at)
-  {
-    find_row();
-  }
+  explicit Edge_iterator(const Link* link) : m_link(link) {}
 
 private:
   friend class boost::iterator_core_access;
-  void find_row()
-  {
-    while (m_at < m_targets->size() && (*m_first)[m_row + 1] <= m_at)
-      ++m_row;
-  }
   void increment()
   {
-    ++m_at;
-    find_row();
+    m_link += m_is_reverse;
+    m_is_reverse = !m_is_reverse;
   }
-  bool equal(const Row_iterator& other) const { return m_at == other.m_at; }
-  Link dereference() const { return {m_row, (*m_targets)[m_at]}; }
+  bool equal(const Edge_iterator& other) const
+  {
+    return m_link == other.m_link && m_is_reverse == other.m_is_reverse;
+  }
+  Link dereference() const { return m_is_reverse ? Link(m_link->second, m_link->first) : *m_link; }
 
-  const std::vector<Index>*m_first, *m_targets;
-  std::size_t m_at;
-  Index m_row = 0;
+  const Link* m_link;
+  bool m_is_reverse = false;
 };
 
 } // namespace internal
@@ -227,26 +220,10 @@ private:
 /// Rows from links, each link in both directions.
 inline Neighbor_graph graph_of(std::size_t n, const std::vector<Link>& links)
 {
-  std::vector<Index> first(n + 1, 0);
-  for (const Link& l : links) {
-    ++first[l.first + 1];
-    ++first[l.second + 1];
-  }
-  for (std::size_t i = 0; i < n; ++i)
-    first[i + 1] += first[i];
-  std::vector<Index> targets(2 * links.size());
-  {
-    std::vector<Index> next(first.begin(), first.end() - 1);
-    for (const Link& l : links) {
-      targets[next[l.first]++] = l.second;
-      targets[next[l.second]++] = l.first;
-    }
-  }
-  return Neighbor_graph(boost::edges_are_sorted,
-                        internal::Row_iterator(first, targets, 0),
-                        internal::Row_iterator(first, targets, targets.size()),
-                        static_cast<Index>(n),
-                        static_cast<Index>(targets.size()));
+  return Neighbor_graph(boost::edges_are_unsorted_multi_pass,
+                        internal::Edge_iterator(links.data()),
+                        internal::Edge_iterator(links.data() + links.size()),
+                        static_cast<Index>(n));
 }
 
 } // namespace skeleton
