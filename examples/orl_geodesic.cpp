@@ -101,6 +101,7 @@ std::string report_text(const Space& space, const pcs::Orl_report& r)
   json["number_of_common_branches"] = r.number_of_common_branches;
   json["share_of_changes"] = r.share_of_changes;
   json["matching_energy"] = r.matching_energy;
+  json["unexplained_share"] = r.unexplained_share;
   json["number_of_nodes"] = r.number_of_nodes;
   json["number_of_branches"] = r.number_of_branches;
   json["number_of_matched_branches"] = r.number_of_matched_branches;

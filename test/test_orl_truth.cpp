@@ -33,6 +33,29 @@ BOOST_AUTO_TEST_CASE(points_of_a_younger_tree_find_their_branch)
   }
 }
 
+BOOST_AUTO_TEST_CASE(branches_that_grew_at_their_tips_keep_their_beginning)
+{
+  // at half the age most of the wood of the old tree is not there yet
+  Tree tree;
+  pcs::grow_tree(tree, pcs::fruit_habit(), pcs::parameters::random_seed(21));
+  const auto measure = [&](pcs::shape_space::Growth growth) {
+    pcs::shape_space::Matching_weights weights;
+    weights.growth = growth;
+    return measure_ages(tree, 0.5, 21, 4, pcs::parameters::matching_weights(weights));
+  };
+  using pcs::shape_space::Growth;
+  const auto any = measure(Growth::any), tips = measure(Growth::at_tips),
+             along = measure(Growth::along_branches);
+  BOOST_TEST_MESSAGE("right branch " << any.right_branch << ", stretched " << along.right_branch
+                                     << "; same wood " << any.same_wood << ", stretched "
+                                     << along.same_wood);
+  BOOST_TEST(any.right_branch == tips.right_branch);
+  BOOST_TEST(any.same_wood == tips.same_wood);
+  BOOST_TEST(tips.right_branch > 0.9);
+  BOOST_TEST(tips.right_branch > along.right_branch);
+  BOOST_TEST(tips.same_wood > along.same_wood);
+}
+
 BOOST_AUTO_TEST_CASE(a_tree_that_did_not_grow_keeps_its_wood)
 {
   // two scans of one tree; a radius of a twig is a few of the distances between points
@@ -59,7 +82,7 @@ BOOST_AUTO_TEST_CASE(a_plant_in_the_middle_is_predicted_from_the_ends)
   };
   const Seen_plant first = read("03-05", ".xyz"), middle = read("03-08", ".ply"),
                    last = read("03-10", ".ply");
-  const Prediction p = predict(first, middle, last, 3. / 5, Vec3::UnitZ());
+  const Prediction p = predict({first, middle, last, 3. / 5, Vec3::UnitZ(), false});
   BOOST_TEST_MESSAGE("geodesic " << p.geodesic << ", linear " << p.linear << ", no change "
                                  << p.first << ", " << p.last);
   BOOST_TEST(p.geodesic < p.linear);

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include <cstdio>
+#include <map>
 #include <string>
 
 using namespace orl_test;
@@ -20,6 +21,13 @@ int main(int argc, char** argv)
   app.add_option("--first-seed", first_seed, "of the trees")->capture_default_str();
   app.add_option("--coarser", coarser, "steps of the scanner, times the usual ones")
       ->capture_default_str();
+  pcs::shape_space::Matching_weights weights;
+  const std::map<std::string, pcs::shape_space::Growth> growths = {
+      {"any", pcs::shape_space::Growth::any},
+      {"along_branches", pcs::shape_space::Growth::along_branches},
+      {"at_tips", pcs::shape_space::Growth::at_tips}};
+  app.add_option("--growth", weights.growth, "how branches become longer")
+      ->transform(CLI::CheckedTransformer(growths));
   CLI11_PARSE(app, argc, argv);
   std::printf("| habit | age | points | right branch [%%] | same wood, within one radius [%%] | "
               "attainable [%%] | same "
@@ -34,7 +42,7 @@ int main(int argc, char** argv)
                        habit == "fruit" ? pcs::fruit_habit() : pcs::broadleaf_habit(),
                        pcs::parameters::random_seed(seed));
         const Material_accuracy m =
-            measure_ages(old_tree, age, seed, coarser, pcs::parameters::default_values());
+            measure_ages(old_tree, age, seed, coarser, pcs::parameters::matching_weights(weights));
         sum.number_of_points += m.number_of_points;
         sum.right_branch += m.right_branch / trees;
         sum.same_wood += m.same_wood / trees;

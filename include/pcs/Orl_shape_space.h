@@ -17,11 +17,10 @@
 #include <pcs/internal/Stopwatch.h>
 #include <pcs/internal/progress.h>
 #include <pcs/internal/text.h>
-#include <pcs/shape_space/Branch_matching.h>
-#include <pcs/shape_space/Common_topology.h>
 #include <pcs/shape_space/Embedded_pair.h>
 #include <pcs/shape_space/build_family.h>
 #include <pcs/shape_space/check_options.h>
+#include <pcs/shape_space/match_trees.h>
 #include <pcs/shape_space/point_correspondences.h>
 #include <pcs/shape_space/stored_family.h>
 #include <pcs/shape_space/stored_topology.h>
@@ -210,19 +209,17 @@ public:
     progress.stage(0, 0.4);
     Embedded_pair built;
     read_form(np, built);
-    {
-      Branch_matching<ConcurrencyTag> matching(m_inputs[0].tree, m_inputs[1].tree, weights);
-      const auto trunk = progress(0) ? matching.run(progress) : nullptr;
-      report.seconds.matching = watch.lap();
-      if (!trunk)
-        return cancelled(report);
-      report.matching_energy = trunk->cost;
-      built.topology.paths = {matching.paths(0), matching.paths(1)};
-      shape_space::internal::Topology_builder builder(m_inputs[0].tree,
-                                                      m_inputs[1].tree,
-                                                      built.topology.paths);
-      built.topology.branches = builder.run(*trunk);
-    }
+    if (!progress(0))
+      return cancelled(report);
+    const Matching_cost cost = match_trees<ConcurrencyTag>({&m_inputs[0].tree, &m_inputs[1].tree},
+                                                           weights,
+                                                           progress,
+                                                           built.topology);
+    report.matching_energy = cost.energy;
+    report.unexplained_share = cost.share;
+    report.seconds.matching = watch.lap();
+    if (progress.is_cancelled())
+      return cancelled(report);
     shape_space::embed(inputs(), built);
     report.seconds.topology = watch.lap();
 

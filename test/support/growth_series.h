@@ -12,7 +12,11 @@
 #include <pcs/shape_space/best_turn.h>
 #include <support/orl_trees.h>
 
+#include <array>
+#include <cmath>
 #include <fstream>
+#include <limits>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -167,51 +171,104 @@ inline std::vector<Vec3> thinned(const std::vector<Vec3>& points, std::size_t mo
   return result;
 }
 
-/// The pose that lays `points` on `target`: turned about `up` by all angles, with both centers in one place, then improved
-/// with nearest points both ways.
-inline Pose align(const std::vector<Vec3>& points, const std::vector<Vec3>& target, const Vec3& up)
+/// The first point in each cell of a grid: neither dense places nor points that stand twice count more than others.
+inline std::vector<Vec3> evened(const std::vector<Vec3>& points, double cell)
 {
-  const std::vector<Vec3> few = thinned(points, 1000), seen = thinned(target, 1000);
-  const pcs::neighborhood::Nearest_neighbors in_seen(seen);
+  std::set<std::array<long, 3>> taken;
+  std::vector<Vec3> result;
+  for (const Vec3& p : points)
+    if (taken
+            .insert(
+                {std::lround(p.x() / cell), std::lround(p.y() / cell), std::lround(p.z() / cell)})
+            .second)
+      result.push_back(p);
+  return result;
+}
+
+/// Nearest points both ways lay `points` on `target`, again and again from a pose that is near; if `up` is not null, by turns
+/// about it only.
+inline Pose improve_pose(Pose pose,
+                         const std::vector<Vec3>& points,
+                         const std::vector<Vec3>& target,
+                         const Vec3& up,
+                         int steps)
+{
+  const pcs::neighborhood::Nearest_neighbors in_target(target);
   std::vector<pcs::neighborhood::Nearest_neighbors::Neighbor> found;
-  constexpr int starts = 24, steps = 30;
+  for (int step = 0; step < steps; ++step) {
+    const std::vector<Vec3> now = pose(points);
+    const pcs::neighborhood::Nearest_neighbors in_now(now);
+    std::vector<std::pair<Vec3, Vec3>> pairs;
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      in_target(now[i], 1, found);
+      pairs.emplace_back(points[i], target[found[0].index]);
+    }
+    for (const Vec3& q : target) {
+      in_now(q, 1, found);
+      pairs.emplace_back(points[found[0].index], q);
+    }
+    Vec3 from = Vec3::Zero(), to = Vec3::Zero();
+    for (const auto& [p, q] : pairs) {
+      from += p / static_cast<double>(pairs.size());
+      to += q / static_cast<double>(pairs.size());
+    }
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    for (const auto& [p, q] : pairs)
+      covariance += (q - to) * (p - from).transpose();
+    if (up.isZero())
+      pose.rotation = pcs::shape_space::best_turn(covariance, pcs::Quaternion(pose.rotation))
+                          .toRotationMatrix();
+    else {
+      const Eigen::Matrix3d skew = covariance.transpose() - covariance;
+      const double sine = up.dot(Vec3(skew(1, 2), skew(2, 0), skew(0, 1)));
+      const double cosine = covariance.trace() - up.dot(covariance * up);
+      pose.rotation = Eigen::AngleAxisd(std::atan2(sine, cosine), up).toRotationMatrix();
+    }
+    pose.shift = to - pose.rotation * from;
+  }
+  return pose;
+}
+
+/// The pose that lays `points` on `target`: from all turns about `up`, and unless plants are known to stand upright from
+/// tilts of 30 degrees as well, with both centers in one place. The best of the improved ones; where the search begins does
+/// not depend on how `points` lie.
+inline Pose align(const std::vector<Vec3>& points,
+                  const std::vector<Vec3>& target,
+                  const Vec3& up,
+                  bool is_upright)
+{
   const auto center = [](const std::vector<Vec3>& all) {
     Vec3 sum = Vec3::Zero();
     for (const Vec3& p : all)
       sum += p;
     return Vec3(sum / static_cast<double>(all.size()));
   };
-  Pose best;
-  double least = chamfer(few, seen);
-  for (int k = 0; k < starts; ++k) {
-    Pose pose;
-    pose.rotation = Eigen::AngleAxisd(2 * CGAL_PI * k / starts, up).toRotationMatrix();
-    pose.shift = center(seen) - pose.rotation * center(few);
-    for (int step = 0; step < steps; ++step) {
-      const std::vector<Vec3> now = pose(few);
-      const pcs::neighborhood::Nearest_neighbors in_now(now);
-      std::vector<std::pair<Vec3, Vec3>> pairs;
-      for (std::size_t i = 0; i < now.size(); ++i) {
-        in_seen(now[i], 1, found);
-        pairs.emplace_back(few[i], seen[found[0].index]);
-      }
-      for (const Vec3& q : seen) {
-        in_now(q, 1, found);
-        pairs.emplace_back(few[found[0].index], q);
-      }
-      Vec3 from = Vec3::Zero(), to = Vec3::Zero();
-      for (const auto& [p, q] : pairs) {
-        from += p / static_cast<double>(pairs.size());
-        to += q / static_cast<double>(pairs.size());
-      }
-      Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-      for (const auto& [p, q] : pairs)
-        covariance += (q - to) * (p - from).transpose();
-      pose.rotation = pcs::shape_space::best_turn(covariance, pcs::Quaternion(pose.rotation))
-                          .toRotationMatrix();
-      pose.shift = to - pose.rotation * from;
+  const Vec3 axis = is_upright ? up : Vec3::Zero();
+  const std::vector<Vec3> few = thinned(points, 400), seen = thinned(target, 400);
+  const Vec3 side = up.unitOrthogonal();
+  constexpr int turns = 24, tilts = 4, best_of = 6;
+  std::vector<std::pair<double, Pose>> found;
+  for (int k = 0; k < turns; ++k)
+    for (int t = 0; t < (is_upright ? 1 : tilts + 1); ++t) {
+      Pose pose;
+      pose.rotation = Eigen::AngleAxisd(2 * CGAL_PI * k / turns, up).toRotationMatrix();
+      if (t > 0)
+        pose.rotation =
+            Eigen::AngleAxisd(CGAL_PI / 6, Eigen::AngleAxisd(2 * CGAL_PI * t / tilts, up) * side) *
+            pose.rotation;
+      pose.shift = center(seen) - pose.rotation * center(few);
+      pose = improve_pose(pose, few, seen, axis, 15);
+      found.emplace_back(chamfer(pose(few), seen), pose);
     }
-    const double distance = chamfer(pose(few), seen);
+  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
+    return a.first < b.first;
+  });
+  const std::vector<Vec3> more = thinned(points, 2000), more_seen = thinned(target, 2000);
+  Pose best;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < best_of; ++k) {
+    const Pose pose = improve_pose(found[k].second, more, more_seen, axis, 30);
+    const double distance = chamfer(pose(more), more_seen);
     if (distance < least) {
       least = distance;
       best = pose;
@@ -220,38 +277,59 @@ inline Pose align(const std::vector<Vec3>& points, const std::vector<Vec3>& targ
   return best;
 }
 
+/// A plant at three times.
+struct Series
+{
+  Seen_plant first, middle, last;
+  double lambda = 0.5; ///< time of the middle
+  Vec3 up = Vec3::UnitZ();
+  bool is_upright = false;
+};
+
 /// Chamfer distances to what was seen in the middle. [L]
 struct Prediction
 {
   double geodesic, linear, first, last;
+  double attainable;  ///< of two halves of what was seen
+  double unexplained; ///< share of the smaller end that is not found in the other [-]
 };
 
-/// Pots are put down anew every day: the ends are aligned before, and each prediction before it is measured, all alike.
-inline Prediction predict(const Seen_plant& a,
-                          const Seen_plant& middle,
-                          const Seen_plant& b,
-                          double lambda,
-                          const Vec3& up)
+/// Pots are put down anew every day: the ends are aligned before, and each prediction before it is measured. Scans are dense in
+/// some places and the points of a prediction stand twice in some: all clouds are evened first. All alike.
+inline Prediction predict(const Series& series)
 {
-  const std::vector<Vec3> one = to_eigen(a.scan), seen = to_eigen(middle.scan);
-  const Pose pose = align(to_eigen(b.scan), one, up);
-  const std::vector<Vec3> two = pose(to_eigen(b.scan));
+  const std::vector<Vec3> one = to_eigen(series.first.scan), seen = to_eigen(series.middle.scan);
+  const Pose pose = align(to_eigen(series.last.scan), one, series.up, series.is_upright);
+  const std::vector<Vec3> two = pose(to_eigen(series.last.scan));
   std::vector<Point> turned;
   for (const Vec3& p : two)
     turned.push_back(to_cgal(p));
   pcs::Orl_shape_space<Kernel> space;
-  space.add(a.tree, a.scan);
-  space.add(moved(b.tree, pose.rotation, pose.shift), turned);
-  space.build();
+  space.add(series.first.tree, series.first.scan);
+  space.add(moved(series.last.tree, pose.rotation, pose.shift), turned);
+  const double unexplained = space.build().unexplained_share;
   std::vector<Point> points;
-  space.points(space.geodesic(0, 1, lambda), points);
+  space.points(space.geodesic(0, 1, series.lambda), points);
+  Vec3 low = seen[0], high = seen[0];
+  for (const Vec3& p : seen) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const double cell = (high - low).norm() / 200;
+  const std::vector<Vec3> truth = evened(seen, cell);
   const auto measure = [&](const std::vector<Vec3>& p) {
-    return chamfer(align(p, seen, up)(p), seen);
+    const std::vector<Vec3> even = evened(p, cell);
+    return chamfer(align(even, truth, series.up, series.is_upright)(even), truth);
   };
+  std::array<std::vector<Vec3>, 2> half;
+  for (std::size_t k = 0; k < seen.size(); ++k)
+    half[k % 2].push_back(seen[k]);
   return {measure(to_eigen(points)),
-          measure(morph_linearly(one, two, lambda)),
+          measure(morph_linearly(one, two, series.lambda)),
           measure(one),
-          measure(two)};
+          measure(two),
+          chamfer(evened(half[0], cell), evened(half[1], cell)),
+          unexplained};
 }
 
 } // namespace orl_test

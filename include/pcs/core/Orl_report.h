@@ -29,7 +29,9 @@ struct Orl_report
   std::size_t number_of_matched_branches = 0;             ///< pairs of branches [count]
   std::size_t number_of_edges = 0;                        ///< of the common topology [count]
   double matching_energy = 0; ///< of the branches, in units of the longest paths [-]
-  double distance = 0;        ///< between the trees, (4.7) [L]
+  double unexplained_share =
+      0; ///< of two trees: 0 if the smaller one is all found in the other, 1 if nothing of it is [-]
+  double distance = 0; ///< between the trees, (4.7) [L]
 
   std::array<std::size_t, 2> number_of_points = {0, 0}; ///< of the scans [count]
   std::size_t number_of_point_pairs = 0;                ///< points of an instance [count]

@@ -40,8 +40,9 @@ class Branch_matching
 public:
   Branch_matching(const Rooted_tree& tree_1,
                   const Rooted_tree& tree_2,
-                  const Matching_weights& weights)
-    : Branch_matching(tree_1, tree_2, weights, find_paths(tree_1, weights))
+                  const Matching_weights& weights,
+                  bool is_at_tips = false)
+    : Branch_matching(tree_1, tree_2, weights, find_paths(tree_1, weights), is_at_tips)
   {
   }
 
@@ -49,11 +50,13 @@ public:
   Branch_matching(const Rooted_tree& tree_1,
                   const Rooted_tree& tree_2,
                   const Matching_weights& weights,
-                  Branch_paths paths_1)
+                  Branch_paths paths_1,
+                  bool is_at_tips = false)
     : m_energy(tree_1,
                tree_2,
                weights,
                {std::move(paths_1), find_paths(tree_2, weights)},
+               is_at_tips,
                ConcurrencyTag()),
       m_number_of_trials(weights.number_of_trials),
       m_most_trunk_trials(trunk_factor * weights.number_of_trials)
@@ -74,12 +77,13 @@ public:
   /// The trunk of tree 2 is known: a path of `paths(1)`.
   void set_second_trunk(std::size_t path) { m_energy.set_second_trunk(path); }
 
-  /// Null when `progress` asks to stop.
-  std::shared_ptr<const Matched_branch> run(pcs::internal::Progress& progress)
+  /// Null when `progress` asks to stop, and when the cost is not below `most_cost`.
+  std::shared_ptr<const Matched_branch>
+  run(pcs::internal::Progress& progress,
+      const double most_cost = std::numeric_limits<double>::infinity())
   {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     const Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-    std::vector<Trial> trials = find_trials(0, 0, rotation, infinity, m_most_trunk_trials);
+    std::vector<Trial> trials = find_trials(0, 0, rotation, most_cost, m_most_trunk_trials);
     const std::size_t all = trials.size(), most = m_effort = m_number_of_trials;
     Result best;
     std::size_t number_done = 0;
@@ -93,7 +97,7 @@ public:
       for (std::size_t k = 0; k < all; ++k) {
         if (is_stopped())
           return nullptr;
-        const double limit = best ? trunk_slack * best->cost : infinity;
+        const double limit = best ? trunk_slack * best->cost : trunk_slack * most_cost;
         if (Result result = match_children(trials[k], rotation, limit)) {
           order.emplace_back(result->cost, k);
           if (!best || result->cost < best->cost)
@@ -111,7 +115,7 @@ public:
     for (Trial& trial : trials) {
       if (is_stopped())
         return nullptr;
-      if (Result result = match_children(std::move(trial), rotation, best ? best->cost : infinity))
+      if (Result result = match_children(std::move(trial), rotation, best ? best->cost : most_cost))
         best = std::move(result);
     }
     forget();
@@ -228,11 +232,13 @@ private:
         double cost = 0;
         if (!is_alone) {
           Trial trial = m_energy.match_curves(p1, p2, rotation, Matching_energy::few_samples);
-          const Children a = m_energy.children_of(0, m_energy.path(0, p1), nullptr);
-          const Children b = m_energy.children_of(1, m_energy.path(1, p2), &trial.gamma);
-          const Eigen::Matrix3d turned = m_energy.turn(p1, p2, trial.gamma, a, b, rotation, 0);
+          const Children a = m_energy.children_of(0, m_energy.path(0, p1), trial.last[0], nullptr);
+          const Children b =
+              m_energy.children_of(1, m_energy.path(1, p2), trial.last[1], &trial.gamma);
+          const Eigen::Matrix3d turned = m_energy.turn(trial, a, b, rotation, 0);
           m_energy.quick_assignment(a, b, turned, m_energy.length(0, p1), &cost);
           cost += is_turned ? m_energy.turned_energy(trial, rotation, turned) : trial.cost;
+          cost += m_energy.rest_cost(p1, p2, trial.last);
         }
         order.push_back({cost, p1, p2});
       }
@@ -251,12 +257,9 @@ private:
                       &path_2 = m_energy.path(1, trial.path_2);
     if (!m_energy.is_turned() && trial.cost >= limit)
       return nullptr;
-    const Children a = m_energy.children_of(0, path_1, nullptr);
-    Children b = m_energy.children_of(1, path_2, &trial.gamma);
-    const auto find_turn = [&] {
-      return m_energy
-          .turn(trial.path_1, trial.path_2, trial.gamma, a, b, rotation, number_of_passes);
-    };
+    const Children a = m_energy.children_of(0, path_1, trial.last[0], nullptr);
+    Children b = m_energy.children_of(1, path_2, trial.last[1], &trial.gamma);
+    const auto find_turn = [&] { return m_energy.turn(trial, a, b, rotation, number_of_passes); };
     Eigen::Matrix3d turned = find_turn();
     auto result = std::make_shared<Matched_branch>();
     result->cost = trial.cost;
@@ -264,15 +267,17 @@ private:
       if ((turned - rotation).norm() > rematch_turn) {
         // what runs along what is seen better now
         trial = m_energy.match_curves(trial.path_1, trial.path_2, turned, trial.gamma.size());
-        b = m_energy.children_of(1, path_2, &trial.gamma);
+        b = m_energy.children_of(1, path_2, trial.last[1], &trial.gamma);
         turned = find_turn();
       }
       result->cost = m_energy.turned_energy(trial, rotation, turned);
     }
+    result->cost += m_energy.rest_cost(trial.path_1, trial.path_2, trial.last);
     if (result->cost >= limit)
       return nullptr;
     result->path_1 = trial.path_1;
     result->path_2 = trial.path_2;
+    result->last = trial.last;
     result->rotation = m_energy.frame() * turned * m_energy.frame().transpose();
     for (const double w : a.weight)
       result->cost += m_energy.single_term(w);

@@ -36,7 +36,9 @@ struct Branch_path
     std::size_t position; ///< index in `nodes`
   };
   std::vector<Child> children; ///< by position, then longest first
-  bool is_trunk = false;       ///< whether it begins with the root itself, and not with an edge
+  bool is_continued =
+      false;             ///< whether it goes on where another branch was cut: it begins as thick
+  bool is_trunk = false; ///< whether it begins with the root itself, and not with an edge
   double length() const { return arc.back(); }
   std::size_t tip() const { return nodes.back(); }
 };

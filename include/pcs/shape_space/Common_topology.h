@@ -190,12 +190,18 @@ inline double node_number(const std::vector<double>& node, double s)
   return std::abs(t - rounded) < 1e-9 ? rounded : t;
 }
 
+/// Whether no other child of its parent leads further.
+inline bool is_longest_child(const Rooted_tree& tree, std::size_t v)
+{
+  return tree.children[tree.first_child[tree.parents[v]]] == v;
+}
+
 class Topology_builder
 {
 public:
   Topology_builder(const Rooted_tree& tree_1,
                    const Rooted_tree& tree_2,
-                   const std::array<Branch_paths, 2>& paths)
+                   std::array<Branch_paths, 2>& paths)
     : m_trees{&tree_1, &tree_2}, m_paths(paths)
   {
   }
@@ -212,9 +218,34 @@ private:
     return m_paths[static_cast<std::size_t>(t)].paths[i];
   }
 
+  /// The beginning of a path up to its node `last` as a path of its own; the rest becomes a branch that grows from its end.
+  std::size_t cut(std::size_t t, std::size_t p, std::size_t last)
+  {
+    Branch_path head = m_paths[t].paths[p];
+    if (last + 1 >= head.nodes.size())
+      return p;
+    const std::size_t next = head.nodes[last + 1];
+    // the longest, whatever way the matching took: ways that part behind the end cost the same
+    std::vector<std::size_t> rest{head.nodes[last], next};
+    follow_longest(*m_trees[t], rest);
+    head.nodes.resize(last + 1);
+    head.arc.resize(last + 1);
+    while (!head.children.empty() && head.children.back().position > last)
+      head.children.pop_back();
+    head.children.push_back({next, last});
+    std::vector<std::size_t>& of_rest = m_paths[t].paths_of[next];
+    of_rest.insert(of_rest.begin(), m_paths[t].paths.size());
+    m_paths[t].paths.push_back(make_path(*m_trees[t], std::move(rest), false));
+    m_paths[t].paths.back().is_continued = is_longest_child(*m_trees[t], next);
+    m_paths[t].paths.push_back(std::move(head));
+    return m_paths[t].paths.size() - 1;
+  }
+
   void add_pair(const Matched_branch& match, std::size_t parent, double attach_1, double attach_2)
   {
-    const Branch_path &one = path(0, match.path_1), &two = path(1, match.path_2);
+    const std::array<std::size_t, 2> paths = {cut(0, match.path_1, match.last[0]),
+                                              cut(1, match.path_2, match.last[1])};
+    const Branch_path one = path(0, paths[0]), two = path(1, paths[1]); // more may be added
     const std::size_t n = m_matcher.number_of_samples();
     m_matcher(sample_curve(*m_trees[0], one, n), sample_curve(*m_trees[1], two, n), match.rotation);
     const std::vector<double> gamma = m_matcher.gamma();
@@ -230,7 +261,7 @@ private:
     const Warp warp(gamma, heaviest_chain(std::move(forks)));
     Common_branch branch;
     branch.parent = parent;
-    branch.path = {match.path_1, match.path_2};
+    branch.path = paths;
     branch.attachment = {attach_1, attach_2};
     for (const Place_pair& p : common_nodes(one, two, warp)) {
       branch.node[0].push_back(p.a);
@@ -265,7 +296,7 @@ private:
     branch.parent = parent;
     branch.path[i] = m_paths[i].paths_of[start].front();
     branch.attachment = {attach, attach};
-    const Branch_path& own = path(t, branch.path[i]);
+    const Branch_path own = path(t, branch.path[i]);
     for (const double arc : own.arc)
       branch.node[i].push_back(arc / own.length());
     m_branches.push_back(branch);
@@ -281,7 +312,7 @@ private:
   }
 
   std::array<const Rooted_tree*, 2> m_trees;
-  const std::array<Branch_paths, 2>& m_paths;
+  std::array<Branch_paths, 2>& m_paths;
   Elastic_matcher m_matcher{65, 6};
   std::vector<Common_branch> m_branches;
 };

@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <vector>
@@ -16,11 +17,20 @@
 namespace pcs {
 namespace shape_space {
 
+/// How branches of a tree become longer.
+enum class Growth {
+  any,            ///< whichever explains more
+  along_branches, ///< everywhere: a branch is stretched, and what hangs on it moves along
+  at_tips ///< what is there stays; the two trees are measured in the same unit, and the shorter of two branches is the
+          ///< beginning of the longer one
+};
+
 /// Weights of the energy of a matching. All terms are lengths in units of the longest path of each tree, so
 /// that size does not matter.
 struct Matching_weights
 {
-  double curve = 1;     ///< of the elastic energy of two branches [-]
+  Growth growth = Growth::any; ///< for two trees; spaces of more stretch branches
+  double curve = 1;            ///< of the elastic energy of two branches [-]
   double position = 1;  ///< of the distance of attachments, in units of the branches' lengths [-]
   double far = 1;       ///< attachments so far apart, of the parent's length, cost half of that [-]
   double single = 0.5;  ///< of the length of a subtree without partner [-]
@@ -41,7 +51,8 @@ struct Matching_weights
 struct Matched_branch
 {
   std::size_t path_1 = none, path_2 = none;
-  double cost = 0; ///< with all that hangs on them [-]
+  std::array<std::size_t, 2> last = {none, none}; ///< node of each path that the pair ends with
+  double cost = 0;                                ///< with all that hangs on them [-]
   Eigen::Matrix3d rotation =
       Eigen::Matrix3d::Identity(); ///< carries the second branch to the first
   struct Pair

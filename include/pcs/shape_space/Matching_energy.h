@@ -28,7 +28,7 @@ namespace pcs {
 namespace shape_space {
 
 /// All terms of the energy of a matching of two trees, for any of the ways to take them apart. Lengths are in units of the
-/// longest path of each tree.
+/// longest path of each tree; where growth is at tips, in units of the longest of both.
 class Matching_energy
 {
 public:
@@ -39,6 +39,8 @@ public:
   struct Trial
   {
     std::size_t path_1, path_2;
+    std::array<std::size_t, 2>
+        last; ///< nodes that they end with: where growth is at tips, not always the tips
     double cost;
     std::vector<double> gamma;
   };
@@ -56,9 +58,16 @@ public:
                   const Rooted_tree& tree_2,
                   const Matching_weights& weights,
                   std::array<Branch_paths, 2> paths,
+                  bool is_at_tips,
                   ConcurrencyTag)
-    : m_weights(weights), m_trees{&tree_1, &tree_2}, m_paths(std::move(paths))
+    : m_weights(weights),
+      m_trees{&tree_1, &tree_2},
+      m_is_at_tips(is_at_tips),
+      m_unit{tree_1.heights[0], tree_2.heights[0]},
+      m_paths(std::move(paths))
   {
+    if (is_at_tips)
+      m_unit[0] = m_unit[1] = std::max(m_unit[0], m_unit[1]);
     for (std::size_t t = 0; t < 2; ++t) {
       m_curves[t].resize(m_paths[t].paths.size());
       m_coarse[t].resize(m_paths[t].paths.size());
@@ -67,7 +76,7 @@ public:
           [&](std::size_t i) {
             Sampled_curve& curve = m_curves[t][i];
             curve = sample_curve(*m_trees[t], m_paths[t].paths[i], number_of_samples);
-            curve.length /= m_trees[t]->heights[0];
+            curve.length /= m_unit[t];
             turn_curve(curve);
             m_coarse[t][i] = curve;
             for (std::size_t k = 0; k < few_samples; ++k)
@@ -94,22 +103,57 @@ public:
   {
     const Rooted_tree& tree = *m_trees[static_cast<std::size_t>(t)];
     return (tree.weights[start] + (tree.parents[start] == none ? 0 : tree.edge_length(start))) /
-           tree.heights[0];
+           m_unit[static_cast<std::size_t>(t)];
+  }
+
+  /// Nodes that two branches end with, if they are matched: their tips, or where growth is at tips the tip of the shorter one
+  /// and the node of the longer one that is as far from the base.
+  std::array<std::size_t, 2> last_nodes(std::size_t p1, std::size_t p2) const
+  {
+    std::array<std::size_t, 2> last = {path(0, p1).nodes.size() - 1, path(1, p2).nodes.size() - 1};
+    if (!is_cut(path(0, p1).length(), path(1, p2).length()))
+      return last;
+    const std::size_t t = path(0, p1).length() > path(1, p2).length() ? 0 : 1;
+    const Branch_path &more = t == 0 ? path(0, p1) : path(1, p2),
+                      &less = t == 0 ? path(1, p2) : path(0, p1);
+    const auto it = std::lower_bound(more.arc.begin() + 1, more.arc.end() - 1, less.length());
+    auto k = static_cast<std::size_t>(it - more.arc.begin());
+    if (k > 1 && less.length() - more.arc[k - 1] < nearer * (more.arc[k] - less.length()))
+      --k;
+    last[t] = k;
+    return last;
+  }
+
+  /// What grew on beyond the last nodes costs: no partner is looked for there.
+  double rest_cost(std::size_t p1, std::size_t p2, const std::array<std::size_t, 2>& last) const
+  {
+    double length = 0;
+    for (int t = 0; t < 2; ++t) {
+      const Branch_path& whole = path(t, t == 0 ? p1 : p2);
+      const std::size_t end = last[static_cast<std::size_t>(t)];
+      length += (whole.length() - whole.arc[end]) / m_unit[static_cast<std::size_t>(t)];
+      for (const Branch_path::Child& c : whole.children)
+        length += c.position > end ? weight(t, c.start) : 0;
+    }
+    return single_term(length);
   }
 
   /// A bound for the elastic energy: no pair of tangents is closer than the cones around the mean directions allow.
   double least_energy(std::size_t p1, std::size_t p2, const Eigen::Matrix3d& rotation) const
   {
     const Sampled_curve &a = m_curves[0][p1], &b = m_curves[1][p2];
+    double length_1 = a.length, length_2 = b.length;
+    if (is_cut(length_1, length_2)) // the beginning of a curve is in the same cone, or nearly so
+      length_1 = length_2 = std::min(length_1, length_2);
+    const double total = length_1 + length_2, mean = 2 * std::sqrt(length_1 * length_2);
     const double cosine = std::min(1.0, std::max(-1.0, a.direction.dot(rotation * b.direction)));
     const double angle = std::max(0.0, std::acos(cosine) - a.spread - b.spread);
     if (m_weights.is_published || !m_weights.is_carried)
-      return a.length + b.length -
-             2 * std::sqrt(a.length * b.length) * std::max(0.0, std::cos(angle)) * (1 + 1e-12);
+      return total - mean * std::max(0.0, std::cos(angle)) * (1 + 1e-12);
     // the branch may turn by a part of the angle
     const double t = m_weights.turn;
     const double gain = std::sqrt(1 + t * t + 2 * t * std::cos(angle)) - t;
-    return a.length + b.length - 2 * std::sqrt(a.length * b.length) * gain * (1 + 1e-12);
+    return total - mean * gain * (1 + 1e-12);
   }
 
   /// All that two subtrees cost at least: what one of them has more is stretched or single.
@@ -135,7 +179,9 @@ public:
                        const Eigen::Matrix3d& rotation) const
   {
     const std::size_t n = trial.gamma.size();
-    const Sampled_curve &one = curve(0, trial.path_1, n), &two = curve(1, trial.path_2, n);
+    std::array<Sampled_curve, 2> cut;
+    const Sampled_curve &one = curve(0, trial.path_1, n, trial.last[0], cut[0]),
+                        &two = curve(1, trial.path_2, n, trial.last[1], cut[1]);
     double sum = 0;
     for (std::size_t i = 0; i + 1 < n; ++i) {
       const double x = trial.gamma[i] * static_cast<double>(n - 1);
@@ -160,18 +206,25 @@ public:
     if (m_weights.is_published)
       return m_weights.position * parent_length * d * d;
     // far is far: branches of other species are not single for their place alone
-    return m_weights.position * 0.5 * (w1 + w2) * d / (1 + d / m_weights.far);
+    const double w = m_is_at_tips ? std::min(w1, w2) : 0.5 * (w1 + w2);
+    return m_weights.position * w * d / (1 + d / m_weights.far);
   }
 
   bool is_turned() const { return m_weights.is_carried && !m_weights.is_published; }
 
   double single_term(double w) const { return (m_weights.is_published ? 1 : m_weights.single) * w; }
 
-  Children children_of(int t, const Branch_path& path, const std::vector<double>* gamma) const
+  /// Up to the node `last`.
+  Children children_of(int t,
+                       const Branch_path& path,
+                       std::size_t last,
+                       const std::vector<double>* gamma) const
   {
     Children result;
     for (const Branch_path::Child& c : path.children) {
-      const double s = path.arc[c.position] / path.length();
+      if (c.position > last)
+        break;
+      const double s = path.arc[c.position] / path.arc[last];
       result.s.push_back(gamma ? inverse_at(*gamma, s) : s);
       result.weight.push_back(weight(t, c.start));
       result.length.push_back(curves(t)[paths(t).paths_of[c.start].front()].length);
@@ -209,9 +262,7 @@ public:
   }
 
   /// The turn that carries branch 2 to branch 1, from the curves, the children, and what the parents say.
-  Eigen::Matrix3d turn(std::size_t p1,
-                       std::size_t p2,
-                       const std::vector<double>& gamma,
+  Eigen::Matrix3d turn(const Trial& trial,
                        const Children& a,
                        const Children& b,
                        const Eigen::Matrix3d& carried,
@@ -219,8 +270,11 @@ public:
   {
     if (!m_weights.is_carried || m_weights.is_published)
       return carried;
+    const std::vector<double>& gamma = trial.gamma;
     const std::size_t n = gamma.size();
-    const Sampled_curve &one = curve(0, p1, n), &two = curve(1, p2, n);
+    std::array<Sampled_curve, 2> cut;
+    const Sampled_curve &one = curve(0, trial.path_1, n, trial.last[0], cut[0]),
+                        &two = curve(1, trial.path_2, n, trial.last[1], cut[1]);
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
     for (std::size_t i = 0; i < n; ++i) {
       const double x = gamma[i] * static_cast<double>(n - 1);
@@ -256,20 +310,42 @@ public:
   {
     thread_local Elastic_matcher fine(number_of_samples, 3), coarse(few_samples, 3);
     Elastic_matcher& matcher = samples == number_of_samples ? fine : coarse;
-    const Sampled_curve &one = curve(0, p1, samples), &two = curve(1, p2, samples);
+    const std::array<std::size_t, 2> last = last_nodes(p1, p2);
+    std::array<Sampled_curve, 2> cut;
+    const Sampled_curve &one = curve(0, p1, samples, last[0], cut[0]),
+                        &two = curve(1, p2, samples, last[1], cut[1]);
     const double m = matcher(one, two, rotation);
     const double energy = one.length + two.length - 2 * std::sqrt(one.length * two.length) * m;
-    return {p1, p2, m_weights.curve * std::max(0.0, energy), matcher.gamma()};
+    return {p1, p2, last, m_weights.curve * std::max(0.0, energy), matcher.gamma()};
   }
 
 private:
+  // not round, as trees made of round numbers are
+  static constexpr double longest_cut = 0.950001; // branches whose lengths differ less end together
+  static constexpr double nearer = 0.999999; // of two nodes that are about as far, the one behind
+
+  bool is_cut(double length_1, double length_2) const
+  {
+    return m_is_at_tips &&
+           std::min(length_1, length_2) < longest_cut * std::max(length_1, length_2);
+  }
+
   const std::vector<Sampled_curve>& curves(int t) const
   {
     return m_curves[static_cast<std::size_t>(t)];
   }
-  const Sampled_curve& curve(int t, std::size_t path, std::size_t samples) const
+  /// Up to the node `last`, kept in `cut` if that is not the tip.
+  const Sampled_curve&
+  curve(int t, std::size_t path, std::size_t samples, std::size_t last, Sampled_curve& cut) const
   {
     const auto i = static_cast<std::size_t>(t);
+    const Branch_path& whole = m_paths[i].paths[path];
+    if (last + 1 < whole.nodes.size()) {
+      cut = sample_curve(*m_trees[i], whole, samples, last);
+      cut.length /= m_unit[i];
+      turn_curve(cut);
+      return cut;
+    }
     return samples == number_of_samples ? m_curves[i][path] : m_coarse[i][path];
   }
 
@@ -297,12 +373,17 @@ private:
       const double t = m_weights.turn;
       cosine = std::sqrt(1 + t * t + 2 * t * a.direction[i].dot(rotation * b.direction[j])) - t;
     }
+    if (m_is_at_tips)
+      return 2 * std::min(a.weight[i], b.weight[j]) * (1 - cosine) +
+             length_term(a.weight[i], b.weight[j]);
     return a.weight[i] + b.weight[j] - 2 * std::sqrt(a.weight[i] * b.weight[j]) * cosine +
            length_term(a.weight[i], b.weight[j]);
   }
 
   Matching_weights m_weights;
   std::array<const Rooted_tree*, 2> m_trees;
+  bool m_is_at_tips;
+  std::array<double, 2> m_unit; // of length
   Eigen::Matrix3d m_frame = canonical_frame(*m_trees[0]);
   std::array<Branch_paths, 2> m_paths;
   std::array<std::vector<Sampled_curve>, 2> m_curves, m_coarse;

@@ -43,11 +43,13 @@ inline Vec3 point_at(const Rooted_tree& tree, const Branch_path& path, double s)
 }
 
 /// Tangents by differences over two steps: kinks shorter than the step are smoothed, as by the text's spline.
-inline Sampled_curve sample_curve(const Rooted_tree& tree, const Branch_path& path, std::size_t n)
+/// The curve goes up to the node `last` of the path.
+inline Sampled_curve
+sample_curve(const Rooted_tree& tree, const Branch_path& path, std::size_t n, std::size_t last)
 {
   Sampled_curve curve;
   const auto size = static_cast<Eigen::Index>(n);
-  curve.length = path.length();
+  curve.length = path.arc[last];
   Eigen::Matrix3Xd places(3, size);
   for (Eigen::Index i = 0; i < size; ++i)
     places.col(i) =
@@ -68,6 +70,11 @@ inline Sampled_curve sample_curve(const Rooted_tree& tree, const Branch_path& pa
     smallest = std::min(smallest, curve.direction.dot(curve.tangents.col(i)));
   curve.spread = std::acos(std::max(-1.0, smallest));
   return curve;
+}
+
+inline Sampled_curve sample_curve(const Rooted_tree& tree, const Branch_path& path, std::size_t n)
+{
+  return sample_curve(tree, path, n, path.nodes.size() - 1);
 }
 
 /// Steps of the grid, coprime pairs up to 3 or up to 6.

@@ -54,7 +54,7 @@ namespace internal {
 inline double path_radius(const Rooted_tree& tree, const Branch_path& path, std::size_t k)
 {
   const std::size_t v = path.nodes[k];
-  if (k > 0 || path.is_trunk)
+  if (k > 0 || path.is_trunk || path.is_continued)
     return tree.radii[v];
   const std::size_t w = path.nodes[1];
   return std::isfinite(tree.base_radii[w]) ? tree.base_radii[w]

@@ -85,6 +85,12 @@ inline Common_topology restore_topology(const Orl_correspondences& stored,
       check((b.first[t] == 0) == (i == 0), "a branch begins with the root");
       branch.path[t] = result.paths[t].paths.size();
       result.paths[t].paths.push_back(internal::make_path(tree, std::move(nodes), b.first[t] == 0));
+      if (i > 0 && result.branches[b.parent].path[t] != none) {
+        const Branch_path& parent = result.paths[t].paths[result.branches[b.parent].path[t]];
+        Branch_path& path = result.paths[t].paths.back();
+        path.is_continued =
+            path.nodes.front() == parent.tip() && internal::is_longest_child(tree, path.nodes[1]);
+      }
       const std::vector<double>& s = b.nodes[t];
       check(s.size() > 1 && s.front() == 0 && s.back() == 1, "a branch does not go from 0 to 1");
       for (std::size_t k = 1; k < s.size(); ++k)
