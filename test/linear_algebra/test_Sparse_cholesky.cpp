@@ -200,12 +200,13 @@ BOOST_AUTO_TEST_CASE(all_kernels_give_the_same_bits)
                                      static_cast<Eigen::Index>(below));
         Eigen::MatrixXd scaled = p;
         Eigen::VectorXd diagonal = spd.diagonal();
-        const bool is_regular = kernel({p.data(), height},
-                                       {scaled.data(), height},
-                                       height,
-                                       width,
-                                       {rest.data(), below},
-                                       {diagonal.data(), diagonal.data() + width});
+        const bool is_regular = kernel({{p.data(), height},
+                                        {scaled.data(), height},
+                                        height,
+                                        width,
+                                        {rest.data(), below},
+                                        diagonal.data(),
+                                        diagonal.data() + width});
         rest.diagonal() = diagonal.tail(rest.rows());
         return is_regular;
       };

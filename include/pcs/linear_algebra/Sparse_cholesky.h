@@ -119,12 +119,13 @@ private:
       const std::uint32_t* row = p.row.data() + p.first_row[s];
       for (std::size_t r = 0; r < below; ++r)
         diagonal_below[r] = diagonal[row[r]];
-      if (!factorize_front(panel,
-                           {scaled.data(), width + below},
-                           width + below,
-                           width,
-                           rest,
-                           {diagonal.data() + p.first[s], diagonal_below.data()}))
+      if (!factorize_front({panel,
+                            {scaled.data(), width + below},
+                            width + below,
+                            width,
+                            rest,
+                            diagonal.data() + p.first[s],
+                            diagonal_below.data()}))
         return false;
       for (std::size_t r = 0; r < below; ++r)
         diagonal[row[r]] = diagonal_below[r];

@@ -14,14 +14,6 @@
 namespace pcs {
 namespace linear_algebra {
 
-/// The part of the diagonal that is not eliminated yet: of the panel's own rows, and of the rows below. It is kept apart,
-/// because updates of updates would first be added up, and lose what is small beside them: one difference at a time
-/// keeps the pivots of Laplacians positive, however far apart the weights lie.
-struct Present_diagonal
-{
-  double *own, *below;
-};
-
 /// A matrix by columns.
 struct Dense_columns
 {
@@ -29,6 +21,25 @@ struct Dense_columns
   std::size_t stride; ///< from column to column
 
   double* at(std::size_t row, std::size_t column) const { return value + row + column * stride; }
+};
+
+/*!
+  A panel of `width` columns and `height` rows on its way through a factorisation.
+
+  The diagonal is kept apart: updates of updates would first be added up, and lose what is small beside them. One
+  difference at a time keeps the pivots of Laplacians positive, however far apart the weights lie.
+*/
+struct Front
+{
+  /// In: the matrix with the updates of the children. Out: `D` on the diagonal, `L` below.
+  Dense_columns panel;
+  /// Gets `L D`.
+  Dense_columns scaled;
+  std::size_t height, width;
+  /// `height - width` square. What the panel leaves to the rows below is subtracted from its lower triangle.
+  Dense_columns rest;
+  /// Present values for the panel's own rows, and for the rows below.
+  double *diagonal, *diagonal_below;
 };
 
 namespace internal {
@@ -108,40 +119,41 @@ PCS_ALWAYS_INLINE void subtract_strip(const Dense_product& l,
     }
 }
 
-/*!
-  Factorises a panel of `width` columns and `height` rows in place: `D` on the diagonal of its upper part, `L` below.
-  `scaled` gets `L D`. Subtracts what the panel leaves to the rows below from the lower triangle of `rest`, `height - width`
-  square. Returns `false` if a pivot is not positive.
-*/
+/// Factorises a panel in place, and subtracts what it leaves to the rows below. `false` if a pivot is not positive.
 template <class Arithmetic>
-PCS_ALWAYS_INLINE bool factorize_front(const Dense_columns& panel,
-                                       const Dense_columns& scaled,
-                                       std::size_t height,
-                                       std::size_t width,
-                                       const Dense_columns& rest,
-                                       const Present_diagonal& diagonal)
+PCS_ALWAYS_INLINE bool factorize_front(const Front& front)
 {
+  const Dense_columns &panel = front.panel, &scaled = front.scaled, &rest = front.rest;
+  const std::size_t height = front.height, width = front.width;
   constexpr std::size_t strip = 4;
   const Dense_product all{panel, scaled};
+  // Columns from `begin` to `end` of `c`, which starts at row and column `first` of the panel.
+  const auto subtract = [&](std::size_t begin,
+                            std::size_t end,
+                            std::size_t first,
+                            std::size_t count,
+                            const Dense_columns& c) PCS_LAMBDA_INLINE {
+    std::size_t j = begin;
+    for (; j + strip <= end; j += strip)
+      subtract_strip<Arithmetic, strip>(all,
+                                        first + j,
+                                        height,
+                                        first + j,
+                                        count,
+                                        c.at(j, j),
+                                        c.stride);
+    for (; j < end; ++j)
+      subtract_strip<Arithmetic, 1>(all, first + j, height, first + j, count, c.at(j, j), c.stride);
+  };
   for (std::size_t begin = 0; begin < width; begin += strip) {
     const std::size_t end = std::min(width, begin + strip);
-    if (end == begin + strip)
-      subtract_strip<Arithmetic, strip>(all,
-                                        begin,
-                                        height,
-                                        begin,
-                                        begin,
-                                        panel.at(begin, begin),
-                                        panel.stride);
-    else
-      for (std::size_t j = begin; j < end; ++j)
-        subtract_strip<Arithmetic, 1>(all, j, height, j, begin, panel.at(j, j), panel.stride);
+    subtract(begin, end, 0, begin, panel);
     const Dense_product own{{panel.at(0, begin), panel.stride},
                             {scaled.at(0, begin), scaled.stride}};
     for (std::size_t j = begin; j < end; ++j) {
       subtract_strip<Arithmetic, 1>(own, j, height, j, j - begin, panel.at(j, j), panel.stride);
       double *column = panel.at(0, j), *unscaled = scaled.at(0, j);
-      const double pivot = column[j] = diagonal.own[j];
+      const double pivot = column[j] = front.diagonal[j];
       if (!(pivot > 0))
         return false;
       for (std::size_t i = j + 1; i < height; ++i) {
@@ -149,84 +161,37 @@ PCS_ALWAYS_INLINE bool factorize_front(const Dense_columns& panel,
         column[i] /= pivot;
       }
       for (std::size_t i = j + 1; i < width; ++i)
-        Arithmetic::subtract_product(column[i], unscaled[i], diagonal.own[i]);
+        Arithmetic::subtract_product(column[i], unscaled[i], front.diagonal[i]);
       for (std::size_t i = width; i < height; ++i)
-        Arithmetic::subtract_product(column[i], unscaled[i], diagonal.below[i - width]);
+        Arithmetic::subtract_product(column[i], unscaled[i], front.diagonal_below[i - width]);
     }
   }
-  const std::size_t below = height - width;
-  std::size_t j = 0;
-  for (; j + strip <= below; j += strip)
-    subtract_strip<Arithmetic, strip>(all,
-                                      width + j,
-                                      height,
-                                      width + j,
-                                      width,
-                                      rest.at(j, j),
-                                      rest.stride);
-  for (; j < below; ++j)
-    subtract_strip<Arithmetic, 1>(all,
-                                  width + j,
-                                  height,
-                                  width + j,
-                                  width,
-                                  rest.at(j, j),
-                                  rest.stride);
+  subtract(0, height - width, width, width, rest);
   return true;
 }
 
-inline bool factorize_front_default(const Dense_columns& panel,
-                                    const Dense_columns& scaled,
-                                    std::size_t height,
-                                    std::size_t width,
-                                    const Dense_columns& rest,
-                                    const Present_diagonal& diagonal)
+inline bool factorize_front_default(const Front& front)
 {
-  return factorize_front<Plain_arithmetic>(panel, scaled, height, width, rest, diagonal);
+  return factorize_front<Plain_arithmetic>(front);
 }
 
 #if PCS_HAS_RUNTIME_DISPATCH
-PCS_TARGET_AVX2 inline bool factorize_front_avx2(const Dense_columns& panel,
-                                                 const Dense_columns& scaled,
-                                                 std::size_t height,
-                                                 std::size_t width,
-                                                 const Dense_columns& rest,
-                                                 const Present_diagonal& diagonal)
+PCS_TARGET_AVX2 inline bool factorize_front_avx2(const Front& front)
 {
-  return factorize_front<pcs::internal::Avx2_arithmetic>(panel,
-                                                         scaled,
-                                                         height,
-                                                         width,
-                                                         rest,
-                                                         diagonal);
+  return factorize_front<pcs::internal::Avx2_arithmetic>(front);
 }
 #endif
 
 #ifdef PCS_HAS_AVX_ASSEMBLY
-PCS_TARGET_AVX512 inline bool factorize_front_avx512(const Dense_columns& panel,
-                                                     const Dense_columns& scaled,
-                                                     std::size_t height,
-                                                     std::size_t width,
-                                                     const Dense_columns& rest,
-                                                     const Present_diagonal& diagonal)
+PCS_TARGET_AVX512 inline bool factorize_front_avx512(const Front& front)
 {
-  return factorize_front<pcs::internal::Avx512_arithmetic>(panel,
-                                                           scaled,
-                                                           height,
-                                                           width,
-                                                           rest,
-                                                           diagonal);
+  return factorize_front<pcs::internal::Avx512_arithmetic>(front);
 }
 #endif
 
 } // namespace internal
 
-using Factorize_front = bool (*)(const Dense_columns&,
-                                 const Dense_columns&,
-                                 std::size_t,
-                                 std::size_t,
-                                 const Dense_columns&,
-                                 const Present_diagonal&);
+using Factorize_front = bool (*)(const Front&);
 
 /// The kernel for this machine. Those with a fused multiply-add give the same bits.
 inline Factorize_front choose_factorize_front()
