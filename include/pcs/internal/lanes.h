@@ -95,13 +95,6 @@ struct Array_lanes
   PCS_LANE_OPERATOR(*)
   PCS_LANE_OPERATOR(/)
 #undef PCS_LANE_OPERATOR
-  friend Array_lanes operator-(T a, const Array_lanes& b)
-  {
-    Array_lanes c;
-    for (std::size_t i = 0; i < N; ++i)
-      c.v[i] = a - b.v[i];
-    return c;
-  }
   Array_lanes& operator+=(const Array_lanes& b)
   {
     return *this = *this + b;
