@@ -553,6 +553,35 @@ BOOST_AUTO_TEST_CASE(other_points_follow_the_points_around_them)
   }
 }
 
+BOOST_AUTO_TEST_CASE(points_are_carried_before_the_handles_have_moved)
+{
+  for (const int samples : {1000000, 150}) {
+    Bar_session s(samples);
+    const Points rest = s.edit.points;
+    Points others = rest;
+    s.session.apply(others);
+    BOOST_TEST(pcs_test::largest_distance(others, rest) < 1e-12);
+    s.session.preprocess();
+    others = rest;
+    s.session.apply(others);
+    BOOST_TEST(pcs_test::largest_distance(others, rest) < 1e-12);
+
+    // A handle that is new since the last deformation, in front of one that has moved.
+    s.session.set_transformation(1, bend());
+    s.session.deform();
+    s.session.add_handle(
+        pcs_test::select(rest, [](const Vec3& p) { return p.z() > 1 && p.z() < 1.2; }));
+    s.session.preprocess();
+    others = rest;
+    s.session.apply(others);
+    double farthest = 0;
+    for (std::size_t i = 0; i < rest.size(); ++i)
+      if (rest[i].z() > 3.8)
+        farthest = std::max(farthest, (others[i] - bend()(rest[i])).norm());
+    BOOST_TEST(farthest < 1e-9);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(carrying_checks_its_points_first)
 {
   Bar_session s(150);

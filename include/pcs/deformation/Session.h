@@ -334,6 +334,7 @@ public:
   /// Builds what `carry()` needs, unless it is there. O(n log n).
   void prepare_carrying()
   {
+    complete_transforms();
     read_outlier_maps();
     if (m_carrier)
       return;
@@ -422,6 +423,17 @@ private:
   }
 
   Vec3 rest_of_site(std::size_t site) const { return m_body.rest_of_site(site); }
+
+  /// Handles that were added since the last solve have moved nothing yet. The outside of the region stays the last.
+  void complete_transforms()
+  {
+    const std::size_t outside_count = m_has_outside ? 1 : 0;
+    if (m_local_transforms.size() == m_transforms.size() + outside_count)
+      return;
+    if (!m_local_transforms.empty())
+      m_local_transforms.resize(m_local_transforms.size() - outside_count);
+    m_local_transforms.resize(m_transforms.size() + outside_count);
+  }
 
   void update_centroids()
   {
