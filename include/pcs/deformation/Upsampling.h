@@ -91,8 +91,6 @@ public:
 
   Vec3 rest(std::size_t i) const { return lane(m_rest, i); }
   Vec3 rest_normal(std::size_t i) const { return lane(m_normal, i); }
-  const Lane_vectors& rest_of_block(std::size_t block) const { return m_rest[block]; }
-  const Lane_vectors& normals_of_block(std::size_t block) const { return m_normal[block]; }
 
   /// From the coordinates of the points to those that are written.
   struct Output_frame
@@ -228,7 +226,8 @@ private:
         [&](std::size_t begin, std::size_t end) {
           Block_output out{};
           for (std::size_t block = begin; block < end; ++block) {
-            prefetch(block + blocks_ahead);
+            if (block + blocks_ahead < m_base.size() && is_blended[block + blocks_ahead] != 0)
+              prefetch(block + blocks_ahead);
             if (is_blended[block] != 0)
               blend(block_input(maps, frame, fades, block), out);
             write_block<Outputs>(block, is_blended[block], out, write, other);
@@ -239,8 +238,6 @@ private:
   /// Asks for what a later block reads: the processor foresees it only up to the next page of 4 KB.
   PCS_ALWAYS_INLINE void prefetch(std::size_t block) const
   {
-    if (block >= m_base.size())
-      return;
     pcs::internal::prefetch(&m_rest[block], sizeof(Lane_vectors));
     if (has_normals())
       pcs::internal::prefetch(&m_normal[block], sizeof(Lane_vectors));
