@@ -255,6 +255,13 @@ private:
     Eigen::Matrix3d gradient = Eigen::Matrix3d::Identity();
     const std::size_t first = block * lanes;
     const std::size_t count = std::min(lanes, m_size - first);
+    if (Outputs != Blend_outputs::gradients && mask == whole_block && count == lanes) {
+      // Most blocks: without a branch per point, which costs more than the writing.
+      pcs::internal::unroll<lanes>([&](auto l) PCS_LAMBDA_INLINE {
+        write(first + l, at(out.position, l), at(out.normal, l), gradient);
+      });
+      return;
+    }
     for (std::size_t l = 0; l < count; ++l)
       if (mask >> l & 1) {
         if constexpr (Outputs == Blend_outputs::gradients)
@@ -291,6 +298,7 @@ private:
   }
 
   static constexpr std::size_t blocks_ahead = 6;
+  static constexpr std::uint8_t whole_block = 0xff;
 
   std::size_t m_size = 0;
   std::vector<Vec3> m_sample_points;

@@ -60,6 +60,14 @@ PCS_ALWAYS_INLINE void fill(T value, Lanes& to)
   to = value - Lanes{};
 }
 
+#ifdef PCS_HAS_AVX_ASSEMBLY
+/// GCC puts eight doubles together one by one even so.
+PCS_ALWAYS_INLINE void fill(double value, Double8& to)
+{
+  __asm__("vbroadcastsd %1, %0" : "=v"(to) : "vm"(value));
+}
+#endif
+
 #else
 
 template <class T, std::size_t N>
