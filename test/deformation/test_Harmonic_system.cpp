@@ -9,6 +9,8 @@
 
 #include <Eigen/LU>
 
+#include <algorithm>
+
 namespace {
 
 using pcs::deformation::free_node;
@@ -49,6 +51,26 @@ BOOST_AUTO_TEST_CASE(rows_are_the_free_and_the_soft_nodes)
   const pcs::deformation::Free_rows rows(c);
   BOOST_TEST((rows.node_of_row == std::vector<std::uint32_t>{1, 2, 4}));
   BOOST_TEST((c.is_prescribed(0) && !c.is_prescribed(2) && c.is_soft(2) && !c.is_soft(1)));
+}
+
+BOOST_AUTO_TEST_CASE(ranks_of_the_nodes_order_any_choice_of_rows)
+{
+  pcs::deformation::Elastic_network network;
+  network.surface = pcs_test::path_graph(30);
+  network.rest.assign(30, Vec3::Zero());
+  pcs::deformation::rank_nodes(network);
+  BOOST_REQUIRE(network.surface_rank.size() == 30u);
+  BOOST_TEST(network.rank.empty());
+  Node_constraints c;
+  c.softness_weight = {0};
+  c.handle_of_node.assign(32, free_node); // two nodes came later
+  c.handle_of_node[4] = 0;
+  const pcs::deformation::Free_rows rows(c);
+  auto rank = pcs::deformation::rank_of_rows(network.surface_rank, rows);
+  BOOST_TEST(rank.size() == 31u);
+  std::sort(rank.begin(), rank.end());
+  BOOST_TEST((std::unique(rank.begin(), rank.end()) == rank.end()));
+  BOOST_TEST(pcs::deformation::rank_of_rows({}, rows).empty());
 }
 
 BOOST_AUTO_TEST_CASE(on_a_path_the_solution_is_linear)

@@ -34,6 +34,26 @@ Eigen::MatrixXd random_spd(Eigen::Index n, unsigned seed)
   return a;
 }
 
+/// Laplacian of a square grid, one corner held: supernodes of several columns, fill between distant ones.
+Eigen::MatrixXd grid_laplacian(Eigen::Index side)
+{
+  const Eigen::Index n = side * side;
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);
+  const auto link = [&](Eigen::Index i, Eigen::Index j) {
+    a(i, i) += 1;
+    a(j, j) += 1;
+    a(i, j) = a(j, i) = -1;
+  };
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (i % side + 1 < side)
+      link(i, i + 1);
+    if (i + side < n)
+      link(i, i + side);
+  }
+  a(0, 0) += 1;
+  return a;
+}
+
 Cholesky::Matrix lower(const Eigen::MatrixXd& a)
 {
   return Cholesky::Matrix(Eigen::MatrixXd(a.triangularView<Eigen::Lower>()).sparseView());
@@ -150,23 +170,34 @@ BOOST_AUTO_TEST_CASE(a_factor_can_be_moved)
   BOOST_TEST(largest_error<3>(moved, a) < 1e-11);
 }
 
+BOOST_AUTO_TEST_CASE(a_part_of_the_rows_in_the_order_of_all_has_no_more_entries)
+{
+  const auto a = grid_laplacian(40);
+  const auto rank = pcs::linear_algebra::Cholesky_pattern::minimum_degree_order(lower(a));
+  Cholesky all, part, unordered;
+  BOOST_REQUIRE(all.factorize(lower(a), rank));
+  BOOST_TEST(largest_error<3>(all, a) < 1e-8);
+  std::vector<Eigen::Index> kept;
+  std::vector<std::uint32_t> rank_of_kept, as_they_are;
+  for (Eigen::Index i = 0; i < a.rows(); ++i)
+    if (i % 7 != 3 || i > 800) {
+      as_they_are.push_back(static_cast<std::uint32_t>(5 * kept.size()));
+      kept.push_back(i);
+      rank_of_kept.push_back(rank[static_cast<std::size_t>(i)]);
+    }
+  const Eigen::MatrixXd b = a(kept, kept);
+  BOOST_REQUIRE(part.factorize(lower(b), rank_of_kept));
+  BOOST_TEST(largest_error<3>(part, b) < 1e-8);
+  BOOST_TEST(part.number_of_nonzeros() < all.number_of_nonzeros());
+  BOOST_REQUIRE(unordered.factorize(lower(b), as_they_are));
+  BOOST_TEST(largest_error<3>(unordered, b) < 1e-8);
+  BOOST_TEST(unordered.number_of_nonzeros() > 2 * part.number_of_nonzeros());
+}
+
 BOOST_AUTO_TEST_CASE(the_factor_of_a_grid_has_few_zeros_and_keeps_columns_together)
 {
-  // Laplacian of a 40 x 40 grid, one corner held: supernodes of several columns, fill between distant ones.
-  const Eigen::Index side = 40, n = side * side;
-  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);
-  const auto link = [&](Eigen::Index i, Eigen::Index j) {
-    a(i, i) += 1;
-    a(j, j) += 1;
-    a(i, j) = a(j, i) = -1;
-  };
-  for (Eigen::Index i = 0; i < n; ++i) {
-    if (i % side + 1 < side)
-      link(i, i + 1);
-    if (i + side < n)
-      link(i, i + side);
-  }
-  a(0, 0) += 1;
+  const auto a = grid_laplacian(40);
+  const Eigen::Index n = a.rows();
   Cholesky factor;
   BOOST_REQUIRE(factor.factorize(lower(a)));
   BOOST_TEST(largest_error<3>(factor, a) < 1e-8);

@@ -65,6 +65,7 @@ public:
     }
     if (has_links && m_network.size() <= largest_linked_network)
       m_network.links = interior_links<ConcurrencyTag>(m_network, m_component);
+    rank_nodes(m_network);
   }
 
   const Elastic_network& network() const { return m_network; }

@@ -34,6 +34,9 @@ struct Elastic_network
   std::vector<Vec3> rest; ///< positions of the nodes [L]
   Weighted_graph surface; ///< edges along the surface
   Weighted_graph links;   ///< springs through the inside; may be empty (then `links.size() == 0`)
+  /// Of the first nodes, an order of elimination for factors over the surface, and over the links as well: found once,
+  /// good for any choice of free nodes. Empty if it is not worth it.
+  std::vector<std::uint32_t> surface_rank, rank;
   std::size_t size() const { return rest.size(); }
 };
 

@@ -112,10 +112,15 @@ public:
     const Eigen::SparseMatrix<double> of_field = assemble({surface}, soft);
     std::shared_ptr<const linear_algebra::Cholesky_pattern> pattern;
     pcs::internal::invoke_both<ConcurrencyTag>(
-        [&] { pattern = std::make_shared<const linear_algebra::Cholesky_pattern>(of_field); },
+        [&] {
+          pattern = std::make_shared<const linear_algebra::Cholesky_pattern>(
+              of_field,
+              rank_of_rows(m_network->surface_rank, m_rows));
+        },
         [&] {
           if (has_links)
-            position_ok = m_link_factor.factorize(assemble({surface, &m_network->links}, soft));
+            position_ok = m_link_factor.factorize(assemble({surface, &m_network->links}, soft),
+                                                  rank_of_rows(m_network->rank, m_rows));
         });
     pcs::internal::invoke_both<ConcurrencyTag>(
         [&] { field_ok = m_field_factor.factorize(of_field, pattern); },

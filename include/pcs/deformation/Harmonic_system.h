@@ -68,6 +68,32 @@ struct Free_rows
   std::size_t size() const { return node_of_row.size(); }
 };
 
+/// Finds the orders of elimination of a network whose constraints will change.
+inline void rank_nodes(Elastic_network& network)
+{
+  Node_constraints all_free;
+  all_free.handle_of_node.assign(network.size(), free_node);
+  const Free_rows rows(all_free);
+  const auto order = [&](std::vector<const Weighted_graph*> graphs) {
+    return linear_algebra::Cholesky_pattern::minimum_degree_order(
+        linear_algebra::free_laplacian(graphs, rows.row_of_node, rows.node_of_row, {}));
+  };
+  network.surface_rank = order({&network.surface});
+  if (!network.links.neighbor.empty())
+    network.rank = order({&network.surface, &network.links});
+}
+
+/// The ranks of the unknowns; empty if there are none.
+inline std::vector<std::uint32_t> rank_of_rows(const std::vector<std::uint32_t>& rank_of_node,
+                                               const Free_rows& rows)
+{
+  std::vector<std::uint32_t> rank;
+  if (!rank_of_node.empty())
+    for (const std::uint32_t i : rows.node_of_row)
+      rank.push_back(i < rank_of_node.size() ? rank_of_node[i] : i);
+  return rank;
+}
+
 /// Sum of the surface weights at node `i`: the mass with which local terms enter. [-]
 inline double node_degree(const Weighted_graph& graph, std::size_t i)
 {

@@ -9,6 +9,7 @@
 #include <pcs/core/errors.h>
 #include <pcs/deformation/Border_finder.h>
 #include <pcs/deformation/Elastic_network.h>
+#include <pcs/deformation/Harmonic_system.h>
 #include <pcs/deformation/Sample_links.h>
 #include <pcs/deformation/Sample_regions.h>
 #include <pcs/deformation/Upsampling.h>
@@ -261,6 +262,8 @@ private:
         component[s] = component_of_site[site_of_sample[s]];
       network.links = interior_links<ConcurrencyTag>(network, component);
     }
+    if (is_sampled)
+      rank_nodes(network);
     upsampling = Upsampling(
         number_of_points(),
         [&](std::size_t place) { return sites[site_of_place[place]]; },

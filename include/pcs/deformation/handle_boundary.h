@@ -83,6 +83,8 @@ Elastic_network with_boundary_nodes(const Boundary_input<HandleOfSite, SitePosit
   Elastic_network result;
   result.rest = in.network.rest;
   result.links = in.network.links;
+  result.surface_rank = in.network.surface_rank;
+  result.rank = in.network.rank;
   struct Edge
   {
     std::uint32_t from, to;
@@ -166,18 +168,24 @@ Elastic_network with_boundary_nodes(const Boundary_input<HandleOfSite, SitePosit
                      (in.network.rest[t] - in.network.rest[s]).norm());
     }
 
-  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-    return std::tie(a.from, a.to) < std::tie(b.from, b.to);
-  });
   Weighted_graph& surface = result.surface;
   surface.first.assign(result.rest.size() + 1, 0);
-  for (const Edge& e : edges) {
+  for (const Edge& e : edges)
     ++surface.first[e.from + 1];
+  for (std::size_t i = 0; i < result.rest.size(); ++i)
+    surface.first[i + 1] += surface.first[i];
+  std::vector<Edge> ordered(edges.size());
+  std::vector<std::size_t> at(surface.first.begin(), surface.first.end() - 1);
+  for (const Edge& e : edges)
+    ordered[at[e.from]++] = e;
+  for (std::size_t i = 0; i < result.rest.size(); ++i)
+    std::sort(ordered.begin() + static_cast<std::ptrdiff_t>(surface.first[i]),
+              ordered.begin() + static_cast<std::ptrdiff_t>(surface.first[i + 1]),
+              [](const Edge& a, const Edge& b) { return a.to < b.to; });
+  for (const Edge& e : ordered) {
     surface.neighbor.push_back(e.to);
     surface.weight.push_back(e.weight);
   }
-  for (std::size_t i = 0; i < result.rest.size(); ++i)
-    surface.first[i + 1] += surface.first[i];
   if (result.links.size() > 0)
     result.links.first.resize(result.rest.size() + 1, result.links.first.back());
   return result;

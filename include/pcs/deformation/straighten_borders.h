@@ -140,6 +140,8 @@ inline bool straighten_borders(const Elastic_network& network,
   result = Elastic_network();
   result.rest = network.rest;
   result.links = network.links;
+  result.surface_rank = network.surface_rank;
+  result.rank = network.rank;
   Weighted_graph& surface = result.surface;
   surface.neighbor.reserve(graph.neighbor.size());
   surface.weight.reserve(graph.neighbor.size());

@@ -23,7 +23,7 @@ namespace linear_algebra {
   side as one dense *panel*, a supernode: its own `w` rows first, then `m` rows below, which lie in its ancestors.
   Panels are stored column by column, `(w + m) w` values each.
 
-  Order: minimum degree (Amestoy, Davis, Duff 1996), then postorder of the elimination tree (Liu 1990). Column counts:
+  Order: minimum degree (Amestoy, Davis, Duff 1996) or the caller's, then postorder of the elimination tree (Liu 1990). Column counts:
   Gilbert, Ng, Peyton 1994. Linear in the entries of the matrix but for the order, and in the rows of the supernodes.
 */
 class Cholesky_pattern
@@ -48,9 +48,11 @@ public:
   Cholesky_pattern() = default;
 
   /// \param a square; what stands above its diagonal is ignored
-  explicit Cholesky_pattern(const Matrix& a)
+  /// \param rank one number per row, all different: rows are eliminated by increasing rank, where the entries leave a
+  ///        choice. If empty, by minimum degree.
+  explicit Cholesky_pattern(const Matrix& a, const std::vector<std::uint32_t>& rank = {})
   {
-    new_of_old = minimum_degree_order(a);
+    new_of_old = rank.empty() ? minimum_degree_order(a) : order_by_rank(rank);
     std::vector<std::uint32_t> tree = elimination_tree(adjacency(a)), count;
     renumber(postorder(tree, {}), tree, count); // which the counts need
     count = column_counts(adjacency(a), tree);
@@ -59,6 +61,18 @@ public:
     const Adjacency graph = adjacency(a);
     find_rows(graph);
     find_places(a);
+  }
+
+  /// The place of each row in the order of elimination. A part of the rows in that order has no entries that all have not.
+  static std::vector<std::uint32_t> minimum_degree_order(const Matrix& a)
+  {
+    Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> old_of_new;
+    Eigen::AMDOrdering<int>()(a.selfadjointView<Eigen::Lower>(), old_of_new);
+    std::vector<std::uint32_t> result(static_cast<std::size_t>(a.rows()));
+    for (std::size_t i = 0; i < result.size(); ++i)
+      result[static_cast<std::size_t>(old_of_new.indices()[static_cast<Eigen::Index>(i)])] =
+          static_cast<std::uint32_t>(i);
+    return result;
   }
 
   std::size_t size() const { return new_of_old.size(); }
@@ -75,14 +89,16 @@ private:
     std::vector<std::uint32_t> neighbor;
   };
 
-  static std::vector<std::uint32_t> minimum_degree_order(const Matrix& a)
+  static std::vector<std::uint32_t> order_by_rank(const std::vector<std::uint32_t>& rank)
   {
-    Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> old_of_new;
-    Eigen::AMDOrdering<int>()(a.selfadjointView<Eigen::Lower>(), old_of_new);
-    std::vector<std::uint32_t> result(static_cast<std::size_t>(a.rows()));
-    for (std::size_t i = 0; i < result.size(); ++i)
-      result[static_cast<std::size_t>(old_of_new.indices()[static_cast<Eigen::Index>(i)])] =
-          static_cast<std::uint32_t>(i);
+    std::vector<std::uint32_t> row(*std::max_element(rank.begin(), rank.end()) + 1, none);
+    for (std::size_t i = 0; i < rank.size(); ++i)
+      row[rank[i]] = static_cast<std::uint32_t>(i);
+    std::vector<std::uint32_t> result(rank.size());
+    std::uint32_t place = 0;
+    for (const std::uint32_t i : row)
+      if (i != none)
+        result[i] = place++;
     return result;
   }
 

@@ -32,10 +32,11 @@ class Sparse_cholesky
 public:
   using Matrix = Cholesky_pattern::Matrix;
 
-  /// Factorises `a`, of which only the lower triangle is read. Returns `false` if it is not positive definite.
-  bool factorize(const Matrix& a)
+  /// Factorises `a`, of which only the lower triangle is read, with rows in the order of `rank`, if it is not empty.
+  /// Returns `false` if `a` is not positive definite.
+  bool factorize(const Matrix& a, const std::vector<std::uint32_t>& rank = {})
   {
-    return factorize(a, std::make_shared<const Cholesky_pattern>(a));
+    return factorize(a, std::make_shared<const Cholesky_pattern>(a, rank));
   }
 
   /// The same for a matrix with entries at the same places as that of `pattern`.
