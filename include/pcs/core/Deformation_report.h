@@ -29,7 +29,7 @@ struct Deformation_report
   std::size_t number_of_unreached_points = 0; ///< points of those components [count]
   std::size_t number_of_iterations = 0;       ///< passes of rotations and positions [count]
 
-  double initial_energy = 0; ///< before the first pass [L^2]
+  double initial_energy = 0; ///< of the state from which the passes start [L^2]
   double energy = 0;         ///< of the result [L^2]
 
   //! wall-clock time of each stage [s]; stages that were not needed again show zero

@@ -11,9 +11,8 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
-#include <functional>
-#include <utility>
 #include <vector>
 
 namespace pcs {
@@ -37,60 +36,92 @@ public:
     m_has_last = false;
   }
 
-  /// Replaces `g`, which is `g(x)`, by the proposal.
-  void mix(const std::vector<Vec3>& x, std::vector<Vec3>& g)
+  /// Replaces `g`, which is `g(x)`, by the proposal; only remembers both if not `is_wanted`.
+  void mix(const std::vector<Vec3>& x, std::vector<Vec3>& g, bool is_wanted = true)
   {
-    const std::size_t n = x.size();
-    m_residual.resize(n);
-    for (std::size_t i = 0; i < n; ++i)
-      m_residual[i] = g[i] - x[i];
-    if (m_has_last) {
-      const std::size_t slot = m_count++ % depth;
-      m_difference_of_residuals[slot].resize(n);
-      m_difference_of_images[slot].resize(n);
-      for (std::size_t i = 0; i < n; ++i) {
-        m_difference_of_residuals[slot][i] = m_residual[i] - m_last_residual[i];
-        m_difference_of_images[slot][i] = g[i] - m_last_image[i];
-      }
-    }
-    m_last_residual = m_residual;
-    m_last_image = g;
-    m_has_last = true;
-    const auto size = static_cast<Eigen::Index>(std::min(m_count, depth));
-    if (size == 0)
+    const std::size_t n = x.size(), slot = m_count % depth;
+    m_last_residual.resize(n, Vec3::Zero());
+    m_last_image.resize(n, Vec3::Zero());
+    m_difference_of_residuals[slot].resize(n);
+    m_difference_of_images[slot].resize(n);
+    pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
+      const Vec3 residual = g[i] - x[i];
+      m_difference_of_residuals[slot][i] = residual - m_last_residual[i];
+      m_difference_of_images[slot][i] = g[i] - m_last_image[i];
+      m_last_residual[i] = residual;
+      m_last_image[i] = g[i];
+    });
+    if (!m_has_last) { // the differences are those to nothing
+      m_has_last = true;
       return;
+    }
+    ++m_count;
+    const std::size_t size = std::min(m_count, depth);
+    const Products products = multiply(slot, size);
+    for (std::size_t a = 0; a < size; ++a)
+      m_normal[a][slot] = m_normal[slot][a] = products.with_new[a];
+    if (is_wanted)
+      propose(size, products.with_residual, g);
+  }
+
+private:
+  /// Of the differences of residuals with the newest of them, and with the present residual.
+  struct Products
+  {
+    std::array<double, depth> with_new{}, with_residual{};
+  };
+
+  Products multiply(std::size_t slot, std::size_t size) const
+  {
+    return pcs::internal::blocked_reduce<ConcurrencyTag>(
+        m_last_residual.size(),
+        Products(),
+        [&](std::size_t i) {
+          Products p;
+          for (std::size_t a = 0; a < size; ++a) {
+            const Vec3& difference = m_difference_of_residuals[a][i];
+            p.with_new[a] = difference.dot(m_difference_of_residuals[slot][i]);
+            p.with_residual[a] = difference.dot(m_last_residual[i]);
+          }
+          return p;
+        },
+        [](Products a, const Products& b) {
+          for (std::size_t k = 0; k < depth; ++k) {
+            a.with_new[k] += b.with_new[k];
+            a.with_residual[k] += b.with_residual[k];
+          }
+          return a;
+        });
+  }
+
+  void propose(std::size_t size,
+               const std::array<double, depth>& with_residual,
+               std::vector<Vec3>& g) const
+  {
     using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, depth, depth>;
     using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, depth, 1>;
-    Matrix normal(size, size);
-    Vector right(size);
-    for (Eigen::Index a = 0; a < size; ++a) {
-      right[a] = dot(m_difference_of_residuals[a], m_residual);
-      for (Eigen::Index b = 0; b <= a; ++b)
-        normal(a, b) = normal(b, a) =
-            dot(m_difference_of_residuals[a], m_difference_of_residuals[b]);
+    const auto rows = static_cast<Eigen::Index>(size);
+    Matrix normal(rows, rows);
+    Vector right(rows);
+    for (Eigen::Index a = 0; a < rows; ++a) {
+      right[a] = with_residual[static_cast<std::size_t>(a)];
+      for (Eigen::Index b = 0; b < rows; ++b)
+        normal(a, b) = m_normal[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)];
     }
     // The differences become parallel near the solution; 1e-10 keeps the coefficients bounded.
     normal.diagonal().array() += 1e-10 * normal.trace() + 1e-300;
     const Vector gamma = normal.ldlt().solve(right);
     if (!gamma.allFinite())
       return;
-    for (Eigen::Index a = 0; a < size; ++a)
-      for (std::size_t i = 0; i < n; ++i)
-        g[i] -= gamma[a] * m_difference_of_images[a][i];
+    pcs::internal::for_each_index<ConcurrencyTag>(g.size(), [&](std::size_t i) {
+      for (std::size_t a = 0; a < size; ++a)
+        g[i] -= gamma[static_cast<Eigen::Index>(a)] * m_difference_of_images[a][i];
+    });
   }
 
-private:
-  static double dot(const std::vector<Vec3>& a, const std::vector<Vec3>& b)
-  {
-    return pcs::internal::blocked_reduce<ConcurrencyTag>(
-        a.size(),
-        0.0,
-        [&](std::size_t i) { return a[i].dot(b[i]); },
-        std::plus<double>());
-  }
-
-  std::vector<Vec3> m_residual, m_last_residual, m_last_image;
+  std::vector<Vec3> m_last_residual, m_last_image;
   std::vector<Vec3> m_difference_of_residuals[depth], m_difference_of_images[depth];
+  std::array<std::array<double, depth>, depth> m_normal{};
   std::size_t m_count = 0;
   bool m_has_last = false;
 };

@@ -29,6 +29,8 @@ constexpr std::size_t coarsening_ratio = 5;
 constexpr std::size_t smallest_coarsened_network = 1000;
 /// Largest number of passes on a coarse level; they are cheap there, and carry far.
 constexpr int number_of_coarse_passes = 100;
+/// Tolerance of coarse levels relative to that of the finest: what they leave, it has to do with passes that are dearer.
+constexpr double coarse_tolerance = 0.1;
 
 /*!
   A pass carries a rotation over a few edges only. Under a handle that is dragged without being turned, the whole
@@ -63,6 +65,7 @@ public:
       m_network.rest.push_back(finer.rest[node]);
       m_component.push_back(component[node]);
     }
+    set_areas<ConcurrencyTag>(m_component, m_network);
     if (has_links && m_network.size() <= largest_linked_network)
       m_network.links = interior_links<ConcurrencyTag>(m_network, m_component);
     rank_nodes(m_network);
@@ -99,15 +102,18 @@ public:
     return m_solver.constrain(m_bounded, std::move(constraints), stiffness);
   }
 
-  /// Runs the passes of this level. `deviations`: in, those of this level's nodes, or empty; out, of the finer one's.
+  /// Runs the passes of this level. `guess`: in, of this level's nodes, or empty; out, of the finer one's.
   void improve(const std::vector<Similarity>& transforms,
                Elastic_options options,
-               std::vector<Vec3>& deviations)
+               Deviation_guess& guess)
   {
     options.maximal_number_of_passes = number_of_coarse_passes;
+    options.tolerance *= coarse_tolerance;
     pcs::internal::Progress uninterrupted;
-    m_solver.solve(transforms, options, uninterrupted, deviations);
+    guess.is_far_from_field =
+        m_solver.solve(transforms, options, uninterrupted, guess).is_far_from_field;
     const auto& coarse = m_solver.deviations();
+    std::vector<Vec3>& deviations = guess.deviations;
     deviations.assign(m_sample_of_node.size(), Vec3::Zero());
     pcs::internal::for_each_index<ConcurrencyTag>(deviations.size(), [&](std::size_t i) {
       for (std::size_t b = i * m_links.k; b < (i + 1) * m_links.k; ++b)

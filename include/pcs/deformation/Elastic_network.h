@@ -34,6 +34,8 @@ struct Elastic_network
   std::vector<Vec3> rest; ///< positions of the nodes [L]
   Weighted_graph surface; ///< edges along the surface
   Weighted_graph links;   ///< springs through the inside; may be empty (then `links.size() == 0`)
+  /// Of the first nodes: the share of the surface of their component that each stands for. [-]
+  std::vector<double> area;
   /// Of the first nodes, an order of elimination for factors over the surface, and over the links as well: found once,
   /// good for any choice of free nodes. Empty if it is not worth it.
   std::vector<std::uint32_t> surface_rank, rank;
@@ -66,6 +68,25 @@ inline double local_spacing(const std::vector<Vec3>& rest,
   const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(count / 2);
   std::nth_element(lengths.begin(), middle, lengths.begin() + static_cast<std::ptrdiff_t>(count));
   return *middle;
+}
+
+/// Sets `area` from the spacings; \p component holds the component of each node.
+template <class ConcurrencyTag>
+void set_areas(const std::vector<std::uint32_t>& component, Elastic_network& network)
+{
+  const std::size_t n = network.size();
+  network.area.resize(n);
+  pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
+    const double spacing = local_spacing(network.rest, network.surface, i);
+    network.area[i] = spacing * spacing;
+  });
+  std::vector<double> sum;
+  for (std::size_t i = 0; i < n; ++i) {
+    sum.resize(std::max<std::size_t>(sum.size(), component[i] + 1), 0);
+    sum[component[i]] += network.area[i];
+  }
+  for (std::size_t i = 0; i < n; ++i)
+    network.area[i] = sum[component[i]] > 0 ? network.area[i] / sum[component[i]] : 1;
 }
 
 /// Edges beyond this many median spacings lead to outliers.

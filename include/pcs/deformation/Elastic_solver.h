@@ -18,6 +18,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <memory>
@@ -27,14 +28,24 @@
 namespace pcs {
 namespace deformation {
 
-/// Weight of the local fit against its neighbours' when rotations are smoothed, at stiffness 1. [-]
+/// Weight of the local fit against its neighbours' when rotations are smoothed, at stiffness 1, of a node that stands for
+/// one part in `reference_size` of the surface. [-]
 /// Chosen among 0.004 ... 2 on the bars, tubes and plates of benchmark/quality: smaller values hold back bending
 /// that a dragged handle asks for, larger ones let surfaces buckle.
 constexpr double default_fit_weight = 0.3;
-/// Passes end when the energy falls by less than this share. [-]
-constexpr double default_tolerance = 0.01;
+/// Smoothing reaches a few edges of a network of so many nodes, whatever the size of the network: otherwise a body would
+/// bend the more easily the denser its points. Chosen on the same cases, where it trades even bends for short edges.
+constexpr double reference_size = 10000;
+/// Networks of fewer nodes than one in this many of it bend the more stiffly: with a few hundred samples, rotations that
+/// are hardly smoothed would buckle.
+constexpr double largest_relative_area = 5;
+constexpr double smallest_relative_area = 1e-9;
+/// Passes end when the energy falls by less than this share. Smaller values bring the cases of benchmark/quality no nearer
+/// to their exact shapes. [-]
+constexpr double default_tolerance = 0.03;
 constexpr int default_maximal_number_of_passes = 20;
-/// Passes are accelerated from this one on: where the handles' rotations explain the motion, fewer are needed.
+/// Passes are accelerated from this one on if they start from the field of the handles: where that explains the motion,
+/// fewer are needed. Those that start from a guess are accelerated as soon as two states are known.
 constexpr int first_accelerated_pass = 4;
 /// A guess from a coarser network is taken if it has less than this share of the energy after one pass. [-]
 constexpr double guess_advantage = 0.5;
@@ -54,6 +65,15 @@ struct Elastic_result
   int number_of_passes = 0;
   double energy = 0;         ///< [L^2]
   double initial_energy = 0; ///< after the first positions, before any pass [L^2]
+  /// Whether the passes left far behind what one pass from the field of the handles reaches.
+  bool is_far_from_field = false;
+};
+
+/// Deviations of the first nodes from the field, found on a coarser network.
+struct Deviation_guess
+{
+  std::vector<Vec3> deviations;
+  bool is_far_from_field = false; ///< there: the field need not be tried
 };
 
 /*!
@@ -93,14 +113,15 @@ public:
     m_network = &network;
     m_constraints = std::move(constraints);
     m_rows = Free_rows(m_constraints);
-    m_fit_weight = default_fit_weight / stiffness;
+    m_fit_weight.resize(m_rows.size());
     std::vector<double> soft(m_rows.size(), 0), smoothing(m_rows.size(), 0);
     for (std::size_t r = 0; r < m_rows.size(); ++r) {
       const std::size_t i = m_rows.node_of_row[r];
       const double degree = node_degree(m_network->surface, i);
       if (m_constraints.is_soft(i))
         soft[r] = m_constraints.soft_weight(i, degree);
-      smoothing[r] = soft[r] + m_fit_weight * degree;
+      m_fit_weight[r] = default_fit_weight / stiffness * relative_area(i) * degree;
+      smoothing[r] = soft[r] + m_fit_weight[r];
     }
     const auto assemble = [&](std::vector<const Weighted_graph*> graphs,
                               const std::vector<double>& extra) {
@@ -132,12 +153,12 @@ public:
     return field_ok && smoothing_ok && position_ok;
   }
 
-  /// Solves for one transformation per handle, from the rest shape. After the first pass `guess`, deviations of the
-  /// first nodes from the field, is tried as a better state.
+  /// Solves for one transformation per handle, from the rest shape. The guess is the first state, or tried after the
+  /// first pass, when that is not known to be worth it.
   Elastic_result solve(const std::vector<Similarity>& transforms,
                        const Elastic_options& options,
                        pcs::internal::Progress& progress,
-                       const std::vector<Vec3>& guess = {})
+                       const Deviation_guess& guess = {})
   {
     Elastic_result result;
     m_transforms = &transforms;
@@ -153,37 +174,56 @@ public:
     m_stretch_is_used = options.poisson_ratio != 0;
     if (m_stretch_is_used)
       m_stretch.assign(m_network->size(), Eigen::Matrix3d::Identity());
+    m_smooth.assign(m_network->size(), Vec3::Zero());
+    result.is_far_from_field = guess.is_far_from_field && options.maximal_number_of_passes > 0;
+    if (result.is_far_from_field) {
+      take(guess);
+      turn_by_deviations();
+    }
     update_frames();
     place_constrained_nodes();
     solve_positions(true);
     result.energy = result.initial_energy = fit_and_measure(options);
     result.status =
         options.maximal_number_of_passes == 0 ? Status::iteration_limit : Status::converged;
-    m_smooth.assign(m_network->size(), Vec3::Zero());
     if (m_rows.size() == 0)
       return result;
     m_mixing.restart();
+    double after_first_pass = 0;
+    const int first_accelerated = result.is_far_from_field ? 1 : first_accelerated_pass;
     for (int pass = 0; pass < options.maximal_number_of_passes; ++pass) {
       if (!progress(static_cast<double>(pass) / options.maximal_number_of_passes)) {
         result.status = Status::cancelled;
         return result;
       }
       const double before = result.energy;
-      const bool has_improved = improve(options, pass >= first_accelerated_pass, result);
-      if (pass == 0 && !guess.empty())
-        start_from(guess, options, result);
+      const bool has_improved = improve(options, pass >= first_accelerated, result);
+      if (pass == 0) {
+        after_first_pass = result.energy;
+        if (!guess.deviations.empty() && !guess.is_far_from_field)
+          start_from(guess, options, result);
+      }
       result.number_of_passes = pass + 1;
       result.status = Status::converged;
       if (!has_improved || before - result.energy <= options.tolerance * before)
         break;
       result.status = Status::iteration_limit;
     }
+    if (result.energy < guess_advantage * after_first_pass)
+      result.is_far_from_field = true;
     return result;
   }
 
 private:
   using Vec1 = Eigen::Matrix<double, 1, 1>;
   static constexpr std::size_t block = 512;
+
+  /// The area of a node in units of the reference network's.
+  double relative_area(std::size_t node) const
+  {
+    const double area = node < m_network->area.size() ? reference_size * m_network->area[node] : 1;
+    return std::min(largest_relative_area, std::max(smallest_relative_area, area));
+  }
 
   std::size_t handle(std::size_t node) const
   {
@@ -210,9 +250,7 @@ private:
     keep_state();
     smooth_deviations();
     m_plain = m_smooth;
-    m_mixing.mix(m_best_smooth, m_smooth);
-    if (!is_accelerated)
-      m_smooth = m_plain;
+    m_mixing.mix(m_best_smooth, m_smooth, is_accelerated);
     double energy = apply_deviations(options);
     if (is_accelerated && !(energy < result.energy)) {
       m_mixing.restart();
@@ -227,17 +265,22 @@ private:
     return true;
   }
 
+  void take(const Deviation_guess& guess)
+  {
+    for (const auto i : m_rows.node_of_row)
+      if (i < guess.deviations.size())
+        m_smooth[i] = guess.deviations[i];
+  }
+
   /// A guess replaces the present state if it is clearly better: where the field of the handles explains the motion,
   /// it is more exact than a coarse network.
   void
-  start_from(const std::vector<Vec3>& guess, const Elastic_options& options, Elastic_result& result)
+  start_from(const Deviation_guess& guess, const Elastic_options& options, Elastic_result& result)
   {
     keep_state();
     m_best_deviation = m_deviation;
     m_best_rotation = m_rotation;
-    for (const auto i : m_rows.node_of_row)
-      if (i < guess.size())
-        m_smooth[i] = guess[i];
+    take(guess);
     const double energy = apply_deviations(options);
     if (energy < guess_advantage * result.energy) {
       result.energy = energy;
@@ -252,6 +295,14 @@ private:
   /// Rotations `exp(d) B` from the present deviations, then positions; returns the energy.
   double apply_deviations(const Elastic_options& options)
   {
+    turn_by_deviations();
+    update_frames();
+    solve_positions(false);
+    return fit_and_measure(options);
+  }
+
+  void turn_by_deviations()
+  {
     pcs::internal::for_each_index<ConcurrencyTag>(
         m_rows.size(),
         [&](std::size_t r) {
@@ -259,9 +310,6 @@ private:
           m_rotation[i] = (rotation_exp(m_smooth[i]) * m_field[i]).normalized();
         },
         block);
-    update_frames();
-    solve_positions(false);
-    return fit_and_measure(options);
   }
 
   const linear_algebra::Sparse_cholesky& position_factor() const
@@ -434,12 +482,9 @@ private:
   /// `(L + mu D) d' = mu D d`.
   void smooth_deviations()
   {
-    const auto& graph = m_network->surface;
     m_rhs3.resize(m_rows.size());
-    for (std::size_t r = 0; r < m_rows.size(); ++r) {
-      const std::size_t i = m_rows.node_of_row[r];
-      m_rhs3[r] = m_fit_weight * node_degree(graph, i) * m_deviation[i];
-    }
+    for (std::size_t r = 0; r < m_rows.size(); ++r)
+      m_rhs3[r] = m_fit_weight[r] * m_deviation[m_rows.node_of_row[r]];
     m_smoothing_factor.solve(m_rhs3, m_work3);
     for (std::size_t r = 0; r < m_rows.size(); ++r)
       m_smooth[m_rows.node_of_row[r]] = m_rhs3[r];
@@ -506,7 +551,7 @@ private:
   Free_rows m_rows;
   linear_algebra::Sparse_cholesky m_field_factor, m_link_factor, m_smoothing_factor;
   Rotation_field_solver m_field_solver;
-  double m_fit_weight = default_fit_weight;
+  std::vector<double> m_fit_weight; ///< of each row, its degree included
   bool m_stretch_is_used = false;
 
   const std::vector<Similarity>* m_transforms = nullptr;

@@ -256,12 +256,12 @@ private:
     network.rest.resize(site_of_sample.size());
     for (std::size_t s = 0; s < site_of_sample.size(); ++s)
       network.rest[s] = sites[site_of_sample[s]];
-    if (options.do_preserve_volume && network.size() <= largest_linked_network) {
-      std::vector<std::uint32_t> component(network.size());
-      for (std::size_t s = 0; s < network.size(); ++s)
-        component[s] = component_of_site[site_of_sample[s]];
+    std::vector<std::uint32_t> component(network.size());
+    for (std::size_t s = 0; s < network.size(); ++s)
+      component[s] = component_of_site[site_of_sample[s]];
+    set_areas<ConcurrencyTag>(component, network);
+    if (options.do_preserve_volume && network.size() <= largest_linked_network)
       network.links = interior_links<ConcurrencyTag>(network, component);
-    }
     if (is_sampled)
       rank_nodes(network);
     upsampling = Upsampling(

@@ -210,7 +210,7 @@ public:
     }
     pcs::internal::Stopwatch watch;
     std::vector<Similarity> transforms = local_transforms();
-    std::vector<Vec3> guess;
+    Deviation_guess guess;
     for (std::size_t level = m_coarse.size(); level-- > 0 && progress(0);)
       m_coarse[level].improve(transforms, options, guess);
     const Elastic_result result = m_solver.solve(transforms, options, progress, guess);

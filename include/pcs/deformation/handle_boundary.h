@@ -83,6 +83,7 @@ Elastic_network with_boundary_nodes(const Boundary_input<HandleOfSite, SitePosit
   Elastic_network result;
   result.rest = in.network.rest;
   result.links = in.network.links;
+  result.area = in.network.area;
   result.surface_rank = in.network.surface_rank;
   result.rank = in.network.rank;
   struct Edge

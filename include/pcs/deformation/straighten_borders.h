@@ -140,6 +140,7 @@ inline bool straighten_borders(const Elastic_network& network,
   result = Elastic_network();
   result.rest = network.rest;
   result.links = network.links;
+  result.area = network.area;
   result.surface_rank = network.surface_rank;
   result.rank = network.rank;
   Weighted_graph& surface = result.surface;
