@@ -42,7 +42,7 @@ constexpr double largest_relative_area = 5;
 constexpr double smallest_relative_area = 1e-9;
 /// Passes end when the energy falls by less than this share. Smaller values bring the cases of benchmark/quality no nearer
 /// to their exact shapes. [-]
-constexpr double default_tolerance = 0.03;
+constexpr double default_tolerance = 0.05;
 constexpr int default_maximal_number_of_passes = 20;
 /// Passes are accelerated from this one on if they start from the field of the handles: where that explains the motion,
 /// fewer are needed. Those that start from a guess are accelerated as soon as two states are known.
