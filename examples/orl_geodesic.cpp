@@ -169,9 +169,9 @@ void run(const Options& o)
     for (std::size_t i = 0; i < files.size(); ++i)
       try {
         add(space, files[i]);
-      } catch (const pcs::Invalid_input& error) {
+      } catch (const pcs::Invalid_input& refusal) {
         throw pcs::Invalid_input((o.skeletons.empty() ? o.trees : o.skeletons)[i] + ": " +
-                                 error.what());
+                                 refusal.what());
       }
     report = build(space, o);
   } else {
