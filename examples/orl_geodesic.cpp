@@ -166,8 +166,13 @@ void run(const Options& o)
   Space space;
   pcs::Orl_report report;
   if (o.load.empty()) {
-    for (const Tree_file& file : files)
-      add(space, file);
+    for (std::size_t i = 0; i < files.size(); ++i)
+      try {
+        add(space, files[i]);
+      } catch (const pcs::Invalid_input& refusal) {
+        throw pcs::Invalid_input((o.skeletons.empty() ? o.trees : o.skeletons)[i] + ": " +
+                                 refusal.what());
+      }
     report = build(space, o);
   } else {
     space.restore(pcs::IO::read_shape_space(o.load));

@@ -8,6 +8,7 @@
 #include <support/graph_archetypes.h>
 #include <support/orl_trees.h>
 
+#include <boost/property_map/property_map.hpp>
 #include <boost/test/unit_test.hpp>
 
 #include <algorithm>
@@ -112,7 +113,209 @@ pcs::Orl_report morph(const Tree& a,
   return report;
 }
 
+/// A branch that leaves the trunk level and bends up at each of its edges; further on it carries a twig.
+Tree curled(double bend)
+{
+  Tree tree;
+  const std::size_t root = add_node(tree, pcs::npos, Vec3(0, 0, 0), 0.2);
+  const std::size_t fork = add_node(tree, root, Vec3(0, 0, 2), 0.2);
+  add_node(tree, add_node(tree, fork, Vec3(0, 0, 6), 0.15), Vec3(0, 0.1, 12), 0.1);
+  std::size_t last = fork;
+  Vec3 p(0, 0, 2);
+  for (int k = 0; k < 12; ++k) {
+    p += 0.4 * Vec3(std::cos(bend * k), 0, std::sin(bend * k));
+    last = add_node(tree, last, p, 0.05);
+    if (k == 6)
+      add_node(tree, last, p + Vec3(0, 0.8, 0), 0.03);
+  }
+  return tree;
+}
+
+using pcs::shape_space::Orl_coordinates;
+using pcs::shape_space::Orl_geometry;
+using Space = pcs::Orl_shape_space<Kernel>;
+
+Space make_space(const Tree& a, const Tree& b)
+{
+  Space space;
+  space.add_skeleton(a);
+  space.add_skeleton(b);
+  space.build();
+  return space;
+}
+
+Orl_geometry in_space(const Space& space, const Orl_coordinates& x)
+{
+  Orl_geometry result;
+  build_geometry(space.layout(), x, pcs::shape_space::Orientation::gauge_fixed, result);
+  return result;
+}
+
+/// Height of the lowest node over the root, in the direction of growth.
+double depth(const Space& space, const Orl_coordinates& x)
+{
+  double least = 0;
+  for (const Vec3& p : in_space(space, x).node)
+    least = std::min(least, space.growth_direction().dot(p - x.root));
+  return least;
+}
+
 } // namespace
+
+BOOST_AUTO_TEST_SUITE(orl_beyond_ends)
+
+BOOST_AUTO_TEST_CASE(turns_do_not_add_up_along_branches)
+{
+  const Space space = make_space(curled(0), curled(0.15));
+  const auto& layout = space.layout();
+  for (const double most : {0.2, 0.25 * CGAL_PI, 2.0, 3.5})
+    for (const double lambda : {-1.5, -0.5, 1.5, 2.5}) {
+      const Orl_coordinates x = space.tree(0).coordinates(), y = space.tree(1).coordinates();
+      const auto tree = space.geodesic(0, 1, lambda, pcs::parameters::maximal_turn(most));
+      const Orl_geometry there = in_space(space, tree.coordinates()),
+                         end = in_space(space, lambda < 0 ? x : y);
+      double worst = 0;
+      for (std::size_t e = 0; e < layout.number_of_edges(); ++e)
+        worst = std::max(worst, pcs::shape_space::angle_between(there.frame[e], end.frame[e]));
+      BOOST_TEST(worst <= most + 1e-9);
+      BOOST_TEST(worst > 0.15);     // they do turn
+      if (most > 0.2 && most < 2) { // control: each alone
+        Orl_coordinates alone;
+        coordinates_at(layout, x, y, lambda, most, alone);
+        const Orl_geometry sum = in_space(space, alone);
+        worst = 0;
+        for (std::size_t e = 0; e < layout.number_of_edges(); ++e)
+          worst = std::max(worst, pcs::shape_space::angle_between(sum.frame[e], end.frame[e]));
+        BOOST_TEST(worst > most);
+      }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(nothing_grows_into_the_ground)
+{
+  int number_below = 0;
+  for (unsigned seed = 70; seed < 82; ++seed) {
+    const Space space = seed == 70 ? make_space(curled(0), curled(0.15))
+                                   : make_space(random_tree(seed), random_tree(seed + 100));
+    const Orl_coordinates x = space.tree(0).coordinates(), y = space.tree(1).coordinates();
+    const double floor = std::min(depth(space, x), depth(space, y));
+    for (const double lambda : {-2., -0.5, -0.2, 1.2, 1.5, 3.}) {
+      const auto tree = space.geodesic(0, 1, lambda);
+      const Orl_coordinates& z = tree.coordinates();
+      BOOST_TEST(depth(space, z) >= floor - 1e-9);
+      Orl_coordinates alone;
+      coordinates_at(space.layout(), x, y, lambda, 0.25 * CGAL_PI, alone);
+      number_below += depth(space, alone) < floor - 1e-3 ? 1 : 0;
+      // a branch is there if it is there at the end, and branches hang together
+      const Orl_coordinates& end = lambda < 0 ? x : y;
+      bool is_there = true;
+      for (std::size_t e = 0; e < z.length.size(); ++e)
+        is_there =
+            is_there && (end.length[e] > 0) == (z.length[e] > 0) && std::isfinite(z.length[e]);
+      BOOST_TEST(is_there);
+    }
+  }
+  BOOST_TEST(number_below > 3); // control
+}
+
+BOOST_AUTO_TEST_CASE(the_path_goes_on_without_jumps_and_is_unchanged_between_the_ends)
+{
+  for (unsigned seed = 90; seed < 96; ++seed) {
+    const Space space = seed == 90 ? make_space(curled(0), curled(0.15))
+                                   : make_space(random_tree(seed), random_tree(seed + 100));
+    const Orl_coordinates x = space.tree(0).coordinates(), y = space.tree(1).coordinates();
+    const auto step_at = [&](double lambda, double step) {
+      const Orl_geometry p = in_space(space, space.geodesic(0, 1, lambda).coordinates()),
+                         q = in_space(space, space.geodesic(0, 1, lambda + step).coordinates());
+      double worst = 0;
+      for (std::size_t v = 0; v < p.node.size(); ++v)
+        worst = std::max(worst, (p.node[v] - q.node[v]).norm());
+      return worst;
+    };
+    double fastest = 0;
+    for (double lambda = -1; lambda < 2; lambda += 0.01)
+      fastest = std::max(fastest, step_at(lambda, 1e-6));
+    BOOST_TEST(fastest < 1e-3); // trees are 10 high
+    BOOST_TEST(step_at(-1e-6, 1e-6) < 1e-3);
+    BOOST_TEST(step_at(1, 1e-6) < 1e-3);
+    for (const double lambda : {0.1, 0.5, 0.9}) {
+      Orl_coordinates plain;
+      coordinates_at(space.layout(), x, y, lambda, 1, plain);
+      const auto tree = space.geodesic(0, 1, lambda);
+      const Orl_coordinates& z = tree.coordinates();
+      bool is_same = plain.length == z.length && plain.attachment == z.attachment;
+      for (std::size_t e = 0; e < z.length.size(); ++e)
+        is_same = is_same && plain.orientation[e].coeffs() == z.orientation[e].coeffs();
+      BOOST_TEST(is_same);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(sections_keep_their_area_and_branches_hang_together)
+{
+  const Tree a = random_tree(97, 3, 2), b = random_tree(98, 3, 2);
+  Space space;
+  space.add(a, tube_points(a, 20000, 1));
+  space.add(b, tube_points(b, 20000, 2));
+  space.build();
+  const auto& layout = space.layout();
+  // squared distances from the axis over squared radii: shares of the area of sections, sorted
+  const auto areas_at = [&](double lambda) {
+    const auto tree = space.geodesic(0, 1, lambda);
+    std::vector<Point> points;
+    space.points(tree, points);
+    const Orl_geometry g = in_space(space, tree.coordinates());
+    std::vector<double> areas;
+    for (const Point& point : points) {
+      double best = 1e300;
+      for (std::size_t k = 0; k < layout.branches.size(); ++k)
+        for (std::size_t j = 0; j < layout.branches[k].number_of_edges; ++j) {
+          const std::size_t v = layout.first_node(k) + j;
+          const Vec3 d = g.node[v + 1] - g.node[v], p = to_eigen(point) - g.node[v];
+          if (!(d.squaredNorm() > 0))
+            continue;
+          const double t = std::min(1.0, std::max(0.0, p.dot(d) / d.squaredNorm()));
+          const double area =
+              (p - t * d).squaredNorm() / std::pow((1 - t) * g.radius[v] + t * g.radius[v + 1], 2);
+          if (std::abs(area - 1) < std::abs(best - 1))
+            best = area;
+        }
+      areas.push_back(best);
+    }
+    std::sort(areas.begin(), areas.end());
+    return areas;
+  };
+  for (const double lambda : {-0.5, 0., 0.25, 0.5, 0.75, 1., 1.5}) {
+    const std::vector<double> areas = areas_at(lambda);
+    BOOST_TEST(areas[areas.size() / 50] > 0.95);
+    BOOST_TEST(areas[areas.size() - areas.size() / 50] < 1.05);
+    // the first node of every branch lies on its parent
+    const auto tree = space.geodesic(0, 1, lambda);
+    Tree skeleton;
+    space.skeleton(tree, skeleton);
+    double worst = 0;
+    for (const auto e : boost::make_iterator_range(edges(skeleton))) {
+      const auto u = source(e, skeleton), v = target(e, skeleton);
+      if (skeleton[u].branch == skeleton[v].branch)
+        continue;
+      double least = 1e300;
+      for (const auto f : boost::make_iterator_range(edges(skeleton))) {
+        const auto s = source(f, skeleton), t = target(f, skeleton);
+        if (skeleton[s].branch != skeleton[u].branch || skeleton[t].branch != skeleton[u].branch)
+          continue;
+        const Vec3 p = to_eigen(skeleton[s].point), d = to_eigen(skeleton[t].point) - p;
+        const double share =
+            std::min(1.0,
+                     std::max(0.0, (to_eigen(skeleton[v].point) - p).dot(d) / d.squaredNorm()));
+        least = std::min(least, (to_eigen(skeleton[v].point) - p - share * d).norm());
+      }
+      worst = std::max(worst, least);
+    }
+    BOOST_TEST(worst < 1e-9);
+  }
+}
+
+BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(orl_robustness)
 
@@ -149,6 +352,13 @@ BOOST_AUTO_TEST_CASE(a_star_of_five_hundred_branches)
   const Tree a = star(500, 0), b = star(480, 0.05);
   const auto report = morph(a, tube_points(a, 5000, 1), b, tube_points(b, 5000, 2));
   BOOST_TEST(report.number_of_matched_branches > 400u);
+}
+
+BOOST_AUTO_TEST_CASE(a_chain_of_a_hundred_thousand_nodes_and_a_tree_a_million_times_smaller)
+{
+  const Tree a = path(100000, 1);
+  const Tree b = moved(random_tree(61, 3, 2), Eigen::Matrix3d::Identity(), Vec3::Zero(), 1e-6);
+  morph(a, tube_points(a, 1000, 1), b, tube_points(b, 1000, 2));
 }
 
 BOOST_AUTO_TEST_CASE(equal_trees_are_in_one_place)
@@ -216,6 +426,49 @@ BOOST_AUTO_TEST_CASE(a_cycle_beside_the_root_is_refused)
   BOOST_CHECK_EXCEPTION(space.add_skeleton(tree), pcs::Invalid_input, message_has("cycle"));
 }
 
+BOOST_AUTO_TEST_CASE(numbers_of_vertices_that_are_none_are_refused)
+{
+  const Tree tree = path(4, 1);
+  pcs::Orl_shape_space<Kernel> space;
+  const auto add = [&](std::vector<int> numbers) {
+    space.add_skeleton(
+        tree,
+        pcs::parameters::node_index_map(
+            boost::make_iterator_property_map(numbers.begin(), get(boost::vertex_index, tree))));
+  };
+  BOOST_CHECK_EXCEPTION(add({0, 1, 2, 4}), pcs::Invalid_input, message_has("index 4"));
+  BOOST_CHECK_EXCEPTION(add({0, 1, 2, 1000000}), pcs::Invalid_input, message_has("1000000"));
+  BOOST_CHECK_THROW(add({0, 1, 2, -1}), pcs::Invalid_input);
+  BOOST_CHECK_EXCEPTION(add({0, 1, 2, 0}), pcs::Invalid_input, message_has("two vertices"));
+  add({3, 2, 1, 0});
+}
+
+BOOST_AUTO_TEST_CASE(a_place_on_the_path_that_is_no_number_is_refused_and_a_far_one_is_not)
+{
+  const Tree a = random_tree(62, 3, 2), b = random_tree(63, 3, 2);
+  const Space space = make_space(a, b);
+  for (const double lambda : {std::nan(""), HUGE_VAL, -HUGE_VAL})
+    BOOST_CHECK_EXCEPTION(space.geodesic(0, 1, lambda),
+                          pcs::Invalid_input,
+                          message_has("not finite"));
+  for (const double lambda : {-1e6, 1e6})
+    BOOST_TEST(in_space(space, space.geodesic(0, 1, lambda).coordinates()).node[3].allFinite());
+  // nor do coordinates overflow in silence
+  for (const double lambda : {-1e308, -1e300, 1e300, 1e308})
+    try {
+      for (const Vec3& p : in_space(space, space.geodesic(0, 1, lambda).coordinates()).node)
+        BOOST_TEST(p.allFinite());
+    } catch (const pcs::Invalid_input& error) {
+      BOOST_TEST(message_has("no finite numbers")(error));
+    }
+  Tree result = a;
+  std::vector<Point> points(7);
+  BOOST_CHECK_THROW(pcs::orl_geodesic(a, points, b, points, std::nan(""), result, points),
+                    pcs::Invalid_input);
+  BOOST_TEST(points.size() == 7u);
+  BOOST_TEST(num_vertices(result) == num_vertices(a));
+}
+
 BOOST_AUTO_TEST_CASE(archetypes_of_graph_maps_range_and_key)
 {
   using Triple = pcs_test::Triple_archetype<double>;
@@ -279,6 +532,45 @@ BOOST_AUTO_TEST_CASE(archetypes_of_graph_maps_range_and_key)
   for (std::size_t i = 0; i < out.size(); ++i)
     is_same = is_same && Point(out[i].x(), out[i].y(), out[i].z()) == expected[i];
   BOOST_TEST(is_same);
+  // the same through the function
+  std::vector<std::size_t> order[2];
+  std::vector<Triple> nodes[2], places[2];
+  std::vector<float> radii[2];
+  const auto maps_of = [&](std::size_t t) {
+    for (std::size_t v = 0; v < num_vertices(trees[t]); ++v) {
+      order[t].push_back(v);
+      radii[t].push_back(static_cast<float>(trees[t][v].radius));
+      const Point& p = trees[t][v].point;
+      nodes[t].emplace_back(p.x(), p.y(), p.z());
+    }
+    places[t] = triples(scans[t]);
+    return pcs::parameters::node_point_map(pcs_test::Vertex_map_archetype<Triple>(nodes[t]))
+        .node_radius_map(pcs_test::Vertex_map_archetype<float>(radii[t]))
+        .node_index_map(pcs_test::Vertex_map_archetype<std::size_t>(order[t]))
+        .point_map(pcs_test::Map_archetype<Triple>(places[t]));
+  };
+  const auto maps_a = maps_of(0), maps_b = maps_of(1);
+  const auto graph_of = [](const Tree& graph) {
+    std::vector<std::pair<std::size_t, std::size_t>> list;
+    for (const auto e : boost::make_iterator_range(edges(graph)))
+      list.emplace_back(source(e, graph), target(e, graph));
+    return pcs_test::Tree_archetype(num_vertices(graph), list);
+  };
+  Tree middle;
+  std::vector<Point> points;
+  pcs::orl_geodesic(graph_of(trees[0]),
+                    pcs_test::Range_archetype(scans[0].size()),
+                    graph_of(trees[1]),
+                    pcs_test::Range_archetype(scans[1].size()),
+                    0.3,
+                    middle,
+                    points,
+                    pcs::parameters::number_of_rounds(1),
+                    maps_a,
+                    maps_b);
+  BOOST_TEST(num_vertices(middle) > 2u);
+  BOOST_TEST(points.size() >= scans[1].size());
+
   pcs_test::Range_archetype small(out.size() - 1);
   BOOST_CHECK_THROW(space.points(tree, small, maps), pcs::Invalid_input);
 }

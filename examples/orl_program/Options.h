@@ -126,7 +126,7 @@ Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
   app.add_option("--orientation", o.orientation, "how orientations are measured")
       ->check(CLI::IsMember({"gauge-fixed", "transported", "world-axes"}))
       ->capture_default_str();
-  app.add_option("--maximal-turn", o.maximal_turn, "of an edge beyond the ends [degrees]")
+  app.add_option("--maximal-turn", o.maximal_turn, "of an edge beyond the ends, in all [degrees]")
       ->check(CLI::Range(0.0, 180.0))
       ->capture_default_str();
   app.add_flag("--limit-radii", o.do_limit_radii, "no branch thicker than where it grows from");

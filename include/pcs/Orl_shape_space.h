@@ -7,8 +7,7 @@
 
 #include <pcs/Named_function_parameters.h>
 #include <pcs/Orl_tree.h>
-#include <pcs/Orl_tree_family.h>
-#include <pcs/concepts.h>
+#include <pcs/Orl_tree_paths.h>
 #include <pcs/core/Orl_correspondences.h>
 #include <pcs/core/Orl_report.h>
 #include <pcs/core/Orl_space_data.h>
@@ -25,7 +24,6 @@
 #include <pcs/shape_space/stored_family.h>
 #include <pcs/shape_space/stored_topology.h>
 #include <pcs/shape_space/tree_input.h>
-#include <pcs/shape_space/write_skeleton.h>
 
 #include <CGAL/Simple_cartesian.h>
 
@@ -66,16 +64,16 @@ namespace pcs {
 */
 template <class Kernel = CGAL::Simple_cartesian<double>,
           class ConcurrencyTag = CGAL::Parallel_if_available_tag>
-class Orl_shape_space : public Orl_tree_family<ConcurrencyTag>
+class Orl_shape_space : public Orl_tree_paths<ConcurrencyTag>
 {
-  using Family = Orl_tree_family<ConcurrencyTag>;
+  using Paths = Orl_tree_paths<ConcurrencyTag>;
 
 public:
   using FT = typename Kernel::FT;
   using Point_3 = typename Kernel::Point_3;
   using Vector_3 = typename Kernel::Vector_3;
   //! names an added tree
-  using Handle = typename Family::Handle;
+  using Handle = typename Paths::Handle;
 
   Orl_shape_space() = default;
   Orl_shape_space(const Orl_shape_space&) = delete;
@@ -121,7 +119,7 @@ public:
           "pcs::Orl_shape_space::add(): the space was restored; add trees to a new one");
     m_inputs.push_back(
         shape_space::make_tree_input<Kernel>(tree, scan, np, "pcs::Orl_shape_space::add()"));
-    m_is_built = false;
+    this->m_is_built = false;
     this->m_family = shape_space::Tree_family();
     return m_inputs.size() - 1;
   }
@@ -294,16 +292,18 @@ public:
   //! what `build()` found, to be kept; \pre it was built
   Orl_correspondences correspondences() const
   {
-    check_built("correspondences");
+    this->check_built("correspondences");
     check_inputs("correspondences");
-    return shape_space::store_topology(m_built.topology, inputs(), m_built.instances.pairs());
+    return shape_space::store_topology(this->m_built.topology,
+                                       inputs(),
+                                       this->m_built.instances.pairs());
   }
 
   //! branches that correspond, parents first; \pre it was built
   std::vector<Branch_match> matches() const
   {
-    check_built("matches");
-    check_two("matches");
+    this->check_built("matches");
+    this->check_two("matches");
     std::vector<Branch_match> result;
     for (std::size_t b = 0; b < this->m_family.layout.branches.size(); ++b) {
       Branch_match match;
@@ -313,239 +313,6 @@ public:
       result.push_back(match);
     }
     return result;
-  }
-
-  /*!
-    \brief returns the tree at `lambda` on the geodesic from `a` (0) to `b` (1), or beyond its ends.
-
-    Beyond the ends lengths and radii stay positive, and orientations turn by at most `maximal_turn`.
-
-    \npbegin
-      \np{maximal_turn} how far an edge turns beyond an end of the path [rad]
-        \nptype `double`, `>= 0`
-        \npdefault `pi / 4`
-      \np{do_limit_radii} whether branches are made no thicker than where they grow from
-        \nptype `bool`
-        \npdefault `false`: real trees break that rule
-    \npend
-    \throws pcs::Invalid_input when `lambda` is not finite or a handle is wrong
-  */
-  template <class NamedParameters = parameters::Default_named_parameters>
-  Orl_tree
-  geodesic(Handle a, Handle b, double lambda, const NamedParameters& np = NamedParameters()) const
-  {
-    Orl_tree result;
-    geodesic(a, b, lambda, result, np);
-    return result;
-  }
-
-  //! the same into `result`, whose memory is used again
-  template <class NamedParameters = parameters::Default_named_parameters>
-  void geodesic(Handle a,
-                Handle b,
-                double lambda,
-                Orl_tree& result,
-                const NamedParameters& np = NamedParameters()) const
-  {
-    check_built("geodesic");
-    this->check_handle(std::max(a, b), "geodesic");
-    if (a == b)
-      lambda = 0;
-    // one direction only, so that the path back is the same
-    const double t = a <= b ? lambda : 1 - lambda;
-    if (!is_pair()) {
-      result.m_share.assign(this->number_of_trees(), 0);
-      const double share = std::min(1.0, std::max(0.0, a == b ? 0.0 : lambda));
-      result.m_share[a] += 1 - share;
-      result.m_share[b] += share;
-    }
-    make_tree(this->m_family.x[std::min(a, b)],
-              this->m_family.x[std::max(a, b)],
-              t,
-              a == b ? (a == 1 ? 1 : 0) : t,
-              np,
-              result);
-  }
-
-  //! the same between trees of the space
-  template <class NamedParameters = parameters::Default_named_parameters>
-  Orl_tree geodesic(const Orl_tree& a,
-                    const Orl_tree& b,
-                    double lambda,
-                    const NamedParameters& np = NamedParameters()) const
-  {
-    check_built("geodesic");
-    Orl_tree result;
-    this->mix_shares(
-        {&a, &b},
-        {1 - std::min(1.0, std::max(0.0, lambda)), std::min(1.0, std::max(0.0, lambda))},
-        result);
-    make_tree(a.m_x, b.m_x, lambda, (1 - lambda) * a.m_lambda + lambda * b.m_lambda, np, result);
-    return result;
-  }
-
-  /*!
-    \brief writes a tree of the space as a skeleton; branches of length 0 are left out.
-
-    Every branch begins with a node of its own on the axis of its parent.
-    \param result is replaced
-  */
-  template <class OutKernel>
-  void skeleton(const Orl_tree& t, Tree_skeleton<OutKernel>& result) const
-  {
-    check_built("skeleton");
-    this->check_tree(t, "skeleton");
-    shape_space::write_skeleton(this->m_family.layout,
-                                t.m_x,
-                                t.m_geometry,
-                                this->m_family.origin,
-                                result);
-  }
-
-  /*!
-    \brief writes the points of a tree of the space.
-
-    Pairs come by edge; at `lambda` 0 and 1 the points are those of the scans, as often as they have partners, and points
-    of branches that the tree lacks are left out.
-
-    \param result a random access range; a container with `resize()` gets the size `t.number_of_points()`, which
-           allocates nothing if its capacity suffices; another range must have that size at least
-    \npbegin
-      \np{point_map} where a position is written
-        \nptype model of `WritablePropertyMap`, key: element of `result`, value: `Kernel::Point_3`
-        \npdefault `CGAL::Identity_property_map`
-      \np{normal_map} where a normal is written, if both scans have normals
-        \nptype model of `WritablePropertyMap`, value: `Kernel::Vector_3`
-        \npdefault none
-      \np{point_path} how the points of a pair are joined
-        \nptype `shape_space::Point_path`
-        \npdefault `cylindrical`; `virtual_edges` is the text's
-    \npend
-    \return the number of points
-    \par Complexity
-    Linear in the number of points; no allocation.
-  */
-  template <class PointRange, class NamedParameters = parameters::Default_named_parameters>
-  std::size_t
-  points(const Orl_tree& t, PointRange& result, const NamedParameters& np = NamedParameters()) const
-  {
-    check_built("points");
-    this->check_tree(t, "points");
-    const std::size_t n = t.number_of_points();
-    shape_space::internal::resize_range(result, n, "pcs::Orl_shape_space::points()");
-    const auto point_map = pcs::internal::choose(
-        np,
-        CGAL::internal_np::point_map,
-        CGAL::Identity_property_map<std::decay_t<decltype(*std::begin(result))>>());
-    constexpr bool has_normals =
-        pcs::internal::is_given_v<NamedParameters, CGAL::internal_np::normal_t>;
-    const auto normal_map = pcs::internal::choose(np, CGAL::internal_np::normal_map, 0);
-    if (has_normals && !(is_pair() ? m_built.instances.has_normals() : m_points.has_normals()))
-      throw Invalid_input(
-          "pcs::Orl_shape_space::points(): `normal_map` needs trees that were added with normals");
-    using Point = Map_value<std::decay_t<decltype(point_map)>>;
-    const shape_space::Vec3 origin = this->m_family.origin;
-    const auto begin = std::begin(result);
-    const auto put_point = [&, origin](std::size_t i,
-                                       const shape_space::Vec3& p,
-                                       const shape_space::Vec3& normal,
-                                       std::size_t) {
-      using Number = std::decay_t<decltype(std::declval<const Point&>().x())>;
-      const shape_space::Vec3 q = p + origin;
-      auto&& key = *(begin + static_cast<std::ptrdiff_t>(i));
-      put(point_map,
-          key,
-          Point(static_cast<Number>(q.x()),
-                static_cast<Number>(q.y()),
-                static_cast<Number>(q.z())));
-      if constexpr (has_normals) {
-        using Vector = Map_value<std::decay_t<decltype(normal_map)>>;
-        put(normal_map,
-            key,
-            Vector(static_cast<Number>(normal.x()),
-                   static_cast<Number>(normal.y()),
-                   static_cast<Number>(normal.z())));
-      } else
-        static_cast<void>(normal);
-    };
-    if (!is_pair()) {
-      m_points.write(this->m_family.layout,
-                     t.m_x,
-                     t.m_geometry,
-                     t.m_offset,
-                     t.m_share,
-                     put_point,
-                     ConcurrencyTag());
-      return n;
-    }
-    m_built.instances.write(this->m_family.layout,
-                            t.m_x,
-                            t.m_geometry,
-                            t.m_lambda,
-                            pcs::internal::choose(np,
-                                                  pcs::internal_np::point_path,
-                                                  shape_space::Point_path::cylindrical),
-                            t.m_offset,
-                            put_point,
-                            ConcurrencyTag());
-    return n;
-  }
-
-  /*!
-    \brief calls `f(i, a, b, w)` for every point of a tree of the space: `a` and `b` are the numbers of the points it comes
-    from in the two scans, `npos` where there is none, `w` is the share of the second, in [0, 1].
-
-    Attributes are blended with it: `result[i] = (1 - w) * one[a] + w * two[b]`. `f` may be called concurrently.
-  */
-  template <class F>
-  void for_each_point(const Orl_tree& t, const F& f) const
-  {
-    check_built("for_each_point");
-    check_two("for_each_point");
-    this->check_tree(t, "for_each_point");
-    const double share = std::min(1.0, std::max(0.0, t.m_lambda));
-    m_built.instances.for_each_pair(
-        t.m_x,
-        t.m_offset,
-        [&](std::size_t i, const shape_space::Point_pair& pair) {
-          const bool has_a = pair.point[0] != shape_space::no_point;
-          const bool has_b = pair.point[1] != shape_space::no_point;
-          f(i,
-            has_a ? std::size_t(pair.point[0]) : npos,
-            has_b ? std::size_t(pair.point[1]) : npos,
-            has_a ? (has_b ? share : 0.0) : 1.0);
-        },
-        ConcurrencyTag());
-  }
-
-  /*!
-    \brief calls `f(i, h, k, w)` for every point of a tree of a space of more than two trees and every point it is made
-    from: point `k` of the scan of tree `h`, with a weight `w` in (0, 1]; weights of a point add up to 1.
-
-    Attributes are blended with it: `result[i] += w * scan[h][k]`. `f` may be called concurrently, but not for one `i`.
-  */
-  template <class F>
-  void for_each_source(const Orl_tree& t, const F& f) const
-  {
-    check_built("for_each_source");
-    this->check_tree(t, "for_each_source");
-    if (is_pair())
-      throw Invalid_input(
-          "pcs::Orl_shape_space::for_each_source(): points of two trees come from both; use "
-          "for_each_point()");
-    const std::vector<std::size_t>& first = m_points.first();
-    pcs::internal::for_each_index<ConcurrencyTag>(
-        t.m_x.length.size(),
-        [&](std::size_t e) {
-          if (t.m_x.length[e] > 0)
-            for (std::size_t k = first[e]; k < first[e + 1]; ++k)
-              m_points.for_each_source(k,
-                                       t.m_share,
-                                       [&](std::size_t h, std::size_t point, double w) {
-                                         f(t.m_offset[e] + k - first[e], h, point, w);
-                                       });
-        },
-        64);
   }
 
   /*!
@@ -560,7 +327,7 @@ public:
                  const NamedParameters& np = parameters::default_values(),
                  double* share = nullptr) const
   {
-    check_built("embed");
+    this->check_built("embed");
     const shape_space::Tree_input input =
         shape_space::make_tree_input<Kernel>(tree,
                                              std::vector<Point_3>(),
@@ -569,27 +336,16 @@ public:
     return this->make(shape_space::embed_tree<ConcurrencyTag>(this->m_family, input.tree, share));
   }
 
-  //! whether trees of the space have points; \pre it was built
-  bool has_points() const
-  {
-    return !this->m_family.first_point.empty() && this->m_family.first_point.back() > 0;
-  }
-  //! whether these have normals; \pre it was built
-  bool has_normals() const
-  {
-    return is_pair() ? m_built.instances.has_normals() : m_points.has_normals();
-  }
-
   //! the whole space as numbers, for `IO::write_shape_space()`; \pre it was built
   Orl_space_data data() const
   {
-    check_built("data");
+    this->check_built("data");
     Orl_space_data result = shape_space::store_family(this->m_family);
     result.points = m_stored_points;
     result.partners = m_stored_partners;
-    result.has_normals = has_normals();
-    if (is_pair()) {
-      result.pairs = m_built.instances.pairs();
+    result.has_normals = this->has_normals();
+    if (this->is_pair()) {
+      result.pairs = this->m_built.instances.pairs();
       const std::array<std::vector<shape_space::Vec3>, 2> points = {
           m_inputs[0].points,
           shape_space::points_of_second(inputs())};
@@ -622,15 +378,6 @@ private:
     return {&m_inputs[0], &m_inputs[1]};
   }
 
-  bool is_pair() const { return this->number_of_trees() == 2; }
-
-  void check_two(const char* caller) const
-  {
-    if (!is_pair())
-      throw Invalid_input(std::string("pcs::Orl_shape_space::") + caller +
-                          "(): for two trees only, there are " +
-                          std::to_string(this->number_of_trees()));
-  }
   void check_inputs(const char* caller) const
   {
     if (m_is_restored)
@@ -640,13 +387,6 @@ private:
       throw Invalid_input(std::string("pcs::Orl_shape_space::") + caller + "(): " +
                           std::to_string(m_inputs.size()) + " trees were added, expected 2");
   }
-  void check_built(const char* caller) const
-  {
-    if (!m_is_built)
-      throw Invalid_input(std::string("pcs::Orl_shape_space::") + caller +
-                          "(): call build() first");
-  }
-
   Orl_report new_report() const
   {
     Orl_report report;
@@ -686,56 +426,31 @@ private:
                         built.is_relative,
                         std::move(pairs),
                         ConcurrencyTag());
-    m_built = std::move(built);
-    this->m_family = shape_space::make_family(m_built, inputs(), weights);
+    this->m_built = std::move(built);
+    this->m_family = shape_space::make_family(this->m_built, inputs(), weights);
     this->m_family.first_point =
-        shape_space::first_of_edges(m_built.instances.pairs(), m_built.layout.number_of_edges());
-    m_points = shape_space::Family_points();
+        shape_space::first_of_edges(this->m_built.instances.pairs(),
+                                    this->m_built.layout.number_of_edges());
+    this->m_points = shape_space::Family_points();
     m_stored_points.clear();
     m_stored_partners.clear();
-    m_is_built = true;
+    this->m_is_built = true;
     report.status = Status::converged;
-    report.number_of_common_branches = m_built.topology.branches.size();
-    for (const shape_space::Common_branch& b : m_built.topology.branches) {
+    report.number_of_common_branches = this->m_built.topology.branches.size();
+    for (const shape_space::Common_branch& b : this->m_built.topology.branches) {
       for (int t = 0; t < 2; ++t)
         report.number_of_branches[static_cast<std::size_t>(t)] += b.is_virtual(t) ? 0 : 1;
       report.number_of_matched_branches += b.is_virtual(0) || b.is_virtual(1) ? 0 : 1;
     }
-    report.number_of_edges = m_built.layout.number_of_edges();
-    report.distance = shape_space::distance(m_built.x[0],
-                                            m_built.x[1],
-                                            m_built.weights,
+    report.number_of_edges = this->m_built.layout.number_of_edges();
+    report.distance = shape_space::distance(this->m_built.x[0],
+                                            this->m_built.x[1],
+                                            this->m_built.weights,
                                             shape_space::Orl_metric::sum);
-    report.number_of_point_pairs = m_built.instances.pairs().size();
-    for (const shape_space::Point_pair& p : m_built.instances.pairs())
+    report.number_of_point_pairs = this->m_built.instances.pairs().size();
+    for (const shape_space::Point_pair& p : this->m_built.instances.pairs())
       report.number_of_single_points +=
           p.point[0] == shape_space::no_point || p.point[1] == shape_space::no_point ? 1 : 0;
-  }
-
-  template <class NamedParameters>
-  void make_tree(const shape_space::Orl_coordinates& a,
-                 const shape_space::Orl_coordinates& b,
-                 double t,
-                 double lambda,
-                 const NamedParameters& np,
-                 Orl_tree& result) const
-  {
-    const double maximal_turn = pcs::internal::choose(np,
-                                                      pcs::internal_np::maximal_turn,
-                                                      0.25 * static_cast<double>(EIGEN_PI));
-    const bool do_limit = pcs::internal::choose(np, pcs::internal_np::do_limit_radii, false);
-    if (!std::isfinite(t))
-      throw Invalid_input("pcs::Orl_shape_space::geodesic(): `lambda` is not finite");
-    if (!(maximal_turn >= 0))
-      throw Invalid_input("pcs::Orl_shape_space::geodesic(): `maximal_turn` is " +
-                          pcs::internal::to_text(maximal_turn) + ", expected at least 0");
-    const shape_space::Tree_family& family = this->m_family;
-    shape_space::coordinates_at(family.layout, a, b, t, maximal_turn, result.m_x);
-    if (do_limit)
-      shape_space::limit_radii(family.layout, result.m_x);
-    result.m_lambda = lambda;
-    shape_space::build_geometry(family.layout, result.m_x, family.orientation, result.m_geometry);
-    family.find_offsets(result.m_x, result.m_offset);
   }
 
   template <class NamedParameters>
@@ -758,13 +473,13 @@ private:
       return cancelled(report);
     pcs::internal::Stopwatch watch;
     this->m_family = std::move(built.family);
-    m_built = shape_space::Embedded_pair();
+    this->m_built = shape_space::Embedded_pair();
     set_family_points(std::move(built.points), std::move(built.partners), built.has_normals);
-    m_is_built = true;
+    this->m_is_built = true;
     report.seconds.instances = watch.lap();
     report.status = Status::converged;
     report.distance = this->distance(Handle(0), Handle(1));
-    report.number_of_point_pairs = m_points.size();
+    report.number_of_point_pairs = this->m_points.size();
     progress.finish();
     return report;
   }
@@ -779,10 +494,10 @@ private:
     std::vector<Orl_geometry> geometry(family.x.size());
     for (std::size_t t = 0; t < family.x.size(); ++t)
       build_geometry(family.layout, family.x[t], family.orientation, geometry[t]);
-    m_points.set(family.layout, geometry, points, partners, has_normals, ConcurrencyTag());
+    this->m_points.set(family.layout, geometry, points, partners, has_normals, ConcurrencyTag());
     m_stored_points = std::move(points);
     m_stored_partners = std::move(partners);
-    this->m_family.first_point = m_points.first();
+    this->m_family.first_point = this->m_points.first();
   }
 
   /// What `data()` gave, once the family is there.
@@ -796,16 +511,14 @@ private:
       set_family_points(stored.points, stored.partners, stored.has_normals);
       return;
     }
-    m_inputs = restore_pair<ConcurrencyTag>(stored, this->m_family, caller, m_built);
-    this->m_family.first_point = first_of_edges(m_built.instances.pairs(), n);
+    m_inputs = restore_pair<ConcurrencyTag>(stored, this->m_family, caller, this->m_built);
+    this->m_family.first_point = first_of_edges(this->m_built.instances.pairs(), n);
   }
 
   std::vector<shape_space::Tree_input> m_inputs;
-  shape_space::Embedded_pair m_built;                 // of two trees
-  shape_space::Family_points m_points;                // of more
-  std::vector<Orl_space_data::Point> m_stored_points; // likewise
+  std::vector<Orl_space_data::Point> m_stored_points; // of more than two trees
   std::vector<Orl_space_data::Partner> m_stored_partners;
-  bool m_is_built = false, m_is_restored = false;
+  bool m_is_restored = false;
 };
 
 } // namespace pcs

@@ -2,27 +2,29 @@
 // SPDX-License-Identifier: BSL-1.0
 // A graph of another type needs maps.
 
-#include <pcs/Orl_shape_space.h>
+#include <pcs/orl_geodesic.h>
 
 #include <CGAL/Simple_cartesian.h>
 
 #include <boost/graph/adjacency_list.hpp>
-#include <boost/property_map/property_map.hpp>
 
-#include <string>
 #include <vector>
 
+namespace {
+
 using Kernel = CGAL::Simple_cartesian<double>;
-using Skeleton = pcs::Tree_skeleton<Kernel>;
 
 #ifdef PCS_BREAK_THE_RULE
-using Graph = boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS>;
+using Own_graph = boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS>;
 #else
-using Graph = Skeleton;
+using Own_graph = pcs::Tree_skeleton<Kernel>;
 #endif
 
-void compile(const Graph& graph)
+} // namespace
+
+void compile(const Own_graph& one, const Own_graph& two)
 {
-  pcs::Orl_shape_space<Kernel> space;
-  space.add_skeleton(graph);
+  std::vector<Kernel::Point_3> none;
+  pcs::Tree_skeleton<Kernel> middle;
+  pcs::orl_geodesic(one, none, two, none, 0.5, middle, none);
 }

@@ -2,27 +2,23 @@
 // SPDX-License-Identifier: BSL-1.0
 // A tree must be a graph.
 
-#include <pcs/Orl_shape_space.h>
+#include <pcs/orl_geodesic.h>
 
 #include <CGAL/Simple_cartesian.h>
 
-#include <boost/graph/adjacency_list.hpp>
-#include <boost/property_map/property_map.hpp>
-
-#include <string>
 #include <vector>
 
 using Kernel = CGAL::Simple_cartesian<double>;
-using Skeleton = pcs::Tree_skeleton<Kernel>;
+using Scan = std::vector<Kernel::Point_3>;
 
 #ifdef PCS_BREAK_THE_RULE
-using Graph = std::vector<Kernel::Point_3>;
+using Tree = Scan;
 #else
-using Graph = Skeleton;
+using Tree = pcs::Tree_skeleton<Kernel>;
 #endif
 
-void compile(const Graph& graph)
+void compile(const Tree& tree, const pcs::Tree_skeleton<Kernel>& other, Scan& scan)
 {
-  pcs::Orl_shape_space<Kernel> space;
-  space.add_skeleton(graph);
+  pcs::Tree_skeleton<Kernel> result;
+  pcs::orl_geodesic(other, scan, tree, scan, 0.5, result, scan);
 }

@@ -202,6 +202,10 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_with_a_sentence)
     write("cut.txtskl", txtskl.substr(0, txtskl.size() * k / 10));
     BOOST_TEST(run("--skeleton cut.txtskl --skeleton b.swc --output out") == 1);
   }
+  write("one.swc", "1 1 0 0 0 1 -1\n");
+  refuses("--skeleton a.swc --skeleton one.swc --output out", "one.swc");
+  write("same.swc", "1 1 1 1 1 1 -1\n2 1 1 1 1 1 1\n3 1 1 1 1 1 2\n");
+  refuses("--skeleton same.swc --skeleton a.swc --output out", "same.swc");
   write("two_roots.swc", "1 1 0 0 0 1 -1\n2 1 0 0 1 1 1\n3 1 5 0 0 1 -1\n");
   BOOST_TEST(run("--skeleton two_roots.swc --skeleton b.swc --output out") == 1);
   write("cycle.swc", "1 1 0 0 0 1 2\n2 1 0 0 1 1 1\n");

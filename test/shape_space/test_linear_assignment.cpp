@@ -55,4 +55,39 @@ BOOST_AUTO_TEST_CASE(it_costs_as_little_as_any_assignment)
   }
 }
 
+BOOST_AUTO_TEST_CASE(it_is_kept_up_to_date_when_entries_grow)
+{
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> uniform(-1, 0.3);
+  for (int repetition = 0; repetition < 300; ++repetition) {
+    const std::size_t n = 1 + random() % 5, m = 1 + random() % 5;
+    std::vector<double> gain(n * m), prices(m);
+    for (double& g : gain)
+      g = uniform(random);
+    for (double& p : prices)
+      p = std::min(0.0, uniform(random));
+    pcs::shape_space::Assignment assignment(n, m, gain, prices);
+    BOOST_TEST(assignment.bound() <= least_cost(n, m, gain) + 1e-12);
+    assignment.solve();
+    for (int round = 0; round < 6; ++round) {
+      const auto& column = assignment.columns();
+      double cost = 0;
+      std::vector<int> uses(m, 0);
+      std::vector<std::size_t> rows;
+      for (std::size_t i = 0; i < n; ++i)
+        if (column[i] != pcs::shape_space::none) {
+          cost += gain[i * m + column[i]];
+          ++uses[column[i]];
+          if (random() % 2 == 0)
+            rows.push_back(i);
+        }
+      BOOST_TEST(*std::max_element(uses.begin(), uses.end()) <= 1);
+      BOOST_TEST(std::abs(cost - least_cost(n, m, gain)) < 1e-12);
+      for (const std::size_t i : rows)
+        gain[i * m + column[i]] += 0.2 + 0.5 * std::abs(uniform(random));
+      assignment.raise(rows);
+    }
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

@@ -224,7 +224,10 @@ private:
       double cost;
       std::size_t p1, p2;
     };
+    using limits = std::numeric_limits<double>;
     std::vector<Candidate> order;
+    std::vector<double> lowest; // the costs that count, a heap
+    Matching_energy::Prices prices;
     for (const std::size_t p1 : paths_1)
       for (const std::size_t p2 : paths_2) {
         if (curve_weight * m_energy.least_energy(p1, p2, rotation) + difference >= limit)
@@ -236,9 +239,23 @@ private:
           const Children b =
               m_energy.children_of(1, m_energy.path(1, p2), trial.last[1], &trial.gamma);
           const Eigen::Matrix3d turned = m_energy.turn(trial, a, b, rotation, 0);
-          m_energy.quick_assignment(a, b, turned, m_energy.length(0, p1), &cost);
-          cost += is_turned ? m_energy.turned_energy(trial, rotation, turned) : trial.cost;
+          cost = is_turned ? m_energy.turned_energy(trial, rotation, turned) : trial.cost;
           cost += m_energy.rest_cost(p1, p2, trial.last);
+          const double most_cost = lowest.size() < most ? limits::infinity() : lowest.front();
+          cost += m_energy.quick_cost_of_children(a,
+                                                  b,
+                                                  turned,
+                                                  m_energy.length(0, p1),
+                                                  most_cost - cost,
+                                                  prices);
+          if (cost > most_cost)
+            continue;
+          if (lowest.size() == most) {
+            std::pop_heap(lowest.begin(), lowest.end());
+            lowest.pop_back();
+          }
+          lowest.push_back(cost);
+          std::push_heap(lowest.begin(), lowest.end());
         }
         order.push_back({cost, p1, p2});
       }
@@ -311,9 +328,11 @@ private:
         gain[i * m + j] =
             m_energy.least_cost(path_1.children[i].start, path_2.children[j].start, turned) +
             rest(i, j);
-    std::vector<std::size_t> partner, wanted;
+    Assignment assignment(n, m, gain);
+    assignment.solve();
+    const std::vector<std::size_t>& partner = assignment.columns();
+    std::vector<std::size_t> wanted;
     for (;;) {
-      partner = assign_rows(n, m, gain);
       wanted.clear();
       double bound = result.cost;
       for (std::size_t i = 0; i < n; ++i)
@@ -334,6 +353,7 @@ private:
             gain[i * m + j] = exact[i * m + j] ? exact[i * m + j]->cost + rest(i, j) : 0;
           },
           1);
+      assignment.raise(wanted);
     }
     for (std::size_t i = 0; i < n; ++i)
       if (partner[i] != none) {

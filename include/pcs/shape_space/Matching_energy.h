@@ -21,6 +21,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -51,7 +52,10 @@ public:
     std::vector<double> s, weight;
     std::vector<double> length; ///< of the longest path
     std::vector<Vec3> direction;
+    std::vector<std::size_t> start;
   };
+  /// What children of tree 2 were worth in similar questions, by the node that they begin with.
+  using Prices = std::unordered_map<std::size_t, double>;
 
   template <class ConcurrencyTag>
   Matching_energy(const Rooted_tree& tree_1,
@@ -227,38 +231,52 @@ public:
       const double s = path.arc[c.position] / path.arc[last];
       result.s.push_back(gamma ? inverse_at(*gamma, s) : s);
       result.weight.push_back(weight(t, c.start));
+      result.start.push_back(c.start);
       result.length.push_back(curves(t)[paths(t).paths_of[c.start].front()].length);
       result.direction.push_back(curves(t)[paths(t).paths_of[c.start].front()].direction);
     }
     return result;
   }
 
-  /// The assignment of children by quick costs; `cost` is what it leaves.
+  /// The assignment of children by quick costs.
   std::vector<std::size_t> quick_assignment(const Children& a,
                                             const Children& b,
                                             const Eigen::Matrix3d& rotation,
-                                            double parent_length,
-                                            double* cost) const
+                                            double parent_length) const
   {
+    return assign_rows(a.s.size(), b.s.size(), quick_gains(a, b, rotation, parent_length));
+  }
+
+  /// What it leaves; infinity where it is seen at once that it is more than `most`.
+  double quick_cost_of_children(const Children& a,
+                                const Children& b,
+                                const Eigen::Matrix3d& rotation,
+                                double parent_length,
+                                double most,
+                                Prices& prices) const
+  {
+    constexpr double slack = 1e-9; // rounding must not decide
     const std::size_t n = a.s.size(), m = b.s.size();
-    std::vector<double> gain(n * m);
     double total = 0;
     for (const double w : a.weight)
       total += single_term(w);
     for (const double w : b.weight)
       total += single_term(w);
+    const std::vector<double> gain = quick_gains(a, b, rotation, parent_length);
+    std::vector<double> known(m, 0);
+    for (std::size_t j = 0; j < m; ++j)
+      if (const auto it = prices.find(b.start[j]); it != prices.end())
+        known[j] = it->second;
+    Assignment assignment(n, m, gain, known);
+    if (total * (1 - slack) + assignment.bound() > most)
+      return std::numeric_limits<double>::infinity();
+    assignment.solve();
+    for (std::size_t j = 0; j < m; ++j)
+      prices[b.start[j]] = assignment.prices()[j];
     for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = 0; j < m; ++j)
-        gain[i * m + j] = m_weights.curve * quick_cost(a, i, b, j, rotation) +
-                          position_term(a.length[i], b.length[j], a.s[i], b.s[j], parent_length) -
-                          single_term(a.weight[i]) - single_term(b.weight[j]);
-    std::vector<std::size_t> partner = assign_rows(n, m, gain);
-    for (std::size_t i = 0; i < n; ++i)
-      if (partner[i] != none)
-        total += gain[i * m + partner[i]];
-    if (cost)
-      *cost = total;
-    return partner;
+      if (const std::size_t j = assignment.columns()[i]; j != none)
+        total += gain[i * m + j];
+    return total;
   }
 
   /// The turn that carries branch 2 to branch 1, from the curves, the children, and what the parents say.
@@ -290,8 +308,7 @@ public:
       return q.toRotationMatrix();
     for (int pass = 0; pass < passes; ++pass) {
       const Eigen::Matrix3d rotation = q.toRotationMatrix();
-      const std::vector<std::size_t> partner =
-          quick_assignment(a, b, rotation, one.length, nullptr);
+      const std::vector<std::size_t> partner = quick_assignment(a, b, rotation, one.length);
       Eigen::Matrix3d all = covariance;
       for (std::size_t i = 0; i < partner.size(); ++i)
         if (partner[i] != none)
@@ -359,6 +376,22 @@ private:
   double length_term(double a, double b) const
   {
     return m_weights.length * m_weights.single * std::abs(a - b);
+  }
+
+  /// What pairs of children cost more than both alone, by quick costs.
+  std::vector<double> quick_gains(const Children& a,
+                                  const Children& b,
+                                  const Eigen::Matrix3d& rotation,
+                                  double parent_length) const
+  {
+    const std::size_t n = a.s.size(), m = b.s.size();
+    std::vector<double> gain(n * m);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < m; ++j)
+        gain[i * m + j] = m_weights.curve * quick_cost(a, i, b, j, rotation) +
+                          position_term(a.length[i], b.length[j], a.s[i], b.s[j], parent_length) -
+                          single_term(a.weight[i]) - single_term(b.weight[j]);
+    return gain;
   }
 
   /// Cost of two subtrees as if each were one straight branch.

@@ -237,14 +237,22 @@ Rooted_tree make_rooted_tree(const TreeGraph& graph,
 
   std::vector<std::size_t> parents(n, none);
   std::vector<Vertex> vertices_by_index(n, *vertices(graph).first);
-  for (auto [v, end] = vertices(graph); v != end; ++v) {
-    const auto i = static_cast<std::size_t>(get(index_map, *v));
+  std::vector<char> is_taken(n, 0);
+  const auto index_of = [&](const Vertex& v) {
+    const auto i = static_cast<std::size_t>(get(index_map, v));
     if (i >= n)
       fail("a vertex has the index " + std::to_string(i) + ", which is not below the " +
            std::to_string(n) + " nodes");
+    return i;
+  };
+  for (auto [v, end] = vertices(graph); v != end; ++v) {
+    const std::size_t i = index_of(*v);
+    if (is_taken[i])
+      fail("two vertices have the index " + std::to_string(i));
+    is_taken[i] = 1;
     vertices_by_index[i] = *v;
     for (auto [e, last] = out_edges(*v, graph); e != last; ++e) {
-      const auto c = static_cast<std::size_t>(get(index_map, target(*e, graph)));
+      const std::size_t c = index_of(target(*e, graph));
       if (parents[c] != none)
         fail("node " + std::to_string(c) + " has two parents, " + std::to_string(parents[c]) +
              " and " + std::to_string(i));

@@ -98,18 +98,9 @@ inline Embedding embed(const Orl_layout& layout,
                        std::size_t t,
                        const Vec3& shift)
 {
-  const std::size_t n = layout.number_of_edges(), m = branches.size();
-  Embedding result;
-  result.direction.assign(n, Vec3::Zero());
-  result.frame.assign(n, Quaternion::Identity());
+  Embedding result = empty_embedding(layout, tree.points[0] + shift);
   Orl_coordinates& x = result.x;
-  x.root = tree.points[0] + shift;
-  x.orientation.assign(n, Quaternion::Identity());
-  x.length.assign(n, 0);
-  x.radius.assign(n, 0);
-  x.base_radius.assign(m, 0);
-  x.attachment.assign(m, 0);
-  for (std::size_t b = 0; b < m; ++b) {
+  for (std::size_t b = 0; b < branches.size(); ++b) {
     if (!branches[b].has(t))
       continue;
     x.attachment[b] = branches[b].attachment[t];

@@ -86,6 +86,23 @@ struct Embedding
   Orl_coordinates x;
 };
 
+/// A tree without branches.
+inline Embedding empty_embedding(const Orl_layout& layout, const Vec3& root)
+{
+  const std::size_t n = layout.number_of_edges(), m = layout.branches.size();
+  Embedding result;
+  result.direction.assign(n, Vec3::Zero());
+  result.frame.assign(n, Quaternion::Identity());
+  Orl_coordinates& x = result.x;
+  x.root = root;
+  x.orientation.assign(n, Quaternion::Identity());
+  x.length.assign(n, 0);
+  x.radius.assign(n, 0);
+  x.base_radius.assign(m, 0);
+  x.attachment.assign(m, 0);
+  return result;
+}
+
 inline Embedding embed(const Orl_layout& layout,
                        const std::vector<Common_branch>& branches,
                        const Rooted_tree& tree,
@@ -93,19 +110,10 @@ inline Embedding embed(const Orl_layout& layout,
                        int t,
                        const Vec3& shift)
 {
-  const std::size_t n = layout.number_of_edges(), m = branches.size();
-  Embedding result;
-  result.direction.assign(n, Vec3::Zero());
-  result.frame.assign(n, Quaternion::Identity());
+  Embedding result = empty_embedding(layout, tree.points[0] + shift);
   Orl_coordinates& x = result.x;
-  x.root = tree.points[0] + shift;
-  x.orientation.assign(n, Quaternion::Identity());
-  x.length.assign(n, 0);
-  x.radius.assign(n, 0);
-  x.base_radius.assign(m, 0);
-  x.attachment.assign(m, 0);
   const auto i = static_cast<std::size_t>(t);
-  for (std::size_t b = 0; b < m; ++b) {
+  for (std::size_t b = 0; b < branches.size(); ++b) {
     x.attachment[b] = branches[b].attachment[i];
     if (branches[b].is_virtual(t))
       continue;

@@ -7,6 +7,7 @@
 
 #include <pcs/shape_space/Rooted_tree.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -16,84 +17,174 @@ namespace shape_space {
 
 /*!
   Minimises the sum of `gain[i * m + j]` over pairs, each row and column at most once; rows and columns may stay single.
-  Entries that are not negative are never used. Returns the column of each row, or `none`.
-  Shortest augmenting paths (Jonker, Volgenant 1987); O(n^2 m). Ties: the lowest index first.
+  Entries that are not negative are never used.
+
+  Shortest augmenting paths (Jonker, Volgenant 1987); O(n^2 m) at first. When entries grow, only the pairs that they belong
+  to are solved again: what is known of all others stays true. Ties: the lowest index first.
 */
-inline std::vector<std::size_t>
-assign_rows(std::size_t n, std::size_t m, const std::vector<double>& gain)
+class Assignment
 {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  std::vector<double> u(n, 0), v(m, 0), minimum(m);
-  std::vector<std::size_t> row_of(m, none), column_of(n, none), previous_row(m);
-  std::vector<char> is_used(m);
-  std::vector<std::size_t> rows, columns;
-  for (std::size_t r = 0; r < n; ++r) {
-    std::fill(minimum.begin(), minimum.end(), infinity);
-    std::fill(is_used.begin(), is_used.end(), 0);
-    rows.assign(1, r);
-    columns.clear();
-    double single = -u[r]; // least reduced cost of leaving a row of the tree single
-    std::size_t single_row = r, row = r, end_column = none;
-    for (;;) {
-      double delta = single;
-      std::size_t next = none;
-      for (std::size_t j = 0; j < m; ++j)
-        if (!is_used[j]) {
-          const double g = gain[row * m + j];
-          if (g < 0) {
-            const double reduced = g - u[row] - v[j];
-            if (reduced < minimum[j]) {
-              minimum[j] = reduced;
-              previous_row[j] = row;
-            }
-          }
-          if (minimum[j] < delta) {
-            delta = minimum[j];
-            next = j;
-          }
+public:
+  /// `gain` is kept by reference; it may change between calls, as `raise()` says. `prices` of columns, not positive, are those
+  /// of a similar problem, or empty: the nearer they are, the less there is to do.
+  Assignment(std::size_t n,
+             std::size_t m,
+             const std::vector<double>& gain,
+             const std::vector<double>& prices = std::vector<double>())
+    : m_gain(gain), m_rows(n, m), m_columns(m, 1)
+  {
+    if (!prices.empty())
+      m_columns.price = prices;
+    std::vector<std::size_t> best(n, none);
+    for (std::size_t r = 0; r < n; ++r)
+      for (std::size_t c = 0; c < m; ++c)
+        if (const double g = gain[r * m + c]; g < 0 && g - m_columns.price[c] < m_rows.price[r]) {
+          m_rows.price[r] = g - m_columns.price[c];
+          best[r] = c;
         }
-      for (const std::size_t i : rows)
-        u[i] += delta;
-      for (const std::size_t j : columns)
-        v[j] -= delta;
-      for (std::size_t j = 0; j < m; ++j)
-        if (!is_used[j])
-          minimum[j] -= delta;
-      single -= delta;
+    for (const double p : m_rows.price)
+      m_bound += p;
+    for (const double p : m_columns.price)
+      m_bound += p;
+    for (std::size_t r = 0; r < n; ++r)
+      if (best[r] != none && m_columns.partner[best[r]] == none) {
+        m_columns.partner[best[r]] = r;
+        m_rows.partner[r] = best[r];
+      }
+  }
+
+  /// What all pairs together cost at least, known before they are sought.
+  double bound() const { return m_bound; }
+
+  /// Finds the pairs of least cost.
+  void solve()
+  {
+    for (std::size_t r = 0; r < m_rows.partner.size(); ++r)
+      augment(m_rows, m_columns, r);
+    for (std::size_t c = 0; c < m_columns.partner.size(); ++c)
+      augment(m_columns, m_rows, c);
+  }
+
+  const std::vector<double>& prices() const { return m_columns.price; }
+  /// The column of each row, or `none`.
+  const std::vector<std::size_t>& columns() const { return m_rows.partner; }
+
+  /// To be called after entries of rows with their columns grew, and no others changed.
+  void raise(const std::vector<std::size_t>& rows)
+  {
+    std::vector<std::size_t> columns;
+    for (const std::size_t r : rows) {
+      columns.push_back(m_rows.partner[r]);
+      m_columns.partner[columns.back()] = none;
+      m_rows.partner[r] = none;
+    }
+    for (const std::size_t r : rows)
+      augment(m_rows, m_columns, r);
+    for (const std::size_t c : columns)
+      augment(m_columns, m_rows, c);
+  }
+
+private:
+  struct Reached
+  {
+    std::size_t row, column; ///< the column it came by
+    double distance;
+  };
+  struct Side
+  {
+    Side(std::size_t n, std::size_t step) : price(n, 0), partner(n, none), stride(step) {}
+    std::vector<double> price; ///< dual
+    std::vector<std::size_t> partner;
+    std::size_t stride; ///< in the table
+  };
+
+  /// Gives `r` a partner, or leaves it or another one of its side single; what is single has no price.
+  void augment(Side& own, Side& other, std::size_t r)
+  {
+    if (own.partner[r] != none || !(own.price[r] < 0))
+      return;
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const std::size_t m = other.price.size();
+    m_least.assign(m, infinity);
+    m_previous.resize(m);
+    m_open = other.price; // -inf: in the tree
+    m_tree.assign(1, {r, none, 0});
+    double single = -own.price[r]; // least reduced cost of leaving one of the tree single
+    std::size_t single_row = r, end = none;
+    double reached = 0;
+    for (;;) {
+      const std::size_t row = m_tree.back().row;
+      const double* const gain = m_gain.data() + row * own.stride;
+      const double begin = reached - own.price[row];
+      double nearest = single;
+      std::size_t next = none;
+      for (std::size_t j = 0; j < m; ++j) {
+        const double g = gain[j * other.stride];
+        const double reduced = begin + g - m_open[j];
+        if (g < 0 && reduced < m_least[j]) {
+          m_least[j] = reduced;
+          m_previous[j] = row;
+        }
+        if (m_least[j] < nearest && m_open[j] > -infinity) {
+          nearest = m_least[j];
+          next = j;
+        }
+      }
+      reached = std::max(reached, nearest);
       if (next == none)
         break;
-      if (row_of[next] == none) {
-        end_column = next;
+      if (other.partner[next] == none) {
+        end = next;
         break;
       }
-      is_used[next] = 1;
-      columns.push_back(next);
-      row = row_of[next];
-      rows.push_back(row);
-      if (-u[row] < single) {
-        single = -u[row];
-        single_row = row;
+      m_open[next] = -infinity;
+      m_tree.push_back({other.partner[next], next, reached});
+      const double alone = reached - own.price[m_tree.back().row];
+      if (alone < single) {
+        single = alone;
+        single_row = m_tree.back().row;
       }
     }
+    for (const Reached& t : m_tree) {
+      own.price[t.row] = std::min(0.0, own.price[t.row] + (reached - t.distance));
+      if (t.column != none)
+        other.price[t.column] -= reached - t.distance;
+    }
     // flip the path
-    std::size_t column = end_column;
+    std::size_t column = end;
     if (column == none) {
+      own.price[single_row] = 0; // but for rounding it is
       if (single_row == r)
-        continue;
-      column = column_of[single_row];
-      column_of[single_row] = none;
+        return;
+      column = own.partner[single_row];
+      own.partner[single_row] = none;
     }
     for (;;) {
-      const std::size_t i = previous_row[column];
-      const std::size_t freed = column_of[i];
-      row_of[column] = i;
-      column_of[i] = column;
+      const std::size_t i = m_previous[column];
+      const std::size_t freed = own.partner[i];
+      other.partner[column] = i;
+      own.partner[i] = column;
       if (i == r)
         break;
       column = freed;
     }
   }
-  return column_of;
+
+  const std::vector<double>& m_gain;
+  Side m_rows, m_columns;
+  double m_bound = 0;
+  std::vector<double> m_least, m_open;
+  std::vector<std::size_t> m_previous;
+  std::vector<Reached> m_tree;
+};
+
+/// The column of each row, or `none`.
+inline std::vector<std::size_t>
+assign_rows(std::size_t n, std::size_t m, const std::vector<double>& gain)
+{
+  Assignment assignment(n, m, gain);
+  assignment.solve();
+  return assignment.columns();
 }
 
 } // namespace shape_space
