@@ -7,6 +7,8 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include <cmath>
+
 namespace {
 
 using pcs_test::deform;
@@ -276,6 +278,39 @@ BOOST_AUTO_TEST_CASE(a_stiffer_body_bends_less)
     BOOST_TEST(bending < before);
     before = bending;
   }
+}
+
+BOOST_AUTO_TEST_CASE(denser_points_make_a_plate_no_softer)
+{
+  // A wavy plate, compressed and lifted; every third point of one sampling is a point of the other.
+  const auto bend = [](int cells) {
+    const double pi = 3.14159265358979323846;
+    Points points;
+    for (int y = 0; y <= cells; ++y)
+      for (int x = 0; x <= cells; ++x) {
+        const double u = double(x) / cells, v = double(y) / cells;
+        points.emplace_back(u, v, 0.01 * std::sin(4 * pi * u) * std::sin(4 * pi * v));
+      }
+    const auto handles = pcs_test::two_handles(
+        points,
+        [](const Vec3& p) { return p.x() < 0.1001; },
+        [](const Vec3& p) { return p.x() > 0.8999; },
+        pcs::translation(Vec3(-0.25, 0, 0.4)));
+    Options options = at_full_resolution();
+    options.do_preserve_volume = false;
+    return deform(points, handles, options).points;
+  };
+  constexpr int coarse = 50, ratio = 3, fine = ratio * coarse;
+  const Points few = bend(coarse), many = bend(fine);
+  double squared = 0;
+  for (int y = 0; y <= coarse; ++y)
+    for (int x = 0; x <= coarse; ++x)
+      squared += (few[static_cast<std::size_t>(y * (coarse + 1) + x)] -
+                  many[static_cast<std::size_t>(ratio * (y * (fine + 1) + x))])
+                     .squaredNorm();
+  const double difference = std::sqrt(squared / double(few.size()));
+  BOOST_TEST_MESSAGE("root mean square difference " << difference);
+  BOOST_TEST(difference < 0.004);
 }
 
 BOOST_AUTO_TEST_CASE(interior_springs_keep_volume)

@@ -258,7 +258,8 @@ public:
       \np{tolerance} passes end when the energy falls by less than this share [-]
         \nptype floating point, `>= 0`
         \npdefault `deformation::default_tolerance`
-      \np{stiffness} resistance against bending relative to stretching [-]
+      \np{stiffness} resistance against bending relative to stretching; the same for any number of points, and of
+        samples from 2,000 on [-]
         \nptype floating point, 0.001 to 1000
         \npdefault 1
       \np{poisson_ratio} transverse contraction under stretch [-]: 0.5 like rubber, 0 like cork, negative auxetic
