@@ -8,6 +8,7 @@
 #include <pcs/internal/parallel.h>
 #include <pcs/neighborhood/Nearest_neighbors.h>
 #include <pcs/neighborhood/spatial_order.h>
+#include <pcs/skeleton/Scan_frame.h>
 
 #include <algorithm>
 #include <array>
@@ -32,7 +33,7 @@ constexpr std::size_t neighbors_per_point = 12;
 /// The neighbour whose distance measures the local spacing; the first is too noisy.
 constexpr std::size_t spacing_neighbor = 4;
 
-/// A scan ready for the stages. Points are distinct, in spatial order, relative to `origin`. It stays where it is: the
+/// A scan ready for the stages. Points are distinct, in spatial order, in the coordinates of `frame`. It stays where it is: the
 /// search refers to its points.
 struct Scan
 {
@@ -40,7 +41,7 @@ struct Scan
   Scan(const Scan&) = delete;
   Scan& operator=(const Scan&) = delete;
 
-  Vec3 origin = Vec3::Zero();
+  Scan_frame frame;
   std::vector<Vec3> points;
   std::vector<Index> point_of_input; ///< which of `points` an input point became
   std::vector<std::array<Index, neighbors_per_point>> neighbors; ///< nearest first, `none` behind
@@ -72,23 +73,13 @@ constexpr double outlier_global_factor = 2, outlier_far_factor = 20;
 
 namespace internal {
 
-inline void move_to_local_origin(const std::vector<Vec3>& input, Scan& scan)
-{
-  Vec3 low = input.front(), high = low;
-  for (const Vec3& p : input) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  scan.origin = low + 0.5 * (high - low);
-}
-
 /// Sorts the points along an octree and merges those at one place. The order of what is left does not depend on duplicates.
 template <class ConcurrencyTag>
 void merge_duplicates(const std::vector<Vec3>& input, Scan& scan)
 {
   std::vector<Vec3> local(input.size());
   pcs::internal::for_each_index<ConcurrencyTag>(input.size(), [&](std::size_t i) {
-    local[i] = input[i] - scan.origin;
+    local[i] = scan.frame.to_grid(input[i]);
   });
   const std::vector<Index> order = neighborhood::spatial_order<ConcurrencyTag>(local);
   scan.point_of_input.resize(input.size());
@@ -169,11 +160,11 @@ void mark_outliers(Scan& scan)
 
 } // namespace internal
 
-/// Prepares an empty scan; `input` is finite and not empty. O(n log n).
+/// Prepares an empty scan; `input` is finite and not empty, `up` a unit vector. O(n log n).
 template <class ConcurrencyTag>
-void prepare_scan(const std::vector<Vec3>& input, Scan& scan)
+void prepare_scan(const std::vector<Vec3>& input, const Vec3& up, Scan& scan)
 {
-  internal::move_to_local_origin(input, scan);
+  scan.frame = frame_of_scan(input, up);
   internal::merge_duplicates<ConcurrencyTag>(input, scan);
   internal::find_neighbors<ConcurrencyTag>(scan);
   internal::mark_outliers<ConcurrencyTag>(scan);
