@@ -241,8 +241,8 @@ BOOST_AUTO_TEST_CASE(radii_are_counted_where_the_parent_hides_a_part)
     p = scan.frame.to_local(p);
 
   sk::Axis_set set;
-  set.noise = 0.002;
-  set.density = density;
+  set.noise = 0.002 / unit;
+  set.density = density * unit * unit;
   set.axis_of_point.assign(scan.size(), sk::none);
   set.segment_of_point.assign(scan.size(), 0);
   sk::Axis stem(2), axis;
@@ -270,9 +270,9 @@ BOOST_AUTO_TEST_CASE(radii_are_counted_where_the_parent_hides_a_part)
   const sk::Section_counts all = sk::section_counts(view, fit, std::vector<double>(axis.size(), 1));
   const sk::Section_counts outside = sk::section_counts(view, fit, visible);
   constexpr std::size_t base = 6; // 2 cm outside of the stem; the window reaches into it
-  BOOST_CHECK_LT(all.radius(base, density), 0.8 * thin);
-  BOOST_CHECK_CLOSE(outside.radius(base, density), thin, 15.0);
-  BOOST_CHECK_CLOSE(outside.radius(20, density), thin, 10.0);
+  BOOST_CHECK_LT(unit * all.radius(base, set.density), 0.8 * thin);
+  BOOST_CHECK_CLOSE(unit * outside.radius(base, set.density), thin, 15.0);
+  BOOST_CHECK_CLOSE(unit * outside.radius(20, set.density), thin, 10.0);
   BOOST_CHECK_EQUAL(outside.length[base], all.visible_length[base]);
 }
 

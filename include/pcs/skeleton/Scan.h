@@ -73,34 +73,54 @@ constexpr double outlier_global_factor = 2, outlier_far_factor = 20;
 
 namespace internal {
 
-/// Sorts the points along an octree and merges those at one place. The order of what is left does not depend on duplicates.
-template <class ConcurrencyTag>
-void merge_duplicates(const std::vector<Vec3>& input, Scan& scan)
+/// Different places, sorted along an octree, and which of them each point is at.
+struct Distinct_places
 {
-  std::vector<Vec3> local(input.size());
-  pcs::internal::for_each_index<ConcurrencyTag>(input.size(), [&](std::size_t i) {
-    local[i] = scan.frame.to_grid(input[i]);
+  std::vector<Vec3> places;
+  std::vector<Index> chosen;   ///< the least of the points at each place
+  std::vector<Index> of_point; ///< place of each point
+};
+
+template <class ConcurrencyTag>
+Distinct_places distinct_places(const std::vector<Vec3>& points, const Scan_frame& frame)
+{
+  std::vector<Vec3> local(points.size());
+  pcs::internal::for_each_index<ConcurrencyTag>(points.size(), [&](std::size_t i) {
+    local[i] = frame.to_grid(points[i]);
   });
   const std::vector<Index> order = neighborhood::spatial_order<ConcurrencyTag>(local);
-  scan.point_of_input.resize(input.size());
-  scan.points.reserve(input.size());
+  Distinct_places result;
+  result.places.reserve(points.size());
+  result.chosen.reserve(points.size());
+  result.of_point.resize(points.size());
   for (const Index i : order) {
-    if (scan.points.empty() || scan.points.back() != local[i])
-      scan.points.push_back(local[i]);
-    scan.point_of_input[i] = static_cast<Index>(scan.points.size() - 1);
+    if (result.places.empty() || result.places.back() != local[i]) {
+      result.places.push_back(local[i]);
+      result.chosen.push_back(i);
+    } else if (neighborhood::lexicographically_less(points[i], points[result.chosen.back()]))
+      result.chosen.back() = i;
+    result.of_point[i] = static_cast<Index>(result.places.size() - 1);
   }
-  if (scan.points.size() == input.size())
-    return;
-  const std::vector<Index> again = neighborhood::spatial_order<ConcurrencyTag>(scan.points);
-  std::vector<Vec3> sorted(again.size());
-  std::vector<Index> place(again.size());
-  for (Index k = 0; k < again.size(); ++k) {
-    sorted[k] = scan.points[again[k]];
-    place[again[k]] = k;
+  return result;
+}
+
+/// Neither the frame nor the order of what is left depends on duplicates.
+template <class ConcurrencyTag>
+void merge_duplicates(const std::vector<Vec3>& input, const Vec3& up, Scan& scan)
+{
+  scan.frame = frame_of_scan(input, up);
+  Distinct_places found = distinct_places<ConcurrencyTag>(input, scan.frame);
+  scan.point_of_input = std::move(found.of_point);
+  if (found.places.size() < input.size()) {
+    std::vector<Vec3> once(found.chosen.size());
+    for (std::size_t k = 0; k < once.size(); ++k)
+      once[k] = input[found.chosen[k]];
+    scan.frame = frame_of_scan(once, up);
+    found = distinct_places<ConcurrencyTag>(once, scan.frame);
+    for (Index& i : scan.point_of_input)
+      i = found.of_point[i];
   }
-  scan.points = std::move(sorted);
-  for (Index& i : scan.point_of_input)
-    i = place[i];
+  scan.points = std::move(found.places);
 }
 
 template <class ConcurrencyTag>
@@ -164,8 +184,7 @@ void mark_outliers(Scan& scan)
 template <class ConcurrencyTag>
 void prepare_scan(const std::vector<Vec3>& input, const Vec3& up, Scan& scan)
 {
-  scan.frame = frame_of_scan(input, up);
-  internal::merge_duplicates<ConcurrencyTag>(input, scan);
+  internal::merge_duplicates<ConcurrencyTag>(input, up, scan);
   internal::find_neighbors<ConcurrencyTag>(scan);
   internal::mark_outliers<ConcurrencyTag>(scan);
 }

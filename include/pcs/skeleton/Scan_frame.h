@@ -45,60 +45,88 @@ struct Scan_frame
 /// Below this asymmetry of the points, the frame is not turned [-].
 constexpr double least_asymmetry = 1e-6;
 
-/// The frame of a scan. `input` is finite and not empty, `up` a unit vector. O(n).
-inline Scan_frame frame_of_scan(const std::vector<Eigen::Vector3d>& input, const Eigen::Vector3d& up)
+namespace internal {
+
+/// Sums of numbers of at most 1 that do not depend on their order: in integers.
+class Exact_sum
+{
+public:
+  explicit Exact_sum(std::size_t count)
+    : m_scale(std::ldexp(1.0, 60 - std::ilogb(2.0 * double(count))))
+  {
+  }
+  void add(double x) { m_sum += std::llround(m_scale * x); }
+  double value() const { return double(m_sum) / m_scale; }
+
+private:
+  double m_scale;
+  long long m_sum = 0;
+};
+
+} // namespace internal
+
+/// The frame of a scan. `input` is finite and not empty, `up` a unit vector. The order of the points does not matter. O(n).
+inline Scan_frame frame_of_scan(const std::vector<Eigen::Vector3d>& input,
+                                const Eigen::Vector3d& up)
 {
   using Vec3 = Eigen::Vector3d;
+  using internal::Exact_sum;
   Scan_frame frame;
-  const Vec3 first = input.front();
-  double extent = 0;
-  for (const Vec3& p : input)
-    extent = std::max(extent, (p - first).cwiseAbs().maxCoeff());
-  frame.origin = first;
+  const std::size_t n = input.size();
+  Vec3 low = input.front(), high = low;
+  for (const Vec3& p : input) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const double extent = (high - low).maxCoeff();
+  const bool is_extended = extent > 0 && std::isfinite(extent);
+  const auto place = [&](const Vec3& p) { return Vec3((p - low) / extent); };
   // robust against points far away: weights fall with the distance, smoothly, so that rounding does not matter
-  constexpr int rounds = 4;
+  constexpr int rounds = 3;
   Vec3 center = Vec3::Zero();
   double reach = 0;
   const auto weight = [&](double squared_distance) {
     const double x = reach > 0 ? squared_distance / (reach * reach) : 0;
     return 1 / ((1 + x) * (1 + x));
   };
-  std::vector<double> distance(input.size());
-  const bool is_extended = extent > 0 && std::isfinite(extent);
+  std::vector<double> distance(is_extended ? n : 0);
   for (int round = 0; round < rounds && is_extended; ++round) {
-    Vec3 sum = Vec3::Zero();
-    double all = 0;
+    Exact_sum x(n), y(n), z(n), all(n);
     for (const Vec3& p : input) {
-      const Vec3 d = (p - first) / extent;
+      const Vec3 d = place(p);
       const double w = weight((d - center).squaredNorm());
-      sum += w * d;
-      all += w;
+      x.add(w * d.x());
+      y.add(w * d.y());
+      z.add(w * d.z());
+      all.add(w);
     }
-    center = sum / all;
-    for (std::size_t i = 0; i < input.size(); ++i)
-      distance[i] = ((input[i] - first) / extent - center).squaredNorm();
-    const auto middle = distance.begin() + static_cast<std::ptrdiff_t>(distance.size() / 2);
+    if (!(all.value() > 0))
+      break;
+    center = Vec3(x.value(), y.value(), z.value()) / all.value();
+    for (std::size_t i = 0; i < n; ++i)
+      distance[i] = (place(input[i]) - center).squaredNorm();
+    const auto middle = distance.begin() + static_cast<std::ptrdiff_t>(n / 2);
     std::nth_element(distance.begin(), middle, distance.end());
     reach = std::sqrt(*middle);
   }
-  if (is_extended) {
-    frame.origin = first + extent * center;
+  frame.origin = is_extended ? Vec3(low + extent * center) : low;
+  if (is_extended)
     frame.unit = reach > 0 ? extent * reach : extent;
-  }
-  Vec3 moment = Vec3::Zero();
-  double all = 0;
+  Exact_sum x(n), y(n), z(n), all(n);
   for (const Vec3& p : input) {
     if (!is_extended)
       break;
-    const Vec3 d = (p - first) / extent - center;
-    const Vec3 across = d - up.dot(d) * up;
+    const Vec3 d = place(p) - center, across = d - up.dot(d) * up;
     const double r2 = d.squaredNorm(), w = weight(r2) * r2;
-    moment += w * across;
-    all += w * across.norm();
+    x.add(w * across.x());
+    y.add(w * across.y());
+    z.add(w * across.z());
+    all.add(w * across.norm());
   }
-  const bool is_turned = moment.norm() > least_asymmetry * all;
-  const Vec3 x = Vec3::UnitX() - up.x() * up;
-  const Vec3 side = is_turned ? moment : x.norm() > 0.1 ? x : Vec3(up.unitOrthogonal());
+  const Vec3 moment(x.value(), y.value(), z.value());
+  const bool is_turned = moment.norm() > least_asymmetry * all.value();
+  const Vec3 level = Vec3::UnitX() - up.x() * up;
+  const Vec3 side = is_turned ? moment : level.norm() > 0.1 ? level : Vec3(up.unitOrthogonal());
   const Vec3 e1 = (side - up.dot(side) * up).normalized();
   frame.axes.row(0) = e1.transpose();
   frame.axes.row(1) = up.cross(e1).transpose();

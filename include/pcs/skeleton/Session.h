@@ -10,6 +10,7 @@
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Branch_tree.h>
+#include <pcs/skeleton/bound_radii.h>
 #include <pcs/skeleton/correct_beam.h>
 #include <pcs/skeleton/estimate_sections.h>
 #include <pcs/skeleton/find_leaves.h>
@@ -63,6 +64,7 @@ struct Session_options
   Leaf_rules leaves;
   Joint_rules joints;
   Stub_rules stubs;
+  Support_rules support;
   Section_rules sections;
   Given_rules given_rules;
   Beam_rules beam;
@@ -238,6 +240,7 @@ public:
       m_joints[root].is_reversed = is_root_reversed(root);
       m_tree = branch_tree(m_axes, m_joints, root, m_scan.spacing);
       prune_stubs(m_scan.spacing, m_options.stubs, m_tree);
+      bound_radii<ConcurrencyTag>(m_scan, m_axes.noise, m_axes.density, m_options.support, m_tree);
     }
     m_report.seconds.joints = watch.lap();
     if (!progress(0.97))
