@@ -25,7 +25,7 @@ struct Support_rules
   double depth = 0.3;          ///< points this many radii below the surface lie inside ...
   double depth_noise = 2;      ///< ... if that is more than this many times the noise
   double filled = 0.2;         ///< share inside above which a section is a bush of leaves [-]
-  double branch_filled = 0.15; ///< the same for a whole branch [-]
+  double branch_filled = 0.15; ///< the same from the base of the branch on [-]
   std::size_t reach = 2;       ///< nodes on both sides that are looked at with one [count]
   double fewest = 12;          ///< points that support a section [count]
   double expected = 0.25;      ///< share of the expected ones [-]
@@ -138,12 +138,7 @@ std::size_t bound_radii(const Scan& scan,
   std::vector<Reference> reference(tree.nodes.size());
   std::size_t count = 0;
   for (const Branch& branch : tree.branches) { // parents before their children
-    double all_on = 0, all_inside = 0;
-    for (const Index v : branch.nodes) {
-      all_on += support.on[v];
-      all_inside += support.inside[v];
-    }
-    const bool is_bush = all_inside > rules.branch_filled * (all_on + all_inside);
+    double all_on = 0, all_inside = 0;         // from the base to here
     const std::size_t n = branch.nodes.size();
     const Index base = tree.nodes[branch.nodes.front()].parent;
     const Reference seat = base == none ? Reference() : reference[base];
@@ -151,8 +146,17 @@ std::size_t bound_radii(const Scan& scan,
       const Index v = branch.nodes[k];
       Branch_node& node = tree.nodes[v];
       double on = 0, inside = 0, expected = 0;
-      const std::size_t end = std::min(n, k + rules.reach + 1);
-      for (std::size_t j = k > rules.reach ? k - rules.reach : 0; j < end; ++j) {
+      // at least as long as thick
+      const auto is_near = [&](std::size_t j) {
+        return (tree.nodes[branch.nodes[j]].point - node.point).norm() <= node.radius;
+      };
+      std::size_t begin = k > rules.reach ? k - rules.reach : 0;
+      std::size_t end = std::min(n, k + rules.reach + 1);
+      while (begin > 0 && is_near(begin - 1))
+        --begin;
+      while (end < n && is_near(end))
+        ++end;
+      for (std::size_t j = begin; j < end; ++j) {
         const Branch_node& near = tree.nodes[branch.nodes[j]];
         on += support.on[branch.nodes[j]];
         inside += support.inside[branch.nodes[j]];
@@ -160,6 +164,9 @@ std::size_t bound_radii(const Scan& scan,
           expected += 2 * 3.14159265358979323846 * near.radius * density *
                       (near.point - tree.nodes[near.parent].point).norm();
       }
+      all_on += support.on[v];
+      all_inside += support.inside[v];
+      const bool is_bush = all_inside > rules.branch_filled * (all_on + all_inside);
       const bool is_filled = inside > rules.filled * (on + inside);
       const Reference below = node.parent == none ? Reference() : reference[node.parent];
       const bool is_too_thick =
