@@ -407,11 +407,11 @@ private:
     if constexpr (internal::is_given_v<NamedParameters, internal_np::up_direction_t>)
       options.up =
           internal::to_vec3(CGAL::parameters::get_parameter(m_np, internal_np::up_direction));
-    const double length = options.up.norm();
-    if (!std::isfinite(length) || !(length > 0))
+    const double largest = options.up.cwiseAbs().maxCoeff();
+    if (!options.up.allFinite() || !(largest > 0))
       throw Invalid_input(std::string(function) +
                           ": up_direction must be finite and not the null vector");
-    options.up /= length;
+    options.up = (options.up / largest).normalized(); // squares may overflow
     if constexpr (internal::is_given_v<NamedParameters, internal_np::root_position_t>) {
       options.root =
           internal::to_vec3(CGAL::parameters::get_parameter(m_np, internal_np::root_position));
