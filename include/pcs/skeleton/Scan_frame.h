@@ -116,8 +116,9 @@ inline Scan_frame frame_of_scan(const std::vector<Eigen::Vector3d>& input,
   for (const Vec3& p : input) {
     if (!is_extended)
       break;
-    const Vec3 d = place(p) - center, across = d - up.dot(d) * up;
-    const double r2 = d.squaredNorm(), w = weight(r2) * r2;
+    // in typical distances: slender trees have small moments, which the integers must tell apart
+    const Vec3 d = (place(p) - center) / (reach > 0 ? reach : 1), across = d - up.dot(d) * up;
+    const double r2 = d.squaredNorm(), w = r2 / ((1 + r2) * (1 + r2));
     x.add(w * across.x());
     y.add(w * across.y());
     z.add(w * across.z());
