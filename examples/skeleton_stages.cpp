@@ -25,7 +25,7 @@ int main()
   pcs::Tree_skeletonization stages(scan.points,
                                    pcs::parameters::up_direction(Kernel::Vector_3(0, 0, 1)));
   stages.find_neighbors();
-  std::cout << "spacing " << 1000 * stages.scan().spacing << " mm\n";
+  std::cout << "spacing " << 1000 * stages.report().spacing << " mm\n";
   stages.find_paths();
   std::cout << stages.layers().size() << " parts of layers\n";
   stages.fit_axes();

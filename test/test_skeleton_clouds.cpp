@@ -443,6 +443,26 @@ BOOST_AUTO_TEST_CASE(shrubs_on_the_ground_are_no_trunk)
   BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.2, 3.0);
 }
 
+BOOST_AUTO_TEST_CASE(a_bush_of_leaves_is_not_wood)
+{
+  constexpr double radius = 0.06, height = 4, crown = 0.9;
+  Cloud points = Jitter(0.003)(cylinder(4000, radius, height));
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> share(-crown, crown);
+  while (points.size() < 16000) {
+    const Vector d(share(random), share(random), share(random));
+    if (d.squared_length() < crown * crown)
+      points.push_back(Point(0, 0, height + 0.6 * crown) + d);
+  }
+  Tree tree;
+  const auto report = pcs::extract_tree_skeleton(points, tree);
+  check_is_a_tree(tree);
+  // without bounds the crown alone has forty times the volume of the stem
+  BOOST_CHECK_LT(report.total.volume, 5 * CGAL_PI * radius * radius * height);
+  for (std::size_t v = 0; v < num_vertices(tree); ++v)
+    BOOST_CHECK_LT(tree[v].radius, 1.6 * radius);
+}
+
 BOOST_AUTO_TEST_CASE(leaves_may_be_named)
 {
   Cloud points = cylinder(4000, 0.1, 2);

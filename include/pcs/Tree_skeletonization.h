@@ -380,7 +380,7 @@ public:
   /// @}
 
   /// \name What was found
-  /// Coordinates of the stages are relative to `scan().origin`.
+  /// Coordinates and lengths of the stages are those of `scan().frame`; the report is in the unit of the input.
   /// @{
   const skeleton::Scan& scan() const { return m_session->scan(); }
   const skeleton::Layer_tree& layers() const { return m_session->layers(); }
@@ -407,11 +407,11 @@ private:
     if constexpr (internal::is_given_v<NamedParameters, internal_np::up_direction_t>)
       options.up =
           internal::to_vec3(CGAL::parameters::get_parameter(m_np, internal_np::up_direction));
-    const double length = options.up.norm();
-    if (!std::isfinite(length) || !(length > 0))
+    const double largest = options.up.cwiseAbs().maxCoeff();
+    if (!options.up.allFinite() || !(largest > 0))
       throw Invalid_input(std::string(function) +
                           ": up_direction must be finite and not the null vector");
-    options.up /= length;
+    options.up = (options.up / largest).normalized(); // squares may overflow
     if constexpr (internal::is_given_v<NamedParameters, internal_np::root_position_t>) {
       options.root =
           internal::to_vec3(CGAL::parameters::get_parameter(m_np, internal_np::root_position));
@@ -541,20 +541,20 @@ private:
     using P = typename Node::Point_3;
     using V = typename Node::Vector_3;
     const skeleton::Branch_tree& found = m_session->tree();
-    const skeleton::Vec3& origin = m_session->scan().origin;
+    const skeleton::Scan_frame& frame = m_session->scan().frame;
     Graph result;
     for (const skeleton::Branch_node& from : found.nodes) {
       Node node;
-      const skeleton::Vec3 p = from.point + origin;
+      const skeleton::Vec3 p = frame.to_input(from.point);
       node.point = P(FT(p.x()), FT(p.y()), FT(p.z()));
-      node.radius = FT(from.radius);
-      node.radius_error = FT(from.radius_error);
+      node.radius = FT(frame.unit * from.radius);
+      node.radius_error = FT(frame.unit * from.radius_error);
       node.is_measured = from.is_measured;
       const bool is_oval = from.major_radius > 0;
-      node.major_radius = FT(is_oval ? from.major_radius : from.radius);
-      node.minor_radius = FT(is_oval ? from.minor_radius : from.radius);
-      node.major_axis =
-          V(FT(from.major_axis.x()), FT(from.major_axis.y()), FT(from.major_axis.z()));
+      node.major_radius = FT(frame.unit * (is_oval ? from.major_radius : from.radius));
+      node.minor_radius = FT(frame.unit * (is_oval ? from.minor_radius : from.radius));
+      const skeleton::Vec3 major = frame.direction_to_input(from.major_axis);
+      node.major_axis = V(FT(major.x()), FT(major.y()), FT(major.z()));
       node.branch = from.branch;
       const auto v = add_vertex(node, result);
       if (from.parent != skeleton::none)
@@ -587,7 +587,7 @@ private:
     if constexpr (are_maps_ok) {
       using FT = std::decay_t<decltype(std::declval<const P&>().x())>;
       const skeleton::Branch_tree& found = m_session->tree();
-      const skeleton::Vec3& origin = m_session->scan().origin;
+      const skeleton::Scan_frame& frame = m_session->scan().frame;
       while (num_vertices(tree) > 0) {
         const auto v = *vertices(tree).first;
         clear_vertex(v, tree);
@@ -599,9 +599,9 @@ private:
         vertex.push_back(add_vertex(tree));
       for (std::size_t k = 0; k < found.nodes.size(); ++k) {
         const skeleton::Branch_node& from = found.nodes[k];
-        const skeleton::Vec3 p = from.point + origin;
+        const skeleton::Vec3 p = frame.to_input(from.point);
         put(point_map, vertex[k], P(FT(p.x()), FT(p.y()), FT(p.z())));
-        put(radius_map, vertex[k], R(from.radius));
+        put(radius_map, vertex[k], R(frame.unit * from.radius));
         if (from.parent != skeleton::none)
           add_edge(vertex[from.parent], vertex[k], tree);
       }

@@ -150,11 +150,11 @@ BOOST_AUTO_TEST_SUITE(principal_curvatures)
 BOOST_AUTO_TEST_CASE(the_center_candidates_of_a_tube_lie_on_its_axis)
 {
   pcs::skeleton::Scan scan;
-  pcs::skeleton::prepare_scan<CGAL::Sequential_tag>(tube(0.1, 1, 6000), scan);
+  pcs::skeleton::prepare_scan<CGAL::Sequential_tag>(tube(0.1, 1, 6000), Vec3::UnitZ(), scan);
   const auto frames = pcs::skeleton::principal_curvatures<CGAL::Sequential_tag>(scan);
   std::size_t good = 0;
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    const Vec3 center = scan.points[i] + scan.origin + frames[i].normal / frames[i].k1;
+    const Vec3 center = scan.frame.to_input(scan.points[i] + frames[i].normal / frames[i].k1);
     good += std::hypot(center.x(), center.y()) < 0.01 && std::abs(frames[i].e2.z()) > 0.98;
   }
   BOOST_CHECK_GT(good, scan.size() * 9 / 10);
@@ -235,26 +235,27 @@ BOOST_AUTO_TEST_CASE(radii_are_counted_where_the_parent_hides_a_part)
   }
   points.insert(points.end(), branch.begin(), branch.end());
   sk::Scan scan;
-  sk::prepare_scan<CGAL::Sequential_tag>(points, scan);
+  sk::prepare_scan<CGAL::Sequential_tag>(points, Vec3::UnitZ(), scan);
+  const double unit = scan.frame.unit;
   for (Vec3& p : branch)
-    p -= scan.origin;
+    p = scan.frame.to_local(p);
 
   sk::Axis_set set;
-  set.noise = 0.002;
-  set.density = density;
+  set.noise = 0.002 / unit;
+  set.density = density * unit * unit;
   set.axis_of_point.assign(scan.size(), sk::none);
   set.segment_of_point.assign(scan.size(), 0);
   sk::Axis stem(2), axis;
-  stem[0].point = -scan.origin;
-  stem[1].point = Vec3(0, 0, 1) - scan.origin;
-  stem[0].radius = stem[1].radius = thick;
+  stem[0].point = scan.frame.to_local(Vec3::Zero());
+  stem[1].point = scan.frame.to_local(Vec3(0, 0, 1));
+  stem[0].radius = stem[1].radius = thick / unit;
   set.axes.push_back({stem, sk::none, 4000, 1});
   for (std::size_t i = 0; i < 4000; ++i)
     set.axis_of_point[scan.point_of_input[i]] = 0;
   for (int k = 0; k <= 25; ++k) {
     sk::Axis_node node;
-    node.point = Vec3(0.02 * k, 0, 0.5) - scan.origin;
-    node.radius = thin;
+    node.point = scan.frame.to_local(Vec3(0.02 * k, 0, 0.5));
+    node.radius = thin / unit;
     axis.push_back(node);
   }
   const sk::Chain_rules rules;
@@ -269,9 +270,9 @@ BOOST_AUTO_TEST_CASE(radii_are_counted_where_the_parent_hides_a_part)
   const sk::Section_counts all = sk::section_counts(view, fit, std::vector<double>(axis.size(), 1));
   const sk::Section_counts outside = sk::section_counts(view, fit, visible);
   constexpr std::size_t base = 6; // 2 cm outside of the stem; the window reaches into it
-  BOOST_CHECK_LT(all.radius(base, density), 0.8 * thin);
-  BOOST_CHECK_CLOSE(outside.radius(base, density), thin, 15.0);
-  BOOST_CHECK_CLOSE(outside.radius(20, density), thin, 10.0);
+  BOOST_CHECK_LT(unit * all.radius(base, set.density), 0.8 * thin);
+  BOOST_CHECK_CLOSE(unit * outside.radius(base, set.density), thin, 15.0);
+  BOOST_CHECK_CLOSE(unit * outside.radius(20, set.density), thin, 10.0);
   BOOST_CHECK_EQUAL(outside.length[base], all.visible_length[base]);
 }
 

@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -303,6 +304,12 @@ Chain_fit::judge(Axis_fit& fit, const std::vector<Index>& points, Candidate& can
   const Axis& axis = fit.axis();
   const double u = m_scan.spacing, s = m_set.noise;
   const Section_counts counts = section_counts(m_view, fit, visible_shares(m_view, fit));
+  // only hollow sections that are seen well tell what the surface is like
+  const Filling filling(m_view, fit);
+  std::vector<std::uint8_t> is_odd(axis.size(), 0);
+  for (std::size_t k = 0; k < axis.size(); ++k)
+    is_odd[k] = counts.density(k, axis[k].radius) < m_rules.typical * m_set.density ||
+                filling.is_filled(k >= 2 ? k - 2 : 0, std::min(axis.size(), k + 3), m_rules.bush);
   for (std::size_t k = 0; k < points.size(); ++k) {
     const Axis_place& p = fit.places()[k];
     const double r = radius_at(axis, p);
@@ -312,13 +319,14 @@ Chain_fit::judge(Axis_fit& fit, const std::vector<Index>& points, Candidate& can
     candidate.segments.push_back(p.segment);
     const bool is_inside = p.share > 0 && p.share < 1;
     // where noise, not bark, is what one sees
-    if (is_inside && r > 3 * s && 0.03 * r < s && candidate.deviations.size() < 2000)
+    if (is_inside && !is_odd[p.segment] && r > 3 * s && 0.03 * r < s &&
+        candidate.deviations.size() < 2000)
       candidate.deviations.push_back(std::abs(p.distance - r));
   }
   if (candidate.points.size() < m_rules.lowest_count)
     return;
   for (std::size_t k = 2; k + 2 < axis.size(); ++k)
-    if (axis[k].is_measured && axis[k].radius > 2.5 * s &&
+    if (!is_odd[k] && axis[k].is_measured && axis[k].radius > 2.5 * s &&
         axis[k].radius_error < 0.15 * axis[k].radius &&
         counts.visible_length[k] > m_rules.visible * counts.length[k])
       candidate.densities.push_back(

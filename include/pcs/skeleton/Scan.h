@@ -8,6 +8,7 @@
 #include <pcs/internal/parallel.h>
 #include <pcs/neighborhood/Nearest_neighbors.h>
 #include <pcs/neighborhood/spatial_order.h>
+#include <pcs/skeleton/Scan_frame.h>
 
 #include <algorithm>
 #include <array>
@@ -32,7 +33,7 @@ constexpr std::size_t neighbors_per_point = 12;
 /// The neighbour whose distance measures the local spacing; the first is too noisy.
 constexpr std::size_t spacing_neighbor = 4;
 
-/// A scan ready for the stages. Points are distinct, in spatial order, relative to `origin`. It stays where it is: the
+/// A scan ready for the stages. Points are distinct, in spatial order, in the coordinates of `frame`. It stays where it is: the
 /// search refers to its points.
 struct Scan
 {
@@ -40,7 +41,7 @@ struct Scan
   Scan(const Scan&) = delete;
   Scan& operator=(const Scan&) = delete;
 
-  Vec3 origin = Vec3::Zero();
+  Scan_frame frame;
   std::vector<Vec3> points;
   std::vector<Index> point_of_input; ///< which of `points` an input point became
   std::vector<std::array<Index, neighbors_per_point>> neighbors; ///< nearest first, `none` behind
@@ -72,44 +73,54 @@ constexpr double outlier_global_factor = 2, outlier_far_factor = 20;
 
 namespace internal {
 
-inline void move_to_local_origin(const std::vector<Vec3>& input, Scan& scan)
+/// Different places, sorted along an octree, and which of them each point is at.
+struct Distinct_places
 {
-  Vec3 low = input.front(), high = low;
-  for (const Vec3& p : input) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  scan.origin = low + 0.5 * (high - low);
-}
+  std::vector<Vec3> places;
+  std::vector<Index> chosen;   ///< the least of the points at each place
+  std::vector<Index> of_point; ///< place of each point
+};
 
-/// Sorts the points along an octree and merges those at one place. The order of what is left does not depend on duplicates.
 template <class ConcurrencyTag>
-void merge_duplicates(const std::vector<Vec3>& input, Scan& scan)
+Distinct_places distinct_places(const std::vector<Vec3>& points, const Scan_frame& frame)
 {
-  std::vector<Vec3> local(input.size());
-  pcs::internal::for_each_index<ConcurrencyTag>(input.size(), [&](std::size_t i) {
-    local[i] = input[i] - scan.origin;
+  std::vector<Vec3> local(points.size());
+  pcs::internal::for_each_index<ConcurrencyTag>(points.size(), [&](std::size_t i) {
+    local[i] = frame.to_grid(points[i]);
   });
   const std::vector<Index> order = neighborhood::spatial_order<ConcurrencyTag>(local);
-  scan.point_of_input.resize(input.size());
-  scan.points.reserve(input.size());
+  Distinct_places result;
+  result.places.reserve(points.size());
+  result.chosen.reserve(points.size());
+  result.of_point.resize(points.size());
   for (const Index i : order) {
-    if (scan.points.empty() || scan.points.back() != local[i])
-      scan.points.push_back(local[i]);
-    scan.point_of_input[i] = static_cast<Index>(scan.points.size() - 1);
+    if (result.places.empty() || result.places.back() != local[i]) {
+      result.places.push_back(local[i]);
+      result.chosen.push_back(i);
+    } else if (neighborhood::lexicographically_less(points[i], points[result.chosen.back()]))
+      result.chosen.back() = i;
+    result.of_point[i] = static_cast<Index>(result.places.size() - 1);
   }
-  if (scan.points.size() == input.size())
-    return;
-  const std::vector<Index> again = neighborhood::spatial_order<ConcurrencyTag>(scan.points);
-  std::vector<Vec3> sorted(again.size());
-  std::vector<Index> place(again.size());
-  for (Index k = 0; k < again.size(); ++k) {
-    sorted[k] = scan.points[again[k]];
-    place[again[k]] = k;
+  return result;
+}
+
+/// Neither the frame nor the order of what is left depends on duplicates.
+template <class ConcurrencyTag>
+void merge_duplicates(const std::vector<Vec3>& input, const Vec3& up, Scan& scan)
+{
+  scan.frame = frame_of_scan(input, up);
+  Distinct_places found = distinct_places<ConcurrencyTag>(input, scan.frame);
+  scan.point_of_input = std::move(found.of_point);
+  if (found.places.size() < input.size()) {
+    std::vector<Vec3> once(found.chosen.size());
+    for (std::size_t k = 0; k < once.size(); ++k)
+      once[k] = input[found.chosen[k]];
+    scan.frame = frame_of_scan(once, up);
+    found = distinct_places<ConcurrencyTag>(once, scan.frame);
+    for (Index& i : scan.point_of_input)
+      i = found.of_point[i];
   }
-  scan.points = std::move(sorted);
-  for (Index& i : scan.point_of_input)
-    i = place[i];
+  scan.points = std::move(found.places);
 }
 
 template <class ConcurrencyTag>
@@ -169,12 +180,11 @@ void mark_outliers(Scan& scan)
 
 } // namespace internal
 
-/// Prepares an empty scan; `input` is finite and not empty. O(n log n).
+/// Prepares an empty scan; `input` is finite and not empty, `up` a unit vector. O(n log n).
 template <class ConcurrencyTag>
-void prepare_scan(const std::vector<Vec3>& input, Scan& scan)
+void prepare_scan(const std::vector<Vec3>& input, const Vec3& up, Scan& scan)
 {
-  internal::move_to_local_origin(input, scan);
-  internal::merge_duplicates<ConcurrencyTag>(input, scan);
+  internal::merge_duplicates<ConcurrencyTag>(input, up, scan);
   internal::find_neighbors<ConcurrencyTag>(scan);
   internal::mark_outliers<ConcurrencyTag>(scan);
 }

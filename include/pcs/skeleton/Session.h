@@ -10,6 +10,7 @@
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Branch_tree.h>
+#include <pcs/skeleton/bound_radii.h>
 #include <pcs/skeleton/correct_beam.h>
 #include <pcs/skeleton/estimate_sections.h>
 #include <pcs/skeleton/find_leaves.h>
@@ -63,6 +64,7 @@ struct Session_options
   Leaf_rules leaves;
   Joint_rules joints;
   Stub_rules stubs;
+  Support_rules support;
   Section_rules sections;
   Given_rules given_rules;
   Beam_rules beam;
@@ -87,7 +89,10 @@ public:
     pcs::internal::Stopwatch watch;
     if (!progress(0))
       return false;
-    prepare_scan<ConcurrencyTag>(m_input, m_scan);
+    prepare_scan<ConcurrencyTag>(m_input, m_options.up, m_scan);
+    const double unit = m_scan.frame.unit;
+    m_options.up = Vec3::UnitZ(); // from here on, all is in coordinates of the scan
+    m_options.breast_height /= unit;
     const std::size_t n = m_scan.size();
     m_point_of_input = m_scan.point_of_input;
     std::vector<std::uint8_t> is_wood(n, m_is_wood.empty());
@@ -110,9 +115,9 @@ public:
     };
     m_report.number_of_leaf_points = number_of(is_wood, 0);
     m_report.number_of_outliers = number_of(m_scan.is_outlier, 1) - m_report.number_of_leaf_points;
-    m_report.spacing = m_scan.spacing;
+    m_report.spacing = unit * m_scan.spacing;
     for (Vec3& s : m_options.scanners)
-      s -= m_scan.origin;
+      s = m_scan.frame.to_local(s);
     m_report.seconds.neighbors = watch.lap();
     m_stage = 1;
     return progress(0.35);
@@ -201,8 +206,9 @@ public:
       ++m_leaf_rounds; // stopped from here on, the work goes on with the wood
     }
     fuse_axes<ConcurrencyTag>(m_scan.spacing, m_options.fusion, m_axes);
-    m_report.noise = m_axes.noise;
-    m_report.density = m_axes.density;
+    const double unit = m_scan.frame.unit;
+    m_report.noise = unit * m_axes.noise;
+    m_report.density = m_axes.density / (unit * unit);
     m_report.seconds.axes = watch.lap();
     m_stage = 3;
     return progress(0.9);
@@ -234,6 +240,7 @@ public:
       m_joints[root].is_reversed = is_root_reversed(root);
       m_tree = branch_tree(m_axes, m_joints, root, m_scan.spacing);
       prune_stubs(m_scan.spacing, m_options.stubs, m_tree);
+      bound_radii<ConcurrencyTag>(m_scan, m_axes.noise, m_axes.density, m_options.support, m_tree);
     }
     m_report.seconds.joints = watch.lap();
     if (!progress(0.97))
@@ -279,11 +286,14 @@ public:
       across = point - base - std::min(1.0, std::max(0.0, t)) * along;
     }
     const double length = across.norm();
-    return length > 0 ? Vec3(across / length) : Vec3(Vec3::Zero());
+    return length > 0 ? m_scan.frame.direction_to_input(across / length) : Vec3(Vec3::Zero());
   }
 
   /// Distance of an input point from the surface of its branch; negative inside. It has a node.
-  double residual_of_input(std::size_t i) const { return residual_of_point(m_point_of_input[i]); }
+  double residual_of_input(std::size_t i) const
+  {
+    return m_scan.frame.unit * residual_of_point(m_point_of_input[i]);
+  }
 
   /// Whether an input point is left out as a leaf, by the caller or because it was found to be one.
   bool is_leaf_of_input(std::size_t i) const { return m_is_leaf[m_point_of_input[i]] != 0; }
@@ -368,7 +378,7 @@ private:
 
   std::vector<Index> nearest_used(const Vec3& place) const
   {
-    const auto found = m_scan.search->nearest_if(place - m_scan.origin,
+    const auto found = m_scan.search->nearest_if(m_scan.frame.to_local(place),
                                                  std::numeric_limits<double>::max(),
                                                  [&](Index i) { return m_is_used[i] != 0; });
     return {found.index};
@@ -442,6 +452,7 @@ template <class ConcurrencyTag>
 void Session<ConcurrencyTag>::count()
 {
   Skeleton_report& r = m_report;
+  const double unit = m_scan.frame.unit;
   r.status = m_tree.nodes.empty() ? Status::nothing_to_do : Status::converged;
   r.number_of_nodes = m_tree.nodes.size();
   r.number_of_branches = m_tree.branches.size();
@@ -455,9 +466,9 @@ void Session<ConcurrencyTag>::count()
     r.number_of_unexplained_points += !is_covered;
     r.number_of_unreached_points += is_covered && !has_node;
   }
-  r.residual = median_residual();
+  r.residual = unit * median_residual();
   for (const double b : size_bounds_by_breast_height)
-    r.size_bounds.push_back(b * m_options.breast_height);
+    r.size_bounds.push_back(unit * b * m_options.breast_height);
   r.by_size.resize(r.size_bounds.size() + 1);
   for (const Branch& b : m_tree.branches) {
     const std::size_t order = static_cast<std::size_t>(b.order);
@@ -472,11 +483,12 @@ void Session<ConcurrencyTag>::count()
   double thickest = 0; // of all that crosses breast height
   for (Index v = 0; v < m_tree.nodes.size(); ++v) {
     const Branch_node& node = m_tree.nodes[v];
-    r.height = std::max(r.height, m_options.up.dot(node.point) - ground);
+    r.height = std::max(r.height, unit * (m_options.up.dot(node.point) - ground));
     if (m_tree.is_base(v))
       continue;
     const Branch_node& below = m_tree.nodes[node.parent];
-    const double length = (node.point - below.point).norm(), a = below.radius, b = node.radius;
+    const double length = unit * (node.point - below.point).norm();
+    const double a = unit * below.radius, b = unit * node.radius;
     const double volume = 3.14159265358979323846 / 3 * length * (a * a + a * b + b * b);
     std::size_t size = 0;
     while (size < r.size_bounds.size() && 0.5 * (a + b) > r.size_bounds[size])

@@ -121,6 +121,7 @@ rest_of(const Layer_tree& tree, const Axis_set& set, const Chain& chain, std::si
 }
 
 /// Fits the chains of one tree of layers, in waves whose members do not see each other.
+/// Whether it does learn about the surface: what the first pass has left over is not typical.
 /// Returns `false` as soon as `progress` does, which sees a share of the work.
 template <class ConcurrencyTag, class Progress>
 bool fit_chains(const Scan& scan,
@@ -128,6 +129,7 @@ bool fit_chains(const Scan& scan,
                 const Axis_rules& rules,
                 Scan_statistics& statistics,
                 Axis_set& set,
+                bool does_learn,
                 const Progress& progress)
 {
   std::vector<Chain> chains = chains_of(scan, tree);
@@ -176,7 +178,8 @@ bool fit_chains(const Scan& scan,
           pieces.push_back(number);
         }
     }
-    statistics.learn(set);
+    if (does_learn || !(set.density > 0))
+      statistics.learn(set);
     begin = end;
     if (!pieces.empty()) {
       queue.insert(queue.end(), pieces.begin(), pieces.end());
@@ -249,6 +252,7 @@ Axis_set fit_axes(const Scan& scan,
                                             rules,
                                             statistics,
                                             set,
+                                            true,
                                             share(0, 0.7)))
     return set;
 
@@ -271,6 +275,7 @@ Axis_set fit_axes(const Scan& scan,
                                               later,
                                               statistics,
                                               set,
+                                              false,
                                               share(done, done + 0.3 / double(rules.passes - 1))))
       return set;
   }

@@ -55,7 +55,7 @@ public:
     : m_scan(scan), m_is_used(is_used), m_parent(given.parent), m_rules(rules)
   {
     for (const Vec3& p : given.points)
-      m_nodes.push_back(p - scan.origin);
+      m_nodes.push_back(scan.frame.to_local(p));
   }
 
   Branch_tree operator()()

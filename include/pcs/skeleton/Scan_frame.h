@@ -1,0 +1,141 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Coordinates that belong to a scan, however it was moved, turned about the vertical, scaled or shuffled.
+
+#ifndef PCS_SKELETON_SCAN_FRAME_H
+#define PCS_SKELETON_SCAN_FRAME_H
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/*!
+  An origin in the middle of the points, the third axis upwards, the first to where most far points lie, a typical distance
+  of points from the origin as unit. All work is done in these coordinates, rounded to a grid: copies of a scan then
+  are the same scan bit by bit, and rounding decides nothing.
+*/
+struct Scan_frame
+{
+  using Vec3 = Eigen::Vector3d;
+
+  Vec3 origin = Vec3::Zero();                         ///< in input coordinates
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity(); ///< by rows, in input coordinates
+  double unit = 1;                                    ///< [L]
+
+  Vec3 to_local(const Vec3& p) const { return axes * (p - origin) / unit; }
+  Vec3 to_input(const Vec3& p) const { return unit * (axes.transpose() * p) + origin; }
+  Vec3 direction_to_input(const Vec3& d) const { return axes.transpose() * d; }
+
+  /// The local coordinates on the grid.
+  Vec3 to_grid(const Vec3& p) const
+  {
+    constexpr double cells = 1 << 24; // per unit: far below the noise of scans, far above rounding
+    const Vec3 q = cells * to_local(p);
+    return Vec3(std::round(q.x()), std::round(q.y()), std::round(q.z())) / cells;
+  }
+};
+
+/// Below this asymmetry of the points, the frame is not turned [-].
+constexpr double least_asymmetry = 1e-6;
+
+namespace internal {
+
+/// Sums of numbers of at most 1 that do not depend on their order: in integers.
+class Exact_sum
+{
+public:
+  explicit Exact_sum(std::size_t count)
+    : m_scale(std::ldexp(1.0, 60 - std::ilogb(2.0 * double(count))))
+  {
+  }
+  void add(double x) { m_sum += std::llround(m_scale * x); }
+  double value() const { return double(m_sum) / m_scale; }
+
+private:
+  double m_scale;
+  long long m_sum = 0;
+};
+
+} // namespace internal
+
+/// The frame of a scan. `input` is finite and not empty, `up` a unit vector. The order of the points does not matter. O(n).
+inline Scan_frame frame_of_scan(const std::vector<Eigen::Vector3d>& input,
+                                const Eigen::Vector3d& up)
+{
+  using Vec3 = Eigen::Vector3d;
+  using internal::Exact_sum;
+  Scan_frame frame;
+  const std::size_t n = input.size();
+  Vec3 low = input.front(), high = low;
+  for (const Vec3& p : input) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const double extent = (high - low).maxCoeff();
+  const bool is_extended = extent > 0 && std::isfinite(extent);
+  const auto place = [&](const Vec3& p) { return Vec3((p - low) / extent); };
+  // robust against points far away: weights fall with the distance, smoothly, so that rounding does not matter
+  constexpr int rounds = 3;
+  Vec3 center = Vec3::Zero();
+  double reach = 0;
+  const auto weight = [&](double squared_distance) {
+    const double x = reach > 0 ? squared_distance / (reach * reach) : 0;
+    return 1 / ((1 + x) * (1 + x));
+  };
+  std::vector<double> distance(is_extended ? n : 0);
+  for (int round = 0; round < rounds && is_extended; ++round) {
+    Exact_sum x(n), y(n), z(n), all(n);
+    for (const Vec3& p : input) {
+      const Vec3 d = place(p);
+      const double w = weight((d - center).squaredNorm());
+      x.add(w * d.x());
+      y.add(w * d.y());
+      z.add(w * d.z());
+      all.add(w);
+    }
+    if (!(all.value() > 0))
+      break;
+    center = Vec3(x.value(), y.value(), z.value()) / all.value();
+    for (std::size_t i = 0; i < n; ++i)
+      distance[i] = (place(input[i]) - center).squaredNorm();
+    const auto middle = distance.begin() + static_cast<std::ptrdiff_t>(n / 2);
+    std::nth_element(distance.begin(), middle, distance.end());
+    reach = std::sqrt(*middle);
+  }
+  frame.origin = is_extended ? Vec3(low + extent * center) : low;
+  if (is_extended)
+    frame.unit = reach > 0 ? extent * reach : extent;
+  Exact_sum x(n), y(n), z(n), all(n);
+  for (const Vec3& p : input) {
+    if (!is_extended)
+      break;
+    // in typical distances: slender trees have small moments, which the integers must tell apart
+    const Vec3 d = (place(p) - center) / (reach > 0 ? reach : 1), across = d - up.dot(d) * up;
+    const double r2 = d.squaredNorm(), w = r2 / ((1 + r2) * (1 + r2));
+    x.add(w * across.x());
+    y.add(w * across.y());
+    z.add(w * across.z());
+    all.add(w * across.norm());
+  }
+  const Vec3 moment(x.value(), y.value(), z.value());
+  const bool is_turned = moment.norm() > least_asymmetry * all.value();
+  const Vec3 level = Vec3::UnitX() - up.x() * up;
+  const Vec3 side = is_turned ? moment : level.norm() > 0.1 ? level : Vec3(up.unitOrthogonal());
+  const Vec3 e1 = (side - up.dot(side) * up).normalized();
+  frame.axes.row(0) = e1.transpose();
+  frame.axes.row(1) = up.cross(e1).transpose();
+  frame.axes.row(2) = up.transpose();
+  return frame;
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_SCAN_FRAME_H

@@ -1,0 +1,199 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Radii that the points do not support are bounded by those below, which they do.
+
+#ifndef PCS_SKELETON_BOUND_RADII_H
+#define PCS_SKELETON_BOUND_RADII_H
+
+#include <pcs/internal/parallel.h>
+#include <pcs/skeleton/Branch_tree.h>
+#include <pcs/skeleton/Scan.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// When points support a radius, and what bounds the others.
+struct Support_rules
+{
+  double depth = 0.3;          ///< points this many radii below the surface lie inside ...
+  double depth_noise = 2;      ///< ... if that is more than this many times the noise
+  double filled = 0.2;         ///< share inside above which a section is a bush of leaves [-]
+  double branch_filled = 0.15; ///< the same from the base of the branch on [-]
+  std::size_t reach = 2;       ///< nodes on both sides that are looked at with one [count]
+  double fewest = 12;          ///< points that support a section [count]
+  double expected = 0.25;      ///< share of the expected ones [-]
+  double thicker = 1.5; ///< no branch is this many times thicker than its parent at the joint
+  double slack =
+      3; ///< bound of a section that nothing speaks for or against, in radii by allometry
+  double filled_slack = 1; ///< the same of a filled one
+  double thinnest = 0.16;  ///< no bound is below this many spacings: a single row of points
+};
+
+namespace internal {
+
+/// What the points of each node say.
+struct Section_support
+{
+  std::vector<double> on, inside; ///< points near the surface or outside of it, and inside
+
+  Section_support(const Branch_tree& tree) : on(tree.nodes.size(), 0), inside(tree.nodes.size(), 0)
+  {
+  }
+};
+
+/// The next node of the same branch; `none` at its tip.
+inline std::vector<Index> successors(const Branch_tree& tree)
+{
+  std::vector<Index> next(tree.nodes.size(), none);
+  for (const Branch& b : tree.branches)
+    for (std::size_t k = 0; k + 1 < b.nodes.size(); ++k)
+      next[b.nodes[k]] = b.nodes[k + 1];
+  return next;
+}
+
+template <class ConcurrencyTag>
+Section_support support_of_sections(const Scan& scan,
+                                    const Branch_tree& tree,
+                                    double noise,
+                                    const Support_rules& rules)
+{
+  const std::vector<Index> next = successors(tree);
+  std::vector<std::uint8_t> is_inside(scan.size(), 0);
+  pcs::internal::for_each_index<ConcurrencyTag>(
+      scan.size(),
+      [&](std::size_t i) {
+        const Index v = tree.node_of_point[i];
+        if (v == none)
+          return;
+        // the edge is the one before the node or one of the two behind it
+        double best = std::numeric_limits<double>::infinity(), radius = 0;
+        const auto offer = [&](Index a, Index b) {
+          if (a == none || b == none)
+            return;
+          const Branch_node &from = tree.nodes[a], &to = tree.nodes[b];
+          const Vec3 along = to.point - from.point, q = scan.points[i] - from.point;
+          const double length2 = along.squaredNorm();
+          const double t = length2 > 0 ? std::min(1.0, std::max(0.0, q.dot(along) / length2)) : 0;
+          const double d = (q - t * along).squaredNorm();
+          if (d < best) {
+            best = d;
+            radius = (1 - t) * from.radius + t * to.radius;
+          }
+        };
+        offer(tree.is_base(v) ? none : tree.nodes[v].parent, v);
+        offer(v, next[v]);
+        offer(next[v], next[v] == none ? none : next[next[v]]);
+        const double depth = std::max(rules.depth_noise * noise, rules.depth * radius);
+        is_inside[i] = std::sqrt(best) < radius - depth;
+      },
+      4096);
+  Section_support support(tree);
+  for (std::size_t i = 0; i < scan.size(); ++i)
+    if (tree.node_of_point[i] != none)
+      ++(is_inside[i] ? support.inside : support.on)[tree.node_of_point[i]];
+  return support;
+}
+
+/// The longest way from each node to a tip.
+inline std::vector<double> ways_to_tips(const Branch_tree& tree)
+{
+  std::vector<double> way(tree.nodes.size(), 0);
+  for (std::size_t v = tree.nodes.size(); v-- > 1;) { // children come behind their parents
+    const Index p = tree.nodes[v].parent;
+    way[p] = std::max(way[p], way[v] + (tree.nodes[v].point - tree.nodes[p].point).norm());
+  }
+  return way;
+}
+
+} // namespace internal
+
+/*!
+  Scanners see the surface of wood, not what is inside. Sections with points inside are bushes of leaves, with few points
+  anything: their radii are at most what is left, by the longest way to a tip, of the last radius below that the points
+  support. Such nodes count as inferred. Returns how many there are. O(points + nodes).
+*/
+template <class ConcurrencyTag>
+std::size_t bound_radii(const Scan& scan,
+                        double noise,
+                        double density,
+                        const Support_rules& rules,
+                        Branch_tree& tree)
+{
+  if (tree.nodes.empty())
+    return 0;
+  const internal::Section_support support =
+      internal::support_of_sections<ConcurrencyTag>(scan, tree, noise, rules);
+  const std::vector<double> way = internal::ways_to_tips(tree);
+  struct Reference
+  {
+    double radius = 0, way = 0; ///< of the last supported node towards the root; 0: none
+  };
+  std::vector<Reference> reference(tree.nodes.size());
+  std::size_t count = 0;
+  for (const Branch& branch : tree.branches) { // parents before their children
+    double all_on = 0, all_inside = 0;         // from the base to here
+    const std::size_t n = branch.nodes.size();
+    const Index base = tree.nodes[branch.nodes.front()].parent;
+    const Reference seat = base == none ? Reference() : reference[base];
+    for (std::size_t k = 0; k < n; ++k) {
+      const Index v = branch.nodes[k];
+      Branch_node& node = tree.nodes[v];
+      double on = 0, inside = 0, expected = 0;
+      // at least as long as thick
+      const auto is_near = [&](std::size_t j) {
+        return (tree.nodes[branch.nodes[j]].point - node.point).norm() <= node.radius;
+      };
+      std::size_t begin = k > rules.reach ? k - rules.reach : 0;
+      std::size_t end = std::min(n, k + rules.reach + 1);
+      while (begin > 0 && is_near(begin - 1))
+        --begin;
+      while (end < n && is_near(end))
+        ++end;
+      for (std::size_t j = begin; j < end; ++j) {
+        const Branch_node& near = tree.nodes[branch.nodes[j]];
+        on += support.on[branch.nodes[j]];
+        inside += support.inside[branch.nodes[j]];
+        if (!tree.is_base(branch.nodes[j]))
+          expected += 2 * 3.14159265358979323846 * near.radius * density *
+                      (near.point - tree.nodes[near.parent].point).norm();
+      }
+      all_on += support.on[v];
+      all_inside += support.inside[v];
+      const bool is_bush = all_inside > rules.branch_filled * (all_on + all_inside);
+      const bool is_filled = inside > rules.filled * (on + inside);
+      const Reference below = node.parent == none ? Reference() : reference[node.parent];
+      const bool is_too_thick =
+          branch.parent != none && seat.way > 0 && node.radius > rules.thicker * seat.radius;
+      const bool is_supported = node.is_measured && !is_bush && !is_filled && !is_too_thick &&
+                                on >= rules.fewest && on >= rules.expected * expected;
+      reference[v] = below;
+      if (is_supported || !(below.way > 0)) {
+        if (is_supported)
+          reference[v] = {node.radius, way[v]};
+        continue;
+      }
+      const double slack = is_filled || is_bush ? rules.filled_slack : rules.slack;
+      const double bound = std::max(rules.thinnest * scan.spacing,
+                                    below.radius * std::min(1.0, slack * way[v] / below.way));
+      if (node.radius <= bound)
+        continue;
+      node.radius = bound;
+      node.radius_error = bound;
+      node.is_measured = false;
+      ++count;
+    }
+  }
+  return count;
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_BOUND_RADII_H
