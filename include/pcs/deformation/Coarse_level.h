@@ -30,7 +30,7 @@ constexpr std::size_t smallest_coarsened_network = 1000;
 /// Largest number of passes on a coarse level; they are cheap there, and carry far.
 constexpr int number_of_coarse_passes = 100;
 /// Tolerance of coarse levels relative to that of the finest: what they leave, it has to do with passes that are dearer.
-constexpr double coarse_tolerance = 0.03;
+constexpr double coarse_tolerance = 0.1;
 
 /*!
   A pass carries a rotation over a few edges only. Under a handle that is dragged without being turned, the whole
