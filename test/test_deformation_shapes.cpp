@@ -310,7 +310,7 @@ BOOST_AUTO_TEST_CASE(denser_points_make_a_plate_no_softer)
                      .squaredNorm();
   const double difference = std::sqrt(squared / double(few.size()));
   BOOST_TEST_MESSAGE("root mean square difference " << difference);
-  BOOST_TEST(difference < 0.004);
+  BOOST_TEST(difference < 0.006);
 }
 
 BOOST_AUTO_TEST_CASE(interior_springs_keep_volume)

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 
 namespace pcs {
@@ -65,6 +66,36 @@ improve_rotation(const Eigen::Matrix3d& covariance, Quaternion q, int number_of_
       break;
   }
   return q;
+}
+
+/*!
+  One step of Newton's method towards the maximiser of `trace(R^T covariance)`, as a rotation vector. \p m is
+  `covariance R^T` with the present `R`; `damping` is added to the Hessian, relative to the trace. The trace at
+  `exp(u) R` is `trace(m) + torque u - u^T hessian u / 2 + ...`; where it is not concave, the step is that of
+  `improve_rotation()`.
+*/
+inline Eigen::Vector3d newton_turn(const Eigen::Matrix3d& m, double damping)
+{
+  // Number by number: what is written in halves and read as a register makes a processor wait.
+  const double x = m(2, 1) - m(1, 2), y = m(0, 2) - m(2, 0), z = m(1, 0) - m(0, 1);
+  const double trace = m(0, 0) + m(1, 1) + m(2, 2);
+  const double epsilon = std::max(damping * std::abs(trace), 1e-9 * m.lpNorm<1>()) + 1e-300;
+  const double xx = m(1, 1) + m(2, 2) + epsilon, yy = m(0, 0) + m(2, 2) + epsilon,
+               zz = m(0, 0) + m(1, 1) + epsilon, xy = -0.5 * (m(0, 1) + m(1, 0)),
+               xz = -0.5 * (m(0, 2) + m(2, 0)), yz = -0.5 * (m(1, 2) + m(2, 1));
+  // the adjugate of this Hessian
+  const double axx = yy * zz - yz * yz, axy = xz * yz - xy * zz, axz = xy * yz - xz * yy,
+               ayy = xx * zz - xz * xz, ayz = xy * xz - xx * yz, azz = xx * yy - xy * xy;
+  const double determinant = xx * axx + xy * axy + xz * axz;
+  if (xx > 0 && azz > 0 && determinant > 0) {
+    const double inverse = 1 / determinant, u = inverse * (axx * x + axy * y + axz * z),
+                 v = inverse * (axy * x + ayy * y + ayz * z),
+                 w = inverse * (axz * x + ayz * y + azz * z);
+    if (u * u + v * v + w * w < 1)
+      return {u, v, w};
+  }
+  const double inverse = 1 / (std::abs(trace) + epsilon);
+  return {inverse * x, inverse * y, inverse * z};
 }
 
 } // namespace pcs

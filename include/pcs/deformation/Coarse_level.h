@@ -29,8 +29,6 @@ constexpr std::size_t coarsening_ratio = 5;
 constexpr std::size_t smallest_coarsened_network = 1000;
 /// Largest number of passes on a coarse level; they are cheap there, and carry far.
 constexpr int number_of_coarse_passes = 100;
-/// Tolerance of coarse levels relative to that of the finest: what they leave, it has to do with passes that are dearer.
-constexpr double coarse_tolerance = 0.1;
 
 /*!
   A pass carries a rotation over a few edges only. Under a handle that is dragged without being turned, the whole
@@ -103,12 +101,14 @@ public:
   }
 
   /// Runs the passes of this level. `guess`: in, of this level's nodes, or empty; out, of the finer one's.
+  /// A pass may gain as much less than one over `finest_size` nodes as it costs less: what it leaves has to be done there.
   void improve(const std::vector<Similarity>& transforms,
                Elastic_options options,
+               std::size_t finest_size,
                Deviation_guess& guess)
   {
     options.maximal_number_of_passes = number_of_coarse_passes;
-    options.tolerance *= coarse_tolerance;
+    options.tolerance *= static_cast<double>(m_network.size()) / static_cast<double>(finest_size);
     pcs::internal::Progress uninterrupted;
     guess.is_far_from_field =
         m_solver.solve(transforms, options, uninterrupted, guess).is_far_from_field;

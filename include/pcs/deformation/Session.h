@@ -212,7 +212,7 @@ public:
     std::vector<Similarity> transforms = local_transforms();
     Deviation_guess guess;
     for (std::size_t level = m_coarse.size(); level-- > 0 && progress(0);)
-      m_coarse[level].improve(transforms, options, guess);
+      m_coarse[level].improve(transforms, options, m_maps.size(), guess);
     const Elastic_result result = m_solver.solve(transforms, options, progress, guess);
     r.status = result.status;
     r.number_of_iterations = static_cast<std::size_t>(result.number_of_passes);

@@ -9,8 +9,6 @@
 
 #include <Eigen/Core>
 
-#include <cmath>
-
 namespace pcs {
 namespace shape_space {
 
@@ -23,26 +21,8 @@ namespace shape_space {
 inline Quaternion best_turn(const Eigen::Matrix3d& covariance, Quaternion q)
 {
   constexpr int most_steps = 50;
-  const double size = covariance.norm(), epsilon = 1e-9 * size + 1e-300;
   for (int i = 0; i < most_steps; ++i) {
-    // the trace at exp(u) R is trace(m) + torque u - u^T hessian u / 2 + ...
-    const Eigen::Matrix3d m = covariance * q.toRotationMatrix().transpose();
-    const Eigen::Vector3d torque(m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1));
-    const double trace = m.trace();
-    Eigen::Matrix3d hessian = -0.5 * (m + m.transpose());
-    hessian.diagonal().array() += trace + epsilon;
-    const double minor = hessian(0, 0) * hessian(1, 1) - hessian(0, 1) * hessian(0, 1);
-    const double determinant = hessian.determinant();
-    Eigen::Vector3d u = torque / (std::abs(trace) + epsilon);
-    if (hessian(0, 0) > 0 && minor > 0 && determinant > 0) {
-      const Eigen::Matrix3d adjugate = (Eigen::Matrix3d() << hessian.col(1).cross(hessian.col(2)),
-                                        hessian.col(2).cross(hessian.col(0)),
-                                        hessian.col(0).cross(hessian.col(1)))
-                                           .finished();
-      const Eigen::Vector3d step = adjugate * torque / determinant; // symmetric
-      if (step.squaredNorm() < 1)
-        u = step;
-    }
+    const Eigen::Vector3d u = newton_turn(covariance * q.toRotationMatrix().transpose(), 0);
     q = rotation_exp(u) * q;
     q.normalize();
     if (u.squaredNorm() < 1e-20)
