@@ -129,7 +129,7 @@ std::vector<Tree_file> read_trees(const Options& o)
     return names.empty() ? std::string() : names[i];
   };
   for (std::size_t i = 0; i < std::max(o.trees.size(), o.skeletons.size()); ++i)
-    files.push_back(read_tree(file(o.trees, i), file(o.skeletons, i)));
+    files.push_back(read_tree(file(o.trees, i), file(o.skeletons, i), o.do_extend_axes));
   return files;
 }
 

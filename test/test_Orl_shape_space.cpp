@@ -7,11 +7,14 @@
 #include <pcs/orl_geodesic.h>
 #include <support/archetypes.h>
 #include <support/exceptions.h>
+#include <support/orl_spaces.h>
 #include <support/orl_trees.h>
 #include <support/threads.h>
 
 #include <boost/test/unit_test.hpp>
 
+#include <array>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <set>
@@ -20,19 +23,9 @@
 using namespace orl_test;
 using namespace pcs::shape_space;
 namespace np = pcs::parameters;
-using Space = pcs::Orl_shape_space<Kernel>;
 using pcs_test::message_has;
 
 namespace {
-
-Space make_space(const Tree& a, const Tree& b)
-{
-  Space space;
-  space.add_skeleton(a);
-  space.add_skeleton(b);
-  space.build();
-  return space;
-}
 
 /// Any coordinates on the layout of the space.
 Orl_coordinates random_coordinates(const Orl_layout& layout, std::mt19937& random)
@@ -236,9 +229,54 @@ BOOST_AUTO_TEST_CASE(turning_and_moving_both_trees_turns_and_moves_the_path)
         if (!(std::sqrt(CGAL::squared_distance(move(points[k]), moved_points[k])) <=
               10 * tolerance * scale))
           ++number_off;
-      // such rounding may give a point another partner of two that cost the same
+      // such rounding of the input may give a point another partner of two that cost the same
       BOOST_TEST(number_off <= (seed < 9 ? 0 : points.size() / 500));
     }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_shift_without_rounding_changes_nothing)
+{
+  const Vec3 shift(5e6, -3e6, 7e5);
+  const auto rounded = [](const Point& p) {
+    constexpr double unit = 1.0 / (1 << 20); // differences and sums with `shift` are exact
+    return Point(unit * std::round(p.x() / unit),
+                 unit * std::round(p.y() / unit),
+                 unit * std::round(p.z() / unit));
+  };
+  const auto move = [&](const Point& p) { return to_cgal(to_eigen(p) + shift); };
+  for (unsigned seed = 7; seed < 11; ++seed) {
+    Space space, other;
+    std::array<std::vector<Point>, 2> scans;
+    for (const unsigned t : {0u, 1u}) {
+      Tree tree = random_tree(seed + 100 * t);
+      std::vector<Point> moved_scan, &scan = scans[t];
+      for (const Point& p : tube_points(tree, 1000 + 500 * t, t)) {
+        scan.push_back(rounded(p));
+        moved_scan.push_back(move(scan.back()));
+      }
+      for (std::size_t v = 0; v < num_vertices(tree); ++v)
+        tree[v].point = rounded(tree[v].point);
+      space.add(tree, scan);
+      other.add(moved(tree, Eigen::Matrix3d::Identity(), shift), moved_scan);
+    }
+    space.build();
+    other.build();
+    BOOST_TEST(space.distance(0, 1) == other.distance(0, 1));
+    const auto one = space.correspondences(), two = other.correspondences();
+    BOOST_TEST_REQUIRE(one.pairs.size() == two.pairs.size());
+    BOOST_TEST(one.pairs.size() >= scans[1].size());
+    bool is_same = true;
+    for (std::size_t k = 0; k < one.pairs.size(); ++k)
+      is_same = is_same && one.pairs[k].edge == two.pairs[k].edge &&
+                one.pairs[k].point == two.pairs[k].point;
+    BOOST_TEST(is_same);
+    std::vector<Point> points, moved_points;
+    space.points(space.geodesic(0, 1, 0.3), points);
+    other.points(other.geodesic(0, 1, 0.3), moved_points);
+    for (std::size_t k = 0; k < points.size(); ++k)
+      is_same = is_same && move(points[k]) == moved_points[k];
+    BOOST_TEST(is_same);
   }
 }
 

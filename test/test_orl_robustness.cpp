@@ -6,6 +6,7 @@
 #include <support/archetypes.h>
 #include <support/exceptions.h>
 #include <support/graph_archetypes.h>
+#include <support/orl_spaces.h>
 #include <support/orl_trees.h>
 
 #include <boost/property_map/property_map.hpp>
@@ -133,16 +134,6 @@ Tree curled(double bend)
 
 using pcs::shape_space::Orl_coordinates;
 using pcs::shape_space::Orl_geometry;
-using Space = pcs::Orl_shape_space<Kernel>;
-
-Space make_space(const Tree& a, const Tree& b)
-{
-  Space space;
-  space.add_skeleton(a);
-  space.add_skeleton(b);
-  space.build();
-  return space;
-}
 
 Orl_geometry in_space(const Space& space, const Orl_coordinates& x)
 {
@@ -347,11 +338,56 @@ BOOST_AUTO_TEST_CASE(a_branch_on_every_node_of_a_chain_of_branches)
   morph(chain(300), {}, chain(250), {});
 }
 
+/// Every branch leaves its parent after the first edge, and goes on farther than what it carries.
+Tree nested(std::size_t n)
+{
+  Tree tree;
+  std::size_t last = add_node(tree, pcs::npos, Vec3(0, 0, 0), 0.1);
+  Vec3 p = Vec3::Zero();
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vec3 side(k % 2 == 0 ? 1 : 0, k % 2 == 0 ? 0 : 1, 0.1);
+    const std::size_t v = add_node(tree, last, p + side, 0.05);
+    add_node(tree, v, p + 2 * static_cast<double>(n - k + 1) * side, 0.02);
+    p += side;
+    last = v;
+  }
+  return tree;
+}
+
+BOOST_AUTO_TEST_CASE(branches_that_hang_on_branches_250_times)
+{
+  const Space space = make_space(nested(250), nested(220));
+  std::size_t number_matched = 0;
+  for (const auto& m : space.matches())
+    number_matched += m.tip[0] != pcs::npos && m.tip[1] != pcs::npos ? 1 : 0;
+  BOOST_TEST(number_matched > 190u);
+  Space other;
+  BOOST_CHECK_EXCEPTION(other.add_skeleton(nested(260)),
+                        pcs::Invalid_input,
+                        message_has("at most 250"));
+}
+
 BOOST_AUTO_TEST_CASE(a_star_of_five_hundred_branches)
 {
   const Tree a = star(500, 0), b = star(480, 0.05);
   const auto report = morph(a, tube_points(a, 5000, 1), b, tube_points(b, 5000, 2));
   BOOST_TEST(report.number_of_matched_branches > 400u);
+}
+
+BOOST_AUTO_TEST_CASE(a_star_of_thirteen_hundred_branches)
+{
+  // more than are assigned at a time, and all about as heavy
+  const Tree a = star(1300, 0), b = star(1200, 0.05);
+  const Space space = make_space(a, b);
+  std::size_t number_matched = 0, number_near = 0;
+  for (const auto& m : space.matches())
+    if (m.tip[0] != pcs::npos && m.tip[1] != pcs::npos && m.parent != pcs::npos) {
+      ++number_matched;
+      const Vec3 apart = to_eigen(a[m.tip[0]].point) - to_eigen(b[m.tip[1]].point);
+      number_near += apart.norm() < 0.2 ? 1 : 0; // of a ring of radius 1
+    }
+  BOOST_TEST(number_matched > 1150u);
+  BOOST_TEST(number_near > 9 * number_matched / 10);
 }
 
 BOOST_AUTO_TEST_CASE(a_chain_of_a_hundred_thousand_nodes_and_a_tree_a_million_times_smaller)

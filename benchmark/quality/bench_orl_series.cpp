@@ -93,8 +93,10 @@ void virtual_trees(int first_seed, int number)
       std::vector<std::size_t> nodes;
       std::vector<Seen_plant> stages, others;
       int turn = 0;
-      for (const double age : {0.5, 0.75, 1.0})
-        stages.push_back(scanned(pcs::tree_at_age(tree, age, nodes), 10 * seed + turn, turn++));
+      for (const double age : {0.5, 0.75, 1.0}) {
+        stages.push_back(scanned(pcs::tree_at_age(tree, age, nodes), 10 * seed + turn, turn));
+        ++turn;
+      }
       print(name + " " + std::to_string(seed) + " growing",
             {stages[0], stages[1], stages[2], 0.5, Vec3::UnitZ(), true});
       for (const int k : {0, 1, 2})

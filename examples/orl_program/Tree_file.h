@@ -11,6 +11,7 @@
 #include <pcs/IO/read_txtskl.h>
 #include <pcs/core/Tree_skeleton.h>
 #include <pcs/core/errors.h>
+#include <pcs/shape_space/extend_axes.h>
 
 #if __has_include(<pcs/extract_tree_skeleton.h>)
 #include <pcs/extract_tree_skeleton.h>
@@ -86,7 +87,8 @@ inline void extract_skeleton(const std::string& points, Tree_file& tree)
 }
 
 /// Either path may be empty, not both.
-inline Tree_file read_tree(const std::string& points, const std::string& skeleton)
+inline Tree_file
+read_tree(const std::string& points, const std::string& skeleton, bool do_extend_axes)
 {
   Tree_file tree;
   if (!points.empty())
@@ -95,6 +97,8 @@ inline Tree_file read_tree(const std::string& points, const std::string& skeleto
     read_skeleton(skeleton, tree);
   else
     extract_skeleton(points, tree);
+  if (do_extend_axes && !skeleton.empty())
+    pcs::shape_space::extend_axes(tree.skeleton, tree.points.points());
   if (tree.ids.size() != num_vertices(tree.skeleton)) {
     tree.ids.clear();
     for (std::size_t v = 0; v < num_vertices(tree.skeleton); ++v)

@@ -65,6 +65,33 @@ const std::string txtskl = "2\nLayer 0\n1\n-1 -1\n3\n0 0 0 0.1\n0 1 0 0.1\n0 2 0
 
 BOOST_FIXTURE_TEST_SUITE(orl_geodesic, Two_trees)
 
+BOOST_AUTO_TEST_CASE(axes_are_drawn_out_to_the_points_on_request)
+{
+  const auto length = [](const orl_test::Tree& tree) {
+    double sum = 0;
+    for (const auto e : boost::make_iterator_range(edges(tree)))
+      sum += std::sqrt(CGAL::squared_distance(tree[source(e, tree)].point, //
+                                              tree[target(e, tree)].point));
+    return sum;
+  };
+  orl_test::Tree tree = swc("a.swc");
+  const double whole = length(tree);
+  for (std::size_t v = 0; v < num_vertices(tree); ++v)
+    if (out_degree(v, tree) == 0) {
+      const auto& from = tree[pcs::parent_node<orl_test::Kernel>(v, tree)].point;
+      tree[v].point = from + 0.3 * (tree[v].point - from);
+    }
+  pcs::IO::write_swc(path("short.swc"), tree);
+  pcs::IO::write_points(path("dense.ply"), orl_test::tube_points(swc("a.swc"), 20000, 1));
+  const std::string of_short =
+      "--tree dense.ply --skeleton short.swc --tree b.ply --skeleton b.swc ";
+  succeeds(of_short + "--lambda 0 --output plain");
+  succeeds(of_short + "--lambda 0 --output long --extend-axes");
+  const double missing = whole - length(swc("plain/lambda_0.000.swc"));
+  BOOST_TEST(missing > 0.03 * whole);
+  BOOST_TEST(std::abs(whole - length(swc("long/lambda_0.000.swc"))) < 0.4 * missing);
+}
+
 BOOST_AUTO_TEST_CASE(every_place_on_the_path_has_points_and_a_skeleton)
 {
   succeeds(trees + "--lambda 0,0.25,1.5,-0.5 --output out --matches m.csv --report r.json");

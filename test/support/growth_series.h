@@ -10,6 +10,7 @@
 #include <pcs/Orl_shape_space.h>
 #include <pcs/neighborhood/Nearest_neighbors.h>
 #include <pcs/shape_space/best_turn.h>
+#include <pcs/shape_space/extend_axes.h>
 #include <support/orl_trees.h>
 
 #include <array>
@@ -74,7 +75,8 @@ inline Tree read_plant_graph(const std::string& path)
   return tree;
 }
 
-/// A scan with its graph, thinned evenly in the order of the file.
+/// A scan with its graph, thinned evenly in the order of the file. Graphs of some days end before the tips of leaves: all are
+/// drawn out.
 inline Seen_plant
 read_plant(const std::string& scan, const std::string& graph, std::size_t most_points)
 {
@@ -86,6 +88,7 @@ read_plant(const std::string& scan, const std::string& graph, std::size_t most_p
     const auto& p = table.points()[n <= most_points ? k : k * n / most_points];
     result.scan.emplace_back(p.x(), p.y(), p.z());
   }
+  pcs::shape_space::extend_axes(result.tree, result.scan);
   return result;
 }
 

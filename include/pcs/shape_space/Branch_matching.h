@@ -20,6 +20,7 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <numeric>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -83,7 +84,13 @@ public:
       const double most_cost = std::numeric_limits<double>::infinity())
   {
     const Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-    std::vector<Trial> trials = find_trials(0, 0, rotation, most_cost, m_most_trunk_trials);
+    // one look at trunks of very many children is dear enough
+    const auto children = [&](int t) {
+      return m_energy.path(t, paths(t).paths_of[0].front()).children.size();
+    };
+    const bool is_wide = std::max(children(0), children(1)) > most_at_once;
+    std::vector<Trial> trials =
+        find_trials(0, 0, rotation, most_cost, is_wide ? m_number_of_trials : m_most_trunk_trials);
     const std::size_t all = trials.size(), most = m_effort = m_number_of_trials;
     Result best;
     std::size_t number_done = 0;
@@ -153,10 +160,11 @@ private:
     std::mutex mutex;
     std::unordered_map<Question, Result, Hash> results;
   };
-  static constexpr double turn_step = 0.25;   // [rad]
-  static constexpr int number_of_passes = 3;  // of a turn by curve and children
-  static constexpr double rematch_turn = 0.4; // Frobenius norm: a turn by about 0.3 rad
-  static constexpr double trunk_slack = 1.05; // what a look at few ways may be wrong by
+  static constexpr std::size_t most_at_once = 512; // children that are assigned at a time
+  static constexpr double turn_step = 0.25;        // [rad]
+  static constexpr int number_of_passes = 3;       // of a turn by curve and children
+  static constexpr double rematch_turn = 0.4;      // Frobenius norm: a turn by about 0.3 rad
+  static constexpr double trunk_slack = 1.05;      // what a look at few ways may be wrong by
 
   void forget()
   {
@@ -305,8 +313,8 @@ private:
     return result;
   }
 
-  /// Adds the pairs of children, and what they cost less than alone; false if the cost is not below `limit`. Bounds first;
-  /// what the assignment asks for is made exact until it asks for nothing more.
+  /// Adds the pairs of children, and what they cost less than alone; false if the cost is not below `limit`. Very many
+  /// children are assigned in turn, the heaviest first: time and memory grow as their number, not as its cube.
   bool assign_children(const Branch_path& path_1,
                        const Branch_path& path_2,
                        const Children& a,
@@ -315,7 +323,67 @@ private:
                        double limit,
                        Matched_branch& result)
   {
-    const std::size_t n = a.s.size(), m = b.s.size();
+    std::array<std::vector<std::size_t>, 2> order = {by_index(a), by_index(b)};
+    if (std::max(a.s.size(), b.s.size()) <= most_at_once)
+      return assign_some(path_1, path_2, a, b, order[0], order[1], turned, limit, result);
+    order = {Matching_energy::by_weight(a.weight), Matching_energy::by_weight(b.weight)};
+    std::array<std::vector<std::size_t>, 2> open;
+    for (std::size_t done = 0; done < std::max(order[0].size(), order[1].size());
+         done += most_at_once) {
+      for (std::size_t t = 0; t < 2; ++t) {
+        std::vector<std::size_t>&all = order[t], &now = open[t];
+        // the lightest of those that found no partner are tried once more
+        if (now.size() > most_at_once)
+          now.erase(now.begin(), now.end() - most_at_once);
+        for (std::size_t k = done; k < std::min(all.size(), done + most_at_once); ++k)
+          now.push_back(all[k]);
+      }
+      const std::size_t first = result.pairs.size();
+      assign_some(path_1,
+                  path_2,
+                  a,
+                  b,
+                  open[0],
+                  open[1],
+                  turned,
+                  std::numeric_limits<double>::infinity(),
+                  result);
+      for (std::size_t k = first; k < result.pairs.size(); ++k) {
+        erase_value(open[0], result.pairs[k].child_1);
+        erase_value(open[1], result.pairs[k].child_2);
+      }
+    }
+    std::sort(result.pairs.begin(), result.pairs.end(), [](const auto& x, const auto& y) {
+      return x.child_1 < y.child_1;
+    });
+    return result.cost < limit;
+  }
+
+  static std::vector<std::size_t> by_index(const Children& children)
+  {
+    std::vector<std::size_t> order(children.s.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    return order;
+  }
+
+  static void erase_value(std::vector<std::size_t>& values, std::size_t value)
+  {
+    values.erase(std::find(values.begin(), values.end(), value));
+  }
+
+  /// The same for some children of both. Bounds first; what the assignment asks for is made exact until it asks for nothing
+  /// more.
+  bool assign_some(const Branch_path& path_1,
+                   const Branch_path& path_2,
+                   const Children& a,
+                   const Children& b,
+                   const std::vector<std::size_t>& rows,
+                   const std::vector<std::size_t>& columns,
+                   const Eigen::Matrix3d& turned,
+                   double limit,
+                   Matched_branch& result)
+  {
+    const std::size_t n = rows.size(), m = columns.size();
     std::vector<double> gain(n * m);
     std::vector<Result> exact(n * m);
     const double parent_length = m_energy.length(0, result.path_1);
@@ -323,11 +391,12 @@ private:
       return m_energy.position_term(a.length[i], b.length[j], a.s[i], b.s[j], parent_length) -
              m_energy.single_term(a.weight[i]) - m_energy.single_term(b.weight[j]);
     };
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = 0; j < m; ++j)
-        gain[i * m + j] =
-            m_energy.least_cost(path_1.children[i].start, path_2.children[j].start, turned) +
-            rest(i, j);
+    for (std::size_t r = 0; r < n; ++r)
+      for (std::size_t c = 0; c < m; ++c)
+        gain[r * m + c] = m_energy.least_cost(path_1.children[rows[r]].start,
+                                              path_2.children[columns[c]].start,
+                                              turned) +
+                          rest(rows[r], columns[c]);
     Assignment assignment(n, m, gain);
     assignment.solve();
     const std::vector<std::size_t>& partner = assignment.columns();
@@ -335,11 +404,11 @@ private:
     for (;;) {
       wanted.clear();
       double bound = result.cost;
-      for (std::size_t i = 0; i < n; ++i)
-        if (partner[i] != none) {
-          bound += gain[i * m + partner[i]];
-          if (!exact[i * m + partner[i]])
-            wanted.push_back(i);
+      for (std::size_t r = 0; r < n; ++r)
+        if (partner[r] != none) {
+          bound += gain[r * m + partner[r]];
+          if (!exact[r * m + partner[r]])
+            wanted.push_back(r);
         }
       if (bound >= limit)
         return false;
@@ -348,17 +417,18 @@ private:
       pcs::internal::for_each_index<ConcurrencyTag>(
           wanted.size(),
           [&](std::size_t k) {
-            const std::size_t i = wanted[k], j = partner[i];
-            exact[i * m + j] = match(path_1.children[i].start, path_2.children[j].start, turned);
-            gain[i * m + j] = exact[i * m + j] ? exact[i * m + j]->cost + rest(i, j) : 0;
+            const std::size_t r = wanted[k], c = partner[r], i = rows[r], j = columns[c];
+            Result& found = exact[r * m + c];
+            found = match(path_1.children[i].start, path_2.children[j].start, turned);
+            gain[r * m + c] = found ? found->cost + rest(i, j) : 0;
           },
           1);
       assignment.raise(wanted);
     }
-    for (std::size_t i = 0; i < n; ++i)
-      if (partner[i] != none) {
-        result.cost += gain[i * m + partner[i]];
-        result.pairs.push_back({i, partner[i], exact[i * m + partner[i]]});
+    for (std::size_t r = 0; r < n; ++r)
+      if (partner[r] != none) {
+        result.cost += gain[r * m + partner[r]];
+        result.pairs.push_back({rows[r], columns[partner[r]], exact[r * m + partner[r]]});
       }
     return true;
   }

@@ -25,6 +25,10 @@ constexpr double tip_share = 0.05;
 /// All else depends on the trunk: so many times more candidates are looked at.
 constexpr std::size_t trunk_factor = 6;
 
+/// Below so many branches that hang on each other, there is one way to continue: what may continue one of them begins another,
+/// and the number of questions would grow as the square of their number.
+constexpr std::size_t levels_of_choice = 24;
+
 /// A branch begins with an edge; the node at its end names the place. Several paths may begin there.
 struct Branch_path
 {
@@ -129,14 +133,16 @@ find_branch_paths(const Rooted_tree& tree, double fork_ratio, std::size_t maxima
 {
   Branch_paths result;
   result.paths_of.resize(tree.size());
+  const std::vector<std::size_t> level = internal::levels_of_branches(tree);
   std::vector<std::size_t> starts{0};
   std::vector<char> is_found(tree.size(), 0);
   is_found[0] = 1;
   while (!starts.empty()) {
     const std::size_t start = starts.back();
     starts.pop_back();
-    const std::size_t most =
-        maximal_number > 1 && start == 0 ? trunk_factor * maximal_number : maximal_number;
+    const std::size_t most = level[start] > levels_of_choice    ? 1
+                             : maximal_number > 1 && start == 0 ? trunk_factor * maximal_number
+                                                                : maximal_number;
     for (auto& nodes : internal::candidate_paths(tree, start, fork_ratio, most)) {
       result.paths_of[start].push_back(result.paths.size());
       result.paths.push_back(internal::make_path(tree, std::move(nodes), start == 0));

@@ -21,6 +21,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -35,6 +36,7 @@ class Matching_energy
 public:
   static constexpr std::size_t number_of_samples = 25; ///< of a curve
   static constexpr std::size_t few_samples = 13; ///< where many are only compared: every other one
+  static constexpr std::size_t most_children = 256; ///< looked at in quick costs: the heaviest ones
 
   /// Two curves, matched.
   struct Trial
@@ -214,6 +216,17 @@ public:
     return m_weights.position * w * d / (1 + d / m_weights.far);
   }
 
+  /// Indices, the heaviest first.
+  static std::vector<std::size_t> by_weight(const std::vector<double>& weight)
+  {
+    std::vector<std::size_t> order(weight.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
+      return weight[i] > weight[j];
+    });
+    return order;
+  }
+
   bool is_turned() const { return m_weights.is_carried && !m_weights.is_published; }
 
   double single_term(double w) const { return (m_weights.is_published ? 1 : m_weights.single) * w; }
@@ -247,17 +260,21 @@ public:
     return assign_rows(a.s.size(), b.s.size(), quick_gains(a, b, rotation, parent_length));
   }
 
-  /// What it leaves; infinity where it is seen at once that it is more than `most`.
-  double quick_cost_of_children(const Children& a,
-                                const Children& b,
+  /// What it leaves; infinity where it is seen at once that it is more than `most`. Of very many children, what the light ones
+  /// have more in one tree than in the other counts as single.
+  double quick_cost_of_children(const Children& all_1,
+                                const Children& all_2,
                                 const Eigen::Matrix3d& rotation,
                                 double parent_length,
                                 double most,
                                 Prices& prices) const
   {
     constexpr double slack = 1e-9; // rounding must not decide
+    std::array<Children, 2> few;
+    std::array<double, 2> light = {0, 0};
+    const Children &a = heaviest(all_1, few[0], light[0]), &b = heaviest(all_2, few[1], light[1]);
     const std::size_t n = a.s.size(), m = b.s.size();
-    double total = 0;
+    double total = single_term(std::abs(light[0] - light[1]));
     for (const double w : a.weight)
       total += single_term(w);
     for (const double w : b.weight)
@@ -281,13 +298,16 @@ public:
 
   /// The turn that carries branch 2 to branch 1, from the curves, the children, and what the parents say.
   Eigen::Matrix3d turn(const Trial& trial,
-                       const Children& a,
-                       const Children& b,
+                       const Children& all_1,
+                       const Children& all_2,
                        const Eigen::Matrix3d& carried,
                        int passes) const
   {
     if (!m_weights.is_carried || m_weights.is_published)
       return carried;
+    std::array<Children, 2> few;
+    std::array<double, 2> light;
+    const Children &a = heaviest(all_1, few[0], light[0]), &b = heaviest(all_2, few[1], light[1]);
     const std::vector<double>& gamma = trial.gamma;
     const std::size_t n = gamma.size();
     std::array<Sampled_curve, 2> cut;
@@ -376,6 +396,29 @@ private:
   double length_term(double a, double b) const
   {
     return m_weights.length * m_weights.single * std::abs(a - b);
+  }
+
+  /// All children if they are not too many, else the heaviest in the same order, kept in `few`; `light` is the weight of the
+  /// rest.
+  static const Children& heaviest(const Children& all, Children& few, double& light)
+  {
+    light = 0;
+    const std::size_t n = all.s.size();
+    if (n <= most_children)
+      return all;
+    std::vector<std::size_t> order = by_weight(all.weight);
+    for (std::size_t k = most_children; k < n; ++k)
+      light += all.weight[order[k]];
+    order.resize(most_children);
+    std::sort(order.begin(), order.end());
+    for (const std::size_t i : order) {
+      few.s.push_back(all.s[i]);
+      few.weight.push_back(all.weight[i]);
+      few.length.push_back(all.length[i]);
+      few.direction.push_back(all.direction[i]);
+      few.start.push_back(all.start[i]);
+    }
+    return few;
   }
 
   /// What pairs of children cost more than both alone, by quick costs.

@@ -107,6 +107,16 @@ inline void connect(Rooted_tree& tree)
   }
 }
 
+/// For each node, how many branches the one that carries it hangs on, where every branch goes on along the longest path.
+inline std::vector<std::size_t> levels_of_branches(const Rooted_tree& tree)
+{
+  std::vector<std::size_t> level(tree.size(), 0);
+  for (std::size_t v = 0; v < tree.size(); ++v) // parents first
+    for (std::size_t c = tree.first_child[v]; c < tree.first_child[v + 1]; ++c)
+      level[tree.children[c]] = level[v] + (c == tree.first_child[v] ? 0 : 1);
+  return level;
+}
+
 /// A node this close to the axis of an edge, as a share of the radius there, begins a branch on that axis.
 constexpr double on_axis = 1e-3;
 

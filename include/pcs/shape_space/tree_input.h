@@ -17,6 +17,7 @@
 
 #include <boost/graph/graph_concepts.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -28,6 +29,9 @@
 
 namespace pcs {
 namespace shape_space {
+
+/// Deeper trees are refused; those that grow have ten levels or so.
+constexpr std::size_t most_levels_of_branches = 250;
 
 /// A tree and its scan, both relative to the root of the tree.
 struct Tree_input
@@ -205,6 +209,12 @@ Tree_input make_tree_input(const TreeGraph& graph,
       BOOST_CONCEPT_ASSERT((boost::VertexListGraphConcept<TreeGraph>));
       BOOST_CONCEPT_ASSERT((boost::IncidenceGraphConcept<TreeGraph>));
       result.tree = make_rooted_tree(graph, node_maps.first, node_maps.second, index_map, caller);
+      const std::vector<std::size_t> levels = internal::levels_of_branches(result.tree);
+      if (const std::size_t most = *std::max_element(levels.begin(), levels.end());
+          most > most_levels_of_branches)
+        throw Invalid_input(caller + ": branches hang on branches " + std::to_string(most) +
+                            " times, at most " + std::to_string(most_levels_of_branches) +
+                            " are supported");
       const auto n = static_cast<std::size_t>(std::end(scan) - std::begin(scan));
       if (n >= Orl_correspondences::no_point)
         throw Invalid_input(caller + ": a scan has " + std::to_string(n) +
