@@ -231,6 +231,9 @@ nlohmann::ordered_json run_one(const std::string& input, const Skeleton_options&
     throw pcs::Invalid_input(input + ": there is no tree in this scan (" +
                              std::to_string(report.number_of_points) + " points)");
   nlohmann::ordered_json json = to_json(input, report);
+  if (!options.is_quiet)
+    for (const std::string& sentence : pcs::warnings(report))
+      std::cerr << "extract_tree_skeleton: warning: " << input << ": " << sentence << '\n';
   watch.lap();
   if (!options.mesh.empty())
     json["mesh"] = write_mesh(options.mesh, options, tree);

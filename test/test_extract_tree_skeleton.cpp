@@ -355,23 +355,35 @@ BOOST_AUTO_TEST_CASE(a_scale_scales_the_tree)
   BOOST_CHECK_SMALL(distance_between(b, a, 1), rounding);
 }
 
+namespace {
+
+Point turned(const Point& p, double angle)
+{
+  const double c = std::cos(angle), s = std::sin(angle);
+  return Point(c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z());
+}
+
+std::vector<Point> turned(const std::vector<Point>& points, double angle)
+{
+  return transformed(points, [&](const Point& p) { return turned(p, angle); });
+}
+
+Tree turned_back(Tree tree, double angle)
+{
+  for (std::size_t v = 0; v < num_vertices(tree); ++v)
+    tree[v].point = turned(tree[v].point, -angle);
+  return tree;
+}
+
+} // namespace
+
 BOOST_AUTO_TEST_CASE(a_turn_about_the_up_axis_turns_the_tree)
 {
   const auto& points = small_scan().scan.points;
-  const double c = std::cos(1.0), s = std::sin(1.0);
   Tree a, b;
   pcs::extract_tree_skeleton(points, a);
-  pcs::extract_tree_skeleton(
-      transformed(points,
-                  [&](const Point& p) {
-                    return Point(c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z());
-                  }),
-      b);
-  Tree back = b;
-  for (std::size_t v = 0; v < num_vertices(back); ++v) {
-    const Point p = back[v].point;
-    back[v].point = Point(c * p.x() + s * p.y(), c * p.y() - s * p.x(), p.z());
-  }
+  pcs::extract_tree_skeleton(turned(points, 1), b);
+  const Tree back = turned_back(b, 1);
   BOOST_CHECK_SMALL(distance_between(a, back, 1), rounding);
   BOOST_CHECK_SMALL(distance_between(back, a, 1), rounding);
 }
@@ -382,21 +394,11 @@ BOOST_AUTO_TEST_CASE(a_turn_of_quantised_points_turns_the_tree)
   const std::vector<Point> points = transformed(small_scan().scan.points, [&](const Point& p) {
     return Point(grid(p.x()), grid(p.y()), grid(p.z()));
   });
-  const double c = std::cos(0.3), s = std::sin(0.3);
   Tree a, b;
   pcs::extract_tree_skeleton(points, a);
-  pcs::extract_tree_skeleton(
-      transformed(points,
-                  [&](const Point& p) {
-                    return Point(c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z());
-                  }),
-      b);
+  pcs::extract_tree_skeleton(turned(points, 0.3), b);
   BOOST_REQUIRE_EQUAL(num_vertices(a), num_vertices(b));
-  for (std::size_t v = 0; v < num_vertices(a); ++v) {
-    const Point p = b[v].point;
-    b[v].point = Point(c * p.x() + s * p.y(), c * p.y() - s * p.x(), p.z());
-  }
-  BOOST_CHECK_SMALL(distance_between(a, b, 1), rounding);
+  BOOST_CHECK_SMALL(distance_between(a, turned_back(b, 0.3), 1), rounding);
 }
 
 BOOST_AUTO_TEST_CASE(up_may_be_any_axis)

@@ -305,6 +305,10 @@ BOOST_AUTO_TEST_CASE(bodies_give_some_tree_that_stays_within_them)
       BOOST_CHECK_LT(tree[v].radius, 2.0);
     }
     BOOST_CHECK_GT(report.residual, 0.0);
+    // wider than the noise; filled ones are told from trees by it
+    BOOST_CHECK_GT(report.residual, report.noise);
+    if (points == dust)
+      BOOST_CHECK_EQUAL(pcs::warnings(report).size(), 1u);
   }
 }
 
@@ -318,10 +322,30 @@ BOOST_AUTO_TEST_CASE(of_two_trees_the_thicker_one_is_taken)
   BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.2, 3.0);
   BOOST_CHECK_GT(report.number_of_unreached_points + report.number_of_unexplained_points, 2500u);
   BOOST_CHECK_GE(report.number_of_unreached_branches, 1u);
+  BOOST_CHECK_EQUAL(report.number_of_other_stems, 1u);
+  BOOST_CHECK_EQUAL(pcs::warnings(report).size(), 2u); // the stem, and its points
   Tree second;
   const auto chosen =
       pcs::extract_tree_skeleton(points, second, pcs::parameters::root_position(Point(5, 0, 0)));
   BOOST_CHECK_CLOSE(chosen.diameter_at_breast_height, 0.1, 5.0);
+  // one tree gives no warning
+  Tree alone;
+  const auto quiet = pcs::extract_tree_skeleton(cylinder(8000, 0.1, 2), alone);
+  BOOST_CHECK_EQUAL(quiet.number_of_other_stems, 0u);
+  BOOST_CHECK(pcs::warnings(quiet).empty());
+}
+
+// A limb of the one touches the top of the other: all hangs together, and a stem comes down from above.
+BOOST_AUTO_TEST_CASE(a_tree_that_touches_another_one_is_reported)
+{
+  Cloud points = cylinder(8000, 0.1, 3);
+  append(points, cylinder(2000, 0.03, 1.2, Point(0.1, 0, 2.2), Vector(1, 0, 0)));
+  append(points, cylinder(4000, 0.06, 2.2, Point(1.3, 0, 0)));
+  Tree tree;
+  const auto report = pcs::extract_tree_skeleton(points, tree);
+  check_is_a_tree(tree);
+  BOOST_CHECK_EQUAL(report.number_of_other_stems, 1u);
+  BOOST_CHECK(!pcs::warnings(report).empty());
 }
 
 namespace {

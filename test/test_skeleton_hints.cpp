@@ -133,6 +133,20 @@ BOOST_AUTO_TEST_CASE(hints_that_make_no_sense_are_refused)
   BOOST_CHECK_THROW(
       pcs::extract_tree_skeleton(points, tree, scanner_positions(station).beam_width(-0.1)),
       pcs::Invalid_input);
+  BOOST_CHECK_THROW(pcs::extract_tree_skeleton(points, tree, root_position(Point(0, bad, 0))),
+                    pcs::Invalid_input);
+  BOOST_CHECK_THROW(pcs::extract_tree_skeleton(points, tree, up_direction(Vector(0, bad, 1))),
+                    pcs::Invalid_input);
+  BOOST_CHECK_THROW(pcs::extract_tree_skeleton(points, tree, breast_height(bad)),
+                    pcs::Invalid_input);
+  BOOST_CHECK_THROW(
+      pcs::extract_tree_skeleton(points, tree, scanner_positions(station).beam_width(bad)),
+      pcs::Invalid_input);
+  Tree broken;
+  pcs::extract_tree_skeleton(points, broken);
+  broken[1].point = Point(0, 0, bad);
+  BOOST_CHECK_THROW(pcs::extract_tree_skeleton(points, tree, given_skeleton(broken)),
+                    pcs::Invalid_input);
   BOOST_TEST(num_vertices(tree) == 0u);
 }
 

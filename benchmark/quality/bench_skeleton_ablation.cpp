@@ -10,6 +10,7 @@
 #include <pcs/internal/progress.h>
 #include <pcs/neighborhood/Nearest_neighbors.h>
 #include <pcs/skeleton/Session.h>
+#include <pcs/skeleton/write_result.h>
 
 #include <CGAL/Simple_cartesian.h>
 
@@ -20,6 +21,7 @@
 #include <exception>
 #include <functional>
 #include <iostream>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -84,32 +86,13 @@ std::vector<Variant> variants()
   add("ours, no prior by counting", Session_options(), [](auto& o) {
     o.axes.chains.prior_share = 1e6;
   });
+  add("ours, radii not bounded", Session_options(), [](auto& o) {
+    pcs::skeleton::Support_rules& r = o.support;
+    r.filled = r.branch_filled = r.thicker = std::numeric_limits<double>::infinity();
+    r.fewest = r.expected = r.pipes.slack = 0;
+    r.slack = std::numeric_limits<double>::infinity();
+  });
   return result;
-}
-
-Tree to_tree(const pcs::skeleton::Branch_tree& from, const Vec3& origin)
-{
-  Tree tree;
-  for (const pcs::skeleton::Branch_node& n : from.nodes) {
-    pcs::Tree_node<Kernel> node;
-    const Vec3 p = n.point + origin;
-    node.point = Kernel::Point_3(p.x(), p.y(), p.z());
-    node.radius = n.radius;
-    node.branch = n.branch;
-    const auto v = add_vertex(node, tree);
-    if (n.parent != pcs::skeleton::none)
-      add_edge(n.parent, v, tree);
-  }
-  pcs::Tree_bundle& bundle = tree[boost::graph_bundle];
-  bundle.root = 0;
-  for (const pcs::skeleton::Branch& b : from.branches) {
-    pcs::Tree_branch branch;
-    if (b.parent != pcs::skeleton::none)
-      branch.parent = b.parent;
-    branch.order = b.order;
-    bundle.branches.push_back(branch);
-  }
-  return tree;
 }
 
 struct Scene
@@ -161,7 +144,8 @@ std::vector<std::string> row_of(const Scene& scene, const Variant& variant)
     row.insert(row.end(), 10, "-");
     return row;
   }
-  const Tree tree = to_tree(session.tree(), session.scan().origin);
+  Tree tree;
+  pcs::skeleton::write_ready_made(session.tree(), session.scan().frame, tree);
   const auto a = pcs_bench::measure_skeleton<Kernel>(scene.truth, scene.scan.hits, tree);
   row.push_back(number(100 * a.at_distance.at(1).f1()));
   row.push_back(number(100 * a.at_distance.at(0).f1()));

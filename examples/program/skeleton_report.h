@@ -38,6 +38,8 @@ inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skele
   json["nodes"] = r.number_of_nodes;
   json["branches"] = r.number_of_branches;
   json["branches_out_of_reach"] = r.number_of_unreached_branches;
+  json["other_stems"] = r.number_of_other_stems;
+  json["warnings"] = pcs::warnings(r);
   json["height"] = r.height;
   json["diameter_at_breast_height"] = r.diameter_at_breast_height;
   json["total"] = to_json(r.total);

@@ -11,14 +11,12 @@
 #include <pcs/core/Tree_skeleton.h>
 #include <pcs/core/errors.h>
 #include <pcs/internal/progress.h>
-#include <pcs/internal/text.h>
 #include <pcs/skeleton/Session.h>
+#include <pcs/skeleton/caller_types.h>
+#include <pcs/skeleton/read_options.h>
+#include <pcs/skeleton/write_result.h>
 
-#include <CGAL/number_utils.h>
 #include <CGAL/property_map.h>
-
-#include <boost/graph/graph_traits.hpp>
-#include <boost/property_map/property_map.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +24,6 @@
 #include <cstdint>
 #include <functional>
 #include <iterator>
-#include <map>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -38,124 +35,6 @@ namespace pcs {
 //! \ingroup PkgPcsSkeletonRef
 //! a scan of fewer different points has no skeleton [count]
 constexpr std::size_t lowest_number_of_scan_points = 10;
-//! \ingroup PkgPcsSkeletonRef
-//! height above the root at which foresters measure the diameter of a trunk [m]
-constexpr double default_breast_height = 1.3;
-//! \ingroup PkgPcsSkeletonRef
-//! divergence of the beam of common terrestrial scanners [rad]
-constexpr double default_beam_width = 0.0003;
-
-namespace internal {
-
-template <class Point>
-skeleton::Vec3 to_vec3(const Point& p)
-{
-  return {CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())};
-}
-
-/// The vertices of a graph in an order in which parents come first; throws unless it is one tree.
-template <class Graph, class PointMap>
-skeleton::Given_skeleton read_given(const Graph& graph, const PointMap& point_map)
-{
-  using Vertex = typename boost::graph_traits<Graph>::vertex_descriptor;
-  const std::string function = "pcs::extract_tree_skeleton(): given_skeleton ";
-  std::map<Vertex, Vertex> parent_of;
-  std::size_t count = 0;
-  for (auto [v, end] = vertices(graph); v != end; ++v, ++count)
-    for (auto [e, last] = out_edges(*v, graph); e != last; ++e)
-      if (!parent_of.emplace(target(*e, graph), *v).second)
-        throw Invalid_input(function + "has a node with two parents");
-  if (count < 2 || parent_of.size() + 1 != count)
-    throw Invalid_input(
-        function + "must be one tree with a root and at least one more node; it has " +
-        std::to_string(count) + " nodes and " + std::to_string(parent_of.size()) + " edges");
-  skeleton::Given_skeleton given;
-  std::vector<Vertex> order;
-  const auto add = [&](Vertex v, skeleton::Index parent) {
-    given.points.push_back(to_vec3(get(point_map, v)));
-    if (!given.points.back().allFinite())
-      throw Invalid_input(function + "has a position that is not finite");
-    given.parent.push_back(parent);
-    order.push_back(v);
-  };
-  for (auto [v, end] = vertices(graph); v != end; ++v)
-    if (parent_of.count(*v) == 0)
-      add(*v, skeleton::none);
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const Vertex v = order[k]; // `order` grows
-    for (auto [e, last] = out_edges(v, graph); e != last; ++e)
-      add(target(*e, graph), static_cast<skeleton::Index>(k));
-  }
-  if (order.size() != count)
-    throw Invalid_input(function + "has a cycle");
-  return given;
-}
-
-/// The types that a point range and a chain of named parameters stand for.
-template <class PointRange, class NamedParameters>
-struct Skeleton_types
-{
-  using Element = Element_reference<const PointRange>;
-  using Point_map = std::decay_t<decltype(choose(
-      std::declval<const NamedParameters&>(),
-      CGAL::internal_np::point_map,
-      std::declval<CGAL::Identity_property_map<std::decay_t<Element>>>()))>;
-  using Point = pcs::Map_value<Point_map>;
-};
-
-template <class Graph>
-struct Is_tree_skeleton : std::false_type
-{
-};
-template <class Kernel>
-struct Is_tree_skeleton<boost::adjacency_list<boost::vecS,
-                                              boost::vecS,
-                                              boost::bidirectionalS,
-                                              Tree_node<Kernel>,
-                                              boost::no_property,
-                                              Tree_bundle>> : std::true_type
-{
-};
-
-template <class T, class = void>
-struct Is_range_of_points : std::false_type
-{
-};
-template <class T>
-struct Is_range_of_points<T, std::enable_if_t<!std::is_void_v<typename Iterator_of<T>::type>>>
-  : Is_point<std::decay_t<decltype(*std::begin(std::declval<T&>()))>>
-{
-};
-template <class T>
-constexpr bool is_range_of_points_v = Is_range_of_points<T>::value;
-
-template <class Graph, class = void>
-struct Is_mutable_graph : std::false_type
-{
-};
-template <class Graph>
-struct Is_mutable_graph<
-    Graph,
-    std::void_t<decltype(add_vertex(std::declval<Graph&>())),
-                decltype(add_edge(
-                    std::declval<typename boost::graph_traits<Graph>::vertex_descriptor>(),
-                    std::declval<typename boost::graph_traits<Graph>::vertex_descriptor>(),
-                    std::declval<Graph&>()))>> : std::true_type
-{
-};
-
-template <class T>
-const T& unwrapped(const T& value)
-{
-  return value;
-}
-template <class T>
-const T& unwrapped(const std::reference_wrapper<T>& value)
-{
-  return value.get();
-}
-
-} // namespace internal
 
 /*!
   \ingroup PkgPcsSkeletonRef
@@ -185,7 +64,7 @@ template <class PointRange,
           class ConcurrencyTag = CGAL::Parallel_if_available_tag>
 class Tree_skeletonization
 {
-  using Types = internal::Skeleton_types<PointRange, NamedParameters>;
+  using Types = skeleton::internal::Skeleton_types<PointRange, NamedParameters>;
 
 public:
   using Point_map = typename Types::Point_map;
@@ -298,7 +177,9 @@ public:
     : m_points(&points), m_np(np)
   {
     if constexpr (is_ok) {
-      skeleton::Session_options options = read_options();
+      skeleton::Session_options options = skeleton::read_options(m_np, function);
+      m_callback =
+          internal::choose(m_np, CGAL::internal_np::callback, std::function<bool(double)>());
       std::vector<skeleton::Vec3> input = read_points();
       check_extent(input);
       std::vector<std::uint8_t> is_wood = read_wood();
@@ -345,11 +226,11 @@ public:
   template <class Graph>
   Skeleton_report extract(Graph& tree)
   {
-    constexpr bool is_ready_made = internal::Is_tree_skeleton<Graph>::value;
+    constexpr bool is_ready_made = skeleton::internal::Is_tree_skeleton<Graph>::value;
     constexpr bool has_maps =
         internal::is_given_v<NamedParameters, internal_np::node_point_map_t> &&
         internal::is_given_v<NamedParameters, internal_np::node_radius_map_t>;
-    constexpr bool is_graph_ok = internal::Is_mutable_graph<Graph>::value;
+    constexpr bool is_graph_ok = skeleton::internal::Is_mutable_graph<Graph>::value;
     static_assert(is_graph_ok,
                   "pcs::extract_tree_skeleton(): the result must be a mutable graph of Boost, for "
                   "example pcs::Tree_skeleton<Kernel>");
@@ -365,9 +246,9 @@ public:
       }
       if (m_session->report().status == Status::converged) {
         if constexpr (is_ready_made)
-          write_ready_made(tree);
+          skeleton::write_ready_made(m_session->tree(), m_session->scan().frame, tree);
         else
-          write_graph(tree);
+          skeleton::write_graph(m_session->tree(), m_session->scan().frame, m_np, tree);
       }
       write_points();
       if (m_callback)
@@ -400,82 +281,6 @@ private:
     return stage(progress);
   }
 
-  skeleton::Session_options read_options()
-  {
-    using internal::choose;
-    skeleton::Session_options options;
-    if constexpr (internal::is_given_v<NamedParameters, internal_np::up_direction_t>)
-      options.up =
-          internal::to_vec3(CGAL::parameters::get_parameter(m_np, internal_np::up_direction));
-    const double largest = options.up.cwiseAbs().maxCoeff();
-    if (!options.up.allFinite() || !(largest > 0))
-      throw Invalid_input(std::string(function) +
-                          ": up_direction must be finite and not the null vector");
-    options.up = (options.up / largest).normalized(); // squares may overflow
-    if constexpr (internal::is_given_v<NamedParameters, internal_np::root_position_t>) {
-      options.root =
-          internal::to_vec3(CGAL::parameters::get_parameter(m_np, internal_np::root_position));
-      if (!options.root->allFinite())
-        throw Invalid_input(std::string(function) + ": root_position must be finite");
-    }
-    read_scanners(options);
-    read_given_skeleton(options);
-    options.method = choose(m_np, internal_np::skeleton_method, skeleton::Skeleton_method::chains);
-    options.slices = choose(m_np, internal_np::slice_rules, skeleton::Slice_rules());
-    options.do_mark_ground = choose(m_np, internal_np::do_remove_ground, true);
-    options.do_find_leaves = choose(m_np, internal_np::do_remove_leaves, false);
-    options.breast_height =
-        static_cast<double>(choose(m_np, internal_np::breast_height, default_breast_height));
-    if (!std::isfinite(options.breast_height) || !(options.breast_height > 0))
-      throw Invalid_input(std::string(function) + ": breast_height is " +
-                          internal::to_text(options.breast_height) + "; it must be positive");
-    m_callback = choose(m_np, CGAL::internal_np::callback, std::function<bool(double)>());
-    return options;
-  }
-
-  void read_scanners(skeleton::Session_options& options) const
-  {
-    if constexpr (internal::is_given_v<NamedParameters, internal_np::scanner_positions_t>) {
-      const auto positions = CGAL::parameters::get_parameter(m_np, internal_np::scanner_positions);
-      constexpr bool are_points_ok = internal::is_range_of_points_v<decltype(positions)>;
-      static_assert(are_points_ok,
-                    "pcs::extract_tree_skeleton(): named parameter `scanner_positions` must be a "
-                    "range of points with x(), y(), z()");
-      if constexpr (are_points_ok)
-        for (const auto& p : positions) {
-          options.scanners.push_back(internal::to_vec3(p));
-          if (!options.scanners.back().allFinite())
-            throw Invalid_input(std::string(function) + ": a scanner position is not finite");
-        }
-      options.beam_width =
-          static_cast<double>(internal::choose(m_np, internal_np::beam_width, default_beam_width));
-      if (!std::isfinite(options.beam_width) || options.beam_width < 0)
-        throw Invalid_input(std::string(function) + ": beam_width is " +
-                            internal::to_text(options.beam_width) + "; it must not be negative");
-    }
-  }
-
-  void read_given_skeleton(skeleton::Session_options& options) const
-  {
-    if constexpr (internal::is_given_v<NamedParameters, internal_np::given_skeleton_t>) {
-      // a copy, or a reference in its wrapper
-      const auto held = CGAL::parameters::get_parameter(m_np, internal_np::given_skeleton);
-      const auto& given = internal::unwrapped(held);
-      using Given = std::decay_t<decltype(given)>;
-      constexpr bool has_map =
-          internal::is_given_v<NamedParameters, internal_np::given_point_map_t>;
-      static_assert(has_map || internal::Is_tree_skeleton<Given>::value,
-                    "pcs::extract_tree_skeleton(): a `given_skeleton` that is no "
-                    "pcs::Tree_skeleton needs the named parameter `given_point_map`");
-      if constexpr (has_map)
-        options.given = internal::read_given(
-            given,
-            CGAL::parameters::get_parameter(m_np, internal_np::given_point_map));
-      else if constexpr (internal::Is_tree_skeleton<Given>::value)
-        options.given = internal::read_given(given, get(&Given::vertex_bundled::point, given));
-    }
-  }
-
   std::vector<skeleton::Vec3> read_points() const
   {
     const auto point_map =
@@ -485,7 +290,7 @@ private:
     std::vector<skeleton::Vec3> input;
     constexpr double largest = 1e150; // squares must be finite
     for (auto it = std::begin(*m_points); it != std::end(*m_points); ++it) {
-      const skeleton::Vec3 p = internal::to_vec3(get(point_map, *it));
+      const skeleton::Vec3 p = skeleton::internal::to_vec3(get(point_map, *it));
       if (!p.allFinite() || p.cwiseAbs().maxCoeff() > largest)
         throw Invalid_input(std::string(function) + ": point " + std::to_string(input.size()) +
                             " is not finite, or beyond 1e150");
@@ -531,81 +336,6 @@ private:
                             std::to_string(lowest_number_of_scan_points));
     }
     return is_wood;
-  }
-
-  template <class Graph>
-  void write_ready_made(Graph& tree) const
-  {
-    using Node = typename Graph::vertex_bundled;
-    using FT = typename Node::FT;
-    using P = typename Node::Point_3;
-    using V = typename Node::Vector_3;
-    const skeleton::Branch_tree& found = m_session->tree();
-    const skeleton::Scan_frame& frame = m_session->scan().frame;
-    Graph result;
-    for (const skeleton::Branch_node& from : found.nodes) {
-      Node node;
-      const skeleton::Vec3 p = frame.to_input(from.point);
-      node.point = P(FT(p.x()), FT(p.y()), FT(p.z()));
-      node.radius = FT(frame.unit * from.radius);
-      node.radius_error = FT(frame.unit * from.radius_error);
-      node.is_measured = from.is_measured;
-      const bool is_oval = from.major_radius > 0;
-      node.major_radius = FT(frame.unit * (is_oval ? from.major_radius : from.radius));
-      node.minor_radius = FT(frame.unit * (is_oval ? from.minor_radius : from.radius));
-      const skeleton::Vec3 major = frame.direction_to_input(from.major_axis);
-      node.major_axis = V(FT(major.x()), FT(major.y()), FT(major.z()));
-      node.branch = from.branch;
-      const auto v = add_vertex(node, result);
-      if (from.parent != skeleton::none)
-        add_edge(from.parent, v, result);
-    }
-    Tree_bundle& bundle = result[boost::graph_bundle];
-    bundle.root = 0;
-    for (std::size_t b = 0; b < found.branches.size(); ++b) {
-      Tree_branch branch;
-      if (found.branches[b].parent != skeleton::none)
-        branch.parent = found.branches[b].parent;
-      branch.order = found.branches[b].order;
-      branch.id = b;
-      bundle.branches.push_back(branch);
-    }
-    tree = result; // swap() of Boost 1.74 forgets the bundle
-  }
-
-  template <class Graph>
-  void write_graph(Graph& tree) const
-  {
-    const auto point_map = CGAL::parameters::get_parameter(m_np, internal_np::node_point_map);
-    const auto radius_map = CGAL::parameters::get_parameter(m_np, internal_np::node_radius_map);
-    using P = pcs::Map_value<std::decay_t<decltype(point_map)>>;
-    using R = pcs::Map_value<std::decay_t<decltype(radius_map)>>;
-    constexpr bool are_maps_ok = is_point_or_vector_v<P> && std::is_floating_point_v<R>;
-    static_assert(are_maps_ok,
-                  "pcs::extract_tree_skeleton(): `node_point_map` must store points with x(), y(), "
-                  "z(), and `node_radius_map` floating point numbers");
-    if constexpr (are_maps_ok) {
-      using FT = std::decay_t<decltype(std::declval<const P&>().x())>;
-      const skeleton::Branch_tree& found = m_session->tree();
-      const skeleton::Scan_frame& frame = m_session->scan().frame;
-      while (num_vertices(tree) > 0) {
-        const auto v = *vertices(tree).first;
-        clear_vertex(v, tree);
-        remove_vertex(v, tree);
-      }
-      std::vector<typename boost::graph_traits<Graph>::vertex_descriptor> vertex;
-      vertex.reserve(found.nodes.size());
-      for (std::size_t k = 0; k < found.nodes.size(); ++k)
-        vertex.push_back(add_vertex(tree));
-      for (std::size_t k = 0; k < found.nodes.size(); ++k) {
-        const skeleton::Branch_node& from = found.nodes[k];
-        const skeleton::Vec3 p = frame.to_input(from.point);
-        put(point_map, vertex[k], P(FT(p.x()), FT(p.y()), FT(p.z())));
-        put(radius_map, vertex[k], R(frame.unit * from.radius));
-        if (from.parent != skeleton::none)
-          add_edge(vertex[from.parent], vertex[k], tree);
-      }
-    }
   }
 
   /// Writes the maps over the points; nothing is there to write if there is no tree.

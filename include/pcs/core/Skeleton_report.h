@@ -7,8 +7,10 @@
 
 #include <pcs/core/Status.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <ostream>
+#include <string>
 #include <vector>
 
 namespace pcs {
@@ -40,8 +42,10 @@ struct Skeleton_report
   std::size_t number_of_unreached_points =
       0; ///< points of branches too far from the tree; these are not part of the result [count]
   std::size_t number_of_unreached_branches = 0; ///< [count]
-  std::size_t number_of_nodes = 0;              ///< [count]
-  std::size_t number_of_branches = 0;           ///< [count]
+  //! stems beside that of the root that stand at its height, out of reach or hanging by a branch: other trees [count]
+  std::size_t number_of_other_stems = 0;
+  std::size_t number_of_nodes = 0;    ///< [count]
+  std::size_t number_of_branches = 0; ///< [count]
 
   double spacing = 0; ///< median distance to the nearest neighbour [L]
   double noise = 0;   ///< standard deviation of the points from the surface [L]
@@ -65,16 +69,41 @@ struct Skeleton_report
   } seconds;
 };
 
+//! \ingroup PkgPcsSkeletonRef
+//! what makes a result doubtful, a sentence each; empty for most trees
+inline std::vector<std::string> warnings(const Skeleton_report& r)
+{
+  constexpr double much = 0.05; // of the points, out of reach [-]
+  // Gaussian noise gives 0.67, scans of trees 0.5 to 0.9, spheres, cubes and dust more than 2 [-]
+  constexpr double largest_residual = 1.5;
+  constexpr double exact =
+      0.1; // of the spacing: below, points are on the surface, whatever the noise [-]
+  std::vector<std::string> sentences;
+  if (r.number_of_other_stems > 0)
+    sentences.push_back("more than one tree: " + std::to_string(r.number_of_other_stems) +
+                        " other stem(s) at the height of the foot; the tree of one foot is kept, "
+                        "which a root position chooses");
+  if (double(r.number_of_unreached_points) > much * double(r.number_of_points))
+    sentences.push_back(std::to_string(r.number_of_unreached_points) + " of " +
+                        std::to_string(r.number_of_points) +
+                        " points belong to branches that are too far from the tree");
+  if (r.status == Status::converged &&
+      r.residual > std::max(largest_residual * r.noise, exact * r.spacing))
+    sentences.push_back("half of the points lie far from the surfaces found; this may be no tree");
+  return sentences;
+}
+
 inline std::ostream& operator<<(std::ostream& out, const Skeleton_report& r)
 {
   out << "status " << r.status << ", " << r.number_of_points << " points ("
       << r.number_of_duplicates << " duplicates, " << r.number_of_outliers << " outliers, "
       << r.number_of_leaf_points << " leaves, " << r.number_of_ground_points << " on the ground, "
       << r.number_of_unexplained_points << " unexplained, " << r.number_of_unreached_points
-      << " out of reach), " << r.number_of_branches << " branches, " << r.number_of_nodes
-      << " nodes, spacing " << r.spacing << ", noise " << r.noise << ", residual " << r.residual
-      << ", height " << r.height << ", diameter at breast height " << r.diameter_at_breast_height
-      << ", length " << r.total.length << ", volume " << r.total.volume << "; seconds: neighbors "
+      << " out of reach), " << r.number_of_other_stems << " other stems, " << r.number_of_branches
+      << " branches, " << r.number_of_nodes << " nodes, spacing " << r.spacing << ", noise "
+      << r.noise << ", residual " << r.residual << ", height " << r.height
+      << ", diameter at breast height " << r.diameter_at_breast_height << ", length "
+      << r.total.length << ", volume " << r.total.volume << "; seconds: neighbors "
       << r.seconds.neighbors << ", paths " << r.seconds.paths << ", axes " << r.seconds.axes
       << ", joints " << r.seconds.joints << ", sections " << r.seconds.sections;
   return out;

@@ -10,65 +10,19 @@
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Branch_tree.h>
-#include <pcs/skeleton/bound_radii.h>
-#include <pcs/skeleton/correct_beam.h>
-#include <pcs/skeleton/estimate_sections.h>
-#include <pcs/skeleton/find_leaves.h>
-#include <pcs/skeleton/find_root.h>
-#include <pcs/skeleton/fit_axes.h>
-#include <pcs/skeleton/fuse_axes.h>
-#include <pcs/skeleton/join_axes.h>
-#include <pcs/skeleton/mark_ground.h>
-#include <pcs/skeleton/measure_given.h>
-#include <pcs/skeleton/merge_rings.h>
-#include <pcs/skeleton/prune_stubs.h>
-#include <pcs/skeleton/section_skeleton.h>
+#include <pcs/skeleton/Session_options.h>
+#include <pcs/skeleton/report_sizes.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <utility>
 #include <vector>
 
 namespace pcs {
 namespace skeleton {
-
-/// How branches are found.
-enum class Skeleton_method {
-  chains, ///< whole axes are fitted to the layers of the paths from the root
-  sections ///< the dissertation: sections at centers of curvature, spanning trees where there are none
-};
-
-/// All rules of the pipeline, and the hints of the caller.
-struct Session_options
-{
-  Vec3 up = Vec3::UnitZ();
-  std::optional<Vec3> root; ///< in the coordinates of the input, as the next two
-  std::vector<Vec3> scanners;
-  std::optional<Given_skeleton> given; ///< measured, instead of looking for branches
-  double beam_width = 0;               ///< of the scanners [rad]
-  bool do_mark_ground = true;
-  bool do_find_leaves = false; ///< by the method `chains`
-  double breast_height = 1.3;  ///< [L]
-  Skeleton_method method = Skeleton_method::chains;
-  Slice_rules slices; ///< of the method `sections`, like the next
-  Section_tree_rules section_tree;
-  Axis_rules axes;
-  Fuse_rules fusion;
-  Ring_rules rings;
-  Root_rules roots;
-  Ground_rules ground;
-  Leaf_rules leaves;
-  Joint_rules joints;
-  Stub_rules stubs;
-  Support_rules support;
-  Section_rules sections;
-  Given_rules given_rules;
-  Beam_rules beam;
-};
 
 /// Runs the stages in order; each runs those before it that have not run yet, and stops when cancelled.
 template <class ConcurrencyTag>
@@ -241,6 +195,8 @@ public:
       m_tree = branch_tree(m_axes, m_joints, root, m_scan.spacing);
       prune_stubs(m_scan.spacing, m_options.stubs, m_tree);
       bound_radii<ConcurrencyTag>(m_scan, m_axes.noise, m_axes.density, m_options.support, m_tree);
+      m_report.number_of_other_stems =
+          count_other_stems(m_axes, m_joints, root, m_tree, m_options.stems);
     }
     m_report.seconds.joints = watch.lap();
     if (!progress(0.97))
@@ -416,7 +372,26 @@ private:
     return (axis.back().point - mean).norm() < (axis.front().point - mean).norm();
   }
 
-  void count();
+  void count()
+  {
+    Skeleton_report& r = m_report;
+    const double unit = m_scan.frame.unit;
+    r.status = m_tree.nodes.empty() ? Status::nothing_to_do : Status::converged;
+    r.number_of_nodes = m_tree.nodes.size();
+    r.number_of_branches = m_tree.branches.size();
+    r.number_of_unreached_branches = m_tree.number_of_unreached_axes;
+    for (std::size_t i = 0; i < m_scan.size(); ++i) {
+      if (!m_is_used[i])
+        continue;
+      const bool has_node = !m_tree.node_of_point.empty() && m_tree.node_of_point[i] != none;
+      const bool is_covered =
+          has_node || (!m_axes.axis_of_point.empty() && m_axes.is_covered(static_cast<Index>(i)));
+      r.number_of_unexplained_points += !is_covered;
+      r.number_of_unreached_points += is_covered && !has_node;
+    }
+    r.residual = unit * median_residual();
+    report_sizes(m_tree, unit, m_options.up, m_options.breast_height, r);
+  }
 
   /// Of some ten thousand points spread over all.
   double median_residual() const
@@ -444,72 +419,6 @@ private:
   Branch_tree m_tree;
   Skeleton_report m_report;
 };
-
-/// Upper bounds of the radius in the classes of the report, in breast heights: 5, 10, 20 and 50 mm in metres.
-constexpr double size_bounds_by_breast_height[] = {0.005 / 1.3, 0.01 / 1.3, 0.02 / 1.3, 0.05 / 1.3};
-
-template <class ConcurrencyTag>
-void Session<ConcurrencyTag>::count()
-{
-  Skeleton_report& r = m_report;
-  const double unit = m_scan.frame.unit;
-  r.status = m_tree.nodes.empty() ? Status::nothing_to_do : Status::converged;
-  r.number_of_nodes = m_tree.nodes.size();
-  r.number_of_branches = m_tree.branches.size();
-  r.number_of_unreached_branches = m_tree.number_of_unreached_axes;
-  for (std::size_t i = 0; i < m_scan.size(); ++i) {
-    if (!m_is_used[i])
-      continue;
-    const bool has_node = !m_tree.node_of_point.empty() && m_tree.node_of_point[i] != none;
-    const bool is_covered =
-        has_node || (!m_axes.axis_of_point.empty() && m_axes.is_covered(static_cast<Index>(i)));
-    r.number_of_unexplained_points += !is_covered;
-    r.number_of_unreached_points += is_covered && !has_node;
-  }
-  r.residual = unit * median_residual();
-  for (const double b : size_bounds_by_breast_height)
-    r.size_bounds.push_back(unit * b * m_options.breast_height);
-  r.by_size.resize(r.size_bounds.size() + 1);
-  for (const Branch& b : m_tree.branches) {
-    const std::size_t order = static_cast<std::size_t>(b.order);
-    if (r.by_order.size() <= order)
-      r.by_order.resize(order + 1);
-    ++r.by_order[order].number_of_branches;
-    ++r.total.number_of_branches;
-  }
-  if (m_tree.nodes.empty())
-    return;
-  const double ground = m_options.up.dot(m_tree.nodes[0].point);
-  double thickest = 0; // of all that crosses breast height
-  for (Index v = 0; v < m_tree.nodes.size(); ++v) {
-    const Branch_node& node = m_tree.nodes[v];
-    r.height = std::max(r.height, unit * (m_options.up.dot(node.point) - ground));
-    if (m_tree.is_base(v))
-      continue;
-    const Branch_node& below = m_tree.nodes[node.parent];
-    const double length = unit * (node.point - below.point).norm();
-    const double a = unit * below.radius, b = unit * node.radius;
-    const double volume = 3.14159265358979323846 / 3 * length * (a * a + a * b + b * b);
-    std::size_t size = 0;
-    while (size < r.size_bounds.size() && 0.5 * (a + b) > r.size_bounds[size])
-      ++size;
-    const std::size_t order = static_cast<std::size_t>(m_tree.branches[node.branch].order);
-    for (Wood* w : {&r.total, &r.by_order[order], &r.by_size[size]}) {
-      w->length += length;
-      w->volume += volume;
-    }
-    const double h0 = m_options.up.dot(below.point) - ground - m_options.breast_height;
-    const double h1 = m_options.up.dot(node.point) - ground - m_options.breast_height;
-    if (h0 > 0 || h1 <= 0)
-      continue;
-    const double diameter = 2 * (a + (b - a) * h0 / (h0 - h1));
-    if (order == 0 && r.diameter_at_breast_height == 0)
-      r.diameter_at_breast_height = diameter;
-    thickest = std::max(thickest, diameter);
-  }
-  if (r.diameter_at_breast_height == 0) // the trunk was lost below, among buttresses for example
-    r.diameter_at_breast_height = thickest;
-}
 
 } // namespace skeleton
 } // namespace pcs

@@ -8,6 +8,7 @@
 #include <pcs/internal/parallel.h>
 #include <pcs/skeleton/Branch_tree.h>
 #include <pcs/skeleton/Scan.h>
+#include <pcs/skeleton/limit_pipes.h>
 
 #include <algorithm>
 #include <cmath>
@@ -29,11 +30,16 @@ struct Support_rules
   std::size_t reach = 2;       ///< nodes on both sides that are looked at with one [count]
   double fewest = 12;          ///< points that support a section [count]
   double expected = 0.25;      ///< share of the expected ones [-]
-  double thicker = 1.5; ///< no branch is this many times thicker than its parent at the joint
+  double thicker = 1.5; ///< no branch is this many times thicker than its parent at the joint, but
+                        ///< where the points prove it, by ...
+  double proof_expected = 0.5; ///< ... this share of the expected ones on the surface,
+  double proof_filled = 0.05;  ///< ... at most this share inside,
+  double proof_error = 0.1;    ///< ... a standard error below this many radii [-]
   double slack =
       3; ///< bound of a section that nothing speaks for or against, in radii by allometry
   double filled_slack = 1; ///< the same of a filled one
-  double thinnest = 0.16;  ///< no bound is below this many spacings: a single row of points
+  Pipe_rules pipes;
+  double thinnest = 0.16; ///< no bound is below this many spacings: a single row of points
 };
 
 namespace internal {
@@ -134,14 +140,14 @@ std::size_t bound_radii(const Scan& scan,
   struct Reference
   {
     double radius = 0, way = 0; ///< of the last supported node towards the root; 0: none
+    double narrowest = 0;       ///< radius since the last proven one
   };
   std::vector<Reference> reference(tree.nodes.size());
+  std::vector<std::uint8_t> is_sure(tree.nodes.size(), 0);
   std::size_t count = 0;
   for (const Branch& branch : tree.branches) { // parents before their children
     double all_on = 0, all_inside = 0;         // from the base to here
     const std::size_t n = branch.nodes.size();
-    const Index base = tree.nodes[branch.nodes.front()].parent;
-    const Reference seat = base == none ? Reference() : reference[base];
     for (std::size_t k = 0; k < n; ++k) {
       const Index v = branch.nodes[k];
       Branch_node& node = tree.nodes[v];
@@ -168,15 +174,23 @@ std::size_t bound_radii(const Scan& scan,
       all_inside += support.inside[v];
       const bool is_bush = all_inside > rules.branch_filled * (all_on + all_inside);
       const bool is_filled = inside > rules.filled * (on + inside);
+      // then the joint is wrong, or the parent
+      const bool is_proven = on >= rules.proof_expected * expected &&
+                             inside <= rules.proof_filled * (on + inside) &&
+                             node.radius_error <= rules.proof_error * node.radius;
       const Reference below = node.parent == none ? Reference() : reference[node.parent];
       const bool is_too_thick =
-          branch.parent != none && seat.way > 0 && node.radius > rules.thicker * seat.radius;
+          below.way > 0 && !is_proven && node.radius > rules.thicker * below.narrowest;
       const bool is_supported = node.is_measured && !is_bush && !is_filled && !is_too_thick &&
                                 on >= rules.fewest && on >= rules.expected * expected;
+      is_sure[v] = is_supported && is_proven;
       reference[v] = below;
       if (is_supported || !(below.way > 0)) {
         if (is_supported)
-          reference[v] = {node.radius, way[v]};
+          reference[v] = {node.radius,
+                          way[v],
+                          is_proven || !(below.way > 0) ? node.radius
+                                                        : std::min(node.radius, below.narrowest)};
         continue;
       }
       const double slack = is_filled || is_bush ? rules.filled_slack : rules.slack;
@@ -190,7 +204,7 @@ std::size_t bound_radii(const Scan& scan,
       ++count;
     }
   }
-  return count;
+  return count + limit_pipes(is_sure, rules.pipes, tree);
 }
 
 } // namespace skeleton

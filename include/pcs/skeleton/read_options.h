@@ -1,0 +1,114 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The named parameters of a skeletonization as options of its session.
+
+#ifndef PCS_SKELETON_READ_OPTIONS_H
+#define PCS_SKELETON_READ_OPTIONS_H
+
+#include <pcs/Named_function_parameters.h>
+#include <pcs/concepts.h>
+#include <pcs/core/errors.h>
+#include <pcs/internal/text.h>
+#include <pcs/skeleton/Session_options.h>
+#include <pcs/skeleton/caller_types.h>
+
+#include <cmath>
+#include <string>
+#include <type_traits>
+
+namespace pcs {
+
+//! \ingroup PkgPcsSkeletonRef
+//! height above the root at which foresters measure the diameter of a trunk [m]
+constexpr double default_breast_height = 1.3;
+//! \ingroup PkgPcsSkeletonRef
+//! divergence of the beam of common terrestrial scanners [rad]
+constexpr double default_beam_width = 0.0003;
+
+namespace skeleton {
+namespace internal {
+
+template <class NamedParameters>
+void read_scanners(const NamedParameters& np, const std::string& function, Session_options& options)
+{
+  if constexpr (pcs::internal::is_given_v<NamedParameters, pcs::internal_np::scanner_positions_t>) {
+    const auto positions = CGAL::parameters::get_parameter(np, pcs::internal_np::scanner_positions);
+    constexpr bool are_points_ok = internal::is_range_of_points_v<decltype(positions)>;
+    static_assert(are_points_ok,
+                  "pcs::extract_tree_skeleton(): named parameter `scanner_positions` must be a "
+                  "range of points with x(), y(), z()");
+    if constexpr (are_points_ok)
+      for (const auto& p : positions) {
+        options.scanners.push_back(internal::to_vec3(p));
+        if (!options.scanners.back().allFinite())
+          throw Invalid_input(function + ": a scanner position is not finite");
+      }
+    options.beam_width = static_cast<double>(
+        pcs::internal::choose(np, pcs::internal_np::beam_width, default_beam_width));
+    if (!std::isfinite(options.beam_width) || options.beam_width < 0)
+      throw Invalid_input(function + ": beam_width is " +
+                          pcs::internal::to_text(options.beam_width) + "; it must not be negative");
+  }
+}
+
+template <class NamedParameters>
+void read_given_skeleton(const NamedParameters& np, Session_options& options)
+{
+  if constexpr (pcs::internal::is_given_v<NamedParameters, pcs::internal_np::given_skeleton_t>) {
+    // a copy, or a reference in its wrapper
+    const auto held = CGAL::parameters::get_parameter(np, pcs::internal_np::given_skeleton);
+    const auto& given = internal::unwrapped(held);
+    using Given = std::decay_t<decltype(given)>;
+    constexpr bool has_map =
+        pcs::internal::is_given_v<NamedParameters, pcs::internal_np::given_point_map_t>;
+    static_assert(has_map || internal::Is_tree_skeleton<Given>::value,
+                  "pcs::extract_tree_skeleton(): a `given_skeleton` that is no "
+                  "pcs::Tree_skeleton needs the named parameter `given_point_map`");
+    if constexpr (has_map)
+      options.given = internal::read_given(
+          given,
+          CGAL::parameters::get_parameter(np, pcs::internal_np::given_point_map));
+    else if constexpr (internal::Is_tree_skeleton<Given>::value)
+      options.given = internal::read_given(given, get(&Given::vertex_bundled::point, given));
+  }
+}
+
+} // namespace internal
+
+/// Throws `Invalid_input`, whose text begins with `function`, if a hint is out of range.
+template <class NamedParameters>
+Session_options read_options(const NamedParameters& np, const std::string& function)
+{
+  using pcs::internal::choose;
+  Session_options options;
+  if constexpr (pcs::internal::is_given_v<NamedParameters, pcs::internal_np::up_direction_t>)
+    options.up =
+        internal::to_vec3(CGAL::parameters::get_parameter(np, pcs::internal_np::up_direction));
+  const double largest = options.up.cwiseAbs().maxCoeff();
+  if (!options.up.allFinite() || !(largest > 0))
+    throw Invalid_input(function + ": up_direction must be finite and not the null vector");
+  options.up = (options.up / largest).normalized(); // squares may overflow
+  if constexpr (pcs::internal::is_given_v<NamedParameters, pcs::internal_np::root_position_t>) {
+    options.root =
+        internal::to_vec3(CGAL::parameters::get_parameter(np, pcs::internal_np::root_position));
+    if (!options.root->allFinite())
+      throw Invalid_input(function + ": root_position must be finite");
+  }
+  internal::read_scanners(np, function, options);
+  internal::read_given_skeleton(np, options);
+  options.method = choose(np, pcs::internal_np::skeleton_method, Skeleton_method::chains);
+  options.slices = choose(np, pcs::internal_np::slice_rules, Slice_rules());
+  options.do_mark_ground = choose(np, pcs::internal_np::do_remove_ground, true);
+  options.do_find_leaves = choose(np, pcs::internal_np::do_remove_leaves, false);
+  options.breast_height =
+      static_cast<double>(choose(np, pcs::internal_np::breast_height, default_breast_height));
+  if (!std::isfinite(options.breast_height) || !(options.breast_height > 0))
+    throw Invalid_input(function + ": breast_height is " +
+                        pcs::internal::to_text(options.breast_height) + "; it must be positive");
+  return options;
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_READ_OPTIONS_H
