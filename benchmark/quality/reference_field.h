@@ -50,14 +50,14 @@ public:
     m_share.assign(c.points.size(), Vec1::Zero());
     std::vector<Vec1> rhs, work;
     const auto value = [&](std::size_t i) { return Vec1(double(m_constraints.handle_of_node[i])); };
-    deformation::solve_harmonic(m_factor,
-                                m_graph,
-                                m_constraints,
-                                m_rows,
-                                value,
-                                rhs,
-                                work,
-                                m_share);
+    deformation::solve_harmonic<CGAL::Sequential_tag>(m_factor,
+                                                      m_graph,
+                                                      m_constraints,
+                                                      m_rows,
+                                                      value,
+                                                      rhs,
+                                                      work,
+                                                      m_share);
     for (std::size_t i = 0; i < m_share.size(); ++i)
       if (m_constraints.is_prescribed(i))
         m_share[i] = value(i);
@@ -66,7 +66,7 @@ public:
   std::vector<pcs::Quaternion> solve(pcs::Rotation_field kind) const
   {
     std::vector<pcs::Quaternion> field;
-    pcs::deformation::Rotation_field_solver solver;
+    pcs::deformation::Rotation_field_solver<CGAL::Sequential_tag> solver;
     solver(kind, m_factor, m_graph, m_constraints, m_rows, m_case.transforms, field);
     return field;
   }

@@ -25,7 +25,7 @@ std::vector<Vec3> solve(const pcs::deformation::Weighted_graph& graph,
   const pcs_test::Harmonic system(graph, constraints);
   BOOST_REQUIRE(system.is_ok);
   std::vector<Vec3> rhs, work, result(graph.size(), Vec3::Zero());
-  pcs::deformation::solve_harmonic(
+  pcs::deformation::solve_harmonic<CGAL::Sequential_tag>(
       system.factor,
       graph,
       constraints,

@@ -70,7 +70,7 @@ double linear_error(const Elastic_network& network, const Node_constraints& cons
   BOOST_REQUIRE(system.is_ok);
   using Row = Eigen::Matrix<double, 1, 1>;
   std::vector<Row> rhs, work, u(network.size(), Row::Zero());
-  solve_harmonic(
+  solve_harmonic<CGAL::Sequential_tag>(
       system.factor,
       network.surface,
       constraints,

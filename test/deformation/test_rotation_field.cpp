@@ -30,13 +30,13 @@ std::vector<Quaternion> field(Rotation_field kind,
   const pcs_test::Harmonic system(graph, constraints);
   BOOST_REQUIRE(system.is_ok);
   std::vector<Quaternion> result;
-  pcs::deformation::Rotation_field_solver()(kind,
-                                            system.factor,
-                                            graph,
-                                            constraints,
-                                            system.rows,
-                                            transforms,
-                                            result);
+  pcs::deformation::Rotation_field_solver<CGAL::Sequential_tag>()(kind,
+                                                                  system.factor,
+                                                                  graph,
+                                                                  constraints,
+                                                                  system.rows,
+                                                                  transforms,
+                                                                  result);
   for (const auto& q : result)
     BOOST_REQUIRE(std::abs(q.norm() - 1) < 1e-12);
   return result;

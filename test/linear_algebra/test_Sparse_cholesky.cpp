@@ -5,10 +5,20 @@
 #include <pcs/linear_algebra/Sparse_cholesky.h>
 #include <support/point_clouds.h>
 
+#include <CGAL/tags.h>
+
 #include <boost/test/unit_test.hpp>
 
 #include <Eigen/Cholesky>
 #include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <random>
+#include <utility>
+#include <vector>
 
 namespace {
 
@@ -206,6 +216,67 @@ BOOST_AUTO_TEST_CASE(the_factor_of_a_grid_has_few_zeros_and_keeps_columns_togeth
   BOOST_TEST(factor.number_of_nonzeros() >= exact);
   BOOST_TEST(double(factor.number_of_nonzeros()) < 1.3 * double(exact));
   BOOST_TEST(factor.pattern()->number_of_supernodes() < std::size_t(n) / 2);
+}
+
+BOOST_AUTO_TEST_CASE(subtrees_of_a_large_factor_are_solved_side_by_side_with_the_same_bits)
+{
+  // A grid of 160 x 160 with its diagonals, and many small ones beside it.
+  const auto grids = [](int side, int number_of_small_ones) {
+    std::vector<Eigen::Triplet<double>> entries;
+    int first = 0;
+    const auto add_grid = [&](int size) {
+      for (int i = 0; i < size * size; ++i) {
+        const auto link = [&](int j) { entries.emplace_back(first + j, first + i, -1); };
+        const bool has_right = i % size + 1 < size, has_next = i / size + 1 < size;
+        if (has_right)
+          link(i + 1);
+        if (has_next)
+          link(i + size);
+        if (has_right && has_next)
+          link(i + size + 1);
+        entries.emplace_back(first + i, first + i, 6.01);
+      }
+      first += size * size;
+    };
+    add_grid(side);
+    for (int k = 0; k < number_of_small_ones; ++k)
+      add_grid(5);
+    Cholesky::Matrix a(first, first);
+    a.setFromTriplets(entries.begin(), entries.end());
+    return a;
+  };
+  for (const auto& [side, number_of_small_ones] : {std::pair{160, 0}, {100, 2000}, {3, 4000}}) {
+    const auto a = grids(side, number_of_small_ones);
+    Cholesky factor;
+    BOOST_REQUIRE(factor.factorize(a));
+    const auto& trees = factor.pattern()->subtrees;
+    BOOST_TEST(trees.subtree.size() >= 16u);
+    std::vector<char> is_met(factor.pattern()->number_of_supernodes(), 0);
+    for (const auto s : trees.top)
+      ++is_met[s];
+    for (const auto& t : trees.subtree)
+      for (std::size_t s = t.begin; s < t.end; ++s)
+        ++is_met[s];
+    BOOST_TEST((std::count(is_met.begin(), is_met.end(), 1) == std::ptrdiff_t(is_met.size())));
+
+    std::mt19937 random(11);
+    const auto n = static_cast<std::size_t>(a.rows());
+    std::vector<Eigen::Vector3d> b(n), work(3, Eigen::Vector3d::Constant(1e300));
+    Eigen::MatrixXd rhs(a.rows(), 3), x(a.rows(), 3);
+    for (std::size_t i = 0; i < n; ++i)
+      for (int c = 0; c < 3; ++c)
+        rhs(Eigen::Index(i), c) = b[i][c] = pcs_test::uniform(random);
+    std::vector<Eigen::Vector3d> parallel = b, again = b, parallel_work;
+    factor.solve(b, work);
+    factor.solve<CGAL::Parallel_if_available_tag>(parallel, parallel_work);
+    BOOST_TEST((b == parallel));
+    factor.solve<CGAL::Parallel_if_available_tag>(again, work); // with what it left there
+    BOOST_TEST((b == again));
+    for (std::size_t i = 0; i < n; ++i)
+      x.row(Eigen::Index(i)) = b[i].transpose();
+    const double residual = (a.selfadjointView<Eigen::Lower>() * x - rhs).norm();
+    BOOST_TEST(residual < 1e-12 * rhs.norm());
+  }
 }
 
 BOOST_AUTO_TEST_CASE(what_stands_above_the_diagonal_is_ignored)

@@ -40,8 +40,16 @@ public:
   void mix(const std::vector<Vec3>& x, std::vector<Vec3>& g, bool is_wanted = true)
   {
     const std::size_t n = x.size(), slot = m_count % depth;
-    m_last_residual.resize(n, Vec3::Zero());
-    m_last_image.resize(n, Vec3::Zero());
+    m_last_residual.resize(n);
+    m_last_image.resize(n);
+    if (!m_has_last) { // nothing to differ from
+      m_has_last = true;
+      pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
+        m_last_residual[i] = g[i] - x[i];
+        m_last_image[i] = g[i];
+      });
+      return;
+    }
     m_difference_of_residuals[slot].resize(n);
     m_difference_of_images[slot].resize(n);
     pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
@@ -51,10 +59,6 @@ public:
       m_last_residual[i] = residual;
       m_last_image[i] = g[i];
     });
-    if (!m_has_last) { // the differences are those to nothing
-      m_has_last = true;
-      return;
-    }
     ++m_count;
     const std::size_t size = std::min(m_count, depth);
     const Products products = multiply(slot, size);

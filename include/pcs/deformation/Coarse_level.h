@@ -30,6 +30,10 @@ constexpr std::size_t smallest_coarsened_network = 1000;
 /// Largest number of passes on a coarse level; they are cheap there, and carry far.
 constexpr int number_of_coarse_passes = 100;
 
+/// Of the fall of the energy that would end the passes of the finest level, were it as small: a pass there costs more
+/// than one here, and what stays undone here costs passes there. [-]
+constexpr double coarse_share_of_tolerance = 0.5;
+
 /*!
   A pass carries a rotation over a few edges only. Under a handle that is dragged without being turned, the whole
   rotation has to be found that way; on a coarse network the same distance is a few edges. The passes of each level
@@ -108,7 +112,8 @@ public:
                Deviation_guess& guess)
   {
     options.maximal_number_of_passes = number_of_coarse_passes;
-    options.tolerance *= static_cast<double>(m_network.size()) / static_cast<double>(finest_size);
+    options.tolerance *= coarse_share_of_tolerance * static_cast<double>(m_network.size()) /
+                         static_cast<double>(finest_size);
     pcs::internal::Progress uninterrupted;
     guess.is_far_from_field =
         m_solver.solve(transforms, options, uninterrupted, guess).is_far_from_field;

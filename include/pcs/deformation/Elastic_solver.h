@@ -10,11 +10,12 @@
 #include <pcs/core/rotations.h>
 #include <pcs/deformation/Anderson_mixing.h>
 #include <pcs/deformation/Elastic_network.h>
+#include <pcs/deformation/Elastic_options.h>
+#include <pcs/deformation/Elastic_state.h>
 #include <pcs/deformation/Harmonic_system.h>
 #include <pcs/deformation/rotation_field.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
-#include <pcs/linear_algebra/small_symmetric.h>
 
 #include <Eigen/Core>
 
@@ -27,57 +28,6 @@
 
 namespace pcs {
 namespace deformation {
-
-/// Weight of the local fit against its neighbours' when rotations are smoothed, at stiffness 1, of a node that stands for
-/// one part in `reference_size` of the surface. [-]
-/// Chosen among 0.004 ... 2 on the bars, tubes and plates of benchmark/quality: smaller values hold back bending
-/// that a dragged handle asks for, larger ones let surfaces buckle.
-constexpr double default_fit_weight = 0.3;
-/// Smoothing reaches a few edges of a network of so many nodes, whatever the size of the network: otherwise a body would
-/// bend the more easily the denser its points. Chosen on the same cases, where it trades even bends for short edges.
-constexpr double reference_size = 10000;
-/// Networks of fewer nodes than one in this many of it bend the more stiffly: with a few hundred samples, rotations that
-/// are hardly smoothed would buckle.
-constexpr double largest_relative_area = 5;
-constexpr double smallest_relative_area = 1e-9;
-/// Passes end when the energy falls by less than this share. Smaller values bring the cases of benchmark/quality no nearer
-/// to their exact shapes. [-]
-constexpr double default_tolerance = 0.05;
-constexpr int default_maximal_number_of_passes = 20;
-/// Each pass turns nodes towards their best rotation by one damped step of Newton's method. Without damping, passes
-/// converge faster, and the coarsest networks fold up under large twists. Chosen on the same cases among 0 ... 0.8.
-constexpr double fit_damping = 0.2;
-/// Passes are accelerated from this one on if they start from the field of the handles: where that explains the motion,
-/// fewer are needed. Those that start from a guess are accelerated as soon as two states are known.
-constexpr int first_accelerated_pass = 4;
-/// A guess from a coarser network is taken if it has less than this share of the energy after one pass. [-]
-constexpr double guess_advantage = 0.5;
-
-struct Elastic_options
-{
-  int maximal_number_of_passes = default_maximal_number_of_passes;
-  double tolerance = default_tolerance;
-  double stiffness = 1;     ///< resistance against bending relative to stretching [-]
-  double poisson_ratio = 0; ///< transverse contraction under stretch, in [-1, 0.5] [-]
-  Rotation_field rotation_field = Rotation_field::geodesic;
-};
-
-struct Elastic_result
-{
-  Status status = Status::nothing_to_do;
-  int number_of_passes = 0;
-  double energy = 0;         ///< [L^2]
-  double initial_energy = 0; ///< after the first positions, before any pass [L^2]
-  /// Whether the guess turned out clearly better than the field of the handles, here or on a coarser network.
-  bool is_far_from_field = false;
-};
-
-/// Deviations of the first nodes from the field, found on a coarser network.
-struct Deviation_guess
-{
-  std::vector<Vec3> deviations;
-  bool is_far_from_field = false; ///< tried there against the field, which need not be tried again
-};
 
 /*!
   Alternates
@@ -96,15 +46,22 @@ class Elastic_solver
 public:
   const Elastic_network& network() const { return *m_network; }
   const Node_constraints& constraints() const { return m_constraints; }
-  const std::vector<Vec3>& positions() const { return m_position; }
-  /// `s_i R_i` of every node: the local similarity without its translation.
-  const std::vector<Eigen::Matrix3d>& frames() const { return m_frame; }
   bool is_finite() const
   {
     for (std::size_t i = 0; i < m_position.size(); ++i)
       if (!m_position[i].allFinite() || !m_frame[i].allFinite())
         return false;
     return true;
+  }
+  /// The present shape, until the next call.
+  Elastic_state state() const
+  {
+    return {*m_network,
+            m_constraints,
+            m_position,
+            m_frame,
+            m_stretch_is_used ? m_target : m_frame,
+            m_log_scale};
   }
   /// Rotation of every node relative to the field of the handles. [rad]
   const std::vector<Vec3>& deviations() const { return m_smooth; }
@@ -249,7 +206,8 @@ private:
   {
     keep_state();
     smooth_deviations();
-    m_plain = m_smooth;
+    if (is_accelerated)
+      m_plain = m_smooth;
     m_mixing.mix(m_best_smooth, m_smooth, is_accelerated);
     double energy = apply_deviations(options);
     if (is_accelerated && !(energy < result.energy)) {
@@ -328,14 +286,14 @@ private:
     const auto value = [&](std::size_t i) {
       return Vec1(std::log((*m_transforms)[handle(i)].scale()));
     };
-    solve_harmonic(m_field_factor,
-                   m_network->surface,
-                   m_constraints,
-                   m_rows,
-                   value,
-                   m_rhs1,
-                   m_work1,
-                   m_log_scale);
+    solve_harmonic<ConcurrencyTag>(m_field_factor,
+                                   m_network->surface,
+                                   m_constraints,
+                                   m_rows,
+                                   value,
+                                   m_rhs1,
+                                   m_work1,
+                                   m_log_scale);
     for (std::size_t i = 0; i < m_network->size(); ++i)
       if (m_constraints.is_prescribed(i))
         m_log_scale[i] = value(i);
@@ -359,12 +317,6 @@ private:
         block);
   }
 
-  /// What the edges at each node aim at: the frame, times the stretch that the material allows.
-  const std::vector<Eigen::Matrix3d>& targets() const
-  {
-    return m_stretch_is_used ? m_target : m_frame;
-  }
-
   void place_constrained_nodes()
   {
     for (std::size_t i = 0; i < m_network->size(); ++i)
@@ -379,17 +331,18 @@ private:
   void solve_positions(bool links_turn)
   {
     m_rhs3.resize(m_rows.size());
+    const Elastic_state state = this->state();
     pcs::internal::for_each_index<ConcurrencyTag>(
         m_rows.size(),
         [&](std::size_t r) {
           const std::size_t i = m_rows.node_of_row[r];
           Vec3 b;
-          const double degree = sum_edges(i, b);
+          const double degree = state.sum_edges(i, b);
           const auto& links = m_network->links;
           if (!links.neighbor.empty())
             for (std::size_t e = links.first[i]; e < links.first[i + 1]; ++e) {
               const std::size_t j = links.neighbor[e];
-              b += links.weight[e] * link_target(i, j, links_turn);
+              b += links.weight[e] * state.link_target(i, j, links_turn);
               if (m_constraints.is_prescribed(j))
                 b += links.weight[e] * m_position[j];
             }
@@ -399,58 +352,17 @@ private:
           m_rhs3[r] = b;
         },
         block);
-    position_factor().solve(m_rhs3, m_work3);
-    for (std::size_t r = 0; r < m_rows.size(); ++r)
+    position_factor().template solve<ConcurrencyTag>(m_rhs3, m_work3);
+    pcs::internal::for_each_index<ConcurrencyTag>(m_rows.size(), [&](std::size_t r) {
       m_position[m_rows.node_of_row[r]] = m_rhs3[r];
-  }
-
-  /// Right side of node `i` from its surface edges; returns its degree. Number by number, as in `newton_turn()`.
-  double sum_edges(std::size_t i, Vec3& b) const
-  {
-    const auto& graph = m_network->surface;
-    const double *own = targets()[i].data(), *xi = m_network->rest[i].data();
-    double degree = 0, edges[3] = {}, sum[3] = {};
-    for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
-      const std::size_t j = graph.neighbor[e];
-      const double *other = targets()[j].data(), *xj = m_network->rest[j].data();
-      const double w = graph.weight[e];
-      double edge[3];
-      for (int k = 0; k < 3; ++k) {
-        edge[k] = w * (xi[k] - xj[k]);
-        edges[k] += edge[k];
-      }
-      for (int k = 0; k < 3; ++k)
-        sum[k] += 0.5 * (other[k] * edge[0] + other[3 + k] * edge[1] + other[6 + k] * edge[2]);
-      if (m_constraints.is_prescribed(j))
-        for (int k = 0; k < 3; ++k)
-          sum[k] += w * m_position[j][k];
-      degree += w;
-    }
-    for (int k = 0; k < 3; ++k)
-      b[k] = sum[k] + 0.5 * (own[k] * edges[0] + own[3 + k] * edges[1] + own[6 + k] * edges[2]);
-    return degree;
-  }
-
-  double scale_between(std::size_t i, std::size_t j) const
-  {
-    return std::exp(0.5 * (m_log_scale[i][0] + m_log_scale[j][0]));
-  }
-
-  Vec3 link_target(std::size_t i, std::size_t j, bool links_turn) const
-  {
-    const Vec3 edge = m_network->rest[i] - m_network->rest[j];
-    if (links_turn)
-      return 0.5 * (m_frame[i] * edge + m_frame[j] * edge);
-    const Vec3 present = m_position[i] - m_position[j];
-    const double length = present.norm();
-    return length > 0 ? Vec3(scale_between(i, j) * edge.norm() / length * present)
-                      : Vec3(Vec3::Zero());
+    });
   }
 
   /// One sweep: the energy of the present state, and the deviation of each node's best rotation from the field.
   double fit_and_measure(const Elastic_options& options)
   {
     m_deviation.resize(m_network->size());
+    const Elastic_state state = this->state();
     return pcs::internal::blocked_reduce<ConcurrencyTag>(
         m_network->size(),
         0.0,
@@ -458,12 +370,12 @@ private:
           if (m_constraints.handle_of_node[i] == unreached_node)
             return 0.0;
           Eigen::Matrix3d covariance;
-          double energy = measure_edges(i, covariance);
-          energy += link_energy(i);
+          double energy = state.measure_edges(i, covariance);
+          energy += state.link_energy(i);
           if (!m_constraints.is_prescribed(i)) {
-            m_deviation[i] = deviation(covariance, m_rotation[i], m_field[i]);
+            m_deviation[i] = fit_deviation(covariance, m_rotation[i], m_field[i], fit_damping);
             if (m_stretch_is_used)
-              m_stretch[i] = transverse_stretch(i, options.poisson_ratio);
+              m_stretch[i] = state.transverse_stretch(i, options.poisson_ratio);
           }
           return energy;
         },
@@ -471,134 +383,17 @@ private:
         block);
   }
 
-  /// Half the energy of the surface edges of node `i`, and `sum_j w_ij (x_j - x_i) (x0_j - x0_i)^T`.
-  /// Number by number, as in `newton_turn()`.
-  double measure_edges(std::size_t i, Eigen::Matrix3d& covariance) const
-  {
-    const auto& graph = m_network->surface;
-    const double *own = targets()[i].data(), *xi = m_network->rest[i].data(),
-                 *pi = m_position[i].data();
-    double energy = 0, sum[9] = {};
-    for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
-      const std::size_t j = graph.neighbor[e];
-      const double *other = targets()[j].data(), *xj = m_network->rest[j].data(),
-                   *pj = m_position[j].data();
-      double rest[3], now[3], squared = 0;
-      for (int k = 0; k < 3; ++k) {
-        rest[k] = xj[k] - xi[k];
-        now[k] = pj[k] - pi[k];
-      }
-      for (int k = 0; k < 3; ++k) {
-        const double aim = (own[k] + other[k]) * rest[0] + (own[3 + k] + other[3 + k]) * rest[1] +
-                           (own[6 + k] + other[6 + k]) * rest[2];
-        const double error = now[k] - 0.5 * aim;
-        squared += error * error;
-      }
-      const double w = graph.weight[e];
-      energy += 0.5 * w * squared;
-      for (int c = 0; c < 3; ++c)
-        for (int r = 0; r < 3; ++r)
-          sum[3 * c + r] += w * now[r] * rest[c];
-    }
-    covariance = Eigen::Map<const Eigen::Matrix3d>(sum);
-    return energy;
-  }
-
-  /// Of the rotation that fits best, one step from the present one, from the field. [rad]
-  static Vec3
-  deviation(const Eigen::Matrix3d& covariance, const Quaternion& present, const Quaternion& field)
-  {
-    const Quaternion q = present * field.conjugate();
-    const Eigen::Matrix3d turned = covariance.lazyProduct(present.toRotationMatrix().transpose());
-    const Vec3 u = newton_turn(turned, fit_damping);
-    const double x = 0.5 * u.x(), y = 0.5 * u.y(), z = 0.5 * u.z();
-    const Quaternion fit(q.w() - x * q.x() - y * q.y() - z * q.z(),
-                         q.x() + x * q.w() + y * q.z() - z * q.y(),
-                         q.y() + y * q.w() + z * q.x() - x * q.z(),
-                         q.z() + z * q.w() + x * q.y() - y * q.x());
-    return rotation_log(fit.normalized());
-  }
-
-  double link_energy(std::size_t i) const
-  {
-    const auto& links = m_network->links;
-    double energy = 0;
-    if (!links.neighbor.empty())
-      for (std::size_t e = links.first[i]; e < links.first[i + 1]; ++e) {
-        const std::size_t j = links.neighbor[e];
-        if (j < i)
-          continue;
-        const double error = (m_position[i] - m_position[j]).norm() -
-                             scale_between(i, j) * (m_network->rest[i] - m_network->rest[j]).norm();
-        energy += links.weight[e] * error * error;
-      }
-    return energy;
-  }
-
   /// `(L + mu D) d' = mu D d`.
   void smooth_deviations()
   {
     m_rhs3.resize(m_rows.size());
-    for (std::size_t r = 0; r < m_rows.size(); ++r)
+    pcs::internal::for_each_index<ConcurrencyTag>(m_rows.size(), [&](std::size_t r) {
       m_rhs3[r] = m_fit_weight[r] * m_deviation[m_rows.node_of_row[r]];
-    m_smoothing_factor.solve(m_rhs3, m_work3);
-    for (std::size_t r = 0; r < m_rows.size(); ++r)
+    });
+    m_smoothing_factor.template solve<ConcurrencyTag>(m_rhs3, m_work3);
+    pcs::internal::for_each_index<ConcurrencyTag>(m_rows.size(), [&](std::size_t r) {
       m_smooth[m_rows.node_of_row[r]] = m_rhs3[r];
-  }
-
-  /// The rest shape that a material of the given Poisson's ratio takes under the present main stretch `s1` along
-  /// `v`: `S = s1 v v^T + s1^-nu (I - v v^T)`.
-  Eigen::Matrix3d transverse_stretch(std::size_t i, double poisson_ratio) const
-  {
-    const Eigen::Matrix3d in_rest = m_frame[i].inverse() * deformation_gradient(i);
-    const auto eigen = linear_algebra::symmetric_eigen<3>(0.5 * (in_rest + in_rest.transpose()));
-    if (!(eigen.values.minCoeff() > 0) || !eigen.values.allFinite())
-      return Eigen::Matrix3d::Identity();
-    int main = 0;
-    for (int k = 1; k < 3; ++k)
-      if (std::abs(std::log(eigen.values[k])) > std::abs(std::log(eigen.values[main])))
-        main = k;
-    // Beyond a factor of ten the network is torn, not stretched.
-    const double s1 = std::min(10.0, std::max(0.1, eigen.values[main]));
-    const Vec3 v = eigen.vectors.col(main);
-    const double across = std::pow(s1, -poisson_ratio);
-    return (s1 - across) * v * v.transpose() + across * Eigen::Matrix3d::Identity();
-  }
-
-public:
-  /// Weight of the frame in `deformation_gradient()`, relative to the spread of the edges: it decides where the
-  /// edges say nothing, across a surface.
-  static constexpr double frame_share = 0.05;
-  /// Of shorter edges, relative to the coordinates, rounding leaves too little to measure a gradient. [-]
-  static constexpr double shortest_measured_edge = 1e-10;
-
-  /// Best linear map of the edges at node `i` from rest to now, completed by the frame across the surface. [-]
-  Eigen::Matrix3d deformation_gradient(std::size_t i) const
-  {
-    const auto& graph = m_network->surface;
-    double longest = 0, farthest = m_position[i].lpNorm<Eigen::Infinity>();
-    for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
-      const std::size_t j = graph.neighbor[e];
-      longest =
-          std::max(longest, (m_network->rest[j] - m_network->rest[i]).lpNorm<Eigen::Infinity>());
-      farthest = std::max(farthest, m_position[j].lpNorm<Eigen::Infinity>());
-    }
-    if (!(longest > shortest_measured_edge * farthest))
-      return m_frame[i];
-    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero(), spread = Eigen::Matrix3d::Zero();
-    for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
-      const std::size_t j = graph.neighbor[e];
-      const Vec3 edge = (m_network->rest[j] - m_network->rest[i]) / longest;
-      const Vec3 present = (m_position[j] - m_position[i]) / longest;
-      covariance += graph.weight[e] * present * edge.transpose();
-      spread += graph.weight[e] * edge * edge.transpose();
-    }
-    const double share = frame_share * spread.trace();
-    if (!(share > 0))
-      return m_frame[i];
-    covariance += share * m_frame[i];
-    spread += share * Eigen::Matrix3d::Identity();
-    return covariance * spread.inverse();
+    });
   }
 
 private:
@@ -606,7 +401,7 @@ private:
   Node_constraints m_constraints;
   Free_rows m_rows;
   linear_algebra::Sparse_cholesky m_field_factor, m_link_factor, m_smoothing_factor;
-  Rotation_field_solver m_field_solver;
+  Rotation_field_solver<ConcurrencyTag> m_field_solver;
   std::vector<double> m_fit_weight; ///< of each row, its degree included
   bool m_stretch_is_used = false;
 

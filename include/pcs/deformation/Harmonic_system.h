@@ -6,6 +6,7 @@
 #define PCS_DEFORMATION_HARMONIC_SYSTEM_H
 
 #include <pcs/deformation/Elastic_network.h>
+#include <pcs/internal/parallel.h>
 #include <pcs/linear_algebra/Sparse_cholesky.h>
 #include <pcs/linear_algebra/graph_laplacian.h>
 
@@ -107,7 +108,7 @@ inline double node_degree(const Weighted_graph& graph, std::size_t i)
   Solves `L u = 0` at the unknown nodes for given `u` at the prescribed ones (soft ones: `L u + w (u - value) = 0`).
   `value(node)` is asked for prescribed and soft nodes. `result[node]` is written for the unknown nodes only.
 */
-template <class Row, class Value>
+template <class ConcurrencyTag, class Row, class Value>
 void solve_harmonic(const linear_algebra::Sparse_cholesky& factor,
                     const Weighted_graph& graph,
                     const Node_constraints& constraints,
@@ -118,7 +119,7 @@ void solve_harmonic(const linear_algebra::Sparse_cholesky& factor,
                     std::vector<Row>& result)
 {
   rhs.resize(rows.size());
-  for (std::size_t r = 0; r < rows.size(); ++r) {
+  pcs::internal::for_each_index<ConcurrencyTag>(rows.size(), [&](std::size_t r) {
     const std::size_t i = rows.node_of_row[r];
     Row b = Row::Zero();
     for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e)
@@ -127,10 +128,11 @@ void solve_harmonic(const linear_algebra::Sparse_cholesky& factor,
     if (constraints.is_soft(i))
       b += constraints.soft_weight(i, node_degree(graph, i)) * value(i);
     rhs[r] = b;
-  }
-  factor.solve(rhs, work);
-  for (std::size_t r = 0; r < rows.size(); ++r)
+  });
+  factor.solve<ConcurrencyTag>(rhs, work);
+  pcs::internal::for_each_index<ConcurrencyTag>(rows.size(), [&](std::size_t r) {
     result[rows.node_of_row[r]] = rhs[r];
+  });
 }
 
 } // namespace deformation

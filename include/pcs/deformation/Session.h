@@ -639,22 +639,21 @@ private:
   void read_maps()
   {
     m_next_maps.resize(m_maps.size());
+    const Elastic_state state = m_solver.state();
     pcs::internal::for_each_index<ConcurrencyTag>(
         m_maps.size(),
         [&](std::size_t s) {
-          const Node_constraint h = m_solver.constraints().handle_of_node[s];
+          const Node_constraint h = state.constraints.handle_of_node[s];
           if (h == unreached_node) {
             m_next_maps[s] = identity_map();
             return;
           }
-          const bool is_rigid = m_solver.constraints().is_prescribed(s);
-          Eigen::Matrix3d a = m_solver.frames()[s];
-          if (!is_rigid)
-            a = m_solver.deformation_gradient(s);
+          const bool is_rigid = state.constraints.is_prescribed(s);
+          const Eigen::Matrix3d a = is_rigid ? state.frame[s] : state.deformation_gradient(s);
           // A prescribed map is the handle's own, to the last bit.
-          const Vec3 t =
-              is_rigid ? m_local_transforms[static_cast<std::size_t>(h)].translation()
-                       : Vec3(m_solver.positions()[s] - a * m_body.upsampling.sample_points()[s]);
+          const Vec3 t = is_rigid
+                             ? m_local_transforms[static_cast<std::size_t>(h)].translation()
+                             : Vec3(state.position[s] - a * m_body.upsampling.sample_points()[s]);
           Eigen::Map<Row_major_matrix>(m_next_maps[s].a) = a;
           Eigen::Map<Vec3>(m_next_maps[s].t) = t;
         },

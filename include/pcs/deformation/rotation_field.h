@@ -8,6 +8,7 @@
 #include <pcs/core/Similarity.h>
 #include <pcs/core/rotations.h>
 #include <pcs/deformation/Harmonic_system.h>
+#include <pcs/internal/parallel.h>
 
 #include <algorithm>
 #include <cmath>
@@ -37,6 +38,7 @@ namespace deformation {
      three steps of the harmonic map, `L s = sum w log(q_j q_i^-1)`, `q <- exp(s) q`;
   3. otherwise blends the handles' turns one after another, each as rotation vectors in space.
 */
+template <class ConcurrencyTag>
 class Rotation_field_solver
 {
 public:
@@ -132,7 +134,7 @@ private:
   void blend_quaternions(std::vector<Quaternion>& field)
   {
     m_value4.resize(field.size());
-    solve_harmonic(
+    solve_harmonic<ConcurrencyTag>(
         *m_factor,
         *m_graph,
         *m_constraints,
@@ -141,12 +143,13 @@ private:
         m_rhs4,
         m_work4,
         m_value4);
-    for (const auto i : m_rows->node_of_row) {
+    pcs::internal::for_each_index<ConcurrencyTag>(m_rows->size(), [&](std::size_t r) {
+      const std::size_t i = m_rows->node_of_row[r];
       const double length = m_value4[i].norm();
       // Opposite handles cancel somewhere between them; there the field is undefined and any rotation serves.
       if (length > 1e-12)
         field[i].coeffs() = m_value4[i] / length;
-    }
+    });
   }
 
   void blend_stage(const std::vector<Similarity>& transforms,
@@ -154,7 +157,7 @@ private:
                    std::vector<Quaternion>& field)
   {
     m_value3.resize(field.size());
-    solve_harmonic(
+    solve_harmonic<ConcurrencyTag>(
         *m_factor,
         *m_graph,
         *m_constraints,
@@ -166,8 +169,10 @@ private:
         m_rhs3,
         m_work3,
         m_value3);
-    for (const auto i : m_rows->node_of_row)
+    pcs::internal::for_each_index<ConcurrencyTag>(m_rows->size(), [&](std::size_t r) {
+      const std::size_t i = m_rows->node_of_row[r];
       field[i] = (rotation_exp(m_value3[i]) * field[i]).normalized();
+    });
   }
 
   void intrinsic_step(std::vector<Quaternion>& field)
@@ -176,7 +181,7 @@ private:
       return m_constraints->is_prescribed(j) ? m_lifted[handle(j)] : field[j];
     };
     m_rhs3.resize(m_rows->size());
-    for (std::size_t r = 0; r < m_rows->size(); ++r) {
+    pcs::internal::for_each_index<ConcurrencyTag>(m_rows->size(), [&](std::size_t r) {
       const std::size_t i = m_rows->node_of_row[r];
       const Quaternion inverse = field[i].conjugate();
       Vec3 b = Vec3::Zero();
@@ -186,12 +191,12 @@ private:
         b += m_constraints->soft_weight(i, node_degree(*m_graph, i)) *
              rotation_log(m_lifted[handle(i)] * inverse);
       m_rhs3[r] = b;
-    }
-    m_factor->solve(m_rhs3, m_work3);
-    for (std::size_t r = 0; r < m_rows->size(); ++r) {
+    });
+    m_factor->solve<ConcurrencyTag>(m_rhs3, m_work3);
+    pcs::internal::for_each_index<ConcurrencyTag>(m_rows->size(), [&](std::size_t r) {
       Quaternion& q = field[m_rows->node_of_row[r]];
       q = (rotation_exp(m_rhs3[r]) * q).normalized();
-    }
+    });
   }
 
   const linear_algebra::Sparse_cholesky* m_factor = nullptr;

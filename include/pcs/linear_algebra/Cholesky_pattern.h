@@ -5,6 +5,8 @@
 #ifndef PCS_LINEAR_ALGEBRA_CHOLESKY_PATTERN_H
 #define PCS_LINEAR_ALGEBRA_CHOLESKY_PATTERN_H
 
+#include <pcs/linear_algebra/Elimination_subtrees.h>
+
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 
@@ -44,6 +46,7 @@ public:
   std::size_t stack_size = 0;     ///< values that wait for their parent, at most
   std::size_t largest_number_of_rows_below = 0;
   std::size_t largest_panel = 0; ///< values
+  Elimination_subtrees subtrees;
 
   Cholesky_pattern() = default;
 
@@ -61,6 +64,7 @@ public:
     const Adjacency graph = adjacency(a);
     find_rows(graph);
     find_places(a);
+    subtrees.find(*this);
   }
 
   /// The place of each row in the order of elimination. A part of the rows in that order has no entries that all have not.

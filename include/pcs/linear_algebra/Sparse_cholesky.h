@@ -5,6 +5,7 @@
 #ifndef PCS_LINEAR_ALGEBRA_SPARSE_CHOLESKY_H
 #define PCS_LINEAR_ALGEBRA_SPARSE_CHOLESKY_H
 
+#include <pcs/internal/parallel.h>
 #include <pcs/linear_algebra/Cholesky_pattern.h>
 #include <pcs/linear_algebra/dense_front.h>
 
@@ -74,22 +75,46 @@ public:
     return sum;
   }
 
-  /// Solves `A x = b` for right-hand sides stored row by row: `Row` is a fixed-size Eigen vector.
-  template <class Row>
+  /// Solves `A x = b` for right-hand sides stored row by row: `Row` is a fixed-size Eigen vector. The subtrees of a large
+  /// factor are worked through side by side if the tag allows it, with the same result for every number of threads.
+  template <class ConcurrencyTag = CGAL::Sequential_tag, class Row>
   void solve(std::vector<Row>& b, std::vector<Row>& work) const
   {
     if (size() == 0)
       return;
-    work.resize(size() + m_pattern->largest_number_of_rows_below);
-    for (std::size_t i = 0; i < size(); ++i)
-      work[m_pattern->new_of_old[i]] = b[i];
-    const std::size_t count = m_pattern->number_of_supernodes();
-    for (std::size_t s = 0; s < count; ++s)
-      solve_forward(s, work);
-    for (std::size_t s = count; s-- > 0;)
-      solve_backward(s, work);
-    for (std::size_t i = 0; i < size(); ++i)
-      b[i] = work[m_pattern->new_of_old[i]];
+    const Cholesky_pattern& p = *m_pattern;
+    const Elimination_subtrees& trees = p.subtrees;
+    const auto for_each_subtree = [&](const auto& f) {
+      pcs::internal::for_each_block<ConcurrencyTag>(
+          trees.subtree.size(),
+          1,
+          [&](std::size_t t, std::size_t) { f(trees.subtree[t]); });
+    };
+    work.resize(trees.number_of_places);
+    pcs::internal::for_each_index<ConcurrencyTag>(size(), [&](std::size_t i) {
+      work[p.new_of_old[i]] = b[i];
+    });
+    for_each_subtree([&](const Elimination_subtrees::Subtree& t) {
+      std::fill_n(work.begin() + static_cast<std::ptrdiff_t>(t.first_place),
+                  p.number_of_rows_below(t.end - 1),
+                  Row(Row::Zero()));
+      for (std::size_t s = t.begin; s < t.end; ++s)
+        solve_forward(s, trees.row.data(), work);
+    });
+    for (const auto& t : trees.subtree)
+      for (std::size_t r = p.first_row[t.end - 1], at = t.first_place; r < p.first_row[t.end]; ++r)
+        work[p.row[r]] += work[at++];
+    for (const auto s : trees.top)
+      solve_forward(s, p.row.data(), work);
+    for (auto s = trees.top.rbegin(); s != trees.top.rend(); ++s)
+      solve_backward(*s, size(), work);
+    for_each_subtree([&](const Elimination_subtrees::Subtree& t) {
+      for (std::size_t s = t.end; s-- > t.begin;)
+        solve_backward(s, t.scratch, work);
+    });
+    pcs::internal::for_each_index<ConcurrencyTag>(size(), [&](std::size_t i) {
+      b[i] = work[p.new_of_old[i]];
+    });
   }
 
 private:
@@ -166,8 +191,9 @@ private:
     }
   }
 
+  /// \param rows where the rows below stand in `work`
   template <class Row>
-  void solve_forward(std::size_t s, std::vector<Row>& work) const
+  void solve_forward(std::size_t s, const std::uint32_t* rows, std::vector<Row>& work) const
   {
     const Cholesky_pattern& p = *m_pattern;
     const std::size_t width = p.width(s), below = p.number_of_rows_below(s), height = width + below;
@@ -178,7 +204,7 @@ private:
       for (std::size_t r = c + 1; r < width; ++r)
         own[r] -= panel[c * height + r] * x;
     }
-    const std::uint32_t* row = p.row.data() + p.first_row[s];
+    const std::uint32_t* row = rows + p.first_row[s];
     panel += width;
     std::size_t c = 0;
     for (; c + 3 <= width; c += 3, panel += 3 * height) {
@@ -195,14 +221,15 @@ private:
       own[c] *= m_inverse_diagonal[p.first[s] + c];
   }
 
+  /// \param scratch where `work` has room for the rows below
   template <class Row>
-  void solve_backward(std::size_t s, std::vector<Row>& work) const
+  void solve_backward(std::size_t s, std::size_t scratch, std::vector<Row>& work) const
   {
     const Cholesky_pattern& p = *m_pattern;
     const std::size_t width = p.width(s), below = p.number_of_rows_below(s), height = width + below;
     const double* panel = m_value.data() + p.first_value[s];
     const std::uint32_t* row = p.row.data() + p.first_row[s];
-    Row *own = work.data() + p.first[s], *gathered = work.data() + size();
+    Row *own = work.data() + p.first[s], *gathered = work.data() + scratch;
     for (std::size_t r = 0; r < below; ++r)
       gathered[r] = work[row[r]];
     const double* column = panel + width;

@@ -1,0 +1,124 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Parts of an elimination tree that can be worked through side by side, and what stands above them.
+
+#ifndef PCS_LINEAR_ALGEBRA_ELIMINATION_SUBTREES_H
+#define PCS_LINEAR_ALGEBRA_ELIMINATION_SUBTREES_H
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace pcs {
+namespace linear_algebra {
+
+/*!
+  Disjoint subtrees of the supernodes of a `Cholesky_pattern`, none with more than a small share of the values. They do
+  not depend on the number of threads, so that sums over them do not either.
+
+  What a subtree adds to the rows above it is gathered apart: every subtree has places of its own, behind those of the
+  unknowns in the work array of a solve, for the rows below its root, of which those below all its supernodes are part.
+*/
+class Elimination_subtrees
+{
+public:
+  struct Subtree
+  {
+    std::uint32_t begin, end; ///< its supernodes, the root last
+    std::size_t first_place;  ///< of the rows below the root
+    std::size_t scratch;      ///< places for the rows below any one of its supernodes
+  };
+
+  std::vector<Subtree> subtree;
+  std::vector<std::uint32_t> top; ///< the other supernodes, increasing
+  /// As the pattern's, but rows above the own subtree are places of it. Empty without subtrees.
+  std::vector<std::uint32_t> row;
+  std::size_t number_of_places = 0; ///< of all work
+
+  /// Factors of fewer values than this are solved faster than tasks are handed out.
+  static constexpr std::size_t smallest_divided_factor = 500000;
+
+  /// \param pattern complete but for its subtrees
+  template <class Pattern>
+  void find(const Pattern& pattern)
+  {
+    const std::size_t m = pattern.number_of_supernodes();
+    if (pattern.number_of_values() >= smallest_divided_factor &&
+        pattern.size() <= largest_divided_size)
+      divide(pattern);
+    number_of_places = pattern.size() + pattern.largest_number_of_rows_below;
+    std::uint32_t next = 0;
+    const auto add_top = [&](std::uint32_t end) {
+      for (; next < end; ++next)
+        top.push_back(next);
+    };
+    for (Subtree& t : subtree) {
+      add_top(t.begin);
+      next = t.end;
+      t.first_place = number_of_places;
+      t.scratch = t.first_place + pattern.number_of_rows_below(t.end - 1);
+      number_of_places = t.scratch;
+      for (std::size_t s = t.begin; s < t.end; ++s)
+        number_of_places = std::max(number_of_places, t.scratch + pattern.number_of_rows_below(s));
+    }
+    add_top(static_cast<std::uint32_t>(m));
+    if (!subtree.empty())
+      place_rows(pattern);
+  }
+
+private:
+  /// Half of what `row` can count: the rest is for the places of the subtrees.
+  static constexpr std::size_t largest_divided_size = std::size_t(1) << 31;
+  /// No subtree has more than one in this many of the values.
+  static constexpr std::size_t smallest_number_of_shares = 16;
+
+  /// From the roots down, until what is left is small enough.
+  template <class Pattern>
+  void divide(const Pattern& pattern)
+  {
+    const std::size_t m = pattern.number_of_supernodes();
+    std::vector<std::uint32_t> begin(m); // first descendant: in postorder a subtree is a range
+    for (std::uint32_t s = 0; s < m; ++s)
+      begin[s] = s;
+    for (std::size_t s = 0; s < m; ++s)
+      if (pattern.parent[s] != Pattern::none)
+        begin[pattern.parent[s]] = std::min(begin[pattern.parent[s]], begin[s]);
+    const std::size_t most = pattern.number_of_values() / smallest_number_of_shares;
+    for (std::size_t end = m; end > 0;) {
+      const std::size_t values = pattern.first_value[end] - pattern.first_value[begin[end - 1]];
+      if (values > most) {
+        --end; // its root stands above
+        continue;
+      }
+      subtree.push_back({begin[end - 1], static_cast<std::uint32_t>(end), 0, 0});
+      end = begin[end - 1];
+    }
+    std::reverse(subtree.begin(), subtree.end());
+  }
+
+  template <class Pattern>
+  void place_rows(const Pattern& pattern)
+  {
+    row = pattern.row;
+    for (const Subtree& t : subtree) {
+      const std::uint32_t end = pattern.first[t.end];
+      const std::uint32_t* below = pattern.row.data() + pattern.first_row[t.end - 1];
+      for (std::size_t s = t.begin; s < t.end; ++s) {
+        std::size_t at = 0;
+        for (std::size_t r = pattern.first_row[s]; r < pattern.first_row[s + 1]; ++r) {
+          if (row[r] < end)
+            continue;
+          while (below[at] != row[r])
+            ++at;
+          row[r] = static_cast<std::uint32_t>(t.first_place + at);
+        }
+      }
+    }
+  }
+};
+
+} // namespace linear_algebra
+} // namespace pcs
+
+#endif // PCS_LINEAR_ALGEBRA_ELIMINATION_SUBTREES_H
