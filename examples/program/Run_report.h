@@ -93,6 +93,7 @@ inline std::string to_json(const Run_report& run, const Options& options)
                      {"sampling", r.seconds.sampling},
                      {"factorization", r.seconds.factorization},
                      {"solving", r.seconds.solving},
+                     {"coarse_levels", r.seconds.coarse_levels}, // of "solving"
                      {"upsampling", r.seconds.upsampling},
                      {"write", run.seconds_write},
                      {"total", run.seconds_total}};

@@ -350,6 +350,7 @@ BOOST_FIXTURE_TEST_CASE(the_report_has_every_number, Program_run)
                             "sampling",
                             "factorization",
                             "solving",
+                            "coarse_levels",
                             "upsampling",
                             "write",
                             "total"})

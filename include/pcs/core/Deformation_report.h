@@ -36,6 +36,7 @@ struct Deformation_report
   struct Seconds
   {
     double neighbors = 0, sampling = 0, factorization = 0, solving = 0, upsampling = 0;
+    double coarse_levels = 0; ///< of `solving`: before the passes, on networks of fewer nodes
   } seconds;
 };
 
@@ -49,7 +50,8 @@ inline std::ostream& operator<<(std::ostream& out, const Deformation_report& r)
       << " points), " << r.number_of_iterations << " iterations, energy " << r.initial_energy
       << " -> " << r.energy << "; seconds: neighbors " << r.seconds.neighbors << ", sampling "
       << r.seconds.sampling << ", factorization " << r.seconds.factorization << ", solving "
-      << r.seconds.solving << ", upsampling " << r.seconds.upsampling;
+      << r.seconds.solving << " (coarse levels " << r.seconds.coarse_levels << "), upsampling "
+      << r.seconds.upsampling;
   return out;
 }
 

@@ -46,13 +46,6 @@ class Elastic_solver
 public:
   const Elastic_network& network() const { return *m_network; }
   const Node_constraints& constraints() const { return m_constraints; }
-  bool is_finite() const
-  {
-    for (std::size_t i = 0; i < m_position.size(); ++i)
-      if (!m_position[i].allFinite() || !m_frame[i].allFinite())
-        return false;
-    return true;
-  }
   /// The present shape, until the next call.
   Elastic_state state() const
   {

@@ -172,6 +172,7 @@ public:
     Deviation_guess guess;
     for (std::size_t level = m_coarse.size(); level-- > 0 && progress(0);)
       m_coarse[level].improve(transforms, options, m_maps.size(), guess);
+    r.seconds.coarse_levels = watch.lap();
     const Elastic_result result = m_solver.solve(transforms, options, progress, guess);
     r.status = result.status;
     r.number_of_iterations = static_cast<std::size_t>(result.number_of_passes);
@@ -180,18 +181,17 @@ public:
     r.energy = result.energy * unit * unit;
     if (result.status != Status::cancelled) {
       m_local_transforms.swap(transforms);
-      read_maps<ConcurrencyTag>(m_solver.state(),
-                                m_local_transforms,
-                                m_body.upsampling.sample_points(),
-                                m_next_maps);
-      if (m_solver.is_finite() && all_finite(m_next_maps))
+      if (read_maps<ConcurrencyTag>(m_solver.state(),
+                                    m_local_transforms,
+                                    m_body.upsampling.sample_points(),
+                                    m_next_maps))
         m_maps.swap(m_next_maps);
       else {
         m_local_transforms.swap(transforms);
         r.status = Status::numerical_failure;
       }
     }
-    r.seconds.solving = watch.lap();
+    r.seconds.solving = r.seconds.coarse_levels + watch.lap();
     return r;
   }
 

@@ -12,9 +12,6 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
-#include <algorithm>
-#include <vector>
-
 namespace pcs {
 namespace deformation {
 
@@ -24,14 +21,6 @@ using Row_major_matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 inline Affine_map identity_map()
 {
   return {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
-}
-
-inline bool all_finite(const std::vector<Affine_map>& maps)
-{
-  return std::all_of(maps.begin(), maps.end(), [](const Affine_map& map) {
-    return Eigen::Map<const Row_major_matrix>(map.a).allFinite() &&
-           Eigen::Map<const Vec3>(map.t).allFinite();
-  });
 }
 
 /// The rotation nearest to `a`; the identity if `a` is not invertible.

@@ -23,19 +23,21 @@ namespace deformation {
 /// \param transforms of the handles, in the coordinates of the network
 /// \param rest of the samples [L]
 /// \param maps one for each sample
+/// \return whether all of them are finite
 template <class ConcurrencyTag>
-void read_maps(const Elastic_state& state,
+bool read_maps(const Elastic_state& state,
                const std::vector<Similarity>& transforms,
                const std::vector<Vec3>& rest,
                std::vector<Affine_map>& maps)
 {
-  pcs::internal::for_each_index<ConcurrencyTag>(
+  const int is_finite = pcs::internal::blocked_reduce<ConcurrencyTag>(
       maps.size(),
+      1,
       [&](std::size_t s) {
         const Node_constraint h = state.constraints.handle_of_node[s];
         if (h == unreached_node) {
           maps[s] = identity_map();
-          return;
+          return 1;
         }
         const bool is_rigid = state.constraints.is_prescribed(s);
         const Eigen::Matrix3d a = is_rigid ? state.frame[s] : state.deformation_gradient(s);
@@ -44,8 +46,11 @@ void read_maps(const Elastic_state& state,
                                 : Vec3(state.position[s] - a * rest[s]);
         Eigen::Map<Row_major_matrix>(maps[s].a) = a;
         Eigen::Map<Vec3>(maps[s].t) = t;
+        return a.allFinite() && t.allFinite() ? 1 : 0;
       },
+      [](int one, int other) { return one & other; },
       512);
+  return is_finite == 1;
 }
 
 } // namespace deformation
