@@ -79,7 +79,7 @@ inline std::vector<std::string> warnings(const Skeleton_report& r)
   constexpr double largest_residual = 1.5;
   constexpr double exact =
       0.1; // of the spacing: below, points are on the surface, whatever the noise [-]
-  // mean diameter of the trunk per length: trees 0.01 to 0.1, spheres 0.2 to 1.8 [-]
+  // diameter of the trunk per length: trees 0.01 to 0.1, spheres more than 0.2 [-]
   constexpr double thickest_trunk = 0.2;
   std::vector<std::string> sentences;
   if (r.number_of_other_stems > 0)
