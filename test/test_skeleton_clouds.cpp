@@ -307,9 +307,37 @@ BOOST_AUTO_TEST_CASE(bodies_give_some_tree_that_stays_within_them)
     BOOST_CHECK_GT(report.residual, 0.0);
     // wider than the noise; filled ones are told from trees by it
     BOOST_CHECK_GT(report.residual, report.noise);
-    if (points == dust)
-      BOOST_CHECK_EQUAL(pcs::warnings(report).size(), 1u);
+    BOOST_CHECK(!pcs::warnings(report).empty());
   }
+}
+
+BOOST_AUTO_TEST_CASE(spheres_are_doubted)
+{
+  std::normal_distribution<double> normal;
+  for (const unsigned seed : {1u, 2u, 3u, 4u})
+    for (const int n : {1000, 3000, 10000})
+      for (const double size : {1.0, 30.0}) {
+        std::mt19937 random(seed);
+        Cloud sphere;
+        for (int i = 0; i < n; ++i) {
+          const Vector d(normal(random), normal(random), normal(random));
+          sphere.push_back(CGAL::ORIGIN + size * d / std::sqrt(d.squared_length()));
+        }
+        Tree tree;
+        const auto report = pcs::extract_tree_skeleton(sphere, tree);
+        BOOST_TEST(!pcs::warnings(report).empty(),
+                   "seed " << seed << ", " << n << " points, " << report);
+      }
+}
+
+// A trunk of ten diameters is no cause for doubt, one of two is.
+BOOST_AUTO_TEST_CASE(a_stump_is_doubted_but_no_stem)
+{
+  Tree stump, stem;
+  const auto doubtful = pcs::extract_tree_skeleton(cylinder(6000, 0.3, 1.2), stump);
+  const auto good = pcs::extract_tree_skeleton(cylinder(6000, 0.1, 2), stem);
+  BOOST_CHECK_EQUAL(pcs::warnings(doubtful).size(), 1u);
+  BOOST_CHECK(pcs::warnings(good).empty());
 }
 
 BOOST_AUTO_TEST_CASE(of_two_trees_the_thicker_one_is_taken)

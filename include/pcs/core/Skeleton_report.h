@@ -8,6 +8,7 @@
 #include <pcs/core/Status.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <ostream>
 #include <string>
@@ -78,6 +79,8 @@ inline std::vector<std::string> warnings(const Skeleton_report& r)
   constexpr double largest_residual = 1.5;
   constexpr double exact =
       0.1; // of the spacing: below, points are on the surface, whatever the noise [-]
+  // diameter of the trunk per length: trees 0.01 to 0.1, spheres more than 0.2 [-]
+  constexpr double thickest_trunk = 0.2;
   std::vector<std::string> sentences;
   if (r.number_of_other_stems > 0)
     sentences.push_back("more than one tree: " + std::to_string(r.number_of_other_stems) +
@@ -90,6 +93,12 @@ inline std::vector<std::string> warnings(const Skeleton_report& r)
   if (r.status == Status::converged &&
       r.residual > std::max(largest_residual * r.noise, exact * r.spacing))
     sentences.push_back("half of the points lie far from the surfaces found; this may be no tree");
+  if (!r.by_order.empty() && r.by_order.front().length > 0) {
+    const auto& trunk = r.by_order.front();
+    const double diameter = 2 * std::sqrt(trunk.volume / (3.14159265358979323846 * trunk.length));
+    if (diameter > thickest_trunk * trunk.length)
+      sentences.push_back("the trunk is shorter than five of its diameters; this may be no tree");
+  }
   return sentences;
 }
 
