@@ -178,7 +178,8 @@ BOOST_AUTO_TEST_CASE(options_change_the_result)
 {
   succeeds(trees + "--lambda 0.5 --output plain");
   const std::string plain = content("plain/lambda_0.500.ply");
-  for (const std::string option : {"--transport sinkhorn", "--orientation world-axes"}) {
+  for (const std::string option :
+       {"--transport sinkhorn", "--orientation world-axes", "--births-in-order"}) {
     succeeds(trees + "--lambda 0.5 --output other " + option);
     BOOST_TEST(content("other/lambda_0.500.ply") != plain, option);
   }

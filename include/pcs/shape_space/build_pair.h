@@ -41,6 +41,7 @@ bool find_correspondences(const std::array<const Tree_input*, 2>& inputs,
                                                          built.topology);
   report.matching_energy = cost.energy;
   report.unexplained_share = cost.share;
+  report.is_grown_at_tips = cost.is_at_tips;
   report.seconds.matching = watch.lap();
   if (progress.is_cancelled())
     return false;
