@@ -496,6 +496,33 @@ BOOST_AUTO_TEST_CASE(a_pruned_and_turned_tree_is_matched_to_itself)
   BOOST_TEST(mean >= published);
 }
 
+BOOST_AUTO_TEST_CASE(growth_at_tips_is_believed_where_it_explains_clearly_more)
+{
+  int number_of_close_calls = 0;
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    const auto share = [&](Growth growth, bool& is_at_tips) {
+      Matching_weights weights;
+      weights.growth = growth;
+      Space space;
+      space.add_skeleton(random_tree(seed, 4, 3));
+      space.add_skeleton(random_tree(seed + 1, 5, 3));
+      const pcs::Orl_report report = space.build(np::matching_weights(weights));
+      is_at_tips = report.is_grown_at_tips;
+      return report.unexplained_share;
+    };
+    bool is_at_tips = true;
+    const double along = share(Growth::along_branches, is_at_tips);
+    BOOST_TEST(!is_at_tips);
+    const double tips = share(Growth::at_tips, is_at_tips);
+    BOOST_TEST(is_at_tips);
+    const double any = share(Growth::any, is_at_tips);
+    BOOST_TEST(is_at_tips == (tips < 2. / 3 * along));
+    BOOST_TEST(any == (is_at_tips ? tips : along));
+    number_of_close_calls += tips < along && !is_at_tips ? 1 : 0;
+  }
+  BOOST_TEST(number_of_close_calls > 0);
+}
+
 BOOST_AUTO_TEST_CASE(a_fork_whose_longer_side_changes_keeps_its_branches)
 {
   const auto fork = [](double left, double right) {

@@ -70,8 +70,9 @@ Matching_cost match_trees(const std::array<const Rooted_tree*, 2>& trees,
     if (!trunk)
       return cost;
     build(matching, trunk, false, along);
-    constexpr double clearly = 1 - 1e-6; // rounding must not decide
-    most = clearly * (at_tips.first + cost.share * at_tips.second);
+    // of trees that did grow at their tips less than 0.6 is left, of leafy plants, whose leaves stretch, 0.7 and more
+    constexpr double clearly = 2. / 3;
+    most = at_tips.first + clearly * cost.share * at_tips.second;
   }
   if (weights.growth == Growth::along_branches || weights.is_published)
     return cost;
