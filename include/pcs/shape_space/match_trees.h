@@ -33,7 +33,7 @@ struct Matching_cost
   Matches the branches of two trees; the result has no branches when `progress` asks to stop.
 
   The energies of the two kinds of growth are in units of their own. What the greater tree has more costs in any case, and
-  what is above that is compared with what it would be if nothing were matched; growth at tips must leave less of it.
+  what is above that is compared with what it would be if nothing were matched; growth at tips must leave clearly less of it.
 */
 template <class ConcurrencyTag>
 Matching_cost match_trees(const std::array<const Rooted_tree*, 2>& trees,
@@ -70,7 +70,8 @@ Matching_cost match_trees(const std::array<const Rooted_tree*, 2>& trees,
     if (!trunk)
       return cost;
     build(matching, trunk, false, along);
-    // of trees that did grow at their tips less than 0.6 is left, of leafy plants, whose leaves stretch, 0.7 and more
+    // virtual trees that grew at their tips leave less than 0.6 of it; of plants whose leaves stretch most leave 0.7 and more,
+    // and the days between others are predicted better by stretched branches then
     constexpr double clearly = 2. / 3;
     most = at_tips.first + clearly * cost.share * at_tips.second;
   }
