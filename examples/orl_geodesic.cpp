@@ -102,6 +102,7 @@ std::string report_text(const Space& space, const pcs::Orl_report& r)
   json["share_of_changes"] = r.share_of_changes;
   json["matching_energy"] = r.matching_energy;
   json["unexplained_share"] = r.unexplained_share;
+  json["is_grown_at_tips"] = r.is_grown_at_tips;
   json["number_of_nodes"] = r.number_of_nodes;
   json["number_of_branches"] = r.number_of_branches;
   json["number_of_matched_branches"] = r.number_of_matched_branches;
@@ -189,16 +190,18 @@ void run(const Options& o)
     pcs::IO::write_shape_space(o.save, space.data());
   if (o.has_lambda || !o.is_family())
     for (const double lambda : o.lambda)
-      write_tree(
-          space,
-          space.geodesic(
-              0,
-              1,
-              lambda,
-              np::maximal_turn(o.maximal_turn * CGAL_PI / 180).do_limit_radii(o.do_limit_radii)),
-          files,
-          o,
-          name_of(lambda));
+      write_tree(space,
+                 space.geodesic(0,
+                                1,
+                                lambda,
+                                np::maximal_turn(o.maximal_turn * CGAL_PI / 180)
+                                    .do_limit_radii(o.do_limit_radii)
+                                    .birth_order(o.do_order_births
+                                                     ? pcs::shape_space::Birth_order::in_order
+                                                     : pcs::shape_space::Birth_order::together)),
+                 files,
+                 o,
+                 name_of(lambda));
   write_family(space, files, o);
   if (files.size() == 2)
     matches.write([&] { return matches_text(space, files[0], files[1]); });

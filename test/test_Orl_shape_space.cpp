@@ -10,6 +10,7 @@
 #include <support/orl_spaces.h>
 #include <support/orl_trees.h>
 #include <support/threads.h>
+#include <support/trees.h>
 
 #include <boost/test/unit_test.hpp>
 
@@ -139,6 +140,86 @@ BOOST_AUTO_TEST_CASE(the_path_has_constant_speed_whatever_the_signs_of_quaternio
                  1e-12 * d);
       BOOST_TEST(std::abs(distance(x, q, space.weights(), metric) - t * d) <= 1e-12 * d);
     }
+}
+
+BOOST_AUTO_TEST_CASE(branches_born_in_order_make_a_shortest_path_of_constant_speed)
+{
+  const Small_space space;
+  const auto in_order = np::birth_order(Birth_order::in_order);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  const double d = space.distance(Space::Handle(0), Space::Handle(1));
+  for (int i = 0; i < 20; ++i) {
+    const double s = uniform(random), t = i == 0 ? 0.5 : uniform(random);
+    const auto p = space.geodesic(0, 1, s, in_order), q = space.geodesic(0, 1, t, in_order);
+    BOOST_TEST(std::abs(space.distance(p, q) - std::abs(s - t) * d) <= 1e-12 * d);
+    BOOST_TEST(std::abs(space.distance(space.tree(0), q) - t * d) <= 1e-12 * d);
+  }
+  for (const double end : {0., 1.})
+    BOOST_TEST(space.distance(space.tree(end == 0 ? 0 : 1), space.geodesic(0, 1, end, in_order)) ==
+               0);
+  // the same way back
+  BOOST_TEST(space.distance(space.geodesic(0, 1, 0.3, in_order),
+                            space.geodesic(1, 0, 0.7, in_order)) <= 1e-12 * d);
+}
+
+BOOST_AUTO_TEST_CASE(wood_that_is_born_in_order_stays_and_branches_wait_for_their_parent)
+{
+  // the trunk grows from 1 to 3, a branch of 0.8 sits at 2, a twig of 0.3 on its middle
+  const auto rows = [](bool is_old) {
+    std::vector<pcs_test::Row> r{{pcs::npos, 0, 0, 0, 0, 0.1}, {0, 0, 0, 0, 1, 0.1}};
+    if (is_old)
+      r.insert(r.end(),
+               {{1, 0, 0, 0, 2, 0.1},
+                {2, 0, 0, 0, 3, 0.1},
+                {2, 1, 0.4, 0, 2, 0.05},
+                {4, 1, 0.8, 0, 2, 0.05},
+                {4, 2, 0.4, 0.3, 2, 0.02}});
+    return pcs_test::make_tree<Kernel>(r);
+  };
+  Matching_weights weights;
+  weights.growth = Growth::at_tips;
+  Space space;
+  space.add_skeleton(rows(false));
+  space.add_skeleton(rows(true));
+  space.build(np::matching_weights(weights));
+  const double born = 3.1;
+  double number_of_branches = 0;
+  for (int k = 1; k < 40; ++k) {
+    const double lambda = k / 40.;
+    pcs::Tree_skeleton<Kernel> tree;
+    space.skeleton(space.geodesic(0, 1, lambda, np::birth_order(Birth_order::in_order)), tree);
+    double length = 0, top = 0, side = 0, twig = 0;
+    for (const auto e : boost::make_iterator_range(edges(tree)))
+      length +=
+          (to_eigen(tree[target(e, tree)].point) - to_eigen(tree[source(e, tree)].point)).norm();
+    for (const auto v : boost::make_iterator_range(vertices(tree))) {
+      const Vec3 p = to_eigen(tree[v].point);
+      top = std::max(top, p.z());
+      side = std::max(side, p.x());
+      twig = std::max(twig, p.y());
+      // on the axes of the old tree
+      BOOST_TEST(std::min({p.head<2>().norm(),
+                           std::hypot(p.y(), p.z() - 2),
+                           std::hypot(p.x() - 0.4, p.z() - 2)}) < 1e-9);
+    }
+    BOOST_TEST(std::abs(length - (1 + lambda * born)) < 1e-9);
+    BOOST_TEST((side > 0) == (top > 2 + 1e-12));
+    BOOST_TEST((twig > 0) == (side > 0.4 + 1e-12));
+    if (top > 2)
+      BOOST_TEST(std::abs(side - 0.8 * (top - 2)) < 1e-9); // in the time the trunk has for 1
+    const double now = 1 + (side > 0 ? 1 : 0) + (twig > 0 ? 1 : 0);
+    BOOST_TEST(now >= number_of_branches);
+    number_of_branches = now;
+  }
+  BOOST_TEST(number_of_branches == 3);
+  // together: the branch is there from the beginning
+  pcs::Tree_skeleton<Kernel> tree;
+  space.skeleton(space.geodesic(0, 1, 0.1), tree);
+  double side = 0;
+  for (const auto v : boost::make_iterator_range(vertices(tree)))
+    side = std::max(side, to_eigen(tree[v].point).x());
+  BOOST_TEST(std::abs(side - 0.08) < 1e-9);
 }
 
 BOOST_AUTO_TEST_CASE(the_ends_of_the_path_are_the_inputs)
@@ -413,6 +494,33 @@ BOOST_AUTO_TEST_CASE(a_pruned_and_turned_tree_is_matched_to_itself)
   BOOST_TEST_MESSAGE("right: " << mean << ", published energy: " << published);
   BOOST_TEST(mean > 0.95);
   BOOST_TEST(mean >= published);
+}
+
+BOOST_AUTO_TEST_CASE(growth_at_tips_is_believed_where_it_explains_clearly_more)
+{
+  int number_of_close_calls = 0;
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    const auto share = [&](Growth growth, bool& is_at_tips) {
+      Matching_weights weights;
+      weights.growth = growth;
+      Space space;
+      space.add_skeleton(random_tree(seed, 4, 3));
+      space.add_skeleton(random_tree(seed + 1, 5, 3));
+      const pcs::Orl_report report = space.build(np::matching_weights(weights));
+      is_at_tips = report.is_grown_at_tips;
+      return report.unexplained_share;
+    };
+    bool is_at_tips = true;
+    const double along = share(Growth::along_branches, is_at_tips);
+    BOOST_TEST(!is_at_tips);
+    const double tips = share(Growth::at_tips, is_at_tips);
+    BOOST_TEST(is_at_tips);
+    const double any = share(Growth::any, is_at_tips);
+    BOOST_TEST(is_at_tips == (tips < 2. / 3 * along));
+    BOOST_TEST(any == (is_at_tips ? tips : along));
+    number_of_close_calls += tips < along && !is_at_tips ? 1 : 0;
+  }
+  BOOST_TEST(number_of_close_calls > 0);
 }
 
 BOOST_AUTO_TEST_CASE(a_fork_whose_longer_side_changes_keeps_its_branches)

@@ -26,10 +26,13 @@ BOOST_AUTO_TEST_CASE(trees_and_points_are_written_without_allocation)
   std::vector<Point> points;
   points.reserve(space.geodesic(0, 1, 0.5).number_of_points()); // the ends have fewer
   space.geodesic(0, 1, 1.5, tree);                              // beyond the ends, too
+  const auto in_order = pcs::parameters::birth_order(pcs::shape_space::Birth_order::in_order);
+  space.geodesic(0, 1, 0.5, tree, in_order);
   space.points(tree, points);
   const long before = pcs_test::number_of_allocations;
   BOOST_TEST(before > 0); // they are counted
   for (const double lambda : {0.25, 0., -0.5, 0.75, 1., 1.5, 0.5}) {
+    space.geodesic(0, 1, lambda, tree, in_order);
     space.geodesic(0, 1, lambda, tree);
     space.points(tree, points);
   }

@@ -69,6 +69,25 @@ BOOST_AUTO_TEST_CASE(a_tree_that_did_not_grow_keeps_its_wood)
   BOOST_TEST(m.same_wood == m.same_share);
 }
 
+BOOST_AUTO_TEST_CASE(a_growing_tree_is_predicted_best_with_branches_born_in_order)
+{
+  Tree tree;
+  pcs::grow_tree(tree, pcs::broadleaf_habit(), pcs::parameters::random_seed(31));
+  Seen_plant stages[3];
+  for (int k = 0; k < 3; ++k) {
+    stages[k].tree = pcs::tree_at_age<Kernel>(tree, 0.5 + 0.25 * k);
+    stages[k].scan = scan_wood(stages[k].tree, 100 + k, 4).points;
+  }
+  const Prediction p = predict({stages[0], stages[1], stages[2], 0.5, Vec3::UnitZ(), true});
+  BOOST_TEST_MESSAGE("in order " << p.in_order << ", geodesic " << p.geodesic << ", linear "
+                                 << p.linear << ", no change " << p.first << ", " << p.last);
+  BOOST_TEST(p.is_grown_at_tips);
+  BOOST_TEST(p.in_order < 0.8 * p.geodesic);
+  BOOST_TEST(p.in_order < p.last);
+  BOOST_TEST(p.geodesic < p.linear);
+  BOOST_TEST(p.geodesic < p.first);
+}
+
 BOOST_AUTO_TEST_CASE(a_plant_in_the_middle_is_predicted_from_the_ends)
 {
   const char* data = std::getenv("PCS_TEST_DATA");

@@ -25,7 +25,8 @@ struct Options
   std::string output, matches, report, correspondences;
   std::string transport = "exact", orientation = "gauge-fixed";
   double maximal_turn = 45;
-  bool do_extend_axes = false, do_limit_radii = false, is_published = false, is_quiet = false;
+  bool do_extend_axes = false, do_limit_radii = false, do_order_births = false,
+       is_published = false, is_quiet = false;
 
   // families
   bool has_lambda = false, do_mean = false, do_growth = false, do_mesh = false;
@@ -132,6 +133,9 @@ Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
   app.add_flag("--extend-axes",
                o.do_extend_axes,
                "axes of given skeletons go to where the points end");
+  app.add_flag("--births-in-order",
+               o.do_order_births,
+               "new branches begin when the tip of their parent passes, as wood grows");
   app.add_flag("--limit-radii", o.do_limit_radii, "no branch thicker than where it grows from");
   app.add_flag("--published-energy", o.is_published, "match branches with the energy of the text");
   app.add_flag("--quiet", o.is_quiet, "print nothing but errors");

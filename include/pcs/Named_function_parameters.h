@@ -63,6 +63,7 @@
   PCS_OWN(do_use_unit_weights)                                                                     \
   PCS_OWN(maximal_turn)                                                                            \
   PCS_OWN(do_limit_radii)                                                                          \
+  PCS_OWN(birth_order)                                                                             \
   PCS_OWN(point_path)                                                                              \
   PCS_OWN(metric)                                                                                  \
   PCS_OWN(tree_mean)                                                                               \

@@ -15,12 +15,10 @@
 #include <pcs/core/errors.h>
 #include <pcs/internal/Stopwatch.h>
 #include <pcs/internal/progress.h>
-#include <pcs/internal/text.h>
 #include <pcs/shape_space/Embedded_pair.h>
 #include <pcs/shape_space/build_family.h>
-#include <pcs/shape_space/check_options.h>
-#include <pcs/shape_space/match_trees.h>
-#include <pcs/shape_space/point_correspondences.h>
+#include <pcs/shape_space/build_pair.h>
+#include <pcs/shape_space/read_options.h>
 #include <pcs/shape_space/stored_family.h>
 #include <pcs/shape_space/stored_topology.h>
 #include <pcs/shape_space/tree_input.h>
@@ -28,11 +26,9 @@
 #include <CGAL/Simple_cartesian.h>
 
 #include <array>
-#include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <functional>
-#include <type_traits>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -172,86 +168,22 @@ public:
   Orl_report build(const NamedParameters& np = NamedParameters())
   {
     using namespace shape_space;
-    const auto weights =
-        pcs::internal::choose(np, pcs::internal_np::matching_weights, Matching_weights());
-    const auto assignment =
-        pcs::internal::choose(np, pcs::internal_np::assignment_options, Assignment_options());
-    const auto transport =
-        pcs::internal::choose(np, pcs::internal_np::transport_options, Transport_options());
-    check_options(weights, assignment, transport, "pcs::Orl_shape_space::build()");
-    pcs::internal::Progress progress(
-        pcs::internal::choose(np, CGAL::internal_np::callback, std::function<bool(double)>()));
-    const auto rounds = pcs::internal::choose(np, pcs::internal_np::number_of_rounds, 3);
-    static_assert(std::is_integral_v<std::decay_t<decltype(rounds)>>,
-                  "pcs::Orl_shape_space::build(): `number_of_rounds` must be an integer");
-    if (rounds < 1)
-      throw Invalid_input("pcs::Orl_shape_space::build(): `number_of_rounds` is " +
-                          std::to_string(rounds) + ", expected at least 1");
     if (m_is_restored)
       throw Invalid_input("pcs::Orl_shape_space::build(): the space was restored, it is built");
-    if (m_inputs.size() < 2)
-      throw Invalid_input("pcs::Orl_shape_space::build(): " + std::to_string(m_inputs.size()) +
-                          " trees were added, expected 2 at least");
-    const std::size_t points_of =
-        pcs::internal::choose(np, pcs::internal_np::points_of, shape_space::none);
-    if (points_of != none && points_of >= m_inputs.size())
-      throw Invalid_input("pcs::Orl_shape_space::build(): `points_of` is " +
-                          std::to_string(points_of) + ", but there is no such tree");
-
+    const Family_options options =
+        read_options(np, m_inputs.size(), "pcs::Orl_shape_space::build()");
+    pcs::internal::Progress progress(
+        pcs::internal::choose(np, CGAL::internal_np::callback, std::function<bool(double)>()));
     Orl_report report = new_report();
-    pcs::internal::Stopwatch watch;
     if (m_inputs.size() > 2)
-      return build_many(
-          np,
-          {weights, assignment, transport, static_cast<std::size_t>(rounds), points_of},
-          progress);
-    progress.stage(0, 0.4);
+      return build_many(np, options, progress);
     Embedded_pair built;
     read_form(np, built);
-    if (!progress(0))
+    std::vector<Point_pair> pairs;
+    if (!find_correspondences<ConcurrencyTag>(inputs(), options, progress, built, pairs, report))
       return cancelled(report);
-    const Matching_cost cost = match_trees<ConcurrencyTag>({&m_inputs[0].tree, &m_inputs[1].tree},
-                                                           weights,
-                                                           progress,
-                                                           built.topology);
-    report.matching_energy = cost.energy;
-    report.unexplained_share = cost.share;
-    report.seconds.matching = watch.lap();
-    if (progress.is_cancelled())
-      return cancelled(report);
-    shape_space::embed(inputs(), built);
-    report.seconds.topology = watch.lap();
-
-    progress.stage(0.4, 0.6);
-    if (!progress(0))
-      return cancelled(report);
-    std::array<std::vector<std::size_t>, 2> edges;
-    for (std::size_t t = 0; t < 2; ++t) {
-      edges[t] = edges_of_points<ConcurrencyTag>(inputs(), built, t, assignment);
-      if (!progress(0.5 * static_cast<double>(t + 1)))
-        return cancelled(report);
-    }
-    report.seconds.assignment = watch.lap();
-
-    progress.stage(0.6, 1);
-    Transport_summary summary;
-    const std::array<std::vector<Vec3>, 2> points = {m_inputs[0].points,
-                                                     points_of_second(inputs())};
-    std::vector<Point_pair> pairs =
-        Point_matching<ConcurrencyTag>(built.layout,
-                                       built.geometry,
-                                       points,
-                                       edges,
-                                       built.is_relative)
-            .run(transport, summary, [&](double f) { return !progress(f); });
-    report.seconds.transport = watch.lap();
-    if (progress.is_cancelled())
-      return cancelled(report);
-    report.number_of_windows = summary.number_of_windows;
-    report.number_of_failed_windows = summary.number_of_failures;
-    report.worst_marginal_violation = summary.worst_violation;
-    report.mean_marginal_violation = summary.mean_violation;
-    finish(built, std::move(pairs), points, weights, report);
+    pcs::internal::Stopwatch watch;
+    finish(built, std::move(pairs), options.weights, report);
     report.seconds.instances = watch.lap();
     progress.finish();
     return report;
@@ -271,7 +203,7 @@ public:
     Orl_report report = new_report();
     pcs::internal::Stopwatch watch;
     shape_space::Embedded_pair built;
-    read_form(np, built);
+    shape_space::read_form(np, built);
     built.topology = shape_space::restore_topology(correspondences,
                                                    inputs(),
                                                    "pcs::Orl_shape_space::build_from()");
@@ -281,11 +213,7 @@ public:
                              built.layout.number_of_edges(),
                              {m_inputs[0].points.size(), m_inputs[1].points.size()},
                              "pcs::Orl_shape_space::build_from()");
-    finish(built,
-           correspondences.pairs,
-           {m_inputs[0].points, shape_space::points_of_second(inputs())},
-           shape_space::Matching_weights(),
-           report);
+    finish(built, correspondences.pairs, shape_space::Matching_weights(), report);
     report.seconds.instances = watch.lap();
     return report;
   }
@@ -347,15 +275,7 @@ public:
     result.has_normals = this->has_normals();
     if (this->is_pair()) {
       result.pairs = this->m_built.instances.pairs();
-      const std::array<std::vector<shape_space::Vec3>, 2> points = {
-          m_inputs[0].points,
-          shape_space::points_of_second(inputs())};
-      for (std::size_t t = 0; t < 2; ++t) {
-        for (const shape_space::Vec3& p : points[t])
-          result.trees[t].point.push_back(shape_space::internal::to_array(p));
-        for (const shape_space::Vec3& v : m_inputs[t].normals)
-          result.trees[t].normal.push_back(shape_space::internal::to_array(v));
-      }
+      shape_space::store_points(inputs(), result);
     }
     return result;
   }
@@ -404,25 +324,14 @@ private:
     return report;
   }
 
-  template <class NamedParameters>
-  static void read_form(const NamedParameters& np, shape_space::Embedded_pair& built)
-  {
-    built.orientation = pcs::internal::choose(np, pcs::internal_np::orientation, built.orientation);
-    built.direction =
-        pcs::internal::choose(np, pcs::internal_np::virtual_direction, built.direction);
-    built.has_unit_weights =
-        pcs::internal::choose(np, pcs::internal_np::do_use_unit_weights, built.has_unit_weights);
-  }
-
   void finish(shape_space::Embedded_pair& built,
               std::vector<shape_space::Point_pair> pairs,
-              const std::array<std::vector<shape_space::Vec3>, 2>& points,
               const shape_space::Matching_weights& weights,
               Orl_report& report)
   {
     built.instances.set(built.layout,
                         built.geometry,
-                        points,
+                        {m_inputs[0].points, shape_space::points_of_second(inputs())},
                         {m_inputs[0].normals, m_inputs[1].normals},
                         built.is_relative,
                         std::move(pairs),
@@ -437,21 +346,7 @@ private:
     m_stored_partners.clear();
     this->m_is_built = true;
     report.status = Status::converged;
-    report.number_of_common_branches = this->m_built.topology.branches.size();
-    for (const shape_space::Common_branch& b : this->m_built.topology.branches) {
-      for (int t = 0; t < 2; ++t)
-        report.number_of_branches[static_cast<std::size_t>(t)] += b.is_virtual(t) ? 0 : 1;
-      report.number_of_matched_branches += b.is_virtual(0) || b.is_virtual(1) ? 0 : 1;
-    }
-    report.number_of_edges = this->m_built.layout.number_of_edges();
-    report.distance = shape_space::distance(this->m_built.x[0],
-                                            this->m_built.x[1],
-                                            this->m_built.weights,
-                                            shape_space::Orl_metric::sum);
-    report.number_of_point_pairs = this->m_built.instances.pairs().size();
-    for (const shape_space::Point_pair& p : this->m_built.instances.pairs())
-      report.number_of_single_points +=
-          p.point[0] == shape_space::no_point || p.point[1] == shape_space::no_point ? 1 : 0;
+    shape_space::describe(this->m_built, report);
   }
 
   template <class NamedParameters>
@@ -461,7 +356,7 @@ private:
   {
     Orl_report report = new_report();
     shape_space::Embedded_pair form;
-    read_form(np, form);
+    shape_space::read_form(np, form);
     shape_space::Built_family built;
     built.family.orientation = form.orientation;
     if (!shape_space::build_family<ConcurrencyTag>(m_inputs,

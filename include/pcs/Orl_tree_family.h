@@ -10,8 +10,8 @@
 #include <pcs/Orl_tree_set.h>
 #include <pcs/core/errors.h>
 #include <pcs/internal/Random_stream.h>
-#include <pcs/internal/text.h>
 #include <pcs/shape_space/Tree_distribution.h>
+#include <pcs/shape_space/check_sampling.h>
 #include <pcs/shape_space/growth_path.h>
 #include <pcs/shape_space/keep_in_range.h>
 #include <pcs/shape_space/limit_pipes.h>
@@ -94,7 +94,10 @@ public:
         pcs::internal::choose(np,
                               pcs::internal_np::tree_weights,
                               std::vector<double>(number_of_trees(), 1));
-    check_weights(weights, false, "mean");
+    shape_space::check_tree_weights(weights,
+                                    number_of_trees(),
+                                    false,
+                                    "pcs::Orl_shape_space::mean()");
     return make(mean_of(weights, kind), -1, weights);
   }
 
@@ -108,7 +111,10 @@ public:
   Orl_tree combination(const std::vector<double>& weights) const
   {
     check_family("combination");
-    check_weights(weights, true, "combination");
+    shape_space::check_tree_weights(weights,
+                                    number_of_trees(),
+                                    true,
+                                    "pcs::Orl_shape_space::combination()");
     double total = 0;
     for (const double w : weights)
       total += w;
@@ -262,7 +268,7 @@ public:
     using namespace shape_space;
     const auto o =
         pcs::internal::choose(np, pcs::internal_np::sampling_options, Sampling_options());
-    check_options(o);
+    check_sampling(o, "pcs::Orl_shape_space::sample()");
     if (from.figures.size() != number_of_trees())
       throw Invalid_input("pcs::Orl_shape_space::sample(): the distribution is of another space");
     Orl_tree best;
@@ -404,40 +410,6 @@ private:
         modes.mean.attachment.size() != m_family.layout.branches.size())
       throw Invalid_input(std::string("pcs::Orl_shape_space::") + caller +
                           "(): the modes are of another space");
-  }
-
-  void check_weights(const std::vector<double>& w, bool may_be_negative, const char* caller) const
-  {
-    const auto fail = [&](const std::string& what) {
-      throw Invalid_input(std::string("pcs::Orl_shape_space::") + caller + "(): " + what);
-    };
-    if (w.size() != number_of_trees())
-      fail(std::to_string(w.size()) + " weights for " + std::to_string(number_of_trees()) +
-           " trees");
-    double total = 0, size = 0;
-    for (const double x : w) {
-      if (!std::isfinite(x) || (x < 0 && !may_be_negative))
-        fail("a weight is " + pcs::internal::to_text(x) +
-             (may_be_negative ? ", expected finite numbers" : ", expected numbers >= 0"));
-      total += x;
-      size += std::abs(x);
-    }
-    if (!(total > 1e-9 * size))
-      fail("the sum of the weights must be positive");
-  }
-
-  static void check_options(const shape_space::Sampling_options& o)
-  {
-    const auto check = [](bool is_right, const char* what) {
-      if (!is_right)
-        throw Invalid_input(std::string("pcs::Orl_shape_space::sample(): ") + what);
-    };
-    check(o.truncation > 0, "`truncation` must be > 0");
-    check(o.spread >= 0 && std::isfinite(o.spread), "`spread` must be >= 0 and finite");
-    check(o.shrinkage <= 1, "`shrinkage` must be at most 1");
-    check(o.number_of_trials > 0, "`number_of_trials` must be at least 1");
-    check(o.pipe_exponent >= 0 && std::isfinite(o.pipe_exponent),
-          "`pipe_exponent` must be >= 0 and finite");
   }
 
   std::vector<const shape_space::Orl_coordinates*> pointers() const

@@ -13,6 +13,7 @@
 #include <pcs/core/errors.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/text.h>
+#include <pcs/shape_space/Births.h>
 #include <pcs/shape_space/Embedded_pair.h>
 #include <pcs/shape_space/Family_points.h>
 #include <pcs/shape_space/Near_end.h>
@@ -62,6 +63,10 @@ public:
       \np{do_limit_radii} whether branches are made no thicker than where they grow from
         \nptype `bool`
         \npdefault `false`: real trees break that rule
+      \np{birth_order} how branches that only one of the trees has come into being
+        \nptype `shape_space::Birth_order`
+        \npdefault `together`: coordinates are linear. `in_order` for trees that grow at their tips: it predicts the tree
+        between better, and is as short in `Orl_metric::sum`, with constant speed there
     \npend
     \throws pcs::Invalid_input when `lambda` is not finite, or so large that coordinates are not, or a handle is wrong
   */
@@ -323,6 +328,9 @@ protected:
                                                       pcs::internal_np::maximal_turn,
                                                       0.25 * static_cast<double>(EIGEN_PI));
     const bool do_limit = pcs::internal::choose(np, pcs::internal_np::do_limit_radii, false);
+    const auto births = pcs::internal::choose(np,
+                                              pcs::internal_np::birth_order,
+                                              shape_space::Birth_order::together);
     if (!std::isfinite(t))
       throw Invalid_input("pcs::Orl_shape_space::geodesic(): `lambda` is not finite");
     if (!(maximal_turn >= 0))
@@ -330,6 +338,8 @@ protected:
                           pcs::internal::to_text(maximal_turn) + ", expected at least 0");
     const shape_space::Tree_family& family = this->m_family;
     shape_space::coordinates_at(family.layout, a, b, t, maximal_turn, result.m_x);
+    if (births == shape_space::Birth_order::in_order && t > 0 && t < 1)
+      shape_space::Births(family.layout, result.m_births)(a, b, t, result.m_x);
     if (t < 0 || t > 1)
       shape_space::Near_end(family.layout,
                             family.orientation,

@@ -226,7 +226,7 @@ public:
   template <class Graph>
   Skeleton_report extract(Graph& tree)
   {
-    constexpr bool is_ready_made = skeleton::internal::Is_tree_skeleton<Graph>::value;
+    constexpr bool is_ready_made = internal::Is_tree_skeleton<Graph>::value;
     constexpr bool has_maps =
         internal::is_given_v<NamedParameters, internal_np::node_point_map_t> &&
         internal::is_given_v<NamedParameters, internal_np::node_radius_map_t>;

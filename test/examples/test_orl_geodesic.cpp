@@ -185,6 +185,14 @@ BOOST_AUTO_TEST_CASE(options_change_the_result)
   succeeds(trees + "--lambda 1.5 --output plain --maximal-turn 90");
   succeeds(trees + "--lambda 1.5 --output other --maximal-turn 0 --limit-radii");
   BOOST_TEST(content("other/lambda_1.500.ply") != content("plain/lambda_1.500.ply"));
+  // a trunk that all its branches grow on
+  auto branches = orl_test::random_branches(61, 4, 2);
+  branches.resize(1);
+  pcs::IO::write_swc(path("trunk.swc"), orl_test::make_tree(branches));
+  const std::string grown = "--skeleton trunk.swc --skeleton a.swc --lambda 0.5 ";
+  succeeds(grown + "--output plain");
+  succeeds(grown + "--output other --births-in-order");
+  BOOST_TEST(content("other/lambda_0.500.swc") != content("plain/lambda_0.500.swc"));
   succeeds(trees + "--lambda 0.5 --output other --published-energy --orientation transported");
 }
 

@@ -4,6 +4,7 @@
 
 #include <pcs/skeleton/fuse_axes.h>
 #include <pcs/skeleton/prune_stubs.h>
+#include <support/axes.h>
 
 #include <CGAL/tags.h>
 
@@ -13,19 +14,7 @@
 #include <cstddef>
 #include <vector>
 
-using pcs::skeleton::Axis;
-using pcs::skeleton::Axis_node;
-using pcs::skeleton::Axis_set;
-using pcs::skeleton::Branch;
-using pcs::skeleton::Branch_node;
-using pcs::skeleton::Branch_tree;
-using pcs::skeleton::fuse_axes;
-using pcs::skeleton::Fuse_rules;
-using pcs::skeleton::Index;
-using pcs::skeleton::none;
-using pcs::skeleton::prune_stubs;
-using pcs::skeleton::Stub_rules;
-using pcs::skeleton::Vec3;
+using namespace pcs::skeleton;
 
 namespace {
 
@@ -33,15 +22,7 @@ constexpr double spacing = 0.01;
 
 Axis straight(const Vec3& from, const Vec3& to, double radius)
 {
-  const std::size_t steps = 10;
-  Axis axis;
-  for (std::size_t k = 0; k <= steps; ++k) {
-    Axis_node node;
-    node.point = from + (to - from) * (double(k) / double(steps));
-    node.radius = radius;
-    axis.push_back(node);
-  }
-  return axis;
+  return pcs_test::straight_axis(from, to, 10, radius, radius);
 }
 
 /// One point per segment of each axis.

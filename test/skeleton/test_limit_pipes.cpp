@@ -4,6 +4,7 @@
 
 #include <pcs/skeleton/count_stems.h>
 #include <pcs/skeleton/limit_pipes.h>
+#include <support/axes.h>
 
 #include <boost/test/unit_test.hpp>
 
@@ -12,19 +13,7 @@
 #include <cstdint>
 #include <vector>
 
-using pcs::skeleton::Axis_set;
-using pcs::skeleton::Branch;
-using pcs::skeleton::Branch_node;
-using pcs::skeleton::Branch_tree;
-using pcs::skeleton::count_other_stems;
-using pcs::skeleton::Fitted_axis;
-using pcs::skeleton::Index;
-using pcs::skeleton::Joint;
-using pcs::skeleton::limit_pipes;
-using pcs::skeleton::none;
-using pcs::skeleton::Pipe_rules;
-using pcs::skeleton::Stem_rules;
-using pcs::skeleton::Vec3;
+using namespace pcs::skeleton;
 
 namespace {
 
@@ -38,7 +27,6 @@ Index add(Branch_tree& tree,
           double first,
           double last)
 {
-  constexpr std::size_t steps = 20;
   const Index b = static_cast<Index>(tree.branches.size());
   Branch branch;
   if (seat != none) {
@@ -46,11 +34,9 @@ Index add(Branch_tree& tree,
     branch.order = tree.branches[branch.parent].order + 1;
   }
   Index before = seat;
-  for (std::size_t k = 0; k <= steps; ++k) {
-    const double t = double(k) / double(steps);
+  for (const Axis_node& place : pcs_test::straight_axis(from, to, 20, first, last)) {
     Branch_node node;
-    node.point = from + t * (to - from);
-    node.radius = first + t * (last - first);
+    static_cast<Axis_node&>(node) = place;
     node.is_measured = true;
     node.parent = before;
     node.branch = b;

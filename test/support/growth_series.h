@@ -6,6 +6,7 @@
 #define PCS_TEST_SUPPORT_GROWTH_SERIES_H
 
 #include <pcs/IO/read_points.h>
+#include <pcs/IO/read_swc.h>
 #include <pcs/IO/read_txtskl.h>
 #include <pcs/Orl_shape_space.h>
 #include <pcs/neighborhood/Nearest_neighbors.h>
@@ -89,6 +90,30 @@ read_plant(const std::string& scan, const std::string& graph, std::size_t most_p
     result.scan.emplace_back(p.x(), p.y(), p.z());
   }
   pcs::shape_space::extend_axes(result.tree, result.scan);
+  return result;
+}
+
+/// A skeleton without radii, with points on its axes.
+inline Seen_plant read_axes(const std::string& path, std::size_t number_of_points)
+{
+  Seen_plant result;
+  pcs::IO::read_swc<Kernel>(path, result.tree);
+  double length = 0;
+  const auto for_each_edge = [&](const auto& f) {
+    for (const auto e : boost::make_iterator_range(edges(result.tree)))
+      f(to_eigen(result.tree[source(e, result.tree)].point),
+        to_eigen(result.tree[target(e, result.tree)].point));
+  };
+  for_each_edge([&](const Vec3& from, const Vec3& to) { length += (to - from).norm(); });
+  const double step = length / static_cast<double>(number_of_points);
+  double next = 0; // from the beginning of the edge
+  for_each_edge([&](const Vec3& from, const Vec3& to) {
+    for (; next < (to - from).norm(); next += step)
+      result.scan.push_back(to_cgal(from + next * (to - from).normalized()));
+    next -= (to - from).norm();
+  });
+  for (const auto v : boost::make_iterator_range(vertices(result.tree)))
+    result.tree[v].radius = 0;
   return result;
 }
 
@@ -292,9 +317,12 @@ struct Series
 /// Chamfer distances to what was seen in the middle. [L]
 struct Prediction
 {
-  double geodesic, linear, first, last;
-  double attainable;  ///< of two halves of what was seen
-  double unexplained; ///< share of the smaller end that is not found in the other [-]
+  double geodesic;
+  double in_order; ///< the same with branches that are born in order
+  double linear, first, last;
+  double attainable;     ///< of two halves of what was seen
+  double unexplained;    ///< share of the smaller end that is not found in the other [-]
+  bool is_grown_at_tips; ///< as the matching found
 };
 
 /// Pots are put down anew every day: the ends are aligned before, and each prediction before it is measured. Scans are dense in
@@ -310,9 +338,15 @@ inline Prediction predict(const Series& series)
   pcs::Orl_shape_space<Kernel> space;
   space.add(series.first.tree, series.first.scan);
   space.add(moved(series.last.tree, pose.rotation, pose.shift), turned);
-  const double unexplained = space.build().unexplained_share;
-  std::vector<Point> points;
+  const pcs::Orl_report report = space.build();
+  std::vector<Point> points, in_order;
   space.points(space.geodesic(0, 1, series.lambda), points);
+  space.points(
+      space.geodesic(0,
+                     1,
+                     series.lambda,
+                     pcs::parameters::birth_order(pcs::shape_space::Birth_order::in_order)),
+      in_order);
   Vec3 low = seen[0], high = seen[0];
   for (const Vec3& p : seen) {
     low = low.cwiseMin(p);
@@ -328,11 +362,13 @@ inline Prediction predict(const Series& series)
   for (std::size_t k = 0; k < seen.size(); ++k)
     half[k % 2].push_back(seen[k]);
   return {measure(to_eigen(points)),
+          measure(to_eigen(in_order)),
           measure(morph_linearly(one, two, series.lambda)),
           measure(one),
           measure(two),
           chamfer(evened(half[0], cell), evened(half[1], cell)),
-          unexplained};
+          report.unexplained_share,
+          report.is_grown_at_tips};
 }
 
 } // namespace orl_test

@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 namespace pcs {
@@ -84,6 +85,19 @@ using Tree_skeleton = boost::adjacency_list<boost::vecS,
                                             Tree_node<Kernel>,
                                             boost::no_property,
                                             Tree_bundle>;
+
+namespace internal {
+
+template <class Graph>
+struct Is_tree_skeleton : std::false_type
+{
+};
+template <class Kernel>
+struct Is_tree_skeleton<Tree_skeleton<Kernel>> : std::true_type
+{
+};
+
+} // namespace internal
 
 /*!
   \ingroup PkgPcsCoreRef

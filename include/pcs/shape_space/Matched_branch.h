@@ -19,7 +19,7 @@ namespace shape_space {
 
 /// How branches of a tree become longer.
 enum class Growth {
-  any,            ///< whichever explains more
+  any,            ///< along branches, unless growth at tips explains clearly more
   along_branches, ///< everywhere: a branch is stretched, and what hangs on it moves along
   at_tips ///< what is there stays; the two trees are measured in the same unit, and the shorter of two branches is the
           ///< beginning of the longer one

@@ -6,11 +6,10 @@
 #define PCS_SHAPE_SPACE_MATCHING_ENERGY_H
 
 #include <pcs/core/rotations.h>
-#include <pcs/internal/parallel.h>
 #include <pcs/shape_space/Branch_paths.h>
+#include <pcs/shape_space/Compared_paths.h>
 #include <pcs/shape_space/Matched_branch.h>
 #include <pcs/shape_space/best_turn.h>
-#include <pcs/shape_space/canonical_frame.h>
 #include <pcs/shape_space/elastic_curves.h>
 #include <pcs/shape_space/linear_assignment.h>
 
@@ -29,13 +28,10 @@
 namespace pcs {
 namespace shape_space {
 
-/// All terms of the energy of a matching of two trees, for any of the ways to take them apart. Lengths are in units of the
-/// longest path of each tree; where growth is at tips, in units of the longest of both.
-class Matching_energy
+/// All terms of the energy of a matching of two trees, for any of the ways to take them apart.
+class Matching_energy : public Compared_paths
 {
 public:
-  static constexpr std::size_t number_of_samples = 25; ///< of a curve
-  static constexpr std::size_t few_samples = 13; ///< where many are only compared: every other one
   static constexpr std::size_t most_children = 256; ///< looked at in quick costs: the heaviest ones
 
   /// Two curves, matched.
@@ -64,72 +60,13 @@ public:
                   const Rooted_tree& tree_2,
                   const Matching_weights& weights,
                   std::array<Branch_paths, 2> paths,
-                  bool is_at_tips,
-                  ConcurrencyTag)
-    : m_weights(weights),
-      m_trees{&tree_1, &tree_2},
-      m_is_at_tips(is_at_tips),
-      m_unit{tree_1.heights[0], tree_2.heights[0]},
-      m_paths(std::move(paths))
+                  bool grows_at_tips,
+                  ConcurrencyTag tag)
+    : Compared_paths(tree_1, tree_2, std::move(paths), grows_at_tips, tag), m_weights(weights)
   {
-    if (is_at_tips)
-      m_unit[0] = m_unit[1] = std::max(m_unit[0], m_unit[1]);
-    for (std::size_t t = 0; t < 2; ++t) {
-      m_curves[t].resize(m_paths[t].paths.size());
-      m_coarse[t].resize(m_paths[t].paths.size());
-      pcs::internal::for_each_index<ConcurrencyTag>(
-          m_curves[t].size(),
-          [&](std::size_t i) {
-            Sampled_curve& curve = m_curves[t][i];
-            curve = sample_curve(*m_trees[t], m_paths[t].paths[i], number_of_samples);
-            curve.length /= m_unit[t];
-            turn_curve(curve);
-            m_coarse[t][i] = curve;
-            for (std::size_t k = 0; k < few_samples; ++k)
-              m_coarse[t][i].tangents.col(static_cast<Eigen::Index>(k)) =
-                  curve.tangents.col(static_cast<Eigen::Index>(2 * k));
-            m_coarse[t][i].tangents.conservativeResize(3, few_samples);
-          },
-          16);
-    }
   }
 
   const Matching_weights& weights() const { return m_weights; }
-  const Branch_paths& paths(int t) const { return m_paths[static_cast<std::size_t>(t)]; }
-  const Branch_path& path(int t, std::size_t i) const { return paths(t).paths[i]; }
-  /// Of a path, in units of the longest one of the tree.
-  double length(int t, std::size_t path) const { return curves(t)[path].length; }
-  /// Tree 2 has no other trunk than this path of it.
-  void set_second_trunk(std::size_t path) { m_paths[1].paths_of[0] = {path}; }
-  /// The axes of tree 1 in those of the caller: rotations here are in these.
-  const Eigen::Matrix3d& frame() const { return m_frame; }
-
-  /// Total length of what begins with the edge to `start`.
-  double weight(int t, std::size_t start) const
-  {
-    const Rooted_tree& tree = *m_trees[static_cast<std::size_t>(t)];
-    return (tree.weights[start] + (tree.parents[start] == none ? 0 : tree.edge_length(start))) /
-           m_unit[static_cast<std::size_t>(t)];
-  }
-
-  /// Nodes that two branches end with, if they are matched: their tips, or where growth is at tips the tip of the shorter one
-  /// and the node of the longer one that is as far from the base.
-  std::array<std::size_t, 2> last_nodes(std::size_t p1, std::size_t p2) const
-  {
-    std::array<std::size_t, 2> last = {path(0, p1).nodes.size() - 1, path(1, p2).nodes.size() - 1};
-    if (!is_cut(path(0, p1).length(), path(1, p2).length()))
-      return last;
-    const std::size_t t = path(0, p1).length() > path(1, p2).length() ? 0 : 1;
-    const Branch_path &more = t == 0 ? path(0, p1) : path(1, p2),
-                      &less = t == 0 ? path(1, p2) : path(0, p1);
-    const auto it = std::lower_bound(more.arc.begin() + 1, more.arc.end() - 1, less.length());
-    auto k = static_cast<std::size_t>(it - more.arc.begin());
-    if (k > 1 && less.length() - more.arc[k - 1] < nearer * (more.arc[k] - less.length()))
-      --k;
-    last[t] = k;
-    return last;
-  }
-
   /// What grew on beyond the last nodes costs: no partner is looked for there.
   double rest_cost(std::size_t p1, std::size_t p2, const std::array<std::size_t, 2>& last) const
   {
@@ -137,7 +74,7 @@ public:
     for (int t = 0; t < 2; ++t) {
       const Branch_path& whole = path(t, t == 0 ? p1 : p2);
       const std::size_t end = last[static_cast<std::size_t>(t)];
-      length += (whole.length() - whole.arc[end]) / m_unit[static_cast<std::size_t>(t)];
+      length += (whole.length() - whole.arc[end]) / unit(t);
       for (const Branch_path::Child& c : whole.children)
         length += c.position > end ? weight(t, c.start) : 0;
     }
@@ -147,7 +84,7 @@ public:
   /// A bound for the elastic energy: no pair of tangents is closer than the cones around the mean directions allow.
   double least_energy(std::size_t p1, std::size_t p2, const Eigen::Matrix3d& rotation) const
   {
-    const Sampled_curve &a = m_curves[0][p1], &b = m_curves[1][p2];
+    const Sampled_curve &a = curves(0)[p1], &b = curves(1)[p2];
     double length_1 = a.length, length_2 = b.length;
     if (is_cut(length_1, length_2)) // the beginning of a curve is in the same cone, or nearly so
       length_1 = length_2 = std::min(length_1, length_2);
@@ -166,8 +103,8 @@ public:
   double least_cost(std::size_t start_1, std::size_t start_2, const Eigen::Matrix3d& rotation) const
   {
     double least = std::numeric_limits<double>::infinity();
-    for (const std::size_t p1 : m_paths[0].paths_of[start_1])
-      for (const std::size_t p2 : m_paths[1].paths_of[start_2])
+    for (const std::size_t p1 : paths(0).paths_of[start_1])
+      for (const std::size_t p2 : paths(1).paths_of[start_2])
         least = std::min(least, least_energy(p1, p2, rotation));
     return m_weights.curve * least + least_difference(start_1, start_2);
   }
@@ -212,7 +149,7 @@ public:
     if (m_weights.is_published)
       return m_weights.position * parent_length * d * d;
     // far is far: branches of other species are not single for their place alone
-    const double w = m_is_at_tips ? std::min(w1, w2) : 0.5 * (w1 + w2);
+    const double w = grows_at_tips() ? std::min(w1, w2) : 0.5 * (w1 + w2);
     return m_weights.position * w * d / (1 + d / m_weights.far);
   }
 
@@ -357,42 +294,6 @@ public:
   }
 
 private:
-  // not round, as trees made of round numbers are
-  static constexpr double longest_cut = 0.950001; // branches whose lengths differ less end together
-  static constexpr double nearer = 0.999999; // of two nodes that are about as far, the one behind
-
-  bool is_cut(double length_1, double length_2) const
-  {
-    return m_is_at_tips &&
-           std::min(length_1, length_2) < longest_cut * std::max(length_1, length_2);
-  }
-
-  const std::vector<Sampled_curve>& curves(int t) const
-  {
-    return m_curves[static_cast<std::size_t>(t)];
-  }
-  /// Up to the node `last`, kept in `cut` if that is not the tip.
-  const Sampled_curve&
-  curve(int t, std::size_t path, std::size_t samples, std::size_t last, Sampled_curve& cut) const
-  {
-    const auto i = static_cast<std::size_t>(t);
-    const Branch_path& whole = m_paths[i].paths[path];
-    if (last + 1 < whole.nodes.size()) {
-      cut = sample_curve(*m_trees[i], whole, samples, last);
-      cut.length /= m_unit[i];
-      turn_curve(cut);
-      return cut;
-    }
-    return samples == number_of_samples ? m_curves[i][path] : m_coarse[i][path];
-  }
-
-  /// To the axes of tree 1: turns are rounded in these, so that it does not matter how the trees stand.
-  void turn_curve(Sampled_curve& curve) const
-  {
-    curve.tangents = (m_frame.transpose() * curve.tangents).eval();
-    curve.direction = (m_frame.transpose() * curve.direction).eval();
-  }
-
   double length_term(double a, double b) const
   {
     return m_weights.length * m_weights.single * std::abs(a - b);
@@ -449,7 +350,7 @@ private:
       const double t = m_weights.turn;
       cosine = std::sqrt(1 + t * t + 2 * t * a.direction[i].dot(rotation * b.direction[j])) - t;
     }
-    if (m_is_at_tips)
+    if (grows_at_tips())
       return 2 * std::min(a.weight[i], b.weight[j]) * (1 - cosine) +
              length_term(a.weight[i], b.weight[j]);
     return a.weight[i] + b.weight[j] - 2 * std::sqrt(a.weight[i] * b.weight[j]) * cosine +
@@ -457,12 +358,6 @@ private:
   }
 
   Matching_weights m_weights;
-  std::array<const Rooted_tree*, 2> m_trees;
-  bool m_is_at_tips;
-  std::array<double, 2> m_unit; // of length
-  Eigen::Matrix3d m_frame = canonical_frame(*m_trees[0]);
-  std::array<Branch_paths, 2> m_paths;
-  std::array<std::vector<Sampled_curve>, 2> m_curves, m_coarse;
 };
 
 } // namespace shape_space

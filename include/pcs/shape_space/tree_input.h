@@ -44,20 +44,6 @@ struct Tree_input
 
 namespace internal {
 
-template <class Graph>
-struct Is_tree_skeleton : std::false_type
-{
-};
-template <class Kernel>
-struct Is_tree_skeleton<boost::adjacency_list<boost::vecS,
-                                              boost::vecS,
-                                              boost::bidirectionalS,
-                                              Tree_node<Kernel>,
-                                              boost::no_property,
-                                              Tree_bundle>> : std::true_type
-{
-};
-
 template <class Map, class Key, class = void>
 struct Is_point_valued : std::false_type
 {
@@ -163,7 +149,7 @@ Tree_input make_tree_input(const TreeGraph& graph,
   constexpr bool has_own_maps =
       pcs::internal::is_given_v<NamedParameters, tags::node_point_map_t> &&
       pcs::internal::is_given_v<NamedParameters, tags::node_radius_map_t>;
-  constexpr bool has_maps = has_own_maps || internal::Is_tree_skeleton<TreeGraph>::value;
+  constexpr bool has_maps = has_own_maps || pcs::internal::Is_tree_skeleton<TreeGraph>::value;
   static_assert(
       has_maps,
       "pcs: a tree that is no pcs::Tree_skeleton needs the named parameters `node_point_map` and "

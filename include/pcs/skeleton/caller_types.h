@@ -87,20 +87,6 @@ struct Skeleton_types
   using Point = pcs::Map_value<Point_map>;
 };
 
-template <class Graph>
-struct Is_tree_skeleton : std::false_type
-{
-};
-template <class Kernel>
-struct Is_tree_skeleton<boost::adjacency_list<boost::vecS,
-                                              boost::vecS,
-                                              boost::bidirectionalS,
-                                              Tree_node<Kernel>,
-                                              boost::no_property,
-                                              Tree_bundle>> : std::true_type
-{
-};
-
 template <class T, class = void>
 struct Is_range_of_points : std::false_type
 {

@@ -61,14 +61,14 @@ void read_given_skeleton(const NamedParameters& np, Session_options& options)
     using Given = std::decay_t<decltype(given)>;
     constexpr bool has_map =
         pcs::internal::is_given_v<NamedParameters, pcs::internal_np::given_point_map_t>;
-    static_assert(has_map || internal::Is_tree_skeleton<Given>::value,
+    static_assert(has_map || pcs::internal::Is_tree_skeleton<Given>::value,
                   "pcs::extract_tree_skeleton(): a `given_skeleton` that is no "
                   "pcs::Tree_skeleton needs the named parameter `given_point_map`");
     if constexpr (has_map)
       options.given = internal::read_given(
           given,
           CGAL::parameters::get_parameter(np, pcs::internal_np::given_point_map));
-    else if constexpr (internal::Is_tree_skeleton<Given>::value)
+    else if constexpr (pcs::internal::Is_tree_skeleton<Given>::value)
       options.given = internal::read_given(given, get(&Given::vertex_bundled::point, given));
   }
 }
