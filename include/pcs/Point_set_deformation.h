@@ -11,6 +11,7 @@
 #include <pcs/core/Similarity.h>
 #include <pcs/core/errors.h>
 #include <pcs/deformation/Session.h>
+#include <pcs/internal/lanes.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
 #include <pcs/internal/text.h>
@@ -749,7 +750,24 @@ private:
                  const deformation::Vec3& p,
                  const deformation::Vec3& normal,
                  const Eigen::Matrix3d& gradient)
-              PCS_LAMBDA_INLINE { write(i, p, normal, gradient); });
+              PCS_LAMBDA_INLINE { write(i, p, normal, gradient); },
+          [this](std::size_t i) PCS_LAMBDA_INLINE { prefetch(i); });
+  }
+
+  /// Asks for the memory that `write()` will touch.
+  void prefetch(std::size_t i) const
+  {
+    with_element(i, [this](auto&& key) PCS_LAMBDA_INLINE {
+      prefetch_value(*m_point_map, key);
+      if constexpr (Types::has_normals)
+        prefetch_value(*m_normal_map, key);
+    });
+  }
+  template <class Map, class Key>
+  static PCS_ALWAYS_INLINE void prefetch_value(const Map& map, Key&& key)
+  {
+    if constexpr (std::is_lvalue_reference_v<decltype(get(map, key))>)
+      pcs::internal::prefetch(std::addressof(get(map, key)), 1);
   }
 
   void write(std::size_t i,

@@ -11,6 +11,7 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include <algorithm>
 #include <cstring>
 
 namespace {
@@ -92,6 +93,7 @@ struct Setup
           n[i] = normal;
           gradients[i] = g;
         },
+        [](std::size_t) {},
         [](std::size_t) { BOOST_ERROR("every point is blended"); });
   }
 };
@@ -213,11 +215,33 @@ BOOST_AUTO_TEST_CASE(points_that_are_not_blended_are_passed_on)
         ++written[i];
         BOOST_TEST((normal == Vec3::Zero()));
       },
+      [](std::size_t) {},
       [&](std::size_t i) { ++others[i]; });
   for (std::size_t i = 0; i < 101; ++i) {
     BOOST_TEST(written[i] == (i % 3 == 0 ? 1 : 0));
     BOOST_TEST(others[i] == (i % 3 == 0 ? 0 : 1));
   }
+}
+
+BOOST_AUTO_TEST_CASE(points_are_announced_before_they_are_written)
+{
+  constexpr std::size_t n = 1003;
+  Setup s(pcs_test::sphere(n), 20, false);
+  const std::vector<std::uint8_t> all(s.upsampling.number_of_blocks(), 255);
+  std::vector<int> announced(n, 0);
+  std::size_t late = 0;
+  s.upsampling.apply<CGAL::Sequential_tag, false>(
+      s.random_maps(1, 2),
+      {},
+      all,
+      {},
+      [&](std::size_t i, const Vec3&, const Vec3&, const Eigen::Matrix3d&) {
+        late += announced[i] == 0 ? 1 : 0;
+      },
+      [&](std::size_t i) { ++announced.at(i); },
+      [](std::size_t) {});
+  BOOST_TEST(*std::max_element(announced.begin(), announced.end()) == 1);
+  BOOST_TEST(late < n / 5); // the first blocks and the last, which is not whole
 }
 
 BOOST_AUTO_TEST_CASE(sizes_around_the_block_are_right)

@@ -218,10 +218,10 @@ public:
     Calls `write(input index, position, normal, gradient)` in the caller's coordinates for every point that the
     deformation may move, side by side: not for points outside the region of interest, nor for those that no handle
     reaches, nor for handles that have not moved. `gradient` is set if `HasGradients`: the linear part of the map of
-    the point.
+    the point. `expect(input index)` is called before, for what will be written to be asked for.
   */
-  template <bool HasGradients, class Write>
-  void write(const Write& write_point)
+  template <bool HasGradients, class Write, class Expect>
+  void write(const Write& write_point, const Expect& expect)
   {
     pcs::internal::Stopwatch watch;
     const auto& body = m_body;
@@ -249,6 +249,7 @@ public:
           m_sites.is_blended(),
           m_fades.of_blocks(m_local_transforms),
           put_blended,
+          [&](std::size_t place) PCS_LAMBDA_INLINE { expect(body.input_of_place[place]); },
           put_other);
     else
       pcs::internal::for_each_index<ConcurrencyTag>(body.number_of_points(),

@@ -111,14 +111,16 @@ public:
   /*!
     Calls `write(i, position, normal, gradient)` for the points whose bit is set in `is_blended[i / 8]`, and `other(i)`
     for all others, in blocks side by side. `normal` is zero without normals, `gradient` only set if `HasGradients`.
-    Blocks without a set bit cost nothing.
+    Blocks without a set bit cost nothing. `expect(i)` is called some time before, for what `write` will touch to be
+    asked for.
   */
-  template <class ConcurrencyTag, bool HasGradients, class Write, class Other>
+  template <class ConcurrencyTag, bool HasGradients, class Write, class Expect, class Other>
   void apply(const std::vector<Affine_map>& maps,
              const Output_frame& frame,
              const std::vector<std::uint8_t>& is_blended,
              const Fades& fades,
              const Write& write,
+             const Expect& expect,
              const Other& other)
   {
     update_pairs<ConcurrencyTag>(maps);
@@ -128,6 +130,7 @@ public:
                                                              is_blended,
                                                              fades,
                                                              write,
+                                                             expect,
                                                              other);
     };
     if constexpr (HasGradients)
@@ -211,12 +214,13 @@ private:
     });
   }
 
-  template <class ConcurrencyTag, Blend_outputs Outputs, class Write, class Other>
+  template <class ConcurrencyTag, Blend_outputs Outputs, class Write, class Expect, class Other>
   void apply_blocks(const std::vector<Affine_map>& maps,
                     const Output_frame& frame,
                     const std::vector<std::uint8_t>& is_blended,
                     const Fades& fades,
                     const Write& write,
+                    const Expect& expect,
                     const Other& other) const
   {
     const auto blend = choose_blend_block<Outputs>();
@@ -227,7 +231,7 @@ private:
           Block_output out{};
           for (std::size_t block = begin; block < end; ++block) {
             if (block + blocks_ahead < m_base.size() && is_blended[block + blocks_ahead] != 0)
-              prefetch(block + blocks_ahead);
+              prefetch(block + blocks_ahead, expect);
             if (is_blended[block] != 0)
               blend(block_input(maps, frame, fades, block), out);
             write_block<Outputs>(block, is_blended[block], out, write, other);
@@ -236,8 +240,11 @@ private:
   }
 
   /// Asks for what a later block reads: the processor foresees it only up to the next page of 4 KB.
-  PCS_ALWAYS_INLINE void prefetch(std::size_t block) const
+  template <class Expect>
+  PCS_ALWAYS_INLINE void prefetch(std::size_t block, const Expect& expect) const
   {
+    if ((block + 1) * lanes <= m_size)
+      pcs::internal::unroll<lanes>([&](auto l) PCS_LAMBDA_INLINE { expect(block * lanes + l); });
     pcs::internal::prefetch(&m_rest[block], sizeof(Lane_vectors));
     if (has_normals())
       pcs::internal::prefetch(&m_normal[block], sizeof(Lane_vectors));
@@ -297,7 +304,7 @@ private:
             fades.handles};
   }
 
-  static constexpr std::size_t blocks_ahead = 6;
+  static constexpr std::size_t blocks_ahead = 12;
   static constexpr std::uint8_t whole_block = 0xff;
 
   std::size_t m_size = 0;
