@@ -323,6 +323,17 @@ BOOST_AUTO_TEST_CASE(interior_springs_keep_volume)
   BOOST_TEST(with > without + 0.02);
 }
 
+// Above 20,000 nodes, only the coarser levels have the springs.
+BOOST_AUTO_TEST_CASE(interior_springs_keep_volume_at_full_resolution)
+{
+  pcs_test::Deformation_case c;
+  pcs_test::make_box(Vec3(-.5, -.5, 0), Vec3(1, 1, 4), 40, 40, 160, c);
+  pcs_test::twist(c, .2, 4, pcs_test::pi);
+  const auto m = run(c, at_full_resolution());
+  BOOST_TEST(m.volume_ratio > 0.97);
+  BOOST_TEST(m.position_error < 0.008);
+}
+
 BOOST_AUTO_TEST_CASE(the_variants_of_the_dissertation_run_and_differ)
 {
   const pcs_test::Bar_edit edit(10, 40);

@@ -267,7 +267,7 @@ public:
         \nptype floating point, -1 to 0.5
         \npdefault 0
       \np{do_preserve_volume} whether closed surfaces get springs through their inside; with more than 20,000 samples
-          only their coarser levels do
+          only their coarser levels do, and the finer ones make a single pass from there
         \nptype `bool`
         \npdefault `true`
       \np{region_of_interest} numbers of the points that may move; all others stay bit for bit

@@ -77,13 +77,18 @@ public:
   const std::vector<std::uint32_t>& component() const { return m_component; }
   const Node_constraints& constraints() const { return m_constraints; }
 
-  /// Takes over the constraints of the finer level. Returns `false` if a matrix is singular.
-  bool constrain(const Elastic_network& finer, const Node_constraints& of_finer, double stiffness)
+  /// Takes over the constraints of the finer level.
+  void constrain(const Node_constraints& of_finer)
   {
     m_constraints = Node_constraints();
     m_constraints.softness_weight = of_finer.softness_weight;
     for (const auto node : m_node_of_sample)
       m_constraints.handle_of_node.push_back(of_finer.handle_of_node[node]);
+  }
+
+  /// Prepares `improve()`. Returns `false` if a matrix is singular.
+  bool factorize(const Elastic_network& finer, const Node_constraints& of_finer, double stiffness)
+  {
     const auto handle_of_node = [&](std::size_t node) {
       return of_finer.is_prescribed(node) ? of_finer.handle_of_node[node] : free_node;
     };
@@ -117,14 +122,17 @@ public:
     pcs::internal::Progress uninterrupted;
     guess.is_far_from_field =
         m_solver.solve(transforms, options, uninterrupted, guess).is_far_from_field;
-    const auto& coarse = m_solver.deviations();
-    std::vector<Vec3>& deviations = guess.deviations;
-    deviations.assign(m_sample_of_node.size(), Vec3::Zero());
-    pcs::internal::for_each_index<ConcurrencyTag>(deviations.size(), [&](std::size_t i) {
-      for (std::size_t b = i * m_links.k; b < (i + 1) * m_links.k; ++b)
-        if (m_links.sample[b] != no_sample)
-          deviations[i] += static_cast<double>(m_links.weight[b]) * coarse[m_links.sample[b]];
-    });
+    guess.deviations = m_solver.deviations();
+    guess.link_offsets = m_solver.link_offsets();
+    carry(guess);
+  }
+
+  /// From a guess of this level's nodes to one of the finer level's.
+  void carry(Deviation_guess& guess) const
+  {
+    guess.deviations = to_finer(guess.deviations);
+    if (!guess.link_offsets.empty())
+      guess.link_offsets = to_finer(guess.link_offsets);
   }
 
   /// The finer level has a new rest shape.
@@ -135,6 +143,17 @@ public:
   }
 
 private:
+  std::vector<Vec3> to_finer(const std::vector<Vec3>& coarse) const
+  {
+    std::vector<Vec3> fine(m_sample_of_node.size(), Vec3::Zero());
+    pcs::internal::for_each_index<ConcurrencyTag>(fine.size(), [&](std::size_t i) {
+      for (std::size_t b = i * m_links.k; b < (i + 1) * m_links.k; ++b)
+        if (m_links.sample[b] != no_sample)
+          fine[i] += static_cast<double>(m_links.weight[b]) * coarse[m_links.sample[b]];
+    });
+    return fine;
+  }
+
   std::vector<std::uint32_t> m_node_of_sample, m_sample_of_node, m_component;
   Elastic_network m_network;     ///< over the samples
   Border_finder m_border_finder; ///< of the finer network's surface

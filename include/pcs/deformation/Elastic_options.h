@@ -58,11 +58,13 @@ struct Elastic_result
   bool is_far_from_field = false;
 };
 
-/// Deviations of the first nodes from the field, found on a coarser network.
+/// What was found on a coarser network, for the first nodes of this one: deviations from the field of the handles.
 struct Deviation_guess
 {
   std::vector<Vec3> deviations;
   bool is_far_from_field = false; ///< tried there against the field, which need not be tried again
+  std::vector<Vec3>
+      link_offsets; ///< what the interior links of coarser networks add to the positions; may be empty
 };
 
 } // namespace deformation

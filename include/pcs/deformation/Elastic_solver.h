@@ -9,6 +9,7 @@
 #include <pcs/core/Status.h>
 #include <pcs/core/rotations.h>
 #include <pcs/deformation/Anderson_mixing.h>
+#include <pcs/deformation/Elastic_factors.h>
 #include <pcs/deformation/Elastic_network.h>
 #include <pcs/deformation/Elastic_options.h>
 #include <pcs/deformation/Elastic_state.h>
@@ -19,10 +20,8 @@
 
 #include <Eigen/Core>
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <memory>
 #include <utility>
 #include <vector>
 
@@ -59,55 +58,42 @@ public:
   /// Rotation of every node relative to the field of the handles. [rad]
   const std::vector<Vec3>& deviations() const { return m_smooth; }
 
+  /// How far the interior links move the nodes: to the present positions from those that the surface alone would give
+  /// with the same frames. Empty without links. One solve.
+  std::vector<Vec3> link_offsets()
+  {
+    if (m_network->links.neighbor.empty())
+      return {};
+    std::vector<Vec3> offsets(m_network->size(), Vec3::Zero());
+    const Elastic_state state = this->state();
+    m_rhs3.resize(rows().size());
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        rows().size(),
+        [&](std::size_t r) { m_rhs3[r] = surface_load(state, rows().node_of_row[r]); },
+        block);
+    m_factors.field().template solve<ConcurrencyTag>(m_rhs3, m_work3);
+    for (std::size_t r = 0; r < rows().size(); ++r) {
+      const std::size_t i = rows().node_of_row[r];
+      offsets[i] = m_position[i] - m_rhs3[r];
+    }
+    return offsets;
+  }
+
   /// Takes a network, which must outlive its use here, and constraints, and factorises. Returns `false` if a matrix is
   /// singular (a free part without handle).
   bool constrain(const Elastic_network& network, Node_constraints constraints, double stiffness)
   {
     m_network = &network;
     m_constraints = std::move(constraints);
-    m_rows = Free_rows(m_constraints);
-    m_fit_weight.resize(m_rows.size());
-    std::vector<double> soft(m_rows.size(), 0), smoothing(m_rows.size(), 0);
-    for (std::size_t r = 0; r < m_rows.size(); ++r) {
-      const std::size_t i = m_rows.node_of_row[r];
-      const double degree = node_degree(m_network->surface, i);
-      if (m_constraints.is_soft(i))
-        soft[r] = m_constraints.soft_weight(i, degree);
-      m_fit_weight[r] = default_fit_weight / stiffness * relative_area(i) * degree;
-      smoothing[r] = soft[r] + m_fit_weight[r];
-    }
-    const auto assemble = [&](std::vector<const Weighted_graph*> graphs,
-                              const std::vector<double>& extra) {
-      return linear_algebra::free_laplacian(graphs, m_rows.row_of_node, m_rows.node_of_row, extra);
-    };
-    const Weighted_graph* surface = &m_network->surface;
-    const bool has_links = !m_network->links.neighbor.empty();
-    bool field_ok = false, smoothing_ok = false, position_ok = true;
-    const Eigen::SparseMatrix<double> of_field = assemble({surface}, soft);
-    std::shared_ptr<const linear_algebra::Cholesky_pattern> pattern;
-    pcs::internal::invoke_both<ConcurrencyTag>(
-        [&] {
-          pattern = std::make_shared<const linear_algebra::Cholesky_pattern>(
-              of_field,
-              rank_of_rows(m_network->surface_rank, m_rows));
-        },
-        [&] {
-          if (has_links)
-            position_ok = m_link_factor.factorize(assemble({surface, &m_network->links}, soft),
-                                                  rank_of_rows(m_network->rank, m_rows));
-        });
-    pcs::internal::invoke_both<ConcurrencyTag>(
-        [&] { field_ok = m_field_factor.factorize(of_field, pattern); },
-        [&] {
-          smoothing_ok = m_smoothing_factor.factorize(assemble({surface}, smoothing), pattern);
-        });
+    const bool is_regular = m_factors.factorize<ConcurrencyTag>(network, m_constraints, stiffness);
     m_position = network.rest;
     m_frame.assign(network.size(), Eigen::Matrix3d::Identity());
-    return field_ok && smoothing_ok && position_ok;
+    return is_regular;
   }
 
   /// Solves for one transformation per handle, from the rest shape. The guess is the first state, or tried after the
-  /// first pass, when that is not known to be worth it.
+  /// first pass, when that is not known to be worth it. Where it was found with links that this network lacks, energies do
+  /// not compare: it is taken, and little is changed.
   Elastic_result solve(const std::vector<Similarity>& transforms,
                        const Elastic_options& options,
                        pcs::internal::Progress& progress,
@@ -116,10 +102,10 @@ public:
     Elastic_result result;
     m_transforms = &transforms;
     m_field_solver(options.rotation_field,
-                   m_field_factor,
+                   m_factors.field(),
                    m_network->surface,
                    m_constraints,
-                   m_rows,
+                   rows(),
                    transforms,
                    m_field);
     m_rotation = m_field;
@@ -129,18 +115,22 @@ public:
       m_stretch.assign(m_network->size(), Eigen::Matrix3d::Identity());
     m_smooth.assign(m_network->size(), Vec3::Zero());
     m_best_smooth.assign(m_network->size(), Vec3::Zero());
-    result.is_far_from_field = guess.is_far_from_field && options.maximal_number_of_passes > 0;
-    if (result.is_far_from_field) {
+    const bool lacks_links = !guess.link_offsets.empty() && m_network->links.neighbor.empty();
+    m_link_offsets = lacks_links ? &guess.link_offsets : nullptr;
+    const bool starts_from_guess =
+        (guess.is_far_from_field || lacks_links) && options.maximal_number_of_passes > 0;
+    result.is_far_from_field = starts_from_guess;
+    if (starts_from_guess) {
       take(guess);
       turn_by_deviations();
     }
     update_frames();
     place_constrained_nodes();
     solve_positions(true);
-    result.energy = result.initial_energy = fit_and_measure(options);
+    result.energy = result.initial_energy = fit_and_measure(options, true);
     result.status =
         options.maximal_number_of_passes == 0 ? Status::iteration_limit : Status::converged;
-    if (m_rows.size() == 0)
+    if (rows().size() == 0)
       return result;
     m_mixing.restart();
     for (int pass = 0; pass < options.maximal_number_of_passes; ++pass) {
@@ -149,13 +139,18 @@ public:
         return result;
       }
       const double before = result.energy;
+      const bool is_last = lacks_links || pass + 1 == options.maximal_number_of_passes;
       const bool has_improved =
-          improve(options, pass >= (result.is_far_from_field ? 1 : first_accelerated_pass), result);
-      if (pass == 0 && !guess.deviations.empty() && !guess.is_far_from_field)
+          improve(options,
+                  pass >= (result.is_far_from_field ? 1 : first_accelerated_pass),
+                  is_last,
+                  result);
+      if (pass == 0 && !guess.deviations.empty() && !starts_from_guess)
         result.is_far_from_field = start_from(guess, options, result);
       result.number_of_passes = pass + 1;
       result.status = Status::converged;
-      if (!has_improved || before - result.energy <= options.tolerance * before)
+      // Without the links, each further pass would let the body collapse.
+      if (lacks_links || !has_improved || before - result.energy <= options.tolerance * before)
         break;
       result.status = Status::iteration_limit;
     }
@@ -163,15 +158,10 @@ public:
   }
 
 private:
+  const Free_rows& rows() const { return m_factors.rows(); }
+
   using Vec1 = Eigen::Matrix<double, 1, 1>;
   static constexpr std::size_t block = 512;
-
-  /// The area of a node in units of the reference network's.
-  double relative_area(std::size_t node) const
-  {
-    const double area = node < m_network->area.size() ? reference_size * m_network->area[node] : 1;
-    return std::min(largest_relative_area, std::max(smallest_relative_area, area));
-  }
 
   std::size_t handle(std::size_t node) const
   {
@@ -195,18 +185,19 @@ private:
   }
 
   /// One pass: accelerated if that lowers the energy, else plain; `false` if neither does (rounding at the optimum).
-  bool improve(const Elastic_options& options, bool is_accelerated, Elastic_result& result)
+  bool
+  improve(const Elastic_options& options, bool is_accelerated, bool is_last, Elastic_result& result)
   {
     keep_state();
     smooth_deviations();
     if (is_accelerated)
       m_plain = m_smooth;
     m_mixing.mix(m_best_smooth, m_smooth, is_accelerated);
-    double energy = apply_deviations(options);
+    double energy = apply_deviations(options, !is_last);
     if (is_accelerated && !(energy < result.energy)) {
       m_mixing.restart();
       m_smooth = m_plain;
-      energy = apply_deviations(options);
+      energy = apply_deviations(options, !is_last);
     }
     if (!(energy < result.energy)) {
       swap_state();
@@ -218,7 +209,7 @@ private:
 
   void take(const Deviation_guess& guess)
   {
-    for (const auto i : m_rows.node_of_row)
+    for (const auto i : rows().node_of_row)
       m_smooth[i] = i < guess.deviations.size() ? guess.deviations[i] : Vec3(Vec3::Zero());
   }
 
@@ -231,7 +222,7 @@ private:
     m_best_deviation = m_deviation;
     m_best_rotation = m_rotation;
     take(guess);
-    const double energy = apply_deviations(options);
+    const double energy = apply_deviations(options, true);
     if (energy < guess_advantage * result.energy) {
       result.energy = energy;
       m_mixing.restart();
@@ -244,28 +235,23 @@ private:
   }
 
   /// Rotations `exp(d) B` from the present deviations, then positions; returns the energy.
-  double apply_deviations(const Elastic_options& options)
+  double apply_deviations(const Elastic_options& options, bool has_next)
   {
     turn_by_deviations();
     update_frames();
     solve_positions(false);
-    return fit_and_measure(options);
+    return fit_and_measure(options, has_next);
   }
 
   void turn_by_deviations()
   {
     pcs::internal::for_each_index<ConcurrencyTag>(
-        m_rows.size(),
+        rows().size(),
         [&](std::size_t r) {
-          const std::size_t i = m_rows.node_of_row[r];
+          const std::size_t i = rows().node_of_row[r];
           m_rotation[i] = (rotation_exp(m_smooth[i]) * m_field[i]).normalized();
         },
         block);
-  }
-
-  const linear_algebra::Sparse_cholesky& position_factor() const
-  {
-    return m_network->links.neighbor.empty() ? m_field_factor : m_link_factor;
   }
 
   void blend_scales()
@@ -279,10 +265,10 @@ private:
     const auto value = [&](std::size_t i) {
       return Vec1(std::log((*m_transforms)[handle(i)].scale()));
     };
-    solve_harmonic<ConcurrencyTag>(m_field_factor,
+    solve_harmonic<ConcurrencyTag>(m_factors.field(),
                                    m_network->surface,
                                    m_constraints,
-                                   m_rows,
+                                   rows(),
                                    value,
                                    m_rhs1,
                                    m_work1,
@@ -319,18 +305,28 @@ private:
         m_position[i] = m_network->rest[i];
   }
 
+  /// The right side of the positions without links.
+  Vec3 surface_load(const Elastic_state& state, std::size_t node) const
+  {
+    Vec3 b;
+    const double degree = state.sum_edges(node, b);
+    if (m_constraints.is_soft(node))
+      b += m_constraints.soft_weight(node, degree) *
+           (*m_transforms)[handle(node)](m_network->rest[node]);
+    return b;
+  }
+
   /// Links keep their turned direction at first; later they are springs of their rest length, because a link through
   /// a twisted bar must not turn with either end.
   void solve_positions(bool links_turn)
   {
-    m_rhs3.resize(m_rows.size());
+    m_rhs3.resize(rows().size());
     const Elastic_state state = this->state();
     pcs::internal::for_each_index<ConcurrencyTag>(
-        m_rows.size(),
+        rows().size(),
         [&](std::size_t r) {
-          const std::size_t i = m_rows.node_of_row[r];
-          Vec3 b;
-          const double degree = state.sum_edges(i, b);
+          const std::size_t i = rows().node_of_row[r];
+          Vec3 b = surface_load(state, i);
           const auto& links = m_network->links;
           if (!links.neighbor.empty())
             for (std::size_t e = links.first[i]; e < links.first[i + 1]; ++e) {
@@ -339,20 +335,21 @@ private:
               if (m_constraints.is_prescribed(j))
                 b += links.weight[e] * m_position[j];
             }
-          if (m_constraints.is_soft(i))
-            b += m_constraints.soft_weight(i, degree) *
-                 (*m_transforms)[handle(i)](m_network->rest[i]);
           m_rhs3[r] = b;
         },
         block);
-    position_factor().template solve<ConcurrencyTag>(m_rhs3, m_work3);
-    pcs::internal::for_each_index<ConcurrencyTag>(m_rows.size(), [&](std::size_t r) {
-      m_position[m_rows.node_of_row[r]] = m_rhs3[r];
+    m_factors.position().template solve<ConcurrencyTag>(m_rhs3, m_work3);
+    pcs::internal::for_each_index<ConcurrencyTag>(rows().size(), [&](std::size_t r) {
+      const std::size_t i = rows().node_of_row[r];
+      m_position[i] = m_rhs3[r];
+      if (m_link_offsets && i < m_link_offsets->size())
+        m_position[i] += (*m_link_offsets)[i];
     });
   }
 
-  /// One sweep: the energy of the present state, and the deviation of each node's best rotation from the field.
-  double fit_and_measure(const Elastic_options& options)
+  /// One sweep: the energy of the present state and, if there is a next pass, the deviation of each node's best rotation
+  /// from the field.
+  double fit_and_measure(const Elastic_options& options, bool has_next)
   {
     m_deviation.resize(m_network->size());
     const Elastic_state state = this->state();
@@ -365,7 +362,7 @@ private:
           Eigen::Matrix3d covariance;
           double energy = state.measure_edges(i, covariance);
           energy += state.link_energy(i);
-          if (!m_constraints.is_prescribed(i)) {
+          if (has_next && !m_constraints.is_prescribed(i)) {
             m_deviation[i] = fit_deviation(covariance, m_rotation[i], m_field[i], fit_damping);
             if (m_stretch_is_used)
               m_stretch[i] = state.transverse_stretch(i, options.poisson_ratio);
@@ -379,26 +376,25 @@ private:
   /// `(L + mu D) d' = mu D d`.
   void smooth_deviations()
   {
-    m_rhs3.resize(m_rows.size());
-    pcs::internal::for_each_index<ConcurrencyTag>(m_rows.size(), [&](std::size_t r) {
-      m_rhs3[r] = m_fit_weight[r] * m_deviation[m_rows.node_of_row[r]];
+    m_rhs3.resize(rows().size());
+    pcs::internal::for_each_index<ConcurrencyTag>(rows().size(), [&](std::size_t r) {
+      m_rhs3[r] = m_factors.fit_weight(r) * m_deviation[rows().node_of_row[r]];
     });
-    m_smoothing_factor.template solve<ConcurrencyTag>(m_rhs3, m_work3);
-    pcs::internal::for_each_index<ConcurrencyTag>(m_rows.size(), [&](std::size_t r) {
-      m_smooth[m_rows.node_of_row[r]] = m_rhs3[r];
+    m_factors.smoothing().template solve<ConcurrencyTag>(m_rhs3, m_work3);
+    pcs::internal::for_each_index<ConcurrencyTag>(rows().size(), [&](std::size_t r) {
+      m_smooth[rows().node_of_row[r]] = m_rhs3[r];
     });
   }
 
 private:
   const Elastic_network* m_network = nullptr;
   Node_constraints m_constraints;
-  Free_rows m_rows;
-  linear_algebra::Sparse_cholesky m_field_factor, m_link_factor, m_smoothing_factor;
+  Elastic_factors m_factors;
   Rotation_field_solver<ConcurrencyTag> m_field_solver;
-  std::vector<double> m_fit_weight; ///< of each row, its degree included
   bool m_stretch_is_used = false;
 
   const std::vector<Similarity>* m_transforms = nullptr;
+  const std::vector<Vec3>* m_link_offsets = nullptr; ///< of the first nodes; of a coarser network
   Anderson_mixing<ConcurrencyTag> m_mixing;
   std::vector<Quaternion> m_field, m_rotation, m_best_rotation;
   std::vector<Eigen::Matrix3d> m_frame, m_best_frame, m_stretch, m_target;

@@ -7,7 +7,7 @@
 
 #include <pcs/core/Deformation_report.h>
 #include <pcs/core/Similarity.h>
-#include <pcs/deformation/Coarse_level.h>
+#include <pcs/deformation/Coarse_levels.h>
 #include <pcs/deformation/Elastic_solver.h>
 #include <pcs/deformation/Handle_fades.h>
 #include <pcs/deformation/Handle_set.h>
@@ -25,7 +25,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -112,14 +111,7 @@ public:
     pcs::internal::Stopwatch watch;
     Node_constraints constraints = m_sites.find(m_body, m_handles, m_report);
     m_stiffness = stiffness;
-    bool is_regular = true;
-    const Elastic_network* finer = &m_body.network;
-    const Node_constraints* of_finer = &constraints;
-    for (auto& level : m_coarse) {
-      is_regular = level.constrain(*finer, *of_finer, stiffness) && is_regular;
-      finer = &level.network();
-      of_finer = &level.constraints();
-    }
+    const bool is_regular = m_coarse.constrain(m_body.network, constraints, stiffness);
     bool is_extended = m_body.is_sampled;
     std::vector<Border_edge> border;
     if (m_body.is_sampled) {
@@ -169,9 +161,7 @@ public:
     }
     pcs::internal::Stopwatch watch;
     std::vector<Similarity> transforms = m_handles.local_transforms(m_body.frame);
-    Deviation_guess guess;
-    for (std::size_t level = m_coarse.size(); level-- > 0 && progress(0);)
-      m_coarse[level].improve(transforms, options, m_maps.size(), guess);
+    const Deviation_guess guess = m_coarse.solve(transforms, options, progress);
     r.seconds.coarse_levels = watch.lap();
     const Elastic_result result = m_solver.solve(transforms, options, progress, guess);
     r.status = result.status;
@@ -335,11 +325,7 @@ public:
           a * m_body.network.rest[s] + Vec3(m_maps[s].t[0], m_maps[s].t[1], m_maps[s].t[2]);
     }
     m_body.upsampling.set_sample_points(m_body.network.rest);
-    const Elastic_network* finer = &m_body.network;
-    for (auto& level : m_coarse) {
-      level.accept(*finer);
-      finer = &level.network();
-    }
+    m_coarse.accept(m_body.network);
     m_maps.assign(m_maps.size(), identity_map());
     m_carrier.reset();
     m_is_constrained = false;
@@ -354,13 +340,9 @@ private:
     std::vector<std::uint32_t> component;
     for (const auto site : m_body.site_of_sample)
       component.push_back(m_body.component_of_site[site]);
-    const Elastic_network* finer = &m_body.network;
-    const std::vector<std::uint32_t>* of_finer = &component;
-    while (finer->size() >= smallest_coarsened_network) {
-      m_coarse.emplace_back(*finer, *of_finer, m_body.options.do_preserve_volume);
-      finer = &m_coarse.back().network();
-      of_finer = &m_coarse.back().component();
-    }
+    m_coarse = Coarse_levels<ConcurrencyTag>(m_body.network,
+                                             std::move(component),
+                                             m_body.options.do_preserve_volume);
   }
 
   /// Handles that were added since the last solve have moved nothing yet. The outside of the region stays the last.
@@ -428,8 +410,7 @@ private:
   Elastic_network
       m_network; ///< the samples and the borders of the handles, if these are no samples
   Elastic_solver<ConcurrencyTag> m_solver;
-  std::deque<Coarse_level<ConcurrencyTag>>
-      m_coarse; ///< the finest first; a deque does not move them
+  Coarse_levels<ConcurrencyTag> m_coarse;
   Handle_set m_handles;
   Site_constraints m_sites;
   Handle_fades m_fades;
