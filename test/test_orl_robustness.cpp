@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <random>
 #include <vector>
 
 using namespace orl_test;
@@ -128,6 +129,25 @@ Tree curled(double bend)
     last = add_node(tree, last, p, 0.05);
     if (k == 6)
       add_node(tree, last, p + Vec3(0, 0.8, 0), 0.03);
+  }
+  return tree;
+}
+
+/// A trunk that leans a little, differently for each `seed`, with a twig near its top. If `is_folded`, it turns back by a
+/// twentieth of an edge after every fourth node, and goes on.
+Tree leaning(unsigned seed, bool is_folded)
+{
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0, 0.02);
+  Tree tree;
+  std::size_t last = add_node(tree, pcs::npos, Vec3::Zero(), 0.2);
+  for (int k = 1; k <= 24; ++k) {
+    const Vec3 p(noise(random), noise(random), 0.5 * k);
+    last = add_node(tree, last, p, 0.2);
+    if (k == 22)
+      add_node(tree, last, p + Vec3(2, 0, 1), 0.05);
+    if (is_folded && k % 4 == 0 && k < 24)
+      last = add_node(tree, last, p + Vec3(0.2 * noise(random), 0.2 * noise(random), -0.025), 0.2);
   }
   return tree;
 }
@@ -609,6 +629,21 @@ BOOST_AUTO_TEST_CASE(archetypes_of_graph_maps_range_and_key)
 
   pcs_test::Range_archetype small(out.size() - 1);
   BOOST_CHECK_THROW(space.points(tree, small, maps), pcs::Invalid_input);
+}
+
+BOOST_AUTO_TEST_CASE(what_is_behind_a_fold_stays_where_it_is)
+{
+  // what is in the same place in both trees, but for noise and folds, is there all the way
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const Space space = make_space(leaning(2 * seed, seed % 2 == 0), leaning(2 * seed + 1, true));
+    const Orl_geometry a = in_space(space, space.geodesic(0, 1, 0).coordinates()),
+                       m = in_space(space, space.geodesic(0, 1, 0.5).coordinates()),
+                       b = in_space(space, space.geodesic(0, 1, 1).coordinates());
+    double farthest = 0;
+    for (std::size_t v = 0; v < m.node.size(); ++v)
+      farthest = std::max(farthest, (m.node[v] - 0.5 * (a.node[v] + b.node[v])).norm());
+    BOOST_TEST(farthest < 0.5); // of a height of 12
+  }
 }
 
 BOOST_AUTO_TEST_CASE(the_end_of_a_trunk_is_the_end_whatever_twig_is_longest)
