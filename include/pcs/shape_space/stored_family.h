@@ -10,10 +10,12 @@
 #include <pcs/shape_space/Tree_family.h>
 #include <pcs/shape_space/stored_topology.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <string>
 #include <vector>
 
