@@ -523,6 +523,34 @@ BOOST_AUTO_TEST_CASE(growth_at_tips_is_believed_where_it_explains_clearly_more)
   BOOST_TEST(number_of_close_calls > 0);
 }
 
+BOOST_AUTO_TEST_CASE(a_bud_that_grew_to_four_times_its_length_is_still_the_same)
+{
+  // where it stands and points as it did, and nothing else can have become of it
+  const std::vector<Branch> grown = random_branches(5, 3, 2);
+  std::vector<Branch> young = grown;
+  for (Vec3& p : young[2].points)
+    p *= 0.22;
+  const auto all = [&](const std::vector<Branch>& of, std::vector<std::size_t>& tip) {
+    return make_tree(of,
+                     Turns(of.size(), Eigen::Matrix3d::Identity()),
+                     std::vector<char>(of.size(), 1),
+                     tip);
+  };
+  std::vector<std::size_t> tip_a, tip_b;
+  const Tree a = all(young, tip_a), b = all(grown, tip_b);
+  for (const bool is_growing : {true, false}) {
+    const Space space = is_growing ? make_space(a, b) : make_space(b, a);
+    std::size_t right = 0;
+    for (const pcs::Branch_match& match : space.matches())
+      for (std::size_t k = 0; k < grown.size(); ++k)
+        right +=
+            match.tip[is_growing ? 0 : 1] == tip_a[k] && match.tip[is_growing ? 1 : 0] == tip_b[k]
+                ? 1
+                : 0;
+    BOOST_TEST(right == grown.size());
+  }
+}
+
 BOOST_AUTO_TEST_CASE(a_fork_whose_longer_side_changes_keeps_its_branches)
 {
   const auto fork = [](double left, double right) {

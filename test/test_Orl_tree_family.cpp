@@ -1105,6 +1105,42 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(orl_family_files)
 
+BOOST_AUTO_TEST_CASE(a_space_with_folds_is_saved_and_restored)
+{
+  const auto trunk = [](double fold) {
+    Tree tree;
+    std::size_t last = pcs::npos;
+    for (const double z : {0., 1., 2., 2. - fold, 3., 4.}) {
+      pcs::Tree_node<Kernel> node;
+      node.point = Point(0.1 * z * z, 0.01 * z, z);
+      node.radius = 0.1;
+      const std::size_t v = add_vertex(node, tree);
+      if (last != pcs::npos)
+        add_edge(last, v, tree);
+      last = v;
+    }
+    return tree;
+  };
+  Space space, other;
+  space.add_skeleton(trunk(0.2));
+  space.add_skeleton(trunk(-0.2));
+  space.build();
+  const pcs::Orl_space_data data = space.data();
+  BOOST_TEST(!data.references.empty());
+  const std::string path =
+      (std::filesystem::temp_directory_path() / ("pcs_folds_" + std::to_string(getpid()) + ".txt"))
+          .string();
+  pcs::IO::write_shape_space(path, data);
+  other.restore(pcs::IO::read_shape_space(path));
+  std::filesystem::remove(path);
+  Tree one, two;
+  space.skeleton(space.geodesic(0, 1, 0.4), one);
+  other.skeleton(other.geodesic(0, 1, 0.4), two);
+  BOOST_REQUIRE(num_vertices(one) == num_vertices(two));
+  for (std::size_t v = 0; v < num_vertices(one); ++v)
+    BOOST_TEST((one[v].point == two[v].point));
+}
+
 BOOST_AUTO_TEST_CASE(a_space_is_saved_and_restored)
 {
   for (const std::size_t n : {std::size_t(2), std::size_t(4)}) {
@@ -1153,6 +1189,11 @@ BOOST_AUTO_TEST_CASE(a_space_is_saved_and_restored)
     };
     refuse([](auto& d) { d.branches[1].parent = 5; });
     refuse([](auto& d) { d.branches[1].reference_edge = 100000; });
+    refuse([](auto& d) { d.references.push_back({0, 0}); });
+    refuse([](auto& d) { d.references.push_back({100000, 1}); });
+    refuse([](auto& d) { // the first edge of a branch, and the last one of its parent
+      d.references.push_back({d.branches[0].number_of_edges, d.branches[0].number_of_edges - 1});
+    });
     refuse([](auto& d) { d.trees[0].length[3] = -1; });
     refuse([](auto& d) { d.trees[1].orientation[0] = {0, 0, 0, 0}; });
     refuse([](auto& d) { d.trees[0].attachment[1] = 1000; });

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <random>
 #include <vector>
 
 using namespace orl_test;
@@ -128,6 +129,48 @@ Tree curled(double bend)
     last = add_node(tree, last, p, 0.05);
     if (k == 6)
       add_node(tree, last, p + Vec3(0, 0.8, 0), 0.03);
+  }
+  return tree;
+}
+
+/// A stem without radii, with a blade on it that is turned about its axis and lies beside it.
+Tree with_blade(double turn, double width, double beside, unsigned seed, std::vector<Point>& scan)
+{
+  Tree tree;
+  const std::size_t root = add_node(tree, pcs::npos, Vec3::Zero(), 0);
+  const std::size_t fork = add_node(tree, root, Vec3(0, 0, 2), 0);
+  add_node(tree, fork, Vec3(0, 0, 8), 0);
+  add_node(tree, add_node(tree, fork, Vec3(2, 0, 2), 0), Vec3(4, 0, 2), 0);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int k = 0; k < 600; ++k) {
+    const double z = 4 + 4 * uniform(random), angle = CGAL_PI * uniform(random);
+    scan.emplace_back(0.05 * std::cos(angle), 0.05 * std::sin(angle), z);
+  }
+  const Vec3 along(0, std::cos(turn), std::sin(turn)), across(0, -std::sin(turn), std::cos(turn));
+  for (int k = 0; k < 3000; ++k) {
+    const Vec3 axis(2.6 + 1.4 * uniform(random), 0, 2); // not near the stem
+    const double u = width * uniform(random), v = beside + 0.01 * uniform(random);
+    scan.push_back(to_cgal(axis + u * along + v * across));
+  }
+  return tree;
+}
+
+/// A trunk that leans a little, differently for each `seed`, with a twig near its top. If `is_folded`, it turns back by a
+/// twentieth of an edge after every fourth node, and goes on.
+Tree leaning(unsigned seed, bool is_folded)
+{
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0, 0.02);
+  Tree tree;
+  std::size_t last = add_node(tree, pcs::npos, Vec3::Zero(), 0.2);
+  for (int k = 1; k <= 24; ++k) {
+    const Vec3 p(noise(random), noise(random), 0.5 * k);
+    last = add_node(tree, last, p, 0.2);
+    if (k == 22)
+      add_node(tree, last, p + Vec3(2, 0, 1), 0.05);
+    if (is_folded && k % 4 == 0 && k < 24)
+      last = add_node(tree, last, p + Vec3(0.2 * noise(random), 0.2 * noise(random), -0.025), 0.2);
   }
   return tree;
 }
@@ -609,6 +652,49 @@ BOOST_AUTO_TEST_CASE(archetypes_of_graph_maps_range_and_key)
 
   pcs_test::Range_archetype small(out.size() - 1);
   BOOST_CHECK_THROW(space.points(tree, small, maps), pcs::Invalid_input);
+}
+
+BOOST_AUTO_TEST_CASE(blades_of_leaves_stay_thin)
+{
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    const double turn = 0.4 * seed - 1, more = 0.9;
+    std::vector<Point> scan_a, scan_b, points;
+    const Tree a = with_blade(turn, 0.5, 0.15, seed, scan_a),
+               b = with_blade(turn + more, 0.8, -0.15, 10 + seed, scan_b);
+    Space space;
+    space.add(a, scan_a);
+    space.add(b, scan_b);
+    space.build();
+    space.points(space.geodesic(0, 1, 0.5), points);
+    double widest = 0, off = 0, n = 0;
+    const double middle = turn + 0.5 * more;
+    for (const Point& p : points)
+      if (p.x() > 1) {
+        widest = std::max(widest, std::hypot(p.y(), p.z() - 2));
+        const double across = -std::sin(middle) * p.y() + std::cos(middle) * (p.z() - 2);
+        off += across * across;
+        ++n;
+      }
+    BOOST_TEST(n > 2000);
+    BOOST_TEST(std::sqrt(off / n) < 0.04);
+    BOOST_TEST(widest > 0.9 * 0.65 * std::cos(0.5 * more)); // places in sections are mixed linearly
+    BOOST_TEST(widest < 0.7);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(what_is_behind_a_fold_stays_where_it_is)
+{
+  // what is in the same place in both trees, but for noise and folds, is there all the way
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const Space space = make_space(leaning(2 * seed, seed % 2 == 0), leaning(2 * seed + 1, true));
+    const Orl_geometry a = in_space(space, space.geodesic(0, 1, 0).coordinates()),
+                       m = in_space(space, space.geodesic(0, 1, 0.5).coordinates()),
+                       b = in_space(space, space.geodesic(0, 1, 1).coordinates());
+    double farthest = 0;
+    for (std::size_t v = 0; v < m.node.size(); ++v)
+      farthest = std::max(farthest, (m.node[v] - 0.5 * (a.node[v] + b.node[v])).norm());
+    BOOST_TEST(farthest < 0.5); // of a height of 12
+  }
 }
 
 BOOST_AUTO_TEST_CASE(the_end_of_a_trunk_is_the_end_whatever_twig_is_longest)

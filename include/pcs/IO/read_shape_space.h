@@ -27,7 +27,7 @@ public:
   {
     Orl_space_data s;
     m_file.expect("pcs_shape_space");
-    m_file.expect("2");
+    m_file.expect("3");
     m_file.expect("orientation");
     s.orientation = m_file.number<int>("the kind of orientations");
     read_all(s.origin);
@@ -40,6 +40,11 @@ public:
       b.number_of_edges = m_file.count("the number of edges");
       b.reference_edge = index();
       s.branches.push_back(b);
+    }
+    m_file.expect("references");
+    for (std::size_t n = m_file.count("the number of references"); n > 0; --n) {
+      const std::size_t edge = m_file.count("the number of an edge");
+      s.references.push_back({edge, m_file.count("the number of an edge")});
     }
     m_file.expect("trees");
     for (std::size_t n = m_file.count("the number of trees"); n > 0; --n)

@@ -26,7 +26,7 @@ public:
 
   void write(const Orl_space_data& s)
   {
-    m_line = "pcs_shape_space 2\norientation";
+    m_line = "pcs_shape_space 3\norientation";
     add(s.orientation);
     add_all(s.origin);
     end();
@@ -38,6 +38,12 @@ public:
       add_index(b.parent);
       add(b.number_of_edges);
       add_index(b.reference_edge);
+      end();
+    }
+    begin("references", s.references.size());
+    for (const auto& [edge, earlier] : s.references) {
+      add(edge);
+      add(earlier);
       end();
     }
     begin("trees", s.trees.size());

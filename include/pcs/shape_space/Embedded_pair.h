@@ -10,6 +10,7 @@
 #include <pcs/shape_space/Point_instances.h>
 #include <pcs/shape_space/assign_points.h>
 #include <pcs/shape_space/embed_trees.h>
+#include <pcs/shape_space/skip_folds.h>
 #include <pcs/shape_space/surface_pieces.h>
 #include <pcs/shape_space/tree_input.h>
 
@@ -38,6 +39,16 @@ struct Embedded_pair
 inline void embed(const std::array<const Tree_input*, 2>& inputs, Embedded_pair& pair)
 {
   pair.layout = make_layout(pair.topology.branches);
+  std::vector<std::vector<Vec3>> directions;
+  for (int t = 0; t < 2; ++t)
+    directions.push_back(internal::embed(pair.layout,
+                                         pair.topology.branches,
+                                         inputs[static_cast<std::size_t>(t)]->tree,
+                                         pair.topology.paths[static_cast<std::size_t>(t)],
+                                         t,
+                                         Vec3::Zero())
+                             .direction);
+  skip_folds(directions, pair.layout);
   pair.x = embed_trees(pair.layout,
                        pair.topology.branches,
                        {&inputs[0]->tree, &inputs[1]->tree},

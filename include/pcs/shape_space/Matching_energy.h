@@ -88,15 +88,14 @@ public:
     double length_1 = a.length, length_2 = b.length;
     if (is_cut(length_1, length_2)) // the beginning of a curve is in the same cone, or nearly so
       length_1 = length_2 = std::min(length_1, length_2);
-    const double total = length_1 + length_2, mean = 2 * std::sqrt(length_1 * length_2);
     const double cosine = std::min(1.0, std::max(-1.0, a.direction.dot(rotation * b.direction)));
     const double angle = std::max(0.0, std::acos(cosine) - a.spread - b.spread);
     if (m_weights.is_published || !m_weights.is_carried)
-      return total - mean * std::max(0.0, std::cos(angle)) * (1 + 1e-12);
+      return elastic_energy(length_1, length_2, std::max(0.0, std::cos(angle)) * (1 + 1e-12));
     // the branch may turn by a part of the angle
     const double t = m_weights.turn;
     const double gain = std::sqrt(1 + t * t + 2 * t * std::cos(angle)) - t;
-    return total - mean * gain * (1 + 1e-12);
+    return elastic_energy(length_1, length_2, gain * (1 + 1e-12));
   }
 
   /// All that two subtrees cost at least: what one of them has more is stretched or single.
@@ -135,10 +134,9 @@ public:
     }
     const double cosine = 0.5 * ((carried.transpose() * rotation).trace() - 1);
     const double length = std::sqrt(one.length * two.length);
-    return m_weights.curve *
-               std::max(0.0,
-                        one.length + two.length -
-                            2 * length * std::max(0.0, sum / static_cast<double>(n - 1))) +
+    return m_weights.curve * elastic_energy(one.length,
+                                            two.length,
+                                            std::max(0.0, sum / static_cast<double>(n - 1))) +
            m_weights.curve * m_weights.turn * 2 * length * (1 - cosine) +
            length_term(one.length, two.length);
   }
@@ -288,12 +286,19 @@ public:
     std::array<Sampled_curve, 2> cut;
     const Sampled_curve &one = curve(0, p1, samples, last[0], cut[0]),
                         &two = curve(1, p2, samples, last[1], cut[1]);
-    const double m = matcher(one, two, rotation);
-    const double energy = one.length + two.length - 2 * std::sqrt(one.length * two.length) * m;
-    return {p1, p2, last, m_weights.curve * std::max(0.0, energy), matcher.gamma()};
+    const double energy = elastic_energy(one.length, two.length, matcher(one, two, rotation));
+    return {p1, p2, last, m_weights.curve * energy, matcher.gamma()};
   }
 
 private:
+  /// Of curves whose tangents agree by `agreement`. Where lengths have a term of their own, it does not count what they differ
+  /// by: a branch that grew to four times its length would be single even if nothing else had changed.
+  double elastic_energy(double a, double b, double agreement) const
+  {
+    const double mean = 2 * std::sqrt(a * b);
+    return std::max(0.0, (is_turned() ? mean : a + b) - mean * agreement);
+  }
+
   double length_term(double a, double b) const
   {
     return m_weights.length * m_weights.single * std::abs(a - b);
@@ -353,8 +358,7 @@ private:
     if (grows_at_tips())
       return 2 * std::min(a.weight[i], b.weight[j]) * (1 - cosine) +
              length_term(a.weight[i], b.weight[j]);
-    return a.weight[i] + b.weight[j] - 2 * std::sqrt(a.weight[i] * b.weight[j]) * cosine +
-           length_term(a.weight[i], b.weight[j]);
+    return elastic_energy(a.weight[i], b.weight[j], cosine) + length_term(a.weight[i], b.weight[j]);
   }
 
   Matching_weights m_weights;

@@ -6,6 +6,7 @@
 #define PCS_SHAPE_SPACE_POINT_INSTANCES_H
 
 #include <pcs/internal/parallel.h>
+#include <pcs/shape_space/flat_sections.h>
 #include <pcs/shape_space/point_correspondences.h>
 
 #include <algorithm>
@@ -62,7 +63,8 @@ inline void sine_cosine(double x, double& sine, double& cosine)
 class Point_instances
 {
 public:
-  /// A pair as a line in tube coordinates: value + t * change.
+  /// A pair as a line in tube coordinates: value + t * change. On edges whose sections are flat, `angle` and `distance` are places
+  /// in the section: about an axis beside them, blades would be mixed to something thick.
   struct Line
   {
     double t, dt, overshoot, d_overshoot, angle, d_angle, distance, d_distance;
@@ -91,6 +93,7 @@ public:
     for (std::size_t b = 0; b < layout.branches.size(); ++b)
       for (std::size_t j = 0; j < layout.branches[b].number_of_edges; ++j)
         m_branch_of[layout.branches[b].first_edge + j] = static_cast<std::uint32_t>(b);
+    m_is_flat.assign(n, 0);
     m_lines.resize(m_pairs.size());
     m_has_normals = !normals[0].empty() && !normals[1].empty();
     m_normals.resize(m_has_normals ? m_pairs.size() : 0);
@@ -102,6 +105,7 @@ public:
           const std::array<Edge_cone, 2> cone = {edge_cone(layout, geometry[0], m_branch_of[e], e),
                                                  edge_cone(layout, geometry[1], m_branch_of[e], e)};
           m_is_relative[e] = m_is_relative[e] && are_near(e, cone, points) ? 1 : 0;
+          m_is_flat[e] = !m_is_relative[e] && are_flat(e, cone, points) ? 1 : 0;
           for (std::size_t k = m_first[e]; k < m_first[e + 1]; ++k)
             set_pair(k, cone, points, normals);
         },
@@ -180,6 +184,21 @@ private:
     return true;
   }
 
+  bool are_flat(std::size_t e,
+                const std::array<Edge_cone, 2>& cone,
+                const std::array<std::vector<Vec3>, 2>& points) const
+  {
+    for (std::size_t t = 0; t < 2; ++t) {
+      std::vector<Vec3> own;
+      for (std::size_t k = m_first[e]; k < m_first[e + 1]; ++k)
+        if (m_pairs[k].point[t] != no_point)
+          own.push_back(points[t][m_pairs[k].point[t]]);
+      if (!section_across(cone[t], own).is_flat())
+        return false;
+    }
+    return true;
+  }
+
   void set_pair(std::size_t k,
                 const std::array<Edge_cone, 2>& cone,
                 const std::array<std::vector<Vec3>, 2>& points,
@@ -192,9 +211,9 @@ private:
     for (std::size_t t = 0; t < 2; ++t)
       if (pair.point[t] != no_point) {
         c[t] = tube_coordinates(cone[t], points[t][pair.point[t]], is_relative(pair.edge));
+        const double turn = m_is_flat[pair.edge] ? 0 : c[t].angle;
         if (m_has_normals)
-          normal[t] =
-              turn_about_z(-c[t].angle) * (cone[t].frame.transpose() * normals[t][pair.point[t]]);
+          normal[t] = turn_about_z(-turn) * (cone[t].frame.transpose() * normals[t][pair.point[t]]);
       }
     for (std::size_t t = 0; t < 2; ++t)
       if (pair.point[t] == no_point) {
@@ -207,12 +226,21 @@ private:
         }
         normal[t] = normal[1 - t];
       }
+    double change = std::remainder(c[1].angle - c[0].angle, 2 * pi);
+    if (m_is_flat[pair.edge]) {
+      for (Tube_coordinates& place : c) {
+        const double x = place.distance * std::cos(place.angle);
+        place.distance *= std::sin(place.angle);
+        place.angle = x;
+      }
+      change = c[1].angle - c[0].angle;
+    }
     m_lines[k] = {c[0].t,
                   c[1].t - c[0].t,
                   c[0].overshoot,
                   c[1].overshoot - c[0].overshoot,
                   c[0].angle,
-                  std::remainder(c[1].angle - c[0].angle, 2 * pi),
+                  change,
                   c[0].distance,
                   c[1].distance - c[0].distance};
     if (m_has_normals)
@@ -227,10 +255,13 @@ private:
                   std::size_t to,
                   const Put& put) const
   {
-    const bool is_relative = m_is_relative[e] != 0;
+    const bool is_relative = m_is_relative[e] != 0, is_flat = m_is_flat[e] != 0;
     if (path == Point_path::virtual_edges) {
       for (std::size_t k = m_first[e]; k < m_first[e + 1]; ++k)
-        put(to++, on_virtual_edge(edge, m_lines[k], is_relative, s), Vec3(Vec3::Zero()), k);
+        put(to++,
+            on_virtual_edge(edge, m_lines[k], is_relative, is_flat, s),
+            Vec3(Vec3::Zero()),
+            k);
       return;
     }
     constexpr std::size_t block = 64;
@@ -244,12 +275,13 @@ private:
         const double t = line[i].t + s * line[i].dt;
         const double unit = unit_0 + t * unit_1;
         const double rho = unit * (line[i].distance + s * line[i].d_distance);
+        const double angle = line[i].angle + s * line[i].d_angle;
         double sine, cosine;
-        sine_cosine(line[i].angle + s * line[i].d_angle, sine, cosine);
+        sine_cosine(is_flat ? 0 : angle, sine, cosine);
         sines[i] = sine;
         cosines[i] = cosine;
-        px[i] = rho * cosine;
-        py[i] = rho * sine;
+        px[i] = is_flat ? angle : rho * cosine;
+        py[i] = is_flat ? rho : rho * sine;
         pz[i] = edge.height(px[i], py[i], t) + unit * (line[i].overshoot + s * line[i].d_overshoot);
       }
       for (std::size_t i = 0; i < n; ++i) {
@@ -270,14 +302,16 @@ private:
   }
 
   /// The text's way: the edge from the beginning of the edge to the point is turned by slerp, its length is linear.
-  static Vec3 on_virtual_edge(const Edge_cone& edge, const Line& line, bool is_relative, double s)
+  static Vec3
+  on_virtual_edge(const Edge_cone& edge, const Line& line, bool is_relative, bool is_flat, double s)
   {
     const auto local = [&](double f) {
       const double t = line.t + f * line.dt;
       const double unit = is_relative ? edge.radius(t) : 1;
       const double rho = unit * (line.distance + f * line.d_distance);
       const double angle = line.angle + f * line.d_angle;
-      const double x = rho * std::cos(angle), y = rho * std::sin(angle);
+      const double x = is_flat ? angle : rho * std::cos(angle);
+      const double y = is_flat ? rho : rho * std::sin(angle);
       return Vec3(x, y, edge.height(x, y, t) + unit * (line.overshoot + f * line.d_overshoot));
     };
     const Vec3 a = local(0), b = local(1);
@@ -291,7 +325,7 @@ private:
   std::vector<Point_pair> m_pairs;
   std::vector<std::size_t> m_first; // pairs of each edge
   std::vector<std::uint32_t> m_branch_of;
-  std::vector<char> m_is_relative;
+  std::vector<char> m_is_relative, m_is_flat;
   std::vector<Line> m_lines;
   std::vector<std::array<Vec3, 2>>
       m_normals; // in the frame of the edge, turned by the angle of the point

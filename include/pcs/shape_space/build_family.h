@@ -20,6 +20,14 @@
 namespace pcs {
 namespace shape_space {
 
+inline void describe(const Transport_summary& summary, Orl_report& report)
+{
+  report.number_of_windows = summary.number_of_windows;
+  report.number_of_failed_windows = summary.number_of_failures;
+  report.worst_marginal_violation = summary.worst_violation;
+  report.mean_marginal_violation = summary.mean_violation;
+}
+
 struct Family_options
 {
   Matching_weights weights;
@@ -103,10 +111,7 @@ bool build_family(const std::vector<Tree_input>& inputs,
   report.seconds.transport = watch.lap();
   if (progress.is_cancelled())
     return false;
-  report.number_of_windows = summary.number_of_windows;
-  report.number_of_failed_windows = summary.number_of_failures;
-  report.worst_marginal_violation = summary.worst_violation;
-  report.mean_marginal_violation = summary.mean_violation;
+  describe(summary, report);
   for (std::size_t b = 0; b < family.layout.branches.size(); ++b) {
     for (std::size_t t = 0; t < 2; ++t)
       report.number_of_branches[t] += family.has[t][b] ? 1 : 0;

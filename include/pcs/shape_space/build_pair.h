@@ -70,10 +70,7 @@ bool find_correspondences(const std::array<const Tree_input*, 2>& inputs,
   report.seconds.transport = watch.lap();
   if (progress.is_cancelled())
     return false;
-  report.number_of_windows = summary.number_of_windows;
-  report.number_of_failed_windows = summary.number_of_failures;
-  report.worst_marginal_violation = summary.worst_violation;
-  report.mean_marginal_violation = summary.mean_violation;
+  describe(summary, report);
   return true;
 }
 

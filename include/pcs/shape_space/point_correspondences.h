@@ -8,6 +8,7 @@
 #include <pcs/core/Orl_correspondences.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/shape_space/Orl_coordinates.h>
+#include <pcs/shape_space/flat_sections.h>
 #include <pcs/shape_space/match_points.h>
 #include <pcs/shape_space/tube_coordinates.h>
 
@@ -65,6 +66,7 @@ public:
   std::vector<Point_pair>
   run(const Transport_options& options, Transport_summary& summary, const IsStopped& is_stopped)
   {
+    find_sections();
     const std::vector<Window> windows = make_windows(options);
     std::vector<std::vector<Point_pair>> pairs(windows.size());
     std::vector<double> violation(windows.size(), 0);
@@ -108,6 +110,22 @@ private:
   {
     std::array<std::vector<Placed>, 2> point;
   };
+
+  /// Of all edges where radii are not known, or say nothing.
+  void find_sections()
+  {
+    m_section.assign(m_branch_of.size(), {});
+    pcs::internal::for_each_index<ConcurrencyTag>(m_section.size(), [&](std::size_t e) {
+      for (std::size_t t = 0; t < 2 && !m_is_relative[e] && !m_of_edge[1 - t][e].empty(); ++t) {
+        std::vector<Vec3> points;
+        for (const std::uint32_t i : m_of_edge[t][e])
+          points.push_back(m_points[t][i]);
+        if (!points.empty())
+          m_section[e][t] =
+              section_across(edge_cone(m_layout, m_geometry[t], m_branch_of[e], e), points);
+      }
+    });
+  }
 
   std::vector<Window> make_windows(const Transport_options& options) const
   {
@@ -214,14 +232,23 @@ private:
         }
         return true;
       }
-    // tree 1 is laid on tree 2: turned, stretched along and across, and moved, edge by edge
+    // tree 1 is laid on tree 2: turned, stretched along and across, and moved, edge by edge; blades also within their sections
     std::vector<Vec3> one, two;
     for (const Placed& p : window.point[0]) {
       const std::size_t b = m_branch_of[p.edge];
       const bool is_relative = m_is_relative[p.edge];
-      const Tube_coordinates c = tube_coordinates(edge_cone(m_layout, m_geometry[0], b, p.edge),
-                                                  m_points[0][p.point],
-                                                  is_relative);
+      Tube_coordinates c = tube_coordinates(edge_cone(m_layout, m_geometry[0], b, p.edge),
+                                            m_points[0][p.point],
+                                            is_relative);
+      const auto& [from, to] = m_section[p.edge];
+      if (from.is_flat() && to.is_flat()) {
+        const Eigen::Vector2d place =
+            carried_across(from,
+                           to,
+                           c.distance * Eigen::Vector2d(std::cos(c.angle), std::sin(c.angle)));
+        c.angle = std::atan2(place.y(), place.x());
+        c.distance = place.norm();
+      }
       one.push_back(point_of(edge_cone(m_layout, m_geometry[1], b, p.edge), c, is_relative));
     }
     for (const Placed& p : window.point[1])
@@ -253,6 +280,7 @@ private:
   const std::vector<char>& m_is_relative;
   std::array<std::vector<std::vector<std::uint32_t>>, 2> m_of_edge;
   std::vector<std::size_t> m_branch_of;
+  std::vector<std::array<Section, 2>> m_section; // per edge
 };
 
 } // namespace shape_space

@@ -10,10 +10,12 @@
 #include <pcs/shape_space/Tree_family.h>
 #include <pcs/shape_space/stored_topology.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -55,8 +57,12 @@ inline Orl_space_data store_family(const Tree_family& family)
   Orl_space_data result;
   result.orientation = static_cast<int>(family.orientation);
   result.origin = internal::to_array(family.origin);
-  for (const Orl_layout::Branch& b : family.layout.branches)
+  for (const Orl_layout::Branch& b : family.layout.branches) {
     result.branches.push_back({b.parent, b.number_of_edges, b.reference_edge});
+    for (std::size_t e = b.first_edge + 1; e < b.first_edge + b.number_of_edges; ++e)
+      if (family.layout.parent_edge[e] + 1 != e)
+        result.references.push_back({e, family.layout.parent_edge[e]});
+  }
   for (std::size_t t = 0; t < family.x.size(); ++t) {
     result.trees.push_back(internal::store(family.x[t]));
     result.trees.back().tip = family.tip[t];
@@ -117,6 +123,16 @@ inline Tree_family restore_family(const Orl_space_data& stored, const std::strin
     family.layout.branches.push_back(branch);
   }
   const std::size_t n = family.layout.number_of_edges(), m = family.layout.branches.size();
+  for (const auto& [edge, earlier] : stored.references) {
+    const auto last = std::upper_bound(
+        family.layout.branches.begin(),
+        family.layout.branches.end(),
+        edge,
+        [](std::size_t e, const Orl_layout::Branch& b) { return e < b.first_edge; });
+    check(edge < n && earlier < edge && earlier >= std::prev(last)->first_edge,
+          "an edge refers to one that is not before it on its branch");
+    family.layout.parent_edge[edge] = earlier;
+  }
   const auto is_amount = [](double v) { return v >= 0 && std::isfinite(v); };
   const auto check_tree = [&](const Orl_space_data::Tree& t) {
     check(t.orientation.size() == n && t.length.size() == n && t.radius.size() == n &&
