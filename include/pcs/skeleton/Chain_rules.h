@@ -48,7 +48,9 @@ struct Chain_rules
   double extension_offset = 4;  ///< ... and spacings
   double extension_share = 0.3; ///< share of the expected points that a prolongation needs
   std::size_t lowest_count = 3; ///< points of an axis
-  int iterations = 8;           ///< of each of the two fits
+  int narrowing = 12;           ///< iterations in which wide weights become narrow
+  int fewest = 3, most_iterations = 40; ///< of a fit, ...
+  double settled = 0.3; ///< ... which ends when nothing moves by more than this much noise [-]
   int full_iterations = 2;      ///< the last of them, to all points
   std::size_t enough = 32;      ///< points per node that the others use [count]
 };
