@@ -136,7 +136,8 @@ inline void Chain_fit::start_at_circles(Axis_fit& fit) const
     const bool is_good = c.radius > m_rules.circle_noise * m_set.noise &&
                          c.deviation < m_rules.circle_deviation * c.radius &&
                          covered_sectors(plane, c.center) >= m_rules.sectors;
-    const double expected = 2 * 3.14159265358979323846 * c.radius * length * m_set.density_at(axis, k);
+    const double expected =
+        2 * 3.14159265358979323846 * c.radius * length * m_set.density_at(axis, k);
     if (is_good && double(plane.size()) >= m_rules.expected_share * expected)
       circles[k] = c;
   }
@@ -174,11 +175,17 @@ inline bool Chain_fit::run(Axis_fit& fit, double widening) const
   fit.use_every(
       std::max<std::size_t>(1, fit.points().size() / (m_rules.enough * fit.axis().size())));
   const int ramp = widening > 1 ? m_rules.narrowing : 0, least = std::max(ramp, m_rules.fewest);
-  for (int k = 0, full = 0; full < m_rules.full_iterations; ++k) {
-    const bool is_settled = k >= least && fit.largest_change() < m_rules.settled * m_set.noise;
-    if (full > 0 || is_settled || k + m_rules.full_iterations >= m_rules.most_iterations)
-      if (full++ == 0)
-        fit.use_every(1);
+  const int full = ramp > 0 ? 0 : m_rules.full_iterations; // the first fits are not the last ones
+  bool is_full = false;
+  for (int k = 0, left = m_rules.most_iterations - full;; ++k, --left) {
+    if (!is_full &&
+        (left == 0 || (k >= least && fit.largest_change() < m_rules.settled * m_set.noise))) {
+      is_full = true;
+      left = full;
+      fit.use_every(1);
+    }
+    if (is_full && left == 0)
+      break;
     if (k % 2 == 0)
       set_priors(visible, fit);
     const double share = k < ramp ? double(ramp - 1 - k) / double(ramp) : 0;
@@ -310,7 +317,7 @@ Chain_fit::judge(Axis_fit& fit, const std::vector<Index>& points, Candidate& can
   const Filling filling(m_view, fit);
   std::vector<std::uint8_t> is_odd(axis.size(), 0);
   for (std::size_t k = 0; k < axis.size(); ++k)
-    is_odd[k] = counts.density(k, axis[k].radius) < m_rules.typical * m_set.density_at(axis, k) ||
+    is_odd[k] = counts.density(k, axis[k].radius) < m_rules.typical * m_set.density ||
                 filling.is_filled(k >= 2 ? k - 2 : 0, std::min(axis.size(), k + 3), m_rules.bush);
   for (std::size_t k = 0; k < points.size(); ++k) {
     const Axis_place& p = fit.places()[k];
@@ -331,11 +338,10 @@ Chain_fit::judge(Axis_fit& fit, const std::vector<Index>& points, Candidate& can
     if (!is_odd[k] && axis[k].is_measured && axis[k].radius > 2.5 * s &&
         axis[k].radius_error < 0.15 * axis[k].radius &&
         counts.visible_length[k] > m_rules.visible * counts.length[k])
-      candidate.densities.push_back(
-          {counts.density(k, axis[k].radius),
-           axis[k].radius,
-           axis[k].point,
-           (axis[k + 1].point - axis[k - 1].point).normalized()});
+      candidate.densities.push_back({counts.density(k, axis[k].radius),
+                                     axis[k].radius,
+                                     axis[k].point,
+                                     (axis[k + 1].point - axis[k - 1].point).normalized()});
   candidate.axis = axis;
   for (Axis_node& node : candidate.axis) {
     const double r2 = node.radius * node.radius - m_rules.noise_share * s * s;

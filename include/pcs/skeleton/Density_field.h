@@ -91,7 +91,8 @@ public:
 
 private:
   static constexpr int size = 16;
-  static constexpr double least_deviation = 0.05, shared = 5; // sections next to each other share points
+  static constexpr double least_deviation = 0.05,
+                          shared = 5; // sections next to each other share points
   using Row = Eigen::Matrix<double, size, 1>;
 
   void scale(const std::vector<Density_sample>& samples)
