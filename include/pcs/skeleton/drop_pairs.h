@@ -17,7 +17,8 @@ namespace skeleton {
 /// When axes of two points are believed.
 struct Pair_rules
 {
-  double ratio = 1.7;  ///< largest number for each axis of three points [-]
+  double ratio = 1.7;     ///< largest number for each axis of three points [-]
+  std::size_t fewest = 6; ///< axes of three points, or there is nothing to go by [count]
   double share = 0.05; ///< least of all axes: where thin twigs are seen well, few are in pieces [-]
 };
 
@@ -33,7 +34,8 @@ inline std::size_t drop_pairs(const Pair_rules& rules, Axis_set& set)
     pairs += a.number_of_points == 2;
     triples += a.number_of_points == 3;
   }
-  const bool are_twigs = double(pairs) <= rules.ratio * double(triples) &&
+  const bool are_twigs = triples >= rules.fewest &&
+                         double(pairs) <= rules.ratio * double(triples) &&
                          double(pairs) >= rules.share * double(set.axes.size());
   if (pairs == 0 || are_twigs)
     return 0;
