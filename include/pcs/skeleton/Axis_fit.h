@@ -111,6 +111,9 @@ public:
     return true;
   }
 
+  /// By how much the last step moved a node or changed its radius at most [L].
+  double largest_change() const { return m_largest_change; }
+
   /// Standard errors of the radii from the last system: the diagonal of its inverse.
   void estimate_errors();
 
@@ -133,6 +136,7 @@ private:
   std::vector<Axis_place> m_places;
   std::vector<Radius_prior> m_priors;
   std::size_t m_stride = 1;
+  double m_largest_change = 0;
   Matrix m_matrix; // its factor after a step
   std::vector<double> m_gradient, m_step;
   std::vector<double> m_information; // of the points on each radius alone
@@ -249,6 +253,7 @@ inline void Axis_fit::add_priors()
 
 inline void Axis_fit::apply_step()
 {
+  m_largest_change = 0;
   for (std::size_t k = 0; k < m_axis.size(); ++k) {
     Axis_node& node = m_axis[k];
     Vec3 move(m_step[4 * k], m_step[4 * k + 1], m_step[4 * k + 2]);
@@ -258,6 +263,7 @@ inline void Axis_fit::apply_step()
       move *= longest / length;
     node.point += move;
     const double change = std::min(longest, std::max(-longest, m_step[4 * k + 3]));
+    m_largest_change = std::max({m_largest_change, std::min(length, longest), std::abs(change)});
     node.radius = std::max(m_model.lowest_radius, node.radius + change);
   }
 }

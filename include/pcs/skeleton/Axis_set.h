@@ -6,6 +6,7 @@
 #define PCS_SKELETON_AXIS_SET_H
 
 #include <pcs/skeleton/Axis.h>
+#include <pcs/skeleton/Density_field.h>
 #include <pcs/skeleton/Scan.h>
 
 #include <algorithm>
@@ -32,7 +33,21 @@ struct Axis_set
   std::vector<Index> axis_of_point; ///< `none`: not explained by any axis
   std::vector<Index> segment_of_point;
   double noise = 0;   ///< standard deviation of points from the surface [L]
-  double density = 0; ///< points per area of the surface; 0: not known yet [1/L^2]
+  double density = 0; ///< median of points per area of the surface; 0: not known yet [1/L^2]
+  Density_field density_field;
+
+  /// Points per area of a branch at a place, along a unit vector [1/L^2].
+  double density_at(const Vec3& place, const Vec3& along) const
+  {
+    return density_field.is_known() ? density_field(place, along) : density;
+  }
+  /// The same at a node of an axis.
+  double density_at(const Axis& axis, std::size_t k) const
+  {
+    const Vec3 d = axis[std::min(axis.size() - 1, k + 1)].point - axis[k > 0 ? k - 1 : 0].point;
+    const double length = d.norm();
+    return density_at(axis[k].point, length > 0 ? Vec3(d / length) : Vec3(Vec3::UnitZ()));
+  }
 
   bool is_covered(Index i) const { return axis_of_point[i] != none; }
 
@@ -43,14 +58,6 @@ struct Axis_set
     const Axis_place place = nearest_place(axis, segment_of_point[i], p);
     return place.distance - radius_at(axis, place);
   }
-};
-
-/// What one good section says about the scan.
-struct Density_sample
-{
-  double density; ///< points per area [1/L^2]
-  double radius;  ///< of the section [L]
-  Vec3 place;
 };
 
 /// Deviations and densities, gathered from fits in a fixed order.
@@ -89,11 +96,26 @@ public:
           thick.push_back(s.density);
       }
       set.density = median(thick.size() >= enough_densities ? thick : all);
+      if (double(m_densities.size()) >= field_growth * double(m_samples_of_field)) {
+        m_samples_of_field = std::max(m_densities.size(), Density_field::fewest_samples);
+        learn_field(set);
+      }
     }
   }
 
 private:
-  static constexpr std::size_t capacity = 40000, enough_deviations = 200, enough_densities = 8;
+  void learn_field(Axis_set& set) const
+  {
+    std::vector<Density_sample> thick;
+    for (const Density_sample& s : m_densities)
+      if (s.radius > thick_radius * set.noise)
+        thick.push_back(s);
+    set.density_field.learn(thick.size() >= enough_thick ? thick : m_densities);
+  }
+
+  static constexpr std::size_t capacity = 40000, enough_deviations = 200, enough_densities = 8,
+                               enough_thick = 600;
+  static constexpr double field_growth = 1.5; ///< of the samples, until the field is fitted again
   static constexpr double thick_radius =
       6; ///< in noise: here the radius, hence the density, has no bias
   std::vector<double> m_deviations;
@@ -101,6 +123,7 @@ private:
   // what the last lesson was from
   std::size_t m_learned_deviations = 0, m_learned_densities = 0;
   double m_learned_noise = 0;
+  std::size_t m_samples_of_field = 0;
 };
 
 } // namespace skeleton

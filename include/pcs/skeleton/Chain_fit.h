@@ -136,7 +136,8 @@ inline void Chain_fit::start_at_circles(Axis_fit& fit) const
     const bool is_good = c.radius > m_rules.circle_noise * m_set.noise &&
                          c.deviation < m_rules.circle_deviation * c.radius &&
                          covered_sectors(plane, c.center) >= m_rules.sectors;
-    const double expected = 2 * 3.14159265358979323846 * c.radius * length * m_set.density;
+    const double expected =
+        2 * 3.14159265358979323846 * c.radius * length * m_set.density_at(axis, k);
     if (is_good && double(plane.size()) >= m_rules.expected_share * expected)
       circles[k] = c;
   }
@@ -146,7 +147,7 @@ inline void Chain_fit::start_at_circles(Axis_fit& fit) const
       axis[k].point += circles[k].center.x() * e1[k] + circles[k].center.y() * e2[k];
       axis[k].radius = circles[k].radius;
     } else if (m_set.density > 0 && counts.visible_length[k] > 0) {
-      const double r = counts.radius(k, m_set.density);
+      const double r = counts.radius(k, m_set.density_at(fit.axis(), k));
       axis[k].radius = std::max(0.1 * u, std::min(axis[k].radius, r));
     }
   }
@@ -160,7 +161,7 @@ inline void Chain_fit::set_priors(const std::vector<double>& visible, Axis_fit& 
     const Section_counts counts = section_counts(m_view, fit, visible);
     for (std::size_t k = 0; k < priors.size(); ++k)
       if (counts.visible_length[k] > m_rules.visible * counts.length[k]) {
-        priors[k].radius = counts.radius(k, m_set.density);
+        priors[k].radius = counts.radius(k, m_set.density_at(fit.axis(), k));
         priors[k].deviation =
             m_rules.prior_share * priors[k].radius + m_rules.prior_offset * m_scan.spacing;
       }
@@ -170,16 +171,24 @@ inline void Chain_fit::set_priors(const std::vector<double>& visible, Axis_fit& 
 
 inline bool Chain_fit::run(Axis_fit& fit, double widening) const
 {
-  const int steps = m_rules.iterations;
   const std::vector<double> visible = visible_shares(m_view, fit);
   fit.use_every(
       std::max<std::size_t>(1, fit.points().size() / (m_rules.enough * fit.axis().size())));
-  for (int k = 0; k < steps; ++k) {
-    if (k == steps - m_rules.full_iterations)
+  const int ramp = widening > 1 ? m_rules.narrowing : 0, least = std::max(ramp, m_rules.fewest);
+  const int full = ramp > 0 ? 0 : m_rules.full_iterations; // the first fits are not the last ones
+  bool is_full = false;
+  for (int k = 0, left = m_rules.most_iterations - full;; ++k, --left) {
+    if (!is_full &&
+        (left == 0 || (k >= least && fit.largest_change() < m_rules.settled * m_set.noise))) {
+      is_full = true;
+      left = full;
       fit.use_every(1);
+    }
+    if (is_full && left == 0)
+      break;
     if (k % 2 == 0)
       set_priors(visible, fit);
-    const double share = double(steps - 1 - k) / double(steps);
+    const double share = k < ramp ? double(ramp - 1 - k) / double(ramp) : 0;
     if (!fit.iterate(1 + (widening - 1) * share))
       return false;
   }
@@ -329,8 +338,10 @@ Chain_fit::judge(Axis_fit& fit, const std::vector<Index>& points, Candidate& can
     if (!is_odd[k] && axis[k].is_measured && axis[k].radius > 2.5 * s &&
         axis[k].radius_error < 0.15 * axis[k].radius &&
         counts.visible_length[k] > m_rules.visible * counts.length[k])
-      candidate.densities.push_back(
-          {counts.density(k, axis[k].radius), axis[k].radius, axis[k].point});
+      candidate.densities.push_back({counts.density(k, axis[k].radius),
+                                     axis[k].radius,
+                                     axis[k].point,
+                                     (axis[k + 1].point - axis[k - 1].point).normalized()});
   candidate.axis = axis;
   for (Axis_node& node : candidate.axis) {
     const double r2 = node.radius * node.radius - m_rules.noise_share * s * s;

@@ -42,15 +42,17 @@ struct Chain_rules
   double filled = 0.08; ///< thick axes end where more than this share of the points lies inside ...
   double bush = 0.2;    ///< with such a share, a section tells nothing about surfaces [-]
   double typical = 0.5; ///< ... nor with less than this share of the usual density
-  double filled_depth = 0.1;    ///< ... deeper than this many radii ...
-  double filled_noise = 4;      ///< ... and than this many times the noise
-  double extension = 3;         ///< how far both ends are prolonged on trial, in radii ...
-  double extension_offset = 4;  ///< ... and spacings
-  double extension_share = 0.3; ///< share of the expected points that a prolongation needs
-  std::size_t lowest_count = 3; ///< points of an axis
-  int iterations = 8;           ///< of each of the two fits
-  int full_iterations = 2;      ///< the last of them, to all points
-  std::size_t enough = 32;      ///< points per node that the others use [count]
+  double filled_depth = 0.1;            ///< ... deeper than this many radii ...
+  double filled_noise = 4;              ///< ... and than this many times the noise
+  double extension = 3;                 ///< how far both ends are prolonged on trial, in radii ...
+  double extension_offset = 4;          ///< ... and spacings
+  double extension_share = 0.3;         ///< share of the expected points that a prolongation needs
+  std::size_t lowest_count = 2;         ///< points of an axis
+  int narrowing = 12;                   ///< iterations in which wide weights become narrow
+  int fewest = 3, most_iterations = 40; ///< of a fit, ...
+  double settled = 0.3;    ///< ... which ends when nothing moves by more than this much noise [-]
+  int full_iterations = 2; ///< the last of them, to all points, unless weights were wide
+  std::size_t enough = 16; ///< points per node that the others use [count]
 };
 
 /// An axis that is not yet accepted.

@@ -9,6 +9,7 @@
 #include <pcs/skeleton/Chain_fit.h>
 #include <pcs/skeleton/Layer_tree.h>
 #include <pcs/skeleton/Neighbor_graph.h>
+#include <pcs/skeleton/drop_pairs.h>
 
 #include <algorithm>
 #include <cmath>
@@ -33,6 +34,7 @@ struct Axis_rules
   double first_noise = 0.3;      ///< noise before anything is known, in spacings [-]
   int most_cuts = 4;             ///< how often what is left of a chain is tried again
   std::size_t shortest_rest = 4; ///< layers that such a rest needs [count]
+  Pair_rules pairs;
   std::size_t largest_wave = 64; ///< chains that are fitted side by side [count]
 };
 
@@ -279,6 +281,7 @@ Axis_set fit_axes(const Scan& scan,
                                               share(done, done + 0.3 / double(rules.passes - 1))))
       return set;
   }
+  drop_pairs(rules.pairs, set);
   return set;
 }
 

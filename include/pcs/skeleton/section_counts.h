@@ -89,7 +89,7 @@ inline std::vector<double> visible_shares(const Chain_view& view, const Axis_fit
   const Section_counts counts = section_counts(view, fit, shares);
   for (std::size_t k = 0; k < axis.size(); ++k) {
     const double r = axis[k].radius;
-    if (counts.density(k, r) >= rules.counted_share * view.set.density)
+    if (counts.density(k, r) >= rules.counted_share * view.set.density_at(axis, k))
       continue;
     const double reach = rules.hiding_radius * r + rules.hiding_offset * u;
     const auto near = view.scan.search->nearest_if(axis[k].point, reach, [&](Index i) {

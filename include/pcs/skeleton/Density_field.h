@@ -1,0 +1,130 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// How many points per area a branch has, by where it is and where it points to.
+
+#ifndef PCS_SKELETON_DENSITY_FIELD_H
+#define PCS_SKELETON_DENSITY_FIELD_H
+
+#include <pcs/skeleton/Scan.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// What one good section says about the scan.
+struct Density_sample
+{
+  double density; ///< points per area [1/L^2]
+  double radius;  ///< of the section [L]
+  Vec3 place;
+  Vec3 along; ///< unit vector along the axis
+};
+
+/*!
+  Points thin out with the distance from a station, and where a branch points to it: the logarithm of the density is a
+  polynomial of second degree of the place and of the direction. Robust least squares with a ridge; no prediction leaves the
+  range of the samples.
+*/
+class Density_field
+{
+public:
+  static constexpr std::size_t fewest_samples = 60, most_samples = 3000; // of all, evenly
+
+  /// Whether there were enough samples.
+  bool is_known() const { return m_is_known; }
+
+  /// Fits the field to samples of positive density. O(samples).
+  void learn(const std::vector<Density_sample>& all)
+  {
+    m_is_known = all.size() >= fewest_samples;
+    if (!m_is_known)
+      return;
+    std::vector<Density_sample> samples;
+    const std::size_t stride = (all.size() + most_samples - 1) / most_samples;
+    for (std::size_t i = 0; i < all.size(); i += stride)
+      samples.push_back(all[i]);
+    scale(samples);
+    std::vector<double> values, errors(samples.size());
+    for (const Density_sample& s : samples)
+      values.push_back(std::log(s.density));
+    std::vector<double> sorted = values;
+    std::sort(sorted.begin(), sorted.end());
+    const std::size_t tail = sorted.size() / 20; // odd ones
+    m_middle = sorted[sorted.size() / 2];
+    m_lowest = sorted[tail];
+    m_highest = sorted[sorted.size() - 1 - tail];
+    std::vector<Row> rows;
+    for (const Density_sample& s : samples)
+      rows.push_back(row(s.place, s.along));
+    m_weights.setZero();
+    constexpr int rounds = 4;
+    for (int round = 0; round < rounds; ++round) {
+      for (std::size_t i = 0; i < rows.size(); ++i)
+        errors[i] = std::abs(values[i] - m_middle - m_weights.dot(rows[i]));
+      std::vector<double> copy = errors;
+      const double deviation = std::max(least_deviation, 1.4826 * median(copy));
+      Eigen::Matrix<double, size, size> matrix = Eigen::Matrix<double, size, size>::Identity();
+      Row right = Row::Zero();
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        const double x = errors[i] / (2 * deviation);
+        const double w = 1 / ((1 + x * x) * deviation * deviation * shared);
+        matrix.selfadjointView<Eigen::Lower>().rankUpdate(rows[i], w);
+        right += w * (values[i] - m_middle) * rows[i];
+      }
+      m_weights = matrix.selfadjointView<Eigen::Lower>().ldlt().solve(right);
+    }
+  }
+
+  /// Points per area of a branch at `place` that runs along the unit vector `along` [1/L^2].
+  double operator()(const Vec3& place, const Vec3& along) const
+  {
+    const double value = m_middle + m_weights.dot(row(place, along));
+    return std::exp(std::min(m_highest, std::max(m_lowest, value)));
+  }
+
+private:
+  static constexpr int size = 16;
+  static constexpr double least_deviation = 0.05,
+                          shared = 5; // sections next to each other share points
+  using Row = Eigen::Matrix<double, size, 1>;
+
+  void scale(const std::vector<Density_sample>& samples)
+  {
+    m_center = Vec3::Zero();
+    for (const Density_sample& s : samples)
+      m_center += s.place;
+    m_center /= double(samples.size());
+    double spread = 0;
+    for (const Density_sample& s : samples)
+      spread += (s.place - m_center).squaredNorm();
+    m_scale = spread > 0 ? std::sqrt(3 * double(samples.size()) / spread) : 1;
+  }
+
+  Row row(const Vec3& place, const Vec3& t) const
+  {
+    const double root = std::sqrt(2.0); // the ridge is the same for a turned scan
+    const Vec3 q = m_scale * (place - m_center);
+    Row r;
+    r << 1, q.x(), q.y(), q.z(), q.x() * q.x(), q.y() * q.y(), q.z() * q.z(), root * q.x() * q.y(),
+        root * q.x() * q.z(), root * q.y() * q.z(), t.x() * t.x(), t.y() * t.y(), t.z() * t.z(),
+        root * t.x() * t.y(), root * t.x() * t.z(), root * t.y() * t.z();
+    return r;
+  }
+
+  bool m_is_known = false;
+  Vec3 m_center = Vec3::Zero();
+  double m_scale = 1, m_middle = 0, m_lowest = 0, m_highest = 0; // of logarithms
+  Row m_weights = Row::Zero();
+};
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_DENSITY_FIELD_H

@@ -1,0 +1,189 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Densities by place and direction; which axes of two points are believed.
+
+#include <pcs/internal/Random_stream.h>
+#include <pcs/skeleton/Axis_set.h>
+#include <pcs/skeleton/Density_field.h>
+#include <pcs/skeleton/drop_pairs.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+using namespace pcs::skeleton;
+
+namespace {
+
+const Vec3 station(10, 0, 0);
+
+/// What one station sees of a thin branch.
+double true_density(const Vec3& place, const Vec3& along)
+{
+  const Vec3 view = place - station;
+  return 1e5 * view.cross(along).norm() / (view.norm() * view.squaredNorm());
+}
+
+Vec3 random_place(pcs::internal::Random_stream& random)
+{
+  return {random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(0, 8)};
+}
+
+Vec3 random_direction(pcs::internal::Random_stream& random)
+{
+  Vec3 d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+  return d.normalized();
+}
+
+/// Every tenth one is far too low.
+std::vector<Density_sample> samples_of(std::size_t n, const Eigen::Matrix3d& rotation)
+{
+  pcs::internal::Random_stream random(5, 1);
+  std::vector<Density_sample> samples;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3 place = random_place(random), along = random_direction(random);
+    const double factor = i % 10 == 0 ? 0.1 : std::exp(random.uniform(-0.2, 0.2));
+    samples.push_back(
+        {factor * true_density(place, along), 0.02, rotation * place, rotation * along});
+  }
+  return samples;
+}
+
+/// Mean error of the logarithm.
+template <class Density>
+double error_of(const Density& density)
+{
+  pcs::internal::Random_stream random(6, 1);
+  double sum = 0;
+  constexpr int n = 500;
+  for (int i = 0; i < n; ++i) {
+    const Vec3 place = random_place(random), along = random_direction(random);
+    sum += std::abs(std::log(density(place, along) / true_density(place, along)));
+  }
+  return sum / n;
+}
+
+/// Axes with the given numbers of points, each the parent of the next.
+Axis_set set_of(const std::vector<std::size_t>& counts)
+{
+  Axis_set set;
+  for (std::size_t a = 0; a < counts.size(); ++a) {
+    for (std::size_t k = 0; k < counts[a]; ++k) {
+      set.axis_of_point.push_back(static_cast<Index>(a));
+      set.segment_of_point.push_back(0);
+    }
+    set.axes.push_back({Axis(2), a == 0 ? none : static_cast<Index>(a - 1), counts[a], 1});
+  }
+  return set;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(density_field)
+
+BOOST_AUTO_TEST_CASE(it_follows_distance_and_direction_in_spite_of_odd_samples)
+{
+  const std::vector<Density_sample> samples = samples_of(2000, Eigen::Matrix3d::Identity());
+  std::vector<double> densities;
+  for (const Density_sample& s : samples)
+    densities.push_back(s.density);
+  const double middle = median(densities);
+  Density_field field;
+  field.learn(samples);
+  BOOST_TEST_REQUIRE(field.is_known());
+  const double constant = error_of([&](const Vec3&, const Vec3&) { return middle; });
+  BOOST_TEST(constant > 0.35);
+  BOOST_TEST(error_of(field) < 0.5 * constant);
+}
+
+BOOST_AUTO_TEST_CASE(it_turns_with_the_scan)
+{
+  const Eigen::Matrix3d rotation =
+      Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  Density_field field, turned;
+  field.learn(samples_of(500, Eigen::Matrix3d::Identity()));
+  turned.learn(samples_of(500, rotation));
+  pcs::internal::Random_stream random(7, 1);
+  for (int i = 0; i < 20; ++i) {
+    const Vec3 place = random_place(random), along = random_direction(random);
+    BOOST_TEST(turned(rotation * place, rotation * along) == field(place, along),
+               boost::test_tools::tolerance(1e-8));
+    BOOST_TEST(field(place, -along) == field(place, along), boost::test_tools::tolerance(1e-12));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(predictions_stay_within_the_samples)
+{
+  const std::vector<Density_sample> samples = samples_of(500, Eigen::Matrix3d::Identity());
+  double lowest = samples[0].density, highest = lowest;
+  for (const Density_sample& s : samples) {
+    lowest = std::min(lowest, s.density);
+    highest = std::max(highest, s.density);
+  }
+  Density_field field;
+  field.learn(samples);
+  for (const Vec3& far : {Vec3(100, 0, 0), Vec3(-100, 50, 0), Vec3(0, 0, 1000)}) {
+    BOOST_TEST(field(far, Vec3::UnitZ()) >= lowest);
+    BOOST_TEST(field(far, Vec3::UnitZ()) <= highest);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(few_samples_leave_the_median)
+{
+  Axis_set set;
+  set.density = 700;
+  set.density_field.learn(
+      samples_of(Density_field::fewest_samples - 1, Eigen::Matrix3d::Identity()));
+  BOOST_TEST(!set.density_field.is_known());
+  BOOST_TEST(set.density_at(Vec3::Zero(), Vec3::UnitX()) == 700);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(drop_pairs_of_points)
+
+BOOST_AUTO_TEST_CASE(pairs_among_triples_stay)
+{
+  Axis_set set = set_of({9, 3, 2, 3, 2, 3, 2, 3, 2, 3, 2, 3, 2});
+  BOOST_TEST(drop_pairs(Pair_rules(), set) == 0u);
+  BOOST_TEST(set.axes.size() == 13u);
+}
+
+BOOST_AUTO_TEST_CASE(pairs_without_triples_go_and_leave_their_children)
+{
+  Axis_set set = set_of({9, 2, 8, 2, 2, 3});
+  BOOST_TEST(drop_pairs(Pair_rules(), set) == 3u);
+  BOOST_TEST_REQUIRE(set.axes.size() == 3u);
+  BOOST_TEST(set.axes[0].parent == none);
+  BOOST_TEST(set.axes[1].parent == 0u);
+  BOOST_TEST(set.axes[1].number_of_points == 8u);
+  BOOST_TEST(set.axes[2].parent == 1u);
+  BOOST_TEST(set.axis_of_point[8] == 0u);
+  BOOST_TEST(set.axis_of_point[9] == none);
+  BOOST_TEST(set.axis_of_point[11] == 1u);
+  BOOST_TEST(set.axis_of_point.back() == 2u);
+}
+
+BOOST_AUTO_TEST_CASE(pairs_go_if_a_few_axes_are_all_there_is)
+{
+  Axis_set set = set_of({9, 2, 3, 3});
+  BOOST_TEST(drop_pairs(Pair_rules(), set) == 1u);
+  BOOST_TEST(set.axes.size() == 3u);
+}
+
+BOOST_AUTO_TEST_CASE(a_few_pairs_among_many_axes_go)
+{
+  std::vector<std::size_t> counts(60, 20);
+  counts.insert(counts.end(), 6, 3);
+  counts.push_back(2);
+  Axis_set set = set_of(counts);
+  BOOST_TEST(drop_pairs(Pair_rules(), set) == 1u);
+  BOOST_TEST(set.axes.size() == 66u);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
