@@ -127,7 +127,8 @@ inline void trim(const Chain_view& view, const Vec3& base, const Vec3& tip, Axis
     highest[p.segment] = std::max(highest[p.segment], p.share);
   }
   const auto is_supported = [&](std::size_t s) {
-    const double expected = 2 * 3.14159265358979323846 * axis[s].radius * view.set.density_at(axis, s) *
+    const double expected = 2 * 3.14159265358979323846 * axis[s].radius *
+                            view.set.density_at(axis, s) *
                             (axis[s + 1].point - axis[s].point).norm();
     return count[s] >= std::max(1.0, view.rules.extension_share * expected);
   };
