@@ -332,6 +332,12 @@ BOOST_AUTO_TEST_CASE(interior_springs_keep_volume_at_full_resolution)
   const auto m = run(c, at_full_resolution());
   BOOST_TEST(m.volume_ratio > 0.97);
   BOOST_TEST(m.position_error < 0.008);
+  // Without passes, the field of the handles alone counts.
+  Options options = at_full_resolution();
+  options.number_of_iterations = 0;
+  const Points with = deform(c.points, handles_of(c), options).points;
+  options.do_preserve_volume = false;
+  BOOST_TEST((deform(c.points, handles_of(c), options).points == with));
 }
 
 BOOST_AUTO_TEST_CASE(the_variants_of_the_dissertation_run_and_differ)

@@ -115,10 +115,11 @@ public:
       m_stretch.assign(m_network->size(), Eigen::Matrix3d::Identity());
     m_smooth.assign(m_network->size(), Vec3::Zero());
     m_best_smooth.assign(m_network->size(), Vec3::Zero());
-    const bool lacks_links = !guess.link_offsets.empty() && m_network->links.neighbor.empty();
+    const bool has_passes = options.maximal_number_of_passes > 0;
+    const bool lacks_links =
+        has_passes && !guess.link_offsets.empty() && m_network->links.neighbor.empty();
     m_link_offsets = lacks_links ? &guess.link_offsets : nullptr;
-    const bool starts_from_guess =
-        (guess.is_far_from_field || lacks_links) && options.maximal_number_of_passes > 0;
+    const bool starts_from_guess = lacks_links || (has_passes && guess.is_far_from_field);
     result.is_far_from_field = starts_from_guess;
     if (starts_from_guess) {
       take(guess);
