@@ -114,6 +114,7 @@ public:
   void improve(const std::vector<Similarity>& transforms,
                Elastic_options options,
                std::size_t finest_size,
+               bool needs_link_offsets,
                Deviation_guess& guess)
   {
     options.maximal_number_of_passes = number_of_coarse_passes;
@@ -123,7 +124,8 @@ public:
     guess.is_far_from_field =
         m_solver.solve(transforms, options, uninterrupted, guess).is_far_from_field;
     guess.deviations = m_solver.deviations();
-    guess.link_offsets = m_solver.link_offsets();
+    if (needs_link_offsets)
+      guess.link_offsets = m_solver.link_offsets();
     carry(guess);
   }
 

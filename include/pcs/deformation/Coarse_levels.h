@@ -44,7 +44,7 @@ public:
       finer = &m_level.back().network();
       of_finer = &m_level.back().component();
       if (!is_linked && !finer->links.neighbor.empty()) {
-        is_linked = true;
+        is_linked = m_has_offsets = true;
         m_first = m_level.size() - 1;
         m_size_of_passes = finer->size();
       }
@@ -75,7 +75,11 @@ public:
     Deviation_guess guess;
     for (std::size_t l = m_level.size(); l-- > 0 && progress(0);)
       if (l >= m_first)
-        m_level[l].improve(transforms, options, m_size_of_passes, guess);
+        m_level[l].improve(transforms,
+                           options,
+                           m_size_of_passes,
+                           m_has_offsets && l == m_first,
+                           guess);
       else
         m_level[l].carry(guess);
     return guess;
@@ -95,6 +99,7 @@ private:
   std::deque<Coarse_level<ConcurrencyTag>>
       m_level;                      ///< the finest first; a deque does not move them
   std::size_t m_first = 0;          ///< finer ones only carry
+  bool m_has_offsets = false;       ///< whether the first has links that finer networks lack
   std::size_t m_size_of_passes = 0; ///< of the finest network that makes passes until it converges
 };
 
