@@ -203,10 +203,15 @@ private:
     m_first.push_back(static_cast<std::uint32_t>(m_entry.size()));
   }
 
-  /// What changes from the base of a block to each of its other samples; shared by all blocks of the base.
+  /// The maps of bases, and what changes from the base of a block to each of its other samples; shared by all blocks of
+  /// the base.
   template <class ConcurrencyTag>
   void update_pairs(const std::vector<Affine_map>& maps)
   {
+    m_base_maps.resize(maps.size());
+    pcs::internal::for_each_index<ConcurrencyTag>(maps.size(), [&](std::size_t s) {
+      m_base_maps[s] = base_map(maps[s], m_sample_points[s].data());
+    });
     m_differences.resize(m_pairs.size());
     pcs::internal::for_each_index<ConcurrencyTag>(m_pairs.size(), [&](std::size_t p) {
       const auto [base, sample] = m_pairs[p];
@@ -228,14 +233,21 @@ private:
         m_base.size(),
         256,
         [&](std::size_t begin, std::size_t end) {
-          Block_output out{};
+          // A block is written while the next one is computed: what waits for a result would keep the processor from
+          // looking ahead.
+          Block_output out[2]{};
+          const auto put = [&](std::size_t block) PCS_LAMBDA_INLINE {
+            write_block<Outputs>(block, is_blended[block], out[block % 2], write, other);
+          };
           for (std::size_t block = begin; block < end; ++block) {
             if (block + blocks_ahead < m_base.size() && is_blended[block + blocks_ahead] != 0)
               prefetch(block + blocks_ahead, expect);
             if (is_blended[block] != 0)
-              blend(block_input(maps, frame, fades, block), out);
-            write_block<Outputs>(block, is_blended[block], out, write, other);
+              blend(block_input(maps, frame, fades, block), out[block % 2]);
+            if (block != begin)
+              put(block - 1);
           }
+          put(end - 1);
         });
   }
 
@@ -290,8 +302,7 @@ private:
                           std::size_t block) const
   {
     const bool has_fades = fades.first != nullptr;
-    return {&maps[m_base[block]],
-            m_sample_points[m_base[block]].data(),
+    return {&m_base_maps[m_base[block]],
             m_differences.data(),
             m_entry.data() + m_first[block],
             m_entry.data() + m_first[block + 1],
@@ -313,6 +324,7 @@ private:
   std::vector<std::uint32_t> m_base, m_first;
   pcs::internal::Huge_vector<Block_entry> m_entry;
   std::vector<Sample_pair> m_pairs;
+  std::vector<Base_map> m_base_maps;
   std::vector<Map_difference> m_differences;
 };
 

@@ -8,7 +8,7 @@
 #include <pcs/internal/instruction_set.h>
 #include <pcs/internal/lanes.h>
 
-#include <cmath>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -45,11 +45,17 @@ struct Block_output
   double gradient[9][lanes]; ///< row by row
 };
 
+/// The map of a sample around its position at rest: `x -> a (x - origin) + center`.
+struct Base_map
+{
+  double a[9], origin[3], center[3];
+};
+
 /// How the map of a sample differs from that of the base, around the base's position, per step of weight: linear part
-/// row by row, then offset. Small numbers, hence in single precision.
+/// row by row, then offset.
 struct Map_difference
 {
-  float value[12];
+  double value[12];
 };
 
 /// A sample of a block besides its base: which difference, and how much of it for each point.
@@ -75,8 +81,7 @@ struct Block_fade
 
 struct Block_input
 {
-  const Affine_map* base;
-  const double* origin; ///< position of the base sample at rest
+  const Base_map* base;
   const Map_difference* differences;
   const Block_entry *entry, *entry_end;
   const Lane_vectors *rest, *normal;
@@ -86,7 +91,19 @@ struct Block_input
   const Handle_map* handles;
 };
 
-/// The difference of `sample` to `base` around `origin`, formed in double precision.
+inline Base_map base_map(const Affine_map& map, const double* origin)
+{
+  Base_map result;
+  std::copy_n(map.a, 9, result.a);
+  std::copy_n(origin, 3, result.origin);
+  for (int r = 0; r < 3; ++r) {
+    result.center[r] = map.t[r];
+    for (int c = 0; c < 3; ++c)
+      result.center[r] += map.a[3 * r + c] * origin[c];
+  }
+  return result;
+}
+
 inline Map_difference
 map_difference(const Affine_map& base, const Affine_map& sample, const double* origin)
 {
@@ -95,10 +112,10 @@ map_difference(const Affine_map& base, const Affine_map& sample, const double* o
     double offset = sample.t[r] - base.t[r];
     for (int c = 0; c < 3; ++c) {
       const double difference = sample.a[3 * r + c] - base.a[3 * r + c];
-      result.value[3 * r + c] = static_cast<float>(difference / weight_steps);
+      result.value[3 * r + c] = difference / weight_steps;
       offset += difference * origin[c];
     }
-    result.value[9 + r] = static_cast<float>(offset / weight_steps);
+    result.value[9 + r] = offset / weight_steps;
   }
   return result;
 }
@@ -118,9 +135,7 @@ template <class Arithmetic, class Doubles>
 PCS_ALWAYS_INLINE void add_image(const double* row, const Doubles* v, Doubles& image)
 {
   pcs::internal::unroll<3>([&](auto c) PCS_LAMBDA_INLINE {
-    Doubles factor;
-    pcs::internal::fill(row[c], factor);
-    Arithmetic::fma(factor, v[c], image);
+    Arithmetic::fma(row[c], v[c], image);
   });
 }
 
@@ -132,33 +147,38 @@ PCS_ALWAYS_INLINE void squared_length(const Doubles* v, Doubles& result)
   Arithmetic::fma(v[2], v[2], result);
 }
 
+inline constexpr double smallest_square = 1e-290;
+
 /// The factor that gives `v` the length of which `squared` is the square; finite, and of no effect, where `v` is zero.
 template <class Arithmetic, class Doubles>
 PCS_ALWAYS_INLINE void scale_to_length(const Doubles& squared, const Doubles* v, Doubles& scale)
 {
   Doubles present, product;
   squared_length<Arithmetic>(v, present);
-  pcs::internal::fill(1e-290, product);
+  Arithmetic::fill(smallest_square, product);
   Arithmetic::fma(squared, present, product);
   pcs::internal::reciprocal_root<Arithmetic>(product, scale);
   scale = scale * squared;
 }
 
-/// `result = cofactor matrix of g, times v`.
+/// `result = cofactor matrix of g, times v`. With columns `a`, `b`, `c` of `g`, this is
+/// `v_x (b x c) + v_y (c x a) + v_z (a x b) = b x (v_x c - v_z a) + (v_y c) x a`.
 template <class Arithmetic, class Doubles>
 PCS_ALWAYS_INLINE void multiply_by_cofactors(const Doubles* g, const Doubles* v, Doubles* result)
 {
+  Doubles left[3], right[3];
+  pcs::internal::unroll<3>([&](auto r) PCS_LAMBDA_INLINE {
+    left[r] = v[0] * g[3 * r + 2];
+    Arithmetic::subtract_product(v[2], g[3 * r], left[r]);
+    right[r] = v[1] * g[3 * r + 2];
+  });
   pcs::internal::unroll<3>([&](auto row) PCS_LAMBDA_INLINE {
-    constexpr std::size_t r = 3 * ((decltype(row)::value + 1) % 3);
-    constexpr std::size_t s = 3 * ((decltype(row)::value + 2) % 3);
-    Doubles cx = g[r + 1] * g[s + 2], cy = g[r + 2] * g[s], cz = g[r] * g[s + 1];
-    Arithmetic::subtract_product(g[r + 2], g[s + 1], cx);
-    Arithmetic::subtract_product(g[r], g[s + 2], cy);
-    Arithmetic::subtract_product(g[r + 1], g[s], cz);
+    constexpr std::size_t s = (decltype(row)::value + 1) % 3, t = (decltype(row)::value + 2) % 3;
     Doubles& n = result[row];
-    n = cx * v[0];
-    Arithmetic::fma(cy, v[1], n);
-    Arithmetic::fma(cz, v[2], n);
+    n = right[s] * g[3 * t];
+    Arithmetic::subtract_product(right[t], g[3 * s], n);
+    Arithmetic::fma(g[3 * s + 1], left[t], n);
+    Arithmetic::subtract_product(g[3 * t + 1], left[s], n);
   });
 }
 
@@ -168,43 +188,36 @@ PCS_ALWAYS_INLINE void multiply_by_cofactors(const Doubles* g, const Doubles* v,
       sum w_s (A_s p + t_s) = (A_b + G) (p - o) + (A_b o + t_b) + g,
       G = sum w_s (A_s - A_b),  g = sum w_s ((A_s - A_b) o + t_s - t_b)
 
-  for any base sample `b` of the block and its position `o`. `G` and `g` hold differences between neighbouring samples
-  only, so that they may be blended in single precision and a rigid motion stays exact; the rest is in double
-  precision. Normals get the cofactor matrix of the blended map, and keep their length. Last, points around handles are
-  drawn towards these.
+  for any base sample `b` of the block and its position `o`: one sample less to add up, and a rigid motion, where all
+  differences are zero, stays exact. Normals get the cofactor matrix of the blended map, and keep their length. Last,
+  points around handles are drawn towards these.
 */
 template <Blend_outputs Outputs, class Arithmetic>
 PCS_ALWAYS_INLINE void blend_block(const Block_input& in, Block_output& out)
 {
-  using pcs::internal::fill;
   using pcs::internal::load;
   using pcs::internal::store;
   using pcs::internal::unroll;
   using Doubles = typename Arithmetic::Doubles;
   constexpr std::size_t width = sizeof(Doubles) / sizeof(double);
-  pcs::internal::Lane_sums<Arithmetic, 12> m;
-  for (const Block_entry* entry = in.entry; entry != in.entry_end; ++entry)
-    m.add(entry->weight, in.differences[entry->pair].value);
-  m.finish();
-
-  const double *a = in.base->a, *t = in.base->t, *o = in.origin;
-  double center[3];
-  for (int r = 0; r < 3; ++r)
-    center[r] =
-        std::fma(a[3 * r], o[0], std::fma(a[3 * r + 1], o[1], std::fma(a[3 * r + 2], o[2], t[r])));
+  const Base_map& base = *in.base;
   unroll<lanes / width>([&](auto part) PCS_LAMBDA_INLINE {
     constexpr std::size_t first = width * decltype(part)::value;
-    Doubles v[3], g[12], position[3];
+    Doubles g[9], position[3], v[3];
+    unroll<9>([&](auto k) PCS_LAMBDA_INLINE { Arithmetic::fill(base.a[k], g[k]); });
+    unroll<3>([&](auto r) PCS_LAMBDA_INLINE { Arithmetic::fill(base.center[r], position[r]); });
+    for (const Block_entry* entry = in.entry; entry != in.entry_end; ++entry) {
+      const double* difference = in.differences[entry->pair].value;
+      Doubles weight;
+      Arithmetic::to_doubles(entry->weight + first, weight);
+      unroll<9>([&](auto k) PCS_LAMBDA_INLINE { Arithmetic::fma(difference[k], weight, g[k]); });
+      unroll<3>([&](auto r)
+                    PCS_LAMBDA_INLINE { Arithmetic::fma(difference[9 + r], weight, position[r]); });
+    }
     load_vectors(*in.rest, first, v);
-    unroll<3>([&](auto c) PCS_LAMBDA_INLINE { v[c] = v[c] - o[c]; });
-    unroll<12>([&](auto k) PCS_LAMBDA_INLINE {
-      Arithmetic::template to_double<decltype(part)::value>(m.sum[k], g[k]);
-      if constexpr (decltype(k)::value < 9)
-        g[k] = g[k] + a[k];
-    });
+    unroll<3>([&](auto c) PCS_LAMBDA_INLINE { Arithmetic::subtract(base.origin[c], v[c]); });
     unroll<3>([&](auto row) PCS_LAMBDA_INLINE {
       constexpr std::size_t r = decltype(row)::value;
-      position[r] = g[9 + r] + center[r];
       Arithmetic::fma(g[3 * r + 2], v[2], position[r]);
       Arithmetic::fma(g[3 * r + 1], v[1], position[r]);
       Arithmetic::fma(g[3 * r], v[0], position[r]);
@@ -216,16 +229,15 @@ PCS_ALWAYS_INLINE void blend_block(const Block_input& in, Block_output& out)
       load_vectors(*in.rest, first, v);
       unroll<3>([&](auto r) PCS_LAMBDA_INLINE {
         Doubles target;
-        fill(map.t[r], target);
+        Arithmetic::fill(map.t[r], target);
         add_image<Arithmetic>(map.a + 3 * r, v, target);
         Arithmetic::fma(weight, Doubles(target - position[r]), position[r]);
       });
     }
     unroll<3>([&](auto r) PCS_LAMBDA_INLINE {
-      Doubles unit, written;
-      fill(in.frame_unit, unit);
-      fill(in.frame_origin[r], written);
-      Arithmetic::fma(position[r], unit, written);
+      Doubles written;
+      Arithmetic::fill(in.frame_origin[r], written);
+      Arithmetic::fma(in.frame_unit, position[r], written);
       store(written, out.position.value[r] + first);
     });
     if constexpr (Outputs != Blend_outputs::positions) {
@@ -259,7 +271,7 @@ PCS_ALWAYS_INLINE void blend_block(const Block_input& in, Block_output& out)
         for (const Block_fade* f = in.fade; f != in.fade_end; ++f) {
           Doubles weight, target;
           load(f->weight + first, weight);
-          fill(in.handles[f->handle].map.a[k], target);
+          Arithmetic::fill(in.handles[f->handle].map.a[k], target);
           Arithmetic::fma(weight, Doubles(target - g[k]), g[k]);
         }
         store(g[k], out.gradient[k] + first);

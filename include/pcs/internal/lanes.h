@@ -20,17 +20,10 @@ namespace internal {
 #if (defined(__GNUC__) || defined(__clang__)) && !defined(PCS_NO_VECTOR_EXTENSIONS)
 
 // Both compilers split a vector that the machine does not have; the operations, and so the bits, stay the same.
-using Float8 = float __attribute__((vector_size(32)));
 using Double4 = double __attribute__((vector_size(32)));
 using Double8 = double __attribute__((vector_size(64)));
-using Float16 = float __attribute__((vector_size(64)));
-using Float4 = float __attribute__((vector_size(16)));
-using Uint16x8 = std::uint16_t __attribute__((vector_size(16)));
-
-PCS_ALWAYS_INLINE void to_float(const Uint16x8& from, Float8& to)
-{
-  to = __builtin_convertvector(from, Float8);
-}
+/// Eight that may lie anywhere.
+using Uint16x8 = std::uint16_t __attribute__((vector_size(16), aligned(2), may_alias));
 
 constexpr std::uint64_t reciprocal_root_bits = 0x5fe6eb50c7b537a9;
 
@@ -45,28 +38,12 @@ PCS_ALWAYS_INLINE void guess_reciprocal_root(const Double8& x, Double8& y)
   y = reinterpret_cast<Double8>(reciprocal_root_bits - (reinterpret_cast<Bits>(x) >> 1));
 }
 
-/// Lanes 0 to 3 (`Part` 0) or 4 to 7 (`Part` 1).
-template <std::size_t Part>
-PCS_ALWAYS_INLINE void to_double(const Float8& from, Double4& to)
-{
-  const Float4 part = {from[4 * Part], from[4 * Part + 1], from[4 * Part + 2], from[4 * Part + 3]};
-  to = __builtin_convertvector(part, Double4);
-}
-
 /// All lanes alike. A list of eight equal values would be put together one by one.
 template <class T, class Lanes>
 PCS_ALWAYS_INLINE void fill(T value, Lanes& to)
 {
   to = value - Lanes{};
 }
-
-#ifdef PCS_HAS_AVX_ASSEMBLY
-/// GCC puts eight doubles together one by one even so.
-PCS_ALWAYS_INLINE void fill(double value, Double8& to)
-{
-  __asm__("vbroadcastsd %1, %0" : "=v"(to) : "vm"(value));
-}
-#endif
 
 #else
 
@@ -108,16 +85,8 @@ struct Array_lanes
     return *this = *this + b;
   }
 };
-using Float8 = Array_lanes<float, 8>;
 using Double4 = Array_lanes<double, 4>;
 using Double8 = Array_lanes<double, 8>;
-using Uint16x8 = Array_lanes<std::uint16_t, 8>;
-
-inline void to_float(const Uint16x8& from, Float8& to)
-{
-  for (std::size_t i = 0; i < 8; ++i)
-    to[i] = static_cast<float>(from[i]);
-}
 
 constexpr std::uint64_t reciprocal_root_bits = 0x5fe6eb50c7b537a9;
 
@@ -137,13 +106,6 @@ void fill(T value, Array_lanes<T, N>& to)
 {
   for (std::size_t i = 0; i < N; ++i)
     to[i] = value;
-}
-
-template <std::size_t Part, std::size_t N>
-void to_double(const Float8& from, Array_lanes<double, N>& to)
-{
-  for (std::size_t i = 0; i < N; ++i)
-    to[i] = static_cast<double>(from[N * Part + i]);
 }
 
 #endif
@@ -188,8 +150,8 @@ PCS_ALWAYS_INLINE void unroll(const F& f)
 
 /*!
   How a kernel computes, on the doubles that fit a register: `fma` is `x * y + z` with one rounding, and nothing else is
-  fused, so that all kernels give the same bits; `subtract_product` is `z - x * y`. `to_float` reads eight weights,
-  `to_double` widens a part of them.
+  fused, so that all kernels give the same bits; `subtract_product` is `z - x * y`. A single number stands for all lanes.
+  `to_doubles` reads as many steps of weights as there are lanes.
 */
 struct Portable_arithmetic
 {
@@ -199,41 +161,33 @@ struct Portable_arithmetic
   {
     z = std::fma(-x, y, z);
   }
-
-  template <class Lanes>
-  static PCS_ALWAYS_INLINE void fma(const Lanes& x, const Lanes& y, Lanes& z)
+  static PCS_ALWAYS_INLINE void fill(const double& x, Doubles& z) { internal::fill(x, z); }
+  static PCS_ALWAYS_INLINE void fma(const double& x, const Doubles& y, Doubles& z)
   {
-    for (std::size_t i = 0; i < sizeof(Lanes) / sizeof(x[0]); ++i)
+    for (std::size_t i = 0; i < sizeof(Doubles) / sizeof(double); ++i)
+      z[i] = std::fma(x, y[i], z[i]);
+  }
+  static PCS_ALWAYS_INLINE void fma(const Doubles& x, const Doubles& y, Doubles& z)
+  {
+    for (std::size_t i = 0; i < sizeof(Doubles) / sizeof(double); ++i)
       z[i] = std::fma(x[i], y[i], z[i]);
   }
-  template <class Lanes>
-  static PCS_ALWAYS_INLINE void subtract_product(const Lanes& x, const Lanes& y, Lanes& z)
+  static PCS_ALWAYS_INLINE void subtract_product(const Doubles& x, const Doubles& y, Doubles& z)
   {
-    for (std::size_t i = 0; i < sizeof(Lanes) / sizeof(x[0]); ++i)
+    for (std::size_t i = 0; i < sizeof(Doubles) / sizeof(double); ++i)
       z[i] = std::fma(-x[i], y[i], z[i]);
   }
-  static PCS_ALWAYS_INLINE void to_float(const std::uint16_t* from, Float8& to)
+  static PCS_ALWAYS_INLINE void subtract(const double& x, Doubles& z) { z = z - x; }
+  static PCS_ALWAYS_INLINE void to_doubles(const std::uint16_t* from, Doubles& to)
   {
-    Uint16x8 steps;
-    load(from, steps);
-    internal::to_float(steps, to);
-  }
-  template <std::size_t Part>
-  static PCS_ALWAYS_INLINE void to_double(const Float8& from, Doubles& to)
-  {
-    internal::to_double<Part>(from, to);
+    for (std::size_t i = 0; i < sizeof(Doubles) / sizeof(double); ++i)
+      to[i] = from[i];
   }
 };
 
 #ifdef PCS_HAS_AVX_ASSEMBLY
-// Written out: whether a compiler fuses `x * y + z` depends on its options, and conversions it takes to pieces.
-PCS_ALWAYS_INLINE void read_weights(const std::uint16_t* from, Float8& to)
-{
-  Uint16x8 steps;
-  load(from, steps);
-  __asm__("vpmovzxwd %1, %0\n\tvcvtdq2ps %0, %0" : "=x"(to) : "x"(steps));
-}
-
+// Written out: whether a compiler fuses `x * y + z` depends on its options, conversions it takes to pieces, and a number
+// for all lanes it first loads into a register, from where it costs an operation to spread.
 struct Avx2_arithmetic
 {
   using Doubles = Double4;
@@ -242,9 +196,15 @@ struct Avx2_arithmetic
   {
     z = std::fma(-x, y, z);
   }
-  static PCS_ALWAYS_INLINE void fma(const Float8& x, const Float8& y, Float8& z)
+  static PCS_ALWAYS_INLINE void fill(const double& x, Double4& z)
   {
-    __asm__("vfmadd231ps %2, %1, %0" : "+x"(z) : "x"(x), "x"(y));
+    __asm__("vbroadcastsd %1, %0" : "=x"(z) : "m"(x));
+  }
+  static PCS_ALWAYS_INLINE void fma(const double& x, const Double4& y, Double4& z)
+  {
+    Double4 all;
+    fill(x, all);
+    fma(all, y, z);
   }
   static PCS_ALWAYS_INLINE void fma(const Double4& x, const Double4& y, Double4& z)
   {
@@ -254,18 +214,12 @@ struct Avx2_arithmetic
   {
     __asm__("vfnmadd231pd %2, %1, %0" : "+x"(z) : "x"(x), "x"(y));
   }
-  static PCS_ALWAYS_INLINE void to_float(const std::uint16_t* from, Float8& to)
+  static PCS_ALWAYS_INLINE void subtract(const double& x, Double4& z) { z = z - x; }
+  static PCS_ALWAYS_INLINE void to_doubles(const std::uint16_t* from, Double4& to)
   {
-    read_weights(from, to);
-  }
-  template <std::size_t Part>
-  static PCS_ALWAYS_INLINE void to_double(const Float8& from, Double4& to)
-  {
-    const Float4 part = {from[4 * Part],
-                         from[4 * Part + 1],
-                         from[4 * Part + 2],
-                         from[4 * Part + 3]};
-    __asm__("vcvtps2pd %1, %0" : "=x"(to) : "x"(part));
+    std::uint64_t four;
+    std::memcpy(&four, from, sizeof(four));
+    __asm__("vpmovzxwd %1, %x0\n\tvcvtdq2pd %x0, %0" : "=x"(to) : "m"(four));
   }
 };
 
@@ -277,9 +231,13 @@ struct Avx512_arithmetic
   {
     z = std::fma(-x, y, z);
   }
-  static PCS_ALWAYS_INLINE void fma(const Float16& x, const Float16& y, Float16& z)
+  static PCS_ALWAYS_INLINE void fill(const double& x, Double8& z)
   {
-    __asm__("vfmadd231ps %2, %1, %0" : "+v"(z) : "v"(x), "v"(y));
+    __asm__("vbroadcastsd %1, %0" : "=v"(z) : "m"(x));
+  }
+  static PCS_ALWAYS_INLINE void fma(const double& x, const Double8& y, Double8& z)
+  {
+    __asm__("vfmadd231pd %2%{1to8%}, %1, %0" : "+v"(z) : "v"(y), "m"(x));
   }
   static PCS_ALWAYS_INLINE void fma(const Double8& x, const Double8& y, Double8& z)
   {
@@ -289,67 +247,22 @@ struct Avx512_arithmetic
   {
     __asm__("vfnmadd231pd %2, %1, %0" : "+v"(z) : "v"(x), "v"(y));
   }
-  template <std::size_t Part>
-  static PCS_ALWAYS_INLINE void to_double(const Float8& from, Double8& to)
+  static PCS_ALWAYS_INLINE void subtract(const double& x, Double8& z)
   {
-    __asm__("vcvtps2pd %1, %0" : "=v"(to) : "v"(from));
+    __asm__("vsubpd %1%{1to8%}, %0, %0" : "+v"(z) : "m"(x));
+  }
+  static PCS_ALWAYS_INLINE void to_doubles(const std::uint16_t* from, Double8& to)
+  {
+    __asm__("vpmovzxwq %1, %0\n\tvcvtuqq2pd %0, %0"
+            : "=v"(to)
+            : "m"(*reinterpret_cast<const Uint16x8*>(from)));
   }
 };
 #elif PCS_HAS_RUNTIME_DISPATCH
 using Avx2_arithmetic = Portable_arithmetic;
 #endif
 
-/// Sums `w[l] * d[k]` over pairs of weights `w` of eight lanes and numbers `d[k]`, for `k` below `N`.
-template <class Arithmetic, std::size_t N>
-struct Lane_sums
-{
-  Float8 sum[N] = {};
-
-  PCS_ALWAYS_INLINE void add(const std::uint16_t* weight, const float* d)
-  {
-    Float8 w;
-    Arithmetic::to_float(weight, w);
-    unroll<N>([&](auto k) PCS_LAMBDA_INLINE {
-      Float8 all;
-      fill(d[k], all);
-      Arithmetic::fma(w, all, sum[k]);
-    });
-  }
-  PCS_ALWAYS_INLINE void finish() {}
-};
-
-#ifdef PCS_HAS_AVX_ASSEMBLY
-/// Two numbers share a register, in turns: narrower ones would leave half of each unit idle.
-template <std::size_t N>
-struct Lane_sums<Avx512_arithmetic, N>
-{
-  static_assert(N % 2 == 0);
-  Float8 sum[N];
-  Float16 pair[N / 2] = {};
-
-  PCS_ALWAYS_INLINE void add(const std::uint16_t* weight, const float* d)
-  {
-    Float8 once;
-    read_weights(weight, once);
-    const Float16 w =
-        __builtin_shufflevector(once, once, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7);
-    unroll<N / 2>([&](auto k) PCS_LAMBDA_INLINE {
-      double two; // moved only
-      std::memcpy(&two, d + 2 * k, sizeof(two));
-      const Double8 all = {two, two, two, two, two, two, two, two};
-      Avx512_arithmetic::fma(w, reinterpret_cast<Float16>(all), pair[k]);
-    });
-  }
-  PCS_ALWAYS_INLINE void finish()
-  {
-    unroll<N / 2>([&](auto k) PCS_LAMBDA_INLINE {
-      const Float16& p = pair[k];
-      sum[2 * k] = __builtin_shufflevector(p, p, 0, 2, 4, 6, 8, 10, 12, 14);
-      sum[2 * k + 1] = __builtin_shufflevector(p, p, 1, 3, 5, 7, 9, 11, 13, 15);
-    });
-  }
-};
-#endif
+inline constexpr double reciprocal_root_series[] = {1, 0.5, 0.375, 0.3125};
 
 /*!
   `1 / sqrt(x)` to one or two units in the last place, from a guess on the bits of `x`: neither a division nor a root,
@@ -364,20 +277,16 @@ PCS_ALWAYS_INLINE void reciprocal_root(const typename Arithmetic::Doubles& x,
   using Doubles = typename Arithmetic::Doubles;
   // M. Robertson, "A Brief History of InvSqrt" (2012): the constant for doubles.
   guess_reciprocal_root(x, y);
-  Doubles half, cubic;
-  fill(0.5, half);
-  fill(0.375, cubic);
   unroll<2>([&](auto step) PCS_LAMBDA_INLINE {
-    Doubles d, factor = cubic;
-    fill(1.0, d);
+    constexpr const double* c = reciprocal_root_series;
+    Doubles d, factor, sum;
+    Arithmetic::fill(c[0], d);
     Arithmetic::subtract_product(x, Doubles(y * y), d);
-    if constexpr (decltype(step)::value == 0) {
-      Doubles quartic;
-      fill(0.3125, quartic);
-      Arithmetic::fma(quartic, d, factor);
-    }
+    Arithmetic::fill(c[2], factor);
+    if constexpr (decltype(step)::value == 0)
+      Arithmetic::fma(c[3], d, factor);
     const Doubles correction = y * d;
-    Doubles sum = half;
+    Arithmetic::fill(c[1], sum);
     Arithmetic::fma(factor, d, sum);
     Arithmetic::fma(sum, correction, y);
   });

@@ -83,7 +83,7 @@ PCS_ALWAYS_INLINE void subtract_tile(const Dense_product& l,
     Lanes rows[Vectors], factor;
     unroll<Vectors>([&](auto v) PCS_LAMBDA_INLINE { pcs::internal::load(a + v * width, rows[v]); });
     unroll<Columns>([&](auto j) PCS_LAMBDA_INLINE {
-      pcs::internal::fill(b[j], factor);
+      Arithmetic::fill(b[j], factor);
       unroll<Vectors>([&](auto v) PCS_LAMBDA_INLINE {
         Arithmetic::subtract_product(rows[v], factor, sum[v * Columns + j]);
       });
