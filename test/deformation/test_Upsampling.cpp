@@ -282,13 +282,14 @@ BOOST_AUTO_TEST_CASE(all_kernels_give_the_same_bits)
       return affine(pcs::rotation_exp(pcs_test::random_vector(random)).toRotationMatrix(),
                     pcs_test::random_vector(random));
     };
-    const Affine_map base = map();
+    const Affine_map base_affine = map();
     const Vec3 origin = pcs_test::random_vector(random);
+    const Base_map base = base_map(base_affine, origin.data());
     const Vec3 frame_origin = 1e3 * pcs_test::random_vector(random);
     std::vector<Map_difference> differences;
     std::vector<Block_entry> entries;
     for (std::uint32_t e = 0; e < random() % 9; ++e) {
-      differences.push_back(map_difference(base, map(), origin.data()));
+      differences.push_back(map_difference(base_affine, map(), origin.data()));
       Block_entry entry{e, {}};
       for (auto& w : entry.weight)
         w = static_cast<std::uint16_t>(random() % 8192);
@@ -312,7 +313,6 @@ BOOST_AUTO_TEST_CASE(all_kernels_give_the_same_bits)
         w = random() % 2 ? pcs_test::uniform(random) : 0;
     }
     const Block_input in{&base,
-                         origin.data(),
                          differences.data(),
                          entries.data(),
                          entries.data() + entries.size(),

@@ -125,8 +125,7 @@ public:
   {
     update_pairs<ConcurrencyTag>(maps);
     const auto apply_to_all = [&](auto outputs) {
-      apply_blocks<ConcurrencyTag, decltype(outputs)::value>(maps,
-                                                             frame,
+      apply_blocks<ConcurrencyTag, decltype(outputs)::value>(frame,
                                                              is_blended,
                                                              fades,
                                                              write,
@@ -220,8 +219,7 @@ private:
   }
 
   template <class ConcurrencyTag, Blend_outputs Outputs, class Write, class Expect, class Other>
-  void apply_blocks(const std::vector<Affine_map>& maps,
-                    const Output_frame& frame,
+  void apply_blocks(const Output_frame& frame,
                     const std::vector<std::uint8_t>& is_blended,
                     const Fades& fades,
                     const Write& write,
@@ -243,7 +241,7 @@ private:
             if (block + blocks_ahead < m_base.size() && is_blended[block + blocks_ahead] != 0)
               prefetch(block + blocks_ahead, expect);
             if (is_blended[block] != 0)
-              blend(block_input(maps, frame, fades, block), out[block % 2]);
+              blend(block_input(frame, fades, block), out[block % 2]);
             if (block != begin)
               put(block - 1);
           }
@@ -296,10 +294,7 @@ private:
     return {v.value[0][l], v.value[1][l], v.value[2][l]};
   }
 
-  Block_input block_input(const std::vector<Affine_map>& maps,
-                          const Output_frame& frame,
-                          const Fades& fades,
-                          std::size_t block) const
+  Block_input block_input(const Output_frame& frame, const Fades& fades, std::size_t block) const
   {
     const bool has_fades = fades.first != nullptr;
     return {&m_base_maps[m_base[block]],

@@ -134,9 +134,7 @@ PCS_ALWAYS_INLINE void load_vectors(const Lane_vectors& from, std::size_t first,
 template <class Arithmetic, class Doubles>
 PCS_ALWAYS_INLINE void add_image(const double* row, const Doubles* v, Doubles& image)
 {
-  pcs::internal::unroll<3>([&](auto c) PCS_LAMBDA_INLINE {
-    Arithmetic::fma(row[c], v[c], image);
-  });
+  pcs::internal::unroll<3>([&](auto c) PCS_LAMBDA_INLINE { Arithmetic::fma(row[c], v[c], image); });
 }
 
 template <class Arithmetic, class Doubles>

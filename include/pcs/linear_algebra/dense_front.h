@@ -49,6 +49,7 @@ struct Plain_arithmetic
 {
   using Doubles = pcs::internal::Double4;
 
+  static PCS_ALWAYS_INLINE void fill(const double& x, Doubles& z) { pcs::internal::fill(x, z); }
   template <class Lanes>
   static PCS_ALWAYS_INLINE void subtract_product(const Lanes& x, const Lanes& y, Lanes& z)
   {
