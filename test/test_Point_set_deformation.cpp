@@ -341,6 +341,8 @@ BOOST_AUTO_TEST_CASE(any_sequence_of_calls_ends_like_a_fresh_session)
       } else if (kind == 7) {
         session.restore(session.snapshot());
       } else {
+        if (random() % 2)
+          session.deform(pcs::Start::warm);
         session.deform();
         Points expected = rest;
         Session fresh(expected, parameters(samples));

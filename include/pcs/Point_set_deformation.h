@@ -419,12 +419,17 @@ public:
 
   /*!
     Solves for the present motions of the handles, from rest, and writes points and normals. Points that no handle
-    reaches, those outside the region of interest, and those of handles that have not moved are not written. The result depends on the rest shape and the
-    motions only, not on what was done before.
+    reaches, those outside the region of interest, and those of handles that have not moved are not written.
 
     If the report says `cancelled` or `numerical_failure`, nothing was written.
+
+    \param start `Start::cold`: the result depends on the rest shape and the motions only, not on what was done before.
+    `Start::warm`: for the frames of a drag. The passes go on from the last result, so that a few are enough; the shape
+    follows the handles to within the tolerance, which the last frame may leave to a cold start. A large step, new
+    handles, a snapshot that was restored, and full resolution of more than 20,000 points with interior springs begin
+    cold in any case.
   */
-  Deformation_report deform()
+  Deformation_report deform(Start start = Start::cold)
   {
     if (!m_session || !m_session->is_ready()) {
       Deformation_report report;
@@ -432,7 +437,7 @@ public:
       return report;
     }
     internal::Progress progress(m_callback);
-    const Deformation_report report = m_session->solve(m_elastic, progress);
+    const Deformation_report report = m_session->solve(m_elastic, start, progress);
     if (report.status == Status::cancelled || report.status == Status::numerical_failure)
       return report;
     write_points();

@@ -85,6 +85,9 @@ public:
     return guess;
   }
 
+  /// Whether they have links that the session's network lacks.
+  bool has_link_offsets() const { return m_has_offsets; }
+
   /// The session's network has a new rest shape.
   void accept(const Elastic_network& finest)
   {

@@ -12,7 +12,16 @@
 #include <vector>
 
 namespace pcs {
+/// Where a solve begins.
+enum class Start {
+  cold, ///< at the rest shape: the result depends on that and on the motions of the handles only
+  warm  ///< at the last result, which takes fewer passes where the handles have moved little since
+};
+
 namespace deformation {
+
+/// A warm start that has more than this times the energy of the last result is a cold one.
+constexpr double largest_warm_growth = 2;
 
 /// Weight of the local fit against its neighbours' when rotations are smoothed, at stiffness 1, of a node that stands for
 /// one part in `reference_size` of the surface. [-]

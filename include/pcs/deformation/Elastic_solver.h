@@ -100,62 +100,43 @@ public:
                        const Deviation_guess& guess = {})
   {
     Elastic_result result;
-    m_transforms = &transforms;
-    m_field_solver(options.rotation_field,
-                   m_factors.field(),
-                   m_network->surface,
-                   m_constraints,
-                   rows(),
-                   transforms,
-                   m_field);
-    m_rotation = m_field;
-    blend_scales();
-    m_stretch_is_used = options.poisson_ratio != 0;
-    if (m_stretch_is_used)
-      m_stretch.assign(m_network->size(), Eigen::Matrix3d::Identity());
+    begin(transforms, options);
+    m_stretch.assign(m_stretch_is_used ? m_network->size() : 0, Eigen::Matrix3d::Identity());
     m_smooth.assign(m_network->size(), Vec3::Zero());
     m_best_smooth.assign(m_network->size(), Vec3::Zero());
     const bool has_passes = options.maximal_number_of_passes > 0;
-    const bool lacks_links =
-        has_passes && !guess.link_offsets.empty() && m_network->links.neighbor.empty();
-    m_link_offsets = lacks_links ? &guess.link_offsets : nullptr;
-    const bool starts_from_guess = lacks_links || (has_passes && guess.is_far_from_field);
-    result.is_far_from_field = starts_from_guess;
-    if (starts_from_guess) {
+    if (has_passes && !guess.link_offsets.empty() && m_network->links.neighbor.empty())
+      m_link_offsets = &guess.link_offsets;
+    result.is_far_from_field = m_link_offsets || (has_passes && guess.is_far_from_field);
+    if (result.is_far_from_field) {
       take(guess);
       turn_by_deviations();
     }
-    update_frames();
-    place_constrained_nodes();
-    solve_positions(true);
-    result.energy = result.initial_energy = fit_and_measure(options, true);
-    result.status =
-        options.maximal_number_of_passes == 0 ? Status::iteration_limit : Status::converged;
-    if (rows().size() == 0)
-      return result;
-    m_mixing.restart();
-    for (int pass = 0; pass < options.maximal_number_of_passes; ++pass) {
-      if (!progress(static_cast<double>(pass) / options.maximal_number_of_passes)) {
-        result.status = Status::cancelled;
-        return result;
-      }
-      const double before = result.energy;
-      const bool is_last = lacks_links || pass + 1 == options.maximal_number_of_passes;
-      const bool has_improved =
-          improve(options,
-                  pass >= (result.is_far_from_field ? 1 : first_accelerated_pass),
-                  is_last,
-                  result);
-      if (pass == 0 && !guess.deviations.empty() && !starts_from_guess)
-        result.is_far_from_field = start_from(guess, options, result);
-      result.number_of_passes = pass + 1;
-      result.status = Status::converged;
-      // Without the links, each further pass would let the body collapse.
-      if (lacks_links || !has_improved || before - result.energy <= options.tolerance * before)
-        break;
-      result.status = Status::iteration_limit;
-    }
+    place(options, true, result);
+    make_passes(options, progress, result.is_far_from_field ? nullptr : &guess, result);
     return result;
+  }
+
+  /*!
+    The same from where the last solve under these constraints ended, as seen from the field: for handles that have moved
+    little since. Returns `false` if that has more energy than `highest_energy`; the state is of no use then. Not for
+    networks that lack the links of coarser ones.
+  */
+  bool solve_further(const std::vector<Similarity>& transforms,
+                     const Elastic_options& options,
+                     pcs::internal::Progress& progress,
+                     double highest_energy,
+                     Elastic_result& result)
+  {
+    result = Elastic_result();
+    begin(transforms, options);
+    result.is_far_from_field = true;
+    turn_by_deviations();
+    place(options, false, result);
+    if (!(result.energy <= highest_energy))
+      return false;
+    make_passes(options, progress, nullptr, result);
+    return true;
   }
 
 private:
@@ -167,6 +148,66 @@ private:
   std::size_t handle(std::size_t node) const
   {
     return static_cast<std::size_t>(m_constraints.handle_of_node[node]);
+  }
+
+  /// The field of the handles: what deviations refer to.
+  void begin(const std::vector<Similarity>& transforms, const Elastic_options& options)
+  {
+    m_transforms = &transforms;
+    m_field_solver(options.rotation_field,
+                   m_factors.field(),
+                   m_network->surface,
+                   m_constraints,
+                   rows(),
+                   transforms,
+                   m_field);
+    m_rotation = m_field;
+    blend_scales();
+    m_stretch_is_used = options.poisson_ratio != 0;
+    m_link_offsets = nullptr;
+    m_mixing.restart();
+  }
+
+  /// The first positions, and their energy.
+  void place(const Elastic_options& options, bool links_turn, Elastic_result& result)
+  {
+    update_frames();
+    place_constrained_nodes();
+    solve_positions(links_turn);
+    result.energy = result.initial_energy = fit_and_measure(options, true);
+  }
+
+  /// The guess, if there is one, may replace the state after the first pass.
+  void make_passes(const Elastic_options& options,
+                   pcs::internal::Progress& progress,
+                   const Deviation_guess* guess,
+                   Elastic_result& result)
+  {
+    result.status =
+        options.maximal_number_of_passes == 0 ? Status::iteration_limit : Status::converged;
+    if (rows().size() == 0)
+      return;
+    for (int pass = 0; pass < options.maximal_number_of_passes; ++pass) {
+      if (!progress(static_cast<double>(pass) / options.maximal_number_of_passes)) {
+        result.status = Status::cancelled;
+        return;
+      }
+      const double before = result.energy;
+      const bool is_last = m_link_offsets || pass + 1 == options.maximal_number_of_passes;
+      const bool has_improved =
+          improve(options,
+                  pass >= (result.is_far_from_field ? 1 : first_accelerated_pass),
+                  is_last,
+                  result);
+      if (pass == 0 && guess && !guess->deviations.empty())
+        result.is_far_from_field = start_from(*guess, options, result);
+      result.number_of_passes = pass + 1;
+      result.status = Status::converged;
+      // Without the links, each further pass would let the body collapse.
+      if (m_link_offsets || !has_improved || before - result.energy <= options.tolerance * before)
+        return;
+      result.status = Status::iteration_limit;
+    }
   }
 
   /// The next state is written beside this one: all of it but the positions, which it starts from.

@@ -108,6 +108,7 @@ public:
   {
     if (m_is_constrained && stiffness == m_stiffness)
       return true;
+    m_has_solution = false;
     pcs::internal::Stopwatch watch;
     Node_constraints constraints = m_sites.find(m_body, m_handles, m_report);
     m_stiffness = stiffness;
@@ -139,7 +140,8 @@ public:
   }
 
   /// Solves for the present transformations. The points are not written: see `write()`.
-  Deformation_report solve(const Elastic_options& options, pcs::internal::Progress& progress)
+  Deformation_report
+  solve(const Elastic_options& options, Start start, pcs::internal::Progress& progress)
   {
     const bool is_first = !m_was_reported;
     m_was_reported = true;
@@ -161,9 +163,19 @@ public:
     }
     pcs::internal::Stopwatch watch;
     std::vector<Similarity> transforms = m_handles.local_transforms(m_body.frame);
-    const Deviation_guess guess = m_coarse.solve(transforms, options, progress);
-    r.seconds.coarse_levels = watch.lap();
-    const Elastic_result result = m_solver.solve(transforms, options, progress, guess);
+    Elastic_result result;
+    const bool is_warm = start == Start::warm && m_has_solution && !m_coarse.has_link_offsets();
+    if (!is_warm || !m_solver.solve_further(transforms,
+                                            options,
+                                            progress,
+                                            largest_warm_growth * m_last_energy,
+                                            result)) {
+      const Deviation_guess guess = m_coarse.solve(transforms, options, progress);
+      r.seconds.coarse_levels = watch.lap();
+      result = m_solver.solve(transforms, options, progress, guess);
+    }
+    m_has_solution = result.status != Status::cancelled;
+    m_last_energy = result.energy;
     r.status = result.status;
     r.number_of_iterations = static_cast<std::size_t>(result.number_of_passes);
     const double unit = m_body.frame.unit;
@@ -191,6 +203,7 @@ public:
   {
     m_handles.restore(s.transforms);
     m_maps = s.maps;
+    m_has_solution = false;
     m_local_transforms = m_handles.local_transforms(m_body.frame);
     constrain(m_stiffness);
   }
@@ -200,6 +213,7 @@ public:
   {
     m_handles.put_at_rest();
     m_maps.assign(m_maps.size(), identity_map());
+    m_has_solution = false;
     m_local_transforms = m_handles.local_transforms(m_body.frame);
     constrain(m_stiffness);
   }
@@ -422,6 +436,8 @@ private:
   Deformation_report m_report;
   double m_stiffness = 1;
   bool m_is_constrained = false, m_is_ready = false, m_was_reported = false;
+  bool m_has_solution = false; ///< of the solver, under the present constraints
+  double m_last_energy = 0;    ///< of that
   bool m_is_displaced = false; ///< whether points were written elsewhere than at rest
 };
 
