@@ -68,7 +68,7 @@ struct Measured
 {
   bool is_generated = true;
   std::size_t points = 0, samples = 0, links = 0, iterations = 0;
-  Time neighbors, sampling, construction, factorization, solving, pass, upsampling, frame;
+  Time neighbors, sampling, construction, factorization, solving, pass, upsampling, frame, drag;
   Time knn, triad;
   double input_megabytes = none, peak_megabytes = none;
 };
@@ -113,7 +113,7 @@ Measured measure(const Row& row, const std::string& folder, int repetitions)
       pcs::Point_set_deformation<std::vector<Point_with_normal>, decltype(np), ConcurrencyTag>;
 
   pcs_bench::Timings neighbors, sampling, construction, factorization, solving, pass, upsampling,
-      frame;
+      frame, drag;
   // At full resolution one drag takes seconds.
   const int number_of_constructions = row.samples == 0 ? 1 : repetitions;
   const int number_of_factorizations = row.samples == 0 ? 1 : 3;
@@ -128,29 +128,37 @@ Measured measure(const Row& row, const std::string& folder, int repetitions)
     for (int again = 0; again < number_of_factorizations; ++again) {
       session.set_rotation(handle, axis, pi / 3);
       session.set_translation(handle, Kernel::Vector_3(0.1 * extent.norm(), 0, 0));
-      for (int drag = 0; drag < number_of_drags; ++drag) {
-        const pcs_bench::Timer drag_timer;
+      for (int repeat = 0; repeat < number_of_drags; ++repeat) {
+        const pcs_bench::Timer frame_timer;
         const pcs::Deformation_report report = session.deform();
-        const double drag_seconds = drag_timer.seconds();
+        const double frame_seconds = frame_timer.seconds();
         if (report.status != pcs::Status::converged &&
             report.status != pcs::Status::iteration_limit)
           throw std::runtime_error(std::string(row.model) + ": " + to_string(report.status));
         m.samples = report.number_of_samples;
         m.links = report.number_of_interior_links;
         m.iterations = report.number_of_iterations;
-        if (again == 0 && drag == 0) {
+        if (again == 0 && repeat == 0) {
           neighbors.add(report.seconds.neighbors);
           sampling.add(report.seconds.sampling);
         }
-        if (drag == 0)
+        if (repeat == 0)
           factorization.add(report.seconds.factorization);
         else
-          frame.add(drag_seconds); // without factorisation
+          frame.add(frame_seconds); // without factorisation
         solving.add(report.seconds.solving);
         // The first positions, before any pass, cost as much as a pass.
         pass.add((report.seconds.solving - report.seconds.coarse_levels) /
                  static_cast<double>(report.number_of_iterations + 1));
         upsampling.add(report.seconds.upsampling);
+      }
+      // Frames of a drag by one degree each, from the frame before.
+      constexpr int number_of_frames = 4;
+      for (int step = 1; step <= number_of_frames; ++step) {
+        session.set_rotation(handle, axis, pi / 3 + step * pi / 180);
+        const pcs_bench::Timer frame_timer;
+        session.deform(pcs::Start::warm);
+        drag.add(frame_timer.seconds());
       }
       session.remove_handle(handle);
       handle = session.add_handle(ends.high);
@@ -166,6 +174,7 @@ Measured measure(const Row& row, const std::string& folder, int repetitions)
   m.pass = pass;
   m.upsampling = upsampling;
   m.frame = frame;
+  m.drag = drag;
   m.knn = pcs_bench::repeat(repetitions, [&] { pcs_bench::query_neighbors(model.points); });
   pcs_bench::Triad triad(points.size());
   m.triad = pcs_bench::repeat(5 * repetitions, [&] { triad(); });
@@ -272,7 +281,8 @@ int main(int argc, char** argv)
                            "upsampling / triad",
                            "passes",
                            "frame s",
-                           "frames / s",
+                           "drag s",
+                           "drags / s",
                            "interior links",
                            "input MB",
                            "peak MB",
@@ -303,6 +313,8 @@ int main(int argc, char** argv)
                         "upsampling_median",
                         "frame",
                         "frame_median",
+                        "drag",
+                        "drag_median",
                         "knn",
                         "knn_median",
                         "triad",
@@ -351,7 +363,8 @@ int main(int argc, char** argv)
                     number(m.upsampling.best / m.triad.best),
                     std::to_string(m.iterations),
                     number(m.frame.best),
-                    number(1 / m.frame.best),
+                    number(m.drag.best),
+                    number(1 / m.drag.best),
                     std::to_string(m.links),
                     number(m.input_megabytes),
                     number(m.peak_megabytes),
@@ -374,6 +387,7 @@ int main(int argc, char** argv)
                               m.solving,
                               m.upsampling,
                               m.frame,
+                              m.drag,
                               m.knn,
                               m.triad}) {
           line.push_back(number(t.best, 4));
