@@ -7,6 +7,14 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <random>
+#include <vector>
+
 namespace {
 
 using Tree = pcs::neighborhood::Nearest_neighbors;
@@ -68,6 +76,83 @@ BOOST_AUTO_TEST_CASE(equal_distances_are_ordered_by_coordinates)
   const std::size_t expected[] = {3, 4, 2, 0, 1};
   for (std::size_t b = 0; b < 5; ++b)
     BOOST_TEST(found[b].index == expected[b]);
+}
+
+// On a grid most distances are equal, also the last one that is taken and the first one that is not.
+BOOST_AUTO_TEST_CASE(all_searches_of_a_grid_agree_with_brute_force)
+{
+  const Points points = pcs_test::box(8, 8, 8, 0.25);
+  const Tree nearest(points);
+  std::vector<Tree::Neighbor> found;
+  std::vector<std::uint32_t> inside;
+  for (std::size_t q = 0; q < points.size(); q += 7) {
+    const Vec3& query = points[q];
+    std::vector<std::uint32_t> order(points.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
+      const double a = (points[i] - query).squaredNorm(), b = (points[j] - query).squaredNorm();
+      return a != b ? a < b : pcs::neighborhood::lexicographically_less(points[i], points[j]);
+    });
+    nearest(query, 12, found);
+    for (std::size_t b = 0; b < 12; ++b)
+      BOOST_REQUIRE_EQUAL(found[b].index, order[b]);
+    const auto is_even = [](std::uint32_t i) { return i % 2 == 0; };
+    const auto even = std::find_if(order.begin(), order.end(), is_even);
+    BOOST_REQUIRE_EQUAL(nearest.nearest_if(query, 9, is_even).index, *even);
+    inside.clear();
+    nearest.within(query, 0.6, inside);
+    std::vector<std::uint32_t> expected;
+    for (std::uint32_t i = 0; i < points.size(); ++i)
+      if ((points[i] - query).norm() < 0.6)
+        expected.push_back(i);
+    BOOST_REQUIRE_EQUAL_COLLECTIONS(inside.begin(), inside.end(), expected.begin(), expected.end());
+  }
+}
+
+BOOST_AUTO_TEST_CASE(nothing_is_nearer_than_the_radius)
+{
+  const Points points = pcs_test::random_points(100, 4);
+  const Tree nearest(points);
+  const auto any = [](std::uint32_t) { return true; };
+  const auto none = [](std::uint32_t) { return false; };
+  BOOST_TEST(nearest.nearest_if(Vec3(9, 0, 0), 2, any).squared_distance >= 4);
+  BOOST_TEST(nearest.nearest_if(points[3], 2, none).squared_distance >= 4);
+  BOOST_TEST(nearest.nearest_if(points[3], 2, any).index == 3u);
+}
+
+// Many copies of one point cannot be told apart by cuts; points at 1e-12 beside points at 1e3 need many.
+BOOST_AUTO_TEST_CASE(copies_and_unlike_scales_are_found)
+{
+  Points points(1000, Vec3(1, 2, 3));
+  for (int k = -40; k < 11; ++k)
+    points.push_back(Vec3(std::ldexp(1.0, k), 0, 0));
+  const Tree nearest(points);
+  std::vector<Tree::Neighbor> found;
+  for (std::size_t i = 1000; i < points.size(); ++i) {
+    nearest(points[i], 2, found);
+    BOOST_TEST(found[0].index == i);
+    BOOST_TEST(found[1].squared_distance > 0);
+  }
+  std::vector<std::uint32_t> inside;
+  nearest.within(Vec3(1, 2, 3), 0.5, inside);
+  BOOST_TEST(inside.size() == 1000u);
+}
+
+BOOST_AUTO_TEST_CASE(large_trees_are_the_same_on_several_threads)
+{
+  const Points points = pcs_test::random_points(70000, 5);
+  const Tree one(points);
+  const Tree several(points, CGAL::Parallel_if_available_tag());
+  std::vector<std::uint32_t> a, b;
+  std::vector<Tree::Neighbor> found;
+  for (std::size_t i = 0; i < points.size(); i += 500) {
+    one.append_within(points[i], 0.1, a);
+    several.append_within(points[i], 0.1, b);
+    several(points[i], 1, found);
+    BOOST_REQUIRE_EQUAL(found[0].index, i);
+  }
+  BOOST_TEST(a.size() > 140u);
+  BOOST_CHECK_EQUAL_COLLECTIONS(a.begin(), a.end(), b.begin(), b.end()); // in the same order
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -216,6 +216,34 @@ BOOST_AUTO_TEST_CASE(a_wrong_start_finds_the_axis_of_half_a_tube)
   }
 }
 
+// Seven points about a twig that is much thinner than the noise: without the curvature of the distances the steps swing from
+// one side of the points to the other; and a radius that is held at its lowest value must not count as a change.
+BOOST_AUTO_TEST_CASE(fits_of_thin_twigs_settle)
+{
+  constexpr double noise = 0.003;
+  std::mt19937 random(8);
+  std::normal_distribution<double> normal(0, noise);
+  for (int repetition = 0; repetition < 50; ++repetition) {
+    std::vector<Vec3> points;
+    for (int i = 0; i < 7; ++i) {
+      const double x = normal(random), y = normal(random);
+      points.emplace_back(x, y, 0.02 + 0.01 * i);
+    }
+    pcs::skeleton::Axis axis(11);
+    for (std::size_t k = 0; k < axis.size(); ++k) {
+      axis[k].point = Vec3(0, 0, 0.01 * double(k));
+      axis[k].radius = 0.001;
+    }
+    pcs::skeleton::Axis_fit fit(axis, pcs::skeleton::Fit_model::of(0.01, noise));
+    fit.set_points(points, std::vector<pcs::skeleton::Index>(points.size(), 3));
+    fit.set_priors(std::vector<pcs::skeleton::Radius_prior>(axis.size(), {1e-4, 1e-3}));
+    fit.project();
+    for (int k = 0; k < 15; ++k)
+      BOOST_REQUIRE(fit.iterate(1));
+    BOOST_CHECK_LT(fit.largest_change(), 0.3 * noise);
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(section_counts)

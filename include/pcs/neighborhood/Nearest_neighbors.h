@@ -5,14 +5,15 @@
 #ifndef PCS_NEIGHBORHOOD_NEAREST_NEIGHBORS_H
 #define PCS_NEIGHBORHOOD_NEAREST_NEIGHBORS_H
 
+#include <pcs/internal/parallel.h>
+#include <pcs/neighborhood/Point_tree.h>
 #include <pcs/neighborhood/spatial_order.h>
-
-#include <nanoflann.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -20,8 +21,8 @@ namespace pcs {
 namespace neighborhood {
 
 /*!
-  A k-d tree over `points`, which must stay alive and unchanged. Queries may run concurrently.
-  Coordinates should be relative to a near origin: distances are computed in double precision.
+  Searches `points`, which must stay alive and unchanged. Queries may run concurrently; equal distances are told apart by the
+  coordinates of the points. Coordinates should be relative to a near origin: distances are computed in double precision.
 */
 class Nearest_neighbors
 {
@@ -32,10 +33,10 @@ public:
     double squared_distance; ///< [L^2]
   };
 
-  explicit Nearest_neighbors(const std::vector<Vec3>& points)
-    : m_adaptor{points}, m_tree(3, m_adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(12))
+  template <class ConcurrencyTag = CGAL::Sequential_tag>
+  explicit Nearest_neighbors(const std::vector<Vec3>& points, ConcurrencyTag tag = ConcurrencyTag())
+    : m_points(points), m_tree(points, tag)
   {
-    m_tree.buildIndex();
   }
 
   Nearest_neighbors(const Nearest_neighbors&) = delete;
@@ -44,28 +45,12 @@ public:
   /// Writes the `k` nearest points of `query` to `result`, nearest first; fewer if there are fewer points.
   void operator()(const Vec3& query, std::size_t k, std::vector<Neighbor>& result) const
   {
-    k = std::min(k, m_adaptor.points.size());
+    k = std::min(k, m_tree.size());
     result.resize(k);
     if (k == 0)
       return;
-    thread_local std::vector<std::uint32_t> indices;
-    thread_local std::vector<double> distances;
-    indices.resize(k);
-    distances.resize(k);
-    const std::size_t found = m_tree.knnSearch(query.data(), k, indices.data(), distances.data());
-    result.resize(found);
-    for (std::size_t i = 0; i < found; ++i)
-      result[i] = {indices[i], distances[i]};
-    bool has_tie = false; // they come nearest first
-    for (std::size_t i = 1; i < found; ++i)
-      has_tie = has_tie || !(result[i - 1].squared_distance < result[i].squared_distance);
-    if (!has_tie)
-      return;
-    std::sort(result.begin(), result.end(), [&](const Neighbor& a, const Neighbor& b) {
-      if (a.squared_distance != b.squared_distance)
-        return a.squared_distance < b.squared_distance;
-      return lexicographically_less(m_adaptor.points[a.index], m_adaptor.points[b.index]);
-    });
+    Nearest nearest{m_points, result.data(), k, 0, std::numeric_limits<double>::infinity()};
+    m_tree.visit(query, nearest);
   }
 
   /// Appends the indices of all points closer than `radius` to `query`, in increasing order.
@@ -79,9 +64,8 @@ public:
   /// The same in the order in which they are found.
   void append_within(const Vec3& query, double radius, std::vector<std::uint32_t>& result) const
   {
-    Collector collector{radius * radius, &result};
-    if (!m_adaptor.points.empty())
-      m_tree.findNeighbors(collector, query.data(), nanoflann::SearchParams());
+    Within collector{radius * radius, result};
+    m_tree.visit(query, collector);
   }
 
   /*!
@@ -91,75 +75,73 @@ public:
   template <class Predicate>
   Neighbor nearest_if(const Vec3& query, double radius, const Predicate& is_wanted) const
   {
-    Filter<Predicate> filter{{0, radius * radius}, &m_adaptor.points, &is_wanted, false};
-    if (!m_adaptor.points.empty())
-      m_tree.findNeighbors(filter, query.data(), nanoflann::SearchParams());
-    return filter.best;
+    Nearest_wanted<Predicate> collector{m_points, is_wanted, {0, radius * radius}, false};
+    m_tree.visit(query, collector);
+    return collector.best;
   }
 
 private:
-  // Result sets in the sense of nanoflann.
-  struct Collector
+  // What the tree asks of a collector.
+  struct Nearest
+  {
+    const std::vector<Vec3>& points;
+    Neighbor* found;
+    std::size_t wanted, count;
+    double limit;
+    double worst() const { return limit; }
+    bool is_less(double d, std::uint32_t i, const Neighbor& other) const
+    {
+      return d < other.squared_distance || (d == other.squared_distance &&
+                                            lexicographically_less(points[i], points[other.index]));
+    }
+    void add(double d, std::uint32_t i)
+    {
+      std::size_t at = count;
+      if (count < wanted)
+        ++count;
+      else if (is_less(d, i, found[count - 1]))
+        --at;
+      else
+        return;
+      for (; at > 0 && is_less(d, i, found[at - 1]); --at)
+        found[at] = found[at - 1];
+      found[at] = {i, d};
+      if (count == wanted)
+        limit = found[count - 1].squared_distance;
+    }
+  };
+  struct Within
   {
     double squared_radius;
-    std::vector<std::uint32_t>* result;
-    bool full() const { return true; }
-    double worstDist() const { return squared_radius; }
-    bool addPoint(double d, std::uint32_t i)
+    std::vector<std::uint32_t>& found;
+    double worst() const { return squared_radius; }
+    void add(double d, std::uint32_t i)
     {
       if (d < squared_radius)
-        result->push_back(i);
-      return true;
+        found.push_back(i);
     }
   };
   template <class Predicate>
-  struct Filter
+  struct Nearest_wanted
   {
+    const std::vector<Vec3>& points;
+    const Predicate& is_wanted;
     Neighbor best;
-    const std::vector<Vec3>* points;
-    const Predicate* is_wanted;
     bool is_found;
-    bool full() const { return true; }
-    double worstDist() const
-    {
-      // one step up: a tie must be seen
-      return is_found ? std::nextafter(best.squared_distance, 2 * best.squared_distance + 1)
-                      : best.squared_distance;
-    }
-    bool addPoint(double d, std::uint32_t i)
+    double worst() const { return best.squared_distance; }
+    void add(double d, std::uint32_t i)
     {
       const bool is_closer = d < best.squared_distance ||
-                             (is_found && d == best.squared_distance &&
-                              lexicographically_less((*points)[i], (*points)[best.index]));
-      if (is_closer && (*is_wanted)(i)) {
+                             (is_found && lexicographically_less(points[i], points[best.index]));
+      if (is_closer && is_wanted(i)) {
         best = {i, d};
         is_found = true;
       }
-      return true;
     }
   };
 
-  struct Adaptor
-  {
-    const std::vector<Vec3>& points;
-    std::size_t kdtree_get_point_count() const { return points.size(); }
-    double kdtree_get_pt(std::size_t i, std::size_t d) const
-    {
-      return points[i][static_cast<Eigen::Index>(d)];
-    }
-    template <class Box>
-    bool kdtree_get_bbox(Box&) const
-    {
-      return false;
-    }
-  };
-  using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Adaptor>,
-                                                   Adaptor,
-                                                   3,
-                                                   std::uint32_t>;
-
-  Adaptor m_adaptor;
-  Tree m_tree;
+  const std::vector<Vec3>& m_points;
+  Point_tree m_tree;
 };
 
 } // namespace neighborhood

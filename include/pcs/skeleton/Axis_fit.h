@@ -189,12 +189,16 @@ inline void Axis_fit::add_points(double widening)
     const Vec3 n = (m_points[i] - point_at(m_axis, place)) / place.distance;
     // e(c, r) = |p - c| - r with c, r linear between the nodes, so its derivatives are -(1 - t) d and -t d
     const double d[4] = {n.x(), n.y(), n.z(), 1};
+    // Second order: the surface is curved, and a point outside holds the axis across n, too. Without this, steps of thin
+    // axes swing between two sides of their points for ever.
+    const double hold = std::max(0.0, e / place.distance);
     const double w00 = w * (1 - t) * (1 - t), w10 = w * t * (1 - t), w11 = w * t * t;
     for (std::size_t a = 0; a < 4; ++a) {
       m_gradient[4 * s + a] += w * (1 - t) * d[a] * e;
       m_gradient[4 * s + 4 + a] += w * t * d[a] * e;
       for (std::size_t b = 0; b < 4; ++b) {
-        const double dd = d[a] * d[b];
+        const bool is_place = a < 3 && b < 3;
+        const double dd = (is_place ? 1 - hold : 1) * d[a] * d[b] + (is_place && a == b ? hold : 0);
         m_matrix(4 * s + 4 + b, 4 * s + a) += w10 * dd;
         if (b < a)
           continue;
@@ -263,8 +267,10 @@ inline void Axis_fit::apply_step()
       move *= longest / length;
     node.point += move;
     const double change = std::min(longest, std::max(-longest, m_step[4 * k + 3]));
-    m_largest_change = std::max({m_largest_change, std::min(length, longest), std::abs(change)});
-    node.radius = std::max(m_model.lowest_radius, node.radius + change);
+    const double radius = std::max(m_model.lowest_radius, node.radius + change);
+    m_largest_change =
+        std::max({m_largest_change, std::min(length, longest), std::abs(radius - node.radius)});
+    node.radius = radius;
   }
 }
 
