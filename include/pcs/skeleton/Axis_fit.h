@@ -52,6 +52,14 @@ struct Radius_prior
   double deviation = 0; ///< 0: no expectation
 };
 
+/// Where the points of a section lie: their middle is expected at `radius * facing` from its center.
+struct Center_prior
+{
+  Vec3 middle = Vec3::Zero(); ///< of the points, moved along to the plane of the center
+  Vec3 facing = Vec3::Zero();
+  double deviation = 0; ///< [L]; 0: no expectation
+};
+
 /// Tukey's constant, in standard deviations, and how much wider the first iterations look [-].
 constexpr double tukey_constant = 4.7, first_widening = 2.5;
 
@@ -84,6 +92,7 @@ public:
   }
   std::size_t stride() const { return m_stride; }
   void set_priors(std::vector<Radius_prior> priors) { m_priors = std::move(priors); }
+  void set_priors(std::vector<Center_prior> priors) { m_center_priors = std::move(priors); }
 
   const std::vector<Vec3>& points() const { return m_points; }
   const std::vector<Axis_place>& places() const { return m_places; }
@@ -127,6 +136,7 @@ private:
   void add_points(double widening);
   void add_smoothness();
   void add_priors();
+  void add_center_priors();
   void apply_step();
 
   Axis m_axis;
@@ -135,6 +145,7 @@ private:
   std::vector<Index> m_segments;
   std::vector<Axis_place> m_places;
   std::vector<Radius_prior> m_priors;
+  std::vector<Center_prior> m_center_priors;
   std::size_t m_stride = 1;
   double m_largest_change = 0;
   Matrix m_matrix; // its factor after a step
@@ -150,6 +161,7 @@ inline void Axis_fit::assemble(double widening)
   add_points(widening);
   add_smoothness();
   add_priors();
+  add_center_priors();
   hold_along_axis();
 }
 
@@ -252,6 +264,26 @@ inline void Axis_fit::add_priors()
     const double w = 1 / (prior.deviation * prior.deviation);
     m_matrix(4 * k + 3, 4 * k + 3) += w;
     m_gradient[4 * k + 3] -= w * (m_axis[k].radius - prior.radius);
+  }
+}
+
+inline void Axis_fit::add_center_priors()
+{
+  for (std::size_t k = 0; k < m_axis.size() && k < m_center_priors.size(); ++k) {
+    const Center_prior& prior = m_center_priors[k];
+    if (!(prior.deviation > 0))
+      continue;
+    const double w = 1 / (prior.deviation * prior.deviation);
+    const Vec3 e = prior.middle - m_axis[k].point - m_axis[k].radius * prior.facing;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const std::size_t row = 4 * k + static_cast<std::size_t>(i);
+      const double f = prior.facing[i];
+      m_matrix(row, row) += w;
+      m_matrix(4 * k + 3, row) += w * f;
+      m_matrix(4 * k + 3, 4 * k + 3) += w * f * f;
+      m_gradient[row] += w * e[i];
+      m_gradient[4 * k + 3] += w * f * e[i];
+    }
   }
 }
 
