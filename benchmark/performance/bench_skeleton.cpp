@@ -7,7 +7,6 @@
 #include <pcs/generators/grow_tree.h>
 #include <pcs/generators/scan_tree.h>
 #include <pcs/make_branch_surface.h>
-#include <pcs/neighborhood/Nearest_neighbors.h>
 #include <support/Table.h>
 #include <support/measuring.h>
 #include <support/threads.h>
@@ -68,17 +67,14 @@ Points with_outliers(Points points, double share)
   return points;
 }
 
-/// Tree and 25 nearest neighbours of all points on one thread.
+/// nanoflann's tree and 25 nearest neighbours of all points on one thread.
 double query_seconds(const Points& points)
 {
-  std::vector<pcs::neighborhood::Vec3> local;
+  std::vector<Eigen::Vector3d> local;
   for (const Point& p : points)
     local.emplace_back(p.x() - points[0].x(), p.y() - points[0].y(), p.z() - points[0].z());
   const pcs_bench::Timer timer;
-  const pcs::neighborhood::Nearest_neighbors search(local);
-  std::vector<pcs::neighborhood::Nearest_neighbors::Neighbor> found;
-  for (const auto& p : local)
-    search(p, 25, found);
+  pcs_bench::query_neighbors(local, 25);
   return timer.seconds();
 }
 

@@ -8,7 +8,6 @@
 #include <pcs/generators/grow_tree.h>
 #include <pcs/generators/scan_tree.h>
 #include <pcs/internal/progress.h>
-#include <pcs/neighborhood/Nearest_neighbors.h>
 #include <pcs/skeleton/Session.h>
 #include <pcs/skeleton/write_result.h>
 
@@ -118,10 +117,7 @@ Scene make_scene(const std::string& preset, unsigned seed, std::size_t stations,
   for (const auto& p : scene.scan.points)
     points.emplace_back(p.x(), p.y(), p.z());
   const pcs_bench::Timer timer;
-  const pcs::neighborhood::Nearest_neighbors search(points);
-  std::vector<pcs::neighborhood::Nearest_neighbors::Neighbor> found;
-  for (const Vec3& p : points)
-    search(p, 25, found);
+  pcs_bench::query_neighbors(points, 25);
   scene.query_seconds = timer.seconds();
   return scene;
 }

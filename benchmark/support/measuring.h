@@ -89,21 +89,20 @@ struct Neighbor_adaptor
   }
 };
 
-/// The six nearest neighbours of every point by nanoflann as it comes, in input order: tree and queries.
-inline void query_neighbors(const std::vector<Vec3>& points)
+/// The `count` nearest points of every point, itself included, by nanoflann as it comes, in input order: tree and queries.
+inline void query_neighbors(const std::vector<Vec3>& points, std::size_t count)
 {
   using Metric = nanoflann::L2_Simple_Adaptor<double, Neighbor_adaptor>;
   using Tree = nanoflann::KDTreeSingleIndexAdaptor<Metric, Neighbor_adaptor, 3, std::uint32_t>;
-  constexpr std::size_t k = 7; // the point itself is found, too
   const Neighbor_adaptor adaptor{points};
   Tree tree(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(10));
   tree.buildIndex();
-  std::uint32_t indices[k];
-  double distances[k];
+  std::vector<std::uint32_t> indices(count);
+  std::vector<double> distances(count);
   double sum = 0;
   for (const Vec3& p : points) {
-    tree.knnSearch(p.data(), k, indices, distances);
-    sum += distances[k - 1];
+    tree.knnSearch(p.data(), count, indices.data(), distances.data());
+    sum += distances.back();
   }
   keep(sum);
 }

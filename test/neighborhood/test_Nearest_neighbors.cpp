@@ -7,6 +7,8 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include <cmath>
+
 namespace {
 
 using Tree = pcs::neighborhood::Nearest_neighbors;
@@ -68,6 +70,35 @@ BOOST_AUTO_TEST_CASE(equal_distances_are_ordered_by_coordinates)
   const std::size_t expected[] = {3, 4, 2, 0, 1};
   for (std::size_t b = 0; b < 5; ++b)
     BOOST_TEST(found[b].index == expected[b]);
+}
+
+BOOST_AUTO_TEST_CASE(nothing_is_nearer_than_the_radius)
+{
+  const Points points = pcs_test::random_points(100, 4);
+  const Tree nearest(points);
+  const auto any = [](std::uint32_t) { return true; };
+  const auto none = [](std::uint32_t) { return false; };
+  BOOST_TEST(nearest.nearest_if(Vec3(9, 0, 0), 2, any).squared_distance >= 4);
+  BOOST_TEST(nearest.nearest_if(points[3], 2, none).squared_distance >= 4);
+  BOOST_TEST(nearest.nearest_if(points[3], 2, any).index == 3u);
+}
+
+// Many copies of one point cannot be told apart by cuts; points at 1e-12 beside points at 1e3 need many.
+BOOST_AUTO_TEST_CASE(copies_and_unlike_scales_are_found)
+{
+  Points points(1000, Vec3(1, 2, 3));
+  for (int k = -40; k < 11; ++k)
+    points.push_back(Vec3(std::ldexp(1.0, k), 0, 0));
+  const Tree nearest(points);
+  std::vector<Tree::Neighbor> found;
+  for (std::size_t i = 1000; i < points.size(); ++i) {
+    nearest(points[i], 2, found);
+    BOOST_TEST(found[0].index == i);
+    BOOST_TEST(found[1].squared_distance > 0);
+  }
+  std::vector<std::uint32_t> inside;
+  nearest.within(Vec3(1, 2, 3), 0.5, inside);
+  BOOST_TEST(inside.size() == 1000u);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,10 +1,11 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Densities by place and direction; which axes of two points are believed.
+// Densities and sides by place and direction; which axes of two points are believed.
 
 #include <pcs/internal/Random_stream.h>
 #include <pcs/skeleton/Axis_set.h>
 #include <pcs/skeleton/Density_field.h>
+#include <pcs/skeleton/Facing_field.h>
 #include <pcs/skeleton/drop_pairs.h>
 
 #include <boost/test/unit_test.hpp>
@@ -54,6 +55,13 @@ std::vector<Density_sample> samples_of(std::size_t n, const Eigen::Matrix3d& rot
   return samples;
 }
 
+/// The mean outward normal of the half of a branch that the station sees.
+Vec3 true_facing(const Vec3& place, const Vec3& along)
+{
+  const Vec3 view = (station - place).normalized();
+  return 0.25 * 3.14159265358979323846 * (view - view.dot(along) * along).normalized();
+}
+
 /// Mean error of the logarithm.
 template <class Density>
 double error_of(const Density& density)
@@ -83,6 +91,37 @@ Axis_set set_of(const std::vector<std::size_t>& counts)
 }
 
 } // namespace
+
+BOOST_AUTO_TEST_SUITE(facing_field)
+
+BOOST_AUTO_TEST_CASE(it_tells_the_side_that_a_station_sees)
+{
+  std::vector<Density_sample> samples = samples_of(1000, Eigen::Matrix3d::Identity());
+  Facing_field field;
+  field.learn(std::vector<Density_sample>(samples.begin(), samples.begin() + 10));
+  BOOST_TEST(!field.is_known());
+  for (std::size_t i = 0; i < samples.size(); ++i) // every tenth one is fitted on the wrong side
+    samples[i].facing = (i % 10 == 0 ? -1 : 1) * true_facing(samples[i].place, samples[i].along);
+  field.learn(samples);
+  BOOST_TEST_REQUIRE(field.is_known());
+  double error = 0;
+  for (const Density_sample& s : samples) {
+    const Vec3 facing = field(s.place, s.along);
+    BOOST_TEST(std::abs(facing.dot(s.along)) < 1e-12);
+    BOOST_TEST(facing.norm() < 0.79);
+    error += (facing - true_facing(s.place, s.along)).norm() / double(samples.size());
+  }
+  BOOST_TEST(error < 0.15);
+}
+
+BOOST_AUTO_TEST_CASE(it_is_zero_where_points_lie_on_all_sides)
+{
+  Facing_field field;
+  field.learn(samples_of(500, Eigen::Matrix3d::Identity()));
+  BOOST_TEST(field(Vec3(1, 1, 1), Vec3::UnitZ()).norm() < 1e-12);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(density_field)
 

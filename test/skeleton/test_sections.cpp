@@ -216,6 +216,87 @@ BOOST_AUTO_TEST_CASE(a_wrong_start_finds_the_axis_of_half_a_tube)
   }
 }
 
+// Seven points about a twig that is much thinner than the noise: without the curvature of the distances the steps swing from
+// one side of the points to the other.
+BOOST_AUTO_TEST_CASE(fits_of_thin_twigs_settle)
+{
+  constexpr double noise = 0.003;
+  std::mt19937 random(8);
+  std::normal_distribution<double> normal(0, noise);
+  for (int repetition = 0; repetition < 50; ++repetition) {
+    std::vector<Vec3> points;
+    for (int i = 0; i < 7; ++i) {
+      const double x = normal(random), y = normal(random);
+      points.emplace_back(x, y, 0.02 + 0.01 * i);
+    }
+    pcs::skeleton::Axis axis(11);
+    for (std::size_t k = 0; k < axis.size(); ++k) {
+      axis[k].point = Vec3(0, 0, 0.01 * double(k));
+      axis[k].radius = 0.001;
+    }
+    pcs::skeleton::Axis_fit fit(axis, pcs::skeleton::Fit_model::of(0.01, noise));
+    fit.set_points(points, std::vector<pcs::skeleton::Index>(points.size(), 3));
+    fit.set_priors(std::vector<pcs::skeleton::Radius_prior>(axis.size(), {1e-4, 1e-3}));
+    fit.project();
+    for (int k = 0; k < 15; ++k)
+      BOOST_REQUIRE(fit.iterate(1));
+    BOOST_CHECK_LT(fit.largest_change(), 0.3 * noise);
+  }
+}
+
+// The front of a twig: an axis in the middle of its points stays there unless the fit knows on which side they lie.
+BOOST_AUTO_TEST_CASE(the_side_of_the_points_finds_the_axis_behind_them)
+{
+  namespace sk = pcs::skeleton;
+  constexpr double radius = 0.004, noise = 0.003, facing = 0.25 * pi;
+  std::mt19937 random(9);
+  std::normal_distribution<double> normal(0, noise);
+  std::vector<Vec3> points;
+  for (const Vec3& p : tube(radius, 0.3, 240))
+    if (p.x() > 0)
+      points.emplace_back(p.x() + normal(random), p.y(), p.z());
+  const auto depth = [&](bool does_know) {
+    sk::Axis axis(16);
+    for (std::size_t k = 0; k < axis.size(); ++k) {
+      axis[k].point = Vec3(facing * radius, 0, 0.02 * double(k));
+      axis[k].radius = 0.003;
+    }
+    sk::Axis_fit fit(axis, sk::Fit_model::of(0.01, noise));
+    fit.set_points(points, std::vector<sk::Index>(points.size(), 8));
+    fit.set_priors(std::vector<sk::Radius_prior>(axis.size(), {radius, 0.5 * radius}));
+    fit.project();
+    for (int k = 0; k < 15; ++k) {
+      std::vector<sk::Center_prior> priors;
+      for (const sk::Axis_node& node : fit.axis())
+        priors.push_back({Vec3(facing * radius, 0, node.point.z()), Vec3(facing, 0, 0), 0.002});
+      if (does_know)
+        fit.set_priors(priors);
+      BOOST_REQUIRE(fit.iterate(1));
+    }
+    return fit.axis()[8].point.x();
+  };
+  BOOST_CHECK_GT(depth(false), 0.45 * radius);
+  BOOST_CHECK_SMALL(depth(true), 0.35 * radius);
+}
+
+BOOST_AUTO_TEST_CASE(a_radius_at_its_lowest_value_does_not_change)
+{
+  constexpr double spacing = 0.1, noise = 0.003;
+  pcs::skeleton::Axis axis(6);
+  for (std::size_t k = 0; k < axis.size(); ++k) {
+    axis[k].point = Vec3(0, 0, spacing * double(k));
+    axis[k].radius = 0.01;
+  }
+  pcs::skeleton::Axis_fit fit(axis, pcs::skeleton::Fit_model::of(spacing, noise));
+  const std::vector<Vec3> points = tube(1e-4, 0.5, 200); // thinner than any axis may be
+  fit.set_points(points, std::vector<pcs::skeleton::Index>(points.size(), 0));
+  fit.project();
+  for (int k = 0; k < 10; ++k)
+    BOOST_REQUIRE(fit.iterate(1));
+  BOOST_CHECK_CLOSE(fit.axis()[2].radius, 0.05 * spacing, 1e-9);
+  BOOST_CHECK_LT(fit.largest_change(), 0.01 * noise);
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(section_counts)

@@ -52,6 +52,14 @@ struct Radius_prior
   double deviation = 0; ///< 0: no expectation
 };
 
+/// Where the points of a section lie: their middle is expected at `radius * facing` from its center.
+struct Center_prior
+{
+  Vec3 middle = Vec3::Zero(); ///< of the points, moved along to the plane of the center
+  Vec3 facing = Vec3::Zero();
+  double deviation = 0; ///< [L]; 0: no expectation
+};
+
 /// Tukey's constant, in standard deviations, and how much wider the first iterations look [-].
 constexpr double tukey_constant = 4.7, first_widening = 2.5;
 
@@ -84,6 +92,7 @@ public:
   }
   std::size_t stride() const { return m_stride; }
   void set_priors(std::vector<Radius_prior> priors) { m_priors = std::move(priors); }
+  void set_priors(std::vector<Center_prior> priors) { m_center_priors = std::move(priors); }
 
   const std::vector<Vec3>& points() const { return m_points; }
   const std::vector<Axis_place>& places() const { return m_places; }
@@ -127,6 +136,7 @@ private:
   void add_points(double widening);
   void add_smoothness();
   void add_priors();
+  void add_center_priors();
   void apply_step();
 
   Axis m_axis;
@@ -135,6 +145,7 @@ private:
   std::vector<Index> m_segments;
   std::vector<Axis_place> m_places;
   std::vector<Radius_prior> m_priors;
+  std::vector<Center_prior> m_center_priors;
   std::size_t m_stride = 1;
   double m_largest_change = 0;
   Matrix m_matrix; // its factor after a step
@@ -150,6 +161,7 @@ inline void Axis_fit::assemble(double widening)
   add_points(widening);
   add_smoothness();
   add_priors();
+  add_center_priors();
   hold_along_axis();
 }
 
@@ -189,12 +201,16 @@ inline void Axis_fit::add_points(double widening)
     const Vec3 n = (m_points[i] - point_at(m_axis, place)) / place.distance;
     // e(c, r) = |p - c| - r with c, r linear between the nodes, so its derivatives are -(1 - t) d and -t d
     const double d[4] = {n.x(), n.y(), n.z(), 1};
+    // Second order: the surface is curved, and a point outside holds the axis across n, too. Without this, steps of thin
+    // axes swing between two sides of their points for ever.
+    const double hold = std::max(0.0, e / place.distance);
     const double w00 = w * (1 - t) * (1 - t), w10 = w * t * (1 - t), w11 = w * t * t;
     for (std::size_t a = 0; a < 4; ++a) {
       m_gradient[4 * s + a] += w * (1 - t) * d[a] * e;
       m_gradient[4 * s + 4 + a] += w * t * d[a] * e;
       for (std::size_t b = 0; b < 4; ++b) {
-        const double dd = d[a] * d[b];
+        const bool is_place = a < 3 && b < 3;
+        const double dd = (is_place ? 1 - hold : 1) * d[a] * d[b] + (is_place && a == b ? hold : 0);
         m_matrix(4 * s + 4 + b, 4 * s + a) += w10 * dd;
         if (b < a)
           continue;
@@ -251,6 +267,26 @@ inline void Axis_fit::add_priors()
   }
 }
 
+inline void Axis_fit::add_center_priors()
+{
+  for (std::size_t k = 0; k < m_axis.size() && k < m_center_priors.size(); ++k) {
+    const Center_prior& prior = m_center_priors[k];
+    if (!(prior.deviation > 0))
+      continue;
+    const double w = 1 / (prior.deviation * prior.deviation);
+    const Vec3 e = prior.middle - m_axis[k].point - m_axis[k].radius * prior.facing;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const std::size_t row = 4 * k + static_cast<std::size_t>(i);
+      const double f = prior.facing[i];
+      m_matrix(row, row) += w;
+      m_matrix(4 * k + 3, row) += w * f;
+      m_matrix(4 * k + 3, 4 * k + 3) += w * f * f;
+      m_gradient[row] += w * e[i];
+      m_gradient[4 * k + 3] += w * f * e[i];
+    }
+  }
+}
+
 inline void Axis_fit::apply_step()
 {
   m_largest_change = 0;
@@ -263,8 +299,10 @@ inline void Axis_fit::apply_step()
       move *= longest / length;
     node.point += move;
     const double change = std::min(longest, std::max(-longest, m_step[4 * k + 3]));
-    m_largest_change = std::max({m_largest_change, std::min(length, longest), std::abs(change)});
-    node.radius = std::max(m_model.lowest_radius, node.radius + change);
+    const double radius = std::max(m_model.lowest_radius, node.radius + change);
+    m_largest_change =
+        std::max({m_largest_change, std::min(length, longest), std::abs(radius - node.radius)});
+    node.radius = radius;
   }
 }
 

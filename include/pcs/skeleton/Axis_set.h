@@ -7,6 +7,7 @@
 
 #include <pcs/skeleton/Axis.h>
 #include <pcs/skeleton/Density_field.h>
+#include <pcs/skeleton/Facing_field.h>
 #include <pcs/skeleton/Scan.h>
 
 #include <algorithm>
@@ -35,6 +36,7 @@ struct Axis_set
   double noise = 0;   ///< standard deviation of points from the surface [L]
   double density = 0; ///< median of points per area of the surface; 0: not known yet [1/L^2]
   Density_field density_field;
+  Facing_field facing_field;
 
   /// Points per area of a branch at a place, along a unit vector [1/L^2].
   double density_at(const Vec3& place, const Vec3& along) const
@@ -47,6 +49,14 @@ struct Axis_set
     const Vec3 d = axis[std::min(axis.size() - 1, k + 1)].point - axis[k > 0 ? k - 1 : 0].point;
     const double length = d.norm();
     return density_at(axis[k].point, length > 0 ? Vec3(d / length) : Vec3(Vec3::UnitZ()));
+  }
+  /// The mean outward normal of the points at a node; zero where nothing is known.
+  Vec3 facing_at(const Axis& axis, std::size_t k) const
+  {
+    const Vec3 d = axis[std::min(axis.size() - 1, k + 1)].point - axis[k > 0 ? k - 1 : 0].point;
+    const double length = d.norm();
+    const bool is_known = facing_field.is_known() && length > 0;
+    return is_known ? facing_field(axis[k].point, d / length) : Vec3(Vec3::Zero());
   }
 
   bool is_covered(Index i) const { return axis_of_point[i] != none; }
@@ -98,23 +108,24 @@ public:
       set.density = median(thick.size() >= enough_densities ? thick : all);
       if (double(m_densities.size()) >= field_growth * double(m_samples_of_field)) {
         m_samples_of_field = std::max(m_densities.size(), Density_field::fewest_samples);
-        learn_field(set);
+        learn_fields(set);
       }
     }
   }
 
 private:
-  void learn_field(Axis_set& set) const
+  void learn_fields(Axis_set& set) const
   {
     std::vector<Density_sample> thick;
     for (const Density_sample& s : m_densities)
       if (s.radius > thick_radius * set.noise)
         thick.push_back(s);
     set.density_field.learn(thick.size() >= enough_thick ? thick : m_densities);
+    set.facing_field.learn(thick.size() >= enough_facing ? thick : m_densities);
   }
 
   static constexpr std::size_t capacity = 40000, enough_deviations = 200, enough_densities = 8,
-                               enough_thick = 600;
+                               enough_thick = 600, enough_facing = 100;
   static constexpr double field_growth = 1.5; ///< of the samples, until the field is fitted again
   static constexpr double thick_radius =
       6; ///< in noise: here the radius, hence the density, has no bias

@@ -13,6 +13,7 @@
 #include <pcs/skeleton/chains.h>
 #include <pcs/skeleton/circle_fit.h>
 #include <pcs/skeleton/section_counts.h>
+#include <pcs/skeleton/section_sides.h>
 
 #include <Eigen/Geometry>
 
@@ -142,15 +143,23 @@ inline void Chain_fit::start_at_circles(Axis_fit& fit) const
       circles[k] = c;
   }
   const Section_counts counts = section_counts(m_view, fit, visible_shares(m_view, fit));
+  std::vector<Vec3> shift(n, Vec3::Zero());
   for (std::size_t k = 0; k < n; ++k) {
     if (circles[k].radius > 0) {
       axis[k].point += circles[k].center.x() * e1[k] + circles[k].center.y() * e2[k];
       axis[k].radius = circles[k].radius;
     } else if (m_set.density > 0 && counts.visible_length[k] > 0) {
       const double r = counts.radius(k, m_set.density_at(fit.axis(), k));
-      axis[k].radius = std::max(0.1 * u, std::min(axis[k].radius, r));
+      // its first radius is the deviation of the points from their middle
+      const bool is_thin = std::min(axis[k].radius, r) < m_rules.thick * u;
+      const Vec3 facing = is_thin ? m_set.facing_at(fit.axis(), k) : Vec3(Vec3::Zero());
+      const double spread = axis[k].radius / std::sqrt(1 - facing.squaredNorm());
+      axis[k].radius = std::max(0.1 * u, std::min(spread, r));
+      shift[k] = -axis[k].radius * facing;
     }
   }
+  for (std::size_t k = 0; k < n; ++k)
+    axis[k].point += shift[k]; // so far it runs in the middle of the points
   fit.project();
 }
 
@@ -167,6 +176,7 @@ inline void Chain_fit::set_priors(const std::vector<double>& visible, Axis_fit& 
       }
   }
   fit.set_priors(std::move(priors));
+  fit.set_priors(center_priors(m_view, fit));
 }
 
 inline bool Chain_fit::run(Axis_fit& fit, double widening) const
@@ -334,6 +344,7 @@ Chain_fit::judge(Axis_fit& fit, const std::vector<Index>& points, Candidate& can
   }
   if (candidate.points.size() < m_rules.lowest_count)
     return;
+  const Section_sides sides(m_view, fit);
   for (std::size_t k = 2; k + 2 < axis.size(); ++k)
     if (!is_odd[k] && axis[k].is_measured && axis[k].radius > 2.5 * s &&
         axis[k].radius_error < 0.15 * axis[k].radius &&
@@ -341,7 +352,8 @@ Chain_fit::judge(Axis_fit& fit, const std::vector<Index>& points, Candidate& can
       candidate.densities.push_back({counts.density(k, axis[k].radius),
                                      axis[k].radius,
                                      axis[k].point,
-                                     (axis[k + 1].point - axis[k - 1].point).normalized()});
+                                     (axis[k + 1].point - axis[k - 1].point).normalized(),
+                                     sides.normal[k]});
   candidate.axis = axis;
   for (Axis_node& node : candidate.axis) {
     const double r2 = node.radius * node.radius - m_rules.noise_share * s * s;

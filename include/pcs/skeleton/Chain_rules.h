@@ -33,6 +33,9 @@ struct Chain_rules
       0.25; ///< circles with fewer points than this share of the expected straddle several twigs
   double prior_share = 0.5;   ///< standard deviation of the radius by counting, in radii ...
   double prior_offset = 0.15; ///< ... and spacings
+  //! deviation of the middle of the points of a thin branch from its place: this many times the usual one ...
+  double facing_share = 5;
+  double facing_noise = 0.5;  ///< ... and this much noise
   double visible = 0.5;       ///< share of a section that such a radius must be counted on [-]
   double counted_share = 0.7; ///< of the expected points: below, other axes may hide a section [-]
   double hiding_radius = 4;   ///< how far such an axis is looked for, in radii ...

@@ -24,8 +24,44 @@ struct Density_sample
   double density; ///< points per area [1/L^2]
   double radius;  ///< of the section [L]
   Vec3 place;
-  Vec3 along; ///< unit vector along the axis
+  Vec3 along;                 ///< unit vector along the axis
+  Vec3 facing = Vec3::Zero(); ///< mean of the outward normals of its points
 };
+
+/// Places relative to the middle of samples, in their spread.
+class Sample_frame
+{
+public:
+  Sample_frame() = default;
+  /// At least one sample.
+  explicit Sample_frame(const std::vector<Density_sample>& samples)
+  {
+    for (const Density_sample& s : samples)
+      m_center += s.place;
+    m_center /= double(samples.size());
+    double spread = 0;
+    for (const Density_sample& s : samples)
+      spread += (s.place - m_center).squaredNorm();
+    m_scale = spread > 0 ? std::sqrt(3 * double(samples.size()) / spread) : 1;
+  }
+
+  Vec3 operator()(const Vec3& place) const { return m_scale * (place - m_center); }
+
+private:
+  Vec3 m_center = Vec3::Zero();
+  double m_scale = 1;
+};
+
+/// Some thousand of all samples, evenly.
+inline std::vector<Density_sample> some_of(const std::vector<Density_sample>& all)
+{
+  constexpr std::size_t most = 3000;
+  std::vector<Density_sample> samples;
+  const std::size_t stride = (all.size() + most - 1) / most;
+  for (std::size_t i = 0; i < all.size(); i += stride)
+    samples.push_back(all[i]);
+  return samples;
+}
 
 /*!
   Points thin out with the distance from a station, and where a branch points to it: the logarithm of the density is a
@@ -35,7 +71,8 @@ struct Density_sample
 class Density_field
 {
 public:
-  static constexpr std::size_t fewest_samples = 60, most_samples = 3000; // of all, evenly
+  static constexpr std::size_t fewest_samples = 60;
+  static constexpr double shared = 5; ///< sections next to each other share points [count]
 
   /// Whether there were enough samples.
   bool is_known() const { return m_is_known; }
@@ -46,11 +83,8 @@ public:
     m_is_known = all.size() >= fewest_samples;
     if (!m_is_known)
       return;
-    std::vector<Density_sample> samples;
-    const std::size_t stride = (all.size() + most_samples - 1) / most_samples;
-    for (std::size_t i = 0; i < all.size(); i += stride)
-      samples.push_back(all[i]);
-    scale(samples);
+    const std::vector<Density_sample> samples = some_of(all);
+    m_frame = Sample_frame(samples);
     std::vector<double> values, errors(samples.size());
     for (const Density_sample& s : samples)
       values.push_back(std::log(s.density));
@@ -91,26 +125,13 @@ public:
 
 private:
   static constexpr int size = 16;
-  static constexpr double least_deviation = 0.05,
-                          shared = 5; // sections next to each other share points
+  static constexpr double least_deviation = 0.05;
   using Row = Eigen::Matrix<double, size, 1>;
-
-  void scale(const std::vector<Density_sample>& samples)
-  {
-    m_center = Vec3::Zero();
-    for (const Density_sample& s : samples)
-      m_center += s.place;
-    m_center /= double(samples.size());
-    double spread = 0;
-    for (const Density_sample& s : samples)
-      spread += (s.place - m_center).squaredNorm();
-    m_scale = spread > 0 ? std::sqrt(3 * double(samples.size()) / spread) : 1;
-  }
 
   Row row(const Vec3& place, const Vec3& t) const
   {
     const double root = std::sqrt(2.0); // the ridge is the same for a turned scan
-    const Vec3 q = m_scale * (place - m_center);
+    const Vec3 q = m_frame(place);
     Row r;
     r << 1, q.x(), q.y(), q.z(), q.x() * q.x(), q.y() * q.y(), q.z() * q.z(), root * q.x() * q.y(),
         root * q.x() * q.z(), root * q.y() * q.z(), t.x() * t.x(), t.y() * t.y(), t.z() * t.z(),
@@ -119,8 +140,8 @@ private:
   }
 
   bool m_is_known = false;
-  Vec3 m_center = Vec3::Zero();
-  double m_scale = 1, m_middle = 0, m_lowest = 0, m_highest = 0; // of logarithms
+  Sample_frame m_frame;
+  double m_middle = 0, m_lowest = 0, m_highest = 0; // of logarithms
   Row m_weights = Row::Zero();
 };
 

@@ -115,15 +115,19 @@ neighbor_links(const Scan& scan, const std::vector<std::uint8_t>& is_used, const
       }
     }
   });
-  std::size_t total = 0;
-  for (const auto& part : parts)
-    total += part.size();
+  std::vector<std::size_t> first(parts.size() + 1, 0);
+  for (std::size_t b = 0; b < parts.size(); ++b)
+    first[b + 1] = first[b] + parts[b].size();
   std::vector<Link> links;
-  links.reserve(total);
-  for (auto& part : parts) {
-    links.insert(links.end(), part.begin(), part.end());
-    std::vector<Link>().swap(part);
-  }
+  links.reserve(first.back() + first.back() / 16); // for those that close gaps
+  links.resize(first.back());
+  pcs::internal::for_each_index<ConcurrencyTag>(
+      parts.size(),
+      [&](std::size_t b) {
+        std::copy(parts[b].begin(), parts[b].end(), links.begin() + std::ptrdiff_t(first[b]));
+        std::vector<Link>().swap(parts[b]);
+      },
+      1);
   return links;
 }
 

@@ -108,14 +108,14 @@ Distinct_places distinct_places(const std::vector<Vec3>& points, const Scan_fram
 template <class ConcurrencyTag>
 void merge_duplicates(const std::vector<Vec3>& input, const Vec3& up, Scan& scan)
 {
-  scan.frame = frame_of_scan(input, up);
+  scan.frame = frame_of_scan<ConcurrencyTag>(input, up);
   Distinct_places found = distinct_places<ConcurrencyTag>(input, scan.frame);
   scan.point_of_input = std::move(found.of_point);
   if (found.places.size() < input.size()) {
     std::vector<Vec3> once(found.chosen.size());
     for (std::size_t k = 0; k < once.size(); ++k)
       once[k] = input[found.chosen[k]];
-    scan.frame = frame_of_scan(once, up);
+    scan.frame = frame_of_scan<ConcurrencyTag>(once, up);
     found = distinct_places<ConcurrencyTag>(once, scan.frame);
     for (Index& i : scan.point_of_input)
       i = found.of_point[i];

@@ -11,9 +11,15 @@
 #include <pcs/skeleton/Axis_set.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <limits>
+#include <memory>
+#include <queue>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -92,11 +98,10 @@ public:
     : m_set(set), m_spacing(spacing), m_rules(rules)
   {
     for (Index a = 0; a < set.axes.size(); ++a)
-      for (Index k = 0; k < set.axes[a].axis.size(); ++k) {
-        m_nodes.push_back(set.axes[a].axis[k].point);
-        m_place_of_node.emplace_back(a, k);
-        m_thickest = std::max(m_thickest, set.axes[a].axis[k].radius);
-      }
+      for (Index k = 0; k < set.axes[a].axis.size(); ++k)
+        level_of(set.axes[a].axis[k].radius).add(set.axes[a].axis[k], {a, k});
+    for (Level& level : m_levels)
+      level.search = std::make_unique<neighborhood::Nearest_neighbors>(level.points);
   }
 
   /// A joint for every axis but the root; no cycles. Axes that nothing is near to have no parent.
@@ -104,50 +109,56 @@ public:
   std::vector<Joint> run(Index root) const
   {
     const std::size_t n = m_set.axes.size();
-    const neighborhood::Nearest_neighbors search(m_nodes);
     std::vector<std::vector<Joint>> options(n);
     pcs::internal::for_each_index<ConcurrencyTag>(
         n,
         [&](std::size_t a) {
           if (a != root)
-            options[a] = options_of(static_cast<Index>(a), search);
+            options[a] = options_of(static_cast<Index>(a));
         },
         16);
     return choose(root, options);
   }
 
 private:
+  using Node = std::pair<Index, Index>; ///< axis, number on it
+
+  /// Nodes of similar radii: only among thick ones one must look far.
+  struct Level
+  {
+    double thickest = 0;
+    std::vector<Vec3> points;
+    std::vector<Node> nodes;
+    std::unique_ptr<neighborhood::Nearest_neighbors> search;
+
+    void add(const Axis_node& node, Node place)
+    {
+      thickest = std::max(thickest, node.radius);
+      points.push_back(node.point);
+      nodes.push_back(place);
+    }
+  };
+  Level& level_of(double radius)
+  {
+    const double doublings = std::log2(std::max(1.0, radius / m_spacing));
+    return m_levels[std::min(m_levels.size() - 1, static_cast<std::size_t>(doublings))];
+  }
+  /// Nodes whose surfaces are not much farther than `reach`, by axis, then by number.
+  std::vector<Node> nodes_near(const Vec3& place, double reach) const;
+
   /// The cheapest place on axis `b` near the given nodes of it.
   Joint best_place(const internal::Axis_end& end,
                    Index b,
                    const std::vector<Index>& nodes,
                    double reach) const;
   double cost(const internal::Axis_end& end, Index b, const Axis_place& place, double reach) const;
-  std::vector<Joint> options_of(Index a, const neighborhood::Nearest_neighbors& search) const;
-  static std::vector<std::uint8_t> reached_from(Index root, const std::vector<Joint>& joints)
-  {
-    const std::size_t n = joints.size();
-    std::vector<std::vector<Index>> children(n);
-    for (Index a = 0; a < n; ++a)
-      if (joints[a].parent != none)
-        children[joints[a].parent].push_back(a);
-    std::vector<std::uint8_t> is_reached(n, 0);
-    std::vector<Index> stack{root};
-    while (!stack.empty()) {
-      const Index a = stack.back();
-      stack.pop_back();
-      is_reached[a] = 1;
-      stack.insert(stack.end(), children[a].begin(), children[a].end());
-    }
-    return is_reached;
-  }
+  std::vector<Joint> options_of(Index a) const;
   static std::vector<Joint> choose(Index root, const std::vector<std::vector<Joint>>& options);
 
   const Axis_set& m_set;
-  double m_spacing, m_thickest = 0;
+  double m_spacing;
   Joint_rules m_rules;
-  std::vector<Vec3> m_nodes;
-  std::vector<std::pair<Index, Index>> m_place_of_node;
+  std::array<Level, 12> m_levels; // of doubled radii
 };
 
 inline double Axis_joiner::cost(const internal::Axis_end& end,
@@ -205,11 +216,29 @@ inline Joint Axis_joiner::best_place(const internal::Axis_end& end,
   return best;
 }
 
-inline std::vector<Joint>
-Axis_joiner::options_of(Index a, const neighborhood::Nearest_neighbors& search) const
+inline std::vector<Axis_joiner::Node> Axis_joiner::nodes_near(const Vec3& place, double reach) const
+{
+  const double slack = 8 * m_spacing; // the nearest place lies between nodes
+  std::vector<Node> near;
+  std::vector<Index> found;
+  for (const Level& level : m_levels) {
+    found.clear();
+    level.search->append_within(place, reach + slack + level.thickest, found);
+    for (const Index i : found) {
+      const auto [axis, number] = level.nodes[i];
+      const double gap = (level.points[i] - place).norm() - m_set.axes[axis].axis[number].radius;
+      if (gap < reach + slack)
+        near.push_back(level.nodes[i]);
+    }
+  }
+  std::sort(near.begin(), near.end());
+  return near;
+}
+
+inline std::vector<Joint> Axis_joiner::options_of(Index a) const
 {
   std::vector<Joint> options;
-  std::vector<Index> near, nodes;
+  std::vector<Index> nodes;
   const Axis& axis = m_set.axes[a].axis;
   const double reach = std::max(m_rules.reach * m_spacing, m_rules.long_reach * length_of(axis));
   for (const bool is_tip : {false, true}) {
@@ -217,18 +246,13 @@ Axis_joiner::options_of(Index a, const neighborhood::Nearest_neighbors& search) 
         std::min(std::max(m_rules.base_length * m_spacing, 2 * axis.front().radius),
                  0.7 * length_of(axis));
     const internal::Axis_end end = internal::end_of(axis, is_tip, length);
-    near.clear();
-    search.within(end.point, reach + m_thickest, near); // by axis, then by node
+    const std::vector<Node> near = nodes_near(end.point, reach);
     for (std::size_t i = 0; i < near.size();) {
-      const Index b = m_place_of_node[near[i]].first;
+      const Index b = near[i].first;
       nodes.clear();
-      for (; i < near.size() && m_place_of_node[near[i]].first == b; ++i) {
-        const Index k = m_place_of_node[near[i]].second;
-        const double gap = (m_nodes[near[i]] - end.point).norm() - m_set.axes[b].axis[k].radius;
-        if (gap < reach + 8 * m_spacing)
-          nodes.push_back(k);
-      }
-      if (b == a || nodes.empty())
+      for (; i < near.size() && near[i].first == b; ++i)
+        nodes.push_back(near[i].second);
+      if (b == a)
         continue;
       Joint joint = best_place(end, b, nodes, reach);
       joint.is_reversed = is_tip;
@@ -258,35 +282,51 @@ inline std::vector<Joint> Axis_joiner::choose(Index root,
 {
   const std::size_t n = options.size();
   std::vector<Joint> joints(n);
-  for (Index a = 0; a < n; ++a)
-    if (a != root && !options[a].empty())
-      joints[a] = options[a].front();
-  while (true) {
-    const std::vector<std::uint8_t> is_reached = reached_from(root, joints);
-    Index who = none;
-    Joint instead;
-    double least = std::numeric_limits<double>::infinity();
-    for (Index a = 0; a < n; ++a) {
+  std::vector<std::vector<Index>> children(n), users(n); // users: who has an option on an axis
+  for (Index a = 0; a < n; ++a) {
+    if (a == root || options[a].empty())
+      continue;
+    joints[a] = options[a].front();
+    children[joints[a].parent].push_back(a);
+    for (const Joint& o : options[a])
+      users[o.parent].push_back(a);
+  }
+  std::vector<std::uint8_t> is_reached(n, 0);
+  // what a change to an option costs, who changes, and to which
+  using Change = std::tuple<double, Index, std::size_t>;
+  std::priority_queue<Change, std::vector<Change>, std::greater<Change>> changes;
+  const auto reach = [&](Index from) {
+    std::vector<Index> stack{from}, reached;
+    while (!stack.empty()) {
+      const Index a = stack.back();
+      stack.pop_back();
       if (is_reached[a])
         continue;
-      for (const Joint& o : options[a])
-        if (is_reached[o.parent]) {
-          if (o.cost - joints[a].cost < least) {
-            least = o.cost - joints[a].cost;
-            who = a;
-            instead = o;
+      is_reached[a] = 1;
+      reached.push_back(a);
+      stack.insert(stack.end(), children[a].begin(), children[a].end());
+    }
+    for (const Index b : reached)
+      for (const Index a : users[b])
+        for (std::size_t k = 0; !is_reached[a] && k < options[a].size(); ++k)
+          if (options[a][k].parent == b) {
+            changes.emplace(options[a][k].cost - joints[a].cost, a, k);
+            break; // they are sorted
           }
-          break; // options are sorted
-        }
-    }
-    if (who == none) {
-      for (Index a = 0; a < n; ++a)
-        if (!is_reached[a])
-          joints[a] = Joint();
-      return joints;
-    }
-    joints[who] = instead;
+  };
+  reach(root);
+  while (!changes.empty()) {
+    const auto [cost, a, k] = changes.top();
+    changes.pop();
+    if (is_reached[a])
+      continue;
+    joints[a] = options[a][k];
+    reach(a);
   }
+  for (Index a = 0; a < n; ++a)
+    if (!is_reached[a])
+      joints[a] = Joint();
+  return joints;
 }
 
 } // namespace skeleton

@@ -1,0 +1,87 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// On which side of the sections of an axis its points lie.
+
+#ifndef PCS_SKELETON_SECTION_SIDES_H
+#define PCS_SKELETON_SECTION_SIDES_H
+
+#include <pcs/skeleton/Axis_fit.h>
+#include <pcs/skeleton/Chain_rules.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// Sums over the points near the surface, in a window of nodes about each node.
+struct Section_sides
+{
+  std::vector<double> count;
+  std::vector<Vec3> offset; ///< mean vector from the axis to its points [L]
+  std::vector<Vec3> normal; ///< mean of the outward normals of the points
+
+  Section_sides(const Chain_view& view, const Axis_fit& fit)
+    : count(fit.axis().size(), 0),
+      offset(count.size(), Vec3::Zero()),
+      normal(count.size(), Vec3::Zero())
+  {
+    const Axis& axis = fit.axis();
+    const std::size_t n = axis.size();
+    std::vector<double> own(n, 0);
+    std::vector<Vec3> offsets(n, Vec3::Zero()), normals(n, Vec3::Zero());
+    for (std::size_t i = 0; i < fit.places().size(); i += fit.stride()) {
+      const Axis_place& p = fit.places()[i];
+      const double r = radius_at(axis, p);
+      const double limit = tukey_constant * std::max(view.set.noise, 0.04 * r);
+      if (p.share < 0 || p.share > 1 || std::abs(p.distance - r) > limit || !(p.distance > 0))
+        continue;
+      const Vec3 d = fit.points()[i] - point_at(axis, p);
+      const std::size_t nodes[2] = {p.segment, std::size_t(p.segment) + 1};
+      const double shares[2] = {1 - p.share, p.share};
+      for (std::size_t m = 0; m < 2; ++m) {
+        own[nodes[m]] += shares[m];
+        offsets[nodes[m]] += shares[m] * d;
+        normals[nodes[m]] += shares[m] / p.distance * d;
+      }
+    }
+    for (std::size_t k = 0; k < n; ++k) {
+      for (std::size_t i = k >= 2 ? k - 2 : 0; i < std::min(n, k + 3); ++i) {
+        count[k] += own[i];
+        offset[k] += offsets[i];
+        normal[k] += normals[i];
+      }
+      if (count[k] > 0) {
+        offset[k] /= count[k];
+        normal[k] /= count[k];
+      }
+    }
+  }
+};
+
+/*!
+  Where the points of each section are expected to lie about its center. The points of a thin branch that is seen from one
+  side fit axes before, in and behind them nearly as well; thick branches tell which it is.
+*/
+inline std::vector<Center_prior> center_priors(const Chain_view& view, const Axis_fit& fit)
+{
+  if (!view.set.facing_field.is_known())
+    return {};
+  const Axis& axis = fit.axis();
+  const Section_sides sides(view, fit);
+  std::vector<Center_prior> priors(axis.size());
+  for (std::size_t k = 0; k < axis.size(); ++k)
+    if (sides.count[k] >= 1 && axis[k].radius < view.rules.thick * view.scan.spacing)
+      priors[k] = {axis[k].point + sides.offset[k],
+                   view.set.facing_at(axis, k),
+                   view.rules.facing_share * view.set.facing_field.deviation() * axis[k].radius +
+                       view.rules.facing_noise * view.set.noise};
+  return priors;
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_SECTION_SIDES_H
