@@ -18,8 +18,8 @@ namespace shape_space {
 
 /// How the orientation of an edge is measured.
 enum class Orientation {
-  gauge_fixed, ///< in the frame of the branch's first edge, and that in the frame of an edge of the parent; twists are chosen so
-               ///< that trees differ as little as possible
+  gauge_fixed, ///< in the frame of the first edge of the branch, and that in the frame of an edge of the parent; twists are
+               ///< chosen so that trees differ as little as possible
   transported, ///< in the frame of the edge before, transported from the root without twist
   world_axes ///< in the axes of the input, as in the text: turning a parent does not carry its children
 };

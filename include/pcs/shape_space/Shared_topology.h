@@ -180,7 +180,8 @@ with_parent_edges(const Orl_layout& from, const Orl_coordinates& x, const Orl_la
   Embedding result = as_embedding(from, x);
   for (std::size_t e = 0; e < to.number_of_edges(); ++e)
     if (const std::size_t p = to.parent_edge[e]; p != none)
-      result.x.orientation[e] = relative(Orientation::gauge_fixed, result.frame[p], result.frame[e]);
+      result.x.orientation[e] =
+          relative(Orientation::gauge_fixed, result.frame[p], result.frame[e]);
   return std::move(result.x);
 }
 

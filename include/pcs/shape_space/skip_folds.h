@@ -37,8 +37,8 @@ inline void mark_folds(const std::vector<Vec3>& direction,
 } // namespace internal
 
 /*!
-  Lets the frames of edges and branches behind a fold of their branch be carried on from the last edge before it. `directions`: of the edges, for
-  each tree; null for those that it does not have.
+  Lets the frames of edges and branches behind a fold of their branch be carried on from the last edge before it.
+  `directions`: of the edges, for each tree; null for those that it does not have.
 
   A fold that only one tree has is half a turn there and back. Which way is rounding, or noise, and half of it, twice, may
   be anything: without this, what is behind a fold of a millimetre would point anywhere on the path between the trees.
