@@ -424,6 +424,51 @@ BOOST_AUTO_TEST_CASE(a_branch_that_is_turned_keeps_its_lengths_and_costs_its_ang
   }
 }
 
+BOOST_AUTO_TEST_CASE(noise_of_an_axis_does_not_turn_what_is_behind_it)
+{
+  // wiggles that have nothing to do with each other, then the same straight end: half-way it is upright, too
+  const auto wiggly = [](unsigned seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    std::vector<Vec3> nodes{Vec3::Zero()};
+    for (int k = 0; k < 24; ++k)
+      nodes.push_back(nodes.back() +
+                      (Vec3::UnitZ() + 0.7 * Vec3(normal(random), normal(random), normal(random)))
+                          .normalized());
+    for (int k = 0; k < 4; ++k)
+      nodes.push_back(nodes.back() + 5 * Vec3::UnitZ());
+    Tree tree;
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      pcs::Tree_node<Kernel> node;
+      node.point = to_cgal(nodes[k]);
+      node.radius = 0.1;
+      const auto v = add_vertex(node, tree);
+      if (k > 0)
+        add_edge(v - 1, v, tree);
+    }
+    return tree;
+  };
+  const auto mean_tilt = [&](Orientation orientation) {
+    double result = 0;
+    for (unsigned seed = 0; seed < 10; ++seed) {
+      Space space;
+      space.add_skeleton(wiggly(2 * seed));
+      space.add_skeleton(wiggly(2 * seed + 1));
+      space.build(np::orientation(orientation));
+      Tree middle;
+      space.skeleton(space.geodesic(0, 1, 0.5), middle);
+      const std::size_t n = num_vertices(middle);
+      const Vec3 end = to_eigen(middle[n - 1].point) - to_eigen(middle[n - 2].point);
+      result += 0.1 * std::acos(std::min(1.0, end.normalized().z()));
+    }
+    return result;
+  };
+  BOOST_TEST(mean_tilt(Orientation::gauge_fixed) <
+             0.15); // 0.10; 0.54 if each edge referred to the one before
+  // control: there it does
+  BOOST_TEST(mean_tilt(Orientation::transported) > 0.4);
+}
+
 BOOST_AUTO_TEST_CASE(beyond_the_ends_lengths_and_radii_stay_positive)
 {
   const Space space = make_space(random_tree(11), random_tree(12));

@@ -125,11 +125,11 @@ void virtual_trees(int first_seed, int number)
         ++turn;
       }
       print(name + " " + std::to_string(seed) + " growing",
-            {stages[0], stages[1], stages[2], 0.5, Vec3::UnitZ(), true});
+            {stages[0], stages[1], stages[2], 0.5, Vec3::UnitZ(), true, true});
       for (const int k : {0, 1, 2})
         others.push_back(scanned(grown(1000 * seed + k), 10 * seed + k, 0));
       print(name + " " + std::to_string(seed) + " strangers",
-            {others[0], others[1], others[2], 0.5, Vec3::UnitZ(), true});
+            {others[0], others[1], others[2], 0.5, Vec3::UnitZ(), true, true});
     }
 }
 

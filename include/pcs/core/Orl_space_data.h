@@ -59,7 +59,7 @@ struct Orl_space_data
   int orientation = 0; ///< as in `shape_space::Orientation`
   std::array<double, 3> origin = {0, 0, 0};
   std::vector<Branch> branches;
-  //! edges that do not refer to the one before on their branch, but to an earlier one: behind folds
+  //! edges whose frame is not carried on from the one before on their branch, but from an earlier one: behind folds
   std::vector<std::array<std::size_t, 2>> references;
   std::vector<Tree> trees;
   Tree reference;

@@ -49,6 +49,7 @@ inline void embed(const std::array<const Tree_input*, 2>& inputs, Embedded_pair&
                                          Vec3::Zero())
                              .direction);
   skip_folds(directions, pair.layout);
+  set_parent_edges(pair.layout, pair.orientation);
   pair.x = embed_trees(pair.layout,
                        pair.topology.branches,
                        {&inputs[0]->tree, &inputs[1]->tree},

@@ -18,8 +18,9 @@ namespace shape_space {
 
 /// How the orientation of an edge is measured.
 enum class Orientation {
-  gauge_fixed, ///< in the frame of the parent edge; its twist is chosen so that trees differ as little as possible
-  transported, ///< in the frame of the parent edge, transported from the root without twist
+  gauge_fixed, ///< in the frame of the first edge of the branch, and that in the frame of an edge of the parent; twists are
+               ///< chosen so that trees differ as little as possible
+  transported, ///< in the frame of the edge before, transported from the root without twist
   world_axes ///< in the axes of the input, as in the text: turning a parent does not carry its children
 };
 
@@ -36,12 +37,28 @@ struct Orl_layout
   };
   std::vector<Branch> branches;
   std::vector<std::size_t>
-      parent_edge; ///< the edge before, or the reference edge; `none`: the axes of the input
+      edge_before; ///< that frames are carried on from: on the branch, or the reference edge
+  std::vector<std::size_t>
+      parent_edge; ///< that the orientation refers to, see `set_parent_edges()`; `none`: the axes of the input
 
-  std::size_t number_of_edges() const { return parent_edge.size(); }
-  std::size_t number_of_nodes() const { return parent_edge.size() + branches.size(); }
+  std::size_t number_of_edges() const { return edge_before.size(); }
+  std::size_t number_of_nodes() const { return edge_before.size() + branches.size(); }
   std::size_t first_node(std::size_t b) const { return branches[b].first_edge + b; }
 };
+
+/*!
+  What orientations refer to. An edge refers to the first one of its branch: where each refers to the one before, as in the
+  text, half of each of many small turns about all kinds of axes is not half of what they make together, so that noise of an
+  axis turns all that is behind it. A branch that is turned as a whole differs by the turn of its first edge either way.
+*/
+inline void set_parent_edges(Orl_layout& layout, Orientation kind)
+{
+  layout.parent_edge = layout.edge_before;
+  if (kind == Orientation::gauge_fixed)
+    for (const Orl_layout::Branch& b : layout.branches)
+      for (std::size_t j = 1; j < b.number_of_edges; ++j)
+        layout.parent_edge[b.first_edge + j] = b.first_edge;
+}
 
 /// A tree of the space.
 struct Orl_coordinates

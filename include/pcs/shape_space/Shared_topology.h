@@ -70,14 +70,15 @@ inline Orl_layout make_layout(const std::vector<Shared_branch>& branches)
   for (const Shared_branch& b : branches) {
     Orl_layout::Branch branch;
     branch.parent = b.parent;
-    branch.first_edge = layout.parent_edge.size();
+    branch.first_edge = layout.number_of_edges();
     branch.number_of_edges = b.number_of_edges;
     if (b.parent != none)
       branch.reference_edge = layout.branches[b.parent].first_edge + b.reference_edge;
     for (std::size_t j = 0; j < branch.number_of_edges; ++j)
-      layout.parent_edge.push_back(j == 0 ? branch.reference_edge : branch.first_edge + j - 1);
+      layout.edge_before.push_back(j == 0 ? branch.reference_edge : branch.first_edge + j - 1);
     layout.branches.push_back(branch);
   }
+  set_parent_edges(layout, Orientation::gauge_fixed);
   return layout;
 }
 
@@ -130,7 +131,7 @@ inline void set_fixed_frames(const Orl_layout& layout, const Embedding& referenc
   set_frames(layout, twist, root, tree);
   const std::vector<double> total = Gauge(layout, reference, tree).run();
   for (std::size_t e = 0; e < layout.number_of_edges(); ++e) {
-    const std::size_t p = layout.parent_edge[e];
+    const std::size_t p = layout.edge_before[e];
     if (reference.x.length[e] > 0 && tree.x.length[e] > 0)
       twist[e] = total[e] - (p == none ? 0 : total[p]);
   }
@@ -170,6 +171,18 @@ inline Embedding as_embedding(const Orl_layout& layout, const Orl_coordinates& x
   for (const Quaternion& q : result.frame)
     result.direction.push_back(q * Vec3::UnitZ());
   return result;
+}
+
+/// The same tree where orientations refer to other edges.
+inline Orl_coordinates
+with_parent_edges(const Orl_layout& from, const Orl_coordinates& x, const Orl_layout& to)
+{
+  Embedding result = as_embedding(from, x);
+  for (std::size_t e = 0; e < to.number_of_edges(); ++e)
+    if (const std::size_t p = to.parent_edge[e]; p != none)
+      result.x.orientation[e] =
+          relative(Orientation::gauge_fixed, result.frame[p], result.frame[e]);
+  return std::move(result.x);
 }
 
 inline double median(std::vector<double> values)

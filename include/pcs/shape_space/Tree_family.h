@@ -126,6 +126,7 @@ Tree_family make_family(Shared_topology_builder<ConcurrencyTag>& topology,
   family.origin = trees[0]->origin;
   const std::vector<Shared_branch>& branches = topology.branches();
   family.layout = make_layout(branches);
+  set_parent_edges(family.layout, orientation);
   Embedded_trees embedded = embed_trees<ConcurrencyTag>(family.layout,
                                                         branches,
                                                         trees,
@@ -135,8 +136,10 @@ Tree_family make_family(Shared_topology_builder<ConcurrencyTag>& topology,
                                                         direction);
   family.x = std::move(embedded.x);
   // others are matched to a tree in frames, whatever the orientations mean
-  family.reference = orientation == Orientation::gauge_fixed ? std::move(embedded.reference)
-                                                             : topology.reference();
+  family.reference =
+      orientation == Orientation::gauge_fixed
+          ? std::move(embedded.reference)
+          : internal::with_parent_edges(make_layout(branches), topology.reference(), family.layout);
   family.weights = make_weights(family.layout, family.x, has_unit_weights);
   for (std::size_t t = 0; t < trees.size(); ++t) {
     family.has.emplace_back();

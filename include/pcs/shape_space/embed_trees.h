@@ -32,7 +32,7 @@ inline Orl_layout make_layout(const std::vector<Common_branch>& branches)
   for (const Common_branch& b : branches) {
     Orl_layout::Branch branch;
     branch.parent = b.parent;
-    branch.first_edge = layout.parent_edge.size();
+    branch.first_edge = layout.number_of_edges();
     branch.number_of_edges = b.number_of_nodes() - 1;
     if (b.parent != none) {
       const Orl_layout::Branch& parent = layout.branches[b.parent];
@@ -42,9 +42,10 @@ inline Orl_layout make_layout(const std::vector<Common_branch>& branches)
           std::min(parent.number_of_edges - 1, static_cast<std::size_t>(std::max(0.0, t)));
     }
     for (std::size_t j = 0; j < branch.number_of_edges; ++j)
-      layout.parent_edge.push_back(j == 0 ? branch.reference_edge : branch.first_edge + j - 1);
+      layout.edge_before.push_back(j == 0 ? branch.reference_edge : branch.first_edge + j - 1);
     layout.branches.push_back(branch);
   }
+  set_parent_edges(layout, Orientation::gauge_fixed);
   return layout;
 }
 
@@ -141,7 +142,7 @@ inline void set_frames(const Orl_layout& layout,
 {
   for (std::size_t e = 0; e < layout.number_of_edges(); ++e)
     if (tree.x.length[e] > 0) {
-      const std::size_t p = layout.parent_edge[e];
+      const std::size_t p = layout.edge_before[e];
       const Quaternion parent = p == none ? root : tree.frame[p];
       const Quaternion step = shortest_turn(Vec3::UnitZ(), parent.conjugate() * tree.direction[e]);
       tree.frame[e] = parent * step * turn_about_z(twist[e]);
@@ -151,9 +152,10 @@ inline void set_frames(const Orl_layout& layout,
 
 /*!
   The twist of the frames of tree 2 about its edges is free. It is chosen so that the sum over edges of weight times
-  angle between the orientations of both trees is least, by dynamic programming over a few angles: those by which many
-  edges of tree 2 stand about their parents further than those of tree 1. A branch that is turned as a whole has one
-  such angle, exactly, and then costs what it was turned by, and not one turn per edge.
+  angle between the turns of both trees from the edge before is least, by dynamic programming over a few angles: those by
+  which many edges of tree 2 stand about the edge before further than those of tree 1. A branch that is turned as a whole
+  has one such angle, exactly, and then costs what it was turned by, and not one turn per edge. From the edge before, and not
+  from the one that the orientation refers to, so that neighbours are twisted alike.
 */
 class Gauge
 {
@@ -180,7 +182,7 @@ public:
     for (auto& s : sum)
       s.fill(0);
     for (std::size_t i = m_edges.size(); i-- > 0;) {
-      const std::size_t e = m_edges[i], p = m_layout.parent_edge[e];
+      const std::size_t e = m_edges[i], p = m_layout.edge_before[e];
       for (std::size_t a = 0; a < (p == none ? 1 : k); ++a) {
         below[e][a] = std::numeric_limits<double>::infinity();
         for (std::size_t c = 0; c < k; ++c) {
@@ -197,7 +199,7 @@ public:
     std::vector<double> twist(n, 0);
     std::vector<std::size_t> chosen(n, 0);
     for (const std::size_t e : m_edges) {
-      const std::size_t p = m_layout.parent_edge[e];
+      const std::size_t p = m_layout.edge_before[e];
       chosen[e] = choice[e][p == none ? 0 : chosen[p]];
       twist[e] = m_angles[chosen[e]];
     }
@@ -209,7 +211,7 @@ private:
 
   Quaternion parent_frame(const Embedding& tree, std::size_t e) const
   {
-    const std::size_t p = m_layout.parent_edge[e];
+    const std::size_t p = m_layout.edge_before[e];
     return p == none ? Quaternion::Identity() : tree.frame[p];
   }
 
@@ -232,7 +234,7 @@ private:
     m_angles.assign(1, 0);
     std::vector<Vote> votes;
     for (const std::size_t e : m_edges) {
-      if (m_layout.parent_edge[e] == none)
+      if (m_layout.edge_before[e] == none)
         continue;
       const Vec3 a = parent_frame(m_one, e).conjugate() * m_one.direction[e];
       const Vec3 b = parent_frame(m_two, e).conjugate() * m_two.direction[e];
@@ -348,7 +350,7 @@ inline std::array<Orl_coordinates, 2> embed_trees(const Orl_layout& layout,
     if (kind == Orientation::gauge_fixed) {
       const std::vector<double> total = Gauge(layout, one, two).run();
       for (std::size_t e = 0; e < layout.number_of_edges(); ++e) {
-        const std::size_t p = layout.parent_edge[e];
+        const std::size_t p = layout.edge_before[e];
         if (one.x.length[e] > 0) // else inherited from the parent by transport
           twist[e] = total[e] - (p == none ? 0 : total[p]);
       }

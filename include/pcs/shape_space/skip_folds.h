@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Axes that turn back and go on again: what comes behind such a fold refers to what is before it.
+// Axes that turn back and go on again: frames behind such a fold are carried on from before it.
 
 #ifndef PCS_SHAPE_SPACE_SKIP_FOLDS_H
 #define PCS_SHAPE_SPACE_SKIP_FOLDS_H
@@ -37,8 +37,8 @@ inline void mark_folds(const std::vector<Vec3>& direction,
 } // namespace internal
 
 /*!
-  Lets edges and branches behind a fold of their branch refer to the last edge before it. `directions`: of the edges, for
-  each tree; null for those that it does not have.
+  Lets the frames of edges and branches behind a fold of their branch be carried on from the last edge before it.
+  `directions`: of the edges, for each tree; null for those that it does not have.
 
   A fold that only one tree has is half a turn there and back. Which way is rounding, or noise, and half of it, twice, may
   be anything: without this, what is behind a fold of a millimetre would point anywhere on the path between the trees.
@@ -53,11 +53,11 @@ inline void skip_folds(const std::vector<std::vector<Vec3>>& directions, Orl_lay
     if (b.parent != none) // the first edge of a branch is none
       while (is_fold[b.reference_edge])
         --b.reference_edge;
-    layout.parent_edge[b.first_edge] = b.reference_edge;
+    layout.edge_before[b.first_edge] = b.reference_edge;
     std::size_t before = b.first_edge;
     for (std::size_t e = b.first_edge + 1; e < b.first_edge + b.number_of_edges; ++e)
       if (!is_fold[e]) {
-        layout.parent_edge[e] = before;
+        layout.edge_before[e] = before;
         before = e;
       }
   }

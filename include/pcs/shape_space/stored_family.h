@@ -60,8 +60,8 @@ inline Orl_space_data store_family(const Tree_family& family)
   for (const Orl_layout::Branch& b : family.layout.branches) {
     result.branches.push_back({b.parent, b.number_of_edges, b.reference_edge});
     for (std::size_t e = b.first_edge + 1; e < b.first_edge + b.number_of_edges; ++e)
-      if (family.layout.parent_edge[e] + 1 != e)
-        result.references.push_back({e, family.layout.parent_edge[e]});
+      if (family.layout.edge_before[e] + 1 != e)
+        result.references.push_back({e, family.layout.edge_before[e]});
   }
   for (std::size_t t = 0; t < family.x.size(); ++t) {
     result.trees.push_back(internal::store(family.x[t]));
@@ -105,7 +105,7 @@ inline Tree_family restore_family(const Orl_space_data& stored, const std::strin
     const Orl_space_data::Branch& b = stored.branches[i];
     Orl_layout::Branch branch;
     branch.parent = b.parent;
-    branch.first_edge = family.layout.parent_edge.size();
+    branch.first_edge = family.layout.number_of_edges();
     branch.number_of_edges = b.number_of_edges;
     branch.reference_edge = b.reference_edge;
     check(i == 0 ? b.parent == none && b.reference_edge == none : b.parent < i,
@@ -118,7 +118,7 @@ inline Tree_family restore_family(const Orl_space_data& stored, const std::strin
             "a branch refers to an edge that is not of its parent");
     }
     for (std::size_t j = 0; j < branch.number_of_edges; ++j)
-      family.layout.parent_edge.push_back(j == 0 ? branch.reference_edge
+      family.layout.edge_before.push_back(j == 0 ? branch.reference_edge
                                                  : branch.first_edge + j - 1);
     family.layout.branches.push_back(branch);
   }
@@ -131,8 +131,9 @@ inline Tree_family restore_family(const Orl_space_data& stored, const std::strin
         [](std::size_t e, const Orl_layout::Branch& b) { return e < b.first_edge; });
     check(edge < n && earlier < edge && earlier >= std::prev(last)->first_edge,
           "an edge refers to one that is not before it on its branch");
-    family.layout.parent_edge[edge] = earlier;
+    family.layout.edge_before[edge] = earlier;
   }
+  set_parent_edges(family.layout, family.orientation);
   const auto is_amount = [](double v) { return v >= 0 && std::isfinite(v); };
   const auto check_tree = [&](const Orl_space_data::Tree& t) {
     check(t.orientation.size() == n && t.length.size() == n && t.radius.size() == n &&
