@@ -54,6 +54,17 @@ int main()
   for (std::size_t i = 0; i < points.size(); ++i)
     error = std::max(error, CGAL::squared_distance(points[i], at_rest[i]));
 
+  //! [drag]
+  // The frames of a drag go on from the frame before; where the handle is let go, the result depends on that place only.
+  std::size_t passes = 0;
+  for (int frame = 1; frame <= 30; ++frame) {
+    session.set_rotation(handle, Kernel::Vector_3(1, 0, 0), frame * CGAL_PI / 180);
+    passes += session.deform(pcs::Start::warm).number_of_iterations;
+  }
+  session.deform();
+  //! [drag]
+  std::cout << passes << " passes for 30 frames\n";
+
   //! [accept]
   // What was reached becomes the new shape at rest: the next motion starts from there.
   session.set_rotation(handle, Kernel::Vector_3(1, 0, 0), CGAL_PI / 6);
