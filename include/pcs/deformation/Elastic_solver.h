@@ -14,6 +14,7 @@
 #include <pcs/deformation/Elastic_options.h>
 #include <pcs/deformation/Elastic_state.h>
 #include <pcs/deformation/Harmonic_system.h>
+#include <pcs/deformation/Position_solver.h>
 #include <pcs/deformation/rotation_field.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
@@ -62,21 +63,7 @@ public:
   /// with the same frames. Empty without links. One solve.
   std::vector<Vec3> link_offsets()
   {
-    if (m_network->links.neighbor.empty())
-      return {};
-    std::vector<Vec3> offsets(m_network->size(), Vec3::Zero());
-    const Elastic_state state = this->state();
-    m_rhs3.resize(rows().size());
-    pcs::internal::for_each_index<ConcurrencyTag>(
-        rows().size(),
-        [&](std::size_t r) { m_rhs3[r] = surface_load(state, rows().node_of_row[r]); },
-        block);
-    m_factors.field().template solve<ConcurrencyTag>(m_rhs3, m_work3);
-    for (std::size_t r = 0; r < rows().size(); ++r) {
-      const std::size_t i = rows().node_of_row[r];
-      offsets[i] = m_position[i] - m_rhs3[r];
-    }
-    return offsets;
+    return m_position_solver.link_offsets(state(), *m_transforms, m_factors);
   }
 
   /// Takes a network, which must outlive its use here, and constraints, and factorises. Returns `false` if a matrix is
@@ -172,7 +159,7 @@ private:
   void place(const Elastic_options& options, bool links_turn, Elastic_result& result)
   {
     update_frames();
-    place_constrained_nodes();
+    place_constrained_nodes(*m_network, m_constraints, *m_transforms, m_position);
     solve_positions(links_turn);
     result.energy = result.initial_energy = fit_and_measure(options, true);
   }
@@ -187,6 +174,7 @@ private:
         options.maximal_number_of_passes == 0 ? Status::iteration_limit : Status::converged;
     if (rows().size() == 0)
       return;
+    bool is_checking = false; // that there is no more to gain than an accelerated pass did
     for (int pass = 0; pass < options.maximal_number_of_passes; ++pass) {
       if (!progress(static_cast<double>(pass) / options.maximal_number_of_passes)) {
         result.status = Status::cancelled;
@@ -194,17 +182,21 @@ private:
       }
       const double before = result.energy;
       const bool is_last = m_link_offsets || pass + 1 == options.maximal_number_of_passes;
-      const bool has_improved =
-          improve(options,
-                  pass >= (result.is_far_from_field ? 1 : first_accelerated_pass),
-                  is_last,
-                  result);
+      const bool is_accelerated =
+          !is_checking && pass >= (result.is_far_from_field ? 1 : first_accelerated_pass);
+      const bool has_improved = improve(options, is_accelerated, is_last, result);
       if (pass == 0 && guess && !guess->deviations.empty())
         result.is_far_from_field = start_from(*guess, options, result);
       result.number_of_passes = pass + 1;
       result.status = Status::converged;
       // Without the links, each further pass would let the body collapse.
-      if (m_link_offsets || !has_improved || before - result.energy <= options.tolerance * before)
+      if (m_link_offsets || !has_improved)
+        return;
+      const double gain = before - result.energy;
+      is_checking = is_accelerated && gain <= poor_gain * options.tolerance * before;
+      if (is_checking)
+        m_mixing.restart();
+      else if (gain <= options.tolerance * before)
         return;
       result.status = Status::iteration_limit;
     }
@@ -234,11 +226,12 @@ private:
     smooth_deviations();
     if (is_accelerated)
       m_plain = m_smooth;
-    m_mixing.mix(m_best_smooth, m_smooth, is_accelerated);
+    mix(is_accelerated);
     double energy = apply_deviations(options, !is_last);
     if (is_accelerated && !(energy < result.energy)) {
       m_mixing.restart();
       m_smooth = m_plain;
+      m_position = m_best_position;
       energy = apply_deviations(options, !is_last);
     }
     if (!(energy < result.energy)) {
@@ -247,6 +240,33 @@ private:
     }
     result.energy = energy;
     return true;
+  }
+
+  /// What a pass starts from and what it makes of that: the deviations and, where there are links, the positions that give
+  /// them their directions. Without these, what the links hold back would look like the answer to the deviations.
+  void mix(bool is_wanted)
+  {
+    if (m_network->links.neighbor.empty()) {
+      m_mixing.mix(m_best_smooth, m_smooth, is_wanted);
+      return;
+    }
+    const std::size_t n = rows().size();
+    m_state.resize(2 * n);
+    m_image.resize(2 * n);
+    pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t r) {
+      const std::size_t i = rows().node_of_row[r];
+      m_state[r] = m_best_smooth[i];
+      m_state[n + r] = m_position_solver.directing()[i];
+      m_image[r] = m_smooth[i];
+      m_image[n + r] = m_position[i];
+    });
+    m_mixing.mix(m_state, m_image, is_wanted);
+    if (is_wanted)
+      pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t r) {
+        const std::size_t i = rows().node_of_row[r];
+        m_smooth[i] = m_image[r];
+        m_position[i] = m_image[n + r];
+      });
   }
 
   void take(const Deviation_guess& guess)
@@ -263,8 +283,15 @@ private:
     keep_state();
     m_best_deviation = m_deviation;
     m_best_rotation = m_rotation;
+    m_best_directing = m_position_solver.directing();
     take(guess);
-    const double energy = apply_deviations(options, true);
+    turn_by_deviations();
+    update_frames();
+    solve_positions(true); // the present positions know nothing of the guess
+    if (!m_network->links.neighbor.empty())
+      for (int i = 0; i < settling_solves; ++i)
+        solve_positions(false);
+    const double energy = fit_and_measure(options, true);
     if (energy < guess_advantage * result.energy) {
       result.energy = energy;
       m_mixing.restart();
@@ -273,6 +300,7 @@ private:
     swap_state();
     m_deviation.swap(m_best_deviation);
     m_rotation.swap(m_best_rotation);
+    m_position_solver.restore_directing(m_best_directing);
     return false;
   }
 
@@ -338,55 +366,13 @@ private:
         block);
   }
 
-  void place_constrained_nodes()
-  {
-    for (std::size_t i = 0; i < m_network->size(); ++i)
-      if (m_constraints.is_prescribed(i))
-        m_position[i] = (*m_transforms)[handle(i)](m_network->rest[i]);
-      else if (m_constraints.handle_of_node[i] == unreached_node)
-        m_position[i] = m_network->rest[i];
-  }
-
-  /// The right side of the positions without links.
-  Vec3 surface_load(const Elastic_state& state, std::size_t node) const
-  {
-    Vec3 b;
-    const double degree = state.sum_edges(node, b);
-    if (m_constraints.is_soft(node))
-      b += m_constraints.soft_weight(node, degree) *
-           (*m_transforms)[handle(node)](m_network->rest[node]);
-    return b;
-  }
-
-  /// Links keep their turned direction at first; later they are springs of their rest length, because a link through
-  /// a twisted bar must not turn with either end.
   void solve_positions(bool links_turn)
   {
-    m_rhs3.resize(rows().size());
-    const Elastic_state state = this->state();
-    pcs::internal::for_each_index<ConcurrencyTag>(
-        rows().size(),
-        [&](std::size_t r) {
-          const std::size_t i = rows().node_of_row[r];
-          Vec3 b = surface_load(state, i);
-          const auto& links = m_network->links;
-          if (!links.neighbor.empty())
-            for (std::size_t e = links.first[i]; e < links.first[i + 1]; ++e) {
-              const std::size_t j = links.neighbor[e];
-              b += links.weight[e] * state.link_target(i, j, links_turn);
-              if (m_constraints.is_prescribed(j))
-                b += links.weight[e] * m_position[j];
-            }
-          m_rhs3[r] = b;
-        },
-        block);
-    m_factors.position().template solve<ConcurrencyTag>(m_rhs3, m_work3);
-    pcs::internal::for_each_index<ConcurrencyTag>(rows().size(), [&](std::size_t r) {
-      const std::size_t i = rows().node_of_row[r];
-      m_position[i] = m_rhs3[r];
-      if (m_link_offsets && i < m_link_offsets->size())
-        m_position[i] += (*m_link_offsets)[i];
-    });
+    m_position_solver(state(), *m_transforms, m_factors, links_turn, m_position);
+    if (m_link_offsets)
+      for (const auto i : rows().node_of_row)
+        if (i < m_link_offsets->size())
+          m_position[i] += (*m_link_offsets)[i];
   }
 
   /// One sweep: the energy of the present state and, if there is a next pass, the deviation of each node's best rotation
@@ -433,6 +419,7 @@ private:
   Node_constraints m_constraints;
   Elastic_factors m_factors;
   Rotation_field_solver<ConcurrencyTag> m_field_solver;
+  Position_solver<ConcurrencyTag> m_position_solver;
   bool m_stretch_is_used = false;
 
   const std::vector<Similarity>* m_transforms = nullptr;
@@ -441,9 +428,10 @@ private:
   std::vector<Quaternion> m_field, m_rotation, m_best_rotation;
   std::vector<Eigen::Matrix3d> m_frame, m_best_frame, m_stretch, m_target;
   std::vector<Vec1> m_log_scale, m_rhs1, m_work1;
-  std::vector<Vec3> m_position, m_best_position, m_rhs3, m_work3;
+  std::vector<Vec3> m_position, m_best_position, m_best_directing, m_rhs3, m_work3;
   std::vector<Vec3> m_deviation, m_best_deviation; ///< of the best local rotations from the field
   std::vector<Vec3> m_smooth, m_best_smooth, m_plain; ///< the same, smoothed: what is used
+  std::vector<Vec3> m_state, m_image;                 ///< of a pass, for the mixing
 };
 
 } // namespace deformation
