@@ -3,6 +3,7 @@
 // Trunks that are no cylinders: buttresses at the foot, whorls of limbs. Nearly equal clouds give nearly equal trunks.
 
 #include <pcs/extract_tree_skeleton.h>
+#include <pcs/skeleton/bound_radii.h>
 #include <pcs/skeleton/mend_foot.h>
 #include <support/tree_clouds.h>
 
@@ -160,6 +161,43 @@ BOOST_AUTO_TEST_CASE(a_trunk_goes_on_above_a_whorl)
   for (const Trunk& trunk : trunks_of_copies(Jitter(0.001)(cloud), 3)) {
     BOOST_TEST(std::abs(trunk.dbh - 2 * radius) < 0.04 * radius);
     BOOST_TEST(trunk.top > 0.95 * height);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_filled_foot_does_not_bound_what_is_proven_above)
+{
+  using namespace pcs::skeleton;
+  constexpr double step = 0.1, radius = 0.1, density = 1000;
+  const auto bounded = [&](Index end_of_filling) { // behind a thin base
+    Branch_tree tree;
+    tree.branches.emplace_back();
+    for (Index k = 0; k < 60; ++k) {
+      Branch_node node;
+      node.point = step * double(k) * Vec3::UnitZ();
+      node.radius = k < 4 ? 0.3 * radius : radius;
+      node.radius_error = 0.01 * radius;
+      node.is_measured = true;
+      node.parent = k > 0 ? k - 1 : none;
+      node.branch = 0;
+      tree.nodes.push_back(node);
+      tree.branches[0].nodes.push_back(k);
+    }
+    Section_support support(tree);
+    for (Index k = 0; k < 60; ++k) {
+      support.on[k] = 2 * pi * radius * step * density;
+      support.inside[k] = k >= 4 && k < end_of_filling ? support.on[k] : 0;
+    }
+    Scan scan;
+    scan.spacing = 0.1 * radius;
+    Support_rules rules;
+    rules.pipes.slack = 0; // no limit of that kind
+    bound_radii(scan, support, density, rules, tree);
+    return tree;
+  };
+  const Branch_tree foot = bounded(12), bush = bounded(60);
+  for (Index k = 4; k < 60; ++k) {
+    BOOST_TEST(foot.nodes[k].radius == radius);
+    BOOST_TEST(bush.nodes[k].radius < 0.5 * radius);
   }
 }
 
