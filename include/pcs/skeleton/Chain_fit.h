@@ -74,6 +74,8 @@ private:
   void set_priors(const std::vector<double>& visible, Axis_fit& fit) const;
   bool run(Axis_fit& fit, double widening) const;
   std::vector<Index> gather(Axis_fit& fit) const;
+  Axis tail_with_piece(const Axis& axis, std::size_t first) const;
+  Axis piece_ahead(const Axis& axis, std::size_t first, double skip) const;
   bool follow(Axis_fit& fit) const;
   void judge(Axis_fit& fit, const std::vector<Index>& points, Candidate& candidate) const;
 
@@ -272,9 +274,54 @@ inline std::vector<Index> Chain_fit::gather(Axis_fit& fit) const
   return points;
 }
 
+/// The last nodes of a thick axis and a piece beyond them, fitted anew; empty if no points go on like that.
+inline Axis Chain_fit::tail_with_piece(const Axis& axis, std::size_t first) const
+{
+  Axis_fit fit(Axis(axis.begin() + static_cast<std::ptrdiff_t>(first), axis.end()),
+               Fit_model::of(m_scan.spacing, m_set.noise));
+  const double radius = axis.back().radius, tail = length_of(fit.axis());
+  const Vec3 base = fit.axis().front().point, tip = fit.axis().back().point;
+  prolong(m_view, false, fit.axis());
+  const double wanted = (fit.axis().back().point - tip).norm();
+  if (gather(fit).size() < m_rules.lowest_count || !run(fit, 1.5))
+    return {};
+  trim(m_view, base, tip, fit);
+  const Axis& longer = fit.axis();
+  const std::size_t last = longer.size() - 1;
+  const bool is_good =
+      length_of(longer) - tail >= 0.3 * wanted && longer.back().radius >= 0.6 * radius &&
+      !Filling(m_view, fit).is_filled(last - std::min<std::size_t>(last, 4), last, m_rules.filled);
+  return is_good ? longer : Axis();
+}
+
+/// A hollow piece straight ahead of a thick axis, `skip` beyond its tip and as thick; empty if there is none.
+inline Axis Chain_fit::piece_ahead(const Axis& axis, std::size_t first, double skip) const
+{
+  const double radius = axis.back().radius, length = 4 * radius + 8 * m_scan.spacing;
+  const Vec3 tip = axis.back().point, along = (tip - axis[first].point).normalized();
+  Axis_node base = axis.back(), end = axis.back();
+  base.point = tip + skip * along;
+  end.point = base.point + length * along;
+  const Vec3 middle = 0.5 * (base.point + end.point);
+  Axis_fit fit({base, end}, Fit_model::of(m_scan.spacing, m_set.noise));
+  if (gather(fit).size() < m_rules.lowest_count || !run(fit, 1))
+    return {};
+  trim(m_view, middle, middle, fit);
+  const Axis& piece = fit.axis();
+  const Vec3 d = piece.front().point - tip;
+  const double before = d.dot(along), ratio = piece.front().radius / radius;
+  const bool is_straight = before > 0 && (d - before * along).norm() < radius &&
+                           along.dot(piece.back().point - piece.front().point) >= 0.5 * length;
+  const Filling filling(m_view, fit);
+  const bool is_good = is_straight && ratio > 0.6 && ratio < 1.25 &&
+                       filling.share(0, piece.size() - 1) < m_rules.filled;
+  return is_good ? piece : Axis();
+}
+
 /*!
   Follows a thick branch beyond its tip, piece by piece, as long as there are points around it: paths over the surface
-  end at occlusions, or turn into a side branch. Returns whether the axis grew.
+  end at occlusions, or turn into a side branch. Where points lie inside, as at a whorl, it is looked for straight ahead.
+  Returns whether the axis grew.
 */
 inline bool Chain_fit::follow(Axis_fit& fit) const
 {
@@ -282,7 +329,7 @@ inline bool Chain_fit::follow(Axis_fit& fit) const
   const double u = m_scan.spacing;
   Axis& axis = fit.axis();
   bool is_longer = false;
-  const double first_radius = axis.back().radius;
+  const double thickest = 1.1 * axis.back().radius;
   for (int piece = 0; piece < most_pieces; ++piece) {
     const double radius = axis.back().radius;
     if (radius < m_rules.thick * u || axis.size() < 4)
@@ -293,25 +340,17 @@ inline bool Chain_fit::follow(Axis_fit& fit) const
       tail += (axis[b].point - axis[b - 1].point).norm();
       --b;
     }
-    Axis_fit tail_fit(Axis(axis.begin() + static_cast<std::ptrdiff_t>(b), axis.end()),
-                      Fit_model::of(u, m_set.noise));
-    const Vec3 base = tail_fit.axis().front().point, tip = tail_fit.axis().back().point;
-    prolong(m_view, false, tail_fit.axis());
-    const double wanted = (tail_fit.axis().back().point - tip).norm();
-    if (gather(tail_fit).size() < m_rules.lowest_count || !run(tail_fit, 1.5))
+    Axis longer = tail_with_piece(axis, b);
+    const bool is_connected = !longer.empty() && longer.back().radius <= thickest;
+    if (is_connected)
+      axis.resize(b + 1); // what lies behind was fitted again
+    else
+      longer.clear();
+    for (int k = 1; k <= m_rules.most_skipped && longer.empty(); ++k)
+      longer = piece_ahead(axis, b, k * m_rules.extension * radius);
+    if (longer.empty() || longer.back().radius > thickest)
       break;
-    trim(m_view, base, tip, tail_fit);
-    const Axis& longer = tail_fit.axis();
-    const double gained = length_of(longer) - tail;
-    const double ratio = longer.back().radius / radius;
-    if (gained < 0.3 * wanted || ratio < 0.6 || longer.back().radius > 1.1 * first_radius)
-      break;
-    const std::size_t last = longer.size() - 1;
-    if (Filling(m_view, tail_fit)
-            .is_filled(last - std::min<std::size_t>(last, 4), last, m_rules.filled))
-      break;
-    axis.resize(b + 1);
-    axis.insert(axis.end(), longer.begin() + 1, longer.end());
+    axis.insert(axis.end(), longer.begin() + (is_connected ? 1 : 0), longer.end());
     is_longer = true;
   }
   return is_longer;

@@ -194,7 +194,16 @@ public:
       m_joints[root].is_reversed = is_root_reversed(root);
       m_tree = branch_tree(m_axes, m_joints, root, m_scan.spacing);
       prune_stubs(m_scan.spacing, m_options.stubs, m_tree);
-      bound_radii<ConcurrencyTag>(m_scan, m_axes.noise, m_axes.density, m_options.support, m_tree);
+      const Section_support support =
+          support_of_sections<ConcurrencyTag>(m_scan, m_tree, m_axes.noise, m_options.support);
+      bound_radii(m_scan, support, m_axes.density, m_options.support, m_tree);
+      mend_foot(m_scan,
+                m_is_used,
+                support,
+                m_axes.density,
+                m_options.support,
+                m_options.foot,
+                m_tree);
       m_report.number_of_other_stems =
           count_other_stems(m_axes, m_joints, root, m_tree, m_options.stems);
     }
@@ -340,13 +349,15 @@ private:
     return {found.index};
   }
 
-  /// The axis that explains most of the root, else the nearest one.
+  /// The axis that explains the root, and most else: a trunk may stand on buttresses that have more of the root. If none
+  /// does, the nearest one.
   Index root_axis() const
   {
-    std::vector<std::size_t> votes(m_axes.axes.size(), 0);
+    std::vector<double> votes(m_axes.axes.size(), 0);
     for (const Index i : m_root)
       if (m_axes.is_covered(i))
-        ++votes[m_axes.axis_of_point[i]];
+        votes[m_axes.axis_of_point[i]] +=
+            double(m_axes.axes[m_axes.axis_of_point[i]].number_of_points);
     const auto most = std::max_element(votes.begin(), votes.end());
     if (*most > 0)
       return static_cast<Index>(most - votes.begin());

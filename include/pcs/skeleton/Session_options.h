@@ -16,6 +16,7 @@
 #include <pcs/skeleton/join_axes.h>
 #include <pcs/skeleton/mark_ground.h>
 #include <pcs/skeleton/measure_given.h>
+#include <pcs/skeleton/mend_foot.h>
 #include <pcs/skeleton/merge_rings.h>
 #include <pcs/skeleton/prune_stubs.h>
 #include <pcs/skeleton/section_skeleton.h>
@@ -55,6 +56,7 @@ struct Session_options
   Joint_rules joints;
   Stub_rules stubs;
   Support_rules support;
+  Foot_rules foot;
   Stem_rules stems;
   Section_rules sections;
   Given_rules given_rules;

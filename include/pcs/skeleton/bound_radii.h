@@ -35,6 +35,7 @@ struct Support_rules
   double proof_expected = 0.5; ///< ... this share of the expected ones on the surface,
   double proof_filled = 0.05;  ///< ... at most this share inside,
   double proof_error = 0.1;    ///< ... a standard error below this many radii [-]
+  double mostly = 0.7;         ///< with this share of its volume proven a branch is no bush [-]
   double slack =
       3; ///< bound of a section that nothing speaks for or against, in radii by allometry
   double filled_slack = 1; ///< the same of a filled one
@@ -42,17 +43,18 @@ struct Support_rules
   double thinnest = 0.16; ///< no bound is below this many spacings: a single row of points
 };
 
-namespace internal {
-
 /// What the points of each node say.
 struct Section_support
 {
   std::vector<double> on, inside; ///< points near the surface or outside of it, and inside
 
-  Section_support(const Branch_tree& tree) : on(tree.nodes.size(), 0), inside(tree.nodes.size(), 0)
+  explicit Section_support(const Branch_tree& tree)
+    : on(tree.nodes.size(), 0), inside(tree.nodes.size(), 0)
   {
   }
 };
+
+namespace internal {
 
 /// The next node of the same branch; `none` at its tip.
 inline std::vector<Index> successors(const Branch_tree& tree)
@@ -64,13 +66,16 @@ inline std::vector<Index> successors(const Branch_tree& tree)
   return next;
 }
 
+} // namespace internal
+
+/// Counts the points on the surface of each node and inside of it. O(points).
 template <class ConcurrencyTag>
 Section_support support_of_sections(const Scan& scan,
                                     const Branch_tree& tree,
                                     double noise,
                                     const Support_rules& rules)
 {
-  const std::vector<Index> next = successors(tree);
+  const std::vector<Index> next = internal::successors(tree);
   std::vector<std::uint8_t> is_inside(scan.size(), 0);
   pcs::internal::for_each_index<ConcurrencyTag>(
       scan.size(),
@@ -107,6 +112,60 @@ Section_support support_of_sections(const Scan& scan,
   return support;
 }
 
+namespace internal {
+
+/// What the points say of the sections of one branch, each at least as long as thick.
+struct Branch_support
+{
+  std::vector<double> on, inside, expected; ///< points about each node
+  std::vector<std::uint8_t> is_proven;
+  bool is_mostly_proven = false; ///< then what is filled is no cloud of leaves
+
+  Branch_support(const Section_support& support,
+                 const Branch& branch,
+                 const Branch_tree& tree,
+                 double density,
+                 const Support_rules& rules)
+    : on(branch.nodes.size(), 0), inside(on), expected(on), is_proven(on.size(), 0)
+  {
+    const std::size_t n = on.size();
+    double all = 0, proven = 0; // squared radii times lengths
+    for (std::size_t k = 0; k < n; ++k) {
+      const Branch_node& node = tree.nodes[branch.nodes[k]];
+      const auto is_near = [&](std::size_t j) {
+        return (tree.nodes[branch.nodes[j]].point - node.point).norm() <= node.radius;
+      };
+      std::size_t begin = k > rules.reach ? k - rules.reach : 0;
+      std::size_t end = std::min(n, k + rules.reach + 1);
+      while (begin > 0 && is_near(begin - 1))
+        --begin;
+      while (end < n && is_near(end))
+        ++end;
+      for (std::size_t j = begin; j < end; ++j) {
+        const Index w = branch.nodes[j];
+        on[k] += support.on[w];
+        inside[k] += support.inside[w];
+        expected[k] +=
+            2 * 3.14159265358979323846 * tree.nodes[w].radius * density * length_at(tree, w);
+      }
+      is_proven[k] = on[k] >= rules.proof_expected * expected[k] &&
+                     inside[k] <= rules.proof_filled * (on[k] + inside[k]) &&
+                     node.radius_error <= rules.proof_error * node.radius;
+      const double volume = node.radius * node.radius * length_at(tree, branch.nodes[k]);
+      all += volume;
+      proven += is_proven[k] && node.is_measured && on[k] >= rules.fewest ? volume : 0;
+    }
+    is_mostly_proven = proven >= rules.mostly * all;
+  }
+
+private:
+  static double length_at(const Branch_tree& tree, Index v)
+  {
+    return tree.is_base(v) ? 0
+                           : (tree.nodes[v].point - tree.nodes[tree.nodes[v].parent].point).norm();
+  }
+};
+
 /// The longest way from each node to a tip.
 inline std::vector<double> ways_to_tips(const Branch_tree& tree)
 {
@@ -123,19 +182,16 @@ inline std::vector<double> ways_to_tips(const Branch_tree& tree)
 /*!
   Scanners see the surface of wood, not what is inside. Sections with points inside are bushes of leaves, with few points
   anything: their radii are at most what is left, by the longest way to a tip, of the last radius below that the points
-  support. Such nodes count as inferred. Returns how many there are. O(points + nodes).
+  support, or the largest one that they support farther out on the branch. Such nodes count as inferred. Returns how many there are. O(points + nodes).
 */
-template <class ConcurrencyTag>
-std::size_t bound_radii(const Scan& scan,
-                        double noise,
-                        double density,
-                        const Support_rules& rules,
-                        Branch_tree& tree)
+inline std::size_t bound_radii(const Scan& scan,
+                               const Section_support& support,
+                               double density,
+                               const Support_rules& rules,
+                               Branch_tree& tree)
 {
   if (tree.nodes.empty())
     return 0;
-  const internal::Section_support support =
-      internal::support_of_sections<ConcurrencyTag>(scan, tree, noise, rules);
   const std::vector<double> way = internal::ways_to_tips(tree);
   struct Reference
   {
@@ -146,38 +202,22 @@ std::size_t bound_radii(const Scan& scan,
   std::vector<std::uint8_t> is_sure(tree.nodes.size(), 0);
   std::size_t count = 0;
   for (const Branch& branch : tree.branches) { // parents before their children
-    double all_on = 0, all_inside = 0;         // from the base to here
+    const internal::Branch_support sections(support, branch, tree, density, rules);
+    double all_on = 0, all_inside = 0; // from the base to here
     const std::size_t n = branch.nodes.size();
+    std::vector<double> bounds(n, std::numeric_limits<double>::infinity()), supported(n, 0);
     for (std::size_t k = 0; k < n; ++k) {
       const Index v = branch.nodes[k];
-      Branch_node& node = tree.nodes[v];
-      double on = 0, inside = 0, expected = 0;
-      // at least as long as thick
-      const auto is_near = [&](std::size_t j) {
-        return (tree.nodes[branch.nodes[j]].point - node.point).norm() <= node.radius;
-      };
-      std::size_t begin = k > rules.reach ? k - rules.reach : 0;
-      std::size_t end = std::min(n, k + rules.reach + 1);
-      while (begin > 0 && is_near(begin - 1))
-        --begin;
-      while (end < n && is_near(end))
-        ++end;
-      for (std::size_t j = begin; j < end; ++j) {
-        const Branch_node& near = tree.nodes[branch.nodes[j]];
-        on += support.on[branch.nodes[j]];
-        inside += support.inside[branch.nodes[j]];
-        if (!tree.is_base(branch.nodes[j]))
-          expected += 2 * 3.14159265358979323846 * near.radius * density *
-                      (near.point - tree.nodes[near.parent].point).norm();
-      }
+      const Branch_node& node = tree.nodes[v];
+      const double on = sections.on[k], inside = sections.inside[k];
+      const double expected = sections.expected[k];
       all_on += support.on[v];
       all_inside += support.inside[v];
-      const bool is_bush = all_inside > rules.branch_filled * (all_on + all_inside);
-      const bool is_filled = inside > rules.filled * (on + inside);
       // then the joint is wrong, or the parent
-      const bool is_proven = on >= rules.proof_expected * expected &&
-                             inside <= rules.proof_filled * (on + inside) &&
-                             node.radius_error <= rules.proof_error * node.radius;
+      const bool is_proven = sections.is_proven[k] != 0;
+      const bool is_bush = all_inside > rules.branch_filled * (all_on + all_inside) &&
+                           !(is_proven && sections.is_mostly_proven);
+      const bool is_filled = inside > rules.filled * (on + inside);
       const Reference below = node.parent == none ? Reference() : reference[node.parent];
       const bool is_too_thick =
           below.way > 0 && !is_proven && node.radius > rules.thicker * below.narrowest;
@@ -186,6 +226,7 @@ std::size_t bound_radii(const Scan& scan,
       is_sure[v] = is_supported && is_proven;
       reference[v] = below;
       if (is_supported || !(below.way > 0)) {
+        supported[k] = is_supported ? node.radius : 0;
         if (is_supported)
           reference[v] = {node.radius,
                           way[v],
@@ -194,8 +235,14 @@ std::size_t bound_radii(const Scan& scan,
         continue;
       }
       const double slack = is_filled || is_bush ? rules.filled_slack : rules.slack;
-      const double bound = std::max(rules.thinnest * scan.spacing,
-                                    below.radius * std::min(1.0, slack * way[v] / below.way));
+      bounds[k] = std::max(rules.thinnest * scan.spacing,
+                           below.radius * std::min(1.0, slack * way[v] / below.way));
+    }
+    double carried = 0; // the thickest supported section farther out
+    for (std::size_t k = n; k-- > 0;) {
+      Branch_node& node = tree.nodes[branch.nodes[k]];
+      carried = std::max(carried, supported[k]);
+      const double bound = std::max(bounds[k], carried);
       if (node.radius <= bound)
         continue;
       node.radius = bound;

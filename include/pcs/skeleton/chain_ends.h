@@ -47,9 +47,10 @@ inline void prolong(const Chain_view& view, bool do_base, Axis& axis)
 struct Filling
 {
   std::vector<double> on, inside;
+  std::vector<double> deep; ///< those of `inside` that no flute of a stem explains
 
   Filling(const Chain_view& view, const Axis_fit& fit)
-    : on(fit.axis().size(), 0), inside(fit.axis().size(), 0)
+    : on(fit.axis().size(), 0), inside(on), deep(on)
   {
     for (const Axis_place& p : fit.places()) {
       if (p.share < 0 || p.share > 1)
@@ -59,6 +60,8 @@ struct Filling
           std::max(view.rules.filled_noise * view.set.noise, view.rules.filled_depth * r);
       if (e <= limit)
         (e < -limit ? inside : on)[p.segment] += 1;
+      if (e < -std::max(limit, view.rules.deep * r))
+        deep[p.segment] += 1;
     }
   }
 
@@ -89,18 +92,29 @@ struct Filling
 
 /*!
   Wood is hollow to a scanner: where a thick axis that was hollow gets points inside, it runs around a fork, and ends. One
-  that never was hollow is an irregular stem, or seen badly, and stays.
+  that never was hollow is an irregular stem, or seen badly, and stays; so does one that is hollow again farther on, with
+  more points than before, because it only passed buttresses or a whorl.
 */
 inline void cut_filled(const Chain_view& view, Axis_fit& fit)
 {
   constexpr std::size_t window = 4;
   Axis& axis = fit.axis();
+  const std::size_t n = axis.size();
   const Filling filling(view, fit);
+  // points on the surface up to each node; one deep inside outweighs so many that `filled` balances
+  std::vector<double> balance(n + 1, 0);
+  for (std::size_t k = 0; k < n; ++k)
+    balance[k + 1] =
+        balance[k] + filling.on[k] + filling.inside[k] - filling.deep[k] / view.rules.filled;
+  std::vector<double> highest = balance; // from each node on
+  for (std::size_t k = n; k-- > 0;)
+    highest[k] = std::max(highest[k], highest[k + 1]);
   double least = 1; // share inside of the best stretch so far
-  for (std::size_t k = window; k + window < axis.size(); ++k) {
+  for (std::size_t k = window; k + window < n; ++k) {
     least = std::min(least, filling.share(k - window, k));
+    const bool is_mostly_beyond = highest[k] - balance[k] > std::max(0.0, balance[k]);
     if (axis[k].radius >= view.rules.thick * view.scan.spacing && least < 0.5 * view.rules.filled &&
-        filling.is_filled(k, k + window, view.rules.filled)) {
+        filling.is_filled(k, k + window, view.rules.filled) && !is_mostly_beyond) {
       axis.resize(k + 1);
       fit.project();
       return;
