@@ -840,6 +840,16 @@ BOOST_AUTO_TEST_CASE(broken_trees_are_refused_with_a_reason)
   bad = good;
   bad[2].radius = -1;
   refuse(bad, "radius of node 2");
+  // finite, but squares of them are not
+  bad = good;
+  bad[2].radius = 1e300;
+  refuse(bad, "radius of node 2");
+  bad = good;
+  bad[3].point = Point(1e200, 0, 0);
+  refuse(bad, "span");
+  BOOST_CHECK_EXCEPTION(space.add(good, std::vector<Point>{Point(0, 0, -1e200)}),
+                        pcs::Invalid_input,
+                        message_has("point 0"));
   BOOST_CHECK_EXCEPTION(
       space.add(good, std::vector<Point>{Point(0, 0, std::numeric_limits<double>::infinity())}),
       pcs::Invalid_input,
