@@ -618,11 +618,26 @@ BOOST_AUTO_TEST_CASE(a_fork_whose_longer_side_changes_keeps_its_branches)
   };
   std::vector<std::size_t> tip_a, tip_b;
   const Turns still(3, Eigen::Matrix3d::Identity());
-  const Tree a = make_tree(fork(1, 1.02), still, {1, 1, 1}, tip_a);
-  const Tree b = make_tree(fork(1.02, 1), still, {1, 1, 1}, tip_b);
-  for (const auto& match : make_space(a, b).matches()) {
-    BOOST_TEST((match.tip[0] == tip_a[1]) == (match.tip[1] == tip_b[1]));
-    BOOST_TEST(match.tip[0] != pcs::npos);
+  const auto number_kept = [&](double more, std::size_t number_of_paths) {
+    const Tree a = make_tree(fork(1, more), still, {1, 1, 1}, tip_a);
+    const Tree b = make_tree(fork(more, 1), still, {1, 1, 1}, tip_b);
+    Space space;
+    space.add_skeleton(a);
+    space.add_skeleton(b);
+    Matching_weights weights;
+    weights.number_of_paths = number_of_paths;
+    space.build(np::matching_weights(weights));
+    int result = 0;
+    for (const auto& match : space.matches())
+      result += (match.tip[0] == tip_a[1] && match.tip[1] == tip_b[1]) ||
+                        (match.tip[0] == tip_a[2] && match.tip[1] == tip_b[2])
+                    ? 1
+                    : 0;
+    return result;
+  };
+  for (const double more : {1.02, 1.7}) { // nearly as long, and much shorter
+    BOOST_TEST(number_kept(more, 6) == 2);
+    BOOST_TEST(number_kept(more, 1) == 0); // control: the longest paths are the trunks
   }
 }
 
