@@ -14,7 +14,6 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -27,13 +26,6 @@
 #include <vector>
 
 namespace orl_program {
-
-std::string name_of(double lambda)
-{
-  char text[64];
-  std::snprintf(text, sizeof(text), "lambda_%.3f", lambda == 0 ? 0.0 : lambda);
-  return text;
-}
 
 void add(Space& space, const Tree_file& file)
 {

@@ -618,11 +618,26 @@ BOOST_AUTO_TEST_CASE(a_fork_whose_longer_side_changes_keeps_its_branches)
   };
   std::vector<std::size_t> tip_a, tip_b;
   const Turns still(3, Eigen::Matrix3d::Identity());
-  const Tree a = make_tree(fork(1, 1.02), still, {1, 1, 1}, tip_a);
-  const Tree b = make_tree(fork(1.02, 1), still, {1, 1, 1}, tip_b);
-  for (const auto& match : make_space(a, b).matches()) {
-    BOOST_TEST((match.tip[0] == tip_a[1]) == (match.tip[1] == tip_b[1]));
-    BOOST_TEST(match.tip[0] != pcs::npos);
+  const auto number_kept = [&](double more, std::size_t number_of_paths) {
+    const Tree a = make_tree(fork(1, more), still, {1, 1, 1}, tip_a);
+    const Tree b = make_tree(fork(more, 1), still, {1, 1, 1}, tip_b);
+    Space space;
+    space.add_skeleton(a);
+    space.add_skeleton(b);
+    Matching_weights weights;
+    weights.number_of_paths = number_of_paths;
+    space.build(np::matching_weights(weights));
+    int result = 0;
+    for (const auto& match : space.matches())
+      result += (match.tip[0] == tip_a[1] && match.tip[1] == tip_b[1]) ||
+                        (match.tip[0] == tip_a[2] && match.tip[1] == tip_b[2])
+                    ? 1
+                    : 0;
+    return result;
+  };
+  for (const double more : {1.02, 1.7}) { // nearly as long, and much shorter
+    BOOST_TEST(number_kept(more, 6) == 2);
+    BOOST_TEST(number_kept(more, 1) == 0); // control: the longest paths are the trunks
   }
 }
 
@@ -840,6 +855,16 @@ BOOST_AUTO_TEST_CASE(broken_trees_are_refused_with_a_reason)
   bad = good;
   bad[2].radius = -1;
   refuse(bad, "radius of node 2");
+  // finite, but squares of them are not
+  bad = good;
+  bad[2].radius = 1e300;
+  refuse(bad, "radius of node 2");
+  bad = good;
+  bad[3].point = Point(1e200, 0, 0);
+  refuse(bad, "span");
+  BOOST_CHECK_EXCEPTION(space.add(good, std::vector<Point>{Point(0, 0, -1e200)}),
+                        pcs::Invalid_input,
+                        message_has("point 0"));
   BOOST_CHECK_EXCEPTION(
       space.add(good, std::vector<Point>{Point(0, 0, std::numeric_limits<double>::infinity())}),
       pcs::Invalid_input,

@@ -1288,6 +1288,9 @@ BOOST_AUTO_TEST_CASE(wrong_values_are_named)
   BOOST_CHECK_THROW(space.growth({0, 7}, {0, 1}), pcs::Invalid_input);
   BOOST_CHECK_THROW(space.for_each_point(space.tree(0), [](auto...) {}), pcs::Invalid_input);
   BOOST_CHECK_THROW(space.correspondences(), pcs::Invalid_input);
+  pcs::Orl_space_data stored = space.data();
+  stored.trees[1].length[0] = 1e300; // finite, but its square is not
+  BOOST_CHECK_EXCEPTION(Space().restore(stored), pcs::Invalid_input, message_has("1e100"));
   const auto modes = space.modes(2);
   BOOST_CHECK_THROW(space.tree(modes, {1, 2, 3}), pcs::Invalid_input);
   BOOST_CHECK_THROW(space.tree(modes, {nan}), pcs::Invalid_input);

@@ -45,7 +45,7 @@ inline std::vector<Branch> take_apart(const Tree& graph)
                                             get(&pcs::Tree_node<Kernel>::radius, graph),
                                             get(boost::vertex_index, graph),
                                             "take_apart()");
-  const Branch_paths paths = find_branch_paths(tree, 1, 1);
+  const Branch_paths paths = find_branch_paths(tree, 1, 1, 1);
   std::vector<Branch> result;
   struct Open
   {

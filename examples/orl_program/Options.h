@@ -12,6 +12,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
+#include <map>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,6 +48,38 @@ struct Options
   }
 };
 
+/// Numbers separated by commas. CLI11 takes nothing for 0, and leaves out what is between two commas.
+inline CLI::Option* add_numbers(CLI::App& app,
+                                const std::string& name,
+                                std::vector<double>& values,
+                                const std::string& what)
+{
+  const auto read = [name, &values](const std::vector<std::string>& lists) {
+    values.clear();
+    for (const std::string& list : lists) {
+      std::istringstream words(list + ',');
+      for (std::string word; std::getline(words, word, ',');) {
+        double value = 0;
+        if (!CLI::detail::lexical_cast(CLI::detail::trim_copy(word), value) ||
+            CLI::detail::trim_copy(word).empty())
+          throw CLI::ValidationError(name,
+                                     "expected numbers separated by commas, found '" + list + "'");
+        values.push_back(value);
+      }
+    }
+  };
+  return app.add_option_function<std::vector<std::string>>(name, read, what)
+      ->type_name("FLOAT,...");
+}
+
+/// The name of the files of a place on the path.
+inline std::string name_of(double lambda)
+{
+  char text[64];
+  std::snprintf(text, sizeof(text), "lambda_%.3f", lambda == 0 ? 0.0 : lambda);
+  return text;
+}
+
 inline void declare_family(CLI::App& app, Options& o)
 {
   const char* const group = "Families of trees";
@@ -61,7 +96,10 @@ inline void declare_family(CLI::App& app, Options& o)
   app.add_option("--sample", o.number_of_samples, "so many new trees: sample_0000.swc, ...")
       ->check(CLI::Range(0, 10000))
       ->group(group);
-  app.add_option("--seed", o.seed, "of new trees")->capture_default_str()->group(group);
+  app.add_option("--seed", o.seed, "of new trees")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str()
+      ->group(group);
   app.add_flag("--any-range",
                o.may_leave_range,
                "new trees may be larger or smaller than all inputs")
@@ -71,13 +109,11 @@ inline void declare_family(CLI::App& app, Options& o)
                  "radii of new trees to this power do not add up to more at forks; 2 to 2.5")
       ->check(CLI::Range(0.0, 10.0))
       ->group(group);
-  app.add_option("--weights", o.weights, "one per tree: the tree between, combination.swc")
-      ->delimiter(',')
+  add_numbers(app, "--weights", o.weights, "one per tree: the tree between, combination.swc")
       ->group(group);
   app.add_flag("--growth", o.do_growth, "a smooth path through all trees: growth_0000.swc, ...")
       ->group(group);
-  app.add_option("--times", o.times, "of the trees for --growth, increasing; 0,1,2,... otherwise")
-      ->delimiter(',')
+  add_numbers(app, "--times", o.times, "of the trees for --growth, increasing; 0,1,2,... otherwise")
       ->group(group);
   app.add_option("--frames", o.number_of_frames, "of the path")
       ->check(CLI::Range(2, 100000))
@@ -110,9 +146,8 @@ Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
   app.add_option("--skeleton", o.skeletons, "skeleton of a tree, once for each")
       ->allow_extra_args(false);
   CLI::Option* const lambda =
-      app.add_option("--lambda", o.lambda, "places on the path, separated by commas")
-          ->delimiter(',')
-          ->capture_default_str();
+      add_numbers(app, "--lambda", o.lambda, "places on the path, separated by commas")
+          ->default_str("0,0.25,0.5,0.75,1");
   app.add_option("--output", o.output, "folder for the results; it is made")->required();
   app.add_option("--matches",
                  o.matches,
@@ -170,6 +205,10 @@ inline void check(const Options& o)
   for (const double l : o.lambda)
     if (!std::isfinite(l) || std::abs(l) > 1000)
       fail("--lambda must be finite numbers between -1000 and 1000");
+  std::map<std::string, double> names;
+  for (const double l : o.lambda)
+    if (const auto [it, is_new] = names.emplace(name_of(l), l); !is_new && it->second != l)
+      fail("--lambda has two places whose files would both be called " + it->first);
   if (!o.times.empty() && !o.do_growth)
     fail("--times is for --growth");
 }

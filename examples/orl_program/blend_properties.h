@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -30,25 +31,23 @@ inline bool is_normal(const std::string& name)
   return name == "nx" || name == "ny" || name == "nz";
 }
 
-/// Light, not its code, is mixed: the codes of sRGB follow a power of it.
-inline double mix_colors(double a, double b, double w)
-{
-  constexpr double gamma = 2.2;
-  return std::pow((1 - w) * std::pow(a, gamma) + w * std::pow(b, gamma), 1 / gamma);
-}
-
-/// Numbers with fractions are mixed, colours too; whole numbers are labels, those of the nearer tree are taken.
+/// The nearest number of a type.
 template <class T>
-T mix_values(double a, double b, double w, bool has_color)
+T to_type(double value)
 {
-  if (std::is_floating_point_v<T>)
-    return static_cast<T>((1 - w) * a + w * b);
-  if (has_color)
-    return static_cast<T>(std::lround(mix_colors(a, b, w)));
-  return static_cast<T>(w < 0.5 ? a : b);
+  using limits = std::numeric_limits<T>;
+  if (std::isnan(value))
+    return std::is_floating_point_v<T> ? limits::quiet_NaN() : T(0);
+  if (value <= static_cast<double>(limits::lowest()))
+    return limits::lowest();
+  return value >= static_cast<double>(limits::max()) ? limits::max() : static_cast<T>(value);
 }
 
-/// A value from many points with weights that add up to 1, in the same way.
+/*!
+  A value from many points with weights that add up to 1. Numbers with fractions are mixed, colours too, and of these light,
+  not its code: the codes of sRGB follow a power of it. Whole numbers are labels, those of the greatest share are taken.
+  What is no finite number has no part in it.
+*/
 template <class T>
 class Mixed_value
 {
@@ -57,6 +56,12 @@ public:
 
   void add(double value, double w)
   {
+    if (!(w > 0))
+      return;
+    if (!std::isfinite(value)) {
+      m_left_out += w;
+      return;
+    }
     m_sum += w * value;
     m_light += w * std::pow(std::max(0.0, value), gamma);
     if (w > m_most) {
@@ -66,16 +71,18 @@ public:
   }
   T get() const
   {
+    if (!(m_most > 0))
+      return to_type<T>(std::numeric_limits<double>::quiet_NaN());
+    const double all = m_left_out > 0 ? 1 - m_left_out : 1;
     if (std::is_floating_point_v<T>)
-      return static_cast<T>(m_sum);
-    return static_cast<T>(
-        m_has_color ? static_cast<double>(std::lround(std::pow(m_light, 1 / gamma))) : m_main);
+      return to_type<T>(m_sum / all);
+    return to_type<T>(m_has_color ? std::round(std::pow(m_light / all, 1 / gamma)) : m_main);
   }
 
 private:
   static constexpr double gamma = 2.2;
   bool m_has_color;
-  double m_sum = 0, m_light = 0, m_most = 0, m_main = 0;
+  double m_sum = 0, m_light = 0, m_most = 0, m_main = 0, m_left_out = 0;
 };
 
 /// Adds every property that both tables have to `out`, the points of `tree`, in the type of the first table.
@@ -95,12 +102,12 @@ void blend_properties(const Space& space,
           using T = typename std::decay_t<decltype(a)>::value_type;
           std::vector<T> values(out.number_of_points());
           space.for_each_point(tree, [&](std::size_t i, std::size_t k, std::size_t l, double w) {
-            if (k == pcs::npos)
-              values[i] = static_cast<T>(b[l]);
-            else if (l == pcs::npos)
-              values[i] = a[k];
-            else
-              values[i] = mix_values<T>(static_cast<double>(a[k]), b[l], w, is_color(name));
+            Mixed_value<T> mixed(is_color(name));
+            if (l != pcs::npos)
+              mixed.add(b[l], w);
+            if (k != pcs::npos)
+              mixed.add(static_cast<double>(a[k]), 1 - w);
+            values[i] = mixed.get();
           });
           out.add_property(name, std::move(values));
         },

@@ -81,8 +81,8 @@ public:
     \brief adds a tree and the points of its scan.
 
     \tparam TreeGraph a model of `boost::VertexListGraph` and `boost::IncidenceGraph`, edges from parent to child
-    \param tree with one root, at least 2 nodes, finite positions and radii `>= 0`, branches that hang on others 250 times at
-    most; nodes in the same place are joined
+    \param tree with one root, at least 2 nodes, positions up to 1e100 from it and radii in [0, 1e100], branches that hang on
+    others 250 times at most; nodes in the same place are joined
     \param scan a model of `RandomAccessRange`; may be empty; it should lie about the tree
     \npbegin
       \np{node_point_map} position of a vertex [L]

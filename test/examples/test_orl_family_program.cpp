@@ -163,6 +163,9 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_with_a_sentence)
   refuses(skeletons + "--weights 1,2 --output out", "2 weights for 3");
   refuses(skeletons + "--weights 1,-1,0 --output out", "sum of the weights");
   refuses(skeletons + "--weights 1,x,0 --output out", "weights");
+  refuses(skeletons + "--weights 1,,0 --output out", "separated by commas");
+  refuses(skeletons + "--growth --times 0,1, --output out", "separated by commas");
+  refuses(skeletons + "--sample 1 --seed -1 --output out", "seed");
   refuses(skeletons + "--growth --times 0,2,1 --output out", "increase");
   refuses(skeletons + "--growth --times 0,1 --output out", "times");
   refuses(skeletons + "--mean --times 0,1,2 --output out", "--growth");

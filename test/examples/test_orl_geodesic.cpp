@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <examples/Program_run.h>
+#include <limits>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -133,6 +134,34 @@ BOOST_AUTO_TEST_CASE(every_place_on_the_path_has_points_and_a_skeleton)
     BOOST_TEST(r["seconds"][stage].get<double>() >= 0);
 }
 
+BOOST_AUTO_TEST_CASE(values_that_are_no_numbers_have_no_part_in_the_points_between)
+{
+  using Table = pcs::IO::Point_table;
+  const auto with_values = [&](const std::string& name, float value, double label) {
+    Table table = pcs::IO::read_points(path(name + ".ply"));
+    const std::size_t n = table.number_of_points();
+    table.add_property("value", std::vector<float>(n, value));
+    table.add_property("label", std::vector<double>(n, label));
+    pcs::IO::write_points(path(name + "_values.ply"), table);
+  };
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  with_values("a", 3, 1e300);
+  with_values("b", nan, 1e300);
+  succeeds("--tree a_values.ply --skeleton a.swc --tree b_values.ply --skeleton b.swc --lambda "
+           "0,0.5 --output out");
+  for (const std::string place : {"0.000", "0.500"}) {
+    const Table points = pcs::IO::read_points(path("out/lambda_" + place + ".ply"));
+    std::size_t from_first = 0;
+    for (const double v : points.property_as_double("value")) {
+      BOOST_TEST((v == 3 || std::isnan(v))); // of points that only the second scan has
+      from_first += v == 3 ? 1 : 0;
+    }
+    BOOST_TEST(from_first >= 2000u);
+    for (const double v : points.property_as_double("label"))
+      BOOST_TEST(v == 1e300, boost::test_tools::tolerance(1e-12));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(skeletons_alone_give_skeletons_alone)
 {
   write("a.txtskl", txtskl);
@@ -228,7 +257,9 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_with_a_sentence)
   refuses("--skeleton a.swc --skeleton missing.swc --output out", "missing.swc");
   refuses("--skeleton a.swc --skeleton a.ply --output out", "a.ply");
   refuses(trees + "--lambda nan --output out", "lambda");
-  refuses(trees + "--lambda 0,x --output out", "lambda");
+  for (const std::string list : {"0,x", "0,,1", "0,1,", ",0", "'0;1'", "''", "0.5.5", "1e"})
+    refuses(trees + "--lambda " + list + " --output out", "separated by commas");
+  refuses(trees + "--lambda 0.5,0.5001 --output out", "lambda_0.500");
   refuses(trees + "--transport fast --output out", "transport");
   write("file", "");
   refuses(trees + "--output file", "file");
@@ -239,6 +270,14 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_with_a_sentence)
   }
   write("one.swc", "1 1 0 0 0 1 -1\n");
   refuses("--skeleton a.swc --skeleton one.swc --output out", "one.swc");
+  write("far.swc", "1 1 0 0 0 1 -1\n2 1 0 0 1e200 1 1\n");
+  refuses("--skeleton far.swc --skeleton a.swc --output out", "far.swc");
+  write("thick.swc", "1 1 0 0 0 1 -1\n2 1 0 0 1 1e200 1\n");
+  refuses("--skeleton thick.swc --skeleton a.swc --output out", "radius of node 1");
+  write("far.xyz", "0 0 0\n0 0 1e300\n");
+  for (const std::string more : {"", "--extend-axes "})
+    refuses("--tree far.xyz --skeleton a.swc --tree b.ply --skeleton b.swc --output out " + more,
+            "point 1");
   write("same.swc", "1 1 1 1 1 1 -1\n2 1 1 1 1 1 1\n3 1 1 1 1 1 2\n");
   refuses("--skeleton same.swc --skeleton a.swc --output out", "same.swc");
   write("two_roots.swc", "1 1 0 0 0 1 -1\n2 1 0 0 1 1 1\n3 1 5 0 0 1 -1\n");

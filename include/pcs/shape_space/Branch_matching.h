@@ -68,7 +68,8 @@ public:
   {
     return find_branch_paths(tree,
                              weights.fork_ratio,
-                             weights.is_published ? 1 : weights.number_of_paths);
+                             weights.is_published ? 1 : weights.number_of_paths,
+                             weights.trunk_fork_ratio);
   }
 
   const Branch_paths& paths(int t) const { return m_energy.paths(t); }

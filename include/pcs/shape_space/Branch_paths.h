@@ -127,9 +127,12 @@ inline std::vector<std::vector<std::size_t>> candidate_paths(const Rooted_tree& 
 
 } // namespace internal
 
-/// `maximal_number` 1 gives the decomposition by longest paths alone.
-inline Branch_paths
-find_branch_paths(const Rooted_tree& tree, double fork_ratio, std::size_t maximal_number)
+/// `maximal_number` 1 gives the decomposition by longest paths alone. `trunk_ratio` is the fork ratio of the trunk,
+/// if it is less.
+inline Branch_paths find_branch_paths(const Rooted_tree& tree,
+                                      double fork_ratio,
+                                      std::size_t maximal_number,
+                                      double trunk_ratio)
 {
   Branch_paths result;
   result.paths_of.resize(tree.size());
@@ -143,7 +146,8 @@ find_branch_paths(const Rooted_tree& tree, double fork_ratio, std::size_t maxima
     const std::size_t most = level[start] > levels_of_choice    ? 1
                              : maximal_number > 1 && start == 0 ? trunk_factor * maximal_number
                                                                 : maximal_number;
-    for (auto& nodes : internal::candidate_paths(tree, start, fork_ratio, most)) {
+    const double ratio = start == 0 ? std::min(trunk_ratio, fork_ratio) : fork_ratio;
+    for (auto& nodes : internal::candidate_paths(tree, start, ratio, most)) {
       result.paths_of[start].push_back(result.paths.size());
       result.paths.push_back(internal::make_path(tree, std::move(nodes), start == 0));
       for (const Branch_path::Child& child : result.paths.back().children)

@@ -41,7 +41,8 @@ struct Matching_weights
   bool is_carried = true; ///< whether turns of parents are carried to their children
   bool is_published =
       false; ///< no turns, position in units of the parent's length, all else 1: the text's energy
-  double fork_ratio = default_fork_ratio; ///< see `Branch_paths`
+  double fork_ratio = default_fork_ratio;       ///< see `Branch_paths`
+  double trunk_fork_ratio = default_fork_ratio; ///< the same for the trunk, if it is less
   std::size_t number_of_paths = 6; ///< candidates for the main path of a branch; 1: the longest
   std::size_t number_of_trials =
       3; ///< pairs of candidates that are matched with all their children

@@ -33,6 +33,19 @@ constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 /// Edges shorter than this share of the tree's extent join their ends: they have no direction.
 constexpr double shortest_edge = 1e-9;
 
+/// Coordinates relative to the root, lengths and radii beyond this are refused, as if they were not finite: squares of them
+/// must be finite, and sums of these, far beyond the ends of a path, too. [L]
+constexpr double most_length = 1e100;
+
+inline bool is_length(double value)
+{
+  return value >= 0 && value <= most_length;
+}
+inline bool is_place(const Vec3& p)
+{
+  return is_length(p.cwiseAbs().maxCoeff()) && p.allFinite();
+}
+
 /// Nodes in an order in which parents come first; node 0 is the root.
 struct Rooted_tree
 {
@@ -229,7 +242,7 @@ inline Rooted_tree without_coincident_nodes(const Rooted_tree& all, std::size_t 
 
 /*!
   Copies `graph`. The rules for the caller's data are checked here: one root, every other vertex has one parent and is
-  reached from the root, coordinates and radii are finite, radii are not negative.
+  reached from the root, coordinates and radii are finite and not beyond `most_length`, radii are not negative.
   Throws `pcs::Invalid_input` with a message that begins with `caller`.
 */
 template <class TreeGraph, class NodePointMap, class RadiusMap, class VertexIndexMap>
@@ -285,8 +298,8 @@ Rooted_tree make_rooted_tree(const TreeGraph& graph,
     const double radius = CGAL::to_double(get(radius_map, vertices_by_index[i]));
     if (!position.allFinite())
       fail("the coordinates of node " + std::to_string(i) + " are not finite");
-    if (!(radius >= 0) || !std::isfinite(radius))
-      fail("the radius of node " + std::to_string(i) + " is not a finite number >= 0");
+    if (!is_length(radius))
+      fail("the radius of node " + std::to_string(i) + " is not a number from 0 to 1e100");
     new_node[i] = all.size();
     all.points.push_back(position);
     all.radii.push_back(radius);
@@ -307,8 +320,8 @@ Rooted_tree make_rooted_tree(const TreeGraph& graph,
   }
   all.origin = all.points[0];
   all.extent = (high - low).norm();
-  if (!(all.extent > 0) || !std::isfinite(all.extent))
-    fail("the nodes of the tree do not span a finite box");
+  if (!(all.extent > 0) || !is_length(all.extent))
+    fail("the nodes of the tree do not span a box of a size between 0 and 1e100");
   for (Vec3& p : all.points)
     p -= all.origin;
   return internal::without_coincident_nodes(internal::with_nodes_at_bases(all), n);

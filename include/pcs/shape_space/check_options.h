@@ -33,6 +33,7 @@ inline void check_options(const Matching_weights& w,
         "the weights of the matching must be >= 0 and finite");
   check(w.far > 0, "the distance `far` must be > 0");
   check(w.fork_ratio > 0 && w.fork_ratio <= 1, "`fork_ratio` must be in (0, 1]");
+  check(w.trunk_fork_ratio > 0 && w.trunk_fork_ratio <= 1, "`trunk_fork_ratio` must be in (0, 1]");
   check(w.number_of_paths > 0 && w.number_of_trials > 0,
         "`number_of_paths` and `number_of_trials` must be at least 1");
   check(is_weight(a.noise) && a.normal_angle > 0, "`noise` must be >= 0, `normal_angle` > 0");

@@ -81,7 +81,7 @@ std::size_t extend_axes(Tree_skeleton<Kernel>& tree, const PointRange& scan)
   double total = 0;
   for (const auto e : boost::make_iterator_range(edges(tree)))
     total += (place[target(e, tree)] - place[source(e, tree)]).norm();
-  if (!(total > 0) || !std::isfinite(total))
+  if (!(total > 0) || !is_length(total))
     return 0;
   const double step = total / (samples_per_edge * static_cast<double>(num_edges(tree)));
 
@@ -109,7 +109,7 @@ std::size_t extend_axes(Tree_skeleton<Kernel>& tree, const PointRange& scan)
   std::vector<std::vector<Vec3>> beyond(n);
   for (const auto& point : scan) {
     const Vec3 p = to_vector(point) - origin;
-    if (!p.allFinite())
+    if (!is_place(p))
       continue;
     search(p, 1, found);
     const std::size_t v = end[found[0].index];

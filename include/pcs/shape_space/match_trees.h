@@ -34,6 +34,7 @@ struct Matching_cost
 
   The energies of the two kinds of growth are in units of their own. What the greater tree has more costs in any case, and
   what is above that is compared with what it would be if nothing were matched; growth at tips must leave clearly less of it.
+  So must other trunks than the longest paths, or nearly as long ones, for trees that grow along their branches.
 */
 template <class ConcurrencyTag>
 Matching_cost match_trees(const std::array<const Rooted_tree*, 2>& trees,
@@ -73,6 +74,18 @@ Matching_cost match_trees(const std::array<const Rooted_tree*, 2>& trees,
     // virtual trees that grew at their tips leave less than 0.6 of it; of plants whose leaves stretch most leave 0.7 and more,
     // and the days between others are predicted better by stretched branches then
     constexpr double clearly = 2. / 3;
+    // the longest path through a tomato is its stem and one of its leaves, on every day another one; but of all paths some
+    // other one matches at a little less cost by chance
+    constexpr double wide_fork_ratio = 0.3;
+    Matching_weights wide = weights;
+    wide.trunk_fork_ratio = wide_fork_ratio;
+    if (weights.number_of_paths > 1 && wide_fork_ratio < weights.trunk_fork_ratio &&
+        !weights.is_published) {
+      Branch_matching<ConcurrencyTag> other(*trees[0], *trees[1], wide);
+      if (const Result found =
+              other.run(progress, along.first + clearly * cost.share * along.second))
+        build(other, found, false, along);
+    }
     most = at_tips.first + clearly * cost.share * at_tips.second;
   }
   if (weights.growth == Growth::along_branches || weights.is_published)

@@ -99,7 +99,7 @@ inline Tree_family restore_family(const Orl_space_data& stored, const std::strin
   check(stored.orientation >= 0 && stored.orientation <= 2, "there is no such orientation");
   family.orientation = static_cast<Orientation>(stored.orientation);
   family.origin = internal::to_vector(stored.origin);
-  check(family.origin.allFinite(), "the origin is not finite");
+  check(is_place(family.origin), "the origin is not finite, or beyond 1e100");
   check(!stored.branches.empty() && stored.trees.size() > 1, "there are not two trees");
   for (std::size_t i = 0; i < stored.branches.size(); ++i) {
     const Orl_space_data::Branch& b = stored.branches[i];
@@ -134,18 +134,17 @@ inline Tree_family restore_family(const Orl_space_data& stored, const std::strin
     family.layout.edge_before[edge] = earlier;
   }
   set_parent_edges(family.layout, family.orientation);
-  const auto is_amount = [](double v) { return v >= 0 && std::isfinite(v); };
   const auto check_tree = [&](const Orl_space_data::Tree& t) {
     check(t.orientation.size() == n && t.length.size() == n && t.radius.size() == n &&
               t.base_radius.size() == m && t.attachment.size() == m,
           "a tree has another number of edges or branches than the topology");
-    check(internal::to_vector(t.root).allFinite(), "a root is not finite");
+    check(is_place(internal::to_vector(t.root)), "a root is not finite, or beyond 1e100");
     for (const auto& q : t.orientation)
       check(std::abs(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1) < 1e-6,
             "an orientation is not of unit length");
     for (const auto* values : {&t.length, &t.radius, &t.base_radius, &t.attachment})
       for (const double v : *values)
-        check(is_amount(v), "a length, radius or attachment is negative or not finite");
+        check(is_length(v), "a length, radius or attachment is not from 0 to 1e100");
     for (std::size_t b = 1; b < m; ++b)
       check(t.attachment[b] <=
                 static_cast<double>(
@@ -166,14 +165,14 @@ inline Tree_family restore_family(const Orl_space_data& stored, const std::strin
   family.reference = internal::restore(stored.reference);
   const Orl_space_data::Weights& w = stored.weights;
   check(w.orientation.size() == n && w.length.size() == n && w.radius.size() == n &&
-            w.base_radius.size() == m && w.attachment.size() == m && is_amount(w.root),
+            w.base_radius.size() == m && w.attachment.size() == m && is_length(w.root),
         "the weights do not fit the topology");
   for (const auto* values : {&w.orientation, &w.length, &w.radius, &w.base_radius, &w.attachment})
     for (const double v : *values)
-      check(is_amount(v), "a weight is negative or not finite");
+      check(is_length(v), "a weight is not from 0 to 1e100");
   family.weights = {w.orientation, w.length, w.radius, w.base_radius, w.attachment, w.root};
   for (const double v : stored.matching)
-    check(is_amount(v), "a weight of the matching is negative or not finite");
+    check(is_length(v), "a weight of the matching is not from 0 to 1e100");
   check(stored.matching[8] >= 1 && stored.matching[8] < 1000 && stored.matching[9] >= 1 &&
             stored.matching[9] < 1000,
         "a number of paths or trials is out of range");
@@ -201,8 +200,8 @@ inline std::vector<Vec3> points_of_stored(const std::vector<std::array<double, 3
   std::vector<Vec3> result;
   for (const auto& p : stored) {
     result.push_back(internal::to_vector(p));
-    if (!result.back().allFinite())
-      throw Invalid_input(caller + ": a point or normal is not finite");
+    if (!is_place(result.back()))
+      throw Invalid_input(caller + ": a point or normal is not finite, or beyond 1e100");
   }
   return result;
 }
@@ -260,7 +259,7 @@ inline void check_family_points(const Orl_space_data& stored,
         p.edge >= last && p.edge < number_of_edges && p.tree < stored.trees.size() &&
         stored.trees[p.tree].has[branch_of[p.edge]] &&
         (&p == stored.points.data() || p.edge != last || p.tree == tree) &&
-        internal::to_vector(p.position).allFinite() && internal::to_vector(p.normal).allFinite();
+        is_place(internal::to_vector(p.position)) && is_place(internal::to_vector(p.normal));
     if (!is_right)
       throw Invalid_input(caller + ": a point is not finite, on no edge, or out of order");
     last = p.edge;
@@ -273,8 +272,8 @@ inline void check_family_points(const Orl_space_data& stored,
                           stored.trees[p.tree].has[branch_of[stored.points[p.point].edge]] &&
                           (!before || before->point < p.point ||
                            (before->point == p.point && before->tree < p.tree)) &&
-                          internal::to_vector(p.position).allFinite() &&
-                          internal::to_vector(p.normal).allFinite();
+                          is_place(internal::to_vector(p.position)) &&
+                          is_place(internal::to_vector(p.normal));
     if (!is_right)
       throw Invalid_input(caller +
                           ": a partner of a point is not finite, of no scan, or out of order");

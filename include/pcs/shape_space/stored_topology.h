@@ -69,6 +69,8 @@ inline Common_topology restore_topology(const Orl_correspondences& stored,
     branch.attachment = b.attachment;
     for (std::size_t t = 0; t < 2; ++t) {
       const Rooted_tree& tree = inputs[t]->tree;
+      check(b.tip[t] == none || i == 0 || result.branches[b.parent].path[t] != none,
+            "a tree has a branch without its parent");
       if (b.tip[t] == none) {
         check(b.nodes[t].empty() && i > 0, "a branch that a tree lacks has nodes there");
         continue;

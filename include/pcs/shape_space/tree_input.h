@@ -216,9 +216,9 @@ Tree_input make_tree_input(const TreeGraph& graph,
       for (std::size_t i = 0; i < n; ++i) {
         auto&& element = *(std::begin(scan) + static_cast<std::ptrdiff_t>(i));
         const Vec3 p = internal::to_vector(get(point_map, element)) - result.tree.origin;
-        if (!p.allFinite())
+        if (!is_place(p))
           throw Invalid_input(caller + ": the coordinates of point " + std::to_string(i) +
-                              " are not finite");
+                              " are not finite, or beyond 1e100");
         result.points.push_back(p);
         for (int k = 0; k < 3; ++k)
           internal::mix(hash, p[k]);
