@@ -37,8 +37,9 @@ namespace deformation {
   - passes, the text's equation (2.2): best local rotations `R_fit`, their deviation from the field
     `d = log(R_fit B^-1)` smoothed by `(L + mu D) d' = mu D d`, `R = exp(d') B`, positions again.
 
-  All matrices are constant while the constraints are; the three factors are made in `constrain()`. Of all states
-  that the passes go through, the one with the least energy is kept, so more passes never make it worse.
+  All matrices are constant while the constraints are; the three factors are made in `constrain()`. Passes are
+  accelerated by Anderson mixing. Of all states that they go through, the one with the least energy is kept, so more
+  passes never make it worse.
 */
 template <class ConcurrencyTag>
 class Elastic_solver
@@ -184,9 +185,11 @@ private:
       const bool is_last = m_link_offsets || pass + 1 == options.maximal_number_of_passes;
       const bool is_accelerated =
           !is_checking && pass >= (result.is_far_from_field ? 1 : first_accelerated_pass);
-      const bool has_improved = improve(options, is_accelerated, is_last, result);
-      if (pass == 0 && guess && !guess->deviations.empty())
+      bool has_improved = improve(options, is_accelerated, is_last, result);
+      if (pass == 0 && guess && !guess->deviations.empty()) {
         result.is_far_from_field = start_from(*guess, options, result);
+        has_improved = has_improved || result.is_far_from_field;
+      }
       result.number_of_passes = pass + 1;
       result.status = Status::converged;
       // Without the links, each further pass would let the body collapse.
