@@ -6,128 +6,27 @@
 #define PCS_POINT_SET_DEFORMATION_H
 
 #include <pcs/Named_function_parameters.h>
-#include <pcs/concepts.h>
 #include <pcs/core/Deformation_report.h>
 #include <pcs/core/Similarity.h>
 #include <pcs/core/errors.h>
+#include <pcs/deformation/Point_access.h>
 #include <pcs/deformation/Session.h>
+#include <pcs/deformation/read_options.h>
 #include <pcs/internal/lanes.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
-#include <pcs/internal/text.h>
-
-#include <CGAL/number_utils.h>
-#include <CGAL/property_map.h>
-
-#include <boost/concept_check.hpp>
-#include <boost/property_map/property_map.hpp>
 
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <iterator>
 #include <limits>
 #include <memory>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace pcs {
-
-//! \ingroup PkgPcsDeformationRef
-//! samples on which the non-linear problem is solved, unless the caller says otherwise [count]
-constexpr std::size_t default_number_of_samples = 2000;
-//! \ingroup PkgPcsDeformationRef
-//! nearest neighbours that a point is linked to; the dissertation's 5 to 6 [count]
-constexpr std::size_t default_number_of_neighbors = 6;
-//! \ingroup PkgPcsDeformationRef
-//! nearest samples that move a point [count]
-constexpr std::size_t default_number_of_sample_neighbors = 6;
-
-namespace internal {
-
-struct No_map
-{
-};
-
-/// The types that a point range and a chain of named parameters stand for.
-template <class PointRange, class NamedParameters>
-struct Deformation_types
-{
-  using Element = Element_reference<PointRange>;
-  using Value = std::decay_t<Element>;
-  using Point_map =
-      std::decay_t<decltype(choose(std::declval<const NamedParameters&>(),
-                                   CGAL::internal_np::point_map,
-                                   std::declval<CGAL::Identity_property_map<Value>>()))>;
-  using Normal_map = std::decay_t<decltype(choose(std::declval<const NamedParameters&>(),
-                                                  CGAL::internal_np::normal_map,
-                                                  std::declval<No_map>()))>;
-  using Point = pcs::Map_value<Point_map>;
-  using Normal =
-      std::conditional_t<std::is_same_v<Normal_map, No_map>, Point, pcs::Map_value<Normal_map>>;
-  static constexpr bool has_normals = !std::is_same_v<Normal_map, No_map>;
-  using Vector_map = std::decay_t<decltype(choose(std::declval<const NamedParameters&>(),
-                                                  internal_np::vector_map,
-                                                  std::declval<No_map>()))>;
-  using Tensor_map = std::decay_t<decltype(choose(std::declval<const NamedParameters&>(),
-                                                  internal_np::tensor_map,
-                                                  std::declval<No_map>()))>;
-  static constexpr bool has_vectors = !std::is_same_v<Vector_map, No_map>;
-  static constexpr bool has_tensors = !std::is_same_v<Tensor_map, No_map>;
-};
-
-template <class Value>
-Value checked(const char* function, const char* name, Value value, bool is_valid, const char* rule)
-{
-  if (!is_valid)
-    throw Invalid_input(std::string(function) + ": " + name + " is " + std::to_string(value) +
-                        "; it must be " + rule);
-  return value;
-}
-
-/// Reads a count that may have been given as any integer type; negative ones must not wrap around.
-template <class NamedParameters, class Tag>
-std::size_t count_parameter(const char* function,
-                            const char* name,
-                            const NamedParameters& np,
-                            Tag tag,
-                            std::size_t fallback,
-                            std::size_t lowest,
-                            std::size_t highest)
-{
-  const auto value = choose(np, tag, fallback);
-  static_assert(std::is_integral_v<std::decay_t<decltype(value)>>,
-                "pcs: number_of_samples, number_of_neighbors, number_of_sample_neighbors and "
-                "number_of_iterations must be integers");
-  const bool is_valid = !(value < 0) && static_cast<std::size_t>(value) >= lowest &&
-                        static_cast<std::size_t>(value) <= highest;
-  const std::string rule = "between " + std::to_string(lowest) + " and " + std::to_string(highest);
-  return static_cast<std::size_t>(checked(function, name, value, is_valid, rule.c_str()));
-}
-
-/// Indices as 32 bit numbers, each checked against the number of points.
-template <class IndexRange>
-std::vector<std::uint32_t>
-checked_indices(const char* function, const IndexRange& indices, std::size_t n)
-{
-  static_assert(is_index_range_v<IndexRange>,
-                "pcs: a handle or a region of interest must be a range of integers, the numbers of "
-                "its points");
-  std::vector<std::uint32_t> result;
-  if constexpr (is_index_range_v<IndexRange>)
-    for (const auto& i : indices) {
-      if (i < 0 || static_cast<std::size_t>(i) >= n)
-        throw Invalid_input(std::string(function) + ": index " + std::to_string(i) +
-                            " is out of range; there are " + std::to_string(n) + " points");
-      result.push_back(static_cast<std::uint32_t>(i));
-    }
-  return result;
-}
-
-} // namespace internal
 
 /*!
   \ingroup PkgPcsDeformationRef
@@ -161,61 +60,17 @@ template <class PointRange,
           class ConcurrencyTag = CGAL::Parallel_if_available_tag>
 class Point_set_deformation
 {
-  using Types = internal::Deformation_types<PointRange, NamedParameters>;
+  using Access = deformation::Point_access<PointRange, NamedParameters>;
 
 public:
-  using Point_map = typename Types::Point_map;
-  using Normal_map = typename Types::Normal_map;
-  using Point = typename Types::Point;
-  using Normal = typename Types::Normal;
+  using Point_map = typename Access::Point_map;
+  using Normal_map = typename Access::Normal_map;
+  using Point = typename Access::Point;
+  using Normal = typename Access::Normal;
   using Handle = std::size_t;
   using Snapshot = deformation::Session_snapshot;
 
 private:
-  static constexpr bool is_range_ok = is_random_access_range_v<PointRange>;
-  static_assert(is_range_ok,
-                "pcs::Point_set_deformation: the points must be a random access range, for example "
-                "a std::vector");
-  static constexpr bool is_point_ok = is_point_or_vector_v<Point>;
-  static_assert(is_point_ok,
-                "pcs::Point_set_deformation: `point_map` must be a property map that stores points "
-                "with x(), y(), "
-                "z() and a constructor from three coordinates, like Kernel::Point_3");
-  static constexpr bool is_point_map_ok =
-      is_read_write_map_v<Point_map, typename Types::Element, Point>;
-  static_assert(!is_point_ok || is_point_map_ok,
-                "pcs::Point_set_deformation: named parameter `point_map` must be readable and "
-                "writable and accept "
-                "an element of `points` as key");
-  static constexpr bool is_normal_map_ok =
-      !Types::has_normals || (is_point_or_vector_v<Normal> &&
-                              is_read_write_map_v<Normal_map, typename Types::Element, Normal>);
-  static_assert(is_normal_map_ok,
-                "pcs::Point_set_deformation: named parameter `normal_map` must be readable and "
-                "writable, accept an "
-                "element of `points` as key, and store vectors like Kernel::Vector_3");
-  static constexpr bool is_vector_map_ok =
-      !Types::has_vectors || (is_point_or_vector_v<Map_value<typename Types::Vector_map>> &&
-                              is_read_write_map_v<typename Types::Vector_map,
-                                                  typename Types::Element,
-                                                  Map_value<typename Types::Vector_map>>);
-  static_assert(is_vector_map_ok,
-                "pcs::Point_set_deformation: named parameter `vector_map` must be readable and "
-                "writable, accept an element of `points` as key, and store vectors like "
-                "Kernel::Vector_3");
-  static constexpr bool is_tensor_map_ok =
-      !Types::has_tensors || (is_matrix_3_v<Map_value<typename Types::Tensor_map>> &&
-                              is_read_write_map_v<typename Types::Tensor_map,
-                                                  typename Types::Element,
-                                                  Map_value<typename Types::Tensor_map>>);
-  static_assert(
-      is_tensor_map_ok,
-      "pcs::Point_set_deformation: named parameter `tensor_map` must be readable and "
-      "writable, accept an element of `points` as key, and store 3 x 3 matrices of Eigen");
-  static constexpr bool has_gradients = Types::has_vectors || Types::has_tensors;
-  static constexpr bool is_ok = is_vector_map_ok && is_tensor_map_ok && is_range_ok &&
-                                is_point_ok && is_point_map_ok && is_normal_map_ok;
-
 public:
   /*!
     Reads the points, finds neighbours and samples. O(n log n).
@@ -282,27 +137,31 @@ public:
             parameter is out of range
   */
   explicit Point_set_deformation(PointRange& points, const NamedParameters& np = NamedParameters())
-    : m_points(&points)
+    : m_access(points, np)
   {
-    if constexpr (is_ok) {
-      read_parameters(np);
-      std::vector<deformation::Vec3> coordinates = read_points();
+    if constexpr (Access::is_ok) {
+      const char* function = "pcs::Point_set_deformation";
+      const deformation::Sampling_options sampling =
+          deformation::read_sampling_options(np, function);
+      m_elastic = deformation::read_elastic_options(np, function);
+      if constexpr (internal::is_given_v<NamedParameters, CGAL::internal_np::callback_t>)
+        m_callback = CGAL::parameters::get_parameter(np, CGAL::internal_np::callback);
+      std::vector<deformation::Vec3> coordinates = read_points(function);
       std::vector<std::uint32_t> region;
       constexpr bool has_region =
           internal::is_given_v<NamedParameters, internal_np::region_of_interest_t>;
       if constexpr (has_region) {
         const auto& given =
             CGAL::parameters::get_parameter_reference(np, internal_np::region_of_interest);
-        region = internal::checked_indices("pcs::Point_set_deformation", given, coordinates.size());
+        region = deformation::internal::checked_indices(function, given, coordinates.size());
       }
-      check_normals();
       internal::Progress progress(m_callback);
       m_session = std::make_unique<Session>(std::move(coordinates),
-                                            m_sampling,
+                                            sampling,
                                             has_region ? &region : nullptr,
                                             progress);
       if (m_session->is_ready())
-        read_attributes();
+        keep_attributes();
     }
   }
 
@@ -326,13 +185,13 @@ public:
   {
     const char* function = "pcs::Point_set_deformation::add_handle()";
     require_ready(function);
-    internal::checked(function,
-                      "softness",
-                      softness,
-                      softness >= 0 && std::isfinite(softness),
-                      "finite and not negative");
+    deformation::internal::checked(function,
+                                   "softness",
+                                   softness,
+                                   softness >= 0 && std::isfinite(softness),
+                                   "finite and not negative");
     const auto checked =
-        internal::checked_indices(function, indices, m_session->number_of_points());
+        deformation::internal::checked_indices(function, indices, m_session->number_of_points());
     const Handle handle = m_session->add_handle(checked, softness > 0 ? 1 / softness : 0, function);
     m_motion.emplace_back();
     return handle;
@@ -403,7 +262,7 @@ public:
   Point centroid(Handle handle) const
   {
     require_handle("pcs::Point_set_deformation::centroid()", handle);
-    return make<Point>(m_session->centroid(handle));
+    return Access::template make<Point>(m_session->centroid(handle));
   }
 
   /// @}
@@ -460,18 +319,23 @@ public:
   template <class OtherRange, class OtherParameters = parameters::Default_named_parameters>
   void apply(OtherRange& points, const OtherParameters& np = OtherParameters())
   {
-    require_ready("pcs::Point_set_deformation::apply()");
-    using Other = Point_set_deformation<OtherRange, OtherParameters, ConcurrencyTag>;
+    const char* function = "pcs::Point_set_deformation::apply()";
+    require_ready(function);
+    using Other = deformation::Point_access<OtherRange, OtherParameters>;
+    static_assert(!Other::has_gradients,
+                  "pcs::Point_set_deformation::apply(): `vector_map` and `tensor_map` are for the "
+                  "points of the object itself");
     if constexpr (Other::is_ok) {
-      Other other(points, np, typename Other::Access_only());
+      Other other(points, np);
+      const std::vector<deformation::Vec3> rest = other.template points<ConcurrencyTag>(function);
+      other.check_attributes(function);
       m_session->prepare_carrying();
       internal::for_each_index<ConcurrencyTag>(
-          other.size(),
+          rest.size(),
           [&](std::size_t i) {
-            deformation::Vec3 p = other.point_of(i), normal = other.normal_of(i);
-            const deformation::Vec3 before = p;
+            deformation::Vec3 p = rest[i], normal = other.normal(i);
             m_session->carry(p, normal);
-            if (p != before)
+            if (p != rest[i])
               other.write(i, p, normal, Eigen::Matrix3d::Identity());
           },
           256);
@@ -510,14 +374,15 @@ public:
   }
 
   /// The present shape, as the point map gives it, becomes the rest shape; motions end, handles, samples and factors
-  /// stay.
+  /// stay. \throws Invalid_input if a point, normal, vector or tensor is not finite; nothing is changed then
   void accept()
   {
-    require_ready("pcs::Point_set_deformation::accept()");
-    if constexpr (is_ok) {
-      const std::vector<deformation::Vec3> present = read_points();
+    const char* function = "pcs::Point_set_deformation::accept()";
+    require_ready(function);
+    if constexpr (Access::is_ok) {
+      const std::vector<deformation::Vec3> present = read_points(function);
       m_session->accept([&](std::size_t i) { return present[i]; });
-      read_attributes();
+      keep_attributes();
     }
     m_motion.assign(m_motion.size(), Motion());
   }
@@ -527,56 +392,12 @@ public:
   std::size_t number_of_samples() const { return m_session ? m_session->number_of_samples() : 0; }
 
 private:
-  template <class, class, class>
-  friend class Point_set_deformation;
-
   using Session = deformation::Session<ConcurrencyTag>;
-
-  /// Reads and writes points without a session.
-  struct Access_only
-  {
-  };
-  Point_set_deformation(PointRange& points, const NamedParameters& np, Access_only)
-    : m_points(&points)
-  {
-    static_assert(!has_gradients,
-                  "pcs::Point_set_deformation::apply(): `vector_map` and `tensor_map` are for the "
-                  "points of the object itself");
-    read_parameters(np);
-    for (std::size_t i = 0; i < size(); ++i)
-      if (!point_of(i).allFinite())
-        throw Invalid_input("pcs::Point_set_deformation::apply(): point " + std::to_string(i) +
-                            " is not finite");
-    check_normals();
-  }
 
   struct Motion
   {
     Similarity scale, rotation, translation;
   };
-
-  template <class Triple>
-  static Triple make(const deformation::Vec3& v)
-  {
-    using FT = std::decay_t<decltype(std::declval<const Triple&>().x())>;
-    return Triple(static_cast<FT>(v.x()), static_cast<FT>(v.y()), static_cast<FT>(v.z()));
-  }
-
-  /// Calls `f` with element `i`, which may live in its iterator.
-  template <class F>
-  decltype(auto) with_element(std::size_t i, const F& f) const
-  {
-    using Iterator = decltype(std::begin(*m_points));
-    const Iterator it = std::begin(*m_points) +
-                        static_cast<typename std::iterator_traits<Iterator>::difference_type>(i);
-    return f(*it);
-  }
-
-  deformation::Vec3 point_of(std::size_t i) const
-  {
-    return with_element(i,
-                        [this](auto&& key) { return internal::to_eigen(get(*m_point_map, key)); });
-  }
 
   void require_ready(const char* function) const
   {
@@ -598,223 +419,42 @@ private:
     m_motion[handle] = motion;
   }
 
-  void read_parameters(const NamedParameters& np)
+  /// The points as they are, finite, and as many as there may be. `function` begins the text of errors.
+  std::vector<deformation::Vec3> read_points(const char* function) const
   {
-    const char* function = "pcs::Point_set_deformation";
-    constexpr std::size_t many = std::numeric_limits<std::uint32_t>::max();
-    if constexpr (internal::is_given_v<NamedParameters, CGAL::internal_np::point_t>)
-      m_point_map = std::make_unique<Point_map>(
-          CGAL::parameters::get_parameter(np, CGAL::internal_np::point_map));
-    else
-      m_point_map = std::make_unique<Point_map>();
-    if constexpr (Types::has_normals)
-      m_normal_map = std::make_unique<Normal_map>(
-          CGAL::parameters::get_parameter(np, CGAL::internal_np::normal_map));
-    if constexpr (Types::has_vectors)
-      m_vector_map = std::make_unique<typename Types::Vector_map>(
-          CGAL::parameters::get_parameter(np, internal_np::vector_map));
-    if constexpr (Types::has_tensors)
-      m_tensor_map = std::make_unique<typename Types::Tensor_map>(
-          CGAL::parameters::get_parameter(np, internal_np::tensor_map));
-    m_sampling.number_of_samples = internal::count_parameter(function,
-                                                             "number_of_samples",
-                                                             np,
-                                                             internal_np::number_of_samples,
-                                                             default_number_of_samples,
-                                                             1,
-                                                             many);
-    m_sampling.number_of_neighbors =
-        internal::count_parameter(function,
-                                  "number_of_neighbors",
-                                  np,
-                                  internal_np::number_of_neighbors,
-                                  default_number_of_neighbors,
-                                  2,
-                                  neighborhood::maximal_number_of_neighbors);
-    m_sampling.number_of_sample_neighbors =
-        internal::count_parameter(function,
-                                  "number_of_sample_neighbors",
-                                  np,
-                                  internal_np::number_of_sample_neighbors,
-                                  default_number_of_sample_neighbors,
-                                  1,
-                                  32);
-    m_sampling.sample_search =
-        internal::choose(np, internal_np::sample_search, m_sampling.sample_search);
-    m_sampling.sample_weights =
-        internal::choose(np, internal_np::sample_weights, m_sampling.sample_weights);
-    m_sampling.do_preserve_volume =
-        internal::choose(np, internal_np::do_preserve_volume, m_sampling.do_preserve_volume);
-    m_elastic.rotation_field =
-        internal::choose(np, internal_np::rotation_field, m_elastic.rotation_field);
-    m_elastic.maximal_number_of_passes = static_cast<int>(
-        internal::count_parameter(function,
-                                  "number_of_iterations",
-                                  np,
-                                  CGAL::internal_np::number_of_iterations,
-                                  static_cast<std::size_t>(m_elastic.maximal_number_of_passes),
-                                  0,
-                                  1000000));
-    m_elastic.tolerance = internal::choose(np, internal_np::tolerance, m_elastic.tolerance);
-    internal::checked(function,
-                      "tolerance",
-                      m_elastic.tolerance,
-                      m_elastic.tolerance >= 0 && std::isfinite(m_elastic.tolerance),
-                      "finite and not negative");
-    m_elastic.stiffness = internal::choose(np, internal_np::stiffness, m_elastic.stiffness);
-    internal::checked(function,
-                      "stiffness",
-                      m_elastic.stiffness,
-                      m_elastic.stiffness >= 1e-3 && m_elastic.stiffness <= 1e3,
-                      "between 0.001 and 1000");
-    m_elastic.poisson_ratio =
-        internal::choose(np, internal_np::poisson_ratio, m_elastic.poisson_ratio);
-    internal::checked(function,
-                      "poisson_ratio",
-                      m_elastic.poisson_ratio,
-                      m_elastic.poisson_ratio >= -1 && m_elastic.poisson_ratio <= 0.5,
-                      "between -1 and 0.5");
-    if constexpr (internal::is_given_v<NamedParameters, CGAL::internal_np::callback_t>)
-      m_callback = CGAL::parameters::get_parameter(np, CGAL::internal_np::callback);
-  }
-
-  std::vector<deformation::Vec3> read_points() const
-  {
-    const auto n =
-        static_cast<std::size_t>(std::distance(std::begin(*m_points), std::end(*m_points)));
+    const std::size_t n = m_access.size();
     if (n == 0)
-      throw Invalid_input("pcs::Point_set_deformation: there are no points");
+      throw Invalid_input(std::string(function) + ": there are no points");
     if (n >= std::numeric_limits<std::uint32_t>::max() / 64)
-      throw Invalid_input(
-          "pcs::Point_set_deformation: " + std::to_string(n) +
-          " points are too many for 32 bit indices of their links; deform a sample of them");
-    std::vector<deformation::Vec3> points(n);
-    internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) { points[i] = point_of(i); });
-    for (std::size_t i = 0; i < n; ++i)
-      if (!points[i].allFinite())
-        throw Invalid_input("pcs::Point_set_deformation: point " + std::to_string(i) +
-                            " is not finite");
+      throw Invalid_input(std::string(function) + ": " + std::to_string(n) +
+                          " points are too many for 32 bit indices of their links; deform a "
+                          "sample of them");
+    std::vector<deformation::Vec3> points = m_access.template points<ConcurrencyTag>(function);
+    m_access.check_attributes(function);
     return points;
   }
 
-  deformation::Vec3 normal_of(std::size_t i) const
-  {
-    if constexpr (Types::has_normals)
-      return with_element(i, [this](auto&& key) {
-        return internal::to_eigen(get(*m_normal_map, key));
-      });
-    else
-      return deformation::Vec3::Zero();
-  }
-
-  void check_normals() const
-  {
-    const auto is_finite = [&](std::size_t i) {
-      bool result = true;
-      if constexpr (Types::has_normals)
-        result = normal_of(i).allFinite();
-      if constexpr (Types::has_vectors)
-        result = result && internal::to_eigen(attribute(m_vector_map, i)).allFinite();
-      if constexpr (Types::has_tensors)
-        result = result && attribute(m_tensor_map, i).allFinite();
-      return result;
-    };
-    if constexpr (Types::has_normals || has_gradients)
-      for (std::size_t i = 0; i < size(); ++i)
-        if (!is_finite(i))
-          throw Invalid_input("pcs::Point_set_deformation: the normal, vector or tensor of point " +
-                              std::to_string(i) + " is not finite");
-  }
-
-  template <class Map>
-  auto attribute(const std::unique_ptr<Map>& map, std::size_t i) const
-  {
-    return with_element(i, [&](auto&& key) -> pcs::Map_value<Map> { return get(*map, key); });
-  }
-
   /// Takes the normals, vectors and tensors of the rest shape.
-  void read_attributes()
+  void keep_attributes()
   {
-    if constexpr (Types::has_normals)
-      m_session->set_normals([this](std::size_t i) { return normal_of(i); });
-    m_rest_vectors.resize(Types::has_vectors ? size() : 0);
-    m_rest_tensors.resize(Types::has_tensors ? size() : 0);
-    for (std::size_t i = 0; i < m_rest_vectors.size(); ++i)
-      if constexpr (Types::has_vectors)
-        m_rest_vectors[i] = internal::to_eigen(attribute(m_vector_map, i));
-    for (std::size_t i = 0; i < m_rest_tensors.size(); ++i)
-      if constexpr (Types::has_tensors)
-        m_rest_tensors[i] = attribute(m_tensor_map, i).template cast<double>();
+    if constexpr (Access::has_normals)
+      m_session->set_normals([this](std::size_t i) { return m_access.normal(i); });
+    m_access.keep_rest_attributes();
   }
 
   void write_points()
   {
-    if constexpr (is_ok)
-      m_session->template write<has_gradients>(
+    if constexpr (Access::is_ok)
+      m_session->template write<Access::has_gradients>(
           [this](std::size_t i,
                  const deformation::Vec3& p,
                  const deformation::Vec3& normal,
                  const Eigen::Matrix3d& gradient)
-              PCS_LAMBDA_INLINE { write(i, p, normal, gradient); },
-          [this](std::size_t i) PCS_LAMBDA_INLINE { prefetch(i); });
+              PCS_LAMBDA_INLINE { m_access.write(i, p, normal, gradient); },
+          [this](std::size_t i) PCS_LAMBDA_INLINE { m_access.prefetch(i); });
   }
 
-  /// Asks for the memory that `write()` will touch.
-  void prefetch(std::size_t i) const
-  {
-    with_element(i, [this](auto&& key) PCS_LAMBDA_INLINE {
-      prefetch_value(*m_point_map, key);
-      if constexpr (Types::has_normals)
-        prefetch_value(*m_normal_map, key);
-    });
-  }
-  template <class Map, class Key>
-  static PCS_ALWAYS_INLINE void prefetch_value(const Map& map, Key&& key)
-  {
-    if constexpr (std::is_lvalue_reference_v<decltype(get(map, key))>)
-      pcs::internal::prefetch(std::addressof(get(map, key)), 1);
-  }
-
-  void write(std::size_t i,
-             const deformation::Vec3& p,
-             [[maybe_unused]] const deformation::Vec3& normal,
-             [[maybe_unused]] const Eigen::Matrix3d& gradient)
-  {
-    with_element(i, [&](auto&& key) {
-      put(*m_point_map, key, make<Point>(p));
-      if constexpr (Types::has_normals)
-        put(*m_normal_map, key, make<Normal>(normal));
-      if constexpr (Types::has_vectors)
-        put(*m_vector_map,
-            key,
-            make<pcs::Map_value<typename Types::Vector_map>>(gradient * m_rest_vectors[i]));
-      if constexpr (Types::has_tensors) {
-        using Tensor = pcs::Map_value<typename Types::Tensor_map>;
-        const Eigen::Matrix3d tensor = gradient * m_rest_tensors[i] * gradient.transpose();
-        put(*m_tensor_map, key, Tensor(tensor.template cast<typename Tensor::Scalar>()));
-      }
-    });
-  }
-
-  std::size_t size() const
-  {
-    return static_cast<std::size_t>(std::distance(std::begin(*m_points), std::end(*m_points)));
-  }
-
-  PointRange* m_points;
-  std::unique_ptr<Point_map>
-      m_point_map; // maps need be neither assignable nor default constructible
-  std::unique_ptr<Normal_map> m_normal_map;
-  std::unique_ptr<typename Types::Vector_map> m_vector_map;
-  std::unique_ptr<typename Types::Tensor_map> m_tensor_map;
-  std::vector<deformation::Vec3> m_rest_vectors;
-  std::vector<Eigen::Matrix3d> m_rest_tensors;
-  deformation::Sampling_options m_sampling{default_number_of_samples,
-                                           default_number_of_neighbors,
-                                           default_number_of_sample_neighbors,
-                                           Sample_search::regions,
-                                           Sample_weights::compact,
-                                           true};
+  Access m_access;
   deformation::Elastic_options m_elastic;
   std::function<bool(double)> m_callback;
   std::unique_ptr<Session> m_session;
