@@ -232,7 +232,8 @@ public:
     set_motion(handle, motion);
   }
 
-  /// Sets the scale `factor` > 0 about the centroid of the handle at rest; it precedes the rotation.
+  /// Sets the scale `factor` > 0 about the centroid of the handle at rest; it precedes the rotation. What lies between
+  /// handles of different scale gets thicker or thinner, and longer or shorter as far as they make room for it.
   void set_scale(Handle handle, double factor)
   {
     require_handle("pcs::Point_set_deformation::set_scale()", handle);

@@ -9,6 +9,7 @@
 #include <pcs/core/Status.h>
 #include <pcs/core/rotations.h>
 #include <pcs/deformation/Anderson_mixing.h>
+#include <pcs/deformation/Blended_scales.h>
 #include <pcs/deformation/Elastic_factors.h>
 #include <pcs/deformation/Elastic_network.h>
 #include <pcs/deformation/Elastic_options.h>
@@ -21,6 +22,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -32,8 +34,8 @@ namespace deformation {
 /*!
   Alternates
 
-  - the rotation field `B` of the handles (`Rotation_field_solver`) and a harmonic logarithm of scale,
-  - positions: `L x = b`, `b_i = sum_j w_ij (G_i + G_j)/2 (x0_i - x0_j)` with `G_i = s_i R_i S_i`,
+  - the rotation field `B` of the handles (`Rotation_field_solver`) and their scales (`Blended_scales`),
+  - positions: `L x = b`, `b_i = sum_j w_ij (G_i + G_j)/2 (x0_i - x0_j)` with `G_i = R_i A_i S_i`, `A` the growth,
   - passes, the text's equation (2.2): best local rotations `R_fit`, their deviation from the field
     `d = log(R_fit B^-1)` smoothed by `(L + mu D) d' = mu D d`, `R = exp(d') B`, positions again.
 
@@ -55,7 +57,7 @@ public:
             m_position,
             m_frame,
             m_stretch_is_used ? m_target : m_frame,
-            m_log_scale};
+            m_scales.growth()};
   }
   /// Rotation of every node relative to the field of the handles. [rad]
   const std::vector<Vec3>& deviations() const { return m_smooth; }
@@ -88,8 +90,9 @@ public:
                        const Deviation_guess& guess = {})
   {
     Elastic_result result;
+    m_stretch.assign(options.poisson_ratio != 0 ? m_network->size() : 0,
+                     Eigen::Matrix3d::Identity());
     begin(transforms, options);
-    m_stretch.assign(m_stretch_is_used ? m_network->size() : 0, Eigen::Matrix3d::Identity());
     m_smooth.assign(m_network->size(), Vec3::Zero());
     m_best_smooth.assign(m_network->size(), Vec3::Zero());
     const bool has_passes = options.maximal_number_of_passes > 0;
@@ -130,7 +133,6 @@ public:
 private:
   const Free_rows& rows() const { return m_factors.rows(); }
 
-  using Vec1 = Eigen::Matrix<double, 1, 1>;
   static constexpr std::size_t block = 512;
 
   std::size_t handle(std::size_t node) const
@@ -150,10 +152,48 @@ private:
                    transforms,
                    m_field);
     m_rotation = m_field;
-    blend_scales();
     m_stretch_is_used = options.poisson_ratio != 0;
     m_link_offsets = nullptr;
     m_mixing.restart();
+    m_scales.begin(*m_network, m_constraints, m_factors, transforms);
+    if (!m_scales.growth().empty())
+      find_room();
+  }
+
+  /// How much bodies grow along the gradient of scale: as the field of the handles leaves room for them, so that least
+  /// energy is left. That is quadratic in the share, because positions are linear in it. The present positions stay.
+  void find_room()
+  {
+    m_best_position = m_position;
+    place_constrained_nodes(*m_network, m_constraints, *m_transforms, m_position);
+    const double none = energy_with_share(0);
+    m_ungrown = m_position;
+    const double all = energy_with_share(1);
+    for (const auto i : rows().node_of_row)
+      m_ungrown[i] = 0.5 * (m_ungrown[i] + m_position[i]);
+    m_position.swap(m_ungrown);
+    const double half = energy_with_share(0.5, false);
+    m_scales.set_share(m_scales.share_of_least_energy(none, half, all));
+    m_position.swap(m_best_position);
+  }
+
+  double energy_with_share(double share, bool is_solved = true)
+  {
+    m_scales.set_share(share);
+    update_frames();
+    if (is_solved)
+      solve_positions(true);
+    const Elastic_state state = this->state();
+    return pcs::internal::blocked_reduce<ConcurrencyTag>(
+        m_network->size(),
+        0.0,
+        [&](std::size_t i) {
+          Eigen::Matrix3d covariance;
+          const bool is_reached = m_constraints.handle_of_node[i] != unreached_node;
+          return is_reached ? state.measure_edges(i, covariance) : 0.0;
+        },
+        [](double a, double b) { return a + b; },
+        block);
   }
 
   /// The first positions, and their energy.
@@ -327,30 +367,6 @@ private:
         block);
   }
 
-  void blend_scales()
-  {
-    m_log_scale.assign(m_network->size(), Vec1::Zero());
-    bool any = false;
-    for (const Similarity& t : *m_transforms)
-      any = any || t.scale() != 1;
-    if (!any)
-      return;
-    const auto value = [&](std::size_t i) {
-      return Vec1(std::log((*m_transforms)[handle(i)].scale()));
-    };
-    solve_harmonic<ConcurrencyTag>(m_factors.field(),
-                                   m_network->surface,
-                                   m_constraints,
-                                   rows(),
-                                   value,
-                                   m_rhs1,
-                                   m_work1,
-                                   m_log_scale);
-    for (std::size_t i = 0; i < m_network->size(); ++i)
-      if (m_constraints.is_prescribed(i))
-        m_log_scale[i] = value(i);
-  }
-
   void update_frames()
   {
     if (m_stretch_is_used)
@@ -361,8 +377,11 @@ private:
           if (m_constraints.is_prescribed(i)) {
             const Similarity& t = (*m_transforms)[handle(i)];
             m_frame[i] = t.scale() * t.rotation();
-          } else
-            m_frame[i] = std::exp(m_log_scale[i][0]) * m_rotation[i].toRotationMatrix();
+          } else {
+            m_frame[i] = m_rotation[i].toRotationMatrix();
+            if (!m_scales.growth().empty())
+              m_frame[i] *= m_scales.growth()[i];
+          }
           if (m_stretch_is_used)
             m_target[i] = m_frame[i] * m_stretch[i];
         },
@@ -394,6 +413,8 @@ private:
           double energy = state.measure_edges(i, covariance);
           energy += state.link_energy(i);
           if (has_next && !m_constraints.is_prescribed(i)) {
+            if (!state.growth.empty())
+              covariance *= state.growth[i];
             m_deviation[i] = fit_deviation(covariance, m_rotation[i], m_field[i], fit_damping);
             if (m_stretch_is_used)
               m_stretch[i] = state.transverse_stretch(i, options.poisson_ratio);
@@ -428,10 +449,10 @@ private:
   const std::vector<Similarity>* m_transforms = nullptr;
   const std::vector<Vec3>* m_link_offsets = nullptr; ///< of the first nodes; of a coarser network
   Anderson_mixing<ConcurrencyTag> m_mixing;
+  Blended_scales<ConcurrencyTag> m_scales;
   std::vector<Quaternion> m_field, m_rotation, m_best_rotation;
   std::vector<Eigen::Matrix3d> m_frame, m_best_frame, m_stretch, m_target;
-  std::vector<Vec1> m_log_scale, m_rhs1, m_work1;
-  std::vector<Vec3> m_position, m_best_position, m_best_directing, m_rhs3, m_work3;
+  std::vector<Vec3> m_position, m_best_position, m_ungrown, m_best_directing, m_rhs3, m_work3;
   std::vector<Vec3> m_deviation, m_best_deviation; ///< of the best local rotations from the field
   std::vector<Vec3> m_smooth, m_best_smooth, m_plain; ///< the same, smoothed: what is used
   std::vector<Vec3> m_state, m_image;                 ///< of a pass, for the mixing

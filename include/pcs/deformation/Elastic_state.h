@@ -42,16 +42,15 @@ inline Vec3 fit_deviation(const Eigen::Matrix3d& covariance,
 /// A network, where its nodes are now, and what its edges aim at: a view.
 struct Elastic_state
 {
-  using Vec1 = Eigen::Matrix<double, 1, 1>;
-
   const Elastic_network& network;
   const Node_constraints& constraints;
   const std::vector<Vec3>& position; ///< [L]
-  /// `s_i R_i`: the local similarity without its translation. [-]
+  /// `R_i A_i`: the rotation after the growth. [-]
   const std::vector<Eigen::Matrix3d>& frame;
   /// The frame, times the stretch that the material allows. [-]
   const std::vector<Eigen::Matrix3d>& target;
-  const std::vector<Vec1>& log_scale; ///< of the handles, blended
+  /// What edges grow by between handles that are scaled, `A_i`; empty if none is. [-]
+  const std::vector<Eigen::Matrix3d>& growth;
 
   /// Weight of the frame in `deformation_gradient()`, relative to the spread of the edges: it decides where the
   /// edges say nothing, across a surface.
@@ -88,13 +87,13 @@ struct Elastic_state
 
   Vec3 link_target(std::size_t i, std::size_t j, bool links_turn) const
   {
-    const Vec3 edge = network.rest[i] - network.rest[j];
-    if (links_turn)
+    if (links_turn) {
+      const Vec3 edge = network.rest[i] - network.rest[j];
       return 0.5 * (frame[i] * edge + frame[j] * edge);
+    }
     const Vec3 present = position[i] - position[j];
     const double length = present.norm();
-    return length > 0 ? Vec3(scale_between(i, j) * edge.norm() / length * present)
-                      : Vec3(Vec3::Zero());
+    return length > 0 ? Vec3(rest_length(i, j) / length * present) : Vec3(Vec3::Zero());
   }
 
   /// Half the energy of the surface edges of node `i`, and `sum_j w_ij (x_j - x_i) (x0_j - x0_i)^T`.
@@ -138,8 +137,7 @@ struct Elastic_state
         const std::size_t j = links.neighbor[e];
         if (j < i)
           continue;
-        const double error = (position[i] - position[j]).norm() -
-                             scale_between(i, j) * (network.rest[i] - network.rest[j]).norm();
+        const double error = (position[i] - position[j]).norm() - rest_length(i, j);
         energy += links.weight[e] * error * error;
       }
     return energy;
@@ -223,9 +221,10 @@ struct Elastic_state
   }
 
 private:
-  double scale_between(std::size_t i, std::size_t j) const
+  double rest_length(std::size_t i, std::size_t j) const
   {
-    return std::exp(0.5 * (log_scale[i][0] + log_scale[j][0]));
+    const Vec3 edge = network.rest[i] - network.rest[j];
+    return growth.empty() ? edge.norm() : (0.5 * (growth[i] + growth[j]) * edge).norm();
   }
 };
 
