@@ -47,7 +47,8 @@ namespace pcs {
           parallel tag, `put()` of the maps is called from several threads, for different elements
 
   \par Memory
-  About 150 bytes per point with normals, and some 300 at the peak of the construction.
+  About 150 bytes per point with normals, and some 300 at the peak of the construction. After the first frames, `deform()`
+  allocates nothing.
 
   \par Thread safety
   Different objects may be used at the same time. One object may be used by one thread at a time.

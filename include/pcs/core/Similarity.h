@@ -11,6 +11,8 @@
 
 #include <CGAL/number_utils.h>
 
+#include <boost/container/small_vector.hpp>
+
 #include <Eigen/Core>
 #include <Eigen/LU>
 
@@ -19,7 +21,6 @@
 #include <string>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 namespace pcs {
 
@@ -29,8 +30,6 @@ namespace pcs {
 
   A rotation matrix cannot tell 720 degrees from none; the turns can. Turns about the same axis are added up, so an
   editor may multiply small rotations for ever. Coordinates are in double precision.
-
-
 */
 class Similarity
 {
@@ -39,6 +38,8 @@ public:
 
   /// One rotation about an axis through the origin: `axis * angle` [rad], of any length.
   using Turn = Vec3;
+  /// Few turns need no memory of their own.
+  using Turns = boost::container::small_vector<Turn, 4>;
 
   Similarity() = default;
 
@@ -104,7 +105,7 @@ public:
     return s;
   }
 
-  const std::vector<Turn>& turns() const { return m_turns; }
+  const Turns& turns() const { return m_turns; }
   const Eigen::Matrix3d& rotation() const { return m_rotation; }
   double scale() const { return m_scale; }
   const Vec3& translation() const { return m_translation; }
@@ -167,7 +168,7 @@ private:
                                  : q.normalized().toRotationMatrix();
   }
 
-  std::vector<Turn> m_turns;
+  Turns m_turns;
   Eigen::Matrix3d m_rotation = Eigen::Matrix3d::Identity();
   Vec3 m_translation = Vec3::Zero();
   double m_scale = 1;

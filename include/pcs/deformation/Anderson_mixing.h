@@ -75,7 +75,7 @@ private:
     std::array<double, depth> with_new{}, with_residual{};
   };
 
-  Products multiply(std::size_t slot, std::size_t size) const
+  Products multiply(std::size_t slot, std::size_t size)
   {
     return pcs::internal::blocked_reduce<ConcurrencyTag>(
         m_last_residual.size(),
@@ -95,7 +95,9 @@ private:
             a.with_residual[k] += b.with_residual[k];
           }
           return a;
-        });
+        },
+        pcs::internal::default_block,
+        m_products);
   }
 
   void propose(std::size_t size,
@@ -125,6 +127,7 @@ private:
 
   std::vector<Vec3> m_last_residual, m_last_image;
   std::vector<Vec3> m_difference_of_residuals[depth], m_difference_of_images[depth];
+  std::vector<Products> m_products; ///< of blocks of numbers
   std::array<std::array<double, depth>, depth> m_normal{};
   std::size_t m_count = 0;
   bool m_has_last = false;

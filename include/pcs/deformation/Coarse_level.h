@@ -125,16 +125,16 @@ public:
         m_solver.solve(transforms, options, uninterrupted, guess).is_far_from_field;
     guess.deviations = m_solver.deviations();
     if (needs_link_offsets)
-      guess.link_offsets = m_solver.link_offsets();
+      m_solver.link_offsets(guess.link_offsets);
     carry(guess);
   }
 
   /// From a guess of this level's nodes to one of the finer level's.
-  void carry(Deviation_guess& guess) const
+  void carry(Deviation_guess& guess)
   {
-    guess.deviations = to_finer(guess.deviations);
+    to_finer(guess.deviations);
     if (!guess.link_offsets.empty())
-      guess.link_offsets = to_finer(guess.link_offsets);
+      to_finer(guess.link_offsets);
   }
 
   /// The finer level has a new rest shape.
@@ -145,15 +145,15 @@ public:
   }
 
 private:
-  std::vector<Vec3> to_finer(const std::vector<Vec3>& coarse) const
+  void to_finer(std::vector<Vec3>& values)
   {
-    std::vector<Vec3> fine(m_sample_of_node.size(), Vec3::Zero());
-    pcs::internal::for_each_index<ConcurrencyTag>(fine.size(), [&](std::size_t i) {
+    m_fine.assign(m_sample_of_node.size(), Vec3::Zero());
+    pcs::internal::for_each_index<ConcurrencyTag>(m_fine.size(), [&](std::size_t i) {
       for (std::size_t b = i * m_links.k; b < (i + 1) * m_links.k; ++b)
         if (m_links.sample[b] != no_sample)
-          fine[i] += static_cast<double>(m_links.weight[b]) * coarse[m_links.sample[b]];
+          m_fine[i] += static_cast<double>(m_links.weight[b]) * values[m_links.sample[b]];
     });
-    return fine;
+    values.assign(m_fine.begin(), m_fine.end()); // keeps the memory of both
   }
 
   std::vector<std::uint32_t> m_node_of_sample, m_sample_of_node, m_component;
@@ -164,6 +164,7 @@ private:
   Node_constraints m_constraints;
   Elastic_network m_bounded; ///< with nodes on the borders of the handles
   Elastic_solver<ConcurrencyTag> m_solver;
+  std::vector<Vec3> m_fine; ///< of the finer network's nodes
 };
 
 } // namespace deformation

@@ -68,11 +68,14 @@ public:
   }
 
   /// Runs the passes of all levels; less of them if `progress` says so.
-  Deviation_guess solve(const std::vector<Similarity>& transforms,
-                        const Elastic_options& options,
-                        pcs::internal::Progress& progress)
+  const Deviation_guess& solve(const std::vector<Similarity>& transforms,
+                               const Elastic_options& options,
+                               pcs::internal::Progress& progress)
   {
-    Deviation_guess guess;
+    Deviation_guess& guess = m_guess;
+    guess.deviations.clear();
+    guess.link_offsets.clear();
+    guess.is_far_from_field = false;
     for (std::size_t l = m_level.size(); l-- > 0 && progress(0);)
       if (l >= m_first)
         m_level[l].improve(transforms,
@@ -100,7 +103,8 @@ public:
 
 private:
   std::deque<Coarse_level<ConcurrencyTag>>
-      m_level;                      ///< the finest first; a deque does not move them
+      m_level; ///< the finest first; a deque does not move them
+  Deviation_guess m_guess;
   std::size_t m_first = 0;          ///< finer ones only carry
   bool m_has_offsets = false;       ///< whether the first has links that finer networks lack
   std::size_t m_size_of_passes = 0; ///< of the finest network that makes passes until it converges

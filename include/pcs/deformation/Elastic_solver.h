@@ -64,9 +64,9 @@ public:
 
   /// How far the interior links move the nodes: to the present positions from those that the surface alone would give
   /// with the same frames. Empty without links. One solve.
-  std::vector<Vec3> link_offsets()
+  void link_offsets(std::vector<Vec3>& offsets)
   {
-    return m_position_solver.link_offsets(state(), *m_transforms, m_factors);
+    m_position_solver.link_offsets(state(), *m_transforms, m_factors, offsets);
   }
 
   /// Takes a network, which must outlive its use here, and constraints, and factorises. Returns `false` if a matrix is
@@ -193,7 +193,8 @@ private:
           return is_reached ? state.measure_edges(i, covariance) : 0.0;
         },
         [](double a, double b) { return a + b; },
-        block);
+        block,
+        m_energies);
   }
 
   /// The first positions, and their energy.
@@ -422,7 +423,8 @@ private:
           return energy;
         },
         [](double a, double b) { return a + b; },
-        block);
+        block,
+        m_energies);
   }
 
   /// `(L + mu D) d' = mu D d`.
@@ -456,6 +458,7 @@ private:
   std::vector<Vec3> m_deviation, m_best_deviation; ///< of the best local rotations from the field
   std::vector<Vec3> m_smooth, m_best_smooth, m_plain; ///< the same, smoothed: what is used
   std::vector<Vec3> m_state, m_image;                 ///< of a pass, for the mixing
+  std::vector<double> m_energies;                     ///< of blocks of nodes
 };
 
 } // namespace deformation

@@ -169,9 +169,9 @@ public:
   void put_at_rest() { m_transforms.assign(size(), Similarity()); }
 
   /// In local coordinates: `x -> sR x + (sR c + t - c) / unit`; the outside of the region comes last.
-  std::vector<Similarity> local_transforms(const Local_frame& frame) const
+  void local_transforms(const Local_frame& frame, std::vector<Similarity>& local) const
   {
-    std::vector<Similarity> local;
+    local.clear();
     for (const Similarity& t : m_transforms) {
       Similarity linear = Similarity::from_scale(t.scale());
       for (const auto& turn : t.turns())
@@ -182,7 +182,6 @@ public:
     }
     if (m_has_outside)
       local.emplace_back();
-    return local;
   }
 
   /// After the rest shape has changed.

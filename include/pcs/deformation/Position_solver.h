@@ -77,21 +77,22 @@ public:
 
   /// How far the links move the nodes: to the positions of `state` from those that the surface alone would give with the
   /// same frames. Empty without links. One solve. [L]
-  std::vector<Vec3> link_offsets(const Elastic_state& state,
-                                 const std::vector<Similarity>& transforms,
-                                 const Elastic_factors& factors)
+  void link_offsets(const Elastic_state& state,
+                    const std::vector<Similarity>& transforms,
+                    const Elastic_factors& factors,
+                    std::vector<Vec3>& offsets)
   {
+    offsets.clear();
     if (state.network.links.neighbor.empty())
-      return {};
+      return;
     solve(factors, factors.field(), [&](std::size_t i) {
       return surface_load(state, transforms, i);
     });
-    std::vector<Vec3> offsets(state.network.size(), Vec3::Zero());
+    offsets.assign(state.network.size(), Vec3::Zero());
     for (std::size_t r = 0; r < m_rhs.size(); ++r) {
       const std::size_t i = factors.rows().node_of_row[r];
       offsets[i] = state.position[i] - m_rhs[r];
     }
-    return offsets;
   }
 
 private:

@@ -162,7 +162,8 @@ public:
       return r;
     }
     pcs::internal::Stopwatch watch;
-    std::vector<Similarity> transforms = m_handles.local_transforms(m_body.frame);
+    std::vector<Similarity>& transforms = m_next_transforms;
+    m_handles.local_transforms(m_body.frame, transforms);
     Elastic_result result;
     const bool is_warm = start == Start::warm && m_has_solution && !m_coarse.has_link_offsets();
     if (!is_warm || !m_solver.solve_further(transforms,
@@ -170,7 +171,7 @@ public:
                                             progress,
                                             largest_warm_growth * m_last_energy,
                                             result)) {
-      const Deviation_guess guess = m_coarse.solve(transforms, options, progress);
+      const Deviation_guess& guess = m_coarse.solve(transforms, options, progress);
       r.seconds.coarse_levels = watch.lap();
       result = m_solver.solve(transforms, options, progress, guess);
     }
@@ -186,7 +187,8 @@ public:
       if (read_maps<ConcurrencyTag>(m_solver.state(),
                                     m_local_transforms,
                                     m_body.upsampling.sample_points(),
-                                    m_next_maps))
+                                    m_next_maps,
+                                    m_are_finite))
         m_maps.swap(m_next_maps);
       else {
         m_local_transforms.swap(transforms);
@@ -204,7 +206,7 @@ public:
     m_handles.restore(s.transforms);
     m_maps = s.maps;
     m_has_solution = false;
-    m_local_transforms = m_handles.local_transforms(m_body.frame);
+    m_handles.local_transforms(m_body.frame, m_local_transforms);
     constrain(m_stiffness);
   }
 
@@ -214,7 +216,7 @@ public:
     m_handles.put_at_rest();
     m_maps.assign(m_maps.size(), identity_map());
     m_has_solution = false;
-    m_local_transforms = m_handles.local_transforms(m_body.frame);
+    m_handles.local_transforms(m_body.frame, m_local_transforms);
     constrain(m_stiffness);
   }
 
@@ -233,7 +235,7 @@ public:
         [&](std::size_t place, const Vec3& p, const Vec3& normal, const Eigen::Matrix3d& gradient) {
           write_point(body.input_of_place[place], body.frame.to_world(p), normal, gradient);
         };
-    const std::vector<char> is_written = moved_handles();
+    const std::vector<char>& is_written = moved_handles();
     m_outlier_maps.read(m_body, m_maps);
     const auto put_other = [&](std::size_t place) {
       const Node_constraint h = m_sites[body.site_of_place[place]];
@@ -371,11 +373,12 @@ private:
   }
 
   /// Handles whose points are written: those that move, or did so the last time. Others keep their bits.
-  std::vector<char> moved_handles()
+  const std::vector<char>& moved_handles()
   {
     // Points of a new handle may have been carried away before they became a handle.
     m_was_moved.resize(m_local_transforms.size(), m_is_displaced ? 1 : 0);
-    std::vector<char> is_written = m_was_moved;
+    std::vector<char>& is_written = m_is_written;
+    is_written = m_was_moved;
     for (std::size_t h = 0; h < m_local_transforms.size(); ++h) {
       m_was_moved[h] = m_local_transforms[h].is_identity() ? 0 : 1;
       is_written[h] = is_written[h] || m_was_moved[h] ? 1 : 0;
@@ -429,7 +432,9 @@ private:
   Site_constraints m_sites;
   Handle_fades m_fades;
   std::vector<Similarity> m_local_transforms; ///< those that the maps belong to
-  std::vector<char> m_was_moved;              ///< of each handle
+  std::vector<Similarity> m_next_transforms;
+  std::vector<char> m_was_moved, m_is_written; ///< of each handle
+  std::vector<int> m_are_finite;
   std::unique_ptr<Point_carrier> m_carrier;
   std::vector<Affine_map> m_maps, m_next_maps;
   Outlier_maps m_outlier_maps;

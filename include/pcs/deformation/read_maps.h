@@ -23,12 +23,14 @@ namespace deformation {
 /// \param transforms of the handles, in the coordinates of the network
 /// \param rest of the samples [L]
 /// \param maps one for each sample
+/// \param are_finite room to work in
 /// \return whether all of them are finite
 template <class ConcurrencyTag>
 bool read_maps(const Elastic_state& state,
                const std::vector<Similarity>& transforms,
                const std::vector<Vec3>& rest,
-               std::vector<Affine_map>& maps)
+               std::vector<Affine_map>& maps,
+               std::vector<int>& are_finite)
 {
   const int is_finite = pcs::internal::blocked_reduce<ConcurrencyTag>(
       maps.size(),
@@ -49,7 +51,8 @@ bool read_maps(const Elastic_state& state,
         return a.allFinite() && t.allFinite() ? 1 : 0;
       },
       [](int one, int other) { return one & other; },
-      512);
+      512,
+      are_finite);
   return is_finite == 1;
 }
 

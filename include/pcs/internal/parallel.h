@@ -79,15 +79,17 @@ void for_each_index(std::size_t n, const F& f, std::size_t block = default_block
   });
 }
 
-/// Joins `value(i)` over `[0, n)`: sequentially inside blocks of fixed size, then block by block in order.
+/// Joins `value(i)` over `[0, n)`: sequentially inside blocks of fixed size, then block by block in order. `partial` is
+/// room for what they give, for callers that keep it.
 template <class ConcurrencyTag, class T, class Value, class Join>
 T blocked_reduce(std::size_t n,
                  T init,
                  const Value& value,
                  const Join& join,
-                 std::size_t block = default_block)
+                 std::size_t block,
+                 std::vector<T>& partial)
 {
-  std::vector<T> partial((n + block - 1) / block, init);
+  partial.assign((n + block - 1) / block, init);
   for_each_block<ConcurrencyTag>(n, block, [&](std::size_t begin, std::size_t end) {
     T sum = init;
     for (std::size_t i = begin; i != end; ++i)
@@ -98,6 +100,17 @@ T blocked_reduce(std::size_t n,
   for (const T& p : partial)
     total = join(total, p);
   return total;
+}
+
+template <class ConcurrencyTag, class T, class Value, class Join>
+T blocked_reduce(std::size_t n,
+                 T init,
+                 const Value& value,
+                 const Join& join,
+                 std::size_t block = default_block)
+{
+  std::vector<T> partial;
+  return blocked_reduce<ConcurrencyTag>(n, init, value, join, block, partial);
 }
 
 /// Runs two independent pieces of work, side by side where the tag allows it.
