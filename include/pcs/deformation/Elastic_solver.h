@@ -1,29 +1,20 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Rotations and positions of an elastic network under handles: constant factors, alternating solves.
+// Rotations and positions of an elastic network under handles: alternating solves until the energy is least.
 
 #ifndef PCS_DEFORMATION_ELASTIC_SOLVER_H
 #define PCS_DEFORMATION_ELASTIC_SOLVER_H
 
 #include <pcs/core/Similarity.h>
 #include <pcs/core/Status.h>
-#include <pcs/core/rotations.h>
 #include <pcs/deformation/Anderson_mixing.h>
-#include <pcs/deformation/Blended_scales.h>
-#include <pcs/deformation/Elastic_factors.h>
 #include <pcs/deformation/Elastic_network.h>
 #include <pcs/deformation/Elastic_options.h>
+#include <pcs/deformation/Elastic_shape.h>
 #include <pcs/deformation/Elastic_state.h>
-#include <pcs/deformation/Harmonic_system.h>
-#include <pcs/deformation/Position_solver.h>
-#include <pcs/deformation/rotation_field.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
 
-#include <Eigen/Core>
-
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -32,53 +23,26 @@ namespace pcs {
 namespace deformation {
 
 /*!
-  Alternates
-
-  - the rotation field `B` of the handles (`Rotation_field_solver`) and their scales (`Blended_scales`),
-  - positions: `L x = b`, `b_i = sum_j w_ij (G_i + G_j)/2 (x0_i - x0_j)` with `G_i = R_i A_i S_i`, `A` the growth,
-  - passes, the text's equation (2.2): best local rotations `R_fit`, their deviation from the field
-    `d = log(R_fit B^-1)` smoothed by `(L + mu D) d' = mu D d`, `R = exp(d') B`, positions again.
-
-  All matrices are constant while the constraints are; the three factors are made in `constrain()`. Passes are
-  accelerated by Anderson mixing. Of all states that they go through, the one with the least energy is kept, so more
-  passes never make it worse.
+  Passes, the text's equation (2.2): the best local rotations of a shape, their deviations from the field of the handles
+  smoothed, the next shape from these (`Elastic_shape`). They are accelerated by Anderson mixing. Of all states that they
+  go through, the one with the least energy is kept, so more passes never make it worse.
 */
 template <class ConcurrencyTag>
 class Elastic_solver
 {
 public:
-  const Elastic_network& network() const { return *m_network; }
-  const Node_constraints& constraints() const { return m_constraints; }
+  const Elastic_network& network() const { return m_shape.network(); }
+  const Node_constraints& constraints() const { return m_shape.constraints(); }
   /// The present shape, until the next call.
-  Elastic_state state() const
-  {
-    return {*m_network,
-            m_constraints,
-            m_position,
-            m_frame,
-            m_stretch_is_used ? m_target : m_frame,
-            m_scales.growth()};
-  }
+  Elastic_state state() const { return m_shape.state(); }
   /// Rotation of every node relative to the field of the handles. [rad]
   const std::vector<Vec3>& deviations() const { return m_smooth; }
 
-  /// How far the interior links move the nodes: to the present positions from those that the surface alone would give
-  /// with the same frames. Empty without links. One solve.
-  void link_offsets(std::vector<Vec3>& offsets)
-  {
-    m_position_solver.link_offsets(state(), *m_transforms, m_factors, offsets);
-  }
-
-  /// Takes a network, which must outlive its use here, and constraints, and factorises. Returns `false` if a matrix is
-  /// singular (a free part without handle).
+  /// As `Elastic_shape`.
+  void link_offsets(std::vector<Vec3>& offsets) { m_shape.link_offsets(offsets); }
   bool constrain(const Elastic_network& network, Node_constraints constraints, double stiffness)
   {
-    m_network = &network;
-    m_constraints = std::move(constraints);
-    const bool is_regular = m_factors.factorize<ConcurrencyTag>(network, m_constraints, stiffness);
-    m_position = network.rest;
-    m_frame.assign(network.size(), Eigen::Matrix3d::Identity());
-    return is_regular;
+    return m_shape.constrain(network, std::move(constraints), stiffness);
   }
 
   /// Solves for one transformation per handle, from the rest shape. The guess is the first state, or tried after the
@@ -90,20 +54,19 @@ public:
                        const Deviation_guess& guess = {})
   {
     Elastic_result result;
-    m_stretch.assign(options.poisson_ratio != 0 ? m_network->size() : 0,
-                     Eigen::Matrix3d::Identity());
-    begin(transforms, options);
-    m_smooth.assign(m_network->size(), Vec3::Zero());
-    m_best_smooth.assign(m_network->size(), Vec3::Zero());
     const bool has_passes = options.maximal_number_of_passes > 0;
-    if (has_passes && !guess.link_offsets.empty() && m_network->links.neighbor.empty())
-      m_link_offsets = &guess.link_offsets;
-    result.is_far_from_field = m_link_offsets || (has_passes && guess.is_far_from_field);
+    const bool has_offsets = has_passes && !guess.link_offsets.empty() && !m_shape.has_links();
+    m_shape.begin(transforms, options, false, has_offsets ? &guess.link_offsets : nullptr);
+    m_mixing.restart();
+    m_smooth.assign(network().size(), Vec3::Zero());
+    m_best_smooth.assign(network().size(), Vec3::Zero());
+    result.is_far_from_field = has_offsets || (has_passes && guess.is_far_from_field);
     if (result.is_far_from_field) {
       take(guess);
-      turn_by_deviations();
+      m_shape.turn(m_smooth);
     }
-    place(options, true, result);
+    m_shape.place(true);
+    result.energy = result.initial_energy = m_shape.fit_and_measure(true);
     make_passes(options, progress, result.is_far_from_field ? nullptr : &guess, result);
     return result;
   }
@@ -120,10 +83,12 @@ public:
                      Elastic_result& result)
   {
     result = Elastic_result();
-    begin(transforms, options);
+    m_shape.begin(transforms, options, true, nullptr);
+    m_mixing.restart();
     result.is_far_from_field = true;
-    turn_by_deviations();
-    place(options, false, result);
+    m_shape.turn(m_smooth);
+    m_shape.place(false);
+    result.energy = result.initial_energy = m_shape.fit_and_measure(true);
     if (!(result.energy <= highest_energy))
       return false;
     make_passes(options, progress, nullptr, result);
@@ -131,80 +96,7 @@ public:
   }
 
 private:
-  const Free_rows& rows() const { return m_factors.rows(); }
-
-  static constexpr std::size_t block = 512;
-
-  std::size_t handle(std::size_t node) const
-  {
-    return static_cast<std::size_t>(m_constraints.handle_of_node[node]);
-  }
-
-  /// The field of the handles: what deviations refer to.
-  void begin(const std::vector<Similarity>& transforms, const Elastic_options& options)
-  {
-    m_transforms = &transforms;
-    m_field_solver(options.rotation_field,
-                   m_factors.field(),
-                   m_network->surface,
-                   m_constraints,
-                   rows(),
-                   transforms,
-                   m_field);
-    m_rotation = m_field;
-    m_stretch_is_used = options.poisson_ratio != 0;
-    m_link_offsets = nullptr;
-    m_mixing.restart();
-    m_scales.begin(*m_network, m_constraints, m_factors, transforms);
-    if (!m_scales.growth().empty())
-      find_room();
-  }
-
-  /// How much bodies grow along the gradient of scale: as the field of the handles leaves room for them, so that least
-  /// energy is left. That is quadratic in the share, because positions are linear in it. The present positions stay.
-  void find_room()
-  {
-    m_best_position = m_position;
-    place_constrained_nodes(*m_network, m_constraints, *m_transforms, m_position);
-    const double none = energy_with_share(0);
-    m_ungrown = m_position;
-    const double all = energy_with_share(1);
-    for (const auto i : rows().node_of_row)
-      m_ungrown[i] = 0.5 * (m_ungrown[i] + m_position[i]);
-    m_position.swap(m_ungrown);
-    const double half = energy_with_share(0.5, false);
-    m_scales.set_share(m_scales.share_of_least_energy(none, half, all));
-    m_position.swap(m_best_position);
-  }
-
-  double energy_with_share(double share, bool is_solved = true)
-  {
-    m_scales.set_share(share);
-    update_frames();
-    if (is_solved)
-      solve_positions(true);
-    const Elastic_state state = this->state();
-    return pcs::internal::blocked_reduce<ConcurrencyTag>(
-        m_network->size(),
-        0.0,
-        [&](std::size_t i) {
-          Eigen::Matrix3d covariance;
-          const bool is_reached = m_constraints.handle_of_node[i] != unreached_node;
-          return is_reached ? state.measure_edges(i, covariance) : 0.0;
-        },
-        [](double a, double b) { return a + b; },
-        block,
-        m_energies);
-  }
-
-  /// The first positions, and their energy.
-  void place(const Elastic_options& options, bool links_turn, Elastic_result& result)
-  {
-    update_frames();
-    place_constrained_nodes(*m_network, m_constraints, *m_transforms, m_position);
-    solve_positions(links_turn);
-    result.energy = result.initial_energy = fit_and_measure(options, true);
-  }
+  const Free_rows& rows() const { return m_shape.rows(); }
 
   /// The guess, if there is one, may replace the state after the first pass.
   void make_passes(const Elastic_options& options,
@@ -223,18 +115,19 @@ private:
         return;
       }
       const double before = result.energy;
-      const bool is_last = m_link_offsets || pass + 1 == options.maximal_number_of_passes;
+      const bool is_last =
+          m_shape.has_link_offsets() || pass + 1 == options.maximal_number_of_passes;
       const bool is_accelerated =
           !is_checking && pass >= (result.is_far_from_field ? 1 : first_accelerated_pass);
-      bool has_improved = improve(options, is_accelerated, is_last, result);
+      bool has_improved = improve(is_accelerated, is_last, result);
       if (pass == 0 && guess && !guess->deviations.empty()) {
-        result.is_far_from_field = start_from(*guess, options, result);
+        result.is_far_from_field = start_from(*guess, result);
         has_improved = has_improved || result.is_far_from_field;
       }
       result.number_of_passes = pass + 1;
       result.status = Status::converged;
       // Without the links, each further pass would let the body collapse.
-      if (m_link_offsets || !has_improved)
+      if (m_shape.has_link_offsets() || !has_improved)
         return;
       const double gain = before - result.energy;
       is_checking = is_accelerated && gain <= poor_gain * options.tolerance * before;
@@ -246,40 +139,25 @@ private:
     }
   }
 
-  /// The next state is written beside this one: all of it but the positions, which it starts from.
-  void keep_state()
-  {
-    m_best_position = m_position;
-    m_best_frame.resize(m_frame.size());
-    m_best_frame.swap(m_frame);
-    m_best_smooth.swap(m_smooth);
-  }
-
-  void swap_state()
-  {
-    m_position.swap(m_best_position);
-    m_frame.swap(m_best_frame);
-    m_smooth.swap(m_best_smooth);
-  }
-
   /// One pass: accelerated if that lowers the energy, else plain; `false` if neither does (rounding at the optimum).
-  bool
-  improve(const Elastic_options& options, bool is_accelerated, bool is_last, Elastic_result& result)
+  bool improve(bool is_accelerated, bool is_last, Elastic_result& result)
   {
-    keep_state();
-    smooth_deviations();
+    m_shape.keep();
+    m_best_smooth.swap(m_smooth);
+    m_shape.smooth_deviations(m_smooth);
     if (is_accelerated)
       m_plain = m_smooth;
     mix(is_accelerated);
-    double energy = apply_deviations(options, !is_last);
+    double energy = apply_deviations(!is_last);
     if (is_accelerated && !(energy < result.energy)) {
       m_mixing.restart();
       m_smooth = m_plain;
-      m_position = m_best_position;
-      energy = apply_deviations(options, !is_last);
+      m_shape.restart_from_kept();
+      energy = apply_deviations(!is_last);
     }
     if (!(energy < result.energy)) {
-      swap_state();
+      m_shape.swap_kept();
+      m_smooth.swap(m_best_smooth);
       return false;
     }
     result.energy = energy;
@@ -290,7 +168,7 @@ private:
   /// them their directions. Without these, what the links hold back would look like the answer to the deviations.
   void mix(bool is_wanted)
   {
-    if (m_network->links.neighbor.empty()) {
+    if (!m_shape.has_links()) {
       m_mixing.mix(m_best_smooth, m_smooth, is_wanted);
       return;
     }
@@ -300,16 +178,16 @@ private:
     pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t r) {
       const std::size_t i = rows().node_of_row[r];
       m_state[r] = m_best_smooth[i];
-      m_state[n + r] = m_position_solver.directing()[i];
+      m_state[n + r] = m_shape.directing()[i];
       m_image[r] = m_smooth[i];
-      m_image[n + r] = m_position[i];
+      m_image[n + r] = m_shape.position()[i];
     });
     m_mixing.mix(m_state, m_image, is_wanted);
     if (is_wanted)
       pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t r) {
         const std::size_t i = rows().node_of_row[r];
         m_smooth[i] = m_image[r];
-        m_position[i] = m_image[n + r];
+        m_shape.position()[i] = m_image[n + r];
       });
   }
 
@@ -321,144 +199,39 @@ private:
 
   /// A guess replaces the present state if it is clearly better: where the field of the handles explains the motion,
   /// it is more exact than a coarse network, and what folds up there is no shape here. Returns whether it did.
-  bool
-  start_from(const Deviation_guess& guess, const Elastic_options& options, Elastic_result& result)
+  bool start_from(const Deviation_guess& guess, Elastic_result& result)
   {
-    keep_state();
-    m_best_deviation = m_deviation;
-    m_best_rotation = m_rotation;
-    m_best_directing = m_position_solver.directing();
+    m_shape.keep_all();
+    m_best_smooth.swap(m_smooth);
     take(guess);
-    turn_by_deviations();
-    update_frames();
-    solve_positions(true); // the present positions know nothing of the guess
-    if (!m_network->links.neighbor.empty())
+    m_shape.turn(m_smooth);
+    m_shape.follow(true); // the present positions know nothing of the guess
+    if (m_shape.has_links())
       for (int i = 0; i < settling_solves; ++i)
-        solve_positions(false);
-    const double energy = fit_and_measure(options, true);
+        m_shape.solve_positions(false);
+    const double energy = m_shape.fit_and_measure(true);
     if (energy < guess_advantage * result.energy) {
       result.energy = energy;
       m_mixing.restart();
       return true;
     }
-    swap_state();
-    m_deviation.swap(m_best_deviation);
-    m_rotation.swap(m_best_rotation);
-    m_position_solver.restore_directing(m_best_directing);
+    m_shape.restore_all();
+    m_smooth.swap(m_best_smooth);
     return false;
   }
 
-  /// Rotations `exp(d) B` from the present deviations, then positions; returns the energy.
-  double apply_deviations(const Elastic_options& options, bool has_next)
+  /// The next shape; returns its energy.
+  double apply_deviations(bool has_next)
   {
-    turn_by_deviations();
-    update_frames();
-    solve_positions(false);
-    return fit_and_measure(options, has_next);
+    m_shape.turn(m_smooth);
+    m_shape.follow(false);
+    return m_shape.fit_and_measure(has_next);
   }
 
-  void turn_by_deviations()
-  {
-    pcs::internal::for_each_index<ConcurrencyTag>(
-        rows().size(),
-        [&](std::size_t r) {
-          const std::size_t i = rows().node_of_row[r];
-          m_rotation[i] = (rotation_exp(m_smooth[i]) * m_field[i]).normalized();
-        },
-        block);
-  }
-
-  void update_frames()
-  {
-    if (m_stretch_is_used)
-      m_target.resize(m_network->size());
-    pcs::internal::for_each_index<ConcurrencyTag>(
-        m_network->size(),
-        [&](std::size_t i) {
-          if (m_constraints.is_prescribed(i)) {
-            const Similarity& t = (*m_transforms)[handle(i)];
-            m_frame[i] = t.scale() * t.rotation();
-          } else {
-            m_frame[i] = m_rotation[i].toRotationMatrix();
-            if (!m_scales.growth().empty())
-              m_frame[i] *= m_scales.growth()[i];
-          }
-          if (m_stretch_is_used)
-            m_target[i] = m_frame[i] * m_stretch[i];
-        },
-        block);
-  }
-
-  void solve_positions(bool links_turn)
-  {
-    m_position_solver(state(), *m_transforms, m_factors, links_turn, m_position);
-    if (m_link_offsets)
-      for (const auto i : rows().node_of_row)
-        if (i < m_link_offsets->size())
-          m_position[i] += (*m_link_offsets)[i];
-  }
-
-  /// One sweep: the energy of the present state and, if there is a next pass, the deviation of each node's best rotation
-  /// from the field.
-  double fit_and_measure(const Elastic_options& options, bool has_next)
-  {
-    m_deviation.resize(m_network->size());
-    const Elastic_state state = this->state();
-    return pcs::internal::blocked_reduce<ConcurrencyTag>(
-        m_network->size(),
-        0.0,
-        [&](std::size_t i) {
-          if (m_constraints.handle_of_node[i] == unreached_node)
-            return 0.0;
-          Eigen::Matrix3d covariance;
-          double energy = state.measure_edges(i, covariance);
-          energy += state.link_energy(i);
-          if (has_next && !m_constraints.is_prescribed(i)) {
-            if (!state.growth.empty())
-              covariance *= state.growth[i];
-            m_deviation[i] = fit_deviation(covariance, m_rotation[i], m_field[i], fit_damping);
-            if (m_stretch_is_used)
-              m_stretch[i] = state.transverse_stretch(i, options.poisson_ratio);
-          }
-          return energy;
-        },
-        [](double a, double b) { return a + b; },
-        block,
-        m_energies);
-  }
-
-  /// `(L + mu D) d' = mu D d`.
-  void smooth_deviations()
-  {
-    m_rhs3.resize(rows().size());
-    pcs::internal::for_each_index<ConcurrencyTag>(rows().size(), [&](std::size_t r) {
-      m_rhs3[r] = m_factors.fit_weight(r) * m_deviation[rows().node_of_row[r]];
-    });
-    m_factors.smoothing().template solve<ConcurrencyTag>(m_rhs3, m_work3);
-    pcs::internal::for_each_index<ConcurrencyTag>(rows().size(), [&](std::size_t r) {
-      m_smooth[rows().node_of_row[r]] = m_rhs3[r];
-    });
-  }
-
-private:
-  const Elastic_network* m_network = nullptr;
-  Node_constraints m_constraints;
-  Elastic_factors m_factors;
-  Rotation_field_solver<ConcurrencyTag> m_field_solver;
-  Position_solver<ConcurrencyTag> m_position_solver;
-  bool m_stretch_is_used = false;
-
-  const std::vector<Similarity>* m_transforms = nullptr;
-  const std::vector<Vec3>* m_link_offsets = nullptr; ///< of the first nodes; of a coarser network
+  Elastic_shape<ConcurrencyTag> m_shape;
   Anderson_mixing<ConcurrencyTag> m_mixing;
-  Blended_scales<ConcurrencyTag> m_scales;
-  std::vector<Quaternion> m_field, m_rotation, m_best_rotation;
-  std::vector<Eigen::Matrix3d> m_frame, m_best_frame, m_stretch, m_target;
-  std::vector<Vec3> m_position, m_best_position, m_ungrown, m_best_directing, m_rhs3, m_work3;
-  std::vector<Vec3> m_deviation, m_best_deviation; ///< of the best local rotations from the field
-  std::vector<Vec3> m_smooth, m_best_smooth, m_plain; ///< the same, smoothed: what is used
+  std::vector<Vec3> m_smooth, m_best_smooth, m_plain; ///< deviations, smoothed: what is used
   std::vector<Vec3> m_state, m_image;                 ///< of a pass, for the mixing
-  std::vector<double> m_energies;                     ///< of blocks of nodes
 };
 
 } // namespace deformation
