@@ -199,7 +199,7 @@ public:
   }
 
   /// Asks for the memory that `write()` will touch.
-  void prefetch(std::size_t i) const
+  PCS_ALWAYS_INLINE void prefetch(std::size_t i) const
   {
     with_element(i, [this](auto&& key) PCS_LAMBDA_INLINE {
       prefetch_value(*m_point_map, key);
@@ -209,12 +209,12 @@ public:
   }
 
   /// Vectors and tensors are those of rest under the deformation gradient.
-  void write(std::size_t i,
-             const Vec3& p,
-             [[maybe_unused]] const Vec3& normal,
-             [[maybe_unused]] const Eigen::Matrix3d& gradient)
+  PCS_ALWAYS_INLINE void write(std::size_t i,
+                               const Vec3& p,
+                               [[maybe_unused]] const Vec3& normal,
+                               [[maybe_unused]] const Eigen::Matrix3d& gradient)
   {
-    with_element(i, [&](auto&& key) {
+    with_element(i, [&](auto&& key) PCS_LAMBDA_INLINE {
       put(*m_point_map, key, make<Point>(p));
       if constexpr (has_normals)
         put(*m_normal_map, key, make<Normal>(normal));
@@ -230,7 +230,7 @@ public:
 
   /// A point or vector of the caller's type.
   template <class Triple>
-  static Triple make(const Vec3& v)
+  static PCS_ALWAYS_INLINE Triple make(const Vec3& v)
   {
     using FT = std::decay_t<decltype(std::declval<const Triple&>().x())>;
     return Triple(static_cast<FT>(v.x()), static_cast<FT>(v.y()), static_cast<FT>(v.z()));
@@ -239,7 +239,7 @@ public:
 private:
   /// Calls `f` with element `i`, which may live in its iterator.
   template <class F>
-  decltype(auto) with_element(std::size_t i, const F& f) const
+  PCS_ALWAYS_INLINE decltype(auto) with_element(std::size_t i, const F& f) const
   {
     using Iterator = decltype(std::begin(*m_points));
     const Iterator it = std::begin(*m_points) +
