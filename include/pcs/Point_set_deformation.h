@@ -189,8 +189,8 @@ public:
     deformation::internal::checked(function,
                                    "softness",
                                    softness,
-                                   softness >= 0 && std::isfinite(softness),
-                                   "finite and not negative");
+                                   softness == 0 || (softness >= 1e-9 && softness <= 1e9),
+                                   "0, or between 1e-9 and 1e9");
     const auto checked =
         deformation::internal::checked_indices(function, indices, m_session->number_of_points());
     const Handle handle = m_session->add_handle(checked, softness > 0 ? 1 / softness : 0, function);
@@ -297,6 +297,7 @@ public:
       report.status = Status::cancelled;
       return report;
     }
+    require_all_points("pcs::Point_set_deformation::deform()");
     internal::Progress progress(m_callback);
     const Deformation_report report = m_session->solve(m_elastic, start, progress);
     if (report.status == Status::cancelled || report.status == Status::numerical_failure)
@@ -314,7 +315,8 @@ public:
 
     \param points a model of `RandomAccessRange` at rest, modified in place
     \param np `point_map` and `normal_map` as in the constructor, for `points`
-    \throws Invalid_input if a point or normal is not finite; nothing is changed then
+    \throws Invalid_input if a point or normal is not finite, or constraints were made for other handles since the last
+            `deform()`; nothing is changed then
     \par Complexity
     O(n log n) once per rest shape, then O(log n) per point.
   */
@@ -331,6 +333,10 @@ public:
       Other other(points, np);
       const std::vector<deformation::Vec3> rest = other.template points<ConcurrencyTag>(function);
       other.check_attributes(function);
+      if (m_session->is_ahead_of_shape())
+        throw Invalid_input(
+            std::string(function) +
+            ": handles were added or removed since the last deform(); call it first");
       m_session->prepare_carrying();
       internal::for_each_index<ConcurrencyTag>(
           rest.size(),
@@ -344,20 +350,29 @@ public:
     }
   }
 
-  /// The present state, at the cost of the samples only.
+  /// The present points and the motions that gave them, at the cost of the samples only: motions that were set since the
+  /// last `deform()` are not part of it. \throws Invalid_input if handles were added or removed since then
   Snapshot snapshot() const
   {
-    require_ready("pcs::Point_set_deformation::snapshot()");
+    const char* function = "pcs::Point_set_deformation::snapshot()";
+    require_ready(function);
+    if (!m_session->has_shape_of_handles())
+      throw Invalid_input(std::string(function) +
+                          ": handles were added or removed since the last deform(); call it first");
     return m_session->snapshot();
   }
 
-  /// Brings back the points of a snapshot of this object, taken with the same handles, and the motions.
+  /// Brings back the points of a snapshot, and the motions. \throws Invalid_input if it was not taken of this object,
+  /// with the same handles and the same rest shape; nothing is changed then
   void restore(const Snapshot& snapshot)
   {
-    require_ready("pcs::Point_set_deformation::restore()");
-    if (snapshot.maps.size() != m_session->number_of_samples())
-      throw Invalid_input(
-          "pcs::Point_set_deformation::restore(): the snapshot is of another point set");
+    const char* function = "pcs::Point_set_deformation::restore()";
+    require_ready(function);
+    require_all_points(function);
+    if (!m_session->is_of_setting(snapshot))
+      throw Invalid_input(std::string(function) +
+                          ": the snapshot is of another point set, of another rest shape, or of "
+                          "other handles");
     m_session->restore(snapshot);
     for (Handle h = 0; h < m_motion.size(); ++h) {
       m_motion[h] = Motion();
@@ -369,7 +384,9 @@ public:
   /// Back to the rest shape; handles stay, their motions end.
   void reset()
   {
-    require_ready("pcs::Point_set_deformation::reset()");
+    const char* function = "pcs::Point_set_deformation::reset()";
+    require_ready(function);
+    require_all_points(function);
     m_session->reset();
     m_motion.assign(m_motion.size(), Motion());
     write_points();
@@ -382,6 +399,7 @@ public:
     const char* function = "pcs::Point_set_deformation::accept()";
     require_ready(function);
     if constexpr (Access::is_ok) {
+      require_all_points(function);
       const std::vector<deformation::Vec3> present = read_points(function);
       m_session->accept([&](std::size_t i) { return present[i]; });
       keep_attributes();
@@ -406,6 +424,14 @@ private:
     if (!m_session || !m_session->is_ready())
       throw Invalid_input(std::string(function) +
                           ": the construction of this object was cancelled");
+  }
+
+  void require_all_points(const char* function) const
+  {
+    if (m_access.size() != m_session->number_of_points())
+      throw Invalid_input(std::string(function) + ": there are " + std::to_string(m_access.size()) +
+                          " points, " + std::to_string(m_session->number_of_points()) +
+                          " in the beginning");
   }
 
   void require_handle(const char* function, Handle handle) const

@@ -23,6 +23,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -37,6 +38,8 @@ struct Session_snapshot
 {
   std::vector<Similarity> transforms; ///< of the handles
   std::vector<Affine_map> maps;       ///< of the samples
+  std::uint64_t setting = 0;          ///< the session, its rest shape and its handles
+  bool is_at_rest = true;
 };
 
 /*!
@@ -66,6 +69,7 @@ public:
     m_next_maps = m_maps;
     build_coarse_levels();
     m_handles.start(m_body, region);
+    begin_setting();
   }
 
   /// `false` if the callback cancelled the construction: nothing else may be called then.
@@ -82,6 +86,7 @@ public:
   {
     const std::size_t handle = m_handles.add(m_body, indices, weight, function);
     m_is_constrained = false;
+    begin_setting();
     return handle;
   }
 
@@ -90,6 +95,7 @@ public:
   {
     m_handles.remove(handle);
     m_is_constrained = false;
+    begin_setting();
   }
 
   bool is_handle(std::size_t handle) const { return m_handles.contains(handle); }
@@ -155,6 +161,7 @@ public:
       r.status = Status::nothing_to_do;
       m_maps.assign(m_maps.size(), identity_map());
       m_local_transforms.clear();
+      keep_rest();
       return r;
     }
     if (!constrain(options.stiffness)) {
@@ -188,9 +195,12 @@ public:
                                     m_local_transforms,
                                     m_body.upsampling.sample_points(),
                                     m_next_maps,
-                                    m_are_finite))
+                                    m_are_finite)) {
         m_maps.swap(m_next_maps);
-      else {
+        m_shape_transforms = m_handles.transforms();
+        m_setting_of_shape = m_setting;
+        m_is_at_rest = false;
+      } else {
         m_local_transforms.swap(transforms);
         r.status = Status::numerical_failure;
       }
@@ -199,12 +209,26 @@ public:
     return r;
   }
 
-  Session_snapshot snapshot() const { return {m_handles.transforms(), m_maps}; }
+  /// Whether the present shape was solved with the present handles, or is the rest shape.
+  bool has_shape_of_handles() const { return m_setting_of_shape == m_setting; }
+  /// Whether constraints were made for handles that the present shape was not solved with.
+  bool is_ahead_of_shape() const { return m_is_constrained && !has_shape_of_handles(); }
+  /// Whether a snapshot is of this session, its rest shape and its present handles.
+  bool is_of_setting(const Session_snapshot& s) const { return s.setting == m_setting; }
+
+  /// The last shape that was solved or restored, with the motions that belong to it.
+  Session_snapshot snapshot() const
+  {
+    return {m_shape_transforms, m_maps, m_setting, m_is_at_rest};
+  }
 
   void restore(const Session_snapshot& s)
   {
     m_handles.restore(s.transforms);
     m_maps = s.maps;
+    m_shape_transforms = m_handles.transforms();
+    m_setting_of_shape = m_setting;
+    m_is_at_rest = s.is_at_rest;
     m_has_solution = false;
     m_handles.local_transforms(m_body.frame, m_local_transforms);
     constrain(m_stiffness);
@@ -215,6 +239,7 @@ public:
   {
     m_handles.put_at_rest();
     m_maps.assign(m_maps.size(), identity_map());
+    keep_rest();
     m_has_solution = false;
     m_handles.local_transforms(m_body.frame, m_local_transforms);
     constrain(m_stiffness);
@@ -335,22 +360,38 @@ public:
     m_body.upsampling.set_rest([&](std::size_t place) {
       return m_body.frame.to_local(position(m_body.input_of_place[place]));
     });
-    for (std::size_t s = 0; s < m_maps.size(); ++s) {
-      const Eigen::Map<const Row_major_matrix> a(m_maps[s].a);
-      m_body.network.rest[s] =
-          a * m_body.network.rest[s] + Vec3(m_maps[s].t[0], m_maps[s].t[1], m_maps[s].t[2]);
-    }
+    for (std::size_t s = 0; s < m_maps.size(); ++s)
+      m_body.network.rest[s] = m_body.rest_of_site(m_body.site_of_sample[s]);
     m_body.upsampling.set_sample_points(m_body.network.rest);
     m_coarse.accept(m_body.network);
     m_maps.assign(m_maps.size(), identity_map());
     m_carrier.reset();
     m_is_constrained = false;
     m_handles.put_at_rest();
+    begin_setting();
+    keep_rest();
     m_handles.update_centroids(m_body);
-    m_local_transforms = m_handles.local_transforms(m_body.frame);
+    m_handles.local_transforms(m_body.frame, m_local_transforms);
   }
 
 private:
+  /// Handles or the rest shape are others: snapshots of before cannot be brought back. No two sessions share a number.
+  void begin_setting()
+  {
+    static std::atomic<std::uint64_t> last{0};
+    m_setting = ++last;
+    if (m_is_at_rest)
+      keep_rest();
+  }
+
+  /// The shape is the rest shape, whatever the handles.
+  void keep_rest()
+  {
+    m_shape_transforms.assign(m_handles.size(), Similarity());
+    m_setting_of_shape = m_setting;
+    m_is_at_rest = true;
+  }
+
   void build_coarse_levels()
   {
     std::vector<std::uint32_t> component;
@@ -433,6 +474,9 @@ private:
   Handle_fades m_fades;
   std::vector<Similarity> m_local_transforms; ///< those that the maps belong to
   std::vector<Similarity> m_next_transforms;
+  std::vector<Similarity> m_shape_transforms; ///< motions that the present shape was solved for
+  std::uint64_t m_setting = 0, m_setting_of_shape = 0; ///< of now, and when the shape was solved
+  bool m_is_at_rest = true;
   std::vector<char> m_was_moved, m_is_written; ///< of each handle
   std::vector<int> m_are_finite;
   std::unique_ptr<Point_carrier> m_carrier;
