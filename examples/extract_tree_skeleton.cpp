@@ -268,23 +268,21 @@ void run_single(const Skeleton_options& options)
               << ", volume " << json["total"]["volume"] << '\n';
 }
 
-/// The names of the results of one scan of several.
-Skeleton_options options_of_one(const std::string& input, const Skeleton_options& options)
+/// Whether all results are there, and no older than the scan.
+bool is_complete(const std::string& input, const Skeleton_options& one)
 {
-  Skeleton_options one = options;
-  const std::string name =
-      (std::filesystem::path(options.folder) / std::filesystem::path(input).stem()).string();
-  one.swc = name + ".swc";
-  for (const std::string& kind : options.also)
-    if (kind == "mesh")
-      one.mesh = name + "_mesh.ply";
-    else if (kind == "cylinders")
-      one.cylinders = name + "_cylinders.csv";
-    else if (kind == "edges")
-      one.edges = name + "_edges.ply";
-    else
-      one.points = name + "_points.ply";
-  return one;
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const auto of_scan = fs::last_write_time(input, error);
+  if (error)
+    return false;
+  for (const std::string* path : {&one.swc, &one.mesh, &one.cylinders, &one.edges, &one.points})
+    if (!path->empty()) {
+      const auto of_result = fs::last_write_time(*path, error);
+      if (error || of_result < of_scan)
+        return false;
+    }
+  return true;
 }
 
 /// The scans that have a line of success. The last line may be torn: a new line is begun behind it.
@@ -322,7 +320,7 @@ bool run_batch(const Skeleton_options& options)
   bool is_good = true;
   for (const std::string& input : options.inputs) {
     const Skeleton_options one = options_of_one(input, options);
-    if (done.count(input) != 0 && fs::exists(one.swc))
+    if (done.count(input) != 0 && is_complete(input, one))
       continue;
     nlohmann::ordered_json json;
     try {

@@ -8,6 +8,7 @@
 #include <pcs/IO/Write_options.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <exception>
@@ -27,6 +28,16 @@ Table::Point_3 surface_point(std::uint64_t i, std::uint64_t n)
   return {radius * std::cos(angle), radius * std::sin(angle), 3 * z};
 }
 
+/// Throws unless it is a number of points that a file may have.
+std::uint64_t read_count(const std::string& text)
+{
+  std::uint64_t n = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), n);
+  if (error != std::errc() || end != text.data() + text.size() || n == 0 || n > 4294967295U)
+    throw std::invalid_argument("\"" + text + "\" is no number of points between 1 and 4294967295");
+  return n;
+}
+
 int main(int argc, char** argv)
 try {
   const bool is_float = argc == 4 && std::string(argv[3]) == "--float";
@@ -34,7 +45,7 @@ try {
     std::cerr << "usage: generate_points FILE NUMBER_OF_POINTS [--float]\n";
     return 1;
   }
-  const std::uint64_t n = std::stoull(argv[2]);
+  const std::uint64_t n = read_count(argv[2]);
   constexpr std::uint64_t chunk_size = 262144;
 
   pcs::IO::Point_schema schema;

@@ -5,13 +5,13 @@
 #ifndef PCS_EXAMPLES_PROGRAM_SKELETON_OPTIONS_H
 #define PCS_EXAMPLES_PROGRAM_SKELETON_OPTIONS_H
 
+#include "Distinct_files.h"
 #include <pcs/core/errors.h>
 
 #include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <map>
-#include <set>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -116,16 +116,15 @@ inline void check_folder_of(const std::string& path)
 
 inline void check_single(const Skeleton_options& options)
 {
-  namespace fs = std::filesystem;
   if (options.inputs.size() > 1)
     throw pcs::Invalid_input("several scans need --folder");
   if (options.swc.empty())
     throw pcs::Invalid_input("--swc is required");
   if (!options.also.empty())
     throw pcs::Invalid_input("--also needs --folder");
-  std::set<std::string> names{fs::path(options.inputs.front()).lexically_normal().string()};
-  if (!options.given.empty())
-    names.insert(fs::path(options.given).lexically_normal().string());
+  Distinct_files files;
+  files.add_input(options.inputs.front());
+  files.add_input(options.given);
   for (const std::string* path : {&options.swc,
                                   &options.mesh,
                                   &options.leaves,
@@ -136,15 +135,33 @@ inline void check_single(const Skeleton_options& options)
     if (path->empty())
       continue;
     check_folder_of(*path);
-    if (!names.insert(fs::path(*path).lexically_normal().string()).second)
-      throw pcs::Invalid_input("two files have the same name: " + *path);
+    files.add_output(*path);
   }
   for (const std::string* path : {&options.mesh, &options.leaves}) {
-    const std::string extension = fs::path(*path).extension().string();
+    const std::string extension = std::filesystem::path(*path).extension().string();
     if (!path->empty() && extension != ".ply" && extension != ".obj" && extension != ".PLY" &&
         extension != ".OBJ")
       throw pcs::IO_error(*path, "the extension of a mesh must be .ply or .obj");
   }
+}
+
+/// The names of the results of one scan of several.
+inline Skeleton_options options_of_one(const std::string& input, const Skeleton_options& options)
+{
+  Skeleton_options one = options;
+  const std::string name =
+      (std::filesystem::path(options.folder) / std::filesystem::path(input).stem()).string();
+  one.swc = name + ".swc";
+  for (const std::string& kind : options.also)
+    if (kind == "mesh")
+      one.mesh = name + "_mesh.ply";
+    else if (kind == "cylinders")
+      one.cylinders = name + "_cylinders.csv";
+    else if (kind == "edges")
+      one.edges = name + "_edges.ply";
+    else
+      one.points = name + "_points.ply";
+  return one;
 }
 
 inline void check_batch(const Skeleton_options& options)
@@ -167,6 +184,14 @@ inline void check_batch(const Skeleton_options& options)
     if (!is_new)
       throw pcs::Invalid_input("the results of " + at->second + " and " + input +
                                " would have the same name");
+  }
+  Distinct_files files;
+  for (const std::string& input : options.inputs)
+    files.add_input(input);
+  for (const std::string& input : options.inputs) {
+    const Skeleton_options one = options_of_one(input, options);
+    for (const std::string* path : {&one.swc, &one.mesh, &one.cylinders, &one.edges, &one.points})
+      files.add_output(*path);
   }
 }
 

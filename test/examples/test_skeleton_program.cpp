@@ -9,6 +9,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -297,8 +298,8 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
   refuses("--input tree.xyz --swc old.swc --points p.e57", "p.e57");
   refuses("--input tree.xyz --swc old.swc --report folder", "is a directory");
   refuses("--input tree.xyz --swc folder", "is a directory");
-  refuses("--input tree.xyz --swc old.swc --cylinders old.swc", "the same name");
-  refuses("--input tree.xyz --swc tree.xyz", "the same name");
+  refuses("--input tree.xyz --swc old.swc --cylinders old.swc", "the same file");
+  refuses("--input tree.xyz --swc tree.xyz", "the same file");
   refuses("--input tree.xyz in.ply --swc old.swc", "--folder");
   refuses("--input tree.xyz --swc old.swc --also mesh", "--folder");
   refuses("--input tree.xyz --swc old.swc --up w", "--up");
@@ -312,6 +313,14 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
   refuses("--input tree.xyz --swc old.swc --method magic", "--method");
   refuses("--input tree.xyz --folder out --swc old.swc", "leave old.swc out");
   refuses("--input tree.xyz folder/tree.ply --folder out", "the same name");
+  // Spelled otherwise, or made by another scan of the batch.
+  refuses("--input tree.xyz --swc old.swc --points folder/../tree.xyz", "the same file");
+  std::filesystem::create_symlink("tree.xyz", path("link.xyz"));
+  refuses("--input link.xyz --swc old.swc --points tree.xyz", "the same file");
+  std::filesystem::create_hard_link(path("tree.xyz"), path("hard.xyz"));
+  refuses("--input hard.xyz --swc old.swc --report tree.xyz", "the same file");
+  write("in_points.ply", content("in.ply"));
+  refuses("--input in.ply in_points.ply --folder . --also points", "the same file");
 }
 
 BOOST_AUTO_TEST_CASE(a_batch_goes_on_and_resumes)
@@ -360,6 +369,16 @@ BOOST_AUTO_TEST_CASE(a_batch_goes_on_and_resumes)
   write("missing.xyz", fork_text());
   BOOST_TEST(run("--quiet --input tree.xyz bad.xyz good.xyz --folder out") == 0, err);
   BOOST_TEST(exists("out/good.swc"));
+
+  // so is one that is wanted for the first time, and what is older than its scan
+  BOOST_TEST(run("--quiet --input good.xyz --folder out --also edges") == 0, err);
+  BOOST_TEST(exists("out/good_edges.ply"));
+  std::filesystem::last_write_time(path("good.xyz"),
+                                   std::filesystem::last_write_time(path("out/good.swc")) +
+                                       std::chrono::hours(1));
+  const auto before = std::filesystem::last_write_time(path("out/good.swc"));
+  BOOST_TEST(run("--quiet --input good.xyz --folder out") == 0, err);
+  BOOST_TEST((std::filesystem::last_write_time(path("out/good.swc")) != before));
   BOOST_TEST(run("--quiet --input tree.xyz bad.xyz good.xyz --folder out") == 0, err);
 }
 
