@@ -139,7 +139,8 @@ public:
           sections are wood, and such that lie on lines with little around them; the rest is leaves. Wood is fitted again;
           axes that end without wood on them and are short, or short and wide, are leaves, too, like all that no axis
           explains. `true`: always; `false`: never; `skeleton::Leaf_removal::where_found`: if 4 % of the points are not
-          explained by the first fit, 40 % are no thick wood, and 15 % of these lie deep in leaves. For the method `chains`
+          explained by the first fit, 5 % are thick wood, 40 % are not, and 15 % of these lie deep in leaves. For the method
+          `chains`
         \nptype `bool` or `skeleton::Leaf_removal`
         \npdefault `skeleton::Leaf_removal::where_found`; with `wood_map` `false`
       \np{point_branch_map} written by `extract()`: the branch of a point, an index in the result, or `npos`

@@ -33,6 +33,7 @@ struct Leaf_rules
   double flatness = 0.1;  ///< ... if it is wider than this share of its length [-]
   //! of the points that no axis explains: with fewer, leaves are not looked for [-]
   double unexplained = 0.04;
+  double thick = 0.05; ///< share of the points that must be thick wood, or this is no tree [-]
   double open =
       0.4; ///< least share of the points that must be no thick wood, or there is no crown of leaves [-]
   double leafy = 0.15;        ///< share of these that must be deep in leaves: fewer are chance [-]
@@ -164,8 +165,9 @@ std::vector<std::uint8_t> wood_by_points(const Scan& scan,
       count += j != none && is_used[j] && !is_wood[j];
     deep += count >= rules.neighbors;
   }
-  const bool is_leafy =
-      double(open) >= rules.open * double(used) && double(deep) >= rules.leafy * double(open);
+  const bool is_leafy = double(used - open) >= rules.thick * double(used) &&
+                        double(open) >= rules.open * double(used) &&
+                        double(deep) >= rules.leafy * double(open);
   if (!is_sure && !is_leafy)
     is_wood.clear();
   return is_wood;
