@@ -69,6 +69,14 @@ pcs::skeleton::Section_fit section_fit(const std::string& name)
   return name == "by_arc" ? Section_fit::by_arc : Section_fit::conic;
 }
 
+pcs::skeleton::Leaf_removal leaf_removal(const Skeleton_options& options, bool is_labelled)
+{
+  using pcs::skeleton::Leaf_removal;
+  if (is_labelled || options.do_keep_leaves)
+    return Leaf_removal::never;
+  return options.do_remove_leaves ? Leaf_removal::always : Leaf_removal::where_found;
+}
+
 struct Labels
 {
   std::vector<std::size_t> branch;
@@ -140,7 +148,7 @@ pcs::Skeleton_report extract(const pcs::IO::Point_table& table,
                       .breast_height(options.breast_height)
                       .do_remove_ground(!options.do_keep_ground)
                       .wood_map(is_wood)
-                      .do_remove_leaves(options.do_remove_leaves && !is_labelled)
+                      .do_remove_leaves(leaf_removal(options, is_labelled))
                       .point_is_leaf_map(leaf)
                       .point_branch_map(branches)
                       .point_residual_map(residuals)

@@ -27,8 +27,8 @@ struct Skeleton_options
   double beam_milliradians = -1; // < 0: the default of the library
   double tolerance = -1;         // < 0: the default of the library
   double breast_height = 1.3;
-  bool do_keep_ground = false, do_remove_leaves = false, do_separate = false, do_use_all = false,
-       do_fit_all = false, is_quiet = false;
+  bool do_keep_ground = false, do_remove_leaves = false, do_keep_leaves = false,
+       do_separate = false, do_use_all = false, do_fit_all = false, is_quiet = false;
 };
 
 inline const char* skeleton_help()
@@ -98,7 +98,11 @@ inline void declare(CLI::App& app, Skeleton_options& options)
                options.do_fit_all,
                "of the method `sections`: a slice for every point");
   app.add_flag("--keep-ground", options.do_keep_ground, "do not look for ground");
-  app.add_flag("--remove-leaves", options.do_remove_leaves, "look for leaves and leave them out");
+  app.add_flag("--remove-leaves",
+               options.do_remove_leaves,
+               "leave leaves out even if the scan does not look as if it had many");
+  app.add_flag("--keep-leaves", options.do_keep_leaves, "do not look for leaves")
+      ->excludes("--remove-leaves");
   app.add_flag("--separate", options.do_separate, "mesh: every branch a closed tube of its own");
   app.add_flag("--quiet", options.is_quiet, "print nothing but errors");
 }

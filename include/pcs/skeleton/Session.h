@@ -61,6 +61,7 @@ public:
       m_scan.is_outlier[i] = !m_is_used[i];
     std::vector<Vec3>().swap(m_input);
     m_is_leaf.resize(n);
+    m_is_found_leaf.assign(n, 0);
     for (std::size_t i = 0; i < n; ++i)
       m_is_leaf[i] = !is_wood[i];
     m_report.number_of_duplicates = m_report.number_of_points - n;
@@ -98,8 +99,7 @@ public:
     }
     std::vector<Link> gaps;
     const auto find_root_and_gaps = [&] {
-      m_root = m_options.root ? nearest_used(*m_options.root)
-                              : find_root(m_scan, m_is_used, links, m_options.up, m_options.roots);
+      m_root = root_points(links);
       gaps = links_across_gaps(m_scan, m_is_used, m_options.axes.links, links);
     };
     // most scans have no ground, and what is found meanwhile stays
@@ -146,7 +146,7 @@ public:
       m_stage = 3;
       return progress(0.9);
     }
-    const int rounds = m_options.do_find_leaves ? m_options.leaves.rounds : 0;
+    const int rounds = m_options.leaf_removal == Leaf_removal::never ? 0 : m_options.leaves.rounds;
     for (bool is_running = true;;) {
       const double from = m_leaf_rounds == 0 ? 0.6 : 0.75 + 0.15 * (m_leaf_rounds - 1) / rounds;
       const double width = m_leaf_rounds == 0 ? 0.15 : 0.15 / rounds;
@@ -155,10 +155,12 @@ public:
       });
       if (!is_running)
         return false;
-      if (m_leaf_rounds >= rounds || !remove_leaves(m_leaf_rounds == 0))
+      if (m_leaf_rounds >= rounds || !remove_leaves())
         break;
       ++m_leaf_rounds; // stopped from here on, the work goes on with the wood
     }
+    if (m_leaf_rounds > 0)
+      reclaim();
     fuse_axes<ConcurrencyTag>(m_scan.spacing, m_options.fusion, m_axes);
     const double unit = m_scan.frame.unit;
     m_report.noise = unit * m_axes.noise;
@@ -196,6 +198,8 @@ public:
       prune_stubs(m_scan.spacing, m_options.stubs, m_tree);
       const Section_support support =
           support_of_sections<ConcurrencyTag>(m_scan, m_tree, m_axes.noise, m_options.support);
+      if (m_leaf_rounds > 0) // what is left of leaves makes twigs thick
+        m_options.support.pipes.slack = m_options.leaves.pipe_slack;
       bound_radii(m_scan, support, m_axes.density, m_options.support, m_tree);
       mend_foot(m_scan,
                 m_is_used,
@@ -288,44 +292,49 @@ private:
     merge_rings(m_scan, m_options.rings, m_layers);
   }
 
-  /// Takes the leaves out, and looks for paths over the rest. `false` if there is nothing to do: at first many of the axes
-  /// must be leaves.
-  bool remove_leaves(bool is_first)
+  /// Takes the leaves out, and looks for paths over the rest. `false` if there is nothing to do.
+  bool remove_leaves()
   {
-    const Leaves leaves =
-        find_leaves<ConcurrencyTag>(m_axes, m_scan, m_options.breast_height, m_options.leaves);
-    std::size_t used = 0, unexplained = 0, count = 0;
-    for (Index i = 0; i < m_scan.size(); ++i)
-      if (m_is_used[i]) {
-        ++used;
-        unexplained += !m_axes.is_covered(i);
-      }
-    const bool has_leaves = leaves.share >= m_options.leaves.share &&
-                            double(unexplained) >= m_options.leaves.unexplained * double(used);
-    if (m_axes.axes.empty() || (is_first && !has_leaves))
+    if (m_axes.axes.empty())
       return false;
-    std::vector<std::uint8_t> is_wood = m_is_used;
-    for (Index i = 0; i < m_scan.size(); ++i)
-      if (m_is_used[i] && leaves.is_leaf(m_axes, i)) {
-        is_wood[i] = 0;
-        m_is_leaf[i] = 1;
-        ++count;
-      }
-    if (count == 0 || count == used)
+    const bool is_sure = m_options.leaf_removal == Leaf_removal::always;
+    const std::vector<std::uint8_t> is_wood =
+        m_leaf_rounds > 0
+            ? wood_by_axes<ConcurrencyTag>(m_scan,
+                                           m_axes,
+                                           m_is_used,
+                                           m_options.breast_height,
+                                           m_options.leaves)
+            : wood_by_points<ConcurrencyTag>(m_scan, m_axes, m_is_used, is_sure, m_options.leaves);
+    const bool has_wood = std::find(is_wood.begin(), is_wood.end(), 1) != is_wood.end();
+    if (!has_wood || is_wood == m_is_used)
       return false;
+    for (Index i = 0; i < m_scan.size(); ++i)
+      if (m_is_used[i] && !is_wood[i]) {
+        m_is_leaf[i] = m_is_found_leaf[i] = 1;
+        ++m_report.number_of_leaf_points;
+      }
     use_only(is_wood);
-    m_report.number_of_leaf_points += count;
-    m_root.erase(
-        std::remove_if(m_root.begin(), m_root.end(), [&](Index i) { return !m_is_used[i]; }),
-        m_root.end());
     std::vector<Link> links = links_of_used();
-    if (m_root.empty())
-      m_root = find_root(m_scan, m_is_used, links, m_options.up, m_options.roots);
+    m_root = root_points(links);
     const std::vector<Link> gaps =
         links_across_gaps(m_scan, m_is_used, m_options.axes.links, links);
     links.insert(links.end(), gaps.begin(), gaps.end());
     trace_paths(links);
     return true;
+  }
+
+  /// What lies on the surfaces is no leaf.
+  void reclaim()
+  {
+    m_report.number_of_leaf_points -=
+        reclaim_points<ConcurrencyTag>(m_scan, m_options.axes.chains, m_is_found_leaf, m_axes);
+    for (Index i = 0; i < m_scan.size(); ++i)
+      if (m_is_leaf[i] && m_axes.is_covered(i)) {
+        m_is_leaf[i] = 0;
+        m_is_used[i] = 1;
+        m_scan.is_outlier[i] = 0;
+      }
   }
 
   double residual_of_point(Index p) const
@@ -341,9 +350,11 @@ private:
     return (q - t * d).norm() - (1 - t) * below.radius - t * node.radius;
   }
 
-  std::vector<Index> nearest_used(const Vec3& place) const
+  std::vector<Index> root_points(const std::vector<Link>& links) const
   {
-    const auto found = m_scan.search->nearest_if(m_scan.frame.to_local(place),
+    if (!m_options.root)
+      return find_root(m_scan, m_is_used, links, m_options.up, m_options.roots);
+    const auto found = m_scan.search->nearest_if(m_scan.frame.to_local(*m_options.root),
                                                  std::numeric_limits<double>::max(),
                                                  [&](Index i) { return m_is_used[i] != 0; });
     return {found.index};
@@ -417,7 +428,8 @@ private:
   }
 
   std::vector<Vec3> m_input;
-  std::vector<std::uint8_t> m_is_wood, m_is_used, m_is_leaf;
+  std::vector<std::uint8_t> m_is_wood, m_is_used;
+  std::vector<std::uint8_t> m_is_leaf, m_is_found_leaf; ///< the second: not by `wood_map`
   Session_options m_options;
   int m_stage = 0, m_leaf_rounds = 0;
   Scan m_scan;

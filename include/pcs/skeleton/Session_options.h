@@ -33,6 +33,13 @@ enum class Skeleton_method {
   sections ///< the dissertation: sections at centers of curvature, spanning trees where there are none
 };
 
+/// Whether points of leaves are looked for and left out.
+enum class Leaf_removal {
+  where_found, ///< where there is evidence of them
+  always,
+  never
+};
+
 /// All rules of the pipeline, and the hints of the caller.
 struct Session_options
 {
@@ -42,8 +49,8 @@ struct Session_options
   std::optional<Given_skeleton> given; ///< measured, instead of looking for branches
   double beam_width = 0;               ///< of the scanners [rad]
   bool do_mark_ground = true;
-  bool do_find_leaves = false; ///< by the method `chains`
-  double breast_height = 1.3;  ///< [L]
+  Leaf_removal leaf_removal = Leaf_removal::where_found; ///< by the method `chains`
+  double breast_height = 1.3;                            ///< [L]
   Skeleton_method method = Skeleton_method::chains;
   Slice_rules slices; ///< of the method `sections`, like the next
   Section_tree_rules section_tree;

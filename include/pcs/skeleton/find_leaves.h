@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Tells the points of leaves from those of wood by the axes that were fitted to both.
+// Tells the points of leaves from those of wood, by lines and surfaces, and by the axes that were fitted to both.
 
 #ifndef PCS_SKELETON_FIND_LEAVES_H
 #define PCS_SKELETON_FIND_LEAVES_H
@@ -9,7 +9,10 @@
 #include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/Axis.h>
 #include <pcs/skeleton/Axis_set.h>
+#include <pcs/skeleton/Chain_rules.h>
 #include <pcs/skeleton/Scan.h>
+#include <pcs/skeleton/find_hollow.h>
+#include <pcs/skeleton/find_lines.h>
 
 #include <Eigen/Core>
 
@@ -22,28 +25,23 @@
 namespace pcs {
 namespace skeleton {
 
-/// When an axis is a leaf. Lengths are in breast heights [-].
+/// When points and axes are leaves. Lengths are in breast heights [-].
 struct Leaf_rules
 {
-  double shortest = 0.077; ///< an axis without wood on it that is shorter is a leaf, ...
-  double longest = 0.154;  ///< ... or one that is shorter than this,
-  double flatness = 0.1;   ///< ... if it is wider than this share of its length [-]
-  double share = 0.25; ///< of the length of all axes that must be leaves, or the tree has none, [-]
-  double unexplained = 0.12; ///< ... and of the points that no axis explains [-]
-  int rounds = 2;            ///< how often wood is looked for among what is left [count]
-};
-
-/// The leaves among axes and points.
-struct Leaves
-{
-  std::vector<std::uint8_t> is_axis_leaf;
-  double share = 0; ///< of the length of all axes [-]
-
-  /// What no axis explains beside leaves is a part of one.
-  bool is_leaf(const Axis_set& set, Index point) const
-  {
-    return !set.is_covered(point) || is_axis_leaf[set.axis_of_point[point]] != 0;
-  }
+  double shortest = 0.06; ///< an axis without wood on it that is shorter is a leaf, ...
+  double longest = 0.12;  ///< ... or one that is shorter than this,
+  double flatness = 0.1;  ///< ... if it is wider than this share of its length [-]
+  //! of the points that no axis explains: with fewer, leaves are not looked for [-]
+  double unexplained = 0.04;
+  double thick = 0.05; ///< share of the points that must be thick wood, or this is no tree [-]
+  double open =
+      0.4; ///< least share of the points that must be no thick wood, or there is no crown of leaves [-]
+  double leafy = 0.15;        ///< share of these that must be deep in leaves: fewer are chance [-]
+  std::size_t neighbors = 10; ///< that are leaves, too, around a point deep in leaves [count]
+  int rounds = 2;             ///< how often wood is looked for among what is left [count]
+  double pipe_slack = 1.5;    ///< `Pipe_rules::slack` where there are leaves [-]
+  Hollow_rules hollow;
+  Line_rules lines;
 };
 
 /*!
@@ -51,12 +49,11 @@ struct Leaves
   some more. `breast_height` is the unit of the rules. O(points).
 */
 template <class ConcurrencyTag>
-Leaves
-find_leaves(const Axis_set& set, const Scan& scan, double breast_height, const Leaf_rules& rules)
+std::vector<std::uint8_t>
+leaf_axes(const Axis_set& set, const Scan& scan, double breast_height, const Leaf_rules& rules)
 {
   const std::size_t m = set.axes.size();
-  Leaves leaves;
-  leaves.is_axis_leaf.assign(m, 0);
+  std::vector<std::uint8_t> is_leaf(m, 0);
   std::vector<Index> first(m + 1, 0);
   for (const Index a : set.axis_of_point)
     if (a != none)
@@ -68,16 +65,15 @@ find_leaves(const Axis_set& set, const Scan& scan, double breast_height, const L
   for (Index i = 0; i < set.axis_of_point.size(); ++i)
     if (set.axis_of_point[i] != none)
       point[next[set.axis_of_point[i]]++] = i;
-  std::vector<double> length(m);
   pcs::internal::for_each_index<ConcurrencyTag>(
       m,
       [&](std::size_t a) {
-        length[a] = length_of(set.axes[a].axis);
-        if (!(length[a] < rules.longest * breast_height))
+        const double length = length_of(set.axes[a].axis);
+        if (!(length < rules.longest * breast_height))
           return;
         const Index begin = first[a], end = first[a + 1];
-        bool is_leaf = length[a] < rules.shortest * breast_height || end - begin < 3;
-        if (!is_leaf) {
+        bool is_short = length < rules.shortest * breast_height || end - begin < 3;
+        if (!is_short) {
           Vec3 mean = Vec3::Zero();
           for (Index k = begin; k < end; ++k)
             mean += scan.points[point[k]];
@@ -88,25 +84,136 @@ find_leaves(const Axis_set& set, const Scan& scan, double breast_height, const L
             covariance += d * d.transpose();
           }
           const Vec3 spread = linear_algebra::symmetric_eigen<3>(covariance).values;
-          is_leaf = spread(1) > rules.flatness * rules.flatness * spread(2);
+          is_short = spread(1) > rules.flatness * rules.flatness * spread(2);
         }
-        leaves.is_axis_leaf[a] = is_leaf;
+        is_leaf[a] = is_short;
       },
       64);
   // what carries wood is wood; the axes on it come later
   std::vector<std::uint8_t> carries_wood(m, 0);
-  double all = 0, of_leaves = 0;
   for (std::size_t a = m; a-- > 0;) {
     if (a == 0 || carries_wood[a])
-      leaves.is_axis_leaf[a] = 0;
+      is_leaf[a] = 0;
     const Index parent = set.axes[a].parent;
-    if (!leaves.is_axis_leaf[a] && parent != none)
+    if (!is_leaf[a] && parent != none)
       carries_wood[parent] = 1;
-    all += length[a];
-    of_leaves += leaves.is_axis_leaf[a] ? length[a] : 0;
   }
-  leaves.share = all > 0 ? of_leaves / all : 0;
-  return leaves;
+  return is_leaf;
+}
+
+/// The points of the axes that are not leaves; others are parts of leaves. O(points).
+template <class ConcurrencyTag>
+std::vector<std::uint8_t> wood_by_axes(const Scan& scan,
+                                       const Axis_set& set,
+                                       const std::vector<std::uint8_t>& is_used,
+                                       double breast_height,
+                                       const Leaf_rules& rules)
+{
+  const std::vector<std::uint8_t> is_leaf =
+      leaf_axes<ConcurrencyTag>(set, scan, breast_height, rules);
+  std::vector<std::uint8_t> is_wood(scan.size(), 0);
+  for (std::size_t i = 0; i < scan.size(); ++i)
+    is_wood[i] =
+        is_used[i] && set.is_covered(static_cast<Index>(i)) && !is_leaf[set.axis_of_point[i]];
+  return is_wood;
+}
+
+/// Whether enough points are not explained to look for leaves.
+inline bool may_have_leaves(const Axis_set& set,
+                            const std::vector<std::uint8_t>& is_used,
+                            const Leaf_rules& rules)
+{
+  std::size_t used = 0, open = 0;
+  for (Index i = 0; i < is_used.size(); ++i)
+    if (is_used[i]) {
+      ++used;
+      open += !set.is_covered(i);
+    }
+  return double(open) >= rules.unexplained * double(used);
+}
+
+/*!
+  The points of thick wood, which is hollow, and of thin wood, which is a line with little around it. What is left is leaves if
+  much of it has nothing else around it: twigs that a scan just about sees are mixed with those that it sees well. Empty if it
+  is not, unless `is_sure` says that there are leaves.
+*/
+template <class ConcurrencyTag>
+std::vector<std::uint8_t> wood_by_points(const Scan& scan,
+                                         const Axis_set& set,
+                                         const std::vector<std::uint8_t>& is_used,
+                                         bool is_sure,
+                                         const Leaf_rules& rules)
+{
+  if (!is_sure && !may_have_leaves(set, is_used, rules))
+    return {};
+  const std::vector<std::uint8_t> is_thick =
+      points_on_hollow_sections<ConcurrencyTag>(scan, set, rules.hollow);
+  std::vector<std::uint8_t> is_wood =
+      points_on_lines<ConcurrencyTag>(scan, is_used, is_thick, rules.lines);
+  std::size_t used = 0, open = 0,
+              deep = 0; // points, those that are no thick wood, those deep in leaves
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    used += is_used[i];
+    open += is_used[i] && !is_thick[i];
+    is_wood[i] = is_used[i] && (is_wood[i] || is_thick[i]);
+  }
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    if (!is_used[i] || is_wood[i])
+      continue;
+    std::size_t count = 0;
+    for (const Index j : scan.neighbors[i])
+      count += j != none && is_used[j] && !is_wood[j];
+    deep += count >= rules.neighbors;
+  }
+  const bool is_leafy = double(used - open) >= rules.thick * double(used) &&
+                        double(open) >= rules.open * double(used) &&
+                        double(deep) >= rules.leafy * double(open);
+  if (!is_sure && !is_leafy)
+    is_wood.clear();
+  return is_wood;
+}
+
+/// Points that were taken for leaves but lie on the surfaces that were found are explained by these; returns how many.
+template <class ConcurrencyTag>
+std::size_t reclaim_points(const Scan& scan,
+                           const Chain_rules& rules,
+                           std::vector<std::uint8_t>& is_leaf,
+                           Axis_set& set)
+{
+  const std::size_t n = scan.size();
+  std::vector<Index> axis_of(n, none), segment_of(n, none);
+  pcs::internal::for_each_index<ConcurrencyTag>(
+      n,
+      [&](std::size_t i) {
+        const Vec3& p = scan.points[i];
+        if (!is_leaf[i])
+          return;
+        const auto near = scan.search->nearest_if(p, 4 * scan.spacing, [&](Index j) {
+          return set.is_covered(j);
+        });
+        if (!(near.squared_distance < 16 * scan.spacing * scan.spacing))
+          return;
+        const Index a = set.axis_of_point[near.index];
+        const Axis& axis = set.axes[a].axis;
+        const Axis_place place = nearest_place(axis, set.segment_of_point[near.index], p);
+        const double r = radius_at(axis, place);
+        if (place.distance >
+            r + std::max(rules.cover_offset * scan.spacing, rules.cover_factor * r))
+          return;
+        axis_of[i] = a;
+        segment_of[i] = place.segment;
+      },
+      256);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    if (axis_of[i] != none) {
+      set.axis_of_point[i] = axis_of[i];
+      set.segment_of_point[i] = segment_of[i];
+      ++set.axes[axis_of[i]].number_of_points;
+      is_leaf[i] = 0;
+      ++count;
+    }
+  return count;
 }
 
 } // namespace skeleton

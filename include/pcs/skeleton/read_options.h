@@ -73,6 +73,20 @@ void read_given_skeleton(const NamedParameters& np, Session_options& options)
   }
 }
 
+/// By evidence, unless the caller says yes or no, or which points are wood.
+template <class NamedParameters>
+void read_leaf_removal(const NamedParameters& np, Session_options& options)
+{
+  using pcs::internal::choose;
+  if constexpr (pcs::internal::is_given_v<NamedParameters, pcs::internal_np::wood_map_t>)
+    options.leaf_removal = Leaf_removal::never;
+  const auto wish = choose(np, pcs::internal_np::do_remove_leaves, options.leaf_removal);
+  if constexpr (std::is_same_v<std::decay_t<decltype(wish)>, Leaf_removal>)
+    options.leaf_removal = wish;
+  else
+    options.leaf_removal = wish ? Leaf_removal::always : Leaf_removal::never;
+}
+
 } // namespace internal
 
 /// Throws `Invalid_input`, whose text begins with `function`, if a hint is out of range.
@@ -99,7 +113,7 @@ Session_options read_options(const NamedParameters& np, const std::string& funct
   options.method = choose(np, pcs::internal_np::skeleton_method, Skeleton_method::chains);
   options.slices = choose(np, pcs::internal_np::slice_rules, Slice_rules());
   options.do_mark_ground = choose(np, pcs::internal_np::do_remove_ground, true);
-  options.do_find_leaves = choose(np, pcs::internal_np::do_remove_leaves, false);
+  internal::read_leaf_removal(np, options);
   options.breast_height =
       static_cast<double>(choose(np, pcs::internal_np::breast_height, default_breast_height));
   if (!std::isfinite(options.breast_height) || !(options.breast_height > 0))

@@ -1,0 +1,211 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Thin wood is a line, thick wood is hollow, and leaves are neither.
+
+#include <pcs/skeleton/find_leaves.h>
+#include <support/axes.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <utility>
+#include <vector>
+
+using namespace pcs::skeleton;
+
+namespace {
+
+using Points = std::vector<Vec3>;
+using Flags = std::vector<std::uint8_t>;
+
+/// A twig of 1 m along z, seen from all sides.
+void add_twig(Points& points, const Vec3& base, std::size_t count, std::mt19937& random)
+{
+  std::uniform_real_distribution<double> share(0, 1), turn(0, 2 * 3.14159265358979323846);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double angle = turn(random);
+    points.push_back(base + Vec3(0.004 * std::cos(angle), 0.004 * std::sin(angle), share(random)));
+  }
+}
+
+/// Leaves of 6 cm anywhere in a box of 1 m.
+void add_leaves(Points& points, std::size_t count, std::mt19937& random)
+{
+  std::uniform_real_distribution<double> share(-0.5, 0.5);
+  std::normal_distribution<double> any;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vec3 middle(share(random), share(random), 0.5 + share(random));
+    const Vec3 a = Vec3(any(random), any(random), any(random)).normalized();
+    const Vec3 b = a.cross(Vec3(any(random), any(random), any(random))).normalized();
+    for (int i = 0; i < 30; ++i)
+      points.push_back(middle + 0.06 * (share(random) * a + share(random) * b));
+  }
+}
+
+/// The scan of points, and where each of them is in it.
+struct Prepared
+{
+  Scan scan;
+  Flags is_used, is_twig;
+  Axis_set set; ///< without axes
+
+  /// The first `number_of_wood` points are wood.
+  Prepared(const Points& points, std::size_t number_of_wood)
+  {
+    prepare_scan<CGAL::Sequential_tag>(points, Vec3::UnitZ(), scan);
+    is_used.assign(scan.size(), 1);
+    is_twig.assign(scan.size(), 0);
+    for (std::size_t i = 0; i < number_of_wood; ++i)
+      is_twig[scan.point_of_input[i]] = 1;
+    set.axis_of_point.assign(scan.size(), none);
+    set.segment_of_point.assign(scan.size(), none);
+  }
+
+  /// Shares of the twigs and of the other points that a flag is set for.
+  std::pair<double, double> shares(const Flags& flags) const
+  {
+    double twig[2] = {0, 0}, other[2] = {0, 0};
+    for (std::size_t i = 0; i < flags.size(); ++i)
+      ++(is_twig[i] ? twig : other)[flags[i] != 0];
+    return {twig[1] / (twig[0] + twig[1]), other[1] / std::max(1.0, other[0] + other[1])};
+  }
+};
+
+/// An axis along z from 0 to 1 that explains all points.
+Axis_set one_axis(const Scan& scan, double radius, double density, double x = 0)
+{
+  Axis_set set;
+  set.axes.push_back({pcs_test::straight_axis(scan.frame.to_local(Vec3(x, 0, 0)),
+                                              scan.frame.to_local(Vec3(x, 0, 1)),
+                                              20,
+                                              radius,
+                                              radius),
+                      none,
+                      scan.size(),
+                      1});
+  set.density = density;
+  set.axis_of_point.assign(scan.size(), 0);
+  set.segment_of_point.resize(scan.size());
+  for (std::size_t i = 0; i < scan.size(); ++i)
+    set.segment_of_point[i] = nearest_place(set.axes[0].axis, scan.points[i]).segment;
+  return set;
+}
+
+/// Points at distances of `from` to `to` from the z-axis.
+Points pipe(std::size_t count, double from, double to)
+{
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> share(0, 1), turn(0, 2 * 3.14159265358979323846);
+  Points points;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double r = std::sqrt(from * from + (to * to - from * from) * share(random));
+    const double angle = turn(random);
+    points.emplace_back(r * std::cos(angle), r * std::sin(angle), share(random));
+  }
+  return points;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(find_leaves_of_scans)
+
+BOOST_AUTO_TEST_CASE(twigs_are_lines_and_leaves_around_them_are_not)
+{
+  std::mt19937 random(1);
+  Points points;
+  for (int k = 0; k < 4; ++k)
+    add_twig(points, Vec3(0.2 * k - 0.3, 0.1 * k - 0.2, 0), 100, random);
+  const std::size_t wood = points.size();
+  add_leaves(points, 120, random);
+  const Prepared p(points, wood);
+  const Flags none_is_sure(p.scan.size(), 0);
+  const auto [twigs, leaves] =
+      p.shares(points_on_lines<CGAL::Sequential_tag>(p.scan, p.is_used, none_is_sure, {}));
+  BOOST_CHECK_GT(twigs, 0.6);
+  BOOST_CHECK_LT(leaves, 0.35);
+  // what is sure is not tried, but helps
+  const Flags all_are_sure(p.scan.size(), 1);
+  BOOST_CHECK_EQUAL(
+      p.shares(points_on_lines<CGAL::Sequential_tag>(p.scan, p.is_used, all_are_sure, {})).first,
+      0.0);
+}
+
+BOOST_AUTO_TEST_CASE(thick_wood_is_hollow)
+{
+  const std::size_t count = 3000;
+  for (const bool is_hollow : {true, false}) {
+    const Points points = pipe(count, is_hollow ? 0.1 : 0, 0.1);
+    const Prepared p(points, count);
+    const double unit = p.scan.frame.unit;
+    const Axis_set set = one_axis(p.scan, 0.1 / unit, double(count) / 0.628 * unit * unit);
+    const double share =
+        p.shares(points_on_hollow_sections<CGAL::Sequential_tag>(p.scan, set, {})).first;
+    BOOST_CHECK_EQUAL(share, is_hollow ? 1.0 : 0.0);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(leaves_are_left_out_only_where_there_are_many)
+{
+  std::mt19937 random(2);
+  Points points = pipe(600, 0.1, 0.1); // 2 m beside the others
+  for (Vec3& p : points)
+    p.x() += 2;
+  const std::size_t trunk = points.size();
+  for (int k = 0; k < 6; ++k)
+    add_twig(points, Vec3(0.15 * k - 0.4, 0.1 * k - 0.2, 0), 100, random);
+  const std::size_t wood = points.size();
+  const auto find = [&](const Prepared& p, const Axis_set& set, bool is_sure) {
+    return wood_by_points<CGAL::Sequential_tag>(p.scan, set, p.is_used, is_sure, {});
+  };
+  const auto axes_of = [&](const Prepared& p) {
+    const double unit = p.scan.frame.unit;
+    Axis_set set = one_axis(p.scan, 0.1 / unit, double(trunk) / 0.628 * unit * unit, 2);
+    for (std::size_t i = trunk; i < points.size(); ++i)
+      set.axis_of_point[p.scan.point_of_input[i]] = none;
+    return set;
+  };
+  const Prepared bare(points, wood);
+  BOOST_CHECK(find(bare, axes_of(bare), false).empty());
+  BOOST_CHECK_GT(bare.shares(find(bare, axes_of(bare), true)).first, 0.9);
+  add_leaves(points, 120, random);
+  const Prepared leafy(points, wood);
+  const Flags found = find(leafy, axes_of(leafy), false);
+  BOOST_REQUIRE(!found.empty());
+  BOOST_CHECK_GT(leafy.shares(found).first, 2 * leafy.shares(found).second);
+  // without a stem it is no tree
+  BOOST_CHECK(find(leafy, leafy.set, false).empty());
+  // where axes explain all points, nothing is looked for
+  Axis_set all = axes_of(leafy);
+  all.axis_of_point.assign(leafy.scan.size(), 0);
+  BOOST_CHECK(find(leafy, all, false).empty());
+}
+
+BOOST_AUTO_TEST_CASE(leaves_on_a_surface_are_no_leaves)
+{
+  Points points = pipe(3000, 0.1, 0.1);
+  const std::size_t wood = points.size();
+  for (const Vec3& p : pipe(300, 0.3, 0.3))
+    points.push_back(p);
+  const Prepared p(points, wood);
+  Axis_set set = one_axis(p.scan, 0.1 / p.scan.frame.unit, 1);
+  Flags is_leaf(p.scan.size(), 0);
+  std::size_t count = 0; // a tenth of the surface, and all that is away from it
+  for (std::size_t i = 0; i < p.scan.size(); ++i) {
+    is_leaf[i] = !p.is_twig[i] || i % 10 == 0;
+    count += p.is_twig[i] && i % 10 == 0;
+    if (is_leaf[i])
+      set.axis_of_point[i] = none;
+  }
+  BOOST_CHECK_EQUAL(reclaim_points<CGAL::Sequential_tag>(p.scan, {}, is_leaf, set), count);
+  const auto [surface, away] = p.shares(is_leaf);
+  BOOST_CHECK_EQUAL(surface, 0.0);
+  BOOST_CHECK_EQUAL(away, 1.0);
+  for (std::size_t i = 0; i < p.scan.size(); ++i)
+    BOOST_CHECK_EQUAL(set.is_covered(static_cast<Index>(i)), p.is_twig[i] != 0);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
