@@ -54,7 +54,8 @@ struct Skeleton_report
   double residual = 0;
   double density = 0; ///< points per area of the surface of branches; 0: not known [1/L^2]
 
-  double height = 0; ///< from the root to the highest node, along the up direction [L]
+  double height =
+      0; ///< from the root to the highest node or leaf that was found, along the up direction [L]
   //! of the trunk; where it ends below, of the thickest branch there; 0: nothing is that high [L]
   double diameter_at_breast_height = 0;
   Wood total;

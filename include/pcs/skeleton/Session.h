@@ -413,6 +413,23 @@ private:
     }
     r.residual = unit * median_residual();
     report_sizes(m_tree, unit, m_options.up, m_options.breast_height, r);
+    if (!m_tree.nodes.empty())
+      r.height =
+          std::max(r.height, unit * (top_of_leaves() - m_options.up.dot(m_tree.nodes[0].point)));
+  }
+
+  /// Height of the highest leaves that were found, but for one in a thousand; the lowest number without.
+  double top_of_leaves() const
+  {
+    std::vector<double> heights;
+    for (std::size_t i = 0; i < m_scan.size(); ++i)
+      if (m_is_found_leaf[i])
+        heights.push_back(m_options.up.dot(m_scan.points[i]));
+    if (heights.empty())
+      return std::numeric_limits<double>::lowest();
+    const auto at = heights.end() - 1 - static_cast<std::ptrdiff_t>(heights.size() / 1000);
+    std::nth_element(heights.begin(), at, heights.end());
+    return *at;
   }
 
   /// Of some ten thousand points spread over all.

@@ -34,7 +34,8 @@ struct Ground_rules
   double filled = 0.4; ///< share of the cells of the sheet that hold points [-]
   int cells = 20;      ///< along the radius of the sheet
   double thin = 0.1;   ///< of a cloud that is nothing else: deviation across it by that along it,
-  double full = 0.7;   ///< ... and share of its cells that hold points [-]
+  double full = 0.7;   ///< ... share of its cells that hold points,
+  double longest = 8;  ///< ... and its length by its width [-]
 };
 
 namespace internal {
@@ -47,16 +48,16 @@ struct Bin_extent
   std::size_t count = 0;
 };
 
-/// Whether points fill a disc around `center` in the plane across `up`.
+/// Whether points fill an ellipse around `center`: a disc along `e1` and `e2`, of which the shorter one has length 1.
 inline bool is_filled_sheet(const Scan& scan,
                             const std::vector<Index>& points,
                             const Vec3& center,
-                            const Vec3& up,
+                            const Vec3& e1,
+                            const Vec3& e2,
                             const Ground_rules& rules)
 {
   if (points.size() < 100)
     return false;
-  const Vec3 e1 = up.unitOrthogonal(), e2 = up.cross(e1);
   std::vector<double> distance;
   for (const Index i : points) {
     const Vec3 d = scan.points[i] - center;
@@ -65,7 +66,8 @@ inline bool is_filled_sheet(const Scan& scan,
   std::vector<double> sorted = distance;
   const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(0.9 * double(sorted.size()));
   std::nth_element(sorted.begin(), at, sorted.end());
-  const double radius = *at, cell = std::max(radius / rules.cells, 3 * scan.spacing);
+  const double radius = *at, longest = std::max(e1.norm(), e2.norm());
+  const double cell = std::max(radius / rules.cells, 3 * scan.spacing * longest);
   std::vector<std::pair<long, long>> cells;
   for (std::size_t k = 0; k < points.size(); ++k)
     if (distance[k] <= radius) {
@@ -239,14 +241,16 @@ inline std::size_t mark_ground(const Scan& scan,
     if (across > keep)
       far.push_back(i);
   }
-  if (!is_wide || !internal::is_filled_sheet(scan, far, center, up, rules))
+  const Vec3 e1 = up.unitOrthogonal(), e2 = up.cross(e1);
+  if (!is_wide || !internal::is_filled_sheet(scan, far, center, e1, e2, rules))
     return 0;
   for (const Index i : far)
     is_used[i] = 0;
   return far.size();
 }
 
-/// Whether all points together are one thin filled sheet, such as ground alone, or a wall.
+/// Whether all points together are one thin filled sheet, such as ground alone, or a wall; longer ones than
+/// `rules.longest` may be boards or rows of anything.
 inline bool
 is_one_sheet(const Scan& scan, const std::vector<std::uint8_t>& is_used, const Ground_rules& rules)
 {
@@ -267,8 +271,10 @@ is_one_sheet(const Scan& scan, const std::vector<std::uint8_t>& is_used, const G
   const Vec3 spread = eigen.values.cwiseMax(0).cwiseSqrt();
   Ground_rules full = rules;
   full.filled = rules.full;
-  return spread(0) < rules.thin * spread(1) &&
-         internal::is_filled_sheet(scan, points, mean, eigen.vectors.col(0), full);
+  if (!(spread(0) < rules.thin * spread(1)) || !(spread(2) < rules.longest * spread(1)))
+    return false;
+  const Vec3 across = spread(2) / spread(1) * eigen.vectors.col(1), along = eigen.vectors.col(2);
+  return internal::is_filled_sheet(scan, points, mean, along, across, full);
 }
 
 } // namespace skeleton
