@@ -63,8 +63,14 @@ pcs::Orl_report build(Space& space, const Options& o)
   std::error_code error;
   if (!o.correspondences.empty() && std::filesystem::exists(o.correspondences, error))
     return space.build_from(pcs::IO::read_correspondences(o.correspondences), form);
+  // of more trees, each stands as it was given
+  const bool may_turn = o.align == "turns" && o.number_of_trees() == 2;
   pcs::Orl_report report =
-      space.build(form.matching_weights(weights).transport_options(transport).callback(callback));
+      space.build(form.matching_weights(weights)
+                      .transport_options(transport)
+                      .alignment(may_turn ? Alignment::turns : Alignment::as_given)
+                      .up_direction(up_direction(o.up))
+                      .callback(callback));
   if (!o.correspondences.empty())
     pcs::IO::write_correspondences(o.correspondences, space.correspondences());
   return report;
@@ -95,6 +101,7 @@ std::string report_text(const Space& space, const pcs::Orl_report& r)
   json["matching_energy"] = r.matching_energy;
   json["unexplained_share"] = r.unexplained_share;
   json["is_grown_at_tips"] = r.is_grown_at_tips;
+  json["turn_degrees"] = r.turn * 180 / CGAL_PI;
   json["number_of_nodes"] = r.number_of_nodes;
   json["number_of_branches"] = r.number_of_branches;
   json["number_of_matched_branches"] = r.number_of_matched_branches;
@@ -121,8 +128,8 @@ std::vector<Tree_file> read_trees(const Options& o)
   const auto file = [](const std::vector<std::string>& names, std::size_t i) {
     return names.empty() ? std::string() : names[i];
   };
-  for (std::size_t i = 0; i < std::max(o.trees.size(), o.skeletons.size()); ++i)
-    files.push_back(read_tree(file(o.trees, i), file(o.skeletons, i), o.do_extend_axes));
+  for (std::size_t i = 0; i < o.number_of_trees(); ++i)
+    files.push_back(read_tree(file(o.trees, i), file(o.skeletons, i), o.do_extend_axes, o.up));
   return files;
 }
 

@@ -220,7 +220,7 @@ BOOST_AUTO_TEST_CASE(turns_do_not_add_up_along_branches)
         worst = 0;
         for (std::size_t e = 0; e < layout.number_of_edges(); ++e)
           worst = std::max(worst, pcs::shape_space::angle_between(sum.frame[e], end.frame[e]));
-        BOOST_TEST(worst > most);
+        BOOST_TEST(worst > most - 1e-12); // first edges hardly turn: it is reached, not passed
       }
     }
 }

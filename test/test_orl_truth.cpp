@@ -78,7 +78,7 @@ BOOST_AUTO_TEST_CASE(a_growing_tree_is_predicted_best_with_branches_born_in_orde
     stages[k].tree = pcs::tree_at_age<Kernel>(tree, 0.5 + 0.25 * k);
     stages[k].scan = scan_wood(stages[k].tree, 100 + k, 4).points;
   }
-  const Prediction p = predict({stages[0], stages[1], stages[2], 0.5, Vec3::UnitZ(), true, true});
+  const Prediction p = predict({stages[0], stages[1], stages[2], 0.5, Vec3::UnitZ(), true});
   BOOST_TEST_MESSAGE("in order " << p.in_order << ", geodesic " << p.geodesic << ", linear "
                                  << p.linear << ", no change " << p.first << ", " << p.last);
   BOOST_TEST(p.is_grown_at_tips);

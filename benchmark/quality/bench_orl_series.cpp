@@ -18,7 +18,7 @@ namespace {
 void print(const std::string& what, const Series& series)
 {
   const Prediction p = predict(series);
-  std::printf("| %s | %.2f | %.3f | %.3f | %.3f | %.3f | %.3f | %.3f | %.2f | %s |\n",
+  std::printf("| %s | %.2f | %.3f | %.3f | %.3f | %.3f | %.3f | %.3f | %.2f | %s | %.0f |\n",
               what.c_str(),
               series.lambda,
               p.geodesic,
@@ -28,7 +28,8 @@ void print(const std::string& what, const Series& series)
               p.last,
               p.attainable,
               p.unexplained,
-              p.is_grown_at_tips ? "at tips" : "along");
+              p.is_grown_at_tips ? "at tips" : "along",
+              p.turn * 180 / CGAL_PI);
   std::fflush(stdout);
 }
 
@@ -125,11 +126,11 @@ void virtual_trees(int first_seed, int number)
         ++turn;
       }
       print(name + " " + std::to_string(seed) + " growing",
-            {stages[0], stages[1], stages[2], 0.5, Vec3::UnitZ(), true, true});
+            {stages[0], stages[1], stages[2], 0.5, Vec3::UnitZ(), true});
       for (const int k : {0, 1, 2})
         others.push_back(scanned(grown(1000 * seed + k), 10 * seed + k, 0));
       print(name + " " + std::to_string(seed) + " strangers",
-            {others[0], others[1], others[2], 0.5, Vec3::UnitZ(), true, true});
+            {others[0], others[1], others[2], 0.5, Vec3::UnitZ(), true});
     }
 }
 
@@ -146,8 +147,8 @@ int main(int argc, char** argv)
   CLI11_PARSE(app, argc, argv);
   std::printf(
       "| plant | lambda | geodesic | in order | linear | first end | last end | attainable | "
-      "unexplained | growth |\n"
-      "|---|---|---|---|---|---|---|---|---|---|\n");
+      "unexplained | growth | turn |\n"
+      "|---|---|---|---|---|---|---|---|---|---|---|\n");
   if (!data.empty()) {
     tomato(data);
     axes_of_plants(data);

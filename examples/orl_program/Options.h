@@ -9,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -26,7 +27,7 @@ struct Options
   std::vector<std::string> trees, skeletons;
   std::vector<double> lambda = {0, 0.25, 0.5, 0.75, 1};
   std::string output, matches, report, correspondences;
-  std::string transport = "exact", orientation = "gauge-fixed";
+  std::string transport = "exact", orientation = "gauge-fixed", align = "turns", up = "z";
   double maximal_turn = 45;
   bool do_extend_axes = false, do_limit_radii = false, do_order_births = false,
        is_published = false, is_quiet = false;
@@ -40,6 +41,7 @@ struct Options
   std::vector<double> weights, times;
   double pipe_exponent = 0;
 
+  std::size_t number_of_trees() const { return std::max(trees.size(), skeletons.size()); }
   bool is_family() const
   {
     return do_mean || do_growth || number_of_modes > 0 || number_of_samples > 0 ||
@@ -156,6 +158,15 @@ Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
   app.add_option("--correspondences",
                  o.correspondences,
                  "read what was computed before from this file, or write it if there is none");
+  app.add_option("--align",
+                 o.align,
+                 "whether the second of two trees may stand turned about the vertical, as a pot "
+                 "that was put down anew")
+      ->check(CLI::IsMember({"none", "turns"}))
+      ->capture_default_str();
+  app.add_option("--up", o.up, "the vertical")
+      ->check(CLI::IsMember({"x", "y", "z"}))
+      ->capture_default_str();
   app.add_option("--transport", o.transport, "how points are matched")
       ->check(CLI::IsMember({"exact", "sinkhorn"}))
       ->capture_default_str();
@@ -193,7 +204,7 @@ inline void check(const Options& o)
     if (!o.trees.empty() && !o.skeletons.empty() && o.trees.size() != o.skeletons.size())
       fail("--tree is given " + std::to_string(o.trees.size()) + " times, --skeleton " +
            std::to_string(o.skeletons.size()) + " times, expected as many");
-    const std::size_t n = std::max(o.trees.size(), o.skeletons.size());
+    const std::size_t n = o.number_of_trees();
     if (n > 2 && !o.is_family() && !o.has_lambda)
       fail("for " + std::to_string(n) +
            " trees say what is wanted: --mean, --modes, --sample, --weights, --growth, "

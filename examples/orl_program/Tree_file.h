@@ -67,12 +67,19 @@ inline void read_skeleton(const std::string& path, Tree_file& tree)
   }
 }
 
-inline void extract_skeleton(const std::string& points, Tree_file& tree)
+inline Kernel::Vector_3 up_direction(const std::string& up)
+{
+  return Kernel::Vector_3(up == "x" ? 1 : 0, up == "y" ? 1 : 0, up == "z" ? 1 : 0);
+}
+
+inline void extract_skeleton(const std::string& points, const std::string& up, Tree_file& tree)
 {
 #if PCS_CAN_EXTRACT_SKELETONS
   const auto report = [&] {
     try {
-      return pcs::extract_tree_skeleton(tree.points.points(), tree.skeleton);
+      return pcs::extract_tree_skeleton(tree.points.points(),
+                                        tree.skeleton,
+                                        pcs::parameters::up_direction(up_direction(up)));
     } catch (const pcs::Invalid_input& error) {
       throw pcs::Invalid_input(points + ": " + error.what() + "; give a skeleton with --skeleton");
     }
@@ -82,13 +89,16 @@ inline void extract_skeleton(const std::string& points, Tree_file& tree)
                              pcs::to_string(report.status) + "); give one with --skeleton");
 #else
   static_cast<void>(tree);
+  static_cast<void>(up);
   throw pcs::Invalid_input(points + ": a skeleton is needed; give one with --skeleton");
 #endif
 }
 
-/// Either path may be empty, not both.
-inline Tree_file
-read_tree(const std::string& points, const std::string& skeleton, bool do_extend_axes)
+/// Either path may be empty, not both. `up`: the axis along which trees grow.
+inline Tree_file read_tree(const std::string& points,
+                           const std::string& skeleton,
+                           bool do_extend_axes,
+                           const std::string& up)
 {
   Tree_file tree;
   if (!points.empty())
@@ -96,7 +106,7 @@ read_tree(const std::string& points, const std::string& skeleton, bool do_extend
   if (!skeleton.empty())
     read_skeleton(skeleton, tree);
   else
-    extract_skeleton(points, tree);
+    extract_skeleton(points, up, tree);
   if (do_extend_axes && !skeleton.empty())
     pcs::shape_space::extend_axes(tree.skeleton, tree.points.points());
   if (tree.ids.size() != num_vertices(tree.skeleton)) {

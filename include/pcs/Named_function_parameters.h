@@ -60,6 +60,7 @@
   PCS_OWN(transport_options)                                                                       \
   PCS_OWN(orientation)                                                                             \
   PCS_OWN(virtual_direction)                                                                       \
+  PCS_OWN(alignment)                                                                               \
   PCS_OWN(do_use_unit_weights)                                                                     \
   PCS_OWN(maximal_turn)                                                                            \
   PCS_OWN(do_limit_radii)                                                                          \

@@ -139,6 +139,12 @@ public:
         \nptype `shape_space::Assignment_options`
       \np{transport_options} of the correspondence of points: exact or by Sinkhorn's algorithm, and sizes
         \nptype `shape_space::Transport_options`
+      \np{alignment} whether the second of two trees may stand turned about the vertical
+        \nptype `shape_space::Alignment`
+        \npdefault `as_given`: both stand in the same axes; with `turns` the branches tell, and the report has the turn
+      \np{up_direction} the vertical
+        \nptype a vector with `x()`, `y()`, `z()`, finite and not null
+        \npdefault `(0, 0, 1)`
       \np{orientation} how orientations are measured
         \nptype `shape_space::Orientation`
         \npdefault `gauge_fixed`; `world_axes` is the text's
@@ -207,6 +213,8 @@ public:
     built.topology = shape_space::restore_topology(correspondences,
                                                    inputs(),
                                                    "pcs::Orl_shape_space::build_from()");
+    const auto& [w, x, y, z] = correspondences.turn;
+    built.turn = Quaternion(w, x, y, z);
     shape_space::embed(inputs(), built);
     report.seconds.topology = watch.lap();
     shape_space::check_pairs(correspondences,
@@ -224,6 +232,7 @@ public:
     this->check_built("correspondences");
     check_inputs("correspondences");
     return shape_space::store_topology(this->m_built.topology,
+                                       this->m_built.turn,
                                        inputs(),
                                        this->m_built.instances.pairs());
   }

@@ -225,6 +225,31 @@ BOOST_AUTO_TEST_CASE(options_change_the_result)
   succeeds(trees + "--lambda 0.5 --output other --published-energy --orientation transported");
 }
 
+BOOST_AUTO_TEST_CASE(a_tree_that_stands_turned_is_found)
+{
+  const orl_test::Tree a = swc("a.swc");
+  for (const bool is_y_up : {false, true}) {
+    const orl_test::Vec3 up = is_y_up ? orl_test::Vec3::UnitY() : orl_test::Vec3::UnitZ();
+    const Eigen::Matrix3d upright =
+        Eigen::Quaterniond::FromTwoVectors(orl_test::Vec3::UnitZ(), up).toRotationMatrix();
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(CGAL_PI / 2, up).toRotationMatrix();
+    pcs::IO::write_swc(path("one.swc"), orl_test::moved(a, upright, {0, 0, 0}));
+    pcs::IO::write_swc(path("two.swc"), orl_test::moved(a, turn * upright, {0, 0, 0}));
+    const std::string both =
+        std::string("--skeleton one.swc --skeleton two.swc --lambda 1 --report r.json ") +
+        (is_y_up ? "--up y " : "");
+    const auto degrees = [&](const std::string& arguments) {
+      succeeds(both + arguments);
+      return Json::parse(content("r.json"))["turn_degrees"].get<double>();
+    };
+    BOOST_TEST(std::abs(degrees("--output turned") + 90) < 1e-3);
+    BOOST_TEST(degrees("--output still --align none") == 0);
+    BOOST_TEST(num_vertices(swc("turned/lambda_1.000.swc")) >= num_vertices(a));
+  }
+  refuses("--skeleton one.swc --skeleton two.swc --output out --align sideways", "--align");
+  refuses("--skeleton one.swc --skeleton two.swc --output out --up w", "--up");
+}
+
 BOOST_AUTO_TEST_CASE(correspondences_are_kept)
 {
   succeeds(trees + "--lambda 0.3 --output one --correspondences c.txt");

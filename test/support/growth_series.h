@@ -305,35 +305,6 @@ inline Pose align(const std::vector<Vec3>& points,
   return best;
 }
 
-/// Of the pose that lays the last scan on the first, and turns about the vertical: the one whose branches match at least cost.
-/// Nearest points alone turn a seedling upside down.
-inline Pose pose_of_branches(const Seen_plant& first,
-                             const Seen_plant& last,
-                             const Pose& of_points,
-                             const Vec3& up)
-{
-  constexpr int turns = 24;
-  std::vector<Pose> poses{of_points};
-  for (int k = 0; k < turns; ++k) {
-    Pose pose;
-    pose.rotation = Eigen::AngleAxisd(2 * CGAL_PI * k / turns, up).toRotationMatrix();
-    poses.push_back(pose);
-  }
-  double least = std::numeric_limits<double>::infinity();
-  Pose best;
-  for (const Pose& pose : poses) {
-    pcs::Orl_shape_space<Kernel> space;
-    space.add_skeleton(first.tree);
-    space.add_skeleton(moved(last.tree, pose.rotation, pose.shift));
-    const double energy = space.build().matching_energy;
-    if (energy < least) {
-      least = energy;
-      best = pose;
-    }
-  }
-  return best;
-}
-
 /// A plant at three times.
 struct Series
 {
@@ -341,8 +312,6 @@ struct Series
   double lambda = 0.5; ///< time of the middle
   Vec3 up = Vec3::UnitZ();
   bool is_upright = false;
-  bool is_virtual =
-      false; ///< the points tell how the ends stand, and hundreds of branches take their time
 };
 
 /// Chamfer distances to what was seen in the middle. [L]
@@ -354,10 +323,11 @@ struct Prediction
   double attainable;     ///< of two halves of what was seen
   double unexplained;    ///< share of the smaller end that is not found in the other [-]
   bool is_grown_at_tips; ///< as the matching found
+  double turn;           ///< likewise [rad]
 };
 
-/// Pots are put down anew every day: the ends are aligned before, by their points for linear morphing and by their branches for
-/// the geodesic, and each prediction before it is measured. Scans are dense in some places and the points of a prediction stand
+/// Pots are put down anew every day: the ends are aligned before, by their points for linear morphing and by the space itself
+/// for the geodesic, and each prediction before it is measured. Scans are dense in some places and the points of a prediction stand
 /// twice in some: all clouds are evened first. All alike.
 inline Prediction predict(const Series& series)
 {
@@ -365,16 +335,12 @@ inline Prediction predict(const Series& series)
                           last = to_eigen(series.last.scan);
   const Pose of_points = align(last, one, series.up, series.is_upright);
   const std::vector<Vec3> two = of_points(last);
-  const Pose pose = series.is_virtual
-                        ? of_points
-                        : pose_of_branches(series.first, series.last, of_points, series.up);
-  std::vector<Point> turned;
-  for (const Vec3& p : pose(last))
-    turned.push_back(to_cgal(p));
   pcs::Orl_shape_space<Kernel> space;
   space.add(series.first.tree, series.first.scan);
-  space.add(moved(series.last.tree, pose.rotation, pose.shift), turned);
-  const pcs::Orl_report report = space.build();
+  space.add(series.last.tree, series.last.scan);
+  const pcs::Orl_report report =
+      space.build(pcs::parameters::alignment(pcs::shape_space::Alignment::turns)
+                      .up_direction(Kernel::Vector_3(series.up.x(), series.up.y(), series.up.z())));
   std::vector<Point> points, in_order;
   space.points(space.geodesic(0, 1, series.lambda), points);
   space.points(
@@ -404,7 +370,8 @@ inline Prediction predict(const Series& series)
           measure(two),
           chamfer(evened(half[0], cell), evened(half[1], cell)),
           report.unexplained_share,
-          report.is_grown_at_tips};
+          report.is_grown_at_tips,
+          report.turn};
 }
 
 } // namespace orl_test

@@ -27,10 +27,13 @@ inline Orl_correspondences read_correspondences(const std::string& path)
   internal::Word_reader file(path);
   Orl_correspondences result;
   file.expect("pcs_correspondences");
-  file.expect("1");
+  file.expect("2");
   file.expect("trees");
   for (std::uint64_t& f : result.fingerprint)
     f = file.number<std::uint64_t>("a fingerprint");
+  file.expect("turn");
+  for (double& x : result.turn)
+    x = file.real("a quaternion");
   const auto index = [&] {
     return file.skip("-") ? Orl_correspondences::none : file.count("the number of an element");
   };

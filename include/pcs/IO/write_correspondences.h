@@ -25,7 +25,7 @@ namespace IO {
 inline void write_correspondences(const std::string& path, const Orl_correspondences& c)
 {
   internal::Output_file file(path);
-  std::string line = "pcs_correspondences 1\n";
+  std::string line = "pcs_correspondences 2\n";
   const auto add = [&](auto value) {
     line += ' ';
     internal::append_number(line, value);
@@ -44,6 +44,10 @@ inline void write_correspondences(const std::string& path, const Orl_corresponde
   line += "trees";
   add(c.fingerprint[0]);
   add(c.fingerprint[1]);
+  end();
+  line += "turn";
+  for (const double x : c.turn)
+    add(x);
   end();
   line += "branches";
   add(c.branches.size());

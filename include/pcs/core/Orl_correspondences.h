@@ -40,8 +40,10 @@ struct Orl_correspondences
   };
 
   std::array<std::uint64_t, 2> fingerprint = {0, 0}; ///< of nodes and points of the trees
-  std::vector<Branch> branches;                      ///< parents first
-  std::vector<Pair> pairs;                           ///< by edge
+  std::array<double, 4> turn =
+      {1, 0, 0, 0}; ///< quaternion w, x, y, z of the turn after which tree 2 stands like tree 1
+  std::vector<Branch> branches; ///< parents first
+  std::vector<Pair> pairs;      ///< by edge
 };
 
 } // namespace pcs

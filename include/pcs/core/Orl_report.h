@@ -33,6 +33,8 @@ struct Orl_report
       0; ///< of two trees: 0 if the smaller one is all found in the other, 1 if nothing of it is [-]
   bool is_grown_at_tips =
       false; ///< of two trees: whether the branches of one are beginnings of those of the other, rather than shrunken
+  double turn =
+      0; ///< of two trees: angle about the vertical after which the second stands like the first [rad]
   double distance = 0; ///< between the trees, (4.7) [L]
 
   std::array<std::size_t, 2> number_of_points = {0, 0}; ///< of the scans [count]

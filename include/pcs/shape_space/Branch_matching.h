@@ -5,13 +5,16 @@
 #ifndef PCS_SHAPE_SPACE_BRANCH_MATCHING_H
 #define PCS_SHAPE_SPACE_BRANCH_MATCHING_H
 
-#include <pcs/core/rotations.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
 #include <pcs/shape_space/Branch_paths.h>
 #include <pcs/shape_space/Matched_branch.h>
+#include <pcs/shape_space/Matching_answers.h>
 #include <pcs/shape_space/Matching_energy.h>
 #include <pcs/shape_space/linear_assignment.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
@@ -19,9 +22,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <numeric>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -39,52 +40,67 @@ template <class ConcurrencyTag>
 class Branch_matching
 {
 public:
+  /// `paths`: the ways in which the trees may be taken apart.
   Branch_matching(const Rooted_tree& tree_1,
                   const Rooted_tree& tree_2,
                   const Matching_weights& weights,
+                  std::array<Branch_paths, 2> paths,
                   bool is_at_tips = false)
-    : Branch_matching(tree_1, tree_2, weights, find_paths(tree_1, weights), is_at_tips)
-  {
-  }
-
-  /// The same where tree 1 may be taken apart in the given way only.
-  Branch_matching(const Rooted_tree& tree_1,
-                  const Rooted_tree& tree_2,
-                  const Matching_weights& weights,
-                  Branch_paths paths_1,
-                  bool is_at_tips = false)
-    : m_energy(tree_1,
-               tree_2,
-               weights,
-               {std::move(paths_1), find_paths(tree_2, weights)},
-               is_at_tips,
-               ConcurrencyTag()),
+    : m_energy(tree_1, tree_2, weights, std::move(paths), is_at_tips, ConcurrencyTag()),
       m_number_of_trials(weights.number_of_trials),
       m_most_trunk_trials(trunk_factor * weights.number_of_trials)
   {
   }
 
-  static Branch_paths find_paths(const Rooted_tree& tree, const Matching_weights& weights)
+  static Branch_paths
+  find_paths(const Rooted_tree& tree, const Matching_weights& weights, double other_ratio = 1)
   {
     return find_branch_paths(tree,
                              weights.fork_ratio,
                              weights.is_published ? 1 : weights.number_of_paths,
-                             weights.trunk_fork_ratio);
+                             weights.trunk_fork_ratio,
+                             other_ratio);
   }
 
   const Branch_paths& paths(int t) const { return m_energy.paths(t); }
+  const Matching_energy& energy() const { return m_energy; }
 
   /// Pairs of trunks that are matched with all their children; less than the default saves most of the time.
   void set_number_of_trunk_trials(std::size_t n) { m_most_trunk_trials = n; }
   /// The trunk of tree 2 is known: a path of `paths(1)`.
   void set_second_trunk(std::size_t path) { m_energy.set_second_trunk(path); }
+  /// Whether there are `Branch_paths::other_trunks`.
+  bool has_other_trunks() const { return !paths(0).other_trunks.empty(); }
+  /// Whether they are matched from now on; what is known of branches stays known.
+  void use_other_trunks(bool do_use)
+  {
+    if (do_use != m_uses_other_trunks)
+      m_energy.swap_trunks();
+    m_uses_other_trunks = do_use;
+  }
+  /// Tree 2 is turned as a whole, about an axis of the caller; that costs nothing. [rad]
+  void set_turn(double angle, const Vec3& axis)
+  {
+    m_turn = Eigen::AngleAxisd(angle, m_energy.frame().transpose() * axis).toRotationMatrix();
+    for (Matching_answers& answers : m_known)
+      answers.forget();
+  }
 
-  /// Null when `progress` asks to stop, and when the cost is not below `most_cost`.
+  /// What the most promising trunks cost, with one try for each pair below.
+  double look()
+  {
+    m_effort = 1;
+    constexpr double any = std::numeric_limits<double>::infinity();
+    return match_children(find_trials(0, 0, m_turn, any, 1).front(), m_turn, any)->cost;
+  }
+
+  /// Null when `progress` asks to stop, and when the cost is not below `most_cost`; what is only looked at with few ways may
+  /// cost a little more.
   std::shared_ptr<const Matched_branch>
   run(pcs::internal::Progress& progress,
       const double most_cost = std::numeric_limits<double>::infinity())
   {
-    const Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+    const Eigen::Matrix3d rotation = m_turn;
     // one look at trunks of very many children is dear enough
     const auto children = [&](int t) {
       return m_energy.path(t, paths(t).paths_of[0].front()).children.size();
@@ -112,7 +128,6 @@ public:
             best = std::move(result);
         }
       }
-      forget();
       std::sort(order.begin(), order.end());
       std::vector<Trial> chosen;
       for (std::size_t k = 0; k < order.size() && k < most; ++k)
@@ -126,7 +141,6 @@ public:
       if (Result result = match_children(std::move(trial), rotation, best ? best->cost : most_cost))
         best = std::move(result);
     }
-    forget();
     return best;
   }
 
@@ -135,71 +149,27 @@ private:
   using Trial = Matching_energy::Trial;
   using Children = Matching_energy::Children;
 
-  /// Two branches below any parents: the same question comes up for each way to continue the parents. Turns are rounded
-  /// before use, so that it is the same question, and so that it does not matter who asks first.
-  struct Question
-  {
-    std::size_t start_1, start_2;
-    std::array<int, 3> turn;
-    bool operator==(const Question& q) const
-    {
-      return start_1 == q.start_1 && start_2 == q.start_2 && turn == q.turn;
-    }
-  };
-  struct Hash
-  {
-    std::size_t operator()(const Question& q) const
-    {
-      std::size_t h = q.start_1 * 0x9e3779b97f4a7c15u + q.start_2;
-      for (const int t : q.turn)
-        h = (h ^ (h >> 29)) * 0xbf58476d1ce4e5b9u + static_cast<std::size_t>(t + 1000);
-      return h ^ (h >> 32);
-    }
-  };
-  struct Shard
-  {
-    std::mutex mutex;
-    std::unordered_map<Question, Result, Hash> results;
-  };
   static constexpr std::size_t most_at_once = 512; // children that are assigned at a time
-  static constexpr double turn_step = 0.25;        // [rad]
   static constexpr int number_of_passes = 3;       // of a turn by curve and children
   static constexpr double rematch_turn = 0.4;      // Frobenius norm: a turn by about 0.3 rad
   static constexpr double trunk_slack = 1.05;      // what a look at few ways may be wrong by
 
-  void forget()
-  {
-    for (Shard& shard : m_known)
-      shard.results.clear();
-  }
-
   Result match(std::size_t start_1, std::size_t start_2, const Eigen::Matrix3d& rotation)
   {
-    const Vec3 u = rotation_log(Quaternion(rotation));
-    Question question{start_1, start_2, {}};
-    Vec3 rounded;
-    for (int i = 0; i < 3; ++i) {
-      question.turn[static_cast<std::size_t>(i)] = static_cast<int>(std::lround(u[i] / turn_step));
-      rounded[i] = turn_step * question.turn[static_cast<std::size_t>(i)];
-    }
-    Shard& shard = m_known[Hash()(question) % m_known.size()];
-    {
-      const std::lock_guard<std::mutex> lock(shard.mutex);
-      const auto it = shard.results.find(question);
-      if (it != shard.results.end())
-        return it->second;
-    }
+    const Matching_question question(start_1, start_2, rotation * m_turn.transpose());
+    Matching_answers& known = m_known[m_effort == 1 ? 0 : 1];
+    if (const Result* const answer = known.find(question))
+      return *answer;
     double limit = m_energy.single_term(m_energy.weight(0, start_1)) +
                    m_energy.single_term(m_energy.weight(1, start_2));
-    const Eigen::Matrix3d turned = rotation_exp(rounded).toRotationMatrix();
+    const Eigen::Matrix3d turned = question.rotation() * m_turn;
     Result best;
     for (Trial& trial : find_trials(start_1, start_2, turned, limit, m_effort))
       if (Result result = match_children(std::move(trial), turned, limit)) {
         limit = result->cost;
         best = std::move(result);
       }
-    const std::lock_guard<std::mutex> lock(shard.mutex);
-    shard.results.emplace(question, best);
+    known.keep(question, best);
     return best;
   }
 
@@ -243,20 +213,8 @@ private:
           continue;
         double cost = 0;
         if (!is_alone) {
-          Trial trial = m_energy.match_curves(p1, p2, rotation, Matching_energy::few_samples);
-          const Children a = m_energy.children_of(0, m_energy.path(0, p1), trial.last[0], nullptr);
-          const Children b =
-              m_energy.children_of(1, m_energy.path(1, p2), trial.last[1], &trial.gamma);
-          const Eigen::Matrix3d turned = m_energy.turn(trial, a, b, rotation, 0);
-          cost = is_turned ? m_energy.turned_energy(trial, rotation, turned) : trial.cost;
-          cost += m_energy.rest_cost(p1, p2, trial.last);
           const double most_cost = lowest.size() < most ? limits::infinity() : lowest.front();
-          cost += m_energy.quick_cost_of_children(a,
-                                                  b,
-                                                  turned,
-                                                  m_energy.length(0, p1),
-                                                  most_cost - cost,
-                                                  prices);
+          cost = m_energy.quick_cost_of_paths(p1, p2, rotation, most_cost, prices);
           if (cost > most_cost)
             continue;
           if (lowest.size() == most) {
@@ -435,9 +393,11 @@ private:
   }
 
   Matching_energy m_energy;
+  Eigen::Matrix3d m_turn = Eigen::Matrix3d::Identity(); // of tree 2
+  bool m_uses_other_trunks = false;
   std::size_t m_number_of_trials, m_most_trunk_trials;
   std::size_t m_effort = m_number_of_trials; // tries for each pair below the trunks
-  std::array<Shard, 64> m_known;
+  std::array<Matching_answers, 2> m_known;   // with one try for each pair, and with more
 };
 
 } // namespace shape_space

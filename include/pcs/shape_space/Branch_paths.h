@@ -53,6 +53,7 @@ struct Branch_paths
 {
   std::vector<Branch_path> paths;
   std::vector<std::vector<std::size_t>> paths_of;
+  std::vector<std::size_t> other_trunks; ///< for a second look, much shorter ones among them
 };
 
 namespace internal {
@@ -128,11 +129,12 @@ inline std::vector<std::vector<std::size_t>> candidate_paths(const Rooted_tree& 
 } // namespace internal
 
 /// `maximal_number` 1 gives the decomposition by longest paths alone. `trunk_ratio` is the fork ratio of the trunk,
-/// if it is less.
+/// if it is less; `other_ratio`, if it is less than both, that of other trunks.
 inline Branch_paths find_branch_paths(const Rooted_tree& tree,
                                       double fork_ratio,
                                       std::size_t maximal_number,
-                                      double trunk_ratio)
+                                      double trunk_ratio,
+                                      double other_ratio = 1)
 {
   Branch_paths result;
   result.paths_of.resize(tree.size());
@@ -147,15 +149,25 @@ inline Branch_paths find_branch_paths(const Rooted_tree& tree,
                              : maximal_number > 1 && start == 0 ? trunk_factor * maximal_number
                                                                 : maximal_number;
     const double ratio = start == 0 ? std::min(trunk_ratio, fork_ratio) : fork_ratio;
-    for (auto& nodes : internal::candidate_paths(tree, start, ratio, most)) {
-      result.paths_of[start].push_back(result.paths.size());
+    const auto add = [&](std::vector<std::size_t>&& nodes) {
       result.paths.push_back(internal::make_path(tree, std::move(nodes), start == 0));
       for (const Branch_path::Child& child : result.paths.back().children)
         if (!is_found[child.start]) {
           is_found[child.start] = 1;
           starts.push_back(child.start);
         }
-    }
+      return result.paths.size() - 1;
+    };
+    std::vector<std::size_t>& paths = result.paths_of[start];
+    for (auto& nodes : internal::candidate_paths(tree, start, ratio, most))
+      paths.push_back(add(std::move(nodes)));
+    if (start == 0 && maximal_number > 1 && other_ratio < ratio)
+      for (auto& nodes : internal::candidate_paths(tree, start, other_ratio, most)) {
+        const auto known = std::find_if(paths.begin(), paths.end(), [&](std::size_t p) {
+          return result.paths[p].nodes == nodes;
+        });
+        result.other_trunks.push_back(known == paths.end() ? add(std::move(nodes)) : *known);
+      }
   }
   return result;
 }

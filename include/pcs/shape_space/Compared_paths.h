@@ -68,6 +68,12 @@ public:
   double length(int t, std::size_t path) const { return curves(t)[path].length; }
   /// Tree 2 has no other trunk than this path of it.
   void set_second_trunk(std::size_t path) { m_paths[1].paths_of[0] = {path}; }
+  /// The trunks change places with the other ones.
+  void swap_trunks()
+  {
+    for (Branch_paths& paths : m_paths)
+      paths.paths_of[0].swap(paths.other_trunks);
+  }
   /// The axes of tree 1 in those of the caller: rotations here are in these.
   const Eigen::Matrix3d& frame() const { return m_frame; }
 

@@ -26,6 +26,7 @@ struct Embedded_pair
   Orientation orientation = Orientation::gauge_fixed;
   Virtual_direction direction = Virtual_direction::of_partner;
   bool has_unit_weights = false;
+  Quaternion turn = Quaternion::Identity(); ///< after which tree 2 stands like tree 1
   Common_topology topology;
   Orl_layout layout;
   std::array<Orl_coordinates, 2> x;
@@ -55,7 +56,8 @@ inline void embed(const std::array<const Tree_input*, 2>& inputs, Embedded_pair&
                        {&inputs[0]->tree, &inputs[1]->tree},
                        pair.topology.paths,
                        pair.orientation,
-                       pair.direction);
+                       pair.direction,
+                       pair.turn);
   for (std::size_t t = 0; t < 2; ++t)
     build_geometry(pair.layout, pair.x[t], pair.orientation, pair.geometry[t]);
   pair.weights = make_weights(pair.layout, pair.x, pair.has_unit_weights);

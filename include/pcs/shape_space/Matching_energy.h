@@ -195,6 +195,35 @@ public:
     return assign_rows(a.s.size(), b.s.size(), quick_gains(a, b, rotation, parent_length));
   }
 
+  /// What two paths cost, judged without looking below their children; infinity where it is seen at once that it is more
+  /// than `most`.
+  double quick_cost_of_paths(std::size_t p1,
+                             std::size_t p2,
+                             const Eigen::Matrix3d& rotation,
+                             double most,
+                             Prices& prices) const
+  {
+    const Trial trial = match_curves(p1, p2, rotation, few_samples);
+    const Children a = children_of(0, path(0, p1), trial.last[0], nullptr);
+    const Children b = children_of(1, path(1, p2), trial.last[1], &trial.gamma);
+    const Eigen::Matrix3d turned = turn(trial, a, b, rotation, 0);
+    double cost = is_turned() ? turned_energy(trial, rotation, turned) : trial.cost;
+    cost += rest_cost(p1, p2, trial.last);
+    return cost + quick_cost_of_children(a, b, turned, length(0, p1), most - cost, prices);
+  }
+
+  /// The turn by which two paths and their children fit, likewise.
+  Eigen::Matrix3d
+  quick_turn(std::size_t p1, std::size_t p2, const Eigen::Matrix3d& rotation, int passes) const
+  {
+    const Trial trial = match_curves(p1, p2, rotation, few_samples);
+    return turn(trial,
+                children_of(0, path(0, p1), trial.last[0], nullptr),
+                children_of(1, path(1, p2), trial.last[1], &trial.gamma),
+                rotation,
+                passes);
+  }
+
   /// What it leaves; infinity where it is seen at once that it is more than `most`. Of very many children, what the light ones
   /// have more in one tree than in the other counts as single.
   double quick_cost_of_children(const Children& all_1,

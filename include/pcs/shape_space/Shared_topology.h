@@ -122,22 +122,6 @@ inline Embedding embed(const Orl_layout& layout,
   return result;
 }
 
-/// Frames whose twist differs as little as possible from those of `reference`, edge by edge.
-inline void set_fixed_frames(const Orl_layout& layout, const Embedding& reference, Embedding& tree)
-{
-  std::vector<double> twist(layout.number_of_edges(), 0);
-  const Quaternion& root =
-      reference.frame[0]; // how the trees stand in the axes of the input does not matter
-  set_frames(layout, twist, root, tree);
-  const std::vector<double> total = Gauge(layout, reference, tree).run();
-  for (std::size_t e = 0; e < layout.number_of_edges(); ++e) {
-    const std::size_t p = layout.edge_before[e];
-    if (reference.x.length[e] > 0 && tree.x.length[e] > 0)
-      twist[e] = total[e] - (p == none ? 0 : total[p]);
-  }
-  set_frames(layout, twist, root, tree);
-}
-
 inline void set_world_frames(const Orl_layout& layout, Embedding& tree)
 {
   for (std::size_t e = 0; e < layout.number_of_edges(); ++e)
@@ -277,12 +261,9 @@ Embedded_trees embed_trees(const Orl_layout& layout,
           if (kind == Orientation::world_axes)
             set_world_frames(layout, all[t]);
           else if (kind == Orientation::transported)
-            set_frames(layout,
-                       std::vector<double>(layout.number_of_edges(), 0),
-                       Quaternion::Identity(),
-                       all[t]);
+            set_frames(layout, Quaternion::Identity(), all[t]);
           else
-            set_fixed_frames(layout, middle, all[t]);
+            turn_frames(layout, middle, Quaternion::Identity(), all[t]);
           set_own_orientations(layout, kind, all[t]);
         },
         1);

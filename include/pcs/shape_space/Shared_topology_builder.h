@@ -134,10 +134,7 @@ private:
       }
     const Orl_layout layout = make_layout(m_branches);
     internal::Embedding x = internal::embed(layout, as_tree, old.tree, old.paths, 0, Vec3::Zero());
-    internal::set_frames(layout,
-                         std::vector<double>(layout.number_of_edges(), 0),
-                         Quaternion::Identity(),
-                         x);
+    internal::set_frames(layout, Quaternion::Identity(), x);
     internal::set_own_orientations(layout, Orientation::gauge_fixed, x);
     m_x = std::move(x.x);
     m_last_members = m_branches;
@@ -172,10 +169,11 @@ private:
   std::shared_ptr<const Matched_branch> match(std::size_t t, bool is_trunk_known) const
   {
     pcs::internal::Progress none_wanted;
-    Branch_matching<ConcurrencyTag> matching(m_reference.tree,
-                                             *m_trees[t],
-                                             m_weights,
-                                             m_reference.paths);
+    using Matching = Branch_matching<ConcurrencyTag>;
+    Matching matching(m_reference.tree,
+                      *m_trees[t],
+                      m_weights,
+                      {m_reference.paths, Matching::find_paths(*m_trees[t], m_weights)});
     matching.set_number_of_trunk_trials(number_of_trunk_trials);
     if (is_trunk_known && m_last_members[0].has(t))
       matching.set_second_trunk(m_last_members[0].path[t]);
@@ -199,10 +197,7 @@ private:
     internal::Embedding tree =
         internal::embed(layout, m_branches, *m_trees[t], m_paths[t], t, Vec3::Zero());
     if (before == 0)
-      internal::set_frames(layout,
-                           std::vector<double>(layout.number_of_edges(), 0),
-                           Quaternion::Identity(),
-                           tree);
+      internal::set_frames(layout, Quaternion::Identity(), tree);
     else {
       const std::vector<Shared_branch> known(m_branches.begin(),
                                              m_branches.begin() +
@@ -211,7 +206,7 @@ private:
       middle.x.length.resize(layout.number_of_edges(), 0);
       middle.frame.resize(layout.number_of_edges(), Quaternion::Identity());
       middle.direction.resize(layout.number_of_edges(), Vec3::Zero());
-      internal::set_fixed_frames(layout, middle, tree);
+      internal::turn_frames(layout, middle, Quaternion::Identity(), tree);
     }
     internal::set_own_orientations(layout, Orientation::gauge_fixed, tree);
     if (before == 0)

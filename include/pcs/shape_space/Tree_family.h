@@ -191,14 +191,12 @@ Orl_coordinates embed_tree(const Tree_family& family, const Rooted_tree& tree, d
   if (family.orientation == Orientation::world_axes)
     internal::set_world_frames(family.layout, x);
   else if (family.orientation == Orientation::transported)
-    internal::set_frames(family.layout,
-                         std::vector<double>(x.frame.size(), 0),
-                         Quaternion::Identity(),
-                         x);
+    internal::set_frames(family.layout, Quaternion::Identity(), x);
   else
-    internal::set_fixed_frames(family.layout,
-                               internal::as_embedding(family.layout, family.reference),
-                               x);
+    internal::turn_frames(family.layout,
+                          internal::as_embedding(family.layout, family.reference),
+                          Quaternion::Identity(),
+                          x);
   internal::set_own_orientations(family.layout, family.orientation, x);
   for (std::size_t b = 0; b < branches.size(); ++b)
     if (!branches[b].has(0)) {

@@ -11,6 +11,7 @@
 #include <pcs/internal/progress.h>
 #include <pcs/shape_space/Family_points.h>
 #include <pcs/shape_space/Tree_family.h>
+#include <pcs/shape_space/find_turns.h>
 #include <pcs/shape_space/star_correspondences.h>
 
 #include <cstddef>
@@ -31,6 +32,7 @@ inline void describe(const Transport_summary& summary, Orl_report& report)
 struct Family_options
 {
   Matching_weights weights;
+  Standing standing;
   Assignment_options assignment;
   Transport_options transport;
   std::size_t number_of_rounds = 3;

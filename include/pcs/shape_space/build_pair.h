@@ -35,10 +35,14 @@ bool find_correspondences(const std::array<const Tree_input*, 2>& inputs,
   progress.stage(0, 0.4);
   if (!progress(0))
     return false;
-  const Matching_cost cost = match_trees<ConcurrencyTag>({&inputs[0]->tree, &inputs[1]->tree},
-                                                         options.weights,
-                                                         progress,
-                                                         built.topology);
+  const Matching_cost cost = Tree_matching<ConcurrencyTag>({&inputs[0]->tree, &inputs[1]->tree},
+                                                           options.weights,
+                                                           options.standing,
+                                                           progress,
+                                                           built.topology)
+                                 .run();
+  built.turn = rotation_exp(cost.turn * options.standing.up);
+  report.turn = cost.turn;
   report.matching_energy = cost.energy;
   report.unexplained_share = cost.share;
   report.is_grown_at_tips = cost.is_at_tips;

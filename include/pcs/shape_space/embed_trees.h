@@ -5,14 +5,15 @@
 #ifndef PCS_SHAPE_SPACE_EMBED_TREES_H
 #define PCS_SHAPE_SPACE_EMBED_TREES_H
 
+#include <pcs/shape_space/Branch_turns.h>
 #include <pcs/shape_space/Common_topology.h>
+#include <pcs/shape_space/Embedding.h>
 #include <pcs/shape_space/Orl_coordinates.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -79,31 +80,6 @@ node_at(const Rooted_tree& tree, const Branch_path& path, double share)
           (1 - f) * path_radius(tree, path, k - 1) + f * path_radius(tree, path, k)};
 }
 
-/// Lengths, radii, attachments and directions of a tree; nothing for branches that it does not have.
-struct Embedding
-{
-  std::vector<Vec3> direction;   ///< per edge; null for edges that do not exist
-  std::vector<Quaternion> frame; ///< per edge
-  Orl_coordinates x;
-};
-
-/// A tree without branches.
-inline Embedding empty_embedding(const Orl_layout& layout, const Vec3& root)
-{
-  const std::size_t n = layout.number_of_edges(), m = layout.branches.size();
-  Embedding result;
-  result.direction.assign(n, Vec3::Zero());
-  result.frame.assign(n, Quaternion::Identity());
-  Orl_coordinates& x = result.x;
-  x.root = root;
-  x.orientation.assign(n, Quaternion::Identity());
-  x.length.assign(n, 0);
-  x.radius.assign(n, 0);
-  x.base_radius.assign(m, 0);
-  x.attachment.assign(m, 0);
-  return result;
-}
-
 inline Embedding embed(const Orl_layout& layout,
                        const std::vector<Common_branch>& branches,
                        const Rooted_tree& tree,
@@ -132,163 +108,6 @@ inline Embedding embed(const Orl_layout& layout,
   }
   return result;
 }
-
-/// Turns frames along the edges that exist, from `root` at the beginning of the trunk; `twist` is added to the
-/// transported frame.
-inline void set_frames(const Orl_layout& layout,
-                       const std::vector<double>& twist,
-                       const Quaternion& root,
-                       Embedding& tree)
-{
-  for (std::size_t e = 0; e < layout.number_of_edges(); ++e)
-    if (tree.x.length[e] > 0) {
-      const std::size_t p = layout.edge_before[e];
-      const Quaternion parent = p == none ? root : tree.frame[p];
-      const Quaternion step = shortest_turn(Vec3::UnitZ(), parent.conjugate() * tree.direction[e]);
-      tree.frame[e] = parent * step * turn_about_z(twist[e]);
-      tree.frame[e].normalize();
-    }
-}
-
-/*!
-  The twist of the frames of tree 2 about its edges is free. It is chosen so that the sum over edges of weight times
-  angle between the turns of both trees from the edge before is least, by dynamic programming over a few angles: those by
-  which many edges of tree 2 stand about the edge before further than those of tree 1. A branch that is turned as a whole
-  has one such angle, exactly, and then costs what it was turned by, and not one turn per edge. From the edge before, and not
-  from the one that the orientation refers to, so that neighbours are twisted alike.
-*/
-class Gauge
-{
-public:
-  static constexpr std::size_t most_angles = 12;
-
-  Gauge(const Orl_layout& layout, const Embedding& one, const Embedding& two)
-    : m_layout(layout), m_one(one), m_two(two)
-  {
-    for (std::size_t e = 0; e < layout.number_of_edges(); ++e)
-      if (one.x.length[e] > 0 && two.x.length[e] > 0)
-        m_edges.push_back(e);
-  }
-
-  /// Total twist of each edge's frame against the transported one, 0 where an edge is missing in either tree.
-  std::vector<double> run()
-  {
-    find_angles();
-    const std::size_t n = m_layout.number_of_edges(), k = m_angles.size();
-    std::vector<std::array<double, most_angles>> below(
-        n); // least cost of e and its subtree, by angle of the parent
-    std::vector<std::array<double, most_angles>> sum(n); // of the children of e, by angle of e
-    std::vector<std::array<std::size_t, most_angles>> choice(n);
-    for (auto& s : sum)
-      s.fill(0);
-    for (std::size_t i = m_edges.size(); i-- > 0;) {
-      const std::size_t e = m_edges[i], p = m_layout.edge_before[e];
-      for (std::size_t a = 0; a < (p == none ? 1 : k); ++a) {
-        below[e][a] = std::numeric_limits<double>::infinity();
-        for (std::size_t c = 0; c < k; ++c) {
-          const double cost = weight(e) * angle(e, m_angles[a], m_angles[c]) + sum[e][c];
-          if (cost < below[e][a]) {
-            below[e][a] = cost;
-            choice[e][a] = c;
-          }
-        }
-        if (p != none)
-          sum[p][a] += below[e][a];
-      }
-    }
-    std::vector<double> twist(n, 0);
-    std::vector<std::size_t> chosen(n, 0);
-    for (const std::size_t e : m_edges) {
-      const std::size_t p = m_layout.edge_before[e];
-      chosen[e] = choice[e][p == none ? 0 : chosen[p]];
-      twist[e] = m_angles[chosen[e]];
-    }
-    return twist;
-  }
-
-private:
-  double weight(std::size_t e) const { return 0.5 * (m_one.x.length[e] + m_two.x.length[e]); }
-
-  Quaternion parent_frame(const Embedding& tree, std::size_t e) const
-  {
-    const std::size_t p = m_layout.edge_before[e];
-    return p == none ? Quaternion::Identity() : tree.frame[p];
-  }
-
-  /// Angle between the orientations of `e` in both trees, if the frames of tree 2 are twisted.
-  double angle(std::size_t e, double parent_twist, double twist) const
-  {
-    const Quaternion one = parent_frame(m_one, e).conjugate() * m_one.frame[e];
-    const Quaternion two = parent_frame(m_two, e).conjugate() * m_two.frame[e];
-    return angle_between(one, turn_about_z(-parent_twist) * two * turn_about_z(twist));
-  }
-
-  void find_angles()
-  {
-    struct Vote
-    {
-      double angle, weight;
-    };
-    constexpr double pi = static_cast<double>(EIGEN_PI), least_slant = 0.02, window = 0.01,
-                     gap = 0.1;
-    m_angles.assign(1, 0);
-    std::vector<Vote> votes;
-    for (const std::size_t e : m_edges) {
-      if (m_layout.edge_before[e] == none)
-        continue;
-      const Vec3 a = parent_frame(m_one, e).conjugate() * m_one.direction[e];
-      const Vec3 b = parent_frame(m_two, e).conjugate() * m_two.direction[e];
-      const double slant = std::min(a.head<2>().norm(), b.head<2>().norm());
-      if (slant > least_slant)
-        votes.push_back(
-            {std::remainder(std::atan2(b.y(), b.x()) - std::atan2(a.y(), a.x()), 2 * pi),
-             slant * weight(e)});
-    }
-    std::sort(votes.begin(), votes.end(), [](const Vote& a, const Vote& b) {
-      return a.angle != b.angle ? a.angle < b.angle : a.weight < b.weight;
-    });
-    while (m_angles.size() < most_angles) {
-      // the window of angles with the greatest weight, not near one that is chosen already
-      std::size_t first = 0;
-      double sum = 0, most = 0;
-      std::size_t best_first = 0, best_last = 0;
-      const auto is_free = [&](double angle) {
-        for (const double a : m_angles)
-          if (std::abs(std::remainder(angle - a, 2 * pi)) < (a == 0 ? 1e-9 : gap))
-            return false;
-        return true;
-      };
-      std::vector<Vote> open;
-      for (const Vote& v : votes)
-        if (is_free(v.angle))
-          open.push_back(v);
-      for (std::size_t last = 0; last < open.size(); ++last) {
-        sum += open[last].weight;
-        while (open[last].angle - open[first].angle > window)
-          sum -= open[first++].weight;
-        if (sum > most * (1 + 1e-12)) {
-          most = sum;
-          best_first = first;
-          best_last = last;
-        }
-      }
-      if (open.empty())
-        break;
-      double half = 0;
-      std::size_t k = best_first;
-      for (; k < best_last; ++k)
-        if ((half += open[k].weight) >= 0.5 * most)
-          break;
-      m_angles.push_back(open[k].angle);
-    }
-  }
-
-  const Orl_layout& m_layout;
-  const Embedding& m_one;
-  const Embedding& m_two;
-  std::vector<std::size_t> m_edges; // of both trees
-  std::vector<double> m_angles;     // the first is 0
-};
 
 /// Orientations from frames; edges that a tree does not have take those of `other`.
 inline void set_orientations(const Orl_layout& layout,
@@ -319,19 +138,19 @@ inline void set_orientations(const Orl_layout& layout,
 
 } // namespace internal
 
-/// Coordinates of both trees. `shift` is what brings the local coordinates of tree 2 to those of tree 1.
+/// Coordinates of both trees. After `turn` tree 2 stands like tree 1.
 inline std::array<Orl_coordinates, 2> embed_trees(const Orl_layout& layout,
                                                   const std::vector<Common_branch>& branches,
                                                   const std::array<const Rooted_tree*, 2>& trees,
                                                   const std::array<Branch_paths, 2>& paths,
                                                   Orientation kind,
-                                                  Virtual_direction direction)
+                                                  Virtual_direction direction,
+                                                  const Quaternion& turn)
 {
   using namespace internal;
   const Vec3 shift = trees[1]->origin - trees[0]->origin;
   Embedding one = embed(layout, branches, *trees[0], paths[0], 0, Vec3::Zero());
   Embedding two = embed(layout, branches, *trees[1], paths[1], 1, shift);
-  std::vector<double> twist(layout.number_of_edges(), 0);
   if (kind == Orientation::world_axes) {
     // v_c = q v_p q^-1 with the shortest turn q in the axes of the input; the frame is the product of these
     for (Embedding* tree : {&one, &two})
@@ -344,18 +163,10 @@ inline std::array<Orl_coordinates, 2> embed_trees(const Orl_layout& layout,
         }
   } else {
     // the trunk of tree 2 refers to that of tree 1: how both stand in the axes of the input does not matter
-    set_frames(layout, twist, Quaternion::Identity(), one);
-    const Quaternion root = one.frame[0];
-    set_frames(layout, twist, root, two);
-    if (kind == Orientation::gauge_fixed) {
-      const std::vector<double> total = Gauge(layout, one, two).run();
-      for (std::size_t e = 0; e < layout.number_of_edges(); ++e) {
-        const std::size_t p = layout.edge_before[e];
-        if (one.x.length[e] > 0) // else inherited from the parent by transport
-          twist[e] = total[e] - (p == none ? 0 : total[p]);
-      }
-      set_frames(layout, twist, root, two);
-    }
+    set_frames(layout, Quaternion::Identity(), one);
+    set_frames(layout, turn.conjugate() * one.frame[0], two);
+    if (kind == Orientation::gauge_fixed)
+      turn_frames(layout, one, turn.conjugate(), two);
   }
   set_orientations(layout, branches, kind, direction, 0, two, one);
   set_orientations(layout, branches, kind, direction, 1, one, two);

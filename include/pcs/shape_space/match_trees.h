@@ -8,6 +8,7 @@
 #include <pcs/internal/progress.h>
 #include <pcs/shape_space/Branch_matching.h>
 #include <pcs/shape_space/Common_topology.h>
+#include <pcs/shape_space/find_turns.h>
 
 #include <algorithm>
 #include <array>
@@ -15,7 +16,9 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <utility>
+#include <vector>
 
 namespace pcs {
 namespace shape_space {
@@ -27,6 +30,7 @@ struct Matching_cost
   double share =
       0; ///< of what it could cost: 0 if the smaller tree is all found in the other, 1 if nothing is [-]
   bool is_at_tips = false; ///< which kind of growth it is
+  double turn = 0;         ///< angle about the vertical by which tree 2 stands like tree 1 [rad]
 };
 
 /*!
@@ -37,66 +41,171 @@ struct Matching_cost
   So must other trunks than the longest paths, or nearly as long ones, for trees that grow along their branches.
 */
 template <class ConcurrencyTag>
-Matching_cost match_trees(const std::array<const Rooted_tree*, 2>& trees,
-                          const Matching_weights& weights,
-                          pcs::internal::Progress& progress,
-                          Common_topology& result)
+class Tree_matching
 {
-  const std::array<double, 2> height = {trees[0]->heights[0], trees[1]->heights[0]};
-  const double highest = std::max(height[0], height[1]);
-  // what two trees cost at least, and what they cost more if nothing is matched
-  const auto range = [&](double unit_1, double unit_2) {
-    const double a = trees[0]->weights[0] / unit_1, b = trees[1]->weights[0] / unit_2;
-    const double least = weights.single * std::min(1.0, weights.length) * std::abs(a - b);
-    return std::make_pair(least, weights.single * (a + b) - least); // [-]
-  };
-  using Result = std::shared_ptr<const Matched_branch>;
-  Matching_cost cost;
-  const auto build = [&](const Branch_matching<ConcurrencyTag>& matching,
-                         const Result& trunk,
-                         bool is_at_tips,
-                         const std::pair<double, double>& from) {
-    result.paths = {matching.paths(0), matching.paths(1)};
-    internal::Topology_builder builder(*trees[0], *trees[1], result.paths);
-    result.branches = builder.run(*trunk);
-    cost.is_at_tips = is_at_tips;
-    cost.energy = trunk->cost;
-    cost.share = from.second > 0 ? std::max(0.0, trunk->cost - from.first) / from.second : 0;
-  };
-  double most = std::numeric_limits<double>::infinity();
-  const auto along = range(height[0], height[1]), at_tips = range(highest, highest);
-  if (weights.growth != Growth::at_tips || weights.is_published) {
-    Branch_matching<ConcurrencyTag> matching(*trees[0], *trees[1], weights);
-    const Result trunk = matching.run(progress);
-    if (!trunk)
-      return cost;
-    build(matching, trunk, false, along);
-    // virtual trees that grew at their tips leave less than 0.6 of it; of plants whose leaves stretch most leave 0.7 and more,
-    // and the days between others are predicted better by stretched branches then
-    constexpr double clearly = 2. / 3;
-    // the longest path through a tomato is its stem and one of its leaves, on every day another one; but of all paths some
-    // other one matches at a little less cost by chance
-    constexpr double wide_fork_ratio = 0.3;
-    Matching_weights wide = weights;
-    wide.trunk_fork_ratio = wide_fork_ratio;
-    if (weights.number_of_paths > 1 && wide_fork_ratio < weights.trunk_fork_ratio &&
-        !weights.is_published) {
-      Branch_matching<ConcurrencyTag> other(*trees[0], *trees[1], wide);
-      if (const Result found =
-              other.run(progress, along.first + clearly * cost.share * along.second))
-        build(other, found, false, along);
-    }
-    most = at_tips.first + clearly * cost.share * at_tips.second;
+public:
+  Tree_matching(const std::array<const Rooted_tree*, 2>& trees,
+                const Matching_weights& weights,
+                const Standing& standing,
+                pcs::internal::Progress& progress,
+                Common_topology& result)
+    : m_trees(trees),
+      m_weights(weights),
+      m_standing(standing),
+      m_progress(progress),
+      m_result(result)
+  {
   }
-  if (weights.growth == Growth::along_branches || weights.is_published)
-    return cost;
-  Branch_matching<ConcurrencyTag> matching(*trees[0], *trees[1], weights, true);
-  matching.set_number_of_trunk_trials(2 * weights.number_of_trials);
-  const Result trunk = matching.run(progress, most);
-  if (trunk)
-    build(matching, trunk, true, at_tips);
-  return cost;
-}
+
+  Matching_cost run()
+  {
+    if (m_weights.growth != Growth::at_tips || m_weights.is_published)
+      if (!match_along_branches())
+        return m_cost;
+    if (m_weights.growth != Growth::along_branches && !m_weights.is_published)
+      match_at_tips();
+    return m_cost;
+  }
+
+private:
+  using Matching = Branch_matching<ConcurrencyTag>;
+  using Result = std::shared_ptr<const Matched_branch>;
+
+  // virtual trees that grew at their tips leave less than 0.6 of it; of plants whose leaves stretch most leave 0.7 and more,
+  // and the days between others are predicted better by stretched branches then
+  static constexpr double clearly = 2. / 3;
+  // the longest path through a tomato is its stem and one of its leaves, on every day another one; but of all paths some
+  // other one matches at a little less cost by chance
+  static constexpr double wide_fork_ratio = 0.3;
+
+  /// What two trees cost at least, and what they cost more if nothing is matched. [-]
+  struct Range
+  {
+    double least, more;
+  };
+  Range range(double unit_1, double unit_2) const
+  {
+    const double a = m_trees[0]->weights[0] / unit_1, b = m_trees[1]->weights[0] / unit_2;
+    const double least = m_weights.single * std::min(1.0, m_weights.length) * std::abs(a - b);
+    return {least, m_weights.single * (a + b) - least};
+  }
+
+  void build(const Matching& matching, const Result& trunk, bool is_at_tips, const Range& from)
+  {
+    m_result.paths = {matching.paths(0), matching.paths(1)};
+    internal::Topology_builder builder(*m_trees[0], *m_trees[1], m_result.paths);
+    m_result.branches = builder.run(*trunk);
+    m_cost.is_at_tips = is_at_tips;
+    m_cost.energy = trunk->cost;
+    m_cost.share = from.more > 0 ? std::max(0.0, trunk->cost - from.least) / from.more : 0;
+  }
+
+  std::array<Branch_paths, 2> paths(double other_ratio) const
+  {
+    return {Matching::find_paths(*m_trees[0], m_weights, other_ratio),
+            Matching::find_paths(*m_trees[1], m_weights, other_ratio)};
+  }
+
+  /// A matching with trunks that are the longest paths, or nearly so, unless others leave clearly less. Nothing is looked for
+  /// that costs `most` or more.
+  Result match_trunks(Matching& matching, const Range& from, double most)
+  {
+    const auto share_of = [&](double cost) { return std::max(0.0, cost - from.least); };
+    matching.use_other_trunks(false);
+    // where it is known that others that cost less than `most` leave clearly less, it does not matter how much
+    const Result longest = matching.run(m_progress, from.least + share_of(most) / clearly);
+    const double least = longest ? from.least + clearly * share_of(longest->cost) : most;
+    if (m_progress.is_cancelled() || !matching.has_other_trunks())
+      return longest;
+    matching.use_other_trunks(true);
+    const Result other = matching.run(m_progress, std::min(most, least));
+    return other ? other : longest;
+  }
+
+  /// Of the ways in which the trees may stand, that of least cost.
+  template <class Match>
+  Result match_standing(Matching& matching, const Range& from, const Match& match)
+  {
+    Result best = match(std::numeric_limits<double>::infinity());
+    if (!best || m_standing.alignment == Alignment::as_given)
+      return best;
+    double most = from.least + turned_share * std::max(0.0, best->cost - from.least);
+    for (const double angle : promising_turns(matching)) {
+      matching.set_turn(angle, m_standing.up);
+      if (const Result found = match(most); found && found->cost < most) {
+        best = found;
+        most = found->cost;
+        m_cost.turn = angle;
+      }
+    }
+    return m_progress.is_cancelled() ? nullptr : best;
+  }
+
+  /// Turns after which a look at the trees shows less cost than without, the best first.
+  std::vector<double> promising_turns(Matching& matching) const
+  {
+    std::vector<double> angles =
+        find_turns<ConcurrencyTag>(matching.energy(), m_standing.up, number_of_looks);
+    angles.insert(angles.begin(), 0);
+    std::vector<double> cost;
+    for (const double angle : angles) {
+      matching.set_turn(angle, m_standing.up);
+      cost.push_back(matching.look());
+    }
+    std::vector<std::size_t> order(angles.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
+      return cost[i] < cost[j];
+    });
+    std::vector<double> result;
+    for (const std::size_t k : order)
+      if (cost[k] < cost[0] && result.size() < number_of_turns)
+        result.push_back(angles[k]);
+    return result;
+  }
+
+  bool match_along_branches()
+  {
+    Matching matching(*m_trees[0], *m_trees[1], m_weights, paths(wide_fork_ratio));
+    const Range from = range(m_trees[0]->heights[0], m_trees[1]->heights[0]);
+    const Result trunk = match_standing(matching, from, [&](double most) {
+      return match_trunks(matching, from, most);
+    });
+    if (trunk)
+      build(matching, trunk, false, from);
+    return trunk != nullptr;
+  }
+
+  void match_at_tips()
+  {
+    const double highest = std::max(m_trees[0]->heights[0], m_trees[1]->heights[0]);
+    const Range from = range(highest, highest);
+    Matching matching(*m_trees[0], *m_trees[1], m_weights, paths(1), true);
+    matching.set_number_of_trunk_trials(2 * m_weights.number_of_trials);
+    Result trunk;
+    if (m_weights.growth == Growth::at_tips)
+      trunk = match_standing(matching, from, [&](double most) {
+        return matching.run(m_progress, most);
+      });
+    else {
+      matching.set_turn(m_cost.turn, m_standing.up);
+      trunk = matching.run(m_progress, from.least + clearly * m_cost.share * from.more);
+    }
+    if (trunk)
+      build(matching, trunk, true, from);
+  }
+
+  static constexpr std::size_t number_of_looks = 8, number_of_turns = 2;
+  // of what is left without a turn, that with a turn leaves: copies with noise that stand right seem to be turned by chance
+  static constexpr double turned_share = 0.95;
+
+  std::array<const Rooted_tree*, 2> m_trees;
+  const Matching_weights& m_weights;
+  const Standing& m_standing;
+  pcs::internal::Progress& m_progress;
+  Common_topology& m_result;
+  Matching_cost m_cost;
+};
 
 } // namespace shape_space
 } // namespace pcs

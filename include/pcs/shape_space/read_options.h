@@ -11,6 +11,7 @@
 #include <pcs/shape_space/build_family.h>
 #include <pcs/shape_space/check_options.h>
 
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <type_traits>
@@ -29,6 +30,17 @@ read_options(const NamedParameters& np, std::size_t number_of_trees, const std::
   options.assignment = choose(np, pcs::internal_np::assignment_options, options.assignment);
   options.transport = choose(np, pcs::internal_np::transport_options, options.transport);
   check_options(options.weights, options.assignment, options.transport, caller);
+  options.standing.alignment = choose(np, pcs::internal_np::alignment, options.standing.alignment);
+  if constexpr (pcs::internal::is_given_v<NamedParameters, pcs::internal_np::up_direction_t>)
+    options.standing.up =
+        internal::to_vector(CGAL::parameters::get_parameter(np, pcs::internal_np::up_direction));
+  const double length = options.standing.up.stableNorm();
+  if (!(length > 0) || !std::isfinite(length))
+    throw Invalid_input(caller + ": `up_direction` must be finite and not the null vector");
+  options.standing.up /= length;
+  if (options.standing.alignment != Alignment::as_given && number_of_trees > 2)
+    throw Invalid_input(caller + ": `alignment` is for two trees, " +
+                        std::to_string(number_of_trees) + " were added");
   const auto rounds = choose(np, pcs::internal_np::number_of_rounds, 3);
   static_assert(std::is_integral_v<std::decay_t<decltype(rounds)>>,
                 "pcs::Orl_shape_space::build(): `number_of_rounds` must be an integer");

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -23,12 +24,14 @@ namespace shape_space {
 
 /// What is needed to find the same topology again.
 inline Orl_correspondences store_topology(const Common_topology& topology,
+                                          const Quaternion& turn,
                                           const std::array<const Tree_input*, 2>& inputs,
                                           const std::vector<Orl_correspondences::Pair>& pairs)
 {
   Orl_correspondences result;
   for (std::size_t t = 0; t < 2; ++t)
     result.fingerprint[t] = inputs[t]->fingerprint;
+  result.turn = {turn.w(), turn.x(), turn.y(), turn.z()};
   for (const Common_branch& b : topology.branches) {
     Orl_correspondences::Branch branch;
     branch.parent = b.parent;
@@ -58,6 +61,8 @@ inline Common_topology restore_topology(const Orl_correspondences& stored,
   for (std::size_t t = 0; t < 2; ++t)
     check(stored.fingerprint[t] == inputs[t]->fingerprint,
           "the correspondences were computed for other trees");
+  const auto& [w, x, y, z] = stored.turn;
+  check(std::abs(w * w + x * x + y * y + z * z - 1) < 1e-6, "the turn is no rotation");
   check(!stored.branches.empty(), "there are no branches");
   Common_topology result;
   for (std::size_t i = 0; i < stored.branches.size(); ++i) {
