@@ -215,6 +215,7 @@ BOOST_AUTO_TEST_CASE(leaves_are_found_where_there_are_any)
   BOOST_CHECK_EQUAL(all, found.number_of_leaf_points);
   BOOST_CHECK_GT(10 * right, 7 * leaves);
   BOOST_CHECK_LT(5 * wrong, wood);
+  BOOST_CHECK_CLOSE(found.height, kept.height, 5.0); // where the leaves end
   BOOST_CHECK_EQUAL(kept.number_of_leaf_points, 0u);
   BOOST_CHECK_LT(found.number_of_branches, kept.number_of_branches / 2);
   const double truth = length_of(s.truth);

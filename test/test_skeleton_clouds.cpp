@@ -268,7 +268,9 @@ BOOST_AUTO_TEST_CASE(a_sheet_is_no_tree)
   for (const Cloud& points : {sheet(4000, 2, x, y, 0),
                               sheet(20000, 4, x, y, 0.01),
                               sheet(4000, 2, x, z, 0.005),
-                              sheet(4000, 2, x, (y + z) / std::sqrt(2.0), 0.005)}) {
+                              sheet(4000, 2, x, (y + z) / std::sqrt(2.0), 0.005),
+                              sheet(20000, 2, 3 * x, z, 0.003),
+                              sheet(20000, 2, 5 * x, y, 0)}) {
     Tree tree;
     const auto report = pcs::extract_tree_skeleton(points, tree);
     BOOST_CHECK_EQUAL(report.status, pcs::Status::nothing_to_do);

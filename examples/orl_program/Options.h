@@ -5,6 +5,7 @@
 #ifndef PCS_EXAMPLES_ORL_PROGRAM_OPTIONS_H
 #define PCS_EXAMPLES_ORL_PROGRAM_OPTIONS_H
 
+#include "program/Distinct_files.h"
 #include <pcs/core/errors.h>
 
 #include <CLI/CLI.hpp>
@@ -14,9 +15,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <map>
+#include <set>
 #include <sstream>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -189,6 +193,34 @@ Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
   return lambda;
 }
 
+/// No result may be an input, or another result. Trees that a family gives have the names of their kinds.
+inline void check_files(const Options& o)
+{
+  namespace fs = std::filesystem;
+  program::Distinct_files files;
+  for (const auto* inputs : {&o.trees, &o.skeletons})
+    for (const std::string& input : *inputs)
+      files.add_input(input);
+  files.add_input(o.load);
+  for (const std::string* path :
+       {&o.correspondences, &o.matches, &o.report, &o.changes, &o.distances, &o.save})
+    files.add_output(*path);
+  if (o.has_lambda || !o.is_family())
+    for (const double l : std::set<double>(o.lambda.begin(), o.lambda.end()))
+      for (const char* extension : {".ply", ".swc"})
+        files.add_output((fs::path(o.output) / (name_of(l) + extension)).string());
+  for (const auto* inputs : {&o.trees, &o.skeletons})
+    for (const std::string& input : *inputs) {
+      std::error_code error;
+      const std::string stem = fs::path(input).stem().string();
+      const fs::path folder = fs::path(input).parent_path();
+      const bool is_in_output = fs::equivalent(folder.empty() ? "." : folder, o.output, error);
+      for (const char* kind : {"mean", "mode_", "sample_", "growth_", "combination"})
+        if (o.is_family() && is_in_output && stem.rfind(kind, 0) == 0)
+          throw pcs::Invalid_input(input + " may be overwritten by a result in " + o.output);
+    }
+}
+
 inline void check(const Options& o)
 {
   const auto fail = [](const std::string& what) { throw pcs::Invalid_input(what); };
@@ -220,6 +252,7 @@ inline void check(const Options& o)
   for (const double l : o.lambda)
     if (const auto [it, is_new] = names.emplace(name_of(l), l); !is_new && it->second != l)
       fail("--lambda has two places whose files would both be called " + it->first);
+  check_files(o);
   if (!o.times.empty() && !o.do_growth)
     fail("--times is for --growth");
 }

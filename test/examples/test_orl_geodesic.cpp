@@ -289,6 +289,17 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_with_a_sentence)
   write("file", "");
   refuses(trees + "--output file", "file");
   refuses(trees + "--output out --report missing/r.json", "missing/r.json");
+  const std::string before = content("a.swc");
+  for (const std::string option : {"--report", "--matches", "--changes", "--save-space"})
+    refuses("--skeleton a.swc --skeleton b.swc --output out " + option + " ./a.swc",
+            "the same file");
+  refuses("--skeleton a.swc --skeleton b.swc --output out --report r.json --matches r.json",
+          "the same file");
+  write("lambda_0.500.swc", before);
+  refuses("--skeleton lambda_0.500.swc --skeleton b.swc --output . --lambda 0.5", "the same file");
+  write("mean.swc", before);
+  refuses("--skeleton mean.swc --skeleton b.swc --output . --mean l1", "mean.swc");
+  BOOST_TEST(content("a.swc") == before);
   for (std::size_t k = 1; k < 10; ++k) {
     write("cut.txtskl", txtskl.substr(0, txtskl.size() * k / 10));
     BOOST_TEST(run("--skeleton cut.txtskl --skeleton b.swc --output out") == 1);
