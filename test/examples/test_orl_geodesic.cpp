@@ -298,7 +298,7 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_with_a_sentence)
   write("lambda_0.500.swc", before);
   refuses("--skeleton lambda_0.500.swc --skeleton b.swc --output . --lambda 0.5", "the same file");
   write("mean.swc", before);
-  refuses("--skeleton mean.swc --skeleton b.swc --output . --mean l1", "mean.swc");
+  refuses("--skeleton mean.swc --skeleton b.swc --output . --mean", "mean.swc");
   BOOST_TEST(content("a.swc") == before);
   for (std::size_t k = 1; k < 10; ++k) {
     write("cut.txtskl", txtskl.substr(0, txtskl.size() * k / 10));
