@@ -43,6 +43,14 @@ void add(Space& space, const Tree_file& file)
                 .normal_map(CGAL::make_property_map(normals)));
 }
 
+/// Whether branches and points were matched before: nothing is known of how.
+bool is_stored(const Options& o)
+{
+  std::error_code error;
+  return !o.load.empty() ||
+         (!o.correspondences.empty() && std::filesystem::exists(o.correspondences, error));
+}
+
 pcs::Orl_report build(Space& space, const Options& o)
 {
   using namespace pcs::shape_space;
@@ -60,8 +68,7 @@ pcs::Orl_report build(Space& space, const Options& o)
     return true;
   };
   const auto form = np::orientation(orientation);
-  std::error_code error;
-  if (!o.correspondences.empty() && std::filesystem::exists(o.correspondences, error))
+  if (is_stored(o))
     return space.build_from(pcs::IO::read_correspondences(o.correspondences), form);
   // of more trees, each stands as it was given
   const bool may_turn = o.align == "turns" && o.number_of_trees() == 2;
@@ -86,7 +93,9 @@ std::string matches_text(const Space& space, const Tree_file& one, const Tree_fi
   return text.str();
 }
 
-std::string report_text(const Space& space, const pcs::Orl_report& r)
+/// What was not found in this run is left out.
+std::string
+report_text(const Space& space, const pcs::Orl_report& r, const Options& o, bool is_stored)
 {
   using pcs::shape_space::Orl_metric;
   const pcs::Orl_tree a = space.tree(0), b = space.tree(1);
@@ -98,21 +107,25 @@ std::string report_text(const Space& space, const pcs::Orl_report& r)
   json["number_of_trees"] = r.number_of_trees;
   json["number_of_common_branches"] = r.number_of_common_branches;
   json["share_of_changes"] = r.share_of_changes;
-  json["matching_energy"] = r.matching_energy;
-  json["unexplained_share"] = r.unexplained_share;
-  json["is_grown_at_tips"] = r.is_grown_at_tips;
-  json["turn_degrees"] = r.turn * 180 / CGAL_PI;
-  json["number_of_nodes"] = r.number_of_nodes;
-  json["number_of_branches"] = r.number_of_branches;
-  json["number_of_matched_branches"] = r.number_of_matched_branches;
+  if (!is_stored) {
+    json["matching_energy"] = r.matching_energy;
+    json["unexplained_share"] = r.unexplained_share;
+    json["is_grown_at_tips"] = r.is_grown_at_tips;
+    json["turn_degrees"] = r.turn * 180 / CGAL_PI;
+    json["number_of_windows"] = r.number_of_windows;
+    json["number_of_failed_windows"] = r.number_of_failed_windows;
+    json["marginal_violation"] = {{"worst", r.worst_marginal_violation},
+                                  {"mean", r.mean_marginal_violation}};
+  }
   json["number_of_edges"] = r.number_of_edges;
-  json["number_of_points"] = r.number_of_points;
-  json["number_of_point_pairs"] = r.number_of_point_pairs;
-  json["number_of_single_points"] = r.number_of_single_points;
-  json["number_of_windows"] = r.number_of_windows;
-  json["number_of_failed_windows"] = r.number_of_failed_windows;
-  json["marginal_violation"] = {{"worst", r.worst_marginal_violation},
-                                {"mean", r.mean_marginal_violation}};
+  if (o.load.empty()) {
+    json["number_of_nodes"] = r.number_of_nodes;
+    json["number_of_branches"] = r.number_of_branches;
+    json["number_of_matched_branches"] = r.number_of_matched_branches;
+    json["number_of_points"] = r.number_of_points;
+    json["number_of_point_pairs"] = r.number_of_point_pairs;
+    json["number_of_single_points"] = r.number_of_single_points;
+  }
   json["seconds"] = {{"matching", r.seconds.matching},
                      {"topology", r.seconds.topology},
                      {"assignment", r.seconds.assignment},
@@ -163,6 +176,11 @@ void run(const Options& o)
     throw pcs::IO_error(o.output, "cannot be made a folder");
   Extra_file matches(o.matches), report_file(o.report), changes(o.changes), distances(o.distances);
 
+  const bool was_stored = is_stored(o);
+  if (was_stored && (o.is_published || o.transport != "exact"))
+    throw pcs::Invalid_input(
+        "--published-energy and --transport say how trees are matched, which " +
+        (o.load.empty() ? o.correspondences : o.load) + " has done before");
   Space space;
   pcs::Orl_report report;
   if (o.load.empty()) {
@@ -206,8 +224,8 @@ void run(const Options& o)
     matches.write([&] { return matches_text(space, files[0], files[1]); });
   changes.write([&] { return changes_text(space, files); });
   distances.write([&] { return distances_text(space); });
-  report_file.write([&] { return report_text(space, report); });
-  if (!o.is_quiet)
+  report_file.write([&] { return report_text(space, report, o, was_stored); });
+  if (!o.is_quiet && o.load.empty())
     std::cout << report << '\n';
 }
 

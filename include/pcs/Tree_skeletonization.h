@@ -46,7 +46,8 @@ constexpr std::size_t lowest_number_of_scan_points = 10;
 
   Each stage runs those before it, once; `extract()` runs them all. What a stage found can be inspected in between.
 
-  \tparam PointRange a model of `RandomAccessRange`; read by the constructor only
+  \tparam PointRange a model of `RandomAccessRange`; points are read by the constructor only, and `extract()` passes
+          their elements to the maps of points
   \tparam NamedParameters the type of the chain given to the constructor (deduced)
   \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or `CGAL::Parallel_if_available_tag`
 

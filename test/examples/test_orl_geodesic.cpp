@@ -252,12 +252,19 @@ BOOST_AUTO_TEST_CASE(a_tree_that_stands_turned_is_found)
 
 BOOST_AUTO_TEST_CASE(correspondences_are_kept)
 {
-  succeeds(trees + "--lambda 0.3 --output one --correspondences c.txt");
+  succeeds(trees + "--lambda 0.3 --output one --correspondences c.txt --report fresh.json");
   const std::string kept = content("c.txt");
   BOOST_TEST(!kept.empty());
   succeeds(trees + "--lambda 0.3 --output two --correspondences c.txt");
   BOOST_TEST(content("one/lambda_0.300.ply") == content("two/lambda_0.300.ply"));
   BOOST_TEST(content("c.txt") == kept);
+  // nothing is said of a matching that was done before, nor asked of it
+  succeeds(trees + "--output two --correspondences c.txt --report stored.json");
+  const Json stored = Json::parse(content("stored.json"));
+  BOOST_TEST(!stored.contains("matching_energy"));
+  BOOST_TEST(stored["number_of_points"] == Json::parse(content("fresh.json"))["number_of_points"]);
+  BOOST_TEST(stored["distance"] == Json::parse(content("fresh.json"))["distance"]);
+  refuses(trees + "--output three --correspondences c.txt --published-energy", "c.txt");
   refuses("--tree b.ply --skeleton b.swc --tree a.ply --skeleton a.swc --output three "
           "--correspondences c.txt",
           "other trees");

@@ -45,6 +45,9 @@ inline Orl_correspondences read_correspondences(const std::string& path)
       b.first[t] = index();
       b.tip[t] = index();
       b.attachment[t] = file.real("attachment");
+      b.is_continued[t] = file.skip("1");
+      if (!b.is_continued[t])
+        file.expect("0");
       b.nodes[t].resize(file.count("the number of nodes"));
       for (double& s : b.nodes[t])
         s = file.real("share");

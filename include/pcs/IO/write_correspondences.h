@@ -58,6 +58,7 @@ inline void write_correspondences(const std::string& path, const Orl_corresponde
       add_index(b.first[t]);
       add_index(b.tip[t]);
       add(b.attachment[t]);
+      add(b.is_continued[t] ? 1 : 0);
       add(b.nodes[t].size());
       for (const double s : b.nodes[t])
         add(s);

@@ -31,6 +31,7 @@ struct Orl_correspondences
     std::array<std::vector<double>, 2> nodes;      ///< shares of the length of the branch [-]
     std::array<double, 2> attachment = {0,
                                         0}; ///< number of a node of the parent, and share behind it
+    std::array<bool, 2> is_continued = {false, false}; ///< where the parent was cut: as thick as it
   };
   //! a point of either tree on an edge of the common topology; `no_point` where there is none
   struct Pair

@@ -42,6 +42,7 @@ inline Orl_correspondences store_topology(const Common_topology& topology,
         const Branch_path& path = topology.paths[t].paths[b.path[t]];
         branch.first[t] = path.nodes[path.is_trunk ? 0 : 1];
         branch.tip[t] = path.tip();
+        branch.is_continued[t] = path.is_continued;
       }
     result.branches.push_back(std::move(branch));
   }
@@ -92,11 +93,12 @@ inline Common_topology restore_topology(const Orl_correspondences& stored,
       check((b.first[t] == 0) == (i == 0), "a branch begins with the root");
       branch.path[t] = result.paths[t].paths.size();
       result.paths[t].paths.push_back(internal::make_path(tree, std::move(nodes), b.first[t] == 0));
-      if (i > 0 && result.branches[b.parent].path[t] != none) {
-        const Branch_path& parent = result.paths[t].paths[result.branches[b.parent].path[t]];
+      if (b.is_continued[t]) {
         Branch_path& path = result.paths[t].paths.back();
-        path.is_continued =
-            path.nodes.front() == parent.tip() && internal::is_longest_child(tree, path.nodes[1]);
+        check(i > 0 && result.paths[t].paths[result.branches[b.parent].path[t]].tip() ==
+                           path.nodes.front(),
+              "a branch that continues its parent does not begin at its tip");
+        path.is_continued = true;
       }
       const std::vector<double>& s = b.nodes[t];
       check(s.size() > 1 && s.front() == 0 && s.back() == 1, "a branch does not go from 0 to 1");
