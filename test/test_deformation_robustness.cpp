@@ -307,7 +307,7 @@ BOOST_AUTO_TEST_CASE(softness_out_of_range_is_refused)
 BOOST_AUTO_TEST_CASE(every_softness_gives_a_finite_result)
 {
   const Bar_edit edit;
-  for (const double softness : {1e-300, 1e-9, 1.0, 1e9, 1e300})
+  for (const double softness : {1e-9, 1.0, 1e9})
     for (const long long samples : {150, 1000000}) {
       Handles handles = edit.handles;
       handles[1].softness = softness;
@@ -318,6 +318,13 @@ BOOST_AUTO_TEST_CASE(every_softness_gives_a_finite_result)
       BOOST_TEST(is_finite(deform(edit.points, handles, with_samples(samples))),
                  "softness " << softness << " of all handles");
     }
+  for (const double softness : {-1.0, 1e-300, 1e16, 1e300}) {
+    Handles handles = edit.handles;
+    handles[1].softness = softness;
+    BOOST_CHECK_EXCEPTION(deform(edit.points, handles, with_samples(150)),
+                          pcs::Invalid_input,
+                          message_has("between 1e-9 and 1e9"));
+  }
 }
 
 BOOST_AUTO_TEST_CASE(soft_handles_lie_between_free_and_exact)

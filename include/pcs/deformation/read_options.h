@@ -10,6 +10,7 @@
 #include <pcs/core/errors.h>
 #include <pcs/deformation/Elastic_options.h>
 #include <pcs/deformation/Sampled_body.h>
+#include <pcs/internal/text.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -26,9 +27,15 @@ namespace internal {
 template <class Value>
 Value checked(const char* function, const char* name, Value value, bool is_valid, const char* rule)
 {
-  if (!is_valid)
-    throw Invalid_input(std::string(function) + ": " + name + " is " + std::to_string(value) +
-                        "; it must be " + rule);
+  if (!is_valid) {
+    std::string text;
+    if constexpr (std::is_floating_point_v<Value>)
+      text = pcs::internal::to_text(static_cast<double>(value));
+    else
+      text = std::to_string(value);
+    throw Invalid_input(std::string(function) + ": " + name + " is " + text + "; it must be " +
+                        rule);
+  }
   return value;
 }
 
