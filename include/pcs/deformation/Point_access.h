@@ -7,6 +7,7 @@
 
 #include <pcs/Named_function_parameters.h>
 #include <pcs/concepts.h>
+#include <pcs/core/Similarity.h>
 #include <pcs/core/errors.h>
 #include <pcs/deformation/affine_maps.h>
 #include <pcs/internal/lanes.h>
