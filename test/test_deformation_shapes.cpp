@@ -374,6 +374,35 @@ BOOST_AUTO_TEST_CASE(interior_springs_keep_volume_at_full_resolution)
   BOOST_TEST((deform(c.points, handles_of(c), options).points == with));
 }
 
+BOOST_AUTO_TEST_CASE(few_samples_tear_nothing_between_handles)
+{
+  const int nx = 80, ny = 40;
+  const Points points = pcs_test::plate(nx, ny, 1);
+  Options options;
+  options.number_of_samples = 60; // 7 to 8 apart
+  for (const double gap : {3.0, 8.0, 20.0})
+    for (const bool is_turned : {false, true}) {
+      Handles handles(2);
+      for (std::size_t i = 0; i < points.size(); ++i)
+        if (std::abs(points[i].x() - 40) >= gap / 2)
+          handles[points[i].x() < 40 ? 0 : 1].indices.push_back(i);
+      handles[1].transformation =
+          is_turned ? pcs::Similarity::about(pcs::Similarity::from_turn(Vec3(0, 1, 0)),
+                                             Vec3(40 + gap / 2, ny / 2, 0))
+                    : pcs::Similarity::from_translation(Vec3(0, 0, gap));
+      const Points moved = deform(points, handles, options).points;
+      double steepest = 0;
+      for (std::size_t i = 0; i < points.size(); ++i)
+        for (const std::size_t j : {i + 1, i + std::size_t(ny) + 1})
+          if (j < points.size() && (points[j] - points[i]).norm() < 1.5)
+            steepest = std::max(steepest, ((moved[j] - points[j]) - (moved[i] - points[i])).norm());
+      BOOST_TEST_MESSAGE("gap " << gap << (is_turned ? ", turned" : ", lifted") << ": steepest "
+                                << steepest);
+      // A straight plate is as steep as 1 everywhere.
+      BOOST_TEST(steepest < 2.5);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(the_variants_of_the_dissertation_run_and_differ)
 {
   const pcs_test::Bar_edit edit(10, 40);

@@ -57,8 +57,10 @@ public:
            ++place) {
         while (begin < m_of_sites.size() && m_of_sites[begin].site < body.site_of_place[place])
           ++begin;
-        if (begin < m_of_sites.size() && m_of_sites[begin].site == body.site_of_place[place])
-          add(m_of_sites[begin], place % lanes);
+        for (std::size_t f = begin;
+             f < m_of_sites.size() && m_of_sites[f].site == body.site_of_place[place];
+             ++f)
+          add(m_of_sites[f], place % lanes);
       }
       m_first.push_back(static_cast<std::uint32_t>(m_of_blocks.size()));
     }
@@ -88,29 +90,32 @@ public:
              Vec3& normal,
              Eigen::Matrix3d& gradient) const
   {
-    const auto f = std::lower_bound(m_of_sites.begin(),
-                                    m_of_sites.end(),
-                                    site,
-                                    [](const Border_fade& a, std::size_t s) { return a.site < s; });
+    auto f = std::lower_bound(m_of_sites.begin(),
+                              m_of_sites.end(),
+                              site,
+                              [](const Border_fade& a, std::size_t s) { return a.site < s; });
     if (f == m_of_sites.end() || f->site != site)
       return;
-    const Similarity& t = transforms[static_cast<std::size_t>(f->handle)];
-    p += f->weight * (t(rest) - p);
-    gradient += f->weight * (t.scale() * t.rotation() - gradient);
-    const Vec3 mixed = normal + f->weight * (t.rotation() * rest_normal - normal);
-    const double length = mixed.norm();
+    for (; f != m_of_sites.end() && f->site == site; ++f) {
+      const Similarity& t = transforms[static_cast<std::size_t>(f->handle)];
+      p += f->weight * (t(rest) - p);
+      gradient += f->weight * (t.scale() * t.rotation() - gradient);
+      normal += f->weight * (t.rotation() * rest_normal - normal);
+    }
+    const double length = normal.norm();
     if (length > 0)
-      normal = rest_normal.norm() / length * mixed;
+      normal *= rest_normal.norm() / length;
   }
 
 private:
+  /// Keeps the fades of a block in the order of the handles, in which those of a point are meant.
   void add(const Border_fade& fade, std::size_t lane)
   {
     auto f = m_of_blocks.begin() + m_first.back();
     const auto handle = static_cast<std::uint32_t>(fade.handle);
-    while (f != m_of_blocks.end() && f->handle != handle)
+    while (f != m_of_blocks.end() && f->handle < handle)
       ++f;
-    if (f == m_of_blocks.end())
+    if (f == m_of_blocks.end() || f->handle != handle)
       f = m_of_blocks.insert(f, {handle, {}});
     f->weight[lane] = fade.weight;
   }

@@ -72,7 +72,7 @@ struct Handle_map
   double turn[9];
 };
 
-/// How far the points of a block are drawn to one handle; zero for those that are not. No point is drawn to two.
+/// How far the points of a block are drawn to one handle; zero for those that are not.
 struct Block_fade
 {
   std::uint32_t handle;
