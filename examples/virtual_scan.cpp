@@ -44,7 +44,7 @@ pcs::Tree_habit habit_of(const Scan_options& options)
   std::string names;
   for (const auto& [name, habit] : pcs::tree_habits()) {
     if (name == options.preset)
-      return options.height > 0 ? habit.scaled(options.height / habit.height) : habit;
+      return options.height ? habit.scaled(*options.height / habit.height) : habit;
     names += (names.empty() ? "" : ", ") + name;
   }
   throw pcs::Invalid_input("unknown preset '" + options.preset + "', expected one of " + names);

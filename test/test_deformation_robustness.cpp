@@ -292,6 +292,11 @@ BOOST_AUTO_TEST_CASE(motions_that_are_not_finite_are_refused)
     handles[1].transformation = pcs::translation(Vec3(bad, 0, 0));
     BOOST_CHECK_THROW(deform(edit.points, handles), Invalid_input);
   }
+  const auto turn = [](double angle) { return pcs::Similarity::from_turn(Vec3(0, 0, angle)); };
+  for (const double bad : {not_a_number, infinity, 1e300, -1e12})
+    BOOST_CHECK_EXCEPTION(turn(bad), Invalid_input, message_has("turn"));
+  const pcs::Similarity large = turn(0.9e12);
+  BOOST_CHECK_EXCEPTION(large * large, Invalid_input, message_has("1.8e+12 rad"));
 }
 
 BOOST_AUTO_TEST_CASE(softness_out_of_range_is_refused)

@@ -12,11 +12,13 @@
 #include <CLI/CLI.hpp>
 
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -29,7 +31,8 @@ struct Scan_options
   std::string output, truth, swc, report, tree;
   std::string preset = "broadleaf";
   std::int64_t stations = 4, seed = 0;
-  double height = 0, age = 1;
+  std::optional<double> height;
+  double age = 1;
   double step_degrees = 0.05, arc_degrees = 360, first_degrees = 0, beam_milliradians = 0.4;
   pcs::Virtual_scanner scanner;
   bool has_post = false, is_quiet = false;
@@ -52,6 +55,16 @@ of branches, so two scans of one preset and seed have a known correspondence. Fo
   virtual_scan --preset fruit --seed 7 --prune 3 --turn 5 30 --output old.ply --truth old.csv
 
 Exit codes: 0 success, 1 bad input or usage, 2 internal error.)";
+}
+
+/// CLI11 takes numbers that are too large for the largest one.
+inline std::string is_seed(const std::string& text)
+{
+  std::int64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (error == std::errc() && end == text.data() + text.size())
+    return "";
+  return "a seed is an integer of at most 64 bits, found " + text;
 }
 
 inline void declare(CLI::App& app, Scan_options& o)
@@ -77,6 +90,7 @@ inline void declare(CLI::App& app, Scan_options& o)
       ->excludes(preset)
       ->group(tree);
   app.add_option("--seed", o.seed, "of the tree and of the scan")
+      ->check(is_seed)
       ->capture_default_str()
       ->group(tree);
   app.add_option("--height", o.height, "length of the trunk; all else grows with it")->group(tree);
@@ -154,7 +168,7 @@ inline void complete(Scan_options& o)
   o.scanner.beam_width = o.beam_milliradians / 1000;
   o.turned = id_pairs(o.turned_numbers, "--turn");
   o.lengthened = id_pairs(o.lengthened_numbers, "--lengthen");
-  if (o.height != 0 && (!(o.height > 0) || !std::isfinite(o.height) || !o.tree.empty()))
+  if (o.height && (!(*o.height > 0) || !std::isfinite(*o.height) || !o.tree.empty()))
     throw pcs::Invalid_input("--height must be positive, and cannot be used with --tree");
 
   const std::array<std::pair<const char*, const std::string*>, 5> files = {{{"--output", &o.output},

@@ -143,6 +143,9 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
   refuses(*this, "--output no/scan.ply", "no/scan.ply");
   refuses(*this, "--output scan.off --preset fruit", "scan.off");
   refuses(*this, "--output scan.ply --height -3", "--height");
+  refuses(*this, "--output scan.ply --height 0", "--height must be positive");
+  refuses(*this, "--output scan.ply --seed 99999999999999999999", "at most 64 bits");
+  refuses(*this, "--output scan.ply --seed 1.5", "at most 64 bits");
   refuses(*this, "--output scan.ply --noise nan", "range_noise");
 }
 

@@ -43,7 +43,7 @@ public:
 
   Similarity() = default;
 
-  /// Rotation by `axis * angle` [rad] about the origin.
+  /// Rotation by `axis * angle` [rad] about the origin. Throws `Invalid_input` from 1e12 rad on.
   static Similarity from_turn(const Turn& turn)
   {
     Similarity s;
@@ -146,8 +146,7 @@ public:
 private:
   void append(const Turn& turn)
   {
-    if (!turn.allFinite())
-      throw Invalid_input("pcs::Similarity: a turn is not finite");
+    check_turn(turn);
     if (turn.squaredNorm() > 0) {
       // Same axis, either sense: one turn with the sum of the angles, and nothing at all when they cancel.
       const bool is_same_axis = !m_turns.empty() && turn.cross(m_turns.back()).norm() <=
@@ -156,6 +155,7 @@ private:
         m_turns.push_back(turn);
       else {
         const double before = m_turns.back().norm();
+        check_turn(m_turns.back() + turn);
         m_turns.back() += turn;
         if (m_turns.back().norm() <= 1e-15 * before)
           m_turns.pop_back();
@@ -167,6 +167,19 @@ private:
     m_rotation = m_turns.empty() ? Eigen::Matrix3d(Eigen::Matrix3d::Identity())
                                  : q.normalized().toRotationMatrix();
   }
+
+  static void check_turn(const Turn& turn)
+  {
+    if (!turn.allFinite())
+      throw Invalid_input("pcs::Similarity: a turn is not finite");
+    const double largest = turn.cwiseAbs().maxCoeff();
+    if (!(largest < largest_turn))
+      throw Invalid_input("pcs::Similarity: a turn by " + internal::to_text(largest) +
+                          " rad; its direction would be lost from " +
+                          internal::to_text(largest_turn) + " rad on");
+  }
+
+  static constexpr double largest_turn = 1e12; ///< a double tells 1e-4 rad apart there [rad]
 
   Turns m_turns;
   Eigen::Matrix3d m_rotation = Eigen::Matrix3d::Identity();
