@@ -49,16 +49,17 @@ public:
                               [&](std::size_t site) { return body.rest_of_site(site); });
     m_of_blocks.clear();
     m_first.assign(1, 0);
+    std::vector<std::uint32_t> first_of_site(body.number_of_sites(), none);
+    for (std::size_t f = m_of_sites.size(); f-- > 0;)
+      first_of_site[m_of_sites[f].site] = static_cast<std::uint32_t>(f);
     const auto& upsampling = body.upsampling;
-    std::size_t begin = 0; // of the sites in the block
     for (std::size_t block = 0; block < upsampling.number_of_blocks(); ++block) {
       for (std::size_t place = block * lanes;
            place < std::min((block + 1) * lanes, body.number_of_points());
            ++place) {
-        while (begin < m_of_sites.size() && m_of_sites[begin].site < body.site_of_place[place])
-          ++begin;
-        for (std::size_t f = begin;
-             f < m_of_sites.size() && m_of_sites[f].site == body.site_of_place[place];
+        const std::uint32_t site = body.site_of_place[place];
+        for (std::size_t f = first_of_site[site];
+             f < m_of_sites.size() && m_of_sites[f].site == site;
              ++f)
           add(m_of_sites[f], place % lanes);
       }
@@ -119,6 +120,8 @@ private:
       f = m_of_blocks.insert(f, {handle, {}});
     f->weight[lane] = fade.weight;
   }
+
+  static constexpr std::uint32_t none = ~std::uint32_t(0);
 
   std::vector<Border_fade> m_of_sites; ///< increasing by site
   std::vector<Block_fade> m_of_blocks; ///< the same by block

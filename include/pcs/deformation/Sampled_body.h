@@ -13,6 +13,7 @@
 #include <pcs/deformation/Sample_links.h>
 #include <pcs/deformation/Sample_regions.h>
 #include <pcs/deformation/Upsampling.h>
+#include <pcs/deformation/coherent_order.h>
 #include <pcs/deformation/interior_links.h>
 #include <pcs/deformation/octree_samples.h>
 #include <pcs/deformation/voronoi_graph.h>
@@ -29,6 +30,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -68,8 +70,9 @@ struct Local_frame
 };
 
 /*!
-  Points are numbered three ways. An *input* index is the caller's. A *place* is its position in spatial order, all
-  points included. A *site* stands for all points at the same coordinates; graphs and components are over sites.
+  Points are numbered three ways. An *input* index is the caller's. A *site* stands for all points at the same
+  coordinates, in spatial order; graphs and components are over sites. A *place* is the position in the order in which
+  points are upsampled: the spatial order, all points included, or the caller's where that is as coherent.
 */
 template <class ConcurrencyTag>
 struct Sampled_body
@@ -79,7 +82,7 @@ struct Sampled_body
   std::vector<std::uint32_t> input_of_place;
   std::vector<std::uint32_t> site_of_place;
   std::vector<std::uint32_t>
-      place_of_site; ///< the first one; empty if every point has a place of its own
+      place_of_site; ///< the first one; empty if every site's place has its number
   std::vector<std::uint32_t> site_of_input;
   std::vector<std::uint32_t> component_of_site;
   std::vector<std::uint32_t> component_size; ///< in points
@@ -115,9 +118,8 @@ struct Sampled_body
     options = sampling;
     pcs::internal::Stopwatch watch;
     to_local(points);
-    input_of_place = neighborhood::spatial_order<ConcurrencyTag>(points);
     std::vector<Vec3> sites;
-    merge_duplicates(points, sites);
+    order_points(points, sites);
     points = std::vector<Vec3>();
     if (!progress(0.2))
       return false;
@@ -173,20 +175,25 @@ private:
     });
   }
 
-  void merge_duplicates(const std::vector<Vec3>& points, std::vector<Vec3>& sites)
+  /// Numbers sites and places.
+  void order_points(const std::vector<Vec3>& points, std::vector<Vec3>& sites)
   {
     const std::size_t n = points.size();
-    site_of_place.resize(n);
+    input_of_place = neighborhood::spatial_order<ConcurrencyTag>(points);
     site_of_input.resize(n);
     sites.reserve(n);
-    for (std::size_t place = 0; place < n; ++place) {
-      const Vec3& p = points[input_of_place[place]];
-      if (sites.empty() || sites.back() != p)
-        sites.push_back(p);
-      site_of_place[place] = static_cast<std::uint32_t>(sites.size() - 1);
-      site_of_input[input_of_place[place]] = site_of_place[place];
+    for (const std::uint32_t i : input_of_place) {
+      if (sites.empty() || sites.back() != points[i])
+        sites.push_back(points[i]);
+      site_of_input[i] = static_cast<std::uint32_t>(sites.size() - 1);
     }
-    if (sites.size() == n)
+    const bool is_coherent = is_coherent_order(points, input_of_place);
+    if (is_coherent)
+      std::iota(input_of_place.begin(), input_of_place.end(), 0u);
+    site_of_place.resize(n);
+    for (std::size_t place = 0; place < n; ++place)
+      site_of_place[place] = site_of_input[input_of_place[place]];
+    if (sites.size() == n && !is_coherent)
       return;
     place_of_site.resize(sites.size());
     for (std::size_t place = n; place-- > 0;)
