@@ -113,6 +113,37 @@ BOOST_AUTO_TEST_CASE(a_given_skeleton_is_measured_where_it_is)
   BOOST_CHECK_CLOSE(again[num_vertices(again) / 4].radius, 0.1, 2.0);
 }
 
+BOOST_AUTO_TEST_CASE(given_branches_without_points_taper)
+{
+  // a stem of 2 m, and an arm of 1 m that the scan does not show
+  const Cloud points = cylinder(6000, 0.1, 2);
+  Tree given, tree;
+  for (int k = 0; k <= 10; ++k) {
+    pcs::Tree_node<pcs_test::Tree_kernel> node;
+    node.point = Point(0, 0, 0.2 * k);
+    add_vertex(node, given);
+    if (k > 0)
+      add_edge(std::size_t(k - 1), std::size_t(k), given);
+  }
+  for (int k = 1; k <= 10; ++k) {
+    pcs::Tree_node<pcs_test::Tree_kernel> node;
+    node.point = Point(0.1 * k, 0, 1);
+    const std::size_t v = add_vertex(node, given);
+    add_edge(k == 1 ? std::size_t(5) : v - 1, v, given);
+  }
+  pcs::extract_tree_skeleton(points, tree, pcs::parameters::given_skeleton(given));
+  const auto out = [&](std::size_t v) { return CGAL::to_double(tree[v].point.x()); };
+  std::size_t count = 0;
+  for (std::size_t v = 0; v < num_vertices(tree); ++v)
+    if (out(v) > 0.35) {
+      ++count;
+      BOOST_TEST(!tree[v].is_measured);
+      BOOST_TEST(tree[v].radius <= 0.1 * (1.051 - out(v)));
+    } else if (out(v) == 0 && tree[v].point.z() > 0.1 && tree[v].branch == 0)
+      BOOST_CHECK_CLOSE(tree[v].radius, 0.1, 5.0);
+  BOOST_TEST(count == 7u);
+}
+
 BOOST_AUTO_TEST_CASE(hints_that_make_no_sense_are_refused)
 {
   const Cloud points = cylinder(2000, 0.1, 2);
@@ -147,7 +178,23 @@ BOOST_AUTO_TEST_CASE(hints_that_make_no_sense_are_refused)
   broken[1].point = Point(0, 0, bad);
   BOOST_CHECK_THROW(pcs::extract_tree_skeleton(points, tree, given_skeleton(broken)),
                     pcs::Invalid_input);
+  // they belong to another scan
+  BOOST_CHECK_THROW(pcs::extract_tree_skeleton(points, tree, root_position(Point(0, 0, -3))),
+                    pcs::Invalid_input);
+  broken[1].point = Point(0, 0, 1e101);
+  BOOST_CHECK_THROW(pcs::extract_tree_skeleton(points, tree, given_skeleton(broken)),
+                    pcs::Invalid_input);
+  for (const double scale : {0.0, 1.0}) { // no length; far away
+    Tree moved = broken;
+    for (std::size_t v = 0; v < num_vertices(moved); ++v)
+      moved[v].point = Point(50 * scale, 0, scale * double(v));
+    BOOST_CHECK_THROW(pcs::extract_tree_skeleton(points, tree, given_skeleton(moved)),
+                      pcs::Invalid_input);
+  }
   BOOST_TEST(num_vertices(tree) == 0u);
+  // a little below the lowest points is no mistake
+  pcs::extract_tree_skeleton(points, tree, root_position(Point(0, 0, -0.5)));
+  BOOST_TEST(num_vertices(tree) > 1u);
 }
 
 // Every call of the callback of every way of working.

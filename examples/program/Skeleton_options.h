@@ -10,6 +10,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -205,6 +206,8 @@ inline void check(const Skeleton_options& options)
   if (options.scanners.size() % 3 != 0)
     throw pcs::Invalid_input("--scanner takes three coordinates for each scanner, found " +
                              std::to_string(options.scanners.size()) + " numbers");
+  if (!std::isfinite(options.tolerance)) // for CLI11 everything is in range that is not out of it
+    throw pcs::Invalid_input("--tolerance must be a finite number");
   if (options.folder.empty())
     check_single(options);
   else

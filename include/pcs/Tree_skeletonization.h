@@ -13,12 +13,12 @@
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Session.h>
 #include <pcs/skeleton/caller_types.h>
+#include <pcs/skeleton/check_input.h>
 #include <pcs/skeleton/read_options.h>
 #include <pcs/skeleton/write_result.h>
 
 #include <CGAL/property_map.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -31,10 +31,6 @@
 #include <vector>
 
 namespace pcs {
-
-//! \ingroup PkgPcsSkeletonRef
-//! a scan of fewer different points has no skeleton [count]
-constexpr std::size_t lowest_number_of_scan_points = 10;
 
 /*!
   \ingroup PkgPcsSkeletonRef
@@ -172,8 +168,8 @@ public:
         \npdefault none
     \npend
 
-    \throws Invalid_input if there are too few points, a coordinate is not finite or beyond 1e150, or a parameter is out of
-            range
+    \throws Invalid_input if there are too few points, a coordinate is not finite or beyond 1e100, a parameter is out of
+            range, or the root or the given skeleton is farther from the points than these are from each other
   */
   explicit Tree_skeletonization(const PointRange& points,
                                 const NamedParameters& np = NamedParameters())
@@ -184,7 +180,7 @@ public:
       m_callback =
           internal::choose(m_np, CGAL::internal_np::callback, std::function<bool(double)>());
       std::vector<skeleton::Vec3> input = read_points();
-      check_extent(input);
+      skeleton::check_input(input, options, function);
       std::vector<std::uint8_t> is_wood = read_wood();
       m_session =
           std::make_unique<Session>(std::move(input), std::move(is_wood), std::move(options));
@@ -291,30 +287,14 @@ private:
                          CGAL::internal_np::point_map,
                          CGAL::Identity_property_map<std::decay_t<typename Types::Element>>());
     std::vector<skeleton::Vec3> input;
-    constexpr double largest = 1e150; // squares must be finite
     for (auto it = std::begin(*m_points); it != std::end(*m_points); ++it) {
       const skeleton::Vec3 p = skeleton::internal::to_vec3(get(point_map, *it));
-      if (!p.allFinite() || p.cwiseAbs().maxCoeff() > largest)
+      if (!skeleton::internal::is_coordinate(p))
         throw Invalid_input(std::string(function) + ": point " + std::to_string(input.size()) +
-                            " is not finite, or beyond 1e150");
+                            " is not finite, or beyond 1e100");
       input.push_back(p);
     }
     return input;
-  }
-
-  static void check_extent(const std::vector<skeleton::Vec3>& input)
-  {
-    std::vector<skeleton::Vec3> some;
-    for (const skeleton::Vec3& p : input) {
-      if (some.size() < lowest_number_of_scan_points &&
-          std::find(some.begin(), some.end(), p) == some.end())
-        some.push_back(p);
-      if (some.size() == lowest_number_of_scan_points)
-        return;
-    }
-    throw Invalid_input(std::string(function) + ": there are only " + std::to_string(some.size()) +
-                        " different points; there must be at least " +
-                        std::to_string(lowest_number_of_scan_points));
   }
 
   std::vector<std::uint8_t> read_wood() const

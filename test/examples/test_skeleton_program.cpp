@@ -283,6 +283,13 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
     flat += std::to_string(0.02 * (i % 50)) + " " + std::to_string(0.02 * (i / 50)) + " 0\n";
   write("flat.xyz", flat);
   write("forest.swc", "1 0 0 0 0 1 -1\n2 0 0 0 0 1 -1\n");
+  write("dot.swc", "1 0 0 0 0 1 -1\n2 0 0 0 0 1 1\n");
+  write("far.swc", "1 0 900 0 0 1 -1\n2 0 900 0 1 1 1\n");
+  std::string huge;
+  for (int i = 0; i < 2000; ++i)
+    huge += std::to_string(i % 7) + "e149 " + std::to_string(i % 11) + "e149 " + std::to_string(i) +
+            "e149\n";
+  write("huge.xyz", huge);
   std::filesystem::create_directory(path("folder"));
   refuses("", "--input");
   refuses("--input tree.xyz", "--swc is required");
@@ -291,6 +298,7 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
   refuses("--input torn.ply --swc old.swc", "torn.ply");
   refuses("--input one.xyz --swc old.swc", "only 1 different");
   refuses("--input nan.xyz --swc old.swc", "finite");
+  refuses("--input huge.xyz --swc old.swc", "beyond 1e100");
   refuses("--input words.xyz --swc old.swc", "words.xyz");
   refuses("--input flat.xyz --swc old.swc", "there is no tree");
   refuses("--input tree.xyz --swc old.swc --mesh no/m.ply", "there is no such folder");
@@ -305,11 +313,16 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
   refuses("--input tree.xyz --swc old.swc --up w", "--up");
   refuses("--input tree.xyz --swc old.swc --breast-height -1", "breast_height");
   refuses("--input tree.xyz --swc old.swc --tolerance -1", "--tolerance");
+  refuses("--input tree.xyz --swc old.swc --mesh m.ply --tolerance nan", "--tolerance");
+  refuses("--input tree.xyz --swc old.swc --mesh m.ply --tolerance inf", "--tolerance");
   refuses("--input tree.xyz --swc old.swc --root 1 2", "--root");
+  refuses("--input tree.xyz --swc old.swc --root 900 0 0", "away from the points");
   refuses("--input tree.xyz --swc old.swc --root nan 0 0", "root_position");
   refuses("--input tree.xyz --swc old.swc --scanner 1 2 3 4", "three coordinates");
   refuses("--input tree.xyz --swc old.swc --wood bark", "no property 'bark'");
   refuses("--input tree.xyz --swc old.swc --skeleton forest.swc", "forest.swc");
+  refuses("--input tree.xyz --swc old.swc --skeleton dot.swc", "lie at one place");
+  refuses("--input tree.xyz --swc old.swc --skeleton far.swc", "away from the points");
   refuses("--input tree.xyz --swc old.swc --method magic", "--method");
   refuses("--input tree.xyz --folder out --swc old.swc", "leave old.swc out");
   refuses("--input tree.xyz folder/tree.ply --folder out", "the same name");

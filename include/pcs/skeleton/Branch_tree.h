@@ -76,23 +76,22 @@ private:
     for (Index v = 0; v < n; ++v)
       if (m_tree.nodes[v].parent != none)
         m_child[m_tree.nodes[v].parent].push_back(v);
-    m_height.assign(n, 0);
+    m_carried.assign(n, 0);
     for (std::size_t v = n; v-- > 1;) {
       const Branch_node& node = m_tree.nodes[v];
-      double& h = m_height[node.parent];
-      h = std::max(h, m_height[v] + (node.point - m_tree.nodes[node.parent].point).norm());
+      const double length = (node.point - m_tree.nodes[node.parent].point).norm();
+      m_carried[node.parent] += m_carried[v] + node.radius * node.radius * length;
     }
   }
 
-  /// The node a way ahead of `v` (along highest children) or behind it.
+  /// The node a way ahead of `v` (to where most wood is) or behind it.
   Index ahead(Index v, double length) const
   {
     double gone = 0;
     while (gone < length && !m_child[v].empty()) {
       Index best = m_child[v].front();
       for (const Index c : m_child[v])
-        if (m_tree.nodes[c].radius * std::sqrt(m_height[c] + m_spacing) >
-            m_tree.nodes[best].radius * std::sqrt(m_height[best] + m_spacing))
+        if (m_carried[c] > m_carried[best])
           best = c;
       gone += (m_tree.nodes[best].point - m_tree.nodes[v].point).norm();
       v = best;
@@ -110,7 +109,7 @@ private:
     return v;
   }
 
-  /// At a fork, the child that goes on is the thick, straight and long one.
+  /// At a fork, the child that goes on is straight and carries most: sums change little when a tip is lost.
   void choose_continuations()
   {
     const std::size_t n = m_tree.nodes.size();
@@ -126,7 +125,9 @@ private:
         const double norm = from.norm() * to.norm();
         const double cosine = norm > 0 ? from.dot(to) / norm : 0;
         const double radius = 0.5 * (m_tree.nodes[c].radius + m_tree.nodes[w].radius);
-        const double score = radius * (1.3 + cosine) * std::sqrt(m_height[c] + 4 * m_spacing);
+        const double carried = m_carried[c] + 4 * m_spacing * radius * radius;
+        const double straight = 1.3 + cosine;
+        const double score = straight * straight * std::sqrt(carried);
         if (score > best) {
           best = score;
           m_next[v] = c;
@@ -185,7 +186,7 @@ private:
   Branch_tree m_tree;
   std::vector<std::vector<Index>> m_child;
   std::vector<Index> m_next, m_number;
-  std::vector<double> m_height;
+  std::vector<double> m_carried; ///< squared radii times lengths
 };
 
 /// Nodes with parents, while the tree is being built.

@@ -42,6 +42,8 @@ public:
   Candidate operator()(const Layer_tree& tree, const Chain& chain) const
   {
     Candidate candidate;
+    const bool is_first =
+        chain.parent_node == none; // at the root stands the trunk, whatever is there
     const Chain_start start = start_of(m_view, tree, chain);
     candidate.number_of_own_points = start.points.size();
     if (start.points.size() < m_rules.lowest_count)
@@ -52,6 +54,8 @@ public:
     if (!run(fit, first_widening))
       return candidate;
     cut_filled(m_view, fit);
+    if (!is_first)
+      cut_thin_base(m_view, fit);
     const Vec3 base = fit.axis().front().point, tip = fit.axis().back().point;
     prolong(m_view, true, fit.axis());
     std::vector<Index> points = gather(fit);
@@ -64,6 +68,8 @@ public:
         return candidate;
     }
     cut_filled(m_view, fit);
+    if (!is_first)
+      cut_thin_base(m_view, fit);
     judge(fit, points, candidate);
     return candidate;
   }

@@ -48,6 +48,10 @@ struct Chain_rules
   double filled_depth = 0.1; ///< ... deeper than this many radii ...
   double filled_noise = 4;   ///< ... and than this many times the noise
   double deep = 0.3;         ///< flutes of a stem are less deep than this many radii
+  double steady = 4;         ///< length of a stretch that shows how thick an axis is, in its radii
+  double thin_base = 0.4,
+         thick_base =
+             0.75; ///< an axis with a base below the first share of that begins at the second [-]
   int most_skipped = 3; ///< extensions by which a thick axis may be lost, at a whorl for example
   double extension = 3; ///< how far both ends are prolonged on trial, in radii ...
   double extension_offset = 4;          ///< ... and spacings

@@ -12,6 +12,7 @@
 #include <pcs/skeleton/Branch_tree.h>
 #include <pcs/skeleton/Session_options.h>
 #include <pcs/skeleton/report_sizes.h>
+#include <pcs/skeleton/root_axis.h>
 
 #include <algorithm>
 #include <cmath>
@@ -188,12 +189,12 @@ public:
       return progress(0.97);
     }
     if (!m_axes.axes.empty()) { // none with a given skeleton
-      const Index root = root_axis();
+      const Index root = root_axis(m_scan, m_axes, m_root);
       m_joints =
           Axis_joiner(m_axes, m_scan.spacing, m_options.joints).template run<ConcurrencyTag>(root);
       if (!progress(0.95))
         return false;
-      m_joints[root].is_reversed = is_root_reversed(root);
+      m_joints[root].is_reversed = is_root_reversed(m_scan, m_axes.axes[root].axis, m_root);
       m_tree = branch_tree(m_axes, m_joints, root, m_scan.spacing);
       prune_stubs(m_scan.spacing, m_options.stubs, m_tree);
       const Section_support support =
@@ -358,40 +359,6 @@ private:
                                                  std::numeric_limits<double>::max(),
                                                  [&](Index i) { return m_is_used[i] != 0; });
     return {found.index};
-  }
-
-  /// The axis that explains the root, and most else: a trunk may stand on buttresses that have more of the root. If none
-  /// does, the nearest one.
-  Index root_axis() const
-  {
-    std::vector<double> votes(m_axes.axes.size(), 0);
-    for (const Index i : m_root)
-      if (m_axes.is_covered(i))
-        votes[m_axes.axis_of_point[i]] +=
-            double(m_axes.axes[m_axes.axis_of_point[i]].number_of_points);
-    const auto most = std::max_element(votes.begin(), votes.end());
-    if (*most > 0)
-      return static_cast<Index>(most - votes.begin());
-    Index best = 0;
-    double distance = std::numeric_limits<double>::infinity();
-    for (Index a = 0; a < m_axes.axes.size(); ++a) {
-      const double d = nearest_place(m_axes.axes[a].axis, m_scan.points[m_root.front()]).distance;
-      if (d < distance) {
-        distance = d;
-        best = a;
-      }
-    }
-    return best;
-  }
-
-  bool is_root_reversed(Index root) const
-  {
-    Vec3 mean = Vec3::Zero();
-    for (const Index i : m_root)
-      mean += m_scan.points[i];
-    mean /= double(m_root.size());
-    const Axis& axis = m_axes.axes[root].axis;
-    return (axis.back().point - mean).norm() < (axis.front().point - mean).norm();
   }
 
   void count()

@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace pcs {
@@ -39,6 +40,7 @@ struct Support_rules
   double slack =
       3; ///< bound of a section that nothing speaks for or against, in radii by allometry
   double filled_slack = 1; ///< the same of a filled one
+  double foot = 8;         ///< length of the foot of a trunk, in radii [-]
   Pipe_rules pipes;
   double thinnest = 0.16; ///< no bound is below this many spacings: a single row of points
 };
@@ -166,6 +168,53 @@ private:
   }
 };
 
+/// The lowest stretch of the trunk, of which single sections may be anything.
+struct Trunk_foot
+{
+  std::size_t size = 0; ///< nodes of the trunk; 0: another branch
+  double radius = 0;    ///< of the sections that are not filled, the median by length [L]
+
+  Trunk_foot(const Branch_tree& tree,
+             const Branch& branch,
+             const Branch_support& sections,
+             const Support_rules& rules)
+  {
+    if (branch.parent != none)
+      return;
+    const auto is_hollow = [&](std::size_t k) {
+      const double all = sections.on[k] + sections.inside[k];
+      return tree.nodes[branch.nodes[k]].is_measured && sections.inside[k] <= rules.filled * all;
+    };
+    double thickest = 0;
+    for (std::size_t k = 0; k < branch.nodes.size(); ++k)
+      if (is_hollow(k))
+        thickest = std::max(thickest, tree.nodes[branch.nodes[k]].radius);
+    std::vector<std::pair<double, double>> radii; // and lengths
+    double length = 0, hollow = 0;
+    for (; size < branch.nodes.size() && length <= rules.foot * thickest; ++size) {
+      const Branch_node& node = tree.nodes[branch.nodes[size]];
+      const double step = size > 0 ? (node.point - tree.nodes[node.parent].point).norm() : 0;
+      length += step;
+      if (!is_hollow(size))
+        continue;
+      radii.emplace_back(node.radius, step);
+      hollow += step;
+    }
+    std::sort(radii.begin(), radii.end());
+    double sum = 0;
+    for (std::size_t k = 0; k < radii.size() && (k == 0 || sum < 0.5 * hollow); ++k) {
+      radius = radii[k].first;
+      sum += radii[k].second;
+    }
+  }
+
+  /// Whether a node of it is much thinner than the others: trunks are not.
+  bool is_odd(std::size_t k, double node_radius, const Support_rules& rules) const
+  {
+    return k < size && rules.thicker * node_radius < radius;
+  }
+};
+
 /// The longest way from each node to a tip.
 inline std::vector<double> ways_to_tips(const Branch_tree& tree)
 {
@@ -203,6 +252,7 @@ inline std::size_t bound_radii(const Scan& scan,
   std::size_t count = 0;
   for (const Branch& branch : tree.branches) { // parents before their children
     const internal::Branch_support sections(support, branch, tree, density, rules);
+    const internal::Trunk_foot foot(tree, branch, sections, rules);
     double all_on = 0, all_inside = 0; // from the base to here
     const std::size_t n = branch.nodes.size();
     std::vector<double> bounds(n, std::numeric_limits<double>::infinity()), supported(n, 0);
@@ -223,15 +273,17 @@ inline std::size_t bound_radii(const Scan& scan,
           below.way > 0 && !is_proven && node.radius > rules.thicker * below.narrowest;
       const bool is_supported = node.is_measured && !is_bush && !is_filled && !is_too_thick &&
                                 on >= rules.fewest && on >= rules.expected * expected;
-      is_sure[v] = is_supported && is_proven;
+      const bool is_odd = foot.is_odd(k, node.radius, rules);
+      const double typical = is_odd ? foot.radius : node.radius;
+      is_sure[v] = is_supported && is_proven && !is_odd;
       reference[v] = below;
       if (is_supported || !(below.way > 0)) {
         supported[k] = is_supported ? node.radius : 0;
         if (is_supported)
-          reference[v] = {node.radius,
+          reference[v] = {typical,
                           way[v],
-                          is_proven || !(below.way > 0) ? node.radius
-                                                        : std::min(node.radius, below.narrowest)};
+                          is_proven || !(below.way > 0) ? typical
+                                                        : std::min(typical, below.narrowest)};
         continue;
       }
       const double slack = is_filled || is_bush ? rules.filled_slack : rules.slack;

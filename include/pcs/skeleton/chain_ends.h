@@ -122,6 +122,62 @@ inline void cut_filled(const Chain_view& view, Axis_fit& fit)
   }
 }
 
+/// The largest radius that a hollow stretch has all along which is `view.rules.steady` radii long; 0: there is none.
+inline double steady_radius(const Chain_view& view, const Axis_fit& fit)
+{
+  const Axis& axis = fit.axis();
+  const Filling filling(view, fit);
+  double thickest = 0;
+  for (std::size_t k = 0; k < axis.size(); ++k) {
+    if (!(axis[k].radius > std::max(thickest, view.rules.thick * view.scan.spacing)))
+      continue;
+    const double wanted = view.rules.steady * axis[k].radius;
+    double length = 0, narrowest = axis[k].radius;
+    std::size_t end = k;
+    while (end + 1 < axis.size() && length < wanted && narrowest > thickest) {
+      length += (axis[end + 1].point - axis[end].point).norm();
+      narrowest = std::min(narrowest, axis[++end].radius);
+    }
+    if (length >= wanted && narrowest > thickest && filling.share(k, end) < view.rules.filled)
+      thickest = narrowest;
+  }
+  return thickest;
+}
+
+/*!
+  Wood tapers: an axis that begins much thinner than it is farther out, where it is hollow, was reached through something
+  else, such as a twig that touches it. It begins where it is thick; what lies before is left to other axes.
+*/
+inline void cut_thin_base(const Chain_view& view, Axis_fit& fit)
+{
+  Axis& axis = fit.axis();
+  double narrowest = axis.front().radius; // most axes taper, or are thin
+  const bool may_be_thin = std::any_of(axis.begin(), axis.end(), [&](const Axis_node& node) {
+    narrowest = std::min(narrowest, node.radius);
+    return node.radius >= view.rules.thick * view.scan.spacing &&
+           narrowest < view.rules.thin_base * node.radius;
+  });
+  if (!may_be_thin)
+    return;
+  const double radius = steady_radius(view, fit);
+  const auto begin = std::find_if(axis.begin(), axis.end(), [&](const Axis_node& node) {
+    return node.radius >= view.rules.thick_base * radius;
+  });
+  const bool is_thin = std::any_of(axis.begin(), begin, [&](const Axis_node& node) {
+    return node.radius < view.rules.thin_base * radius;
+  });
+  if (!is_thin || axis.end() - begin < 2)
+    return;
+  const Index shift = static_cast<Index>(begin - axis.begin());
+  axis.erase(axis.begin(), begin);
+  std::vector<Vec3> points = fit.points();
+  std::vector<Index> segments;
+  for (const Axis_place& p : fit.places())
+    segments.push_back(p.segment > shift ? p.segment - shift : 0);
+  fit.set_points(std::move(points), std::move(segments));
+  fit.project();
+}
+
 /// Cuts the ends where the points end: outwards from the places of `base` and `tip`, as far as there are enough.
 inline void trim(const Chain_view& view, const Vec3& base, const Vec3& tip, Axis_fit& fit)
 {

@@ -41,6 +41,8 @@ struct Given_rules
   double inside =
       1.3; ///< nodes of a branch this near to its base, in radii of the parent, lie in the parent
   std::size_t lowest_count = 3; ///< points of an edge that tell its radius
+  double thicker = 1.5; ///< a circle this many times thicker than the last one below is no section
+  double slack = 1.5;   ///< most that points without a circle change a radius, as a factor
 };
 
 namespace internal {
@@ -209,33 +211,71 @@ private:
     }
   }
 
-  /// Radii at the nodes from those of the edges; where there are none, those of the parent or the nearest child.
+  /// Longest way from the middle of each edge to a tip.
+  std::vector<double> ways_to_tips() const
+  {
+    const std::size_t n = m_nodes.size();
+    std::vector<double> way(n, 0);
+    for (std::size_t v = n; v-- > 0;) {
+      const Index p = m_parent[v];
+      const double length = p == none ? 0 : (m_nodes[v] - m_nodes[p]).norm();
+      if (p != none)
+        way[p] = std::max(way[p], way[v] + length);
+      way[v] += 0.5 * length; // its children have been here
+    }
+    return way;
+  }
+
+  /// The thickest circle among the next ones farther out; 0: there is none.
+  std::vector<double> circles_farther_out() const
+  {
+    std::vector<double> radius(m_nodes.size(), 0);
+    for (std::size_t v = m_nodes.size(); v-- > 1;)
+      if (m_parent[v] != none) {
+        double& r = radius[m_parent[v]];
+        r = std::max(r, m_is_measured[v] ? m_radius[v] : radius[v]);
+      }
+    return radius;
+  }
+
+  /*!
+    Radii at the nodes from those of the edges. Where no circle is found, branches taper with the way to their tips from the last
+    circle below, but for one farther out; few points, which may be those of other branches, make them thicker by `slack` at most.
+  */
   void fill_gaps(std::vector<Branch_node>& nodes) const
   {
     const std::size_t n = m_nodes.size();
-    std::vector<Index> source(n, none); // the edge that a node takes its radius from
-    for (std::size_t v = n; v-- > 0;) {
-      if (m_radius[v] > 0)
-        source[v] = static_cast<Index>(v);
-      const Index p = m_parent[v];
-      // towards the root: the thickest of what the children know
-      if (p != none && source[v] != none && !(m_radius[p] > 0) &&
-          (source[p] == none || m_radius[source[v]] > m_radius[source[p]]))
-        source[p] = source[v];
-    }
+    const std::vector<double> way = ways_to_tips(), farther_out = circles_farther_out();
+    std::vector<double> radius_below(n, 0), way_below(n, 0);
     for (std::size_t v = 0; v < n; ++v) {
       Branch_node& node = nodes[v];
+      const Index p = m_parent[v];
       node.point = m_nodes[v];
-      node.parent = m_parent[v];
-      if (source[v] == none && m_parent[v] != none)
-        source[v] = source[m_parent[v]];
-      if (source[v] == none) {
-        node.radius = node.radius_error = m_scan.spacing; // no point at all is near
+      node.parent = p;
+      const double below = p == none ? 0 : radius_below[p];
+      const bool is_circle =
+          m_is_measured[v] && (!(below > 0) || m_radius[v] <= m_rules.thicker * below);
+      if (is_circle) {
+        node.radius = radius_below[v] = m_radius[v];
+        way_below[v] = way[v];
+        node.radius_error = m_error[v];
+        node.is_measured = true;
         continue;
       }
-      node.radius = m_radius[source[v]];
-      node.radius_error = source[v] == v ? m_error[v] : node.radius;
-      node.is_measured = source[v] == v && m_is_measured[v] != 0;
+      radius_below[v] = below;
+      way_below[v] = p == none ? 0 : way_below[p];
+      if (below > 0) {
+        const double taper = below * std::min(1.0, way[v] / way_below[v]);
+        node.radius = std::max(taper, std::min(below, farther_out[v]));
+        if (m_radius[v] > 0)
+          node.radius = std::max(std::min(m_radius[v], m_rules.slack * node.radius),
+                                 node.radius / m_rules.slack);
+      } else {
+        node.radius = m_radius[v] > 0      ? m_radius[v]
+                      : farther_out[v] > 0 ? farther_out[v]
+                                           : m_scan.spacing; // no point at all is near
+      }
+      node.radius_error = std::max(node.radius, m_error[v]);
     }
   }
 
