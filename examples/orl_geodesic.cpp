@@ -177,10 +177,10 @@ void run(const Options& o)
   Extra_file matches(o.matches), report_file(o.report), changes(o.changes), distances(o.distances);
 
   const bool was_stored = is_stored(o);
-  if (was_stored && (o.is_published || o.transport != "exact"))
-    throw pcs::Invalid_input(
-        "--published-energy and --transport say how trees are matched, which " +
-        (o.load.empty() ? o.correspondences : o.load) + " has done before");
+  for (const char* const name : {"--published-energy", "--transport", "--align"})
+    if (was_stored && o.is_given(name))
+      throw pcs::Invalid_input(name + (" says how trees are matched, which " + o.correspondences) +
+                               " has done before");
   Space space;
   pcs::Orl_report report;
   if (o.load.empty()) {
@@ -205,7 +205,7 @@ void run(const Options& o)
                              std::to_string(space.number_of_trees()));
   if (!o.save.empty())
     pcs::IO::write_shape_space(o.save, space.data());
-  if (o.has_lambda || !o.is_family())
+  if (o.has_places())
     for (const double lambda : o.lambda)
       write_tree(space,
                  space.geodesic(0,
@@ -235,9 +235,8 @@ int main(int argc, char** argv)
 {
   orl_program::Options options;
   CLI::App app("Makes trees between scanned trees, beyond them, and like them.", "orl_geodesic");
-  const CLI::Option* const lambda = orl_program::declare(app, options);
+  orl_program::declare(app, options);
   return program::run_program(app, argc, argv, [&] {
-    options.has_lambda = lambda->count() > 0;
     orl_program::run(options);
     return true;
   });

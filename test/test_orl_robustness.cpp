@@ -133,6 +133,24 @@ Tree curled(double bend)
   return tree;
 }
 
+/// A trunk, a branch, a twig on it and another one on that, each turned by `turn` against what carries it, about one axis.
+Tree chained(double turn)
+{
+  Tree tree;
+  Vec3 p(0, 0, 4);
+  std::size_t fork = add_node(tree, add_node(tree, pcs::npos, Vec3(0, 0, 0), 0.2), p, 0.2);
+  add_node(tree, add_node(tree, fork, Vec3(0, 0, 12), 0.15), Vec3(0, 0, 20), 0.1);
+  double length = 6, angle = 0, side = 0.7;
+  for (int level = 0; level < 3; ++level, length *= 0.6, side = -side) {
+    angle += side + turn;
+    const Vec3 along = length * Vec3(std::sin(angle), 0, std::cos(angle));
+    fork = add_node(tree, fork, p + 0.3 * along, 0.05);
+    add_node(tree, fork, p + along, 0.03);
+    p += 0.3 * along;
+  }
+  return tree;
+}
+
 /// A stem without radii, with a blade on it that is turned about its axis and lies beside it.
 Tree with_blade(double turn, double width, double beside, unsigned seed, std::vector<Point>& scan)
 {
@@ -200,29 +218,34 @@ BOOST_AUTO_TEST_SUITE(orl_beyond_ends)
 
 BOOST_AUTO_TEST_CASE(turns_do_not_add_up_along_branches)
 {
-  const Space space = make_space(curled(0), curled(0.15));
-  const auto& layout = space.layout();
-  for (const double most : {0.2, 0.25 * CGAL_PI, 2.0, 3.5})
-    for (const double lambda : {-1.5, -0.5, 1.5, 2.5}) {
-      const Orl_coordinates x = space.tree(0).coordinates(), y = space.tree(1).coordinates();
-      const auto tree = space.geodesic(0, 1, lambda, pcs::parameters::maximal_turn(most));
-      const Orl_geometry there = in_space(space, tree.coordinates()),
-                         end = in_space(space, lambda < 0 ? x : y);
-      double worst = 0;
-      for (std::size_t e = 0; e < layout.number_of_edges(); ++e)
-        worst = std::max(worst, pcs::shape_space::angle_between(there.frame[e], end.frame[e]));
-      BOOST_TEST(worst <= most + 1e-9);
-      BOOST_TEST(worst > 0.15);     // they do turn
-      if (most > 0.2 && most < 2) { // control: each alone
-        Orl_coordinates alone;
-        coordinates_at(layout, x, y, lambda, most, alone);
-        const Orl_geometry sum = in_space(space, alone);
-        worst = 0;
-        for (std::size_t e = 0; e < layout.number_of_edges(); ++e)
-          worst = std::max(worst, pcs::shape_space::angle_between(sum.frame[e], end.frame[e]));
-        BOOST_TEST(worst > most - 1e-12); // first edges hardly turn: it is reached, not passed
+  const auto farthest = [](const Orl_geometry& a, const Orl_geometry& b) {
+    double worst = 0;
+    for (std::size_t e = 0; e < a.frame.size(); ++e)
+      worst = std::max(worst, pcs::shape_space::angle_between(a.frame[e], b.frame[e]));
+    return worst;
+  };
+  for (const Space& space :
+       {make_space(curled(0), curled(0.15)), make_space(chained(0), chained(0.5))}) {
+    const Orl_coordinates x = space.tree(0).coordinates(), y = space.tree(1).coordinates();
+    for (const double most : {0.2, 0.25 * CGAL_PI, 2.0, 3.5})
+      for (const double lambda : {-1.5, -0.5, 1.5, 2.5}) {
+        const auto tree = space.geodesic(0, 1, lambda, pcs::parameters::maximal_turn(most));
+        const double worst =
+            farthest(in_space(space, tree.coordinates()), in_space(space, lambda < 0 ? x : y));
+        BOOST_TEST(worst <= most + 1e-9);
+        BOOST_TEST(worst > 0.15); // they do turn
       }
-    }
+  }
+  // control: three branches on each other, each of which alone turns by no more than it may
+  const Space space = make_space(chained(0), chained(0.5));
+  const Orl_coordinates x = space.tree(0).coordinates(), y = space.tree(1).coordinates();
+  for (const double lambda : {-1.5, 2.5}) {
+    constexpr double most = 0.8;
+    Orl_coordinates alone;
+    coordinates_at(space.layout(), x, y, lambda, most, alone);
+    const Orl_geometry sum = in_space(space, alone), end = in_space(space, lambda < 0 ? x : y);
+    BOOST_TEST(std::abs(farthest(sum, end) - 3 * 1.5 * 0.5) < 1e-6);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(nothing_grows_into_the_ground)

@@ -16,6 +16,8 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <initializer_list>
+#include <limits>
 #include <map>
 #include <set>
 #include <sstream>
@@ -29,6 +31,7 @@ namespace orl_program {
 struct Options
 {
   std::vector<std::string> trees, skeletons;
+  std::set<std::string> given; ///< names of all options of the command line
   std::vector<double> lambda = {0, 0.25, 0.5, 0.75, 1};
   std::string output, matches, report, correspondences;
   std::string transport = "exact", orientation = "gauge-fixed", align = "turns", up = "z";
@@ -37,14 +40,15 @@ struct Options
        is_published = false, is_quiet = false;
 
   // families
-  bool has_lambda = false, do_mean = false, do_growth = false, do_mesh = false;
+  bool do_mean = false, do_growth = false, do_mesh = false;
   bool is_monotone = false, may_leave_range = false;
   std::string mean_kind = "l1", load, save, changes, distances;
   std::size_t number_of_modes = 0, number_of_samples = 0, number_of_frames = 11;
-  std::uint64_t seed = 1;
+  std::int64_t seed = 1; // signed, so that CLI11 does not take -1 for a large number
   std::vector<double> weights, times;
   double pipe_exponent = 0;
 
+  bool is_given(const std::string& name) const { return given.count(name) > 0; }
   std::size_t number_of_trees() const { return std::max(trees.size(), skeletons.size()); }
   bool is_family() const
   {
@@ -52,6 +56,8 @@ struct Options
            !weights.empty() || !save.empty() || !load.empty() || !changes.empty() ||
            !distances.empty();
   }
+  /// Whether trees are made at the places of `lambda`.
+  bool has_places() const { return is_given("--lambda") || !is_family(); }
 };
 
 /// Numbers separated by commas. CLI11 takes nothing for 0, and leaves out what is between two commas.
@@ -103,7 +109,7 @@ inline void declare_family(CLI::App& app, Options& o)
       ->check(CLI::Range(0, 10000))
       ->group(group);
   app.add_option("--seed", o.seed, "of new trees")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(std::int64_t(0), std::numeric_limits<std::int64_t>::max()))
       ->capture_default_str()
       ->group(group);
   app.add_flag("--any-range",
@@ -135,7 +141,7 @@ inline void declare_family(CLI::App& app, Options& o)
   app.add_option("--load-space", o.load, "read a space from here, instead of trees")->group(group);
 }
 
-inline CLI::Option* declare(CLI::App& app, Options& o)
+inline void declare(CLI::App& app, Options& o)
 {
   app.footer(
       R"(Give --tree and --skeleton once for each tree: twice at least. Points: PLY, LAS, OFF or
@@ -151,9 +157,8 @@ Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
   app.add_option("--tree", o.trees, "points of a tree, once for each")->allow_extra_args(false);
   app.add_option("--skeleton", o.skeletons, "skeleton of a tree, once for each")
       ->allow_extra_args(false);
-  CLI::Option* const lambda =
-      add_numbers(app, "--lambda", o.lambda, "places on the path, separated by commas")
-          ->default_str("0,0.25,0.5,0.75,1");
+  add_numbers(app, "--lambda", o.lambda, "places on the path, separated by commas")
+      ->default_str("0,0.25,0.5,0.75,1");
   app.add_option("--output", o.output, "folder for the results; it is made")->required();
   app.add_option("--matches",
                  o.matches,
@@ -190,7 +195,11 @@ Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
   app.add_flag("--published-energy", o.is_published, "match branches with the energy of the text");
   app.add_flag("--quiet", o.is_quiet, "print nothing but errors");
   declare_family(app, o);
-  return lambda;
+  app.parse_complete_callback([&app, &o] {
+    for (const CLI::Option* const option : app.get_options())
+      if (option->count() > 0)
+        o.given.insert(option->get_name());
+  });
 }
 
 /// No result may be an input, or another result. Trees that a family gives have the names of their kinds.
@@ -205,7 +214,7 @@ inline void check_files(const Options& o)
   for (const std::string* path :
        {&o.correspondences, &o.matches, &o.report, &o.changes, &o.distances, &o.save})
     files.add_output(*path);
-  if (o.has_lambda || !o.is_family())
+  if (o.has_places())
     for (const double l : std::set<double>(o.lambda.begin(), o.lambda.end()))
       for (const char* extension : {".ply", ".swc"})
         files.add_output((fs::path(o.output) / (name_of(l) + extension)).string());
@@ -219,6 +228,38 @@ inline void check_files(const Options& o)
         if (o.is_family() && is_in_output && stem.rfind(kind, 0) == 0)
           throw pcs::Invalid_input(input + " may be overwritten by a result in " + o.output);
     }
+}
+
+/// What is asked for must have an effect.
+inline void check_effects(const Options& o)
+{
+  const auto refuse =
+      [&](bool is_in_vain, std::initializer_list<const char*> names, const std::string& why) {
+        for (const char* const name : names)
+          if (is_in_vain && o.is_given(name))
+            throw pcs::Invalid_input(name + (" has no effect " + why));
+      };
+  refuse(!o.load.empty(),
+         {"--orientation", "--extend-axes", "--align", "--up", "--transport", "--published-energy"},
+         "with --load-space: the trees of " + o.load + " were compared before");
+  refuse(o.load.empty() && o.trees.empty(),
+         {"--transport", "--extend-axes"},
+         "without points (--tree)");
+  refuse(o.load.empty() && o.skeletons.empty(),
+         {"--extend-axes"},
+         "without --skeleton: extracted axes go to where the points end");
+  refuse(o.number_of_trees() > 2 && o.align != "none",
+         {"--align"},
+         "for more than two trees: each stands as it was given");
+  refuse(!o.has_places(), {"--maximal-turn", "--births-in-order"}, "without --lambda");
+  refuse(!o.has_places() && o.number_of_samples == 0,
+         {"--limit-radii"},
+         "without --lambda or --sample");
+  refuse(!o.do_mean, {"--mean-kind"}, "without --mean");
+  refuse(o.number_of_samples == 0,
+         {"--seed", "--any-range", "--pipe-model"},
+         "without --sample: no new trees are drawn");
+  refuse(!o.do_growth, {"--times", "--frames", "--monotone"}, "without --growth");
 }
 
 inline void check(const Options& o)
@@ -237,7 +278,7 @@ inline void check(const Options& o)
       fail("--tree is given " + std::to_string(o.trees.size()) + " times, --skeleton " +
            std::to_string(o.skeletons.size()) + " times, expected as many");
     const std::size_t n = o.number_of_trees();
-    if (n > 2 && !o.is_family() && !o.has_lambda)
+    if (n > 2 && !o.is_family() && !o.is_given("--lambda"))
       fail("for " + std::to_string(n) +
            " trees say what is wanted: --mean, --modes, --sample, --weights, --growth, "
            "--save-space or --lambda");
@@ -253,8 +294,7 @@ inline void check(const Options& o)
     if (const auto [it, is_new] = names.emplace(name_of(l), l); !is_new && it->second != l)
       fail("--lambda has two places whose files would both be called " + it->first);
   check_files(o);
-  if (!o.times.empty() && !o.do_growth)
-    fail("--times is for --growth");
+  check_effects(o);
 }
 
 } // namespace orl_program

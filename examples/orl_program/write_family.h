@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <sstream>
 #include <string>
@@ -68,7 +69,10 @@ inline void write_samples(const Space& space, const std::vector<Tree_file>& file
   for (std::size_t i = 0; i < o.number_of_samples; ++i) {
     line.show("new trees", static_cast<double>(i) / static_cast<double>(o.number_of_samples));
     write_tree(space,
-               space.sample(distribution, o.seed, i, np::sampling_options(options)),
+               space.sample(distribution,
+                            static_cast<std::uint64_t>(o.seed),
+                            i,
+                            np::sampling_options(options)),
                files,
                o,
                numbered("sample", i));

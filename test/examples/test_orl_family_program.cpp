@@ -165,7 +165,8 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_with_a_sentence)
   refuses(skeletons + "--weights 1,x,0 --output out", "weights");
   refuses(skeletons + "--weights 1,,0 --output out", "separated by commas");
   refuses(skeletons + "--growth --times 0,1, --output out", "separated by commas");
-  refuses(skeletons + "--sample 1 --seed -1 --output out", "seed");
+  refuses(skeletons + "--weights 1e308,1e308,0 --output out", "not finite");
+  refuses(skeletons + "--sample 1 --seed -1 --output out", "in [0 - 9223372036854775807]");
   refuses(skeletons + "--growth --times 0,2,1 --output out", "increase");
   refuses(skeletons + "--growth --times 0,1 --output out", "times");
   refuses(skeletons + "--mean --times 0,1,2 --output out", "--growth");
@@ -179,6 +180,40 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_with_a_sentence)
   refuses(skeletons + "--mean --output file", "file");
   for (const char* name : {"mean", "combination", "growth_0000", "sample_0000"})
     BOOST_TEST(!exists("out/" + std::string(name) + ".swc"));
+}
+
+BOOST_AUTO_TEST_CASE(options_that_would_have_no_effect_are_refused)
+{
+  succeeds(skeletons + "--mean --save-space s.txt --output out");
+  for (const std::string option : {"--orientation world-axes",
+                                   "--orientation gauge-fixed",
+                                   "--extend-axes",
+                                   "--align none",
+                                   "--up z",
+                                   "--transport exact",
+                                   "--published-energy"}) {
+    const std::string name = option.substr(0, option.find(' '));
+    refuses("--load-space s.txt --mean --output again " + option, name + " has no effect with");
+    BOOST_TEST(err.find("s.txt") != std::string::npos);
+  }
+  BOOST_TEST(!exists("again"));
+  refuses(skeletons + "--mean --extend-axes --output again", "--extend-axes has no effect without");
+  refuses(skeletons + "--mean --transport sinkhorn --output again", "--transport has no effect");
+  refuses(skeletons + "--mean --align turns --output again", "more than two trees");
+  for (const std::string option : {"--maximal-turn 30",
+                                   "--births-in-order",
+                                   "--limit-radii",
+                                   "--seed 1",
+                                   "--any-range",
+                                   "--pipe-model 2",
+                                   "--frames 3",
+                                   "--monotone"})
+    refuses(skeletons + "--mean --output again " + option,
+            option.substr(0, option.find(' ')) + " has no effect without");
+  refuses(skeletons + "--growth --mean-kind l1 --output again", "--mean-kind has no effect");
+  succeeds(skeletons + "--mean --align none --orientation transported --output again");
+  succeeds("--load-space s.txt --lambda 0.5 --maximal-turn 30 --births-in-order --limit-radii "
+           "--output again");
 }
 
 BOOST_AUTO_TEST_SUITE_END()

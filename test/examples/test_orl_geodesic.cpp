@@ -264,7 +264,9 @@ BOOST_AUTO_TEST_CASE(correspondences_are_kept)
   BOOST_TEST(!stored.contains("matching_energy"));
   BOOST_TEST(stored["number_of_points"] == Json::parse(content("fresh.json"))["number_of_points"]);
   BOOST_TEST(stored["distance"] == Json::parse(content("fresh.json"))["distance"]);
-  refuses(trees + "--output three --correspondences c.txt --published-energy", "c.txt");
+  for (const std::string option : {"--published-energy", "--transport exact", "--align turns"})
+    refuses(trees + "--output three --correspondences c.txt " + option, "c.txt");
+  refuses("--tree a.ply --tree b.ply --output three --extend-axes", "without --skeleton");
   refuses("--tree b.ply --skeleton b.swc --tree a.ply --skeleton a.swc --output three "
           "--correspondences c.txt",
           "other trees");

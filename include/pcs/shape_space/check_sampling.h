@@ -50,6 +50,8 @@ inline void check_tree_weights(const std::vector<double>& w,
     total += x;
     size += std::abs(x);
   }
+  if (!std::isfinite(size))
+    throw Invalid_input(caller + ": the weights are too large: their sum is not finite");
   if (!(total > 1e-9 * size))
     throw Invalid_input(caller + ": the sum of the weights must be positive");
 }
