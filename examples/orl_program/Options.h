@@ -6,6 +6,7 @@
 #define PCS_EXAMPLES_ORL_PROGRAM_OPTIONS_H
 
 #include "program/Distinct_files.h"
+#include "program/is_seed.h"
 #include <pcs/core/errors.h>
 
 #include <CLI/CLI.hpp>
@@ -109,6 +110,7 @@ inline void declare_family(CLI::App& app, Options& o)
       ->check(CLI::Range(0, 10000))
       ->group(group);
   app.add_option("--seed", o.seed, "of new trees")
+      ->check(program::is_seed)
       ->check(CLI::Range(std::int64_t(0), std::numeric_limits<std::int64_t>::max()))
       ->capture_default_str()
       ->group(group);

@@ -5,6 +5,7 @@
 #ifndef PCS_EXAMPLES_PROGRAM_SCAN_OPTIONS_H
 #define PCS_EXAMPLES_PROGRAM_SCAN_OPTIONS_H
 
+#include "program/is_seed.h"
 #include <pcs/core/errors.h>
 #include <pcs/generators/Tree_habit.h>
 #include <pcs/generators/Virtual_scanner.h>
@@ -12,7 +13,6 @@
 #include <CLI/CLI.hpp>
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -55,16 +55,6 @@ of branches, so two scans of one preset and seed have a known correspondence. Fo
   virtual_scan --preset fruit --seed 7 --prune 3 --turn 5 30 --output old.ply --truth old.csv
 
 Exit codes: 0 success, 1 bad input or usage, 2 internal error.)";
-}
-
-/// CLI11 takes numbers that are too large for the largest one.
-inline std::string is_seed(const std::string& text)
-{
-  std::int64_t seed = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
-  if (error == std::errc() && end == text.data() + text.size())
-    return "";
-  return "a seed is an integer of at most 64 bits, found " + text;
 }
 
 inline void declare(CLI::App& app, Scan_options& o)

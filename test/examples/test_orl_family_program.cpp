@@ -167,6 +167,7 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_with_a_sentence)
   refuses(skeletons + "--growth --times 0,1, --output out", "separated by commas");
   refuses(skeletons + "--weights 1e308,1e308,0 --output out", "not finite");
   refuses(skeletons + "--sample 1 --seed -1 --output out", "9223372036854775807");
+  refuses(skeletons + "--sample 1 --seed 99999999999999999999 --output out", "at most 64 bits");
   refuses(skeletons + "--growth --times 0,2,1 --output out", "increase");
   refuses(skeletons + "--growth --times 0,1 --output out", "times");
   refuses(skeletons + "--mean --times 0,1,2 --output out", "--growth");
