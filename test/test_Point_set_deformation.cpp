@@ -631,6 +631,24 @@ BOOST_AUTO_TEST_CASE(vectors_and_tensors_follow_the_gradient)
   }
 }
 
+BOOST_AUTO_TEST_CASE(between_near_handles_other_points_move_like_those_of_the_session)
+{
+  const Points rest = pcs_test::plate(80, 40, 1);
+  Points points = rest;
+  Session session(points,
+                  parameters(60)); // samples 7 to 8 apart: both handles draw what is between
+  std::vector<std::size_t> left, right;
+  for (std::size_t i = 0; i < rest.size(); ++i)
+    if (std::abs(rest[i].x() - 40) >= 4)
+      (rest[i].x() < 40 ? right : left).push_back(i);
+  session.set_transformation(session.add_handle(left), pcs::translation(Vec3(0, 0, -5)));
+  session.set_transformation(session.add_handle(right), pcs::translation(Vec3(0, 0, 5)));
+  session.deform();
+  Points others = rest;
+  session.apply(others);
+  BOOST_TEST(pcs_test::largest_distance(others, points) < 1e-3);
+}
+
 BOOST_AUTO_TEST_CASE(other_points_follow_the_points_around_them)
 {
   const Bar_edit edit(12, 48);
