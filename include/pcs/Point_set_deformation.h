@@ -473,13 +473,7 @@ private:
   void write_points()
   {
     if constexpr (Access::is_ok)
-      m_session->template write<Access::has_gradients>(
-          [this](std::size_t i,
-                 const deformation::Vec3& p,
-                 const deformation::Vec3& normal,
-                 const Eigen::Matrix3d& gradient)
-              PCS_LAMBDA_INLINE { m_access.write(i, p, normal, gradient); },
-          [this](std::size_t i) PCS_LAMBDA_INLINE { m_access.prefetch(i); });
+      m_session->template write<Access::has_gradients>(m_access);
   }
 
   Access m_access;

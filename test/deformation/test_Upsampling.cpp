@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 
 namespace {
 
@@ -29,6 +30,19 @@ Affine_map affine(const Eigen::Matrix3d& a, const Vec3& t)
   Eigen::Map<Vec3>(map.t) = t;
   return map;
 }
+
+/// What the upsampling calls; what is not given must not be called.
+struct Writer
+{
+  using Write = std::function<void(std::size_t, const Vec3&, const Vec3&, const Eigen::Matrix3d&)>;
+  Write write;
+  std::function<void(std::size_t)> write_other = [](std::size_t) {
+    BOOST_ERROR("every point is blended or held");
+  };
+  std::function<void(std::size_t)> expect = [](std::size_t) {};
+  std::function<bool(std::size_t, const pcs::deformation::Block_output&)> stream = {};
+  bool does_stream() const { return bool(stream); }
+};
 
 struct Setup
 {
@@ -73,30 +87,59 @@ struct Setup
     return maps;
   }
 
+  /// How blocks move: all by the samples, unless told otherwise.
+  struct Motions
+  {
+    std::vector<std::uint8_t> is_blended;
+    std::vector<std::int32_t> holder;
+    std::vector<char> is_written;
+    std::vector<pcs::deformation::Handle_map> handles;
+    pcs::deformation::Upsampling::Fades fades;
+
+    explicit Motions(const Setup& s)
+      : is_blended(s.upsampling.number_of_blocks(), 255),
+        holder(is_blended.size(), pcs::deformation::mixed_block)
+    {
+    }
+    operator pcs::deformation::Upsampling::Block_motions() const
+    {
+      return {is_blended.data(), holder.data(), is_written.data(), handles.data(), fades};
+    }
+  };
+
   template <class Tag>
-  void apply(const std::vector<Affine_map>& maps,
-             Points& p,
-             Points& n,
-             const pcs::deformation::Upsampling::Fades& fades = {})
+  void apply(const std::vector<Affine_map>& maps, Points& p, Points& n)
+  {
+    apply<Tag>(maps, p, n, Motions(*this));
+  }
+  template <class Tag>
+  void apply(const std::vector<Affine_map>& maps, Points& p, Points& n, const Motions& motions)
   {
     p.assign(points.size(), Vec3::Zero());
     n.assign(points.size(), Vec3::Zero());
     gradients.assign(points.size(), Eigen::Matrix3d::Zero());
-    const std::vector<std::uint8_t> all(upsampling.number_of_blocks(), 255);
-    upsampling.apply<Tag, true>(
-        maps,
-        {},
-        all,
-        fades,
-        [&](std::size_t i, const Vec3& position, const Vec3& normal, const Eigen::Matrix3d& g) {
-          p[i] = position;
-          n[i] = normal;
-          gradients[i] = g;
-        },
-        [](std::size_t) {},
-        [](std::size_t) { BOOST_ERROR("every point is blended"); });
+    const Writer writer{[&](std::size_t i, const Vec3& q, const Vec3& m, const Eigen::Matrix3d& g) {
+      p[i] = q;
+      n[i] = m;
+      gradients[i] = g;
+    }};
+    upsampling.apply<Tag, true>(maps, {}, motions, writer);
   }
 };
+
+/// A handle that turns, scales and shifts.
+pcs::Similarity some_motion(std::size_t h)
+{
+  return pcs::rotation(Vec3(1, double(h), 2), 0.4, Vec3(0.1, 0, 0)) *
+         pcs::scaling(1.5, Vec3(0, 0, 0));
+}
+pcs::deformation::Handle_map handle_map(const pcs::Similarity& motion)
+{
+  pcs::deformation::Handle_map map;
+  Eigen::Map<Row_major>(map.turn) = motion.rotation();
+  map.map = affine(motion.scale() * motion.rotation(), motion.translation());
+  return map;
+}
 
 } // namespace
 
@@ -161,14 +204,7 @@ BOOST_AUTO_TEST_CASE(points_around_handles_are_drawn_to_where_these_take_them)
   s.apply<Any_tag>(maps, p, n);
   const Points without = p, normals_without = n;
   const std::vector<Eigen::Matrix3d> gradients_without = s.gradients;
-  std::vector<Handle_map> handles(2);
-  std::vector<pcs::Similarity> motions;
-  for (std::size_t h = 0; h < 2; ++h) {
-    motions.push_back(pcs::rotation(Vec3(1, double(h), 2), 0.4, Vec3(0.1, 0, 0)) *
-                      pcs::scaling(1.5, Vec3(0, 0, 0)));
-    Eigen::Map<Row_major>(handles[h].turn) = motions[h].rotation();
-    handles[h].map = affine(motions[h].scale() * motions[h].rotation(), motions[h].translation());
-  }
+  const pcs::Similarity motions[] = {some_motion(0), some_motion(1)};
   // The first handle draws the first half of every third block, the second one the point after.
   const auto share = [](std::size_t i) { return i % 24 < 4 ? 0.25 * double(i % 24 + 1) : 0.0; };
   std::vector<std::uint32_t> first(1, 0);
@@ -182,7 +218,10 @@ BOOST_AUTO_TEST_CASE(points_around_handles_are_drawn_to_where_these_take_them)
     }
     first.push_back(static_cast<std::uint32_t>(entries.size()));
   }
-  s.apply<Any_tag>(maps, p, n, {first.data(), entries.data(), handles.data()});
+  Setup::Motions blocks(s);
+  blocks.handles = {handle_map(motions[0]), handle_map(motions[1])};
+  blocks.fades = {first.data(), entries.data()};
+  s.apply<Any_tag>(maps, p, n, blocks);
   for (std::size_t i = 0; i < p.size(); ++i) {
     const std::size_t h = i % 24 == 4 ? 1 : 0;
     const double w = h == 1 ? 0.5 : share(i);
@@ -202,24 +241,93 @@ BOOST_AUTO_TEST_CASE(points_around_handles_are_drawn_to_where_these_take_them)
 BOOST_AUTO_TEST_CASE(points_that_are_not_blended_are_passed_on)
 {
   Setup s(pcs_test::sphere(101), 20, false);
-  std::vector<std::uint8_t> mask(s.upsampling.number_of_blocks(), 0);
+  Setup::Motions blocks(s);
+  std::fill(blocks.is_blended.begin(), blocks.is_blended.end(), std::uint8_t(0));
   for (std::size_t i = 0; i < 101; i += 3)
-    mask[i / 8] = static_cast<std::uint8_t>(mask[i / 8] | 1u << i % 8);
+    blocks.is_blended[i / 8] = static_cast<std::uint8_t>(blocks.is_blended[i / 8] | 1u << i % 8);
   std::vector<int> written(101, 0), others(101, 0);
-  s.upsampling.apply<CGAL::Sequential_tag, false>(
-      s.random_maps(1, 2),
-      {},
-      mask,
-      {},
-      [&](std::size_t i, const Vec3&, const Vec3& normal, const Eigen::Matrix3d&) {
-        ++written[i];
-        BOOST_TEST((normal == Vec3::Zero()));
-      },
-      [](std::size_t) {},
-      [&](std::size_t i) { ++others[i]; });
+  Writer writer{[&](std::size_t i, const Vec3&, const Vec3& normal, const Eigen::Matrix3d&) {
+    ++written[i];
+    BOOST_TEST((normal == Vec3::Zero()));
+  }};
+  writer.write_other = [&](std::size_t i) { ++others[i]; };
+  s.upsampling.apply<CGAL::Sequential_tag, false>(s.random_maps(1, 2), {}, blocks, writer);
   for (std::size_t i = 0; i < 101; ++i) {
     BOOST_TEST(written[i] == (i % 3 == 0 ? 1 : 0));
     BOOST_TEST(others[i] == (i % 3 == 0 ? 0 : 1));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(blocks_move_with_the_handle_that_holds_them)
+{
+  Setup s(pcs_test::sphere(1003), 60, true);
+  const pcs::Similarity motions[] = {some_motion(0), some_motion(1), pcs::Similarity()};
+  Setup::Motions blocks(s);
+  for (const auto& m : motions)
+    blocks.handles.push_back(handle_map(m));
+  blocks.is_written = {1, 0, 1};
+  for (std::size_t b = 0; b < blocks.holder.size(); ++b)
+    blocks.holder[b] = static_cast<std::int32_t>(b % 5) + pcs::deformation::still_block;
+  for (std::size_t b = 0; b < blocks.holder.size(); ++b) // no matter where there is a holder
+    if (blocks.holder[b] != pcs::deformation::mixed_block)
+      blocks.is_blended[b] = 0;
+  Points p, n;
+  s.apply<Any_tag>(s.random_maps(1, 3), p, n, blocks);
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const std::int32_t h = blocks.holder[i / 8];
+    if (h == pcs::deformation::mixed_block)
+      continue;
+    const bool is_written = h == 0 || h == 2;
+    BOOST_TEST((s.gradients[i] != Eigen::Matrix3d::Zero()) == is_written);
+    if (!is_written)
+      continue;
+    const pcs::Similarity& m = motions[h];
+    BOOST_TEST((p[i] - m(s.points[i])).norm() < 1e-15);
+    BOOST_TEST((n[i] - m.rotation() * s.normals[i]).norm() < 1e-15);
+    BOOST_TEST((s.gradients[i] - m.scale() * m.rotation()).norm() < 1e-15);
+    if (h == 2) // who rests keeps all bits
+      BOOST_TEST((p[i] == s.points[i] && n[i] == s.normals[i]));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(whole_blocks_are_streamed_where_the_writer_takes_them)
+{
+  constexpr std::size_t n = 1003;
+  Setup s(pcs_test::sphere(n), 60, true);
+  Setup::Motions blocks(s);
+  blocks.is_blended[2] = 0x7f;
+  Points p(n, Vec3::Zero()), normals(n, Vec3::Zero());
+  std::vector<int> written(n, 0), streamed(n, 0);
+  Writer writer{[&](std::size_t i, const Vec3& q, const Vec3& m, const Eigen::Matrix3d&) {
+    p[i] = q;
+    normals[i] = m;
+    ++written[i];
+  }};
+  writer.write_other = [](std::size_t) {};
+  const auto maps = s.random_maps(1, 4);
+  s.upsampling.apply<CGAL::Sequential_tag, false>(maps, {}, blocks, writer);
+  BOOST_TEST(std::count(written.begin(), written.end(), 1) == n - 1);
+  const Points all = p, all_normals = normals;
+  writer.expect = [](std::size_t) { BOOST_ERROR("nothing is to be asked for"); };
+  writer.stream = [&](std::size_t first, const pcs::deformation::Block_output& out) {
+    if (first == 8)
+      return false;
+    for (std::size_t l = 0; l < 8; ++l) {
+      for (int c = 0; c < 3; ++c) {
+        p[first + l][c] = out.position.value[c][l];
+        normals[first + l][c] = out.normal.value[c][l];
+      }
+      ++streamed[first + l];
+    }
+    return true;
+  };
+  std::fill(written.begin(), written.end(), 0);
+  s.upsampling.apply<CGAL::Sequential_tag, false>(maps, {}, blocks, writer);
+  BOOST_TEST((p == all && normals == all_normals));
+  for (std::size_t i = 0; i < n; ++i) {
+    const bool is_declined = i / 8 == 1 || i / 8 == 2 || i / 8 == n / 8;
+    BOOST_TEST(streamed[i] == (is_declined ? 0 : 1));
+    BOOST_TEST(written[i] == (is_declined && i != 23 ? 1 : 0));
   }
 }
 
@@ -227,19 +335,16 @@ BOOST_AUTO_TEST_CASE(points_are_announced_before_they_are_written)
 {
   constexpr std::size_t n = 1003;
   Setup s(pcs_test::sphere(n), 20, false);
-  const std::vector<std::uint8_t> all(s.upsampling.number_of_blocks(), 255);
   std::vector<int> announced(n, 0);
   std::size_t late = 0;
-  s.upsampling.apply<CGAL::Sequential_tag, false>(
-      s.random_maps(1, 2),
-      {},
-      all,
-      {},
-      [&](std::size_t i, const Vec3&, const Vec3&, const Eigen::Matrix3d&) {
-        late += announced[i] == 0 ? 1 : 0;
-      },
-      [&](std::size_t i) { ++announced.at(i); },
-      [](std::size_t) {});
+  Writer writer{[&](std::size_t i, const Vec3&, const Vec3&, const Eigen::Matrix3d&) {
+    late += announced[i] == 0 ? 1 : 0;
+  }};
+  writer.expect = [&](std::size_t i) { ++announced.at(i); };
+  s.upsampling.apply<CGAL::Sequential_tag, false>(s.random_maps(1, 2),
+                                                  {},
+                                                  Setup::Motions(s),
+                                                  writer);
   BOOST_TEST(*std::max_element(announced.begin(), announced.end()) == 1);
   BOOST_TEST(late < n / 5); // the first blocks and the last, which is not whole
 }
@@ -322,7 +427,8 @@ BOOST_AUTO_TEST_CASE(all_kernels_give_the_same_bits)
                          frame_origin.data(),
                          fades.data(),
                          fades.data() + fades.size(),
-                         handles.data()};
+                         handles.data(),
+                         repetition % 4 == 3 ? &handles[2] : nullptr};
     Block_output all{};
     internal::blend_block_default<Blend_outputs::gradients>(in, all);
     const auto check = [&](Blend_block gradients, Blend_block normals, Blend_block positions) {
@@ -344,12 +450,10 @@ BOOST_AUTO_TEST_CASE(all_kernels_give_the_same_bits)
       check(internal::blend_block_avx2<Blend_outputs::gradients>,
             internal::blend_block_avx2<Blend_outputs::normals>,
             internal::blend_block_avx2<Blend_outputs::positions>);
-#ifdef PCS_HAS_AVX_ASSEMBLY
     if (pcs::internal::has_avx512())
       check(internal::blend_block_avx512<Blend_outputs::gradients>,
             internal::blend_block_avx512<Blend_outputs::normals>,
             internal::blend_block_avx512<Blend_outputs::positions>);
-#endif
   }
 }
 #endif

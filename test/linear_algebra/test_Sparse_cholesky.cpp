@@ -330,7 +330,7 @@ BOOST_AUTO_TEST_CASE(all_kernels_give_the_same_bits)
             BOOST_TEST((lower_q == lower_a && lower_other == lower_b));
           };
       same(internal::factorize_front_default, p, rest);
-#ifdef PCS_HAS_AVX_ASSEMBLY
+#if PCS_HAS_RUNTIME_DISPATCH
       if (pcs::internal::has_avx2()) {
         Eigen::MatrixXd fused, fused_rest;
         BOOST_REQUIRE(run(internal::factorize_front_avx2, fused, fused_rest));

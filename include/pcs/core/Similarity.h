@@ -9,6 +9,7 @@
 #include <pcs/core/rotations.h>
 #include <pcs/internal/text.h>
 
+#include <CGAL/double.h>
 #include <CGAL/number_utils.h>
 
 #include <boost/container/small_vector.hpp>

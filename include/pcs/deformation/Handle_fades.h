@@ -67,19 +67,12 @@ public:
     }
   }
 
-  /// For the blocks of the upsampling, at the present transformations; valid until the next call. None before `find()`.
-  Upsampling::Fades of_blocks(const std::vector<Similarity>& transforms)
+  /// For the blocks of the upsampling. None before `find()`.
+  Upsampling::Fades of_blocks() const
   {
-    if (m_of_blocks.empty() || transforms.empty())
+    if (m_of_blocks.empty())
       return {};
-    m_maps.resize(transforms.size());
-    for (std::size_t h = 0; h < transforms.size(); ++h) {
-      const Eigen::Matrix3d turn = transforms[h].rotation();
-      Eigen::Map<Row_major_matrix>(m_maps[h].turn) = turn;
-      Eigen::Map<Row_major_matrix>(m_maps[h].map.a) = transforms[h].scale() * turn;
-      Eigen::Map<Vec3>(m_maps[h].map.t) = transforms[h].translation();
-    }
-    return {m_first.data(), m_of_blocks.data(), m_maps.data()};
+    return {m_first.data(), m_of_blocks.data()};
   }
 
   /// Draws one point near `site` that the samples have moved, in local coordinates.
@@ -126,7 +119,6 @@ private:
   std::vector<Border_fade> m_of_sites; ///< increasing by site
   std::vector<Block_fade> m_of_blocks; ///< the same by block
   std::vector<std::uint32_t> m_first;  ///< of each block in `m_of_blocks`, and the end
-  std::vector<Handle_map> m_maps;      ///< of the handles
 };
 
 } // namespace deformation

@@ -10,6 +10,7 @@
 #include <pcs/core/Similarity.h>
 #include <pcs/core/errors.h>
 #include <pcs/deformation/affine_maps.h>
+#include <pcs/deformation/stream_block.h>
 #include <pcs/internal/lanes.h>
 #include <pcs/internal/parallel.h>
 
@@ -109,6 +110,18 @@ private:
 public:
   static constexpr bool is_ok = is_vector_map_ok && is_tensor_map_ok && is_range_ok &&
                                 is_point_ok && is_point_map_ok && is_normal_map_ok;
+
+  /// Whether all that is written are coordinates in memory.
+  static constexpr bool is_memory = [] {
+    if constexpr (!is_ok || has_gradients || !pcs::internal::has_streaming_stores)
+      return false;
+    else if constexpr (!has_size_of_triple<Point>() || !has_size_of_triple<Normal>())
+      return false;
+    else if constexpr (has_normals)
+      return is_memory_map<Point_map, Element>() && is_memory_map<Normal_map, Element>();
+    else
+      return is_memory_map<Point_map, Element>();
+  }();
 
   /// Keeps a reference to `points`, and copies of the maps.
   Point_access(PointRange& points, const NamedParameters& np) : m_points(&points)
@@ -229,6 +242,38 @@ public:
     });
   }
 
+  /// Whether `stream()` is worth a try.
+  bool can_stream() const
+  {
+    if constexpr (is_memory)
+      return size() * (sizeof(Point) + (has_normals ? sizeof(Normal) : 0)) >= smallest_stream &&
+             is_triple<Point>() && is_triple<Normal>() && find_rows(0).point;
+    else
+      return false;
+  }
+
+  /// The same as `write()` for the elements of a block from `first` on, past the caches, if their coordinates lie one
+  /// after the other in memory; otherwise writes nothing and returns `false`.
+  PCS_ALWAYS_INLINE bool stream([[maybe_unused]] std::size_t first,
+                                [[maybe_unused]] const Lane_vectors& positions,
+                                [[maybe_unused]] const Lane_vectors& normals) const
+  {
+    if constexpr (!is_memory)
+      return false;
+    else {
+      const Rows to = find_rows(first);
+      if (!to.point)
+        return false;
+      if (to.normal && !to.are_pairs)
+        stream_block(to.normal, normals);
+      if (to.are_pairs)
+        stream_block(to.point, positions, normals);
+      else
+        stream_block(to.point, positions);
+      return true;
+    }
+  }
+
   /// A point or vector of the caller's type.
   template <class Triple>
   static PCS_ALWAYS_INLINE Triple make(const Vec3& v)
@@ -238,13 +283,18 @@ public:
   }
 
 private:
+  PCS_ALWAYS_INLINE auto iterator(std::size_t i) const
+  {
+    using Iterator = decltype(std::begin(*m_points));
+    return std::begin(*m_points) +
+           static_cast<typename std::iterator_traits<Iterator>::difference_type>(i);
+  }
+
   /// Calls `f` with element `i`, which may live in its iterator.
   template <class F>
   PCS_ALWAYS_INLINE decltype(auto) with_element(std::size_t i, const F& f) const
   {
-    using Iterator = decltype(std::begin(*m_points));
-    const Iterator it = std::begin(*m_points) +
-                        static_cast<typename std::iterator_traits<Iterator>::difference_type>(i);
+    const auto it = iterator(i);
     return f(*it);
   }
 
@@ -252,6 +302,44 @@ private:
   auto attribute(const Map& map, std::size_t i) const
   {
     return with_element(i, [&](auto&& key) -> Map_value<Map> { return get(map, key); });
+  }
+
+  /// Where the coordinates of a block lie one after the other; null if they do not.
+  struct Rows
+  {
+    double *point = nullptr, *normal = nullptr;
+    bool are_pairs = false; ///< of a point and its normal
+  };
+
+  PCS_ALWAYS_INLINE Rows find_rows(std::size_t first) const
+  {
+    const auto element = iterator(first);
+    if constexpr (has_normals) {
+      double* const pairs = run(*m_point_map, element, 6);
+      if (is_streamable(pairs) && run(*m_normal_map, element, 6) == pairs + 3)
+        return {pairs, pairs + 3, true};
+      double* const point = run(*m_point_map, element, 3);
+      double* const normal = run(*m_normal_map, element, 3);
+      if (is_streamable(point) && is_streamable(normal))
+        return {point, normal, false};
+    } else {
+      double* const point = run(*m_point_map, element, 3);
+      if (is_streamable(point))
+        return {point, nullptr, false};
+    }
+    return {};
+  }
+
+  /// Where the values of the block that begins at `first` lie, if they are `stride` doubles apart; else null.
+  template <class Map, class Iterator>
+  static PCS_ALWAYS_INLINE double* run(const Map& map, const Iterator& first, std::size_t stride)
+  {
+    using Difference = typename std::iterator_traits<Iterator>::difference_type;
+    return find_run(
+        [&](std::size_t l) PCS_LAMBDA_INLINE -> const Map_value<Map>& {
+          return get(map, *(first + static_cast<Difference>(l)));
+        },
+        stride);
   }
 
   template <class Map, class Key>

@@ -80,6 +80,7 @@ struct Sampled_body
   Sampling_options options;
   Local_frame frame;
   std::vector<std::uint32_t> input_of_place;
+  bool is_in_callers_order = false; ///< whether `input_of_place[i]` is `i`
   std::vector<std::uint32_t> site_of_place;
   std::vector<std::uint32_t>
       place_of_site; ///< the first one; empty if every site's place has its number
@@ -187,13 +188,13 @@ private:
         sites.push_back(points[i]);
       site_of_input[i] = static_cast<std::uint32_t>(sites.size() - 1);
     }
-    const bool is_coherent = is_coherent_order(points, input_of_place);
-    if (is_coherent)
+    is_in_callers_order = is_coherent_order(points, input_of_place);
+    if (is_in_callers_order)
       std::iota(input_of_place.begin(), input_of_place.end(), 0u);
     site_of_place.resize(n);
     for (std::size_t place = 0; place < n; ++place)
       site_of_place[place] = site_of_input[input_of_place[place]];
-    if (sites.size() == n && !is_coherent)
+    if (sites.size() == n && !is_in_callers_order)
       return;
     place_of_site.resize(sites.size());
     for (std::size_t place = n; place-- > 0;)

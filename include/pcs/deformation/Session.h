@@ -12,6 +12,7 @@
 #include <pcs/deformation/Handle_fades.h>
 #include <pcs/deformation/Handle_set.h>
 #include <pcs/deformation/Outlier_maps.h>
+#include <pcs/deformation/Place_writer.h>
 #include <pcs/deformation/Point_carrier.h>
 #include <pcs/deformation/Sampled_body.h>
 #include <pcs/deformation/Site_constraints.h>
@@ -246,51 +247,43 @@ public:
   }
 
   /*!
-    Calls `write(input index, position, normal, gradient)` in the caller's coordinates for every point that the
-    deformation may move, side by side: not for points outside the region of interest, nor for those that no handle
-    reaches, nor for handles that have not moved. `gradient` is set if `HasGradients`: the linear part of the map of
-    the point. `expect(input index)` is called before, for what will be written to be asked for.
+    Writes every point that the deformation may move to `output`, an `Output` of `Place_writer`, side by side: not
+    points outside the region of interest, nor those that no handle reaches, nor those of handles that have not moved.
+    Positions are in the caller's coordinates; the gradient is set if `HasGradients`: the linear part of the map of the
+    point.
   */
-  template <bool HasGradients, class Write, class Expect>
-  void write(const Write& write_point, const Expect& expect)
+  template <bool HasGradients, class Output>
+  void write(Output& output)
   {
     pcs::internal::Stopwatch watch;
-    const auto& body = m_body;
-    const auto put =
-        [&](std::size_t place, const Vec3& p, const Vec3& normal, const Eigen::Matrix3d& gradient) {
-          write_point(body.input_of_place[place], body.frame.to_world(p), normal, gradient);
-        };
     const std::vector<char>& is_written = moved_handles();
     m_outlier_maps.read(m_body, m_maps);
-    const auto put_other = [&](std::size_t place) {
-      const Node_constraint h = m_sites[body.site_of_place[place]];
-      if (h >= 0 && is_written[static_cast<std::size_t>(h)])
-        put_rigid(place, static_cast<std::size_t>(h), put);
-      else if (h == outlier_site)
-        put_mapped(place, m_outlier_maps.of_site(body, body.site_of_place[place]), put);
-    };
-    // In the caller's coordinates already.
-    const auto put_blended =
-        [&](std::size_t place, const Vec3& p, const Vec3& normal, const Eigen::Matrix3d& gradient)
-            PCS_LAMBDA_INLINE { write_point(body.input_of_place[place], p, normal, gradient); };
-    if (body.is_sampled)
+    const Place_writer<ConcurrencyTag, Output> writer(m_body,
+                                                      m_sites,
+                                                      m_outlier_maps,
+                                                      m_local_transforms,
+                                                      is_written,
+                                                      output);
+    if (m_body.is_sampled) {
+      read_handle_maps(m_local_transforms, m_handle_maps);
       m_body.upsampling.template apply<ConcurrencyTag, HasGradients>(
           m_maps,
-          {body.frame.unit, body.frame.origin},
-          m_sites.is_blended(),
-          m_fades.of_blocks(m_local_transforms),
-          put_blended,
-          [&](std::size_t place) PCS_LAMBDA_INLINE { expect(body.input_of_place[place]); },
-          put_other);
-    else
-      pcs::internal::for_each_index<ConcurrencyTag>(body.number_of_points(),
+          {m_body.frame.unit, m_body.frame.origin},
+          {m_sites.is_blended().data(),
+           m_sites.holder().data(),
+           is_written.data(),
+           m_handle_maps.data(),
+           m_local_transforms.empty() ? Upsampling::Fades() : m_fades.of_blocks()},
+          writer);
+    } else
+      pcs::internal::for_each_index<ConcurrencyTag>(m_body.number_of_points(),
                                                     [&](std::size_t place) {
                                                       const std::size_t site =
-                                                          body.site_of_place[place];
+                                                          m_body.site_of_place[place];
                                                       if (m_sites[site] == free_node)
-                                                        put_mapped(place, m_maps[site], put);
+                                                        writer.write_mapped(place, m_maps[site]);
                                                       else
-                                                        put_other(place);
+                                                        writer.write_other(place);
                                                     });
     m_report.seconds.upsampling = watch.lap();
   }
@@ -428,26 +421,6 @@ private:
     return is_written;
   }
 
-  template <class Put>
-  void put_rigid(std::size_t place, std::size_t handle, const Put& put) const
-  {
-    const Similarity& t = m_local_transforms[handle];
-    Vec3 normal = Vec3::Zero();
-    if (m_body.upsampling.has_normals())
-      normal = t.rotation() * m_body.upsampling.rest_normal(place);
-    put(place, t(m_body.upsampling.rest(place)), normal, t.scale() * t.rotation());
-  }
-
-  template <class Put>
-  void put_mapped(std::size_t place, const Affine_map& map, const Put& put) const
-  {
-    const Eigen::Matrix3d a = Eigen::Map<const Row_major_matrix>(map.a);
-    Vec3 normal = Vec3::Zero();
-    if (m_body.upsampling.has_normals())
-      normal = turn_normal(a, m_body.upsampling.rest_normal(place));
-    put(place, a * m_body.upsampling.rest(place) + Eigen::Map<const Vec3>(map.t), normal, a);
-  }
-
   /// The sample network with nodes on the borders of the handles.
   Elastic_network with_boundary(const std::vector<Border_edge>& border,
                                 Node_constraints& constraints) const
@@ -482,6 +455,7 @@ private:
   std::unique_ptr<Point_carrier> m_carrier;
   std::vector<Affine_map> m_maps, m_next_maps;
   Outlier_maps m_outlier_maps;
+  std::vector<Handle_map> m_handle_maps; ///< of the present shape
   Deformation_report m_report;
   double m_stiffness = 1;
   bool m_is_constrained = false, m_is_ready = false, m_was_reported = false;

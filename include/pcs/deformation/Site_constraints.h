@@ -32,6 +32,9 @@ public:
   Node_constraint operator[](std::size_t site) const { return m_of_site[site]; }
   /// One bit per place, `lanes` of them in a byte: whether it is blended from samples.
   const std::vector<std::uint8_t>& is_blended() const { return m_is_blended; }
+  /// Of a block of places: the handle that holds all of them, `still_block` if nothing moves any of them, else
+  /// `mixed_block`.
+  const std::vector<std::int32_t>& holder() const { return m_holder; }
 
   /// Finds what becomes of every site, and counts it; returns which samples are held by which handle.
   template <class ConcurrencyTag>
@@ -42,7 +45,7 @@ public:
     const std::vector<char> is_reached = handles.reached_components(body.number_of_components());
     count_unreached(body, is_reached, report);
     classify_sites(body, handles, is_reached);
-    mark_blended_places(body);
+    mark_places(body);
     return of_samples(body, handles, is_reached);
   }
 
@@ -135,21 +138,30 @@ private:
 
   /// Eight places share a byte, as eight points share a block of the upsampling.
   template <class ConcurrencyTag>
-  void mark_blended_places(const Sampled_body<ConcurrencyTag>& body)
+  void mark_places(const Sampled_body<ConcurrencyTag>& body)
   {
     m_is_blended.resize(body.upsampling.number_of_blocks());
+    m_holder.resize(m_is_blended.size());
     pcs::internal::for_each_index<ConcurrencyTag>(m_is_blended.size(), [&](std::size_t block) {
       unsigned bits = 0;
       const std::size_t begin = block * lanes;
-      for (std::size_t l = 0; l < lanes && begin + l < body.number_of_points(); ++l)
-        if (m_of_site[body.site_of_place[begin + l]] == free_node)
+      m_holder[block] = m_of_site[body.site_of_place[begin]];
+      for (std::size_t l = 0; l < lanes && begin + l < body.number_of_points(); ++l) {
+        const Node_constraint h = m_of_site[body.site_of_place[begin + l]];
+        if (h == free_node)
           bits |= 1u << l;
+        if (h != m_holder[block])
+          m_holder[block] = mixed_block;
+      }
+      if (m_holder[block] < 0)
+        m_holder[block] = m_holder[block] == unreached_node ? still_block : mixed_block;
       m_is_blended[block] = static_cast<std::uint8_t>(bits);
     });
   }
 
   std::vector<Node_constraint> m_of_site;
   std::vector<std::uint8_t> m_is_blended;
+  std::vector<std::int32_t> m_holder;
   std::vector<char> m_was_reached; ///< of each component
 };
 

@@ -9,6 +9,7 @@
 #include <pcs/deformation/blend_block.h>
 #include <pcs/internal/Huge_page_allocator.h>
 #include <pcs/internal/parallel.h>
+#include <pcs/internal/streaming_stores.h>
 
 #include <Eigen/Core>
 
@@ -24,6 +25,9 @@
 
 namespace pcs {
 namespace deformation {
+
+/// Instead of the handle that holds all points of a block: there is none; or nothing moves any of them.
+constexpr std::int32_t mixed_block = -1, still_block = -2;
 
 /*!
   Points in blocks of eight with the samples that move any of them. Memory per point: 24 bytes of
@@ -105,32 +109,39 @@ public:
   {
     const std::uint32_t* first = nullptr;
     const Block_fade* entry = nullptr;
+  };
+
+  /// What moves the points of a block: the samples those whose bit is set in `is_blended[block]`, or the handle
+  /// `holder[block]` all of them, if that is neither `mixed_block` nor `still_block`.
+  struct Block_motions
+  {
+    const std::uint8_t* is_blended = nullptr;
+    const std::int32_t* holder = nullptr;
+    const char* is_written =
+        nullptr; ///< of each handle: whether the points that it holds are to be written
     const Handle_map* handles = nullptr;
+    Fades fades;
   };
 
   /*!
-    Calls `write(i, position, normal, gradient)` for the points whose bit is set in `is_blended[i / 8]`, and `other(i)`
-    for all others, in blocks side by side. `normal` is zero without normals, `gradient` only set if `HasGradients`.
-    Blocks without a set bit cost nothing. `expect(i)` is called some time before, for what `write` will touch to be
-    asked for.
+    Writes the points in blocks side by side, with a `Writer`:
+
+    | call | meaning |
+    |---|---|
+    | `write(i, position, normal, gradient)` | for all that the samples or the holder of a block move; `normal` is zero without normals, `gradient` only set if `HasGradients` |
+    | `does_stream()`, `stream(i, block_output)` | whether, and now do, the same for eight points from `i` on, past the caches; may decline by `false` |
+    | `expect(i)` | if not `does_stream()`: some time before, for what `write` will touch to be asked for |
+    | `write_other(i)` | for the points of a mixed block that are not blended |
   */
-  template <class ConcurrencyTag, bool HasGradients, class Write, class Expect, class Other>
+  template <class ConcurrencyTag, bool HasGradients, class Writer>
   void apply(const std::vector<Affine_map>& maps,
              const Output_frame& frame,
-             const std::vector<std::uint8_t>& is_blended,
-             const Fades& fades,
-             const Write& write,
-             const Expect& expect,
-             const Other& other)
+             const Block_motions& motions,
+             const Writer& writer)
   {
     update_pairs<ConcurrencyTag>(maps);
     const auto apply_to_all = [&](auto outputs) {
-      apply_blocks<ConcurrencyTag, decltype(outputs)::value>(frame,
-                                                             is_blended,
-                                                             fades,
-                                                             write,
-                                                             expect,
-                                                             other);
+      apply_blocks<ConcurrencyTag, decltype(outputs)::value>(frame, motions, writer);
     };
     if constexpr (HasGradients)
       apply_to_all(std::integral_constant<Blend_outputs, Blend_outputs::gradients>());
@@ -218,15 +229,19 @@ private:
     });
   }
 
-  template <class ConcurrencyTag, Blend_outputs Outputs, class Write, class Expect, class Other>
-  void apply_blocks(const Output_frame& frame,
-                    const std::vector<std::uint8_t>& is_blended,
-                    const Fades& fades,
-                    const Write& write,
-                    const Expect& expect,
-                    const Other& other) const
+  /// Which points of a block are computed.
+  static std::uint8_t computed(const Block_motions& motions, std::size_t block)
+  {
+    const std::int32_t holder = motions.holder[block];
+    return holder < 0 ? motions.is_blended[block] : motions.is_written[holder] ? whole_block : 0;
+  }
+
+  template <class ConcurrencyTag, Blend_outputs Outputs, class Writer>
+  void
+  apply_blocks(const Output_frame& frame, const Block_motions& motions, const Writer& writer) const
   {
     const auto blend = choose_blend_block<Outputs>();
+    const bool does_stream = Outputs != Blend_outputs::gradients && writer.does_stream();
     pcs::internal::for_each_block<ConcurrencyTag>(
         m_base.size(),
         256,
@@ -234,48 +249,65 @@ private:
           // A block is written while the next one is computed: what waits for a result would keep the processor from
           // looking ahead.
           Block_output out[2]{};
+          Block_input in{};
+          in.differences = m_differences.data();
+          in.frame_unit = frame.unit;
+          in.frame_origin = frame.origin.data();
+          in.handles = motions.handles;
+          std::uint8_t mask[2]{};
           const auto put = [&](std::size_t block) PCS_LAMBDA_INLINE {
-            write_block<Outputs>(block, is_blended[block], out[block % 2], write, other);
+            const std::size_t at = block % 2;
+            if (mask[at] != 0 || motions.holder[block] == mixed_block)
+              write_block<Outputs>(block, mask[at], out[at], does_stream, writer);
           };
           for (std::size_t block = begin; block < end; ++block) {
-            if (block + blocks_ahead < m_base.size() && is_blended[block + blocks_ahead] != 0)
-              prefetch(block + blocks_ahead, expect);
-            if (is_blended[block] != 0)
-              blend(block_input(frame, fades, block), out[block % 2]);
+            if (block + blocks_ahead < m_base.size() &&
+                computed(motions, block + blocks_ahead) != 0)
+              prefetch(block + blocks_ahead, does_stream, writer);
+            mask[block % 2] = computed(motions, block);
+            if (mask[block % 2] != 0) {
+              set_input(motions, block, in);
+              blend(in, out[block % 2]);
+            }
             if (block != begin)
               put(block - 1);
           }
           put(end - 1);
+          if (does_stream)
+            pcs::internal::end_stream();
         });
   }
 
   /// Asks for what a later block reads: the processor foresees it only up to the next page of 4 KB.
-  template <class Expect>
-  PCS_ALWAYS_INLINE void prefetch(std::size_t block, const Expect& expect) const
+  template <class Writer>
+  PCS_ALWAYS_INLINE void prefetch(std::size_t block, bool does_stream, const Writer& writer) const
   {
-    if ((block + 1) * lanes <= m_size)
-      pcs::internal::unroll<lanes>([&](auto l) PCS_LAMBDA_INLINE { expect(block * lanes + l); });
+    if (!does_stream && (block + 1) * lanes <= m_size)
+      pcs::internal::unroll<lanes>([&](auto l)
+                                       PCS_LAMBDA_INLINE { writer.expect(block * lanes + l); });
     pcs::internal::prefetch(&m_rest[block], sizeof(Lane_vectors));
     if (has_normals())
       pcs::internal::prefetch(&m_normal[block], sizeof(Lane_vectors));
-    pcs::internal::prefetch(m_entry.data() + m_first[block],
-                            (m_first[block + 1] - m_first[block]) * sizeof(Block_entry));
+    // A fixed number of bytes: a branch that depends on how many there are would be foreseen too seldom.
+    pcs::internal::prefetch(m_entry.data() + m_first[block], bytes_of_entries);
   }
 
-  template <Blend_outputs Outputs, class Write, class Other>
+  template <Blend_outputs Outputs, class Writer>
   PCS_ALWAYS_INLINE void write_block(std::size_t block,
                                      std::uint8_t mask,
                                      const Block_output& out,
-                                     const Write& write,
-                                     const Other& other) const
+                                     bool does_stream,
+                                     const Writer& writer) const
   {
     Eigen::Matrix3d gradient = Eigen::Matrix3d::Identity();
     const std::size_t first = block * lanes;
     const std::size_t count = std::min(lanes, m_size - first);
     if (Outputs != Blend_outputs::gradients && mask == whole_block && count == lanes) {
+      if (does_stream && writer.stream(first, out))
+        return;
       // Most blocks: without a branch per point, which costs more than the writing.
       pcs::internal::unroll<lanes>([&](auto l) PCS_LAMBDA_INLINE {
-        write(first + l, at(out.position, l), at(out.normal, l), gradient);
+        writer.write(first + l, at(out.position, l), at(out.normal, l), gradient);
       });
       return;
     }
@@ -284,9 +316,9 @@ private:
         if constexpr (Outputs == Blend_outputs::gradients)
           for (int k = 0; k < 9; ++k)
             gradient(k / 3, k % 3) = out.gradient[k][l];
-        write(first + l, at(out.position, l), at(out.normal, l), gradient);
+        writer.write(first + l, at(out.position, l), at(out.normal, l), gradient);
       } else
-        other(first + l);
+        writer.write_other(first + l);
   }
 
   static Vec3 at(const Lane_vectors& v, std::size_t l)
@@ -294,23 +326,23 @@ private:
     return {v.value[0][l], v.value[1][l], v.value[2][l]};
   }
 
-  Block_input block_input(const Output_frame& frame, const Fades& fades, std::size_t block) const
+  void set_input(const Block_motions& motions, std::size_t block, Block_input& in) const
   {
-    const bool has_fades = fades.first != nullptr;
-    return {&m_base_maps[m_base[block]],
-            m_differences.data(),
-            m_entry.data() + m_first[block],
-            m_entry.data() + m_first[block + 1],
-            &m_rest[block],
-            has_normals() ? &m_normal[block] : nullptr,
-            frame.unit,
-            frame.origin.data(),
-            has_fades ? fades.entry + fades.first[block] : nullptr,
-            has_fades ? fades.entry + fades.first[block + 1] : nullptr,
-            fades.handles};
+    in.base = &m_base_maps[m_base[block]];
+    in.entry = m_entry.data() + m_first[block];
+    in.entry_end = m_entry.data() + m_first[block + 1];
+    in.rest = &m_rest[block];
+    in.normal = has_normals() ? &m_normal[block] : nullptr;
+    if (motions.fades.first) {
+      in.fade = motions.fades.entry + motions.fades.first[block];
+      in.fade_end = motions.fades.entry + motions.fades.first[block + 1];
+    }
+    const std::int32_t holder = motions.holder[block];
+    in.holder = holder < 0 ? nullptr : motions.handles + holder;
   }
 
   static constexpr std::size_t blocks_ahead = 12;
+  static constexpr std::size_t bytes_of_entries = 128; ///< of most blocks
   static constexpr std::uint8_t whole_block = 0xff;
 
   std::size_t m_size = 0;

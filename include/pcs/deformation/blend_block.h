@@ -89,6 +89,8 @@ struct Block_input
   const double* frame_origin; ///< moved by this
   const Block_fade *fade, *fade_end;
   const Handle_map* handles;
+  const Handle_map*
+      holder; ///< takes all points of the block along, whatever the samples do; or null
 };
 
 inline Base_map base_map(const Affine_map& map, const double* origin)
@@ -180,6 +182,58 @@ PCS_ALWAYS_INLINE void multiply_by_cofactors(const Doubles* g, const Doubles* v,
   });
 }
 
+/// In the frame of the caller.
+template <class Arithmetic, class Doubles>
+PCS_ALWAYS_INLINE void store_positions(const Block_input& in,
+                                       const Doubles* position,
+                                       std::size_t first,
+                                       Block_output& out)
+{
+  pcs::internal::unroll<3>([&](auto r) PCS_LAMBDA_INLINE {
+    Doubles written;
+    Arithmetic::fill(in.frame_origin[r], written);
+    Arithmetic::fma(in.frame_unit, position[r], written);
+    pcs::internal::store(written, out.position.value[r] + first);
+  });
+}
+
+/// A block that moves with one handle.
+template <Blend_outputs Outputs, class Arithmetic>
+PCS_ALWAYS_INLINE void carry_block(const Block_input& in, Block_output& out)
+{
+  using pcs::internal::store;
+  using pcs::internal::unroll;
+  using Doubles = typename Arithmetic::Doubles;
+  constexpr std::size_t width = sizeof(Doubles) / sizeof(double);
+  const Handle_map& holder = *in.holder;
+  unroll<lanes / width>([&](auto part) PCS_LAMBDA_INLINE {
+    constexpr std::size_t first = width * decltype(part)::value;
+    Doubles v[3], image[3];
+    load_vectors(*in.rest, first, v);
+    unroll<3>([&](auto r) PCS_LAMBDA_INLINE {
+      Arithmetic::fill(holder.map.t[r], image[r]);
+      add_image<Arithmetic>(holder.map.a + 3 * r, v, image[r]);
+    });
+    store_positions<Arithmetic>(in, image, first, out);
+    if constexpr (Outputs != Blend_outputs::positions) {
+      if (Outputs == Blend_outputs::normals || in.normal) {
+        load_vectors(*in.normal, first, v);
+        unroll<3>([&](auto r) PCS_LAMBDA_INLINE {
+          Doubles turned{};
+          add_image<Arithmetic>(holder.turn + 3 * r, v, turned);
+          store(turned, out.normal.value[r] + first);
+        });
+      }
+    }
+    if constexpr (Outputs == Blend_outputs::gradients)
+      unroll<9>([&](auto k) PCS_LAMBDA_INLINE {
+        Doubles all;
+        Arithmetic::fill(holder.map.a[k], all);
+        store(all, out.gradient[k] + first);
+      });
+  });
+}
+
 /*!
   Equations (2.4) and (2.5) of the dissertation for one block. With `sum w = 1`,
 
@@ -198,6 +252,10 @@ PCS_ALWAYS_INLINE void blend_block(const Block_input& in, Block_output& out)
   using pcs::internal::unroll;
   using Doubles = typename Arithmetic::Doubles;
   constexpr std::size_t width = sizeof(Doubles) / sizeof(double);
+  if (in.holder) {
+    carry_block<Outputs, Arithmetic>(in, out);
+    return;
+  }
   const Base_map& base = *in.base;
   unroll<lanes / width>([&](auto part) PCS_LAMBDA_INLINE {
     constexpr std::size_t first = width * decltype(part)::value;
@@ -232,12 +290,7 @@ PCS_ALWAYS_INLINE void blend_block(const Block_input& in, Block_output& out)
         Arithmetic::fma(weight, Doubles(target - position[r]), position[r]);
       });
     }
-    unroll<3>([&](auto r) PCS_LAMBDA_INLINE {
-      Doubles written;
-      Arithmetic::fill(in.frame_origin[r], written);
-      Arithmetic::fma(in.frame_unit, position[r], written);
-      store(written, out.position.value[r] + first);
-    });
+    store_positions<Arithmetic>(in, position, first, out);
     if constexpr (Outputs != Blend_outputs::positions) {
       if (Outputs == Blend_outputs::normals || in.normal) {
         Doubles turned[3], squared, scale;
@@ -289,9 +342,7 @@ PCS_TARGET_AVX2 void blend_block_avx2(const Block_input& in, Block_output& out)
 {
   blend_block<Outputs, pcs::internal::Avx2_arithmetic>(in, out);
 }
-#endif
 
-#ifdef PCS_HAS_AVX_ASSEMBLY
 template <Blend_outputs Outputs>
 PCS_TARGET_AVX512 void blend_block_avx512(const Block_input& in, Block_output& out)
 {
@@ -307,11 +358,9 @@ using Blend_block = void (*)(const Block_input&, Block_output&);
 template <Blend_outputs Outputs>
 Blend_block choose_blend_block()
 {
-#ifdef PCS_HAS_AVX_ASSEMBLY
+#if PCS_HAS_RUNTIME_DISPATCH
   if (pcs::internal::has_avx512())
     return &internal::blend_block_avx512<Outputs>;
-#endif
-#if PCS_HAS_RUNTIME_DISPATCH
   if (pcs::internal::has_avx2())
     return &internal::blend_block_avx2<Outputs>;
 #endif

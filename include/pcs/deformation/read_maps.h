@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The affine maps of the samples, from the solved network.
+// The affine maps of the samples, from the solved network, and of the handles.
 
 #ifndef PCS_DEFORMATION_READ_MAPS_H
 #define PCS_DEFORMATION_READ_MAPS_H
@@ -54,6 +54,19 @@ bool read_maps(const Elastic_state& state,
       512,
       are_finite);
   return is_finite == 1;
+}
+
+/// Of the handles, in the coordinates of their transformations.
+inline void read_handle_maps(const std::vector<Similarity>& transforms,
+                             std::vector<Handle_map>& maps)
+{
+  maps.resize(transforms.size());
+  for (std::size_t h = 0; h < transforms.size(); ++h) {
+    const Eigen::Matrix3d turn = transforms[h].rotation();
+    Eigen::Map<Row_major_matrix>(maps[h].turn) = turn;
+    Eigen::Map<Row_major_matrix>(maps[h].map.a) = transforms[h].scale() * turn;
+    Eigen::Map<Vec3>(maps[h].map.t) = transforms[h].translation();
+  }
 }
 
 } // namespace deformation

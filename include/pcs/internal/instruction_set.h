@@ -10,10 +10,13 @@
     !defined(PCS_NO_RUNTIME_DISPATCH)
 #define PCS_HAS_RUNTIME_DISPATCH 1
 #define PCS_TARGET_AVX2 __attribute__((target("avx2,fma")))
-#define PCS_TARGET_AVX512 __attribute__((target("avx512f,avx512vl,avx512dq,fma")))
 #define PCS_ALWAYS_INLINE inline __attribute__((always_inline))
-#if !defined(__clang__)
-// Clang wants the instruction set at each function with assembly, and does well without: there AVX2 gets plain code.
+// Clang wants the instruction set at each function with assembly, and does well without.
+#if defined(__clang__)
+#define PCS_TARGET_AVX512                                                                          \
+  __attribute__((target("avx512f,avx512vl,avx512dq,fma"), min_vector_width(512)))
+#else
+#define PCS_TARGET_AVX512 __attribute__((target("avx512f,avx512vl,avx512dq,fma")))
 #define PCS_HAS_AVX_ASSEMBLY 1
 #endif
 #else
@@ -45,7 +48,7 @@ inline bool has_avx2()
 /// AVX-512 on whole registers: the extensions that all processors have that are not slowed down by it.
 inline bool has_avx512()
 {
-#ifdef PCS_HAS_AVX_ASSEMBLY
+#if PCS_HAS_RUNTIME_DISPATCH
   static const bool answer =
       __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512vl") != 0 &&
       __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512vnni") != 0;

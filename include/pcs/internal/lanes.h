@@ -153,9 +153,10 @@ PCS_ALWAYS_INLINE void unroll(const F& f)
   fused, so that all kernels give the same bits; `subtract_product` is `z - x * y`. A single number stands for all lanes.
   `to_doubles` reads as many steps of weights as there are lanes.
 */
-struct Portable_arithmetic
+template <class Lanes>
+struct Plain_arithmetic
 {
-  using Doubles = Double4;
+  using Doubles = Lanes;
 
   static PCS_ALWAYS_INLINE void subtract_product(double x, double y, double& z)
   {
@@ -184,6 +185,8 @@ struct Portable_arithmetic
       to[i] = from[i];
   }
 };
+
+using Portable_arithmetic = Plain_arithmetic<Double4>;
 
 #ifdef PCS_HAS_AVX_ASSEMBLY
 // Written out: whether a compiler fuses `x * y + z` depends on its options, conversions it takes to pieces, and a number
@@ -260,6 +263,7 @@ struct Avx512_arithmetic
 };
 #elif PCS_HAS_RUNTIME_DISPATCH
 using Avx2_arithmetic = Portable_arithmetic;
+using Avx512_arithmetic = Plain_arithmetic<Double8>;
 #endif
 
 inline constexpr double reciprocal_root_series[] = {1, 0.5, 0.375, 0.3125};

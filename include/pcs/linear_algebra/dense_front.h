@@ -181,9 +181,7 @@ PCS_TARGET_AVX2 inline bool factorize_front_avx2(const Front& front)
 {
   return factorize_front<pcs::internal::Avx2_arithmetic>(front);
 }
-#endif
 
-#ifdef PCS_HAS_AVX_ASSEMBLY
 PCS_TARGET_AVX512 inline bool factorize_front_avx512(const Front& front)
 {
   return factorize_front<pcs::internal::Avx512_arithmetic>(front);
@@ -197,11 +195,9 @@ using Factorize_front = bool (*)(const Front&);
 /// The kernel for this machine. Those with a fused multiply-add give the same bits.
 inline Factorize_front choose_factorize_front()
 {
-#ifdef PCS_HAS_AVX_ASSEMBLY
+#if PCS_HAS_RUNTIME_DISPATCH
   if (pcs::internal::has_avx512())
     return &internal::factorize_front_avx512;
-#endif
-#if PCS_HAS_RUNTIME_DISPATCH
   if (pcs::internal::has_avx2())
     return &internal::factorize_front_avx2;
 #endif
