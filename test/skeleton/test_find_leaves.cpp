@@ -184,6 +184,57 @@ BOOST_AUTO_TEST_CASE(leaves_are_left_out_only_where_there_are_many)
   BOOST_CHECK(find(leafy, all, false).empty());
 }
 
+BOOST_AUTO_TEST_CASE(a_few_leaves_are_noticed_on_much_wood)
+{
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> share(-0.5, 0.5);
+  Points points = pipe(1500, 0.1, 0.1);
+  const std::size_t trunk = points.size();
+  for (int k = 0; k < 6; ++k)
+    add_twig(points, Vec3(0.2 * k + 1, 0.1 * k, 0), 100, random);
+  const std::size_t wood = points.size();
+  for (const bool is_flat : {true, false}) {
+    points.resize(wood);
+    for (int k = 0; k < 6; ++k) // one on each twig, or as many pieces of bark
+      for (int i = 0; i < 30; ++i) {
+        const double x = 0.06 * share(random), z = 0.06 * share(random);
+        points.push_back(
+            Vec3(0.2 * k + 1.04 + x, 0.1 * k + (is_flat ? 0 : share(random) * 0.06), 0.5 + z));
+      }
+    const Prepared p(points, wood);
+    const double unit = p.scan.frame.unit;
+    Axis_set set = one_axis(p.scan, 0.1 / unit, double(trunk) / 0.628 * unit * unit);
+    for (std::size_t i = trunk; i < points.size(); ++i)
+      set.axis_of_point[p.scan.point_of_input[i]] = none;
+    const Flags found = wood_by_points<CGAL::Sequential_tag>(p.scan, set, p.is_used, false, {});
+    BOOST_CHECK_EQUAL(found.empty(), !is_flat);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(patches_are_flat_and_wide_and_away_from_thick_wood)
+{
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> share(0, 1);
+  const auto count_in = [&](double width, double depth, bool is_on_wood) {
+    Points points;
+    for (int i = 0; i < 40; ++i)
+      points.emplace_back(0.1 * share(random), width * share(random), depth * share(random));
+    const Prepared p(points, 0);
+    Flags is_open(p.scan.size(), 1), is_thick(p.scan.size(), 0);
+    if (is_on_wood) {
+      is_open[0] = 0;
+      is_thick[0] = 1;
+    }
+    Patch_rules rules;
+    rules.link = 8;
+    return count_patch_points(p.scan, is_open, is_thick, rules);
+  };
+  BOOST_CHECK_EQUAL(count_in(0.1, 0.005, false), 40);
+  BOOST_CHECK_EQUAL(count_in(0.1, 0.005, true), 0);
+  BOOST_CHECK_EQUAL(count_in(0.1, 0.1, false), 0);     // a lump
+  BOOST_CHECK_EQUAL(count_in(0.005, 0.005, false), 0); // a twig
+}
+
 BOOST_AUTO_TEST_CASE(leaves_on_a_surface_are_no_leaves)
 {
   Points points = pipe(3000, 0.1, 0.1);

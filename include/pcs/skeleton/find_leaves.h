@@ -13,6 +13,7 @@
 #include <pcs/skeleton/Scan.h>
 #include <pcs/skeleton/find_hollow.h>
 #include <pcs/skeleton/find_lines.h>
+#include <pcs/skeleton/find_patches.h>
 
 #include <Eigen/Core>
 
@@ -32,16 +33,18 @@ struct Leaf_rules
   double longest = 0.12;  ///< ... or one that is shorter than this,
   double flatness = 0.1;  ///< ... if it is wider than this share of its length [-]
   //! of the points that no axis explains: with fewer, leaves are not looked for [-]
-  double unexplained = 0.04;
+  double unexplained = 0.025;
   double thick = 0.05; ///< share of the points that must be thick wood, or this is no tree [-]
   double open =
-      0.4; ///< least share of the points that must be no thick wood, or there is no crown of leaves [-]
+      0.4; ///< least share of the points that must be no thick wood in a crown of leaves [-]
   double leafy = 0.15;        ///< share of these that must be deep in leaves: fewer are chance [-]
   std::size_t neighbors = 10; ///< that are leaves, too, around a point deep in leaves [count]
-  int rounds = 2;             ///< how often wood is looked for among what is left [count]
-  double pipe_slack = 1.5;    ///< `Pipe_rules::slack` where there are leaves [-]
+  double patchy = 0.035; ///< or the share of these that must lie in flat patches, in any crown [-]
+  int rounds = 2;        ///< how often wood is looked for among what is left [count]
+  double pipe_slack = 1.5; ///< `Pipe_rules::slack` where there are leaves [-]
   Hollow_rules hollow;
   Line_rules lines;
+  Patch_rules patches;
 };
 
 /*!
@@ -133,9 +136,39 @@ inline bool may_have_leaves(const Axis_set& set,
 }
 
 /*!
-  The points of thick wood, which is hollow, and of thin wood, which is a line with little around it. What is left is leaves if
-  much of it has nothing else around it: twigs that a scan just about sees are mixed with those that it sees well. Empty if it
-  is not, unless `is_sure` says that there are leaves.
+  Whether the points that are neither thick wood nor lines are leaves. Twigs that a scan just about sees are no lines, too,
+  but are mixed with those that it sees well, and make no flat patches. O(points).
+*/
+inline bool are_leaves(const Scan& scan,
+                       const std::vector<std::uint8_t>& is_used,
+                       const std::vector<std::uint8_t>& is_thick,
+                       const std::vector<std::uint8_t>& is_wood,
+                       const Leaf_rules& rules)
+{
+  std::vector<std::uint8_t> is_open(scan.size());
+  std::size_t used = 0, thin = 0, deep = 0; // points, those not of thick wood, those deep in leaves
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    used += is_used[i];
+    thin += is_used[i] && !is_thick[i];
+    is_open[i] = is_used[i] && !is_wood[i];
+  }
+  if (double(used - thin) < rules.thick * double(used))
+    return false;
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    std::size_t count = 0;
+    for (const Index j : scan.neighbors[i])
+      count += j != none && is_open[j];
+    deep += is_open[i] && count >= rules.neighbors;
+  }
+  const bool is_full =
+      double(thin) >= rules.open * double(used) && double(deep) >= rules.leafy * double(thin);
+  return is_full || double(count_patch_points(scan, is_open, is_thick, rules.patches)) >=
+                        rules.patchy * double(thin);
+}
+
+/*!
+  The points of thick wood, which is hollow, and of thin wood, which is a line with little around it. Empty if what is left does
+  not look like leaves, unless `is_sure` says that there are some.
 */
 template <class ConcurrencyTag>
 std::vector<std::uint8_t> wood_by_points(const Scan& scan,
@@ -150,25 +183,9 @@ std::vector<std::uint8_t> wood_by_points(const Scan& scan,
       points_on_hollow_sections<ConcurrencyTag>(scan, set, rules.hollow);
   std::vector<std::uint8_t> is_wood =
       points_on_lines<ConcurrencyTag>(scan, is_used, is_thick, rules.lines);
-  std::size_t used = 0, open = 0,
-              deep = 0; // points, those that are no thick wood, those deep in leaves
-  for (std::size_t i = 0; i < scan.size(); ++i) {
-    used += is_used[i];
-    open += is_used[i] && !is_thick[i];
+  for (std::size_t i = 0; i < scan.size(); ++i)
     is_wood[i] = is_used[i] && (is_wood[i] || is_thick[i]);
-  }
-  for (std::size_t i = 0; i < scan.size(); ++i) {
-    if (!is_used[i] || is_wood[i])
-      continue;
-    std::size_t count = 0;
-    for (const Index j : scan.neighbors[i])
-      count += j != none && is_used[j] && !is_wood[j];
-    deep += count >= rules.neighbors;
-  }
-  const bool is_leafy = double(used - open) >= rules.thick * double(used) &&
-                        double(open) >= rules.open * double(used) &&
-                        double(deep) >= rules.leafy * double(open);
-  if (!is_sure && !is_leafy)
+  if (!is_sure && !are_leaves(scan, is_used, is_thick, is_wood, rules))
     is_wood.clear();
   return is_wood;
 }

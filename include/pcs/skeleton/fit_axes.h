@@ -6,6 +6,7 @@
 #define PCS_SKELETON_FIT_AXES_H
 
 #include <pcs/internal/parallel.h>
+#include <pcs/neighborhood/Nearest_neighbors.h>
 #include <pcs/skeleton/Chain_fit.h>
 #include <pcs/skeleton/Layer_tree.h>
 #include <pcs/skeleton/Neighbor_graph.h>
@@ -206,6 +207,22 @@ inline std::vector<Index> nearest_to_axes(const Scan& scan,
   Point_sets sets(n);
   for (const Link& l : links)
     sets.unite(l.first, l.second);
+  // a tree of the points of axes, where a search among all would pass many others, as in leaves
+  std::vector<Vec3> covered;
+  for (Index i = 0; i < n; ++i)
+    if (set.is_covered(i))
+      covered.push_back(scan.points[i]);
+  constexpr double most = 0.9;
+  if (double(covered.size()) > most * double(n))
+    covered.clear();
+  const neighborhood::Nearest_neighbors search(covered);
+  const auto distance = [&](const Vec3& p, double reach) {
+    const auto near =
+        covered.empty()
+            ? scan.search->nearest_if(p, reach, [&](Index j) { return set.is_covered(j); })
+            : search.nearest_if(p, reach, [](Index) { return true; });
+    return std::sqrt(near.squared_distance);
+  };
   std::vector<Index> source(n, none);
   std::vector<double> best(n, std::numeric_limits<double>::infinity());
   for (Index i = 0; i < n; ++i) {
@@ -215,9 +232,7 @@ inline std::vector<Index> nearest_to_axes(const Scan& scan,
     if (source[c] == none)
       source[c] = i;
     const double reach = std::min(best[c], 1e3 * scan.spacing);
-    const auto near =
-        scan.search->nearest_if(scan.points[i], reach, [&](Index j) { return set.is_covered(j); });
-    const double d = std::sqrt(near.squared_distance);
+    const double d = distance(scan.points[i], reach);
     if (d < reach) {
       best[c] = d;
       source[c] = i;

@@ -38,7 +38,7 @@ struct Joint_rules
   double steep_gap = 12; ///< gaps longer than this cost more than their length
   double radius = 4;     ///< for each time that the base is thicker than its parent
   double backward = 3;   ///< for pointing to the root of the parent
-  double reversal = 6;   ///< for using the tip as the base
+  double reversal = 2;   ///< for using the tip as the base
   double path_bonus = 1; ///< factor where the paths to the root agree; 1: geometry alone [-]
   double bend = 6;       ///< for the angle at the tip of the parent
 };
