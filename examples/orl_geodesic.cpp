@@ -3,6 +3,7 @@
 // Program: trees between scanned trees, beyond them, and like them.
 
 #include "orl_program/Tree_file.h"
+#include "orl_program/align_trees.h"
 #include "orl_program/write_family.h"
 #include "program/run_program.h"
 #include <pcs/IO/read_correspondences.h>
@@ -51,12 +52,38 @@ bool is_stored(const Options& o)
          (!o.correspondences.empty() && std::filesystem::exists(o.correspondences, error));
 }
 
+pcs::shape_space::Matching_weights weights_of(const Options& o)
+{
+  pcs::shape_space::Matching_weights weights;
+  weights.is_published = o.is_published;
+  return weights;
+}
+
+/// How branches and points are matched, in words that are kept with what was found.
+std::string method(const Options& o)
+{
+  return "--align " + o.align + " --up " + o.up + " --transport " + o.transport +
+         (o.is_published ? " --published-energy" : "");
+}
+
+/// What is stored may be asked for again, but nothing else.
+pcs::Orl_correspondences read_stored(const Options& o)
+{
+  pcs::Orl_correspondences stored = pcs::IO::read_correspondences(o.correspondences);
+  for (const auto& [name, value] : {std::make_pair("--align", " " + o.align),
+                                    std::make_pair("--up", " " + o.up),
+                                    std::make_pair("--transport", " " + o.transport),
+                                    std::make_pair("--published-energy", std::string())})
+    if (o.is_given(name) && (stored.note + " ").find(name + value + " ") == std::string::npos)
+      throw pcs::Invalid_input("made with other options (" + stored.note + ") than " + name +
+                               value + "; leave this out, or name another file");
+  return stored;
+}
+
 pcs::Orl_report build(Space& space, const Options& o)
 {
   using namespace pcs::shape_space;
   program::Progress_line line(!o.is_quiet);
-  Matching_weights weights;
-  weights.is_published = o.is_published;
   Transport_options transport;
   if (o.transport == "sinkhorn")
     transport.method = Point_transport::sinkhorn;
@@ -69,17 +96,24 @@ pcs::Orl_report build(Space& space, const Options& o)
   };
   const auto form = np::orientation(orientation);
   if (is_stored(o))
-    return space.build_from(pcs::IO::read_correspondences(o.correspondences), form);
+    try {
+      return space.build_from(read_stored(o), form);
+    } catch (const pcs::Invalid_input& refusal) {
+      throw pcs::Invalid_input(o.correspondences + ": " + refusal.what());
+    }
   // of more trees, each stands as it was given
   const bool may_turn = o.align == "turns" && o.number_of_trees() == 2;
   pcs::Orl_report report =
-      space.build(form.matching_weights(weights)
+      space.build(form.matching_weights(weights_of(o))
                       .transport_options(transport)
                       .alignment(may_turn ? Alignment::turns : Alignment::as_given)
                       .up_direction(up_direction(o.up))
                       .callback(callback));
-  if (!o.correspondences.empty())
-    pcs::IO::write_correspondences(o.correspondences, space.correspondences());
+  if (!o.correspondences.empty()) {
+    pcs::Orl_correspondences found = space.correspondences();
+    found.note = method(o);
+    pcs::IO::write_correspondences(o.correspondences, found);
+  }
   return report;
 }
 
@@ -94,8 +128,11 @@ std::string matches_text(const Space& space, const Tree_file& one, const Tree_fi
 }
 
 /// What was not found in this run is left out.
-std::string
-report_text(const Space& space, const pcs::Orl_report& r, const Options& o, bool is_stored)
+std::string report_text(const Space& space,
+                        const pcs::Orl_report& r,
+                        const Options& o,
+                        bool is_stored,
+                        const std::vector<double>& turns)
 {
   using pcs::shape_space::Orl_metric;
   const pcs::Orl_tree a = space.tree(0), b = space.tree(1);
@@ -112,6 +149,8 @@ report_text(const Space& space, const pcs::Orl_report& r, const Options& o, bool
     json["unexplained_share"] = r.unexplained_share;
     json["is_grown_at_tips"] = r.is_grown_at_tips;
     json["turn_degrees"] = r.turn * 180 / CGAL_PI;
+    for (const double turn : turns)
+      json["turns_degrees"].push_back(turn * 180 / CGAL_PI);
     json["number_of_windows"] = r.number_of_windows;
     json["number_of_failed_windows"] = r.number_of_failed_windows;
     json["marginal_violation"] = {{"worst", r.worst_marginal_violation},
@@ -169,7 +208,12 @@ private:
 void run(const Options& o)
 {
   check(o);
-  const std::vector<Tree_file> files = read_trees(o);
+  std::vector<Tree_file> files = read_trees(o);
+  Space space;
+  if (!o.load.empty()) {
+    space.restore(pcs::IO::read_shape_space(o.load));
+    check_numbers(o, space.number_of_trees());
+  }
   std::error_code error;
   std::filesystem::create_directories(o.output, error);
   if (!std::filesystem::is_directory(o.output))
@@ -177,11 +221,7 @@ void run(const Options& o)
   Extra_file matches(o.matches), report_file(o.report), changes(o.changes), distances(o.distances);
 
   const bool was_stored = is_stored(o);
-  for (const char* const name : {"--published-energy", "--transport", "--align"})
-    if (was_stored && o.is_given(name))
-      throw pcs::Invalid_input(name + (" says how trees are matched, which " + o.correspondences) +
-                               " has done before");
-  Space space;
+  std::vector<double> turns; // of more than two trees, which stand turned in the files
   pcs::Orl_report report;
   if (o.load.empty()) {
     for (std::size_t i = 0; i < files.size(); ++i)
@@ -191,18 +231,20 @@ void run(const Options& o)
         throw pcs::Invalid_input((o.skeletons.empty() ? o.trees : o.skeletons)[i] + ": " +
                                  refusal.what());
       }
+    if (files.size() > 2 && o.is_given("--align") && o.align == "turns") {
+      turns = align_trees(files, o.up, weights_of(o));
+      space = Space();
+      for (const Tree_file& file : files)
+        add(space, file);
+    }
     report = build(space, o);
   } else {
-    space.restore(pcs::IO::read_shape_space(o.load));
     report.status = pcs::Status::converged;
     report.number_of_trees = space.number_of_trees();
     report.number_of_common_branches = space.layout().branches.size();
     report.number_of_edges = space.layout().number_of_edges();
     report.distance = space.distance(Space::Handle(0), Space::Handle(1));
   }
-  if (!o.changes.empty() && space.number_of_trees() != 2)
-    throw pcs::Invalid_input("--changes is for two trees, there are " +
-                             std::to_string(space.number_of_trees()));
   if (!o.save.empty())
     pcs::IO::write_shape_space(o.save, space.data());
   if (o.has_places())
@@ -224,7 +266,7 @@ void run(const Options& o)
     matches.write([&] { return matches_text(space, files[0], files[1]); });
   changes.write([&] { return changes_text(space, files); });
   distances.write([&] { return distances_text(space); });
-  report_file.write([&] { return report_text(space, report, o, was_stored); });
+  report_file.write([&] { return report_text(space, report, o, was_stored, turns); });
   if (!o.is_quiet && o.load.empty())
     std::cout << report << '\n';
 }

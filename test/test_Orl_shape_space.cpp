@@ -671,6 +671,40 @@ BOOST_AUTO_TEST_CASE(the_order_of_vertices_does_not_matter)
       (as_set(matches, 0, 0, false) == as_set(others, num_vertices(a), num_vertices(b), true)));
 }
 
+BOOST_AUTO_TEST_CASE(the_way_back_has_the_same_branches_and_is_as_long)
+{
+  for (const unsigned seed : {13u, 23u, 33u}) {
+    const Tree a = random_tree(seed), b = random_tree(seed + 1);
+    Space there = make_space(a, b), back = make_space(b, a);
+    std::set<std::array<std::size_t, 2>> one, two;
+    for (const pcs::Branch_match& m : there.matches())
+      one.insert(m.tip);
+    for (const pcs::Branch_match& m : back.matches())
+      two.insert({m.tip[1], m.tip[0]});
+    BOOST_TEST((one == two));
+    const double distance = there.distance(0, 1);
+    BOOST_TEST(std::abs(back.distance(0, 1) - distance) < 1e-6 * distance);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_tree_in_another_unit_is_the_same)
+{
+  const Tree a = random_tree(15);
+  for (const double scale : {1e-6, 0.001, 0.02, 50., 1000., 1e6}) {
+    const Tree b = moved(a, Eigen::Matrix3d::Identity(), Vec3::Zero(), scale);
+    Space space;
+    space.add_skeleton(a);
+    space.add_skeleton(b);
+    const auto report = space.build();
+    BOOST_TEST_CONTEXT("scale " << scale)
+    {
+      BOOST_TEST(report.unexplained_share < 1e-3);
+      for (const pcs::Branch_match& m : space.matches())
+        BOOST_TEST(m.tip[0] == m.tip[1]);
+    }
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(orl_determinism)
@@ -707,7 +741,10 @@ BOOST_AUTO_TEST_CASE(correspondences_survive_a_file)
   const std::string path =
       (std::filesystem::temp_directory_path() / ("pcs_orl_" + std::to_string(::getpid()) + ".txt"))
           .string();
-  pcs::IO::write_correspondences(path, space.correspondences());
+  pcs::Orl_correspondences noted = space.correspondences();
+  noted.note = " matched  by\nnight ";
+  pcs::IO::write_correspondences(path, noted);
+  BOOST_TEST(pcs::IO::read_correspondences(path).note == "matched by night");
   Space again;
   again.add(a, scan_a);
   again.add(b, scan_b);
@@ -724,6 +761,17 @@ BOOST_AUTO_TEST_CASE(correspondences_survive_a_file)
   BOOST_CHECK_EXCEPTION(other.build_from(space.correspondences()),
                         pcs::Invalid_input,
                         message_has("other trees"));
+  Space bare, mixed;
+  bare.add_skeleton(a);
+  bare.add_skeleton(b);
+  bare.build_from(space.correspondences());
+  BOOST_TEST(bare.distance(0, 1) == space.distance(0, 1));
+  BOOST_TEST(!bare.has_points());
+  mixed.add(a, scan_a);
+  mixed.add(b, scan_a);
+  BOOST_CHECK_EXCEPTION(mixed.build_from(space.correspondences()),
+                        pcs::Invalid_input,
+                        message_has("other points"));
   auto broken = space.correspondences();
   broken.pairs.back().point[0] = 1000000;
   BOOST_CHECK_THROW(again.build_from(broken), pcs::Invalid_input);

@@ -515,6 +515,37 @@ BOOST_AUTO_TEST_CASE(edges_without_length_change_nothing)
   BOOST_TEST(std::abs(one.distance - two.distance) < 1e-9 * one.distance);
 }
 
+BOOST_AUTO_TEST_CASE(nodes_that_stand_twice_say_nothing_of_the_branches_there)
+{
+  // thick trunk, thin branches: these do not begin as thick as the trunk because its nodes stand twice
+  const auto tree = [](bool is_doubled) {
+    Tree result;
+    const auto add = [&](const Point& p, double radius, std::size_t parent) {
+      pcs::Tree_node<Kernel> node;
+      node.point = p;
+      node.radius = radius;
+      std::size_t v = parent;
+      for (int k = 0; k < (is_doubled ? 2 : 1); ++k) {
+        const std::size_t w = add_vertex(node, result);
+        if (v != pcs::npos)
+          add_edge(v, w, result);
+        v = w;
+      }
+      return v;
+    };
+    std::size_t stem = pcs::npos;
+    for (int k = 0; k < 5; ++k) {
+      stem = add(Point(0, 0, k), 0.5, stem);
+      if (k > 0 && k < 4)
+        add(Point(1.5, k, k + 0.5), 0.1, stem);
+    }
+    return result;
+  };
+  const auto report = morph(tree(false), {}, tree(true), {});
+  BOOST_TEST(report.number_of_matched_branches == 4u);
+  BOOST_TEST(report.distance < 1e-9);
+}
+
 BOOST_AUTO_TEST_CASE(a_cycle_beside_the_root_is_refused)
 {
   Tree tree(5);

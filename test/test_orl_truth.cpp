@@ -69,6 +69,30 @@ BOOST_AUTO_TEST_CASE(a_tree_that_did_not_grow_keeps_its_wood)
   BOOST_TEST(m.same_wood == m.same_share);
 }
 
+BOOST_AUTO_TEST_CASE(the_trunk_of_a_growing_tree_goes_on_as_the_trunk)
+{
+  // the trunk of the young tree and one of its last twigs are as long; many paths of the old tree begin alike
+  Tree tree;
+  pcs::grow_tree(tree, pcs::forked_habit(), pcs::parameters::random_seed(1));
+  std::vector<std::size_t> old_nodes;
+  const Tree young = pcs::tree_at_age(tree, 0.5, old_nodes);
+  const Tree turned =
+      moved(tree, Eigen::AngleAxisd(2, Vec3::UnitZ()).toRotationMatrix(), Vec3::Zero());
+  for (const bool is_turned : {false, true}) {
+    pcs::Orl_shape_space<Kernel> space;
+    space.add_skeleton(young);
+    space.add_skeleton(is_turned ? turned : tree);
+    const auto report = space.build(pcs::parameters::alignment(
+        is_turned ? pcs::shape_space::Alignment::turns : pcs::shape_space::Alignment::as_given));
+    BOOST_TEST(report.is_grown_at_tips);
+    BOOST_TEST(std::abs(report.turn + (is_turned ? 2 : 0)) < 0.2); // wood does not turn
+    std::size_t before = space.matches()[0].tip[0];
+    while (old_nodes[before] == pcs::npos)
+      before = pcs::parent_node<Kernel>(before, young);
+    BOOST_TEST(tree[old_nodes[before]].branch == tree[space.matches()[0].tip[1]].branch);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(a_growing_tree_is_predicted_best_with_branches_born_in_order)
 {
   Tree tree;

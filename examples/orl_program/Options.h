@@ -20,6 +20,7 @@
 #include <initializer_list>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 #include <sstream>
 #include <string>
@@ -147,7 +148,7 @@ inline void declare(CLI::App& app, Options& o)
 {
   app.footer(
       R"(Give --tree and --skeleton once for each tree: twice at least. Points: PLY, LAS, OFF or
-text. Skeletons: SWC, or .txtskl with layers of branches. Without --skeleton, skeletons are
+text. Skeletons: SWC, CSV, or .txtskl with layers of branches. Without --skeleton, skeletons are
 extracted from the points; without --tree, only skeletons are made.
 
 DIR gets lambda_0.250.ply and lambda_0.250.swc for each place on the path between the first two
@@ -172,7 +173,8 @@ Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
   app.add_option("--align",
                  o.align,
                  "whether the second of two trees may stand turned about the vertical, as a pot "
-                 "that was put down anew")
+                 "that was put down anew; of more trees each is turned to stand like the one "
+                 "before, if this is given")
       ->check(CLI::IsMember({"none", "turns"}))
       ->capture_default_str();
   app.add_option("--up", o.up, "the vertical")
@@ -250,9 +252,6 @@ inline void check_effects(const Options& o)
   refuse(o.load.empty() && o.skeletons.empty(),
          {"--extend-axes"},
          "without --skeleton: extracted axes go to where the points end");
-  refuse(o.number_of_trees() > 2 && o.align != "none",
-         {"--align"},
-         "for more than two trees: each stands as it was given");
   refuse(!o.has_places(), {"--maximal-turn", "--births-in-order"}, "without --lambda");
   refuse(!o.has_places() && o.number_of_samples == 0,
          {"--limit-radii"},
@@ -262,6 +261,30 @@ inline void check_effects(const Options& o)
          {"--seed", "--any-range", "--pipe-model"},
          "without --sample: no new trees are drawn");
   refuse(!o.do_growth, {"--times", "--frames", "--monotone"}, "without --growth");
+}
+
+/// Lists with a number for each tree, and other numbers that are read late.
+inline void check_numbers(const Options& o, std::size_t number_of_trees)
+{
+  const auto check_list = [&](const char* name, const std::vector<double>& list) {
+    if (!list.empty() && list.size() != number_of_trees)
+      throw pcs::Invalid_input(std::string(name) + " has " + std::to_string(list.size()) +
+                               " numbers for " + std::to_string(number_of_trees) + " trees");
+    for (const double x : list)
+      if (!std::isfinite(x))
+        throw pcs::Invalid_input(std::string(name) + " must be finite numbers");
+  };
+  check_list("--weights", o.weights);
+  check_list("--times", o.times);
+  const double sum = std::accumulate(o.weights.begin(), o.weights.end(), 0.0);
+  if (!o.weights.empty() && !(sum > 0 && std::isfinite(sum)))
+    throw pcs::Invalid_input("--weights must add up to a finite number, more than 0");
+  for (std::size_t k = 1; k < o.times.size(); ++k)
+    if (!(o.times[k] > o.times[k - 1]))
+      throw pcs::Invalid_input("--times must increase");
+  if (!o.changes.empty() && number_of_trees != 2)
+    throw pcs::Invalid_input("--changes is for two trees, there are " +
+                             std::to_string(number_of_trees));
 }
 
 inline void check(const Options& o)
@@ -286,6 +309,7 @@ inline void check(const Options& o)
            "--save-space or --lambda");
     if (n > 2 && (!o.correspondences.empty() || !o.matches.empty()))
       fail("--correspondences and --matches are for two trees; use --save-space");
+    check_numbers(o, n);
   } else if (!o.correspondences.empty() || !o.matches.empty())
     fail("--correspondences and --matches need the trees, not --load-space");
   for (const double l : o.lambda)

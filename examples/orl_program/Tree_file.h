@@ -8,6 +8,7 @@
 #include <pcs/IO/Point_table.h>
 #include <pcs/IO/read_points.h>
 #include <pcs/IO/read_swc.h>
+#include <pcs/IO/read_tree_csv.h>
 #include <pcs/IO/read_txtskl.h>
 #include <pcs/core/Tree_skeleton.h>
 #include <pcs/core/errors.h>
@@ -20,6 +21,7 @@
 #define PCS_CAN_EXTRACT_SKELETONS 0
 #endif
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -57,11 +59,35 @@ inline std::vector<std::int64_t> read_swc_ids(const std::string& path)
   return ids;
 }
 
+/// Likewise of a CSV file; its columns are in any order.
+inline std::vector<std::int64_t> read_csv_ids(const std::string& path)
+{
+  std::vector<std::int64_t> ids;
+  std::ifstream file(path);
+  std::size_t column = pcs::npos;
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream cells(line);
+    std::string cell;
+    for (std::size_t c = 0; c <= column && std::getline(cells, cell, ','); ++c) {
+      std::istringstream word(cell);
+      if (double id = 0; c == column && word >> id)
+        ids.push_back(std::llround(id));
+      else if (std::string name; column == pcs::npos && word >> name && name == "id")
+        column = c;
+    }
+  }
+  return ids;
+}
+
 inline void read_skeleton(const std::string& path, Tree_file& tree)
 {
-  if (std::filesystem::path(path).extension() == ".txtskl")
+  const std::filesystem::path extension = std::filesystem::path(path).extension();
+  if (extension == ".txtskl")
     pcs::IO::read_txtskl<Kernel>(path, tree.skeleton);
-  else {
+  else if (extension == ".csv") {
+    pcs::IO::read_tree_csv<Kernel>(path, tree.skeleton);
+    tree.ids = read_csv_ids(path);
+  } else {
     pcs::IO::read_swc<Kernel>(path, tree.skeleton);
     tree.ids = read_swc_ids(path);
   }
@@ -94,6 +120,29 @@ inline void extract_skeleton(const std::string& points, const std::string& up, T
 #endif
 }
 
+/// Skeletons and points of which most are far from each other are in different coordinates.
+inline void
+check_place(const std::string& points, const std::string& skeleton, const Tree_file& tree)
+{
+  CGAL::Bbox_3 box;
+  for (std::size_t v = 0; v < num_vertices(tree.skeleton); ++v)
+    box += tree.skeleton[v].point.bbox();
+  const double far =
+      std::sqrt(CGAL::squared_distance(Kernel::Point_3(box.xmin(), box.ymin(), box.zmin()),
+                                       Kernel::Point_3(box.xmax(), box.ymax(), box.zmax())));
+  const auto& all = tree.points.points();
+  const auto number_of_far = std::count_if(all.begin(), all.end(), [&](const auto& p) {
+    for (int i = 0; i < 3; ++i)
+      if (p[i] < box.min(i) - far || p[i] > box.max(i) + far)
+        return true;
+    return false;
+  });
+  if (2 * static_cast<std::size_t>(number_of_far) > all.size())
+    throw pcs::Invalid_input(points + ": " + std::to_string(number_of_far) + " of " +
+                             std::to_string(all.size()) + " points are farther from " + skeleton +
+                             " than it is large; both must be in the same coordinates and unit");
+}
+
 /// Either path may be empty, not both. `up`: the axis along which trees grow.
 inline Tree_file read_tree(const std::string& points,
                            const std::string& skeleton,
@@ -107,6 +156,8 @@ inline Tree_file read_tree(const std::string& points,
     read_skeleton(skeleton, tree);
   else
     extract_skeleton(points, up, tree);
+  if (!skeleton.empty())
+    check_place(points, skeleton, tree);
   if (do_extend_axes && !skeleton.empty())
     pcs::shape_space::extend_axes(tree.skeleton, tree.points.points());
   if (tree.ids.size() != num_vertices(tree.skeleton)) {

@@ -196,7 +196,7 @@ public:
   }
 
   /*!
-    \brief the same with correspondences that were computed before, for the same trees.
+    \brief the same with correspondences that were computed before, for the same trees with the same points, or none.
 
     Reads `orientation`, `virtual_direction` and `do_use_unit_weights`.
     \throws pcs::Invalid_input when the correspondences do not fit the trees
@@ -217,11 +217,16 @@ public:
     built.turn = Quaternion(w, x, y, z);
     shape_space::embed(inputs(), built);
     report.seconds.topology = watch.lap();
-    shape_space::check_pairs(correspondences,
-                             built.layout.number_of_edges(),
-                             {m_inputs[0].points.size(), m_inputs[1].points.size()},
-                             "pcs::Orl_shape_space::build_from()");
-    finish(built, correspondences.pairs, shape_space::Matching_weights(), report);
+    const bool has_points = !m_inputs[0].points.empty() || !m_inputs[1].points.empty();
+    if (has_points)
+      shape_space::check_pairs(correspondences,
+                               built.layout.number_of_edges(),
+                               {m_inputs[0].points.size(), m_inputs[1].points.size()},
+                               "pcs::Orl_shape_space::build_from()");
+    finish(built,
+           has_points ? correspondences.pairs : std::vector<shape_space::Point_pair>(),
+           shape_space::Matching_weights(),
+           report);
     report.seconds.instances = watch.lap();
     return report;
   }

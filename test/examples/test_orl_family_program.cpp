@@ -140,6 +140,64 @@ BOOST_AUTO_TEST_CASE(growth_and_changes_are_written)
   BOOST_TEST(changes.find("new") == std::string::npos);
 }
 
+BOOST_AUTO_TEST_CASE(trees_that_were_put_down_anew_are_turned_back_on_request)
+{
+  std::string turned_skeletons, turned_trees;
+  for (unsigned k = 0; k < 3; ++k) {
+    const std::string name = "abc"[k] + std::string();
+    orl_test::Tree tree;
+    pcs::IO::read_swc<orl_test::Kernel>(path(name + ".swc"), tree);
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(1.3 * k, orl_test::Vec3::UnitY()).toRotationMatrix();
+    // y is up, so that another axis cannot be taken for it
+    const Eigen::Matrix3d upright =
+        Eigen::Quaterniond::FromTwoVectors(orl_test::Vec3::UnitZ(), orl_test::Vec3::UnitY())
+            .toRotationMatrix();
+    pcs::IO::write_swc(path(name + "_up.swc"), orl_test::moved(tree, upright, {1, 2, 3}));
+    pcs::IO::write_swc(path(name + "_turned.swc"),
+                       orl_test::moved(tree, turn * upright, {1, 2, 3}));
+    Table table = pcs::IO::read_points(path(name + ".ply"));
+    std::vector<Table::Vector_3> normals;
+    for (auto& p : table.points()) {
+      const orl_test::Vec3 q = turn * upright * orl_test::to_eigen(p) + orl_test::Vec3(1, 2, 3);
+      const orl_test::Vec3 n = turn * orl_test::Vec3::UnitX();
+      p = orl_test::to_cgal(q);
+      normals.emplace_back(n.x(), n.y(), n.z());
+    }
+    table.set_normals(normals);
+    pcs::IO::write_points(path(name + "_turned.ply"), table);
+    turned_skeletons += "--skeleton " + name + "_turned.swc ";
+    turned_trees += "--tree " + name + "_turned.ply ";
+  }
+  const std::string wanted = "--growth --frames 3 --lambda 0.5 --output ";
+  succeeds("--skeleton a_up.swc --skeleton b_up.swc --skeleton c_up.swc " + wanted + "still");
+  succeeds(turned_skeletons + turned_trees + "--align turns --up y --report r.json " + wanted +
+           "back");
+  succeeds(turned_skeletons + wanted + "turned");
+  const auto difference = [&](const std::string& one, const std::string& two) {
+    orl_test::Tree a, b;
+    pcs::IO::read_swc<orl_test::Kernel>(path(one), a);
+    pcs::IO::read_swc<orl_test::Kernel>(path(two), b);
+    BOOST_TEST_REQUIRE(num_vertices(a) == num_vertices(b));
+    double worst = 0;
+    for (std::size_t v = 0; v < num_vertices(a); ++v)
+      worst = std::max(worst, CGAL::squared_distance(a[v].point, b[v].point));
+    return std::sqrt(worst);
+  };
+  for (const std::string name : {"growth_0001.swc", "growth_0002.swc", "lambda_0.500.swc"}) {
+    BOOST_TEST(difference("still/" + name, "back/" + name) < 1e-3 * length("a.swc"));
+    BOOST_TEST(difference("still/" + name, "turned/" + name) > 0.01 * length("a.swc"));
+  }
+  for (const double n : pcs::IO::read_points(path("back/growth_0002.ply")).property_as_double("nx"))
+    BOOST_TEST(n > 1 - 1e-6);
+  const Json turns = Json::parse(content("r.json"))["turns_degrees"];
+  BOOST_TEST_REQUIRE(turns.size() == 3u);
+  BOOST_TEST(turns[0].get<double>() == 0);
+  for (const std::size_t k : {1, 2}) // all others refer to the one before, which was turned back
+    BOOST_TEST(std::abs(std::remainder(turns[k].get<double>() + 1.3 * double(k) * 180 / CGAL_PI,
+                                       360)) < 0.2);
+}
+
 BOOST_AUTO_TEST_CASE(a_saved_space_gives_the_same_trees)
 {
   succeeds(trees + "--mean --sample 1 --save-space s.txt --output out");
@@ -160,16 +218,20 @@ BOOST_AUTO_TEST_CASE(a_saved_space_gives_the_same_trees)
 BOOST_AUTO_TEST_CASE(bad_input_is_refused_with_a_sentence)
 {
   refuses(skeletons + "--output out", "--mean");
-  refuses(skeletons + "--weights 1,2 --output out", "2 weights for 3");
-  refuses(skeletons + "--weights 1,-1,0 --output out", "sum of the weights");
+  refuses(skeletons + "--mean --weights 1,2 --output out", "--weights has 2 numbers for 3 trees");
+  refuses(skeletons + "--mean --weights 1,-1,0 --output out", "add up");
   refuses(skeletons + "--weights 1,x,0 --output out", "weights");
   refuses(skeletons + "--weights 1,,0 --output out", "separated by commas");
   refuses(skeletons + "--growth --times 0,1, --output out", "separated by commas");
-  refuses(skeletons + "--weights 1e308,1e308,0 --output out", "not finite");
+  refuses(skeletons + "--weights 1e308,1e308,0 --output out", "finite");
   refuses(skeletons + "--sample 1 --seed -1 --output out", "9223372036854775807");
   refuses(skeletons + "--sample 1 --seed 99999999999999999999 --output out", "at most 64 bits");
   refuses(skeletons + "--growth --times 0,2,1 --output out", "increase");
-  refuses(skeletons + "--growth --times 0,1 --output out", "times");
+  refuses(skeletons + "--mean --growth --times 0,1 --output out", "--times has 2 numbers");
+  refuses(skeletons + "--mean --changes c.csv --output out", "two trees");
+  succeeds(skeletons + "--mean --save-space s.txt --output saved");
+  refuses("--load-space s.txt --mean --weights 1,2 --output out", "--weights has 2 numbers");
+  BOOST_TEST(!exists("out"));
   refuses(skeletons + "--mean --times 0,1,2 --output out", "--growth");
   refuses(skeletons + "--mean --mean-kind l3 --output out", "mean-kind");
   refuses(skeletons + "--sample -1 --output out", "sample");
@@ -200,7 +262,6 @@ BOOST_AUTO_TEST_CASE(options_that_would_have_no_effect_are_refused)
   BOOST_TEST(!exists("again"));
   refuses(skeletons + "--mean --extend-axes --output again", "--extend-axes has no effect without");
   refuses(skeletons + "--mean --transport sinkhorn --output again", "--transport has no effect");
-  refuses(skeletons + "--mean --align turns --output again", "more than two trees");
   for (const std::string option : {"--maximal-turn 30",
                                    "--births-in-order",
                                    "--limit-radii",

@@ -171,6 +171,36 @@ BOOST_AUTO_TEST_CASE(skeletons_alone_give_skeletons_alone)
   BOOST_TEST(out == "");
 }
 
+BOOST_AUTO_TEST_CASE(skeletons_may_be_tables)
+{
+  // columns in another order, ids that are no numbers of rows
+  write("a.csv",
+        "parent,id,branch,order,x,y,z,r,a,b\n-1,7,0,0,0,0,0,0.2,0.2,0.2\n"
+        "7,9,0,0,0,0,1,0.2,0.2,0.2\n9,20,0,0,0,0,2,0.1,0.1,0.1\n9,30,1,1,1,0,1.5,0.1,0.1,0.1\n");
+  write("a.txtskl", txtskl);
+  succeeds("--skeleton a.csv --skeleton a.txtskl --up y --output out --lambda 0 --matches m.csv");
+  BOOST_TEST(num_vertices(swc("out/lambda_0.000.swc")) >= 4u);
+  const std::string matches = content("m.csv");
+  BOOST_TEST(matches.find("\n20,") != std::string::npos);
+  BOOST_TEST(matches.find("\n30,") != std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(points_in_other_coordinates_than_the_skeleton_are_refused)
+{
+  std::vector<orl_test::Point> far = pcs::IO::read_points(path("a.ply")).points(), some = far;
+  for (auto& p : far)
+    p = p + orl_test::Kernel::Vector_3(5e6, 0, 0);
+  pcs::IO::write_points(path("far.ply"), far);
+  refuses("--tree far.ply --skeleton a.swc --tree b.ply --skeleton b.swc --output out",
+          "same coordinates");
+  BOOST_TEST(err.find("far.ply") != std::string::npos);
+  BOOST_TEST(!exists("out"));
+  // outliers are none
+  std::copy(far.begin(), far.begin() + 500, some.begin());
+  pcs::IO::write_points(path("some.ply"), some);
+  succeeds("--tree some.ply --skeleton a.swc --tree b.ply --skeleton b.swc --output out");
+}
+
 BOOST_AUTO_TEST_CASE(skeletons_are_extracted_where_none_are_given)
 {
   for (const double x : {0.8, 1.2}) { // a trunk with a branch to each side
@@ -264,8 +294,30 @@ BOOST_AUTO_TEST_CASE(correspondences_are_kept)
   BOOST_TEST(!stored.contains("matching_energy"));
   BOOST_TEST(stored["number_of_points"] == Json::parse(content("fresh.json"))["number_of_points"]);
   BOOST_TEST(stored["distance"] == Json::parse(content("fresh.json"))["distance"]);
-  for (const std::string option : {"--published-energy", "--transport exact", "--align turns"})
-    refuses(trees + "--output three --correspondences c.txt " + option, "c.txt");
+  // the same may be asked for again, and nothing else
+  succeeds(trees + "--lambda 0.3 --output two --correspondences c.txt --align turns --up z "
+                   "--transport exact");
+  BOOST_TEST(content("one/lambda_0.300.ply") == content("two/lambda_0.300.ply"));
+  for (const std::string option :
+       {"--published-energy", "--transport sinkhorn", "--align none", "--up y"})
+    refuses(trees + "--output three --correspondences c.txt " + option, "than " + option);
+  BOOST_TEST(err.find("c.txt") != std::string::npos);
+  succeeds(trees + "--output two --correspondences d.txt --align none --published-energy");
+  succeeds(trees + "--output two --correspondences d.txt --published-energy");
+  // points may be left out, or have other properties, but not be others
+  succeeds("--skeleton a.swc --skeleton b.swc --lambda 0.3 --output bare --correspondences c.txt");
+  BOOST_TEST(content("one/lambda_0.300.swc") == content("bare/lambda_0.300.swc"));
+  BOOST_TEST(number_in("bare") == 1u);
+  pcs::IO::Point_table table = pcs::IO::read_points(path("a.ply"));
+  table.add_property("value", std::vector<float>(table.number_of_points(), 1));
+  pcs::IO::write_points(path("value.ply"), table);
+  succeeds("--tree value.ply --skeleton a.swc --tree b.ply --skeleton b.swc --lambda 0.3 "
+           "--output two --correspondences c.txt");
+  BOOST_TEST((pcs::IO::read_points(path("one/lambda_0.300.ply")).points() ==
+              pcs::IO::read_points(path("two/lambda_0.300.ply")).points()));
+  refuses("--tree b.ply --skeleton a.swc --tree b.ply --skeleton b.swc --output three "
+          "--correspondences c.txt",
+          "other points");
   refuses("--tree a.ply --tree b.ply --output three --extend-axes", "without --skeleton");
   refuses("--tree b.ply --skeleton b.swc --tree a.ply --skeleton a.swc --output three "
           "--correspondences c.txt",

@@ -182,6 +182,25 @@ BOOST_AUTO_TEST_CASE(skewed_densities_are_carried_with_area_weights)
   BOOST_TEST(arcs.size() <= one.size() + two.size() - 1);
 }
 
+BOOST_AUTO_TEST_CASE(points_beside_the_surface_do_not_draw_it_to_themselves)
+{
+  std::mt19937 random(5);
+  std::vector<Vec3> one = cylinder(random, 600), two = cylinder(random, 600);
+  constexpr std::size_t number_of_outliers = 6;
+  for (std::size_t k = 0; k < number_of_outliers; ++k)
+    one.emplace_back(k % 2 == 0 ? 4 : -4, 0, static_cast<double>(k)); // four radii from the axis
+  Transport_problem problem;
+  const Transport_plan plan = match_points(one, two, Transport_options(), problem);
+  BOOST_TEST(plan.is_complete);
+  std::vector<std::size_t> partners(one.size(), 0);
+  for (const std::uint32_t k : main_arcs(problem, plan))
+    ++partners[problem.arcs[k].source];
+  for (std::size_t i = 600; i < one.size(); ++i) {
+    BOOST_TEST(partners[i] >= 1u);
+    BOOST_TEST(partners[i] <= 2u); // 10 to 16 where they stand for all that is near
+  }
+}
+
 BOOST_AUTO_TEST_CASE(regularised_transport_approaches_the_exact_cost_from_above)
 {
   std::mt19937 random(3);

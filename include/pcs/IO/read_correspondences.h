@@ -27,10 +27,15 @@ inline Orl_correspondences read_correspondences(const std::string& path)
   internal::Word_reader file(path);
   Orl_correspondences result;
   file.expect("pcs_correspondences");
-  file.expect("2");
+  file.expect("3");
+  file.expect("note");
+  for (std::size_t n = file.count("the number of words"); n > 0; --n)
+    result.note += (result.note.empty() ? "" : " ") + file.word("a word");
   file.expect("trees");
-  for (std::uint64_t& f : result.fingerprint)
-    f = file.number<std::uint64_t>("a fingerprint");
+  for (std::size_t t = 0; t < 2; ++t) {
+    result.fingerprint[t] = file.number<std::uint64_t>("a fingerprint");
+    result.fingerprint_of_points[t] = file.number<std::uint64_t>("a fingerprint");
+  }
   file.expect("turn");
   for (double& x : result.turn)
     x = file.real("a quaternion");

@@ -10,7 +10,9 @@
 #include <pcs/core/Orl_correspondences.h>
 
 #include <cstddef>
+#include <sstream>
 #include <string>
+#include <vector>
 
 namespace pcs {
 namespace IO {
@@ -25,7 +27,7 @@ namespace IO {
 inline void write_correspondences(const std::string& path, const Orl_correspondences& c)
 {
   internal::Output_file file(path);
-  std::string line = "pcs_correspondences 2\n";
+  std::string line = "pcs_correspondences 3\nnote";
   const auto add = [&](auto value) {
     line += ' ';
     internal::append_number(line, value);
@@ -41,9 +43,19 @@ inline void write_correspondences(const std::string& path, const Orl_corresponde
     file.write(line);
     line.clear();
   };
+  std::vector<std::string> words;
+  std::istringstream note(c.note);
+  for (std::string word; note >> word;)
+    words.push_back(word);
+  add(words.size());
+  for (const std::string& word : words)
+    line += ' ' + word;
+  end();
   line += "trees";
-  add(c.fingerprint[0]);
-  add(c.fingerprint[1]);
+  for (std::size_t t = 0; t < 2; ++t) {
+    add(c.fingerprint[t]);
+    add(c.fingerprint_of_points[t]);
+  }
   end();
   line += "turn";
   for (const double x : c.turn)

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <vector>
 
 namespace pcs {
@@ -40,7 +41,9 @@ struct Orl_correspondences
     std::array<std::uint32_t, 2> point;
   };
 
-  std::array<std::uint64_t, 2> fingerprint = {0, 0}; ///< of nodes and points of the trees
+  std::string note; ///< words of the caller's, kept with them; single spaces between
+  std::array<std::uint64_t, 2> fingerprint = {0, 0};           ///< of the nodes of the trees
+  std::array<std::uint64_t, 2> fingerprint_of_points = {0, 0}; ///< of their scans; 0: no points
   std::array<double, 4> turn =
       {1, 0, 0, 0}; ///< quaternion w, x, y, z of the turn after which tree 2 stands like tree 1
   std::vector<Branch> branches; ///< parents first

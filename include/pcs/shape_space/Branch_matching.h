@@ -23,6 +23,7 @@
 #include <limits>
 #include <memory>
 #include <numeric>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -173,6 +174,16 @@ private:
     return best;
   }
 
+  /// The nodes that follow what is compared of two paths, or their tips.
+  std::array<std::size_t, 2> compared_ends(std::size_t p1, std::size_t p2) const
+  {
+    const std::array<std::size_t, 2> last = m_energy.last_nodes(p1, p2);
+    const std::vector<std::size_t>&nodes_1 = m_energy.path(0, p1).nodes,
+          &nodes_2 = m_energy.path(1, p2).nodes;
+    return {nodes_1[std::min(last[0] + 1, nodes_1.size() - 1)],
+            nodes_2[std::min(last[1] + 1, nodes_2.size() - 1)]};
+  }
+
   /// Pairs of paths that may continue two branches, the most promising first, judged without looking below their
   /// children; those that cost at least `limit` by themselves are left out.
   std::vector<Trial> find_trials(std::size_t start_1,
@@ -207,9 +218,13 @@ private:
     std::vector<Candidate> order;
     std::vector<double> lowest; // the costs that count, a heap
     Matching_energy::Prices prices;
+    std::set<std::array<std::size_t, 2>> known;
     for (const std::size_t p1 : paths_1)
       for (const std::size_t p2 : paths_2) {
         if (curve_weight * m_energy.least_energy(p1, p2, rotation) + difference >= limit)
+          continue;
+        // paths that part beyond where they are cut are the same
+        if (!is_alone && !known.insert(compared_ends(p1, p2)).second)
           continue;
         double cost = 0;
         if (!is_alone) {

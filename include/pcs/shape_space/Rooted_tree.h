@@ -219,7 +219,8 @@ inline Rooted_tree without_coincident_nodes(const Rooted_tree& all, std::size_t 
         p != none && (all.points[v] - tree.points[new_node[p]]).norm() <= threshold;
     if (is_joined) {
       new_node[v] = new_node[p];
-      base[v] = all.radii[v];
+      // a node that stands there twice says nothing of what begins there
+      base[v] = all.radii[v] == all.radii[p] ? base[p] : all.radii[v];
     } else {
       new_node[v] = tree.size();
       tree.points.push_back(all.points[v]);

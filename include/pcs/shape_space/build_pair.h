@@ -35,12 +35,11 @@ bool find_correspondences(const std::array<const Tree_input*, 2>& inputs,
   progress.stage(0, 0.4);
   if (!progress(0))
     return false;
-  const Matching_cost cost = Tree_matching<ConcurrencyTag>({&inputs[0]->tree, &inputs[1]->tree},
-                                                           options.weights,
-                                                           options.standing,
-                                                           progress,
-                                                           built.topology)
-                                 .run();
+  const Matching_cost cost = match_trees<ConcurrencyTag>({&inputs[0]->tree, &inputs[1]->tree},
+                                                         options.weights,
+                                                         options.standing,
+                                                         progress,
+                                                         built.topology);
   built.turn = rotation_exp(cost.turn * options.standing.up);
   report.turn = cost.turn;
   report.matching_energy = cost.energy;

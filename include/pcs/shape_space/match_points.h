@@ -11,6 +11,7 @@
 #include <pcs/shape_space/Transport_simplex.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -43,16 +44,31 @@ struct Transport_options
 
 namespace internal {
 
-/// Squared distance to the fifth neighbour, within limits: the surface that a point stands for, up to a factor.
+/// Squared distance to the fifth neighbour, within limits: the surface that a point stands for, up to a factor. What is alone
+/// beside a surface stands for next to nothing: it would draw all that are near to itself.
 inline std::vector<double> area_weights(const std::vector<Vec3>& points,
                                         const neighborhood::Nearest_neighbors& search)
 {
   constexpr std::size_t neighbor = 5;
+  constexpr double most_of_neighbors = 4; // densities change by less between neighbours
   std::vector<double> area(points.size(), 1);
+  std::vector<std::array<std::uint32_t, neighbor>> near(points.size());
   std::vector<neighborhood::Nearest_neighbors::Neighbor> found;
   for (std::size_t i = 0; i < points.size(); ++i) {
     search(points[i], neighbor + 1, found);
     area[i] = found.back().squared_distance;
+    near[i].fill(static_cast<std::uint32_t>(i));
+    for (std::size_t k = 1; k < found.size(); ++k)
+      near[i][k - 1] = found[k].index;
+  }
+  const std::vector<double> alone(area);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::array<double, neighbor> others;
+    for (std::size_t k = 0; k < neighbor; ++k)
+      others[k] = alone[near[i][k]];
+    std::nth_element(others.begin(), others.begin() + neighbor / 2, others.end());
+    if (area[i] > most_of_neighbors * others[neighbor / 2])
+      area[i] = 0;
   }
   std::vector<double> sorted(area);
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);

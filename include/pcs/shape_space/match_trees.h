@@ -78,6 +78,8 @@ private:
   // other one matches at a little less cost by chance
   static constexpr double wide_fork_ratio = 0.3;
 
+  static constexpr double any_cost = std::numeric_limits<double>::infinity();
+
   /// What two trees cost at least, and what they cost more if nothing is matched. [-]
   struct Range
   {
@@ -97,7 +99,8 @@ private:
     m_result.branches = builder.run(*trunk);
     m_cost.is_at_tips = is_at_tips;
     m_cost.energy = trunk->cost;
-    m_cost.share = from.more > 0 ? std::max(0.0, trunk->cost - from.least) / from.more : 0;
+    m_cost.share =
+        from.more > 0 ? std::min(1.0, std::max(0.0, trunk->cost - from.least) / from.more) : 0;
   }
 
   std::array<Branch_paths, 2> paths(double other_ratio) const
@@ -122,23 +125,29 @@ private:
     return other ? other : longest;
   }
 
-  /// Of the ways in which the trees may stand, that of least cost.
+  /// Of the ways in which the trees may stand, that of least cost, if it is below `most`.
   template <class Match>
-  Result match_standing(Matching& matching, const Range& from, const Match& match)
+  Result match_standing(Matching& matching, const Range& from, double most, const Match& match)
   {
-    Result best = match(std::numeric_limits<double>::infinity());
-    if (!best || m_standing.alignment == Alignment::as_given)
-      return best;
-    double most = from.least + turned_share * std::max(0.0, best->cost - from.least);
-    for (const double angle : promising_turns(matching)) {
-      matching.set_turn(angle, m_standing.up);
-      if (const Result found = match(most); found && found->cost < most) {
-        best = found;
-        most = found->cost;
-        m_cost.turn = angle;
+    Result best = match(most);
+    if (m_progress.is_cancelled())
+      return nullptr;
+    double turn = 0;
+    if (m_standing.alignment == Alignment::turns) {
+      most = from.least + turned_share * std::max(0.0, (best ? best->cost : most) - from.least);
+      for (const double angle : promising_turns(matching)) {
+        matching.set_turn(angle, m_standing.up);
+        if (Result found = match(most); found && found->cost < most) {
+          best = std::move(found);
+          most = best->cost;
+          turn = angle;
+        }
       }
     }
-    return m_progress.is_cancelled() ? nullptr : best;
+    if (!best || m_progress.is_cancelled())
+      return nullptr;
+    m_cost.turn = turn;
+    return best;
   }
 
   /// Turns after which a look at the trees shows less cost than without, the best first.
@@ -168,7 +177,7 @@ private:
   {
     Matching matching(*m_trees[0], *m_trees[1], m_weights, paths(wide_fork_ratio));
     const Range from = range(m_trees[0]->heights[0], m_trees[1]->heights[0]);
-    const Result trunk = match_standing(matching, from, [&](double most) {
+    const Result trunk = match_standing(matching, from, any_cost, [&](double most) {
       return match_trunks(matching, from, most);
     });
     if (trunk)
@@ -182,15 +191,14 @@ private:
     const Range from = range(highest, highest);
     Matching matching(*m_trees[0], *m_trees[1], m_weights, paths(1), true);
     matching.set_number_of_trunk_trials(2 * m_weights.number_of_trials);
-    Result trunk;
-    if (m_weights.growth == Growth::at_tips)
-      trunk = match_standing(matching, from, [&](double most) {
-        return matching.run(m_progress, most);
-      });
-    else {
-      matching.set_turn(m_cost.turn, m_standing.up);
-      trunk = matching.run(m_progress, from.least + clearly * m_cost.share * from.more);
-    }
+    // where both kinds are looked at, `m_cost` is that of branches that stretch
+    const double most = m_weights.growth == Growth::at_tips
+                            ? any_cost
+                            : from.least + clearly * m_cost.share * from.more;
+    const Result trunk = match_standing(matching, from, most, [&](double limit) {
+      Result found = matching.run(m_progress, limit);
+      return found && found->cost < limit ? found : nullptr;
+    });
     if (trunk)
       build(matching, trunk, true, from);
   }
@@ -206,6 +214,43 @@ private:
   Common_topology& m_result;
   Matching_cost m_cost;
 };
+
+namespace internal {
+
+/// Whether a tree comes first where two are matched: the shorter one, if that can be told in spite of rounding.
+inline bool is_clearly_shorter(const Rooted_tree& one, const Rooted_tree& two)
+{
+  constexpr double rounding = 1e-9;
+  for (const auto& [a, b] : {std::make_pair(one.weights[0], two.weights[0]),
+                             std::make_pair(one.heights[0], two.heights[0])})
+    if (std::abs(a - b) > rounding * (a + b))
+      return a < b;
+  return false;
+}
+
+} // namespace internal
+
+/// Matches the branches of two trees, in an order of their own: the way back has the same matching.
+template <class ConcurrencyTag>
+Matching_cost match_trees(const std::array<const Rooted_tree*, 2>& trees,
+                          const Matching_weights& weights,
+                          const Standing& standing,
+                          pcs::internal::Progress& progress,
+                          Common_topology& result)
+{
+  using Matching = Tree_matching<ConcurrencyTag>;
+  if (!internal::is_clearly_shorter(*trees[1], *trees[0]))
+    return Matching(trees, weights, standing, progress, result).run();
+  Matching_cost cost = Matching({trees[1], trees[0]}, weights, standing, progress, result).run();
+  cost.turn = 0 - cost.turn; // no negative zero
+  std::swap(result.paths[0], result.paths[1]);
+  for (Common_branch& b : result.branches) {
+    std::swap(b.path[0], b.path[1]);
+    std::swap(b.node[0], b.node[1]);
+    std::swap(b.attachment[0], b.attachment[1]);
+  }
+  return cost;
+}
 
 } // namespace shape_space
 } // namespace pcs

@@ -29,8 +29,10 @@ inline Orl_correspondences store_topology(const Common_topology& topology,
                                           const std::vector<Orl_correspondences::Pair>& pairs)
 {
   Orl_correspondences result;
-  for (std::size_t t = 0; t < 2; ++t)
+  for (std::size_t t = 0; t < 2; ++t) {
     result.fingerprint[t] = inputs[t]->fingerprint;
+    result.fingerprint_of_points[t] = inputs[t]->fingerprint_of_points;
+  }
   result.turn = {turn.w(), turn.x(), turn.y(), turn.z()};
   for (const Common_branch& b : topology.branches) {
     Orl_correspondences::Branch branch;
@@ -62,6 +64,10 @@ inline Common_topology restore_topology(const Orl_correspondences& stored,
   for (std::size_t t = 0; t < 2; ++t)
     check(stored.fingerprint[t] == inputs[t]->fingerprint,
           "the correspondences were computed for other trees");
+  const bool has_points = !inputs[0]->points.empty() || !inputs[1]->points.empty();
+  for (std::size_t t = 0; t < 2; ++t)
+    check(!has_points || stored.fingerprint_of_points[t] == inputs[t]->fingerprint_of_points,
+          "the correspondences were computed for the same trees with other points, or without");
   const auto& [w, x, y, z] = stored.turn;
   check(std::abs(w * w + x * x + y * y + z * z - 1) < 1e-6, "the turn is no rotation");
   check(!stored.branches.empty(), "there are no branches");

@@ -38,8 +38,8 @@ struct Tree_input
 {
   Rooted_tree tree;
   std::vector<Vec3> points;
-  std::vector<Vec3> normals; ///< of unit length; empty: none
-  std::uint64_t fingerprint = 0;
+  std::vector<Vec3> normals;                                ///< of unit length; empty: none
+  std::uint64_t fingerprint = 0, fingerprint_of_points = 0; ///< the latter is 0 without points
 };
 
 namespace internal {
@@ -111,6 +111,8 @@ void resize_range(Range& range, std::size_t n, const char* caller)
                         std::to_string(std::distance(std::begin(range), std::end(range))) +
                         " points, " + std::to_string(n) + " are needed");
 }
+
+constexpr std::uint64_t hash_of_nothing = 0xcbf29ce484222325u;
 
 inline void mix(std::uint64_t& hash, double value)
 {
@@ -207,12 +209,13 @@ Tree_input make_tree_input(const TreeGraph& graph,
                             " points, at most 4294967294 are supported");
       constexpr bool has_normals =
           pcs::internal::is_given_v<NamedParameters, CGAL::internal_np::normal_t>;
-      std::uint64_t hash = 0xcbf29ce484222325u;
+      result.fingerprint = internal::hash_of_nothing;
       for (std::size_t v = 0; v < result.tree.size(); ++v) {
         for (int i = 0; i < 3; ++i)
-          internal::mix(hash, result.tree.points[v][i]);
-        internal::mix(hash, result.tree.radii[v]);
+          internal::mix(result.fingerprint, result.tree.points[v][i]);
+        internal::mix(result.fingerprint, result.tree.radii[v]);
       }
+      result.fingerprint_of_points = n > 0 ? internal::hash_of_nothing : 0;
       for (std::size_t i = 0; i < n; ++i) {
         auto&& element = *(std::begin(scan) + static_cast<std::ptrdiff_t>(i));
         const Vec3 p = internal::to_vector(get(point_map, element)) - result.tree.origin;
@@ -221,7 +224,7 @@ Tree_input make_tree_input(const TreeGraph& graph,
                               " are not finite, or beyond 1e100");
         result.points.push_back(p);
         for (int k = 0; k < 3; ++k)
-          internal::mix(hash, p[k]);
+          internal::mix(result.fingerprint_of_points, p[k]);
         if constexpr (has_normals) {
           const Vec3 normal = internal::to_vector(
               get(CGAL::parameters::get_parameter(np, CGAL::internal_np::normal_map), element));
@@ -232,7 +235,6 @@ Tree_input make_tree_input(const TreeGraph& graph,
           result.normals.push_back(normal / length);
         }
       }
-      result.fingerprint = hash;
     }
   }
   return result;

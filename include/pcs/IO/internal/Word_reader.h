@@ -35,6 +35,14 @@ public:
     return value;
   }
 
+  std::string word(const char* what)
+  {
+    const std::string_view text = next();
+    if (text.empty())
+      m_file.fail_at_line(std::string("expected ") + what + ", found the end of the file");
+    return std::string(text);
+  }
+
   std::size_t count(const char* what)
   {
     const auto value = number<std::int64_t>(what);
