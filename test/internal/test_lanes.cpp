@@ -87,6 +87,7 @@ BOOST_AUTO_TEST_CASE(points_and_normals_are_blended)
                        frame_origin,
                        nullptr,
                        nullptr,
+                       nullptr,
                        nullptr};
   Block_output out{};
   choose_blend_block<Blend_outputs::normals>()(in, out);
