@@ -100,6 +100,19 @@ BOOST_AUTO_TEST_CASE(a_bar_twisted_by_720_degrees)
   BOOST_TEST(m.volume_ratio >= .90);
 }
 
+BOOST_AUTO_TEST_CASE(what_coarse_samples_find_of_a_drag_is_where_the_passes_start)
+{
+  const Deformation_case drag = pcs_test::plate_drag();
+  const auto share_at_start = [&](std::size_t samples) {
+    Options options;
+    options.number_of_samples = samples;
+    const auto report = deform(drag.points, handles_of(drag), options).report;
+    return report.initial_energy / report.energy;
+  };
+  BOOST_TEST(share_at_start(800) > 25); // too few for coarser ones: the field of the handles
+  BOOST_TEST(share_at_start(2000) < 12);
+}
+
 BOOST_AUTO_TEST_CASE(a_thousand_samples_come_near)
 {
   // Regression guards, not goals. Measured when this was written: T1 14.5 deg, .0048 L, volume .997; T2 2.1 deg,

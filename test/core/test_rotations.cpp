@@ -117,6 +117,24 @@ BOOST_AUTO_TEST_CASE(lifted_log_beyond_one_turn_goes_round_the_other_way)
   }
 }
 
+BOOST_AUTO_TEST_CASE(rodrigues_parameters_are_rotation_vectors_but_for_the_tangent)
+{
+  std::mt19937 random(8);
+  for (const double angle : {0.0, 1e-200, 1e-9, 1e-4, 0.3, 1.0, 3.0, 3.1415}) {
+    const Vec3 axis = pcs_test::random_direction(random);
+    const Quaternion q = pcs::rotation_exp(angle * axis);
+    for (const double length :
+         {1.0, -1.0, 1e-100, -7.0}) { // of the quaternion, on either half of the cover
+      const Vec3 u = pcs::rodrigues_from_rotation(Quaternion(length * q.coeffs()));
+      BOOST_TEST((u - 4 * std::tan(angle / 4) * axis).norm() <= 1e-14 * angle + 1e-300);
+      BOOST_TEST(distance_on_cover(pcs::rotation_from_rodrigues(u), q) < 1e-15);
+    }
+  }
+  BOOST_TEST(std::abs(pcs::rodrigues_from_rotation(Quaternion(0, 0, 2, 0)).norm() - 4) < 1e-15);
+  for (const double length : {4.1, 20.0, 1e9, 1e100})
+    BOOST_TEST(is_rotation(pcs::rotation_from_rodrigues(length * Vec3(.6, 0, -.8))));
+}
+
 BOOST_AUTO_TEST_CASE(improve_rotation_converges_to_the_polar_factor)
 {
   std::mt19937 random(5);

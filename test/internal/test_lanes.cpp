@@ -6,6 +6,8 @@
 #define PCS_NO_RUNTIME_DISPATCH
 
 #include <pcs/deformation/blend_block.h>
+#include <pcs/deformation/fit_rotations.h>
+#include <pcs/deformation/measure_edges.h>
 #include <pcs/internal/lanes.h>
 #include <pcs/linear_algebra/Sparse_cholesky.h>
 #include <support/point_clouds.h>
@@ -33,7 +35,13 @@ BOOST_AUTO_TEST_CASE(operators_work_lane_by_lane)
     BOOST_TEST(difference[i] == 1 - x);
     BOOST_TEST(product[i] == 2 * x);
     BOOST_TEST(quotient[i] == x / -0.5);
+    BOOST_TEST((-a)[i] == -x);
   }
+  a[0] = -0.5;
+  Double4 selected;
+  pcs::internal::select_less(b, a, sum, product, selected);
+  for (std::size_t i = 0; i < 4; ++i)
+    BOOST_TEST(selected[i] == (i == 0 ? product[i] : sum[i]));
 }
 
 BOOST_AUTO_TEST_CASE(reciprocal_roots_are_exact_to_a_few_units_in_the_last_place)
@@ -106,6 +114,34 @@ BOOST_AUTO_TEST_CASE(points_and_normals_are_blended)
     const Eigen::Vector3d turned = a.determinant() * a.inverse().transpose() * at(normal);
     BOOST_TEST((at(out.normal) - at(normal).norm() * turned.normalized()).norm() < 1e-14);
   }
+}
+
+BOOST_AUTO_TEST_CASE(rotations_are_fitted_to_edges)
+{
+  using namespace pcs::deformation;
+  // Edges that a rotation explains give it, from another one, within a few steps.
+  const pcs::Quaternion r = pcs::rotation_exp({.2, -.3, .4});
+  const Eigen::Vector3d rest[] = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {1, 1, 3}};
+  Eigen::Vector3d position[4];
+  Eigen::Matrix3d target[4], covariance;
+  for (int i = 0; i < 4; ++i) {
+    position[i] = r * rest[i];
+    target[i] = r.toRotationMatrix();
+  }
+  const std::uint32_t first[] = {0, 3}, neighbor[] = {1, 2, 3};
+  const double weight[] = {1, .5, 2};
+  const double energy =
+      choose_measure_edges()({first, neighbor, weight, rest, position, target}, 0, covariance);
+  BOOST_TEST(energy < 1e-28);
+  pcs::Quaternion present = pcs::Quaternion::Identity();
+  for (int step = 0; step < 6; ++step) {
+    Rotation_fits fits;
+    fits.set(0, covariance, present, pcs::Quaternion::Identity());
+    choose_fit_rotations()(0, 1, fits);
+    present = pcs::rotation_from_rodrigues(
+        {fits.deviation[0][0], fits.deviation[1][0], fits.deviation[2][0]});
+  }
+  BOOST_TEST((present.coeffs() - r.coeffs()).norm() < 1e-12);
 }
 
 BOOST_AUTO_TEST_CASE(sparse_systems_are_solved)

@@ -43,6 +43,28 @@ inline Eigen::Vector3d rotation_log(const Quaternion& q)
 }
 
 /*!
+  Four times the modified Rodrigues parameters of the rotation \p q of any length but zero, the shorter way round:
+  `4 tan(angle / 4)` times its axis, the stereographic projection of the unit quaternion. Equals the rotation vector but for
+  `angle^3 / 48`, up to a length of 4 instead of pi, and takes a root and a division where that takes an arc tangent
+  (M. D. Shuster, "A survey of attitude representations", J. Astronautical Sciences 41, 1993).
+*/
+inline Eigen::Vector3d rodrigues_from_rotation(const Quaternion& q)
+{
+  // Number by number, as in `newton_turn()`.
+  const double w = q.w(), x = q.x(), y = q.y(), z = q.z();
+  const double length = std::sqrt(w * w + x * x + y * y + z * z);
+  const double f = 4 / (w >= 0 ? w + length : w - length);
+  return {f * x, f * y, f * z};
+}
+
+/// The unit quaternion with four times the modified Rodrigues parameters \p u; any length is a rotation.
+inline Quaternion rotation_from_rodrigues(const Eigen::Vector3d& u)
+{
+  const double s = u.squaredNorm() / 16, inverse = 1 / (1 + s), f = 0.5 * inverse;
+  return Quaternion((1 - s) * inverse, f * u.x(), f * u.y(), f * u.z());
+}
+
+/*!
   Improves the rotation `q` towards the maximiser of `trace(R^T covariance)`, where `covariance` is the sum
   of `w * deformed * rest^T` (M. Mueller et al., "A robust method to extract the rotational part of
   deformations", 2016). What the bundle does not determine (a line, a point, nothing) stays as in `q`, so every

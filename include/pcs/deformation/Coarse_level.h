@@ -121,18 +121,23 @@ public:
     options.tolerance *= coarse_share_of_tolerance * static_cast<double>(m_network.size()) /
                          static_cast<double>(finest_size);
     pcs::internal::Progress uninterrupted;
+    const Elastic_result result = m_solver.solve(transforms, options, uninterrupted, guess);
     guess.is_far_from_field =
-        m_solver.solve(transforms, options, uninterrupted, guess).is_far_from_field;
-    guess.deviations = m_solver.deviations();
+        result.is_far_from_field || result.energy < sure_advantage * result.first_pass_energy;
     if (needs_link_offsets)
       m_solver.link_offsets(guess.link_offsets);
+    guess.deviations.clear();
+    if (guess.is_far_from_field || needs_link_offsets ||
+        result.energy < least_advantage * result.first_pass_energy)
+      guess.deviations = m_solver.deviations();
     carry(guess);
   }
 
   /// From a guess of this level's nodes to one of the finer level's.
   void carry(Deviation_guess& guess)
   {
-    to_finer(guess.deviations);
+    if (!guess.deviations.empty())
+      to_finer(guess.deviations);
     if (!guess.link_offsets.empty())
       to_finer(guess.link_offsets);
   }

@@ -13,13 +13,16 @@
 #include <pcs/deformation/Elastic_options.h>
 #include <pcs/deformation/Elastic_state.h>
 #include <pcs/deformation/Position_solver.h>
+#include <pcs/deformation/fit_rotations.h>
+#include <pcs/deformation/measure_edges.h>
 #include <pcs/deformation/rotation_field.h>
 #include <pcs/internal/parallel.h>
 
 #include <Eigen/Core>
 
-#include <cmath>
+#include <array>
 #include <cstddef>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -105,7 +108,7 @@ public:
         rows().size(),
         [&](std::size_t r) {
           const std::size_t i = rows().node_of_row[r];
-          m_rotation[i] = (rotation_exp(deviations[i]) * m_field[i]).normalized();
+          m_rotation[i] = rotation_from_rodrigues(deviations[i]) * m_field[i];
         },
         block);
   }
@@ -138,29 +141,16 @@ public:
   /// from the field.
   double fit_and_measure(bool has_next)
   {
-    m_deviation.resize(m_network->size());
-    const Elastic_state state = this->state();
-    return pcs::internal::blocked_reduce<ConcurrencyTag>(
-        m_network->size(),
-        0.0,
-        [&](std::size_t i) {
-          if (m_constraints.handle_of_node[i] == unreached_node)
-            return 0.0;
-          Eigen::Matrix3d covariance;
-          double energy = state.measure_edges(i, covariance);
-          energy += state.link_energy(i);
-          if (has_next && !m_constraints.is_prescribed(i)) {
-            if (!state.growth.empty())
-              covariance *= state.growth[i];
-            m_deviation[i] = fit_deviation(covariance, m_rotation[i], m_field[i], fit_damping);
-            if (is_stretched())
-              m_stretch[i] = state.transverse_stretch(i, m_poisson_ratio);
-          }
-          return energy;
-        },
-        [](double a, double b) { return a + b; },
-        block,
-        m_energies);
+    const std::size_t n = m_network->size();
+    m_deviation.resize(n);
+    m_energies.resize((n + block - 1) / block);
+    pcs::internal::for_each_block<ConcurrencyTag>(n,
+                                                  block,
+                                                  [&](std::size_t begin, std::size_t end) {
+                                                    m_energies[begin / block] =
+                                                        fit_block(begin, end, has_next);
+                                                  });
+    return std::accumulate(m_energies.begin(), m_energies.end(), 0.0);
   }
 
   /// Smoothed deviations of the rotations that fit best: `(L + mu D) d' = mu D d`. [rad]
@@ -228,6 +218,46 @@ private:
 
   bool is_stretched() const { return m_poisson_ratio != 0; }
 
+  /// `fit_and_measure()` for a block of nodes.
+  double fit_block(std::size_t begin, std::size_t end, bool has_next)
+  {
+    const Elastic_state state = this->state();
+    const Edge_input edges = state.edges();
+    const Measure_edges measure_edges = choose_measure_edges();
+    const Fit_rotations fit_rotations = choose_fit_rotations();
+    Rotation_fits fits;
+    std::array<std::size_t, Rotation_fits::size> node_of_fit;
+    std::size_t count = 0;
+    double energy = 0;
+    const auto finish = [&] {
+      fit_rotations(fit_damping, count, fits);
+      for (std::size_t k = 0; k < count; ++k)
+        m_deviation[node_of_fit[k]] = {fits.deviation[0][k],
+                                       fits.deviation[1][k],
+                                       fits.deviation[2][k]};
+      count = 0;
+    };
+    for (std::size_t i = begin; i < end; ++i) {
+      if (m_constraints.handle_of_node[i] == unreached_node)
+        continue;
+      Eigen::Matrix3d covariance;
+      energy += measure_edges(edges, i, covariance);
+      energy += state.link_energy(i);
+      if (!has_next || m_constraints.is_prescribed(i))
+        continue;
+      if (!state.growth.empty())
+        covariance *= state.growth[i];
+      if (is_stretched())
+        m_stretch[i] = state.transverse_stretch(i, m_poisson_ratio);
+      node_of_fit[count] = i;
+      fits.set(count++, covariance, m_rotation[i], m_field[i]);
+      if (count == Rotation_fits::size)
+        finish();
+    }
+    finish();
+    return energy;
+  }
+
   /// How much bodies grow along the gradient of scale: as the field of the handles leaves room for them, so that least
   /// energy is left. That is quadratic in the share, because positions are linear in it. The present positions stay.
   void find_room()
@@ -252,13 +282,15 @@ private:
     if (is_solved)
       solve_positions(true);
     const Elastic_state state = this->state();
+    const Edge_input edges = state.edges();
+    const Measure_edges measure_edges = choose_measure_edges();
     return pcs::internal::blocked_reduce<ConcurrencyTag>(
         m_network->size(),
         0.0,
         [&](std::size_t i) {
           Eigen::Matrix3d covariance;
           const bool is_reached = m_constraints.handle_of_node[i] != unreached_node;
-          return is_reached ? state.measure_edges(i, covariance) : 0.0;
+          return is_reached ? measure_edges(edges, i, covariance) : 0.0;
         },
         [](double a, double b) { return a + b; },
         block,

@@ -120,6 +120,8 @@ private:
       const bool is_accelerated =
           !is_checking && pass >= (result.is_far_from_field ? 1 : first_accelerated_pass);
       bool has_improved = improve(is_accelerated, is_last, result);
+      if (pass == 0 && !result.is_far_from_field)
+        result.first_pass_energy = result.energy;
       if (pass == 0 && guess && !guess->deviations.empty()) {
         result.is_far_from_field = start_from(*guess, result);
         has_improved = has_improved || result.is_far_from_field;

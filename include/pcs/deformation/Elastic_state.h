@@ -8,6 +8,7 @@
 #include <pcs/core/rotations.h>
 #include <pcs/deformation/Elastic_network.h>
 #include <pcs/deformation/Harmonic_system.h>
+#include <pcs/deformation/measure_edges.h>
 #include <pcs/linear_algebra/small_symmetric.h>
 
 #include <Eigen/Core>
@@ -21,23 +22,6 @@
 
 namespace pcs {
 namespace deformation {
-
-/// Of the rotation that fits best, one damped step from the present one, from the field. [rad]
-inline Vec3 fit_deviation(const Eigen::Matrix3d& covariance,
-                          const Quaternion& present,
-                          const Quaternion& field,
-                          double damping)
-{
-  const Quaternion q = present * field.conjugate();
-  const Eigen::Matrix3d turned = covariance.lazyProduct(present.toRotationMatrix().transpose());
-  const Vec3 u = newton_turn(turned, damping);
-  const double x = 0.5 * u.x(), y = 0.5 * u.y(), z = 0.5 * u.z();
-  const Quaternion fit(q.w() - x * q.x() - y * q.y() - z * q.z(),
-                       q.x() + x * q.w() + y * q.z() - z * q.y(),
-                       q.y() + y * q.w() + z * q.x() - x * q.z(),
-                       q.z() + z * q.w() + x * q.y() - y * q.x());
-  return rotation_log(fit.normalized());
-}
 
 /// A network, where its nodes are now, and what its edges aim at: a view.
 struct Elastic_state
@@ -96,36 +80,16 @@ struct Elastic_state
     return length > 0 ? Vec3(rest_length(i, j) / length * present) : Vec3(Vec3::Zero());
   }
 
-  /// Half the energy of the surface edges of node `i`, and `sum_j w_ij (x_j - x_i) (x0_j - x0_i)^T`.
-  /// Number by number, as in `newton_turn()`.
-  double measure_edges(std::size_t i, Eigen::Matrix3d& covariance) const
+  /// What `Measure_edges` asks for.
+  Edge_input edges() const
   {
     const auto& graph = network.surface;
-    const double *own = target[i].data(), *xi = network.rest[i].data(), *pi = position[i].data();
-    double energy = 0, sum[9] = {};
-    for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
-      const std::size_t j = graph.neighbor[e];
-      const double *other = target[j].data(), *xj = network.rest[j].data(),
-                   *pj = position[j].data();
-      double rest[3], now[3], squared = 0;
-      for (int k = 0; k < 3; ++k) {
-        rest[k] = xj[k] - xi[k];
-        now[k] = pj[k] - pi[k];
-      }
-      for (int k = 0; k < 3; ++k) {
-        const double aim = (own[k] + other[k]) * rest[0] + (own[3 + k] + other[3 + k]) * rest[1] +
-                           (own[6 + k] + other[6 + k]) * rest[2];
-        const double error = now[k] - 0.5 * aim;
-        squared += error * error;
-      }
-      const double w = graph.weight[e];
-      energy += 0.5 * w * squared;
-      for (int c = 0; c < 3; ++c)
-        for (int r = 0; r < 3; ++r)
-          sum[3 * c + r] += w * now[r] * rest[c];
-    }
-    covariance = Eigen::Map<const Eigen::Matrix3d>(sum);
-    return energy;
+    return {graph.first.data(),
+            graph.neighbor.data(),
+            graph.weight.data(),
+            network.rest.data(),
+            position.data(),
+            target.data()};
   }
 
   double link_energy(std::size_t i) const

@@ -45,6 +45,14 @@ PCS_ALWAYS_INLINE void fill(T value, Lanes& to)
   to = value - Lanes{};
 }
 
+/// Lane by lane `a < b ? x : y`; `to` may be one of these.
+template <class Lanes>
+PCS_ALWAYS_INLINE void
+select_less(const Lanes& a, const Lanes& b, const Lanes& x, const Lanes& y, Lanes& to)
+{
+  to = a < b ? x : y;
+}
+
 #else
 
 template <class T, std::size_t N>
@@ -79,6 +87,13 @@ struct Array_lanes
   PCS_LANE_OPERATOR(-)
   PCS_LANE_OPERATOR(*)
   PCS_LANE_OPERATOR(/)
+  Array_lanes operator-() const
+  {
+    Array_lanes c;
+    for (std::size_t i = 0; i < N; ++i)
+      c.v[i] = -v[i];
+    return c;
+  }
 #undef PCS_LANE_OPERATOR
   Array_lanes& operator+=(const Array_lanes& b)
   {
@@ -106,6 +121,17 @@ void fill(T value, Array_lanes<T, N>& to)
 {
   for (std::size_t i = 0; i < N; ++i)
     to[i] = value;
+}
+
+template <class T, std::size_t N>
+void select_less(const Array_lanes<T, N>& a,
+                 const Array_lanes<T, N>& b,
+                 const Array_lanes<T, N>& x,
+                 const Array_lanes<T, N>& y,
+                 Array_lanes<T, N>& to)
+{
+  for (std::size_t i = 0; i < N; ++i)
+    to[i] = a[i] < b[i] ? x[i] : y[i];
 }
 
 #endif
