@@ -61,7 +61,9 @@ PCS_ALWAYS_INLINE void turn_back(const Doubles* covariance, const Doubles* q, Do
   const Doubles &x = q[0], &y = q[1], &z = q[2], &w = q[3];
   const Doubles twice_x = x + x, twice_y = y + y, twice_z = z + z;
   Doubles r[3][3]; // row by row
-  unroll<3>([&](auto k) PCS_LAMBDA_INLINE { pcs::internal::fill(1.0, r[k][k]); });
+  Doubles one;
+  pcs::internal::fill(1.0, one);
+  r[0][0] = r[1][1] = r[2][2] = one;
   Arithmetic::subtract_product(twice_y, y, r[0][0]);
   Arithmetic::subtract_product(twice_z, z, r[0][0]);
   Arithmetic::subtract_product(twice_x, x, r[1][1]);
