@@ -11,11 +11,14 @@
 #include <boost/test/unit_test.hpp>
 
 #include <cmath>
+#include <csignal>
 #include <cstddef>
 #include <examples/Program_run.h>
+#include <filesystem>
 #include <limits>
 #include <sstream>
 #include <string>
+#include <sys/resource.h>
 #include <vector>
 
 namespace {
@@ -258,6 +261,23 @@ BOOST_AUTO_TEST_CASE(options_change_the_result)
   BOOST_TEST(content("other/lambda_0.500.swc") == content("plain/lambda_0.500.swc"));
   refuses(grown + "--output other --births-together --births-in-order", "excludes");
   succeeds(trees + "--lambda 0.5 --output other --published-energy --orientation transported");
+}
+
+BOOST_AUTO_TEST_CASE(a_limit_of_the_size_of_files_is_an_error)
+{
+  rlimit before;
+  BOOST_TEST_REQUIRE(::getrlimit(RLIMIT_FSIZE, &before) == 0);
+  const rlimit few{8192, before.rlim_max};
+  ::setrlimit(RLIMIT_FSIZE, &few);
+  const auto ignore = std::signal(SIGXFSZ, SIG_DFL);
+  const int code = run(trees + "--lambda 0.5 --output limited --report limited.json --quiet");
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, ignore);
+  BOOST_TEST(code == 1);
+  BOOST_TEST(err.find("limited/lambda_0.500.ply: cannot be written") != std::string::npos, err);
+  BOOST_TEST(number_in("limited") == 1u); // the skeleton, which is smaller
+  BOOST_TEST(exists("limited/lambda_0.500.swc"));
+  BOOST_TEST(!exists("limited.json"));
 }
 
 BOOST_AUTO_TEST_CASE(branches_of_trees_that_grew_at_their_tips_are_born_in_order)
