@@ -117,6 +117,17 @@ pcs::Orl_report build(Space& space, const Options& o)
   return report;
 }
 
+/// Trees that grew at their tips have branches that go on where those of the other tree end.
+pcs::shape_space::Birth_order birth_order(const Space& space, const Options& o)
+{
+  using pcs::shape_space::Birth_order;
+  bool is_in_order = o.do_order_births;
+  if (!is_in_order && !o.do_join_births && o.load.empty() && o.number_of_trees() == 2)
+    for (const auto& branch : space.correspondences().branches)
+      is_in_order = is_in_order || branch.is_continued[0] || branch.is_continued[1];
+  return is_in_order ? Birth_order::in_order : Birth_order::together;
+}
+
 std::string matches_text(const Space& space, const Tree_file& one, const Tree_file& two)
 {
   std::ostringstream text;
@@ -247,20 +258,13 @@ void run(const Options& o)
   }
   if (!o.save.empty())
     pcs::IO::write_shape_space(o.save, space.data());
-  if (o.has_places())
+  if (o.has_places()) {
+    const auto path = np::maximal_turn(o.maximal_turn * CGAL_PI / 180)
+                          .do_limit_radii(o.do_limit_radii)
+                          .birth_order(birth_order(space, o));
     for (const double lambda : o.lambda)
-      write_tree(space,
-                 space.geodesic(0,
-                                1,
-                                lambda,
-                                np::maximal_turn(o.maximal_turn * CGAL_PI / 180)
-                                    .do_limit_radii(o.do_limit_radii)
-                                    .birth_order(o.do_order_births
-                                                     ? pcs::shape_space::Birth_order::in_order
-                                                     : pcs::shape_space::Birth_order::together)),
-                 files,
-                 o,
-                 name_of(lambda));
+      write_tree(space, space.geodesic(0, 1, lambda, path), files, o, name_of(lambda));
+  }
   write_family(space, files, o);
   if (files.size() == 2)
     matches.write([&] { return matches_text(space, files[0], files[1]); });

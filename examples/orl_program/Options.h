@@ -39,7 +39,7 @@ struct Options
   std::string transport = "exact", orientation = "gauge-fixed", align = "turns", up = "z";
   double maximal_turn = 45;
   bool do_extend_axes = false, do_limit_radii = false, do_order_births = false,
-       is_published = false, is_quiet = false;
+       do_join_births = false, is_published = false, is_quiet = false;
 
   // families
   bool do_mean = false, do_growth = false, do_mesh = false;
@@ -192,9 +192,16 @@ Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
   app.add_flag("--extend-axes",
                o.do_extend_axes,
                "axes of given skeletons go to where the points end");
-  app.add_flag("--births-in-order",
-               o.do_order_births,
-               "new branches begin when the tip of their parent passes, as wood grows");
+  CLI::Option* const in_order =
+      app.add_flag("--births-in-order",
+                   o.do_order_births,
+                   "new branches begin when the tip of their parent passes, as wood grows; default "
+                   "for two trees that were found to have "
+                   "grown at their tips");
+  app.add_flag("--births-together",
+               o.do_join_births,
+               "new branches begin all at once; default for all others, and with --load-space")
+      ->excludes(in_order);
   app.add_flag("--limit-radii", o.do_limit_radii, "no branch thicker than where it grows from");
   app.add_flag("--published-energy", o.is_published, "match branches with the energy of the text");
   app.add_flag("--quiet", o.is_quiet, "print nothing but errors");
@@ -252,7 +259,9 @@ inline void check_effects(const Options& o)
   refuse(o.load.empty() && o.skeletons.empty(),
          {"--extend-axes"},
          "without --skeleton: extracted axes go to where the points end");
-  refuse(!o.has_places(), {"--maximal-turn", "--births-in-order"}, "without --lambda");
+  refuse(!o.has_places(),
+         {"--maximal-turn", "--births-in-order", "--births-together"},
+         "without --lambda");
   refuse(!o.has_places() && o.number_of_samples == 0,
          {"--limit-radii"},
          "without --lambda or --sample");

@@ -37,20 +37,18 @@ public:
     }
     if (!m_out)
       throw pcs::IO_error(path, "cannot be opened for writing");
+    remove_temporary(); // it only exists while it is written: the work may be killed
   }
 
   Report_file(const Report_file&) = delete;
   Report_file& operator=(const Report_file&) = delete;
 
-  ~Report_file()
-  {
-    std::error_code error;
-    if (!m_temporary.empty())
-      std::filesystem::remove(m_temporary, error);
-  }
+  ~Report_file() { remove_temporary(); }
 
   void commit(const std::string& text)
   {
+    if (!m_temporary.empty())
+      m_out.open(m_temporary);
     m_out << text;
     m_out.close();
     std::error_code error;
@@ -62,6 +60,15 @@ public:
   }
 
 private:
+  void remove_temporary()
+  {
+    if (m_temporary.empty())
+      return;
+    m_out.close();
+    std::error_code error;
+    std::filesystem::remove(m_temporary, error);
+  }
+
   std::string m_path;
   std::filesystem::path m_target;
   std::filesystem::path m_temporary; // empty when there is none

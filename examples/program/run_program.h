@@ -9,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <csignal>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -25,6 +26,9 @@ int run_program(CLI::App& app, int argc, char** argv, const Work& work)
     std::cerr << app.get_name() << ": " << what << '\n';
     return exit_code;
   };
+#ifdef SIGXFSZ
+  std::signal(SIGXFSZ, SIG_IGN); // a limit of the size of files is an error like a full disk
+#endif
   try {
     app.parse(argc, argv);
     return work() ? 0 : bad_input;

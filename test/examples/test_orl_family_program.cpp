@@ -264,6 +264,7 @@ BOOST_AUTO_TEST_CASE(options_that_would_have_no_effect_are_refused)
   refuses(skeletons + "--mean --transport sinkhorn --output again", "--transport has no effect");
   for (const std::string option : {"--maximal-turn 30",
                                    "--births-in-order",
+                                   "--births-together",
                                    "--limit-radii",
                                    "--seed 1",
                                    "--any-range",

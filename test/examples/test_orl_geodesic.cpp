@@ -4,16 +4,21 @@
 
 #include <pcs/IO/read_swc.h>
 #include <pcs/IO/write_swc.h>
+#include <pcs/generators/grow_tree.h>
+#include <pcs/generators/tree_at_age.h>
 #include <support/orl_trees.h>
 
 #include <boost/test/unit_test.hpp>
 
 #include <cmath>
+#include <csignal>
 #include <cstddef>
 #include <examples/Program_run.h>
+#include <filesystem>
 #include <limits>
 #include <sstream>
 #include <string>
+#include <sys/resource.h>
 #include <vector>
 
 namespace {
@@ -252,7 +257,45 @@ BOOST_AUTO_TEST_CASE(options_change_the_result)
   succeeds(grown + "--output plain");
   succeeds(grown + "--output other --births-in-order");
   BOOST_TEST(content("other/lambda_0.500.swc") != content("plain/lambda_0.500.swc"));
+  succeeds(grown + "--output other --births-together");
+  BOOST_TEST(content("other/lambda_0.500.swc") == content("plain/lambda_0.500.swc"));
+  refuses(grown + "--output other --births-together --births-in-order", "excludes");
   succeeds(trees + "--lambda 0.5 --output other --published-energy --orientation transported");
+}
+
+BOOST_AUTO_TEST_CASE(a_limit_of_the_size_of_files_is_an_error)
+{
+  rlimit before;
+  BOOST_TEST_REQUIRE(::getrlimit(RLIMIT_FSIZE, &before) == 0);
+  const rlimit few{8192, before.rlim_max};
+  ::setrlimit(RLIMIT_FSIZE, &few);
+  const auto ignore = std::signal(SIGXFSZ, SIG_DFL);
+  const int code = run(trees + "--lambda 0.5 --output limited --report limited.json --quiet");
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, ignore);
+  BOOST_TEST(code == 1);
+  BOOST_TEST(err.find("limited/lambda_0.500.ply: cannot be written") != std::string::npos, err);
+  BOOST_TEST(number_in("limited") == 1u); // the skeleton, which is smaller
+  BOOST_TEST(exists("limited/lambda_0.500.swc"));
+  BOOST_TEST(!exists("limited.json"));
+}
+
+BOOST_AUTO_TEST_CASE(branches_of_trees_that_grew_at_their_tips_are_born_in_order)
+{
+  orl_test::Tree tree;
+  pcs::grow_tree(tree, pcs::fruit_habit(), pcs::parameters::random_seed(3));
+  pcs::IO::write_swc(path("old.swc"), tree);
+  pcs::IO::write_swc(path("young.swc"), pcs::tree_at_age<orl_test::Kernel>(tree, 0.5));
+  const std::string grown =
+      "--skeleton young.swc --skeleton old.swc --lambda 0.5 --correspondences grown.txt --output ";
+  for (const std::string run : {"first", "again"}) { // as found, and as kept
+    succeeds(grown + run);
+    succeeds(grown + run + "_in_order --births-in-order");
+    succeeds(grown + run + "_together --births-together");
+    const std::string name = "/lambda_0.500.swc";
+    BOOST_TEST(content(run + name) == content(run + "_in_order" + name));
+    BOOST_TEST(content(run + name) != content(run + "_together" + name));
+  }
 }
 
 BOOST_AUTO_TEST_CASE(a_tree_that_stands_turned_is_found)

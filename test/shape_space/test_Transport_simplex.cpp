@@ -171,7 +171,7 @@ BOOST_AUTO_TEST_CASE(skewed_densities_are_carried_with_area_weights)
   for (Vec3& p : two) // four times as dense at one end
     p.z() = 6 * (std::sqrt(1 + 15 * p.z() / 6) - 1) / 3;
   Transport_problem problem;
-  const Transport_plan plan = match_points(one, two, Transport_options(), problem);
+  const Transport_plan plan = match_places(Places(one), Places(two), Transport_options(), problem);
   BOOST_TEST(plan.is_complete);
   BOOST_TEST(plan.violation <= 1e-9);
   std::vector<char> has_partner(one.size() + two.size(), 0);
@@ -190,7 +190,7 @@ BOOST_AUTO_TEST_CASE(points_beside_the_surface_do_not_draw_it_to_themselves)
   for (std::size_t k = 0; k < number_of_outliers; ++k)
     one.emplace_back(k % 2 == 0 ? 4 : -4, 0, static_cast<double>(k)); // four radii from the axis
   Transport_problem problem;
-  const Transport_plan plan = match_points(one, two, Transport_options(), problem);
+  const Transport_plan plan = match_places(Places(one), Places(two), Transport_options(), problem);
   BOOST_TEST(plan.is_complete);
   std::vector<std::size_t> partners(one.size(), 0);
   for (const std::uint32_t k : main_arcs(problem, plan))
@@ -198,6 +198,70 @@ BOOST_AUTO_TEST_CASE(points_beside_the_surface_do_not_draw_it_to_themselves)
   for (std::size_t i = 600; i < one.size(); ++i) {
     BOOST_TEST(partners[i] >= 1u);
     BOOST_TEST(partners[i] <= 2u); // 10 to 16 where they stand for all that is near
+  }
+}
+
+BOOST_AUTO_TEST_CASE(points_in_one_place_cost_no_more_pivots_than_one)
+{
+  std::mt19937 random(7);
+  std::vector<Vec3> one = cylinder(random, 300), two = cylinder(random, 400);
+  const auto pivots = [&] {
+    Transport_problem problem;
+    const Places places_1(one), places_2(two);
+    const Transport_plan plan = match_places(places_1, places_2, Transport_options(), problem);
+    BOOST_TEST(plan.is_complete);
+    BOOST_TEST(problem.arcs.size() <= 16 * (301 + 401)); // no more neighbours than asked for
+    return plan.number_of_pivots;
+  };
+  one.push_back(Vec3(1, 0, 3));
+  two.push_back(Vec3(1, 0, 3.01));
+  const std::size_t alone = pivots();
+  for (int k = 1; k < 5000; ++k) {
+    one.insert(one.begin() + (k % 300), one.back());
+    two.insert(two.begin() + (k % 400), two.back());
+  }
+  BOOST_TEST(alone > 0u);
+  BOOST_TEST(pivots() <= 2 * alone); // the order of the places is another one
+}
+
+BOOST_AUTO_TEST_CASE(points_in_one_place_share_its_partners)
+{
+  std::mt19937 random(8);
+  for (const Point_weights kind : {Point_weights::area, Point_weights::equal}) {
+    std::vector<Vec3> one = cylinder(random, 300), two = cylinder(random, 400);
+    one.insert(one.end(), 200, Vec3(1, 0, 3));
+    two.insert(two.end(), 50, Vec3(1, 0, 3.01));
+    Transport_options options;
+    options.weights = kind;
+    const Point_matches found = match_points(one, two, options);
+    BOOST_TEST(found.is_complete);
+    BOOST_TEST(found.violation <= 1e-9);
+    std::vector<std::size_t> partners_1(one.size(), 0), partners_2(two.size(), 0);
+    for (const auto& [i, j] : found.pairs) {
+      ++partners_1[i];
+      ++partners_2[j];
+    }
+    BOOST_TEST(std::count(partners_1.begin(), partners_1.end(), 0) == 0);
+    BOOST_TEST(std::count(partners_2.begin(), partners_2.end(), 0) == 0);
+    BOOST_TEST(found.pairs.size() <= one.size() + two.size() - 1);
+    // as one surface element the 200 draw no others to themselves; as 200 points they do, but nobody gets many
+    const auto most = *std::max_element(partners_1.begin() + 300, partners_1.end());
+    BOOST_TEST(most <= 3u);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(without_points_in_one_place_nothing_is_shared)
+{
+  std::mt19937 random(9);
+  const std::vector<Vec3> one = cylinder(random, 200), two = cylinder(random, 300);
+  Transport_problem problem;
+  const Transport_plan plan = match_places(Places(one), Places(two), Transport_options(), problem);
+  const Point_matches found = match_points(one, two, Transport_options());
+  const auto arcs = main_arcs(problem, plan);
+  BOOST_TEST_REQUIRE(found.pairs.size() == arcs.size());
+  for (std::size_t k = 0; k < arcs.size(); ++k) {
+    BOOST_TEST(found.pairs[k].first == problem.arcs[arcs[k]].source);
+    BOOST_TEST(found.pairs[k].second == problem.arcs[arcs[k]].target);
   }
 }
 
@@ -247,7 +311,7 @@ BOOST_AUTO_TEST_CASE(the_correspondence_survives_rotation_and_anisotropic_scale)
       Transport_options options;
       options.weights = Point_weights::equal;
       Transport_problem problem;
-      const Transport_plan plan = match_points(aligned, target, options, problem);
+      const Transport_plan plan = match_places(Places(aligned), Places(target), options, problem);
       BOOST_TEST(plan.is_complete);
       std::size_t right = 0;
       for (const std::uint32_t k : main_arcs(problem, plan))

@@ -39,8 +39,9 @@ struct Transport_plan
   double cost = 0;         ///< sum of mass times cost
   double violation =
       0; ///< sum over sources and targets of the mass that differs from what was asked for
-  std::vector<char> is_unmet; ///< per source, then per target: mass that no arc could take
-  bool is_complete = false;   ///< nothing unmet, and the method came to its end
+  std::vector<char> is_unmet;       ///< per source, then per target: mass that no arc could take
+  bool is_complete = false;         ///< nothing unmet, and the method came to its end
+  std::size_t number_of_pivots = 0; ///< of the network simplex
 };
 
 /*!
@@ -153,7 +154,7 @@ private:
     // never reached on strongly feasible trees in practice; an endless loop is worse than a reported failure
     const std::size_t most_pivots = 1000 + 50 * (number + m_root);
     std::size_t position = 0;
-    for (std::size_t pivots = 0; pivots < most_pivots; ++pivots) {
+    for (m_number_of_pivots = 0; m_number_of_pivots < most_pivots; ++m_number_of_pivots) {
       std::size_t entering = none;
       Int least = 0;
       for (std::size_t seen = 0, in_block = 0; seen < number; ++seen) {
@@ -252,6 +253,7 @@ private:
     Transport_plan result;
     result.is_unmet.assign(m_root, 0);
     result.is_complete = is_optimal;
+    result.number_of_pivots = m_number_of_pivots;
     for (std::size_t v = 0; v < m_root; ++v) {
       const Node& node = m_nodes[v];
       if (node.flow == 0)
@@ -279,7 +281,7 @@ private:
     return result;
   }
 
-  std::size_t m_n = 0, m_root = 0;
+  std::size_t m_n = 0, m_root = 0, m_number_of_pivots = 0;
   double m_unit = 1;
   std::vector<Arc> m_arcs;
   std::vector<Node> m_nodes;

@@ -6,6 +6,7 @@
 #define PCS_SHAPE_SPACE_MATCH_POINTS_H
 
 #include <pcs/neighborhood/Nearest_neighbors.h>
+#include <pcs/shape_space/Places.h>
 #include <pcs/shape_space/Rooted_tree.h>
 #include <pcs/shape_space/Sinkhorn.h>
 #include <pcs/shape_space/Transport_simplex.h>
@@ -74,7 +75,7 @@ inline std::vector<double> area_weights(const std::vector<Vec3>& points,
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
   const double median = *middle;
-  for (double& a : area) // duplicates stand for little, outliers not for all
+  for (double& a : area) // points that nearly coincide stand for little, outliers not for all
     a = median > 0 ? std::min(16 * median, std::max(median / 64, a)) : 1;
   return area;
 }
@@ -87,6 +88,18 @@ inline std::vector<double> to_shares(std::vector<double> weights)
   for (double& w : weights)
     w /= sum;
   return weights;
+}
+
+/// Shares of the whole: as an area, all points of a place stand for one.
+inline std::vector<double>
+weights_of(const Places& places, const neighborhood::Nearest_neighbors& search, Point_weights kind)
+{
+  if (kind == Point_weights::area)
+    return to_shares(area_weights(places.positions(), search));
+  std::vector<double> numbers;
+  for (std::size_t i = 0; i < places.positions().size(); ++i)
+    numbers.push_back(static_cast<double>(places.size(i)));
+  return to_shares(std::move(numbers));
 }
 
 } // namespace internal
@@ -112,19 +125,17 @@ inline std::vector<std::uint32_t> main_arcs(const Transport_problem& problem,
   return arcs;
 }
 
-/// Transport between two sets in the same place; every point gets a partner. Candidates are nearest neighbours both ways;
-/// for points whose mass they cannot carry more are taken, until all is carried.
-inline Transport_plan match_points(const std::vector<Vec3>& one,
-                                   const std::vector<Vec3>& two,
+/// Transport between two sets of places where points are; every place gets a partner. Candidates are nearest neighbours both
+/// ways; for places whose mass they cannot carry more are taken, until all is carried.
+inline Transport_plan match_places(const Places& places_1,
+                                   const Places& places_2,
                                    const Transport_options& options,
                                    Transport_problem& problem)
 {
+  const std::vector<Vec3>&one = places_1.positions(), &two = places_2.positions();
   const neighborhood::Nearest_neighbors search_1(one), search_2(two);
-  const bool is_area = options.weights == Point_weights::area;
-  problem.supplies = internal::to_shares(is_area ? internal::area_weights(one, search_1)
-                                                 : std::vector<double>(one.size(), 1));
-  problem.demands = internal::to_shares(is_area ? internal::area_weights(two, search_2)
-                                                : std::vector<double>(two.size(), 1));
+  problem.supplies = internal::weights_of(places_1, search_1, options.weights);
+  problem.demands = internal::weights_of(places_2, search_2, options.weights);
   const std::size_t n = one.size(), m = two.size();
   std::vector<std::size_t> wanted(n + m, options.number_of_neighbors);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> arcs;
@@ -160,6 +171,28 @@ inline Transport_plan match_points(const std::vector<Vec3>& one,
     if (!can_grow)
       return plan;
   }
+}
+
+/// Pairs of points of two sets in the same place, and how well they were found.
+struct Point_matches
+{
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  double violation = 0;
+  bool is_complete = false;
+};
+
+/// Every point gets a partner, unless the plan is not complete.
+inline Point_matches match_points(const std::vector<Vec3>& one,
+                                  const std::vector<Vec3>& two,
+                                  const Transport_options& options)
+{
+  const Places places_1(one), places_2(two);
+  Transport_problem problem;
+  const Transport_plan plan = match_places(places_1, places_2, options, problem);
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  for (const std::uint32_t k : main_arcs(problem, plan))
+    pairs.emplace_back(problem.arcs[k].source, problem.arcs[k].target);
+  return {pairs_of_points(places_1, places_2, pairs), plan.violation, plan.is_complete};
 }
 
 } // namespace shape_space

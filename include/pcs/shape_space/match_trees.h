@@ -9,6 +9,7 @@
 #include <pcs/shape_space/Branch_matching.h>
 #include <pcs/shape_space/Common_topology.h>
 #include <pcs/shape_space/find_turns.h>
+#include <pcs/shape_space/refine_turn.h>
 
 #include <algorithm>
 #include <array>
@@ -97,6 +98,8 @@ private:
     m_result.paths = {matching.paths(0), matching.paths(1)};
     internal::Topology_builder builder(*m_trees[0], *m_trees[1], m_result.paths);
     m_result.branches = builder.run(*trunk);
+    if (m_cost.turn != 0)
+      m_cost.turn = refine_turn(m_trees, m_result, m_standing.up, m_cost.turn);
     m_cost.is_at_tips = is_at_tips;
     m_cost.energy = trunk->cost;
     m_cost.share =

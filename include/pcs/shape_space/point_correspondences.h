@@ -175,7 +175,8 @@ private:
     return windows;
   }
 
-  /// Cuts a long edge across, at places that leave about as many points of both trees between them.
+  /// Cuts a long edge across, at places that leave about as many points of both trees between them; points of
+  /// one place stay together.
   std::vector<Window> cut(std::size_t e, const Transport_options& options) const
   {
     struct Place
@@ -200,13 +201,14 @@ private:
     const std::size_t most = std::max(m_of_edge[0][e].size(), m_of_edge[1][e].size());
     const double parts =
         std::ceil(static_cast<double>(most) / static_cast<double>(options.largest_window));
-    double mass = 0;
+    double mass = 0, last_t = 0;
     for (const Place& p : places) {
-      if (mass >= 2 * static_cast<double>(windows.size()) / parts &&
+      if (p.t != last_t && mass >= 2 * static_cast<double>(windows.size()) / parts &&
           !windows.back().point[0].empty() && !windows.back().point[1].empty())
         windows.emplace_back();
       windows.back().point[p.tree].push_back({p.point, static_cast<std::uint32_t>(e)});
       mass += share[p.tree];
+      last_t = p.t;
     }
     Window& last = windows.back();
     if (windows.size() > 1 && (last.point[0].empty() || last.point[1].empty())) {
@@ -253,16 +255,13 @@ private:
     }
     for (const Placed& p : window.point[1])
       two.push_back(m_points[1][p.point]);
-    Transport_problem problem;
-    const Transport_plan plan = match_points(one, two, options, problem);
+    const Point_matches found = match_points(one, two, options);
     std::vector<char> is_paired(one.size() + two.size(), 0);
-    const auto add = [&](std::size_t i, std::size_t j) {
+    for (const auto& [i, j] : found.pairs) {
       const Placed &p = window.point[0][i], &q = window.point[1][j];
       pairs.push_back({p.edge, {p.point, q.point}});
       is_paired[i] = is_paired[one.size() + j] = 1;
-    };
-    for (const std::uint32_t k : main_arcs(problem, plan))
-      add(problem.arcs[k].source, problem.arcs[k].target);
+    }
     for (std::size_t v = 0; v < is_paired.size(); ++v) // only where the transport failed
       if (!is_paired[v]) {
         const bool is_one = v < one.size();
@@ -270,8 +269,8 @@ private:
                          {is_one ? window.point[0][v].point : no_point,
                           is_one ? no_point : window.point[1][v - one.size()].point}});
       }
-    violation = plan.violation;
-    return plan.is_complete;
+    violation = found.violation;
+    return found.is_complete;
   }
 
   const Orl_layout& m_layout;

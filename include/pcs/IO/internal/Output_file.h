@@ -17,14 +17,19 @@
 #include <system_error>
 #include <vector>
 
+#if defined(__linux__)
+#include <fcntl.h>
+#include <unistd.h>
+#endif
+
 namespace pcs {
 namespace IO {
 namespace internal {
 
 /*
-  Writes go to a temporary file in the directory of the target, which `commit()` renames. A target
-  that exists but is no regular file (a device, a pipe) is written to directly: renaming would
-  replace the device itself.
+  Writes go to a temporary file in the directory of the target, which `commit()` renames. Where the system can do it, that
+  file has no name before, so that nothing is left when the program is killed. A target that exists but is no regular file
+  (a device, a pipe) is written to directly: renaming would replace the device itself.
 */
 class Output_file
 {
@@ -45,7 +50,7 @@ public:
     }
     if (fs::exists(status) && !fs::is_regular_file(status))
       m_file = std::fopen(path.c_str(), "wb");
-    else
+    else if (!open_nameless())
       open_temporary();
     if (m_file == nullptr)
       throw IO_error(path, std::string("cannot be opened for writing: ") + std::strerror(errno));
@@ -95,6 +100,8 @@ public:
   void commit()
   {
     flush();
+    if (m_is_nameless)
+      give_name();
     std::FILE* file = m_file;
     m_file = nullptr;
     if (std::fclose(file) != 0)
@@ -115,12 +122,18 @@ public:
 
 private:
   static constexpr std::size_t buffer_size = std::size_t(1) << 18;
+  static constexpr int most_names = 1000;
+
+  /// Names must not depend on that of the target, which may already have the largest length.
+  std::filesystem::path temporary_name(int i) const
+  {
+    return m_target.parent_path() / (".pcs_unfinished_" + std::to_string(i) + ".tmp");
+  }
 
   void open_temporary()
   {
-    // the name must not depend on that of the target, which may already have the largest length
-    for (int i = 0; i < 1000 && m_file == nullptr; ++i) {
-      m_temporary = m_target.parent_path() / (".pcs_unfinished_" + std::to_string(i) + ".tmp");
+    for (int i = 0; i < most_names && m_file == nullptr; ++i) {
+      m_temporary = temporary_name(i);
       m_file = std::fopen(m_temporary.string().c_str(), "wbx");
       if (m_file == nullptr && errno != EEXIST)
         break;
@@ -130,6 +143,53 @@ private:
     else
       std::setvbuf(m_file, nullptr, _IONBF, 0);
   }
+
+#if defined(__linux__) && defined(O_TMPFILE)
+  static std::string link_to(int file)
+  {
+    return "/proc/self/fd/" + std::to_string(file);
+  }
+
+  /// `false` where the file system has no such files, or they could not be named.
+  bool open_nameless()
+  {
+    const std::filesystem::path folder = m_target.parent_path();
+    const int file =
+        ::open(folder.empty() ? "." : folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+    if (file < 0)
+      return false;
+    if (::access(link_to(file).c_str(), F_OK) == 0)
+      m_file = ::fdopen(file, "wb");
+    if (m_file == nullptr) {
+      ::close(file);
+      return false;
+    }
+    std::setvbuf(m_file, nullptr, _IONBF, 0);
+    return m_is_nameless = true;
+  }
+
+  void give_name()
+  {
+    const std::string link = link_to(::fileno(m_file));
+    for (int i = 0; i < most_names && m_temporary.empty(); ++i)
+      if (::linkat(AT_FDCWD,
+                   link.c_str(),
+                   AT_FDCWD,
+                   temporary_name(i).c_str(),
+                   AT_SYMLINK_FOLLOW) == 0)
+        m_temporary = temporary_name(i);
+      else if (errno != EEXIST)
+        break;
+    if (m_temporary.empty())
+      fail();
+  }
+#else
+  bool open_nameless()
+  {
+    return false;
+  }
+  void give_name() {}
+#endif
 
   void remove_temporary()
   {
@@ -160,7 +220,8 @@ private:
 
   std::string m_path;
   std::filesystem::path m_target;
-  std::filesystem::path m_temporary; // empty when there is none
+  std::filesystem::path m_temporary; // empty when there is none, or it has no name yet
+  bool m_is_nameless = false;
   std::FILE* m_file = nullptr;
   std::vector<char> m_buffer;
   std::size_t m_position = 0;
