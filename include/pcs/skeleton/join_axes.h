@@ -158,7 +158,12 @@ private:
                    Index b,
                    const std::vector<Index>& nodes,
                    double reach) const;
-  double cost(const internal::Axis_end& end, Index b, const Axis_place& place, double reach) const;
+  /// Infinite where it is not below `limit`, or out of reach.
+  double cost(const internal::Axis_end& end,
+              Index b,
+              const Axis_place& place,
+              double reach,
+              double limit) const;
   double radius_ratio(double r, double to) const
   {
     const double thinnest = m_rules.thinnest * m_spacing;
@@ -176,7 +181,8 @@ private:
 inline double Axis_joiner::cost(const internal::Axis_end& end,
                                 Index b,
                                 const Axis_place& place,
-                                double reach) const
+                                double reach,
+                                double limit) const
 {
   const Axis& axis = m_set.axes[b].axis;
   const double u = m_spacing, radius = radius_at(axis, place);
@@ -188,13 +194,15 @@ inline double Axis_joiner::cost(const internal::Axis_end& end,
   const double lateral = (v + back * end.inward).norm();
   const double missed = std::max(0.0, lateral - m_rules.lateral_tolerance * radius);
   const double cosine = internal::tangent(axis, place.segment).dot(end.inward);
-  double sum = m_rules.lateral * std::log1p(missed / u);
-  sum += m_rules.gap * gap / u * std::max(1.0, gap / (m_rules.steep_gap * u));
+  double sum = m_rules.gap * gap / u * std::max(1.0, gap / (m_rules.steep_gap * u));
   sum += m_rules.overlap * std::max(0.0, -back - radius) / u;
   sum += m_rules.tie * (lateral + distance) / u;
   sum += m_rules.angle * (1 - std::max(cosine, m_rules.lowest_cosine));
+  if (!(sum < limit)) // logarithms take most of the time
+    return std::numeric_limits<double>::infinity();
   const double share = radius_ratio(end.radius, radius) / m_rules.free_share;
-  sum += m_rules.radius * std::max(0.0, std::log(share));
+  sum += m_rules.radius * std::log(std::max(1.0, share));
+  sum += m_rules.lateral * std::log1p(missed / u);
   return sum;
 }
 
@@ -217,7 +225,7 @@ inline Joint Axis_joiner::best_place(const internal::Axis_end& end,
         Axis_place place;
         place.segment = s;
         place.share = double(k) / parts;
-        const double c = cost(end, b, place, reach);
+        const double c = cost(end, b, place, reach, best.cost);
         if (c < best.cost) {
           best.cost = c;
           best.place = place;
