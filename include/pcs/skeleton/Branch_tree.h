@@ -114,11 +114,12 @@ private:
   {
     const std::size_t n = m_tree.nodes.size();
     m_next.assign(n, none);
+    const double unit = m_spacing * m_spacing * m_spacing;
     for (Index v = 0; v < n; ++v) {
       const Branch_node& node = m_tree.nodes[v];
-      const double reach = 2 * node.radius + 4 * m_spacing;
+      const double reach = 4 * node.radius + 8 * m_spacing;
       const Vec3 from = node.point - m_tree.nodes[behind(v, reach)].point;
-      double best = -1;
+      double best = 0;
       for (const Index c : m_child[v]) {
         const Index w = ahead(c, reach);
         const Vec3 to = m_tree.nodes[w].point - node.point;
@@ -126,9 +127,8 @@ private:
         const double cosine = norm > 0 ? from.dot(to) / norm : 0;
         const double radius = 0.5 * (m_tree.nodes[c].radius + m_tree.nodes[w].radius);
         const double carried = m_carried[c] + 4 * m_spacing * radius * radius;
-        const double straight = 1.3 + cosine;
-        const double score = straight * straight * std::sqrt(carried);
-        if (score > best) {
+        const double score = straightness * cosine + std::log(carried / unit);
+        if (m_next[v] == none || score > best) {
           best = score;
           m_next[v] = c;
         }
@@ -182,6 +182,8 @@ private:
     m_number = std::move(number);
   }
 
+  /// What a unit of the cosine counts against the logarithm of what a child carries [-].
+  static constexpr double straightness = 8;
   double m_spacing;
   Branch_tree m_tree;
   std::vector<std::vector<Index>> m_child;

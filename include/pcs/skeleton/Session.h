@@ -11,6 +11,7 @@
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Branch_tree.h>
 #include <pcs/skeleton/Session_options.h>
+#include <pcs/skeleton/regroup_axes.h>
 #include <pcs/skeleton/report_sizes.h>
 #include <pcs/skeleton/root_axis.h>
 
@@ -189,13 +190,16 @@ public:
       return progress(0.97);
     }
     if (!m_axes.axes.empty()) { // none with a given skeleton
-      const Index root = root_axis(m_scan, m_axes, m_root);
-      m_joints =
-          Axis_joiner(m_axes, m_scan.spacing, m_options.joints).template run<ConcurrencyTag>(root);
+      Index root = join_axes();
+      for (int round = 1; round < m_options.joints.rounds; ++round) {
+        if (!progress(0.9 + 0.05 * round / m_options.joints.rounds))
+          return false;
+        regroup_axes(m_tree, m_axes);
+        fuse_axes<ConcurrencyTag>(m_scan.spacing, m_options.fusion, m_axes);
+        root = join_axes();
+      }
       if (!progress(0.95))
         return false;
-      m_joints[root].is_reversed = is_root_reversed(m_scan, m_axes.axes[root].axis, m_root);
-      m_tree = branch_tree(m_axes, m_joints, root, m_scan.spacing);
       prune_stubs(m_scan.spacing, m_options.stubs, m_tree);
       const Section_support support =
           support_of_sections<ConcurrencyTag>(m_scan, m_tree, m_axes.noise, m_options.support);
@@ -336,6 +340,17 @@ private:
         m_is_used[i] = 1;
         m_scan.is_outlier[i] = 0;
       }
+  }
+
+  /// The tree of the axes as they are. Returns the one that stands on the root.
+  Index join_axes()
+  {
+    const Index root = root_axis(m_scan, m_axes, m_root);
+    const Axis_joiner joiner(m_axes, m_scan.spacing, m_options.joints);
+    m_joints = joiner.template run<ConcurrencyTag>(root);
+    m_joints[root].is_reversed = is_root_reversed(m_scan, m_axes.axes[root].axis, m_root);
+    m_tree = branch_tree(m_axes, m_joints, root, m_scan.spacing);
+    return root;
   }
 
   double residual_of_point(Index p) const

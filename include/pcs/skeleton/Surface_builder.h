@@ -6,6 +6,7 @@
 #define PCS_SKELETON_SURFACE_BUILDER_H
 
 #include <pcs/skeleton/Branch_surface.h>
+#include <pcs/skeleton/find_branch_exit.h>
 
 #include <Eigen/Geometry>
 
@@ -40,10 +41,12 @@ public:
   {
     const std::size_t n = m_tubes.size();
     std::vector<std::vector<double>> rings(n);
-    for (std::size_t b = 0; b < n; ++b)
-      if (find_exit(b) && m_exits[b].is_there)
+    for (std::size_t b = 0; b < n; ++b) {
+      m_exits[b] = exit_of(b);
+      if (m_exits[b].is_there)
         for (const double side : {-1.0, 1.0})
           rings[m_parent[b]].push_back(m_exits[b].at + side * m_exits[b].half);
+    }
     for (std::size_t b = 0; b < n; ++b)
       make_tube(b, std::move(rings[b]));
     for (std::size_t b = 0; b < n; ++b)
@@ -57,15 +60,6 @@ public:
 
 private:
   using Loop = std::vector<std::size_t>;
-  /// Where a branch leaves its parent.
-  struct Exit
-  {
-    bool is_there = false;
-    double at = 0, half = 0; ///< arc length on the parent, and how far the branch reaches along it
-    double start = 0;  ///< arc length on the branch where its own rings begin; < 0: no surface
-    double radius = 0; ///< of the branch
-    Vec3 point = Vec3::Zero(), direction = Vec3::Zero(), normal = Vec3::Zero();
-  };
   /// A block of quads of a parent: rings [r0, r1), sides [c0, c0 + count).
   struct Block
   {
@@ -77,7 +71,7 @@ private:
     double u = 0, s = 0;
   };
 
-  bool find_exit(std::size_t b);
+  Branch_exit exit_of(std::size_t b) const;
   void make_tube(std::size_t b, std::vector<double> rings);
   bool join(std::size_t b);
   void begin_inside(std::size_t b);
@@ -98,70 +92,14 @@ private:
   std::vector<std::size_t> m_parent;
   std::vector<Section_line> m_lines;
   std::vector<Surface_tube> m_tubes;
-  std::vector<Exit> m_exits;
+  std::vector<Branch_exit> m_exits;
   Branch_surface m_surface;
 };
 
-/// Follows the axis of a branch to the surface of its parent. Returns `false` for branches without surface.
-inline bool Surface_builder::find_exit(std::size_t b)
+inline Branch_exit Surface_builder::exit_of(std::size_t b) const
 {
-  Exit& e = m_exits[b];
-  const Section_line& line = m_lines[b];
-  e.start = line.size() < 2 ? -1 : 0;
-  if (line.size() < 2 || !m_rules.do_join || m_parent[b] >= b || m_lines[m_parent[b]].size() < 2)
-    return e.start >= 0;
-  const Section_line& below = m_lines[m_parent[b]];
-  const auto outside = [&](double s) {
-    const Vec3 p = line.section(s).center;
-    const Section at = below.section(below.nearest(p));
-    return (p - at.center).norm() - at.radius;
-  };
-  double low = 0, high = -1;
-  for (std::size_t k = 0; k < line.size() && high < 0; ++k) {
-    if (outside(line.at(k)) > 0)
-      high = line.at(k);
-    else
-      low = line.at(k);
-  }
-  if (high < 0) { // hidden in its parent
-    e.start = -1;
-    return false;
-  }
-  for (int k = 0; k < 30 && high > 0; ++k) {
-    const double middle = 0.5 * (low + high);
-    (outside(middle) > 0 ? high : low) = middle;
-  }
-  const Section here = line.section(high);
-  e.point = here.center;
-  e.radius = here.radius;
-  e.at = below.nearest(here.center);
-  const Section at = below.section(e.at);
-  const Vec3 axis = below.direction(e.at);
-  Vec3 normal = here.center - at.center;
-  normal -= normal.dot(axis) * axis;
-  e.normal =
-      normal.norm() > 1e-9 * at.radius ? Vec3(normal.normalized()) : Vec3(axis.unitOrthogonal());
-  // flat branches are taken for steeper ones: their footprint would run far along the parent
-  const Vec3 d = line.direction(high);
-  const double sine = std::max(m_rules.steepest, d.dot(e.normal));
-  Vec3 flat = d - d.dot(e.normal) * e.normal;
-  flat = flat.norm() > 1e-9 ? Vec3(flat.normalized()) : Vec3(Vec3::Zero());
-  e.direction = (std::sqrt(1 - std::min(1.0, sine * sine)) * flat + sine * e.normal).normalized();
-  const double rise = std::abs(flat.dot(axis)); // part of the slope that runs along the parent
-  e.half = e.radius * ((1 - rise) + rise / sine) + m_rules.margin * e.radius;
-  const double slope = std::sqrt(1 - std::min(1.0, sine * sine)) / sine;
-  const double sag = at.radius > e.radius // the parent curves away from the branch
-                         ? at.radius - std::sqrt(at.radius * at.radius - e.radius * e.radius)
-                         : e.radius;
-  // the first ring of the branch lies outside of the parent as a whole
-  e.start = high + std::max(0.0, slope * e.radius - sag) + m_rules.margin * e.radius;
-  const double last = line.length();
-  if (e.start > high + 0.6 * (last - high))
-    e.start = high + 0.6 * (last - high);
-  e.is_there = last - e.start > 1e-6 * (1 + last) || high == 0;
-  if (!e.is_there)
-    e.start = -1;
-  return e.is_there;
+  const bool may_join = m_rules.do_join && m_parent[b] < b && m_lines[m_parent[b]].size() >= 2;
+  return find_branch_exit(m_lines[b], may_join ? &m_lines[m_parent[b]] : nullptr, m_rules);
 }
 
 inline void Surface_builder::make_tube(std::size_t b, std::vector<double> rings)
@@ -258,7 +196,7 @@ inline Vec3 Surface_builder::on_grid(const Surface_tube& tube, const Place& plac
 inline bool Surface_builder::join(std::size_t b)
 {
   Surface_tube &tube = m_tubes[b], &parent = m_tubes[m_parent[b]];
-  const Exit& e = m_exits[b];
+  const Branch_exit& e = m_exits[b];
   if (!m_rules.do_join || !e.is_there || parent.rings.empty())
     return false;
   // the frame of the parent there
@@ -344,7 +282,7 @@ inline void Surface_builder::begin_inside(std::size_t b)
 {
   ++m_surface.number_of_separate;
   Surface_tube& tube = m_tubes[b];
-  const Exit& e = m_exits[b];
+  const Branch_exit& e = m_exits[b];
   if (!e.is_there)
     return;
   const Vec3 back = e.point - e.radius * e.direction - tube.rings.front().center;

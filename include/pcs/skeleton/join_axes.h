@@ -26,21 +26,28 @@
 namespace pcs {
 namespace skeleton {
 
-/// What a joint costs. Factors of the spacing unless said otherwise [-].
+/// What a joint costs: logarithms of odds, as they were found in scans of virtual trees. Lengths in spacings [-].
 struct Joint_rules
 {
+  int rounds = 2;    ///< how often joints are chosen, the later ones between branches [count]
   double reach = 30; ///< widest gap between the base of a branch and the surface of its parent
-  double long_reach = 0.2;        ///< ... or this share of the length of the branch [-]
-  double base_length = 8;         ///< length over which the direction of a base is taken
-  double lateral = 4;             ///< cost of missing the parent's axis, per length [-]
+  double long_reach = 0.2; ///< ... or this share of the length of the branch [-]
+  double base_length = 8;  ///< length over which the direction of a base is taken
+  double lateral = 1.8;    ///< cost of missing the parent's axis, per logarithm of 1 + length
   double lateral_tolerance = 0.3; ///< of it free of charge, in radii of the parent
-  double tie = 0.02;     ///< of the whole distance: what costs nothing else is decided by it [-]
-  double steep_gap = 12; ///< gaps longer than this cost more than their length
-  double radius = 4;     ///< for each time that the base is thicker than its parent
-  double backward = 3;   ///< for pointing to the root of the parent
-  double reversal = 2;   ///< for using the tip as the base
-  double path_bonus = 1; ///< factor where the paths to the root agree; 1: geometry alone [-]
-  double bend = 6;       ///< for the angle at the tip of the parent
+  double gap = 0.044;             ///< cost of a gap, per length ...
+  double steep_gap = 12;          ///< ... and gaps longer than this cost more than their length
+  double overlap = 0.115;         ///< cost of a parent ahead of the base, per length
+  double tie = 0.05;  ///< of the whole distance: what costs nothing else is decided by it
+  double angle = 3.2; ///< cost of each unit of the cosine to the parent's direction below 1 ...
+  double lowest_cosine =
+      -0.2; ///< ... down to this one, since the parent itself may be turned round
+  double radius =
+      0.6; ///< cost of a thick base, per logarithm of its share of the parent's radius ...
+  double free_share = 0.37; ///< ... above this share
+  double taper = 0.85;      ///< gain of a base that is thicker than the tip, per logarithm
+  double reversal = 1.1;    ///< for using the tip as the base
+  double thinnest = 0.1;    ///< smaller radii count as this one
 };
 
 /// Where an axis sits on its parent.
@@ -151,7 +158,17 @@ private:
                    Index b,
                    const std::vector<Index>& nodes,
                    double reach) const;
-  double cost(const internal::Axis_end& end, Index b, const Axis_place& place, double reach) const;
+  /// Infinite where it is not below `limit`, or out of reach.
+  double cost(const internal::Axis_end& end,
+              Index b,
+              const Axis_place& place,
+              double reach,
+              double limit) const;
+  double radius_ratio(double r, double to) const
+  {
+    const double thinnest = m_rules.thinnest * m_spacing;
+    return std::max(r, thinnest) / std::max(to, thinnest);
+  }
   std::vector<Joint> options_of(Index a) const;
   static std::vector<Joint> choose(Index root, const std::vector<std::vector<Joint>>& options);
 
@@ -164,7 +181,8 @@ private:
 inline double Axis_joiner::cost(const internal::Axis_end& end,
                                 Index b,
                                 const Axis_place& place,
-                                double reach) const
+                                double reach,
+                                double limit) const
 {
   const Axis& axis = m_set.axes[b].axis;
   const double u = m_spacing, radius = radius_at(axis, place);
@@ -174,16 +192,17 @@ inline double Axis_joiner::cost(const internal::Axis_end& end,
     return std::numeric_limits<double>::infinity();
   const double back = -v.dot(end.inward); // > 0: the parent lies behind the base
   const double lateral = (v + back * end.inward).norm();
-  double sum = gap * std::max(1.0, gap / (m_rules.steep_gap * u));
-  sum += m_rules.lateral * std::max(0.0, lateral - m_rules.lateral_tolerance * radius);
-  sum += std::max(0.0, -back - radius);
-  sum += m_rules.tie * (lateral + distance);
-  sum += m_rules.radius * u * std::max(0.0, end.radius / std::max(radius, 1e-3 * u) - 1);
+  const double missed = std::max(0.0, lateral - m_rules.lateral_tolerance * radius);
   const double cosine = internal::tangent(axis, place.segment).dot(end.inward);
-  sum += m_rules.backward * u * std::max(0.0, -cosine);
-  const bool is_tip = place.segment + 2 == axis.size() && place.share >= 1;
-  if (is_tip)
-    sum += m_rules.bend * u * std::max(0.0, 0.7 - cosine);
+  double sum = m_rules.gap * gap / u * std::max(1.0, gap / (m_rules.steep_gap * u));
+  sum += m_rules.overlap * std::max(0.0, -back - radius) / u;
+  sum += m_rules.tie * (lateral + distance) / u;
+  sum += m_rules.angle * (1 - std::max(cosine, m_rules.lowest_cosine));
+  if (!(sum < limit)) // logarithms take most of the time
+    return std::numeric_limits<double>::infinity();
+  const double share = radius_ratio(end.radius, radius) / m_rules.free_share;
+  sum += m_rules.radius * std::log(std::max(1.0, share));
+  sum += m_rules.lateral * std::log1p(missed / u);
   return sum;
 }
 
@@ -206,7 +225,7 @@ inline Joint Axis_joiner::best_place(const internal::Axis_end& end,
         Axis_place place;
         place.segment = s;
         place.share = double(k) / parts;
-        const double c = cost(end, b, place, reach);
+        const double c = cost(end, b, place, reach, best.cost);
         if (c < best.cost) {
           best.cost = c;
           best.place = place;
@@ -246,6 +265,9 @@ inline std::vector<Joint> Axis_joiner::options_of(Index a) const
         std::min(std::max(m_rules.base_length * m_spacing, 2 * axis.front().radius),
                  0.7 * length_of(axis));
     const internal::Axis_end end = internal::end_of(axis, is_tip, length);
+    const internal::Axis_end other = internal::end_of(axis, !is_tip, length);
+    const double cost_of_end = (is_tip ? m_rules.reversal * m_set.axes[a].direction : 0) -
+                               m_rules.taper * std::log(radius_ratio(end.radius, other.radius));
     const std::vector<Node> near = nodes_near(end.point, reach);
     for (std::size_t i = 0; i < near.size();) {
       const Index b = near[i].first;
@@ -256,10 +278,7 @@ inline std::vector<Joint> Axis_joiner::options_of(Index a) const
         continue;
       Joint joint = best_place(end, b, nodes, reach);
       joint.is_reversed = is_tip;
-      if (is_tip)
-        joint.cost += m_rules.reversal * m_set.axes[a].direction * m_spacing;
-      if (m_set.axes[a].parent == b && !is_tip)
-        joint.cost *= m_rules.path_bonus;
+      joint.cost += cost_of_end;
       if (std::isfinite(joint.cost))
         options.push_back(joint);
     }
