@@ -18,25 +18,12 @@ using namespace pcs::skeleton;
 
 namespace {
 
+using pcs_test::set_of;
 constexpr double spacing = 0.01;
 
 Axis straight(const Vec3& from, const Vec3& to, double radius)
 {
   return pcs_test::straight_axis(from, to, 10, radius, radius);
-}
-
-/// One point per segment of each axis.
-Axis_set set_of(const std::vector<Axis>& axes)
-{
-  Axis_set set;
-  for (const Axis& axis : axes) {
-    for (Index s = 0; s + 1 < axis.size(); ++s) {
-      set.axis_of_point.push_back(static_cast<Index>(set.axes.size()));
-      set.segment_of_point.push_back(s);
-    }
-    set.axes.push_back({axis, none, axis.size() - 1, 1});
-  }
-  return set;
 }
 
 std::size_t fuse(Axis_set& set)

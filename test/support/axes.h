@@ -6,8 +6,10 @@
 #define PCS_TEST_SUPPORT_AXES_H
 
 #include <pcs/skeleton/Axis.h>
+#include <pcs/skeleton/Axis_set.h>
 
 #include <cstddef>
+#include <vector>
 
 namespace pcs_test {
 
@@ -27,6 +29,21 @@ inline pcs::skeleton::Axis straight_axis(const pcs::skeleton::Vec3& from,
     axis.push_back(node);
   }
   return axis;
+}
+
+/// One point per segment of each axis.
+inline pcs::skeleton::Axis_set set_of(const std::vector<pcs::skeleton::Axis>& axes)
+{
+  using pcs::skeleton::Index;
+  pcs::skeleton::Axis_set set;
+  for (const pcs::skeleton::Axis& axis : axes) {
+    for (Index s = 0; s + 1 < axis.size(); ++s) {
+      set.axis_of_point.push_back(static_cast<Index>(set.axes.size()));
+      set.segment_of_point.push_back(s);
+    }
+    set.axes.push_back({axis, pcs::skeleton::none, axis.size() - 1, 1});
+  }
+  return set;
 }
 
 } // namespace pcs_test
