@@ -147,6 +147,11 @@ BOOST_AUTO_TEST_CASE(fits_are_steps_of_newton)
   }
   fits[5].covariance.setZero();
   fits[6].covariance = -fits[6].present.toRotationMatrix(); // turned inside out
+  // A saddle whose Hessian has a positive determinant: no step of Newton.
+  Matrix saddle = Vec3(-3, 2, 1).asDiagonal();
+  saddle(2, 1) = 0.3;
+  saddle(1, 2) = -0.3;
+  fits[7].covariance = saddle * fits[7].present.toRotationMatrix();
   const double damping = 0.2;
   std::vector<Rotation_fits> results;
   for (const Fit_rotations fit : all_fits()) {
