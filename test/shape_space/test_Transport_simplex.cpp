@@ -201,6 +201,37 @@ BOOST_AUTO_TEST_CASE(points_beside_the_surface_do_not_draw_it_to_themselves)
   }
 }
 
+BOOST_AUTO_TEST_CASE(a_gap_of_one_scan_does_not_shift_what_is_around_it)
+{
+  std::mt19937 random(6);
+  const std::vector<Vec3> one = cylinder(random, 1200);
+  std::vector<Vec3> two = cylinder(random, 1200);
+  two.erase(std::remove_if(two.begin(), two.end(), [](const Vec3& p) { return p.x() > 0.5; }),
+            two.end());
+  const auto mean_distance = [&](Point_weights weights) { // on the side without gap
+    Transport_options options;
+    options.weights = weights;
+    Transport_problem problem;
+    const Transport_plan plan = match_places(Places(one), Places(two), options, problem);
+    BOOST_TEST(plan.is_complete);
+    BOOST_TEST(plan.violation <= 1e-9);
+    double sum = 0, mass = 0;
+    for (const auto& flow : plan.flows) {
+      const auto& arc = problem.arcs[flow.arc];
+      if (one[arc.source].x() < 0) {
+        sum += flow.mass * std::sqrt(arc.cost);
+        mass += flow.mass;
+      }
+    }
+    return sum / mass;
+  };
+  const double spacing = mean_spacing(one);
+  BOOST_TEST_MESSAGE("a gap: " << mean_distance(Point_weights::area) / spacing << ", "
+                               << mean_distance(Point_weights::equal) / spacing << " spacings");
+  BOOST_TEST(mean_distance(Point_weights::area) < 2 * spacing);
+  BOOST_TEST(mean_distance(Point_weights::equal) > 2.5 * spacing); // as the text has it
+}
+
 BOOST_AUTO_TEST_CASE(points_in_one_place_cost_no_more_pivots_than_one)
 {
   std::mt19937 random(7);

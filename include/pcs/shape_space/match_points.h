@@ -27,7 +27,7 @@ enum class Point_transport {
 };
 
 enum class Point_weights {
-  area, ///< a point stands for the surface around it
+  area, ///< a point stands for the surface around it, for less of it far from the other tree
   equal ///< all points alike, as in the text
 };
 
@@ -90,12 +90,33 @@ inline std::vector<double> to_shares(std::vector<double> weights)
   return weights;
 }
 
-/// Shares of the whole: as an area, all points of a place stand for one.
-inline std::vector<double>
-weights_of(const Places& places, const neighborhood::Nearest_neighbors& search, Point_weights kind)
+/// What is far from all points of the other tree, as opposite of a gap of its scan, has no partner there: with its full weight
+/// it would draw all that is between. Weights fall with the square of the distance, `squared` of each, from 1.5 times the
+/// median on.
+inline void lower_lonely(std::vector<double>& weights, const std::vector<double>& squared)
 {
-  if (kind == Point_weights::area)
-    return to_shares(area_weights(places.positions(), search));
+  constexpr double near = 1.5, least = 1. / 64;
+  std::vector<double> sorted(squared);
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double limit = near * near * *middle;
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    if (squared[i] > limit)
+      weights[i] *= std::max(least, limit / squared[i]);
+}
+
+/// Shares of the whole: as an area, all points of a place stand for one. `squared`: distance to the nearest place of the other
+/// tree.
+inline std::vector<double> weights_of(const Places& places,
+                                      const neighborhood::Nearest_neighbors& search,
+                                      const std::vector<double>& squared,
+                                      Point_weights kind)
+{
+  if (kind == Point_weights::area) {
+    std::vector<double> areas = area_weights(places.positions(), search);
+    lower_lonely(areas, squared);
+    return to_shares(std::move(areas));
+  }
   std::vector<double> numbers;
   for (std::size_t i = 0; i < places.positions().size(); ++i)
     numbers.push_back(static_cast<double>(places.size(i)));
@@ -134,9 +155,9 @@ inline Transport_plan match_places(const Places& places_1,
 {
   const std::vector<Vec3>&one = places_1.positions(), &two = places_2.positions();
   const neighborhood::Nearest_neighbors search_1(one), search_2(two);
-  problem.supplies = internal::weights_of(places_1, search_1, options.weights);
-  problem.demands = internal::weights_of(places_2, search_2, options.weights);
   const std::size_t n = one.size(), m = two.size();
+  std::vector<double> squared_1(n), squared_2(m); // distances to the nearest of the other tree
+  problem.supplies.clear();
   std::vector<std::size_t> wanted(n + m, options.number_of_neighbors);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> arcs;
   std::vector<neighborhood::Nearest_neighbors::Neighbor> found;
@@ -145,13 +166,19 @@ inline Transport_plan match_places(const Places& places_1,
     arcs.clear();
     for (std::size_t i = 0; i < n; ++i) {
       search_2(one[i], wanted[i], found);
+      squared_1[i] = found[0].squared_distance;
       for (const auto& f : found)
         arcs.emplace_back(static_cast<std::uint32_t>(i), f.index);
     }
     for (std::size_t j = 0; j < m; ++j) {
       search_1(two[j], wanted[n + j], found);
+      squared_2[j] = found[0].squared_distance;
       for (const auto& f : found)
         arcs.emplace_back(f.index, static_cast<std::uint32_t>(j));
+    }
+    if (problem.supplies.empty()) {
+      problem.supplies = internal::weights_of(places_1, search_1, squared_1, options.weights);
+      problem.demands = internal::weights_of(places_2, search_2, squared_2, options.weights);
     }
     std::sort(arcs.begin(), arcs.end());
     arcs.erase(std::unique(arcs.begin(), arcs.end()), arcs.end());
