@@ -79,21 +79,35 @@ PCS_ALWAYS_INLINE bool is_streamable(const double* to)
 /// Eight vectors.
 PCS_ALWAYS_INLINE void stream_block(double* to, const Lane_vectors& v)
 {
-  const auto value = [&](std::size_t k) PCS_LAMBDA_INLINE { return v.value[k % 3][k / 3]; };
-  pcs::internal::unroll<3 * lanes / 2>([&](auto half) PCS_LAMBDA_INLINE {
-    constexpr std::size_t k = 2 * decltype(half)::value;
-    pcs::internal::stream(value(k), value(k + 1), to + k);
+  pcs::internal::unroll<lanes / 2>([&](auto pair) PCS_LAMBDA_INLINE {
+    using namespace pcs::internal;
+    constexpr std::size_t l = 2 * decltype(pair)::value;
+    const Double_pair x = load_pair(v.value[0] + l);
+    const Double_pair y = load_pair(v.value[1] + l);
+    const Double_pair z = load_pair(v.value[2] + l);
+    double* const at = to + 3 * l;
+    stream(first_of(x, y), at);
+    stream(across(z, x), at + 2);
+    stream(second_of(y, z), at + 4);
   });
 }
 
 /// Eight pairs of vectors.
 PCS_ALWAYS_INLINE void stream_block(double* to, const Lane_vectors& u, const Lane_vectors& v)
 {
-  const auto value = [&](std::size_t k)
-                         PCS_LAMBDA_INLINE { return (k % 6 < 3 ? u : v).value[k % 3][k / 6]; };
-  pcs::internal::unroll<6 * lanes / 2>([&](auto half) PCS_LAMBDA_INLINE {
-    constexpr std::size_t k = 2 * decltype(half)::value;
-    pcs::internal::stream(value(k), value(k + 1), to + k);
+  pcs::internal::unroll<lanes / 2>([&](auto pair) PCS_LAMBDA_INLINE {
+    using namespace pcs::internal;
+    constexpr std::size_t l = 2 * decltype(pair)::value;
+    const Double_pair a = load_pair(u.value[0] + l), b = load_pair(u.value[1] + l);
+    const Double_pair c = load_pair(u.value[2] + l), d = load_pair(v.value[0] + l);
+    const Double_pair e = load_pair(v.value[1] + l), f = load_pair(v.value[2] + l);
+    double* const at = to + 6 * l;
+    stream(first_of(a, b), at);
+    stream(first_of(c, d), at + 2);
+    stream(first_of(e, f), at + 4);
+    stream(second_of(a, b), at + 6);
+    stream(second_of(c, d), at + 8);
+    stream(second_of(e, f), at + 10);
   });
 }
 
