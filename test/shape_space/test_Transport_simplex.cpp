@@ -232,6 +232,17 @@ BOOST_AUTO_TEST_CASE(a_gap_of_one_scan_does_not_shift_what_is_around_it)
   BOOST_TEST(mean_distance(Point_weights::equal) > 2.5 * spacing); // as the text has it
 }
 
+BOOST_AUTO_TEST_CASE(where_most_points_are_the_same_the_others_keep_their_weights)
+{
+  std::vector<double> areas(10, 2), squared(10, 0);
+  squared[8] = 0.28; // below (1.5 / 4)^2 * 2
+  squared[9] = 1.125;
+  pcs::shape_space::internal::lower_lonely(areas, squared);
+  BOOST_TEST(areas[0] == 2);
+  BOOST_TEST(areas[8] == 2);
+  BOOST_TEST(areas[9] == 2 * 0.28125 / 1.125);
+}
+
 BOOST_AUTO_TEST_CASE(points_in_one_place_cost_no_more_pivots_than_one)
 {
   std::mt19937 random(7);

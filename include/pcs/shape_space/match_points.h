@@ -91,18 +91,20 @@ inline std::vector<double> to_shares(std::vector<double> weights)
 }
 
 /// What is far from all points of the other tree, as opposite of a gap of its scan, has no partner there: with its full weight
-/// it would draw all that is between. Weights fall with the square of the distance, `squared` of each, from 1.5 times the
-/// median on.
-inline void lower_lonely(std::vector<double>& weights, const std::vector<double>& squared)
+/// it would draw all that is between. Weights, which come as areas, fall with the square of the distance, `squared` of each,
+/// from 1.5 times the median on. The median is at least a quarter of the spacing: most points of two trees may be the same.
+inline void lower_lonely(std::vector<double>& areas, const std::vector<double>& squared)
 {
-  constexpr double near = 1.5, least = 1. / 64;
-  std::vector<double> sorted(squared);
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const double limit = near * near * *middle;
-  for (std::size_t i = 0; i < weights.size(); ++i)
+  constexpr double near = 1.5, least = 1. / 64, spacing = 1. / 4;
+  const auto median = [](std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+  };
+  const double limit = near * near * std::max(median(squared), spacing * spacing * median(areas));
+  for (std::size_t i = 0; i < areas.size(); ++i)
     if (squared[i] > limit)
-      weights[i] *= std::max(least, limit / squared[i]);
+      areas[i] *= std::max(least, limit / squared[i]);
 }
 
 /// Shares of the whole: as an area, all points of a place stand for one. `squared`: distance to the nearest place of the other
