@@ -26,8 +26,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -44,53 +42,16 @@ struct Tree_file
   bool has_valid_normals = false;
 };
 
-/// The ids of an SWC file in the order of its lines, which is the order of the nodes.
-inline std::vector<std::int64_t> read_swc_ids(const std::string& path)
-{
-  std::vector<std::int64_t> ids;
-  std::ifstream file(path);
-  for (std::string line; std::getline(file, line);) {
-    std::istringstream words(line);
-    double id = 0;
-    if (line.find_first_not_of(" \t\r") != std::string::npos &&
-        line[line.find_first_not_of(" \t\r")] != '#' && words >> id)
-      ids.push_back(std::llround(id));
-  }
-  return ids;
-}
-
-/// Likewise of a CSV file; its columns are in any order.
-inline std::vector<std::int64_t> read_csv_ids(const std::string& path)
-{
-  std::vector<std::int64_t> ids;
-  std::ifstream file(path);
-  std::size_t column = pcs::npos;
-  for (std::string line; std::getline(file, line);) {
-    std::istringstream cells(line);
-    std::string cell;
-    for (std::size_t c = 0; c <= column && std::getline(cells, cell, ','); ++c) {
-      std::istringstream word(cell);
-      if (double id = 0; c == column && word >> id)
-        ids.push_back(std::llround(id));
-      else if (std::string name; column == pcs::npos && word >> name && name == "id")
-        column = c;
-    }
-  }
-  return ids;
-}
-
 inline void read_skeleton(const std::string& path, Tree_file& tree)
 {
   const std::filesystem::path extension = std::filesystem::path(path).extension();
-  if (extension == ".txtskl")
+  if (extension == ".txtskl" || extension == ".TXTSKL")
     pcs::IO::read_txtskl<Kernel>(path, tree.skeleton);
-  else if (extension == ".csv") {
-    pcs::IO::read_tree_csv<Kernel>(path, tree.skeleton);
-    tree.ids = read_csv_ids(path);
-  } else {
-    pcs::IO::read_swc<Kernel>(path, tree.skeleton);
-    tree.ids = read_swc_ids(path);
-  }
+  else if (extension == ".csv" || extension == ".CSV") {
+    std::vector<std::size_t> hits;
+    pcs::IO::read_tree_csv<Kernel>(path, tree.skeleton, hits, tree.ids);
+  } else
+    pcs::IO::read_swc<Kernel>(path, tree.skeleton, tree.ids);
 }
 
 inline Kernel::Vector_3 up_direction(const std::string& up)
@@ -160,11 +121,8 @@ inline Tree_file read_tree(const std::string& points,
     check_place(points, skeleton, tree);
   if (do_extend_axes && !skeleton.empty())
     pcs::shape_space::extend_axes(tree.skeleton, tree.points.points());
-  if (tree.ids.size() != num_vertices(tree.skeleton)) {
-    tree.ids.clear();
-    for (std::size_t v = 0; v < num_vertices(tree.skeleton); ++v)
-      tree.ids.push_back(static_cast<std::int64_t>(v) + 1);
-  }
+  for (std::size_t v = tree.ids.size(); v < num_vertices(tree.skeleton); ++v) // the file has none
+    tree.ids.push_back(static_cast<std::int64_t>(v) + 1);
   if (tree.points.has_normals()) {
     tree.has_valid_normals = true;
     for (const auto& n : tree.points.normals()) {

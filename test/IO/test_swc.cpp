@@ -72,6 +72,22 @@ BOOST_AUTO_TEST_CASE(a_tree_comes_back_bit_by_bit)
   BOOST_TEST(number_of_files() == 1u);
 }
 
+BOOST_AUTO_TEST_CASE(ids_are_those_of_the_file)
+{
+  // not whole as doubles; behind a byte order mark
+  Tree tree;
+  std::vector<std::int64_t> ids = {1};
+  const std::string large = "900719925474099";
+  pcs::IO::read_swc<Kernel>(file("a.swc",
+                                 "\xEF\xBB\xBF" + large + "33 1 0 0 0 1 -1\r\n" + large +
+                                     "31 1 0 0 1 1 " + large + "33\r\n"),
+                            tree,
+                            ids);
+  BOOST_TEST((ids == std::vector<std::int64_t>{90071992547409933, 90071992547409931}));
+  pcs::IO::read_swc<Kernel>(file("b.swc", "\xEF\xBB\xBF# a remark\n7 1 0 0 0 1 -1\n"), tree, ids);
+  BOOST_TEST((ids == std::vector<std::int64_t>{7}));
+}
+
 BOOST_AUTO_TEST_CASE(the_text_is_as_the_format_wants_it)
 {
   const Tree tree = pcs_test::make_tree<Kernel>(

@@ -93,6 +93,19 @@ BOOST_AUTO_TEST_CASE(hits_may_be_missing_and_columns_stand_in_any_order)
   BOOST_TEST(tree[boost::graph_bundle].branches[0].id == 8u);
 }
 
+BOOST_AUTO_TEST_CASE(ids_are_those_of_the_file)
+{
+  Tree tree;
+  std::vector<std::size_t> hits;
+  std::vector<std::int64_t> ids;
+  pcs::IO::read_tree_csv<Kernel>(
+      file("a.csv", "\xEF\xBB\xBF" + header + "90071992547409933,-1,0,0,0,0,0,1,1,1,0\n"),
+      tree,
+      hits,
+      ids);
+  BOOST_TEST((ids == std::vector<std::int64_t>{90071992547409933}));
+}
+
 BOOST_AUTO_TEST_CASE(malformed_files_are_refused_with_the_line)
 {
   refuses_tree("", "the file is empty");

@@ -178,12 +178,13 @@ BOOST_AUTO_TEST_CASE(skeletons_alone_give_skeletons_alone)
 
 BOOST_AUTO_TEST_CASE(skeletons_may_be_tables)
 {
-  // columns in another order, ids that are no numbers of rows
-  write("a.csv",
+  // a byte order mark, columns in another order, ids that are no numbers of rows
+  write("a.CSV",
+        "\xEF\xBB\xBF"
         "parent,id,branch,order,x,y,z,r,a,b\n-1,7,0,0,0,0,0,0.2,0.2,0.2\n"
         "7,9,0,0,0,0,1,0.2,0.2,0.2\n9,20,0,0,0,0,2,0.1,0.1,0.1\n9,30,1,1,1,0,1.5,0.1,0.1,0.1\n");
   write("a.txtskl", txtskl);
-  succeeds("--skeleton a.csv --skeleton a.txtskl --up y --output out --lambda 0 --matches m.csv");
+  succeeds("--skeleton a.CSV --skeleton a.txtskl --up y --output out --lambda 0 --matches m.csv");
   BOOST_TEST(num_vertices(swc("out/lambda_0.000.swc")) >= 4u);
   const std::string matches = content("m.csv");
   BOOST_TEST(matches.find("\n20,") != std::string::npos);

@@ -32,6 +32,7 @@ namespace IO {
   \tparam Kernel a kernel of CGAL
   \param path name of the file
   \param tree is replaced; unchanged when an exception is thrown
+  \param ids is replaced by the ids of the nodes in the file
   \throws pcs::IO_error when the file cannot be read, a line does not have seven columns of finite
           numbers, an id is used twice, a parent is missing, a radius is negative, or the nodes do
           not form one tree with one root (parent -1)
@@ -39,7 +40,7 @@ namespace IO {
   Linear in the size of the file.
 */
 template <class Kernel>
-void read_swc(const std::string& path, Tree_skeleton<Kernel>& tree)
+void read_swc(const std::string& path, Tree_skeleton<Kernel>& tree, std::vector<std::int64_t>& ids)
 {
   using FT = typename Kernel::FT;
   internal::Input_file file(path);
@@ -47,6 +48,8 @@ void read_swc(const std::string& path, Tree_skeleton<Kernel>& tree)
   std::vector<Tree_node<Kernel>> nodes;
   std::string_view line;
   while (file.read_line(line)) {
+    if (file.line_number() == 1 && line.substr(0, 3) == "\xEF\xBB\xBF") // byte order mark
+      line.remove_prefix(3);
     line = internal::trim(line);
     if (line.empty() || line[0] == '#')
       continue;
@@ -84,6 +87,18 @@ void read_swc(const std::string& path, Tree_skeleton<Kernel>& tree)
   result[boost::graph_bundle].root = links.root();
   assign_branches<Kernel>(result);
   tree = result;
+  ids.clear();
+  for (const internal::Tree_row& row : rows)
+    ids.push_back(row.id);
+}
+
+//! \ingroup PkgPcsIORef
+//! the same for a caller who does not want the ids
+template <class Kernel>
+void read_swc(const std::string& path, Tree_skeleton<Kernel>& tree)
+{
+  std::vector<std::int64_t> ids;
+  read_swc<Kernel>(path, tree, ids);
 }
 
 } // namespace IO

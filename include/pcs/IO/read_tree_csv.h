@@ -135,6 +135,7 @@ private:
   \param path name of the file
   \param tree is replaced; unchanged when an exception is thrown
   \param hits is replaced by one number per node, or emptied when the file has no such column
+  \param ids is replaced by the ids of the nodes in the file
   \throws pcs::IO_error when the file cannot be read, a line is malformed, the nodes do not form one
           tree with one root, or the nodes of a branch are not a chain
   \par Complexity
@@ -143,7 +144,8 @@ private:
 template <class Kernel>
 void read_tree_csv(const std::string& path,
                    Tree_skeleton<Kernel>& tree,
-                   std::vector<std::size_t>& hits)
+                   std::vector<std::size_t>& hits,
+                   std::vector<std::int64_t>& ids)
 {
   using FT = typename Kernel::FT;
   internal::Input_file file(path);
@@ -209,6 +211,20 @@ void read_tree_csv(const std::string& path,
   result[boost::graph_bundle].root = links.root();
   tree = result;
   hits.swap(counts);
+  ids.clear();
+  for (const internal::Tree_row& row : rows)
+    ids.push_back(row.id);
+}
+
+//! \ingroup PkgPcsIORef
+//! the same for a caller who does not want the ids
+template <class Kernel>
+void read_tree_csv(const std::string& path,
+                   Tree_skeleton<Kernel>& tree,
+                   std::vector<std::size_t>& hits)
+{
+  std::vector<std::int64_t> ids;
+  read_tree_csv<Kernel>(path, tree, hits, ids);
 }
 
 //! \ingroup PkgPcsIORef
