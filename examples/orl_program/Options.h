@@ -106,6 +106,7 @@ inline void declare_family(CLI::App& app, Options& o)
                  o.number_of_modes,
                  "so many modes of variation, at two standard deviations either way: "
                  "mode_1_minus.swc, mode_1_plus.swc, ..., and modes.json")
+      ->check(CLI::Range(0, 10000))
       ->group(group);
   app.add_option("--sample", o.number_of_samples, "so many new trees: sample_0000.swc, ...")
       ->check(CLI::Range(0, 10000))

@@ -235,6 +235,7 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_with_a_sentence)
   refuses(skeletons + "--mean --times 0,1,2 --output out", "--growth");
   refuses(skeletons + "--mean --mean-kind l3 --output out", "mean-kind");
   refuses(skeletons + "--sample -1 --output out", "sample");
+  refuses(skeletons + "--modes -1 --output out", "modes");
   refuses(skeletons + "--mean --matches m.csv --output out", "two trees");
   refuses(skeletons + "--load-space s.txt --mean --output out", "one of both");
   refuses("--load-space missing.txt --mean --output out", "missing.txt");
