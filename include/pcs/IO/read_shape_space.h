@@ -27,7 +27,7 @@ public:
   {
     Orl_space_data s;
     m_file.expect("pcs_shape_space");
-    m_file.expect("4");
+    m_file.expect("5");
     m_file.expect("orientation");
     s.orientation = m_file.number<int>("the kind of orientations");
     read_all(s.origin);

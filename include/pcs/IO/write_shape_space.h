@@ -26,7 +26,7 @@ public:
 
   void write(const Orl_space_data& s)
   {
-    m_line = "pcs_shape_space 4\norientation";
+    m_line = "pcs_shape_space 5\norientation";
     add(s.orientation);
     add_all(s.origin);
     end();

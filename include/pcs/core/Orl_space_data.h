@@ -64,7 +64,7 @@ struct Orl_space_data
   std::vector<Tree> trees;
   Tree reference;
   Weights weights;
-  std::array<double, 13> matching = {}; ///< `shape_space::Matching_weights`
+  std::array<double, 14> matching = {}; ///< `shape_space::Matching_weights`
   std::vector<Orl_correspondences::Pair> pairs;
   bool has_normals = false;
   std::vector<Point> points;

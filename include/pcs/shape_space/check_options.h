@@ -31,7 +31,7 @@ inline void check_options(const Matching_weights& w,
   check(is_weight(w.position) && is_weight(w.single) && is_weight(w.children) &&
             is_weight(w.carried) && is_weight(w.turn) && is_weight(w.length),
         "the weights of the matching must be >= 0 and finite");
-  check(w.far > 0, "the distance `far` must be > 0");
+  check(w.far > 0 && std::isfinite(w.far), "the distance `far` must be > 0 and finite");
   check(w.fork_ratio > 0 && w.fork_ratio <= 1, "`fork_ratio` must be in (0, 1]");
   check(w.trunk_fork_ratio > 0 && w.trunk_fork_ratio <= 1, "`trunk_fork_ratio` must be in (0, 1]");
   check(w.number_of_paths > 0 && w.number_of_trials > 0,

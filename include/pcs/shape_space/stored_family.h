@@ -84,7 +84,8 @@ inline Orl_space_data store_family(const Tree_family& family)
                      static_cast<double>(m.number_of_trials),
                      m.length,
                      m.turn,
-                     m.far};
+                     m.far,
+                     m.trunk_fork_ratio};
   return result;
 }
 
@@ -173,9 +174,9 @@ inline Tree_family restore_family(const Orl_space_data& stored, const std::strin
   family.weights = {w.orientation, w.length, w.radius, w.base_radius, w.attachment, w.root};
   for (const double v : stored.matching)
     check(is_length(v), "a weight of the matching is not from 0 to 1e100");
-  check(stored.matching[8] >= 1 && stored.matching[8] < 1000 && stored.matching[9] >= 1 &&
-            stored.matching[9] < 1000,
-        "a number of paths or trials is out of range");
+  for (const std::size_t i : {8, 9})
+    check(stored.matching[i] >= 1 && stored.matching[i] <= 1e15,
+          "a number of paths or trials is out of range");
   Matching_weights& weights = family.matching;
   weights.curve = stored.matching[0];
   weights.position = stored.matching[1];
@@ -190,6 +191,7 @@ inline Tree_family restore_family(const Orl_space_data& stored, const std::strin
   weights.length = stored.matching[10];
   weights.turn = stored.matching[11];
   weights.far = stored.matching[12];
+  weights.trunk_fork_ratio = stored.matching[13];
   internal::find_growth_direction(family);
   return family;
 }
