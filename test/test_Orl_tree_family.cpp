@@ -363,6 +363,22 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(orl_modes)
 
+BOOST_AUTO_TEST_CASE(equal_trees_are_no_outliers)
+{
+  for (const std::size_t n : {std::size_t(2), std::size_t(3)}) {
+    Space space;
+    for (std::size_t k = 0; k < n; ++k)
+      space.add_skeleton(orl_test::random_tree(8, 3, 2));
+    space.build();
+    for (const Mode_measure measure : {Mode_measure::branches, Mode_measure::metric}) {
+      const auto modes = space.modes(9, np::mode_measure(measure));
+      BOOST_TEST(modes.size() == 0u);
+      for (std::size_t h = 0; h < n; ++h)
+        BOOST_TEST(space.outlier_score(modes, space.tree(h)) == 0);
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(all_modes_give_the_inputs_back)
 {
   const Family space(6);
@@ -1139,6 +1155,20 @@ BOOST_AUTO_TEST_CASE(a_space_with_folds_is_saved_and_restored)
   BOOST_REQUIRE(num_vertices(one) == num_vertices(two));
   for (std::size_t v = 0; v < num_vertices(one); ++v)
     BOOST_TEST((one[v].point == two[v].point));
+}
+
+BOOST_AUTO_TEST_CASE(weights_of_the_matching_are_kept)
+{
+  Matching_weights weights;
+  weights.trunk_fork_ratio = 0.125;
+  weights.number_of_paths = 2000;
+  Space space, other;
+  for (const Tree& tree : relatives(3, 51))
+    space.add_skeleton(tree);
+  space.build(np::matching_weights(weights));
+  other.restore(space.data());
+  BOOST_TEST((other.data().matching == space.data().matching));
+  BOOST_TEST(other.data().matching.back() == 0.125);
 }
 
 BOOST_AUTO_TEST_CASE(a_space_is_saved_and_restored)

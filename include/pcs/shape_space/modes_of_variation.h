@@ -30,6 +30,7 @@ struct Mode_features
   Eigen::VectorXd mean;                 ///< [L]
   Eigen::MatrixXd directions;           ///< per standard deviation of each mode (column) [L]
   std::vector<double> weight, variance; ///< per block, see `Tree_covariance`
+  double least_deviation = 0;           ///< smaller ones are rounding [L]
 };
 
 /// Where a tree lies in the space of the modes.
@@ -124,7 +125,7 @@ inline Mode_fit fit_modes(const Tree_features& features,
   if (!(scale > 0))
     for (std::size_t b = 0; b < features.number_of_blocks(); ++b)
       if (has[b] && (values - modes.mean).segment(features.first(b), features.size(b)).norm() >
-                        1e-9 * modes.mean.norm())
+                        modes.least_deviation)
         apart = std::numeric_limits<double>::infinity();
   const auto add_distance = [&] {
     result.distance.push_back(scale > 0 ? std::sqrt(rest.squaredNorm() / scale) : apart);
@@ -166,8 +167,10 @@ inline Mode_fit fit_modes(const Tree_features& features,
 inline void set_features(const Tree_features& features,
                          const Tree_covariance& covariance,
                          const Eigen::MatrixXd& scores,
+                         double least_deviation,
                          Mode_features& modes)
 {
+  modes.least_deviation = least_deviation;
   modes.mean = covariance.mean();
   modes.directions =
       covariance.deviations() * scores / std::max(1.0, static_cast<double>(scores.rows() - 1));
@@ -256,7 +259,7 @@ Modes_of_variation find_modes(const Orl_layout& layout,
   result.shares =
       Eigen::Map<Eigen::VectorXd>(shares.data(), static_cast<Eigen::Index>(shares.size()));
   result.features.measure = measure;
-  internal::set_features(features, covariance, result.scores, result.features);
+  internal::set_features(features, covariance, result.scores, least, result.features);
   if (n > 2) {
     result.left_out.resize(trees.size());
     pcs::internal::for_each_index<ConcurrencyTag>(
@@ -283,6 +286,7 @@ Modes_of_variation find_modes(const Orl_layout& layout,
           internal::set_features(features,
                                  rest,
                                  p.vectors.leftCols(k) * std::sqrt(static_cast<double>(n - 2)),
+                                 least,
                                  modes);
           result.left_out[t] =
               internal::fit_modes(features, modes, values.col(static_cast<Eigen::Index>(t)), has[t])
