@@ -95,7 +95,9 @@ public:
         m_branch_of[layout.branches[b].first_edge + j] = static_cast<std::uint32_t>(b);
     m_is_flat.assign(n, 0);
     m_lines.resize(m_pairs.size());
-    m_has_normals = !normals[0].empty() && !normals[1].empty();
+    m_has_normals = normals[0].size() == points[0].size() &&
+                    normals[1].size() == points[1].size() &&
+                    !(points[0].empty() && points[1].empty());
     m_normals.resize(m_has_normals ? m_pairs.size() : 0);
     pcs::internal::for_each_index<ConcurrencyTag>(
         n,
@@ -257,11 +259,13 @@ private:
   {
     const bool is_relative = m_is_relative[e] != 0, is_flat = m_is_flat[e] != 0;
     if (path == Point_path::virtual_edges) {
-      for (std::size_t k = m_first[e]; k < m_first[e + 1]; ++k)
+      for (std::size_t k = m_first[e]; k < m_first[e + 1]; ++k) {
+        const double angle = is_flat ? 0 : m_lines[k].angle + s * m_lines[k].d_angle;
         put(to++,
             on_virtual_edge(edge, m_lines[k], is_relative, is_flat, s),
-            Vec3(Vec3::Zero()),
+            normal_at(edge, k, s, std::sin(angle), std::cos(angle)),
             k);
+      }
       return;
     }
     constexpr std::size_t block = 64;
@@ -286,19 +290,23 @@ private:
       }
       for (std::size_t i = 0; i < n; ++i) {
         const Vec3 p = edge.from + edge.frame * Vec3(px[i], py[i], pz[i]);
-        Vec3 normal = Vec3::Zero();
-        if (m_has_normals) {
-          const auto& ends = m_normals[begin + i];
-          const Vec3 m = (1 - s) * ends[0] + s * ends[1];
-          const double length = m.norm();
-          const Vec3 local = length > 0 ? Vec3(m / length) : ends[0];
-          normal = edge.frame * Vec3(cosines[i] * local.x() - sines[i] * local.y(),
-                                     sines[i] * local.x() + cosines[i] * local.y(),
-                                     local.z());
-        }
-        put(to++, p, normal, begin + i);
+        put(to++, p, normal_at(edge, begin + i, s, sines[i], cosines[i]), begin + i);
       }
     }
+  }
+
+  /// Null without normals. `sine`, `cosine`: of the angle of the point.
+  Vec3 normal_at(const Edge_cone& edge, std::size_t k, double s, double sine, double cosine) const
+  {
+    if (!m_has_normals)
+      return Vec3::Zero();
+    const auto& ends = m_normals[k];
+    const Vec3 m = (1 - s) * ends[0] + s * ends[1];
+    const double length = m.norm();
+    const Vec3 local = length > 0 ? Vec3(m / length) : ends[0];
+    return edge.frame * Vec3(cosine * local.x() - sine * local.y(),
+                             sine * local.x() + cosine * local.y(),
+                             local.z());
   }
 
   /// The text's way: the edge from the beginning of the edge to the point is turned by slerp, its length is linear.
