@@ -867,6 +867,26 @@ BOOST_AUTO_TEST_CASE(normals_follow_their_edges)
     error[i] = std::sqrt((points[i].second - n / std::sqrt(n.squared_length())).squared_length());
   });
   BOOST_TEST(*std::max_element(error.begin(), error.end()) < 1e-12);
+
+  // on the text's virtual edges, too, and where one scan has no points
+  Space half;
+  half.add(a, scan_a, maps);
+  half.add(b, std::vector<Oriented>(), maps);
+  half.build();
+  BOOST_TEST(half.has_normals());
+  for (const Space* s : {&space, &half})
+    for (const Point_path path : {Point_path::cylindrical, Point_path::virtual_edges}) {
+      const auto middle = s->geodesic(0, 1, 0.5);
+      s->points(middle, points, maps.point_path(path));
+      const Eigen::Matrix3d half_way = Eigen::AngleAxisd(0.4, Vec3::UnitX()).toRotationMatrix();
+      double worst = 0;
+      s->for_each_point(middle, [&](std::size_t i, std::size_t k, std::size_t, double) {
+        const Kernel::Vector_3 from = scan_a[k].second, to = points[i].second;
+        const Vec3 n = half_way * Vec3(from.x(), from.y(), from.z()).normalized();
+        worst = std::max(worst, (n - Vec3(to.x(), to.y(), to.z())).norm());
+      });
+      BOOST_TEST(worst < 1e-6);
+    }
 }
 
 BOOST_AUTO_TEST_SUITE_END()
@@ -926,7 +946,43 @@ BOOST_AUTO_TEST_CASE(broken_trees_are_refused_with_a_reason)
   BOOST_CHECK_THROW(space.geodesic(0, 2, 0.5), pcs::Invalid_input);
   BOOST_CHECK_THROW(space.geodesic(0, 1, std::numeric_limits<double>::quiet_NaN()),
                     pcs::Invalid_input);
+  BOOST_CHECK_THROW(space.geodesic(0, 0, std::numeric_limits<double>::quiet_NaN()),
+                    pcs::Invalid_input);
   BOOST_TEST(space.distance(0, 1) < 1e-9);
+  Matching_weights weights;
+  weights.far = std::numeric_limits<double>::infinity(); // could not be saved
+  BOOST_CHECK_EXCEPTION(space.build(np::matching_weights(weights)),
+                        pcs::Invalid_input,
+                        message_has("far"));
+}
+
+BOOST_AUTO_TEST_CASE(trees_of_other_spaces_and_spaces_that_were_moved_are_refused)
+{
+  const auto same = [](std::size_t n) {
+    Space space;
+    for (std::size_t k = 0; k < n; ++k)
+      space.add_skeleton(random_tree(22, 2, 2));
+    space.build();
+    return space;
+  };
+  const Space other = make_space(random_tree(23, 3, 2), random_tree(24, 3, 2)), four = same(4);
+  Space three = same(3);
+  BOOST_TEST(three.layout().number_of_edges() == four.layout().number_of_edges());
+  const auto own = three.tree(0);
+  for (const pcs::Orl_tree& strange : {other.tree(0), four.tree(3), pcs::Orl_tree()}) {
+    BOOST_CHECK_EXCEPTION(three.geodesic(own, strange, 0.5),
+                          pcs::Invalid_input,
+                          message_has("another space"));
+    BOOST_CHECK_EXCEPTION(three.geodesic(strange, own, 0.5),
+                          pcs::Invalid_input,
+                          message_has("another space"));
+  }
+  const Space to = std::move(three);
+  BOOST_CHECK_EXCEPTION(three.embed(random_tree(22, 2, 2)),
+                        pcs::Invalid_input,
+                        message_has("build()"));
+  BOOST_CHECK_EXCEPTION(three.data(), pcs::Invalid_input, message_has("build()"));
+  BOOST_TEST(to.distance(0, 2) < 1e-9);
 }
 
 BOOST_AUTO_TEST_CASE(a_tree_of_one_edge_and_points_far_away_are_no_trouble)

@@ -89,7 +89,7 @@ public:
   {
     check_built("geodesic");
     this->check_handle(std::max(a, b), "geodesic");
-    if (a == b)
+    if (a == b && std::isfinite(lambda))
       lambda = 0;
     // one direction only, so that the path back is the same
     const double t = a <= b ? lambda : 1 - lambda;
@@ -115,6 +115,8 @@ public:
                     const NamedParameters& np = NamedParameters()) const
   {
     check_built("geodesic");
+    this->check_tree(a, "geodesic");
+    this->check_tree(b, "geodesic");
     Orl_tree result;
     this->mix_shares(
         {&a, &b},
@@ -146,7 +148,8 @@ public:
     \brief writes the points of a tree of the space.
 
     Pairs come by edge; at `lambda` 0 and 1 the points are those of the scans, as often as they have partners, and points
-    of branches that the tree lacks are left out.
+    of branches that the tree lacks are left out. Where a branch of both trees has points in one scan only, these are
+    there all along the path.
 
     \param result a random access range; a container with `resize()` gets the size `t.number_of_points()`, which
            allocates nothing if its capacity suffices; another range must have that size at least
@@ -311,7 +314,7 @@ protected:
   }
   void check_built(const char* caller) const
   {
-    if (!m_is_built)
+    if (!m_is_built || this->m_family.x.empty()) // empty: moved from
       throw Invalid_input(std::string("pcs::Orl_shape_space::") + caller +
                           "(): call build() first");
   }

@@ -163,7 +163,8 @@ protected:
   {
     check_family(caller);
     if (t.m_x.length.size() != m_family.layout.number_of_edges() ||
-        t.m_x.attachment.size() != m_family.layout.branches.size())
+        t.m_x.attachment.size() != m_family.layout.branches.size() ||
+        (!t.m_share.empty() && t.m_share.size() != number_of_trees()))
       throw Invalid_input(std::string("pcs::Orl_shape_space::") + caller +
                           "(): the tree is of another space");
   }
@@ -186,6 +187,10 @@ protected:
                                 result.m_x,
                                 m_family.orientation,
                                 result.m_geometry);
+    for (const shape_space::Vec3& p : result.m_geometry.node)
+      if (!p.allFinite())
+        throw Invalid_input("pcs::Orl_shape_space: a step, weight or score leads to lengths that "
+                            "are no finite numbers");
     m_family.find_offsets(result.m_x, result.m_offset);
     return result;
   }
