@@ -687,6 +687,26 @@ BOOST_AUTO_TEST_CASE(the_way_back_has_the_same_branches_and_is_as_long)
   }
 }
 
+BOOST_AUTO_TEST_CASE(the_way_back_between_trees_of_the_same_lengths_is_as_long)
+{
+  for (const unsigned seed : {1u, 11u, 17u}) {
+    const std::vector<Branch> branches = random_branches(seed, 5, 3);
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    Turns turns;
+    for (std::size_t b = 0; b < branches.size(); ++b) {
+      const double angle = 0.5 * normal(random), x = normal(random), y = normal(random);
+      turns.push_back(
+          Eigen::AngleAxisd(b == 0 ? 0 : angle, Vec3(x, y, 1).normalized()).toRotationMatrix());
+    }
+    std::vector<std::size_t> tip;
+    const Tree a = make_tree(branches);
+    const Tree b = make_tree(branches, turns, std::vector<char>(branches.size(), 1), tip);
+    const double there = make_space(a, b).distance(0, 1), back = make_space(b, a).distance(0, 1);
+    BOOST_TEST(std::abs(there - back) < 1e-9 * there);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(a_tree_in_another_unit_is_the_same)
 {
   const Tree a = random_tree(15);

@@ -220,12 +220,23 @@ private:
 
 namespace internal {
 
-/// Whether a tree comes first where two are matched: the shorter one, if that can be told in spite of rounding.
+/// How far the edges of a tree reach from its root: the same however it stands. [L^3]
+inline double second_moment(const Rooted_tree& tree)
+{
+  double sum = 0;
+  for (std::size_t v = 1; v < tree.size(); ++v)
+    sum += tree.edge_length(v) * tree.points[v].squaredNorm();
+  return sum;
+}
+
+/// Whether a tree comes first where two are matched: the shorter one, of equally long ones the more compact one, if that can
+/// be told in spite of rounding.
 inline bool is_clearly_shorter(const Rooted_tree& one, const Rooted_tree& two)
 {
   constexpr double rounding = 1e-9;
   for (const auto& [a, b] : {std::make_pair(one.weights[0], two.weights[0]),
-                             std::make_pair(one.heights[0], two.heights[0])})
+                             std::make_pair(one.heights[0], two.heights[0]),
+                             std::make_pair(second_moment(one), second_moment(two))})
     if (std::abs(a - b) > rounding * (a + b))
       return a < b;
   return false;
