@@ -279,7 +279,6 @@ BOOST_AUTO_TEST_CASE(a_handle_outside_the_region_is_refused)
   BOOST_CHECK_EXCEPTION(deform(edit.points, edit.handles, options),
                         Invalid_input,
                         message_has("out of range"));
-  // the same place inside and outside counts as inside
   options.region_of_interest = std::vector<std::size_t>();
   BOOST_CHECK_THROW(deform(edit.points, edit.handles, options), Invalid_input);
 }
@@ -330,6 +329,21 @@ BOOST_AUTO_TEST_CASE(every_softness_gives_a_finite_result)
                           pcs::Invalid_input,
                           message_has("between 1e-9 and 1e9"));
   }
+}
+
+BOOST_AUTO_TEST_CASE(a_small_soft_handle_is_held_on_every_level)
+{
+  // Of 1000 samples and more, there are coarser networks, in which no node is in the handle.
+  const Points points = pcs_test::box(8, 8, 16, 0.1);
+  for (const std::size_t i : {0, 77, 301})
+    for (const long long samples : {1000, 1000000}) {
+      const Vec3 shift(1, 2, 3);
+      const auto result =
+          deform(points, {{{i}, pcs::translation(shift), 1}}, with_samples(samples));
+      BOOST_TEST(result.report.status != Status::numerical_failure);
+      for (std::size_t k = 0; k < points.size(); ++k)
+        BOOST_REQUIRE((result.points[k] - (points[k] + shift)).norm() < 1e-6);
+    }
 }
 
 BOOST_AUTO_TEST_CASE(soft_handles_lie_between_free_and_exact)

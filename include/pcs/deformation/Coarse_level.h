@@ -17,6 +17,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -84,6 +85,7 @@ public:
     m_constraints.softness_weight = of_finer.softness_weight;
     for (const auto node : m_node_of_sample)
       m_constraints.handle_of_node.push_back(of_finer.handle_of_node[node]);
+    draw_nodes_of_soft_handles(of_finer);
   }
 
   /// Prepares `improve()`. Returns `false` if a matrix is singular.
@@ -150,6 +152,21 @@ public:
   }
 
 private:
+  /// A soft handle between the nodes draws those in whose regions it lies, in every component that it holds.
+  void draw_nodes_of_soft_handles(const Node_constraints& of_finer)
+  {
+    auto& of_node = m_constraints.handle_of_node;
+    std::set<std::pair<Node_constraint, std::uint32_t>> has_node; // handle and component
+    for (std::size_t i = 0; i < of_node.size(); ++i)
+      has_node.emplace(of_node[i], m_component[i]);
+    for (std::size_t i = 0; i < m_sample_of_node.size(); ++i) {
+      const std::uint32_t node = m_sample_of_node[i];
+      if (of_finer.is_soft(i) && node != no_sample && of_node[node] == free_node &&
+          has_node.count({of_finer.handle_of_node[i], m_component[node]}) == 0)
+        of_node[node] = of_finer.handle_of_node[i];
+    }
+  }
+
   void to_finer(std::vector<Vec3>& values)
   {
     m_fine.assign(m_sample_of_node.size(), Vec3::Zero());
