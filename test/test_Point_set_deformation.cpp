@@ -9,7 +9,9 @@
 #include <boost/test/unit_test.hpp>
 
 #include <limits>
+#include <numeric>
 #include <thread>
+#include <type_traits>
 
 namespace {
 
@@ -196,6 +198,25 @@ BOOST_AUTO_TEST_CASE(a_snapshot_brings_back_points_and_motions)
   }
 }
 
+BOOST_AUTO_TEST_CASE(a_snapshot_brings_back_the_parts_of_motions)
+{
+  Bar_session s(150);
+  const Vec3 axis(0, 0, 1), offset(.5, 0, 0), probe(1, 2, 3);
+  s.session.set_translation(1, offset);
+  s.session.deform();
+  const auto translated = s.session.snapshot();
+  s.session.set_rotation(1, axis, 1);
+  s.session.deform();
+  s.session.restore(translated);
+  s.session.set_rotation(1, axis, 2);
+  const Vec3 center = s.session.centroid(1);
+  const auto both = pcs::translation(offset) * pcs::rotation(axis, 2, center);
+  BOOST_TEST((s.session.transformation(1)(probe) - both(probe)).norm() < 1e-14);
+  s.session.restore(translated);
+  s.session.set_translation(1, 2 * offset);
+  BOOST_TEST((s.session.transformation(1)(probe) - (probe + 2 * offset)).norm() < 1e-14);
+}
+
 BOOST_AUTO_TEST_CASE(a_snapshot_of_another_session_is_refused)
 {
   Bar_session a(150), b(151);
@@ -320,6 +341,23 @@ BOOST_AUTO_TEST_CASE(an_accepted_shape_is_the_new_rest_shape)
   }
 }
 
+BOOST_AUTO_TEST_CASE(handles_that_do_not_move_keep_every_bit_of_an_accepted_shape)
+{
+  for (const int samples : both_resolutions) {
+    Bar_session s(samples);
+    s.session.set_transformation(1, bend());
+    s.session.deform();
+    for (Vec3& p : s.points) // what the map gives is accepted, whoever wrote it
+      p *= 1.1;
+    s.session.accept();
+    const Points accepted = s.points;
+    s.session.set_translation(0, Vec3(.1, 0, 0));
+    s.session.deform();
+    for (const auto i : s.edit.handles[1].indices)
+      BOOST_REQUIRE((s.points[i] == accepted[i]));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(many_accepted_steps_do_not_blow_up)
 {
   Bar_session s(150);
@@ -350,6 +388,83 @@ BOOST_AUTO_TEST_CASE(points_of_a_removed_handle_are_free_again)
     s.session.remove_handle(1);
     BOOST_TEST(s.session.deform().status == Status::nothing_to_do);
     BOOST_TEST(pcs_test::largest_distance(s.points, s.edit.points) < 1e-12);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_new_handle_in_a_region_takes_its_points_back_to_rest)
+{
+  const Bar_edit edit;
+  for (const int samples : both_resolutions) {
+    Points points = edit.points;
+    const auto region = pcs_test::select(points, [](const Vec3& p) { return p.z() > .5; });
+    const auto np = pcs::parameters::number_of_samples(samples).region_of_interest(region);
+    pcs::Point_set_deformation<Points, std::decay_t<decltype(np)>> session(points, np);
+    session.set_transformation(session.add_handle(edit.handles[1].indices), bend());
+    session.deform();
+    const auto middle = middle_of(edit.points);
+    session.add_handle(middle);
+    session.deform();
+    for (const auto i : middle)
+      BOOST_REQUIRE((points[i] - edit.points[i]).norm() < 1e-12);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_place_that_is_partly_outside_a_region_stays)
+{
+  const Bar_edit edit;
+  Points points = edit.points;
+  std::vector<std::size_t> region(points.size());
+  std::iota(region.begin(), region.end(), std::size_t(0));
+  const std::size_t inside = middle_of(points).front();
+  points.push_back(points[inside]);
+  const Points rest = points;
+  const auto np = pcs::parameters::number_of_samples(150).region_of_interest(region);
+  pcs::Point_set_deformation<Points, std::decay_t<decltype(np)>> session(points, np);
+  BOOST_CHECK_EXCEPTION(session.add_handle(std::vector<std::size_t>{inside}),
+                        Invalid_input,
+                        message_has("at the same place"));
+  session.set_transformation(session.add_handle(edit.handles[1].indices), bend());
+  session.deform();
+  BOOST_TEST((points[inside] == rest[inside]));
+  BOOST_TEST((points.back() == rest.back()));
+}
+
+BOOST_AUTO_TEST_CASE(parts_without_a_sample_follow_their_handles)
+{
+  // A small cube beside the bar, too small for a sample.
+  Points rest = Bar_edit().points;
+  const std::size_t n = rest.size();
+  for (int k = 0; k < 8; ++k)
+    rest.push_back(Vec3(1.5, .5, 2) + .01 * Vec3(k & 1, k >> 1 & 1, k >> 2));
+  const auto handle = [&](std::size_t k) { return std::vector<std::size_t>{n + k}; };
+  const auto is_moved = [&](const Points& points, std::size_t k, const Vec3& shift) {
+    return (points[n + k] - (rest[n + k] + shift)).norm() < 1e-12;
+  };
+  const Vec3 shift(1, 2, 3), none(0, 0, 0);
+  for (const double softness : {0.0, 1.0}) {
+    Points points = rest;
+    Session session(points, parameters(2));
+    const auto h = session.add_handle(handle(0), softness);
+    session.set_translation(h, shift);
+    session.deform();
+    for (const std::size_t k : {0, 1, 2})
+      BOOST_TEST(is_moved(points, k, shift));
+    const auto other = session.add_handle(handle(1)); // stays at rest
+    session.deform();
+    BOOST_TEST(is_moved(points, 0, shift));
+    BOOST_TEST(is_moved(points, 1, none));
+    session.remove_handle(h);
+    session.deform();
+    for (const std::size_t k : {0, 1, 2})
+      BOOST_TEST(is_moved(points, k, none));
+    session.remove_handle(other);
+    session.set_translation(session.add_handle(Bar_edit().handles[1].indices), shift);
+    session.deform();
+    BOOST_TEST(is_moved(points, 2, none));
+    Points others = rest;
+    session.apply(others);
+    BOOST_TEST(is_moved(others, 2, none));
+    BOOST_TEST(pcs_test::largest_distance(others, points) < 1e-6);
   }
 }
 

@@ -69,10 +69,22 @@ public:
   using Point = typename Access::Point;
   using Normal = typename Access::Normal;
   using Handle = std::size_t;
-  using Snapshot = deformation::Session_snapshot;
 
 private:
+  struct Motion
+  {
+    Similarity scale, rotation, translation;
+  };
+
 public:
+  /// See `snapshot()`.
+  class Snapshot
+  {
+    friend class Point_set_deformation;
+    deformation::Session_snapshot session;
+    std::vector<Motion> motions;
+  };
+
   /*!
     Reads the points, finds neighbours and samples. O(n log n).
 
@@ -126,7 +138,8 @@ public:
           only their coarser levels do, and the finer ones make a single pass from there
         \nptype `bool`
         \npdefault `true`
-      \np{region_of_interest} numbers of the points that may move; all others stay bit for bit
+      \np{region_of_interest} numbers of the points that may move; all others stay bit for bit, and so do points at the
+        same place as one of these
         \nptype range of integers (copied; use `std::cref` for large ones)
         \npdefault all points
       \np{callback} called on this thread with a value that grows from 0 to 1; `false` stops
@@ -243,7 +256,8 @@ public:
     set_motion(handle, motion);
   }
 
-  /// Sets the whole motion from rest: a `Similarity`, or a `CGAL::Aff_transformation_3` that is one.
+  /// Sets the whole motion from rest: a `Similarity`, or a `CGAL::Aff_transformation_3` that is one. To the calls above
+  /// it is the rotation: the next `set_rotation()` replaces it, a translation follows it, a scale precedes it.
   template <class Transformation>
   void set_transformation(Handle handle, const Transformation& transformation)
   {
@@ -302,6 +316,7 @@ public:
     const Deformation_report report = m_session->solve(m_elastic, start, progress);
     if (report.status == Status::cancelled || report.status == Status::numerical_failure)
       return report;
+    m_shape_motions = m_motion;
     write_points();
     progress.finish();
     return m_session->report();
@@ -311,7 +326,8 @@ public:
     Moves other points, and their normals, as the last `deform()` moved the points around them: a cloud that does not fit
     into memory is deformed through a sample of it, then chunk by chunk. Each point follows its nearest point of this
     object: rigidly if that is in a handle, not at all if that stays; between them it is blended from the samples like
-    a point of this object (the same to rounding if it is one).
+    a point of this object (the same to rounding if it is one, with `Sample_search::regions`, as long as no shape was
+    accepted).
 
     \param points a model of `RandomAccessRange` at rest, modified in place
     \param np `point_map` and `normal_map` as in the constructor, for `points`
@@ -359,7 +375,10 @@ public:
     if (!m_session->has_shape_of_handles())
       throw Invalid_input(std::string(function) +
                           ": handles were added or removed since the last deform(); call it first");
-    return m_session->snapshot();
+    Snapshot result;
+    result.session = m_session->snapshot();
+    result.motions = m_shape_motions;
+    return result;
   }
 
   /// Brings back the points of a snapshot, and the motions. \throws Invalid_input if it was not taken of this object,
@@ -369,15 +388,15 @@ public:
     const char* function = "pcs::Point_set_deformation::restore()";
     require_ready(function);
     require_all_points(function);
-    if (!m_session->is_of_setting(snapshot))
+    if (!m_session->is_of_setting(snapshot.session))
       throw Invalid_input(std::string(function) +
                           ": the snapshot is of another point set, of another rest shape, or of "
                           "other handles");
-    m_session->restore(snapshot);
-    for (Handle h = 0; h < m_motion.size(); ++h) {
-      m_motion[h] = Motion();
-      m_motion[h].rotation = m_session->transform(h);
-    }
+    m_session->restore(snapshot.session);
+    const std::size_t count = m_motion.size();
+    m_motion = snapshot.motions;
+    m_motion.resize(count); // handles that were added at rest
+    m_shape_motions = m_motion;
     write_points();
   }
 
@@ -388,12 +407,13 @@ public:
     require_ready(function);
     require_all_points(function);
     m_session->reset();
-    m_motion.assign(m_motion.size(), Motion());
+    end_motions();
     write_points();
   }
 
-  /// The present shape, as the point map gives it, becomes the rest shape; motions end, handles, samples and factors
-  /// stay. \throws Invalid_input if a point, normal, vector or tensor is not finite; nothing is changed then
+  /// The present shape, as the point map gives it, becomes the rest shape; motions end, handles and samples stay;
+  /// the next `deform()` factorises again. \throws Invalid_input if a point, normal, vector or tensor is not finite;
+  /// nothing is changed then
   void accept()
   {
     const char* function = "pcs::Point_set_deformation::accept()";
@@ -404,7 +424,7 @@ public:
       m_session->accept([&](std::size_t i) { return present[i]; });
       keep_attributes();
     }
-    m_motion.assign(m_motion.size(), Motion());
+    end_motions();
   }
 
   /// @}
@@ -413,11 +433,6 @@ public:
 
 private:
   using Session = deformation::Session<ConcurrencyTag>;
-
-  struct Motion
-  {
-    Similarity scale, rotation, translation;
-  };
 
   void require_ready(const char* function) const
   {
@@ -445,6 +460,12 @@ private:
   {
     m_session->set_transform(handle, motion.translation * motion.rotation * motion.scale);
     m_motion[handle] = motion;
+  }
+
+  void end_motions()
+  {
+    m_motion.assign(m_motion.size(), Motion());
+    m_shape_motions = m_motion;
   }
 
   /// The points as they are, finite, and as many as there may be. `function` begins the text of errors.
@@ -480,7 +501,7 @@ private:
   deformation::Elastic_options m_elastic;
   std::function<bool(double)> m_callback;
   std::unique_ptr<Session> m_session;
-  std::vector<Motion> m_motion;
+  std::vector<Motion> m_motion, m_shape_motions; ///< of now, and of the present shape
 };
 
 template <class PointRange>

@@ -30,15 +30,20 @@ constexpr Node_constraint outside_region = -3;
 class Handle_set
 {
 public:
-  /// \param region indices of the region of interest, or null for all points
+  /// \param region indices of the region of interest, or null for all points. A place is in it with all of its points
   template <class ConcurrencyTag>
   void start(const Sampled_body<ConcurrencyTag>& body, const std::vector<std::uint32_t>* region)
   {
     m_has_outside = region != nullptr;
-    m_handle_of_site.assign(body.number_of_sites(), m_has_outside ? outside_region : free_node);
-    if (m_has_outside)
-      for (const auto i : *region)
-        m_handle_of_site[body.site_of_input[i]] = free_node;
+    m_handle_of_site.assign(body.number_of_sites(), free_node);
+    if (!m_has_outside)
+      return;
+    std::vector<char> is_inside(body.number_of_points(), 0);
+    for (const auto i : *region)
+      is_inside[i] = 1;
+    for (std::size_t i = 0; i < is_inside.size(); ++i)
+      if (!is_inside[i])
+        m_handle_of_site[body.site_of_input[i]] = outside_region;
   }
 
   /// Of all handles that ever were.
@@ -109,7 +114,8 @@ public:
       const Node_constraint h = m_handle_of_site[body.site_of_input[i]];
       if (h == outside_region)
         throw Invalid_input(std::string(function) + ": point " + std::to_string(i) +
-                            " of the handle is outside the region of interest");
+                            " of the handle (or another one at the same place) is outside the "
+                            "region of interest");
       if (h >= 0 && m_is_used[static_cast<std::size_t>(h)])
         throw Invalid_input(std::string(function) + ": point " + std::to_string(i) +
                             " (or another one at the same place) belongs to handle " +

@@ -74,6 +74,8 @@ public:
       write_rigid(place, m_transforms[static_cast<std::size_t>(h)]);
     else if (h == outlier_site)
       write_mapped(place, m_outlier_maps.of_site(m_body, site));
+    else if (h == returning_site)
+      write_mapped(place, identity_map());
   }
 
   void write_mapped(std::size_t place, const Affine_map& map) const

@@ -359,6 +359,9 @@ public:
     m_coarse.accept(m_body.network);
     m_maps.assign(m_maps.size(), identity_map());
     m_carrier.reset();
+    m_sites.accept();
+    m_was_moved.clear();
+    m_is_displaced = false;
     m_is_constrained = false;
     m_handles.put_at_rest();
     begin_setting();
@@ -409,15 +412,23 @@ private:
   /// Handles whose points are written: those that move, or did so the last time. Others keep their bits.
   const std::vector<char>& moved_handles()
   {
-    // Points of a new handle may have been carried away before they became a handle.
-    m_was_moved.resize(m_local_transforms.size(), m_is_displaced ? 1 : 0);
+    // Points of a new handle may have been carried away before they became a handle. The outside of the region, which
+    // comes last, never moves.
+    const std::size_t outside_count =
+        m_handles.has_outside() && !m_local_transforms.empty() ? 1 : 0;
+    const std::size_t handle_count = m_local_transforms.size() - outside_count;
+    m_was_moved.resize(handle_count, m_is_displaced ? 1 : 0);
+    for (const Node_constraint h : m_sites.take_followed_handles())
+      if (static_cast<std::size_t>(h) < handle_count && m_is_displaced)
+        m_was_moved[static_cast<std::size_t>(h)] = 1;
     std::vector<char>& is_written = m_is_written;
     is_written = m_was_moved;
-    for (std::size_t h = 0; h < m_local_transforms.size(); ++h) {
+    is_written.resize(m_local_transforms.size(), 0);
+    for (std::size_t h = 0; h < handle_count; ++h) {
       m_was_moved[h] = m_local_transforms[h].is_identity() ? 0 : 1;
       is_written[h] = is_written[h] || m_was_moved[h] ? 1 : 0;
-      m_is_displaced = m_is_displaced || m_was_moved[h];
     }
+    m_is_displaced = m_is_displaced || !m_is_at_rest;
     return is_written;
   }
 

@@ -22,13 +22,15 @@ namespace deformation {
 
 /// Of a site that follows its host as if they were one rigid body.
 constexpr Node_constraint outlier_site = -4;
+/// Of a site that no handle reaches any more: it goes back to where it rests.
+constexpr Node_constraint returning_site = -5;
 
 class Site_constraints
 {
 public:
   /// Before the first `find()`.
   bool empty() const { return m_of_site.empty(); }
-  /// How a site is written: with a handle, `free_node`, `unreached_node` or `outlier_site`.
+  /// How a site is written: with a handle, `free_node`, `unreached_node`, `outlier_site` or `returning_site`.
   Node_constraint operator[](std::size_t site) const { return m_of_site[site]; }
   /// One bit per place, `lanes` of them in a byte: whether it is blended from samples.
   const std::vector<std::uint8_t>& is_blended() const { return m_is_blended; }
@@ -48,6 +50,12 @@ public:
     mark_places(body);
     return of_samples(body, handles, is_reached);
   }
+
+  /// Handles that fragments without a sample have come to follow since the last call: these are elsewhere.
+  std::vector<Node_constraint> take_followed_handles() { return std::exchange(m_followed, {}); }
+
+  /// The present shape is the rest shape: nothing has to go back.
+  void accept() { m_was_reached.clear(); }
 
 private:
   template <class ConcurrencyTag>
@@ -109,8 +117,9 @@ private:
     std::vector<Node_constraint> follows(body.number_of_components(), unreached_node);
     for (std::size_t site = 0; body.has_fragments && site < body.number_of_sites(); ++site) {
       Node_constraint& f = follows[body.component_of_site[site]];
-      if (handles.of_site(site) >= 0 && f == unreached_node)
-        f = handles.of_site(site);
+      if (handles.of_site(site) >= 0 && f == unreached_node &&
+          body.sample_of_site[site] == no_sample)
+        m_followed.push_back(f = handles.of_site(site));
     }
     // What was written once goes back to rest when its last handle is removed.
     m_was_reached.resize(body.number_of_components(), 0);
@@ -121,9 +130,9 @@ private:
       if (h == outside_region)
         h = unreached_node;
       else if (!is_reached[component])
-        h = m_was_reached[component] ? free_node : unreached_node;
-      else if (body.sample_of_site[site] == no_sample && h == free_node)
-        h = follows[component];
+        h = m_was_reached[component] ? returning_site : unreached_node;
+      else if (body.sample_of_site[site] == no_sample)
+        h = h == free_node ? follows[component] : h;
       else if (handles.is_soft(h))
         h = free_node;
       m_of_site[site] = h;
@@ -162,7 +171,8 @@ private:
   std::vector<Node_constraint> m_of_site;
   std::vector<std::uint8_t> m_is_blended;
   std::vector<std::int32_t> m_holder;
-  std::vector<char> m_was_reached; ///< of each component
+  std::vector<char> m_was_reached;         ///< of each component
+  std::vector<Node_constraint> m_followed; ///< see `take_followed_handles()`
 };
 
 } // namespace deformation
