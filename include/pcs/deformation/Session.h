@@ -16,6 +16,7 @@
 #include <pcs/deformation/Point_carrier.h>
 #include <pcs/deformation/Sampled_body.h>
 #include <pcs/deformation/Site_constraints.h>
+#include <pcs/deformation/Written_handles.h>
 #include <pcs/deformation/affine_maps.h>
 #include <pcs/deformation/handle_boundary.h>
 #include <pcs/deformation/read_maps.h>
@@ -256,7 +257,10 @@ public:
   void write(Output& output)
   {
     pcs::internal::Stopwatch watch;
-    const std::vector<char>& is_written = moved_handles();
+    const std::vector<char>& is_written = m_written_handles.find(m_local_transforms,
+                                                                 m_handles.has_outside(),
+                                                                 m_sites.take_followed_handles(),
+                                                                 m_is_at_rest);
     m_outlier_maps.read(m_body, m_maps);
     const Place_writer<ConcurrencyTag, Output> writer(m_body,
                                                       m_sites,
@@ -360,8 +364,7 @@ public:
     m_maps.assign(m_maps.size(), identity_map());
     m_carrier.reset();
     m_sites.accept();
-    m_was_moved.clear();
-    m_is_displaced = false;
+    m_written_handles.accept();
     m_is_constrained = false;
     m_handles.put_at_rest();
     begin_setting();
@@ -409,29 +412,6 @@ private:
     m_local_transforms.resize(m_handles.size() + outside_count);
   }
 
-  /// Handles whose points are written: those that move, or did so the last time. Others keep their bits.
-  const std::vector<char>& moved_handles()
-  {
-    // Points of a new handle may have been carried away before they became a handle. The outside of the region, which
-    // comes last, never moves.
-    const std::size_t outside_count =
-        m_handles.has_outside() && !m_local_transforms.empty() ? 1 : 0;
-    const std::size_t handle_count = m_local_transforms.size() - outside_count;
-    m_was_moved.resize(handle_count, m_is_displaced ? 1 : 0);
-    for (const Node_constraint h : m_sites.take_followed_handles())
-      if (static_cast<std::size_t>(h) < handle_count && m_is_displaced)
-        m_was_moved[static_cast<std::size_t>(h)] = 1;
-    std::vector<char>& is_written = m_is_written;
-    is_written = m_was_moved;
-    is_written.resize(m_local_transforms.size(), 0);
-    for (std::size_t h = 0; h < handle_count; ++h) {
-      m_was_moved[h] = m_local_transforms[h].is_identity() ? 0 : 1;
-      is_written[h] = is_written[h] || m_was_moved[h] ? 1 : 0;
-    }
-    m_is_displaced = m_is_displaced || !m_is_at_rest;
-    return is_written;
-  }
-
   /// The sample network with nodes on the borders of the handles.
   Elastic_network with_boundary(const std::vector<Border_edge>& border,
                                 Node_constraints& constraints) const
@@ -461,7 +441,7 @@ private:
   std::vector<Similarity> m_shape_transforms; ///< motions that the present shape was solved for
   std::uint64_t m_setting = 0, m_setting_of_shape = 0; ///< of now, and when the shape was solved
   bool m_is_at_rest = true;
-  std::vector<char> m_was_moved, m_is_written; ///< of each handle
+  Written_handles m_written_handles;
   std::vector<int> m_are_finite;
   std::unique_ptr<Point_carrier> m_carrier;
   std::vector<Affine_map> m_maps, m_next_maps;
@@ -472,7 +452,6 @@ private:
   bool m_is_constrained = false, m_is_ready = false, m_was_reported = false;
   bool m_has_solution = false; ///< of the solver, under the present constraints
   double m_last_energy = 0;    ///< of that
-  bool m_is_displaced = false; ///< whether points were written elsewhere than at rest
 };
 
 } // namespace deformation
