@@ -16,6 +16,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <type_traits>
 #include <vector>
 
 using pcs_test::append;
@@ -230,6 +231,40 @@ BOOST_AUTO_TEST_CASE(stopping_anywhere_leaves_nothing_half_done)
   check(breast_height(1.3));
   check(skeleton_method(pcs::skeleton::Skeleton_method::sections));
   check(given_skeleton(given));
+}
+
+// One session that is stopped before each step that changes what the next ones start from.
+BOOST_AUTO_TEST_CASE(a_stopped_session_goes_on_as_if_it_had_not_been)
+{
+  Cloud points = pcs_test::small_scan().scan.points;
+  for (int i = 0; i < 100; ++i)
+    for (int j = 0; j < 100; ++j)
+      points.emplace_back(-2 + 0.04 * i, -2 + 0.04 * j, 0.003 * ((7 * i + 5 * j) % 3));
+  Tree full;
+  const auto expected = pcs::extract_tree_skeleton(points, full);
+  BOOST_TEST(expected.number_of_ground_points > 5000u);
+  const std::vector<double> stops = {0, 0.1, 0.42, 0.43, 0.6, 0.7, 0.9, 0.91, 0.95, 0.96, 0.97};
+  std::size_t stopped = 0;
+  const std::function<bool(double)> callback = [&](double f) {
+    const bool is_stop = stopped < stops.size() && f >= stops[stopped];
+    stopped += is_stop;
+    return !is_stop;
+  };
+  const auto np = pcs::parameters::callback(callback);
+  pcs::Tree_skeletonization<Cloud, std::decay_t<decltype(np)>> session(points, np);
+  Tree tree;
+  pcs::Skeleton_report report;
+  for (std::size_t k = 0; k <= stops.size(); ++k)
+    report = session.extract(tree);
+  BOOST_TEST(stopped == stops.size());
+  BOOST_TEST(report.status == pcs::Status::converged);
+  BOOST_TEST(report.number_of_ground_points == expected.number_of_ground_points);
+  BOOST_TEST(report.total.length == expected.total.length);
+  BOOST_REQUIRE(num_vertices(tree) == num_vertices(full));
+  for (std::size_t v = 0; v < num_vertices(tree); ++v) {
+    BOOST_TEST(tree[v].point == full[v].point);
+    BOOST_TEST(tree[v].radius == full[v].radius);
+  }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -113,14 +113,14 @@ public:
             ground = mark_ground(m_scan, links, m_options.up, m_options.ground, is_above);
         },
         find_root_and_gaps);
+    if (!progress(0.42))
+      return false; // nothing is left out yet
     m_report.number_of_ground_points = ground;
     if (ground > 0) {
       use_only(is_above);
       links = links_of_used();
       find_root_and_gaps();
     }
-    if (!progress(0.42))
-      return false;
     links.insert(links.end(), gaps.begin(), gaps.end());
     trace_paths(links);
     m_report.seconds.paths = watch.lap();
@@ -191,11 +191,12 @@ public:
     }
     if (!m_axes.axes.empty()) { // none with a given skeleton
       Index root = join_axes();
-      for (int round = 1; round < m_options.joints.rounds; ++round) {
-        if (!progress(0.9 + 0.05 * round / m_options.joints.rounds))
+      while (m_regroupings + 1 < m_options.joints.rounds) {
+        if (!progress(0.9 + 0.05 * (m_regroupings + 1) / m_options.joints.rounds))
           return false;
         regroup_axes(m_tree, m_axes);
         fuse_axes<ConcurrencyTag>(m_scan.spacing, m_options.fusion, m_axes);
+        ++m_regroupings; // stopped from here on, the work goes on with these axes
         root = join_axes();
       }
       if (!progress(0.95))
@@ -430,7 +431,7 @@ private:
   std::vector<std::uint8_t> m_is_wood, m_is_used;
   std::vector<std::uint8_t> m_is_leaf, m_is_found_leaf; ///< the second: not by `wood_map`
   Session_options m_options;
-  int m_stage = 0, m_leaf_rounds = 0;
+  int m_stage = 0, m_leaf_rounds = 0, m_regroupings = 0;
   Scan m_scan;
   std::vector<Index> m_point_of_input, m_root;
   Shortest_paths m_paths;
