@@ -184,6 +184,36 @@ BOOST_AUTO_TEST_CASE(a_coarser_surface_has_fewer_triangles)
   }
 }
 
+// The quad of the post that a twig leaves is thousands of times as long as the twig is wide.
+BOOST_AUTO_TEST_CASE(hair_on_a_thick_post_is_sewn_in)
+{
+  for (int k = 0; k < 24; ++k) {
+    const double a = 0.26 * k, rise = 0.1 * (k % 7), r = 3e-4;
+    Tree tree(4);
+    tree[0].point = Point(0, 0, 0);
+    tree[1].point = Point(0, 0, 10);
+    tree[2].point = Point(0, 0, 3 + 0.1 * k);
+    tree[3].point = tree[2].point + pcs_test::Tree_vector(std::cos(a), std::sin(a), rise);
+    for (std::size_t v = 0; v < 4; ++v) {
+      tree[v].radius = v < 2 ? 0.15 : r;
+      tree[v].branch = v / 2;
+    }
+    add_edge(0, 1, tree);
+    add_edge(0, 2, tree);
+    add_edge(2, 3, tree);
+    tree[boost::graph_bundle].root = 0;
+    tree[boost::graph_bundle].branches = {{pcs::npos, 0, 0}, {0, 1, 1}};
+    for (const double tolerance : {0.15, 0.015, 0.0015}) {
+      std::vector<Point> points;
+      std::vector<std::array<std::size_t, 3>> triangles;
+      const auto report =
+          pcs::make_branch_surface(tree, points, triangles, pcs::parameters::tolerance(tolerance));
+      BOOST_CHECK_EQUAL(report.number_of_joined, 1u);
+      check_is_closed(triangles);
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(branches_may_be_tubes_of_their_own)
 {
   const Tree& tree = small_scan().truth;

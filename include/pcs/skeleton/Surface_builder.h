@@ -304,6 +304,10 @@ inline void Surface_builder::sew(const Loop& outer,
     const Place &a = outer_places[i % n], &b = inner_places[j % m];
     return std::hypot(a.u - b.u, a.s - b.s);
   };
+  double widest = 1;
+  for (const Place& p : outer_places)
+    widest = std::max(widest, std::hypot(p.u, p.s));
+  const double out_of_sight = 1e3 * widest; // no diagonal is as long
   std::size_t i0 = 0, j0 = 0;
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < m; ++j)
@@ -322,7 +326,7 @@ inline void Surface_builder::sew(const Loop& outer,
     const double outer_step = difference(outer_places[a % n], outer_places[(a + 1) % n]);
     const double inner_step = difference(inner_places[b % m], inner_places[(b + 1) % m]);
     const auto cost = [&](std::size_t x, std::size_t y, double ahead) {
-      return distance(x, y) + 1e3 * std::max(0.0, std::abs(ahead) - sight);
+      return distance(x, y) + out_of_sight * std::max(0.0, std::abs(ahead) - sight);
     };
     const bool is_outer = j == m || (i < n && cost(a + 1, b, turned - outer_step) <=
                                                   cost(a, b + 1, turned + inner_step));
