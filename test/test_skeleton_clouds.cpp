@@ -18,6 +18,7 @@
 #include <limits>
 #include <map>
 #include <random>
+#include <string>
 #include <vector>
 
 using pcs_test::append;
@@ -117,6 +118,32 @@ BOOST_AUTO_TEST_CASE(duplicates_change_nothing)
   BOOST_REQUIRE_EQUAL(num_vertices(a), num_vertices(b));
   for (std::size_t v = 0; v < num_vertices(a); ++v)
     BOOST_TEST((a[v].point == b[v].point && a[v].radius == b[v].radius));
+}
+
+// The same scan with other digits, or fired twice: no point has a new neighbour at the distance of the others.
+BOOST_AUTO_TEST_CASE(copies_of_points_change_little)
+{
+  const Cloud points = pcs_test::small_scan().scan.points;
+  Tree once;
+  const auto expected = pcs::extract_tree_skeleton(points, once);
+  for (const double deviation : {1e-6, 1e-4, 1e-3})
+    for (const std::size_t every : {1, 2}) { // which points are there twice
+      pcs_test::Jitter jitter(deviation);
+      Cloud twice = points;
+      for (std::size_t i = 0; i < points.size(); i += every)
+        twice.push_back(jitter(points[i]));
+      Tree tree;
+      const auto report = pcs::extract_tree_skeleton(twice, tree);
+      const std::string name = std::to_string(deviation) + ", " + std::to_string(every);
+      BOOST_TEST(double(report.number_of_duplicates) > 0.8 * double(twice.size() - points.size()),
+                 name);
+      BOOST_TEST(report.total.length > 0.97 * expected.total.length, name);
+      BOOST_TEST(report.total.length < 1.03 * expected.total.length, name);
+      BOOST_TEST(report.diameter_at_breast_height > 0.98 * expected.diameter_at_breast_height,
+                 name);
+      BOOST_TEST(report.diameter_at_breast_height < 1.02 * expected.diameter_at_breast_height,
+                 name);
+    }
 }
 
 BOOST_AUTO_TEST_CASE(a_block_of_returns_at_the_scanner_is_one_outlier)
@@ -465,6 +492,38 @@ BOOST_AUTO_TEST_CASE(ground_is_left_out)
   BOOST_CHECK_GT(report.number_of_ground_points, 7000u);
   BOOST_CHECK_LE(report.number_of_branches, 5u);
   BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.2, 3.0);
+}
+
+// Relief and slopes rise above the slices that first tell what is ground.
+BOOST_AUTO_TEST_CASE(ground_is_followed_up_slopes)
+{
+  Tree bare, tree;
+  const Cloud& wood = pcs_test::small_scan().scan.points;
+  const auto expected = pcs::extract_tree_skeleton(wood, bare);
+  for (const double slope : {0.0, 0.15}) {
+    Cloud points = wood;
+    for (int i = -90; i <= 90; ++i)
+      for (int j = -90; j <= 90; ++j) {
+        const double x = 0.03 * i, y = 0.03 * j;
+        points.emplace_back(x, y, slope * x + 0.08 * std::sin(2 * x) * std::sin(2 * y));
+      }
+    const auto report = pcs::extract_tree_skeleton(points, tree);
+    BOOST_TEST(double(report.number_of_ground_points) > 0.95 * double(points.size() - wood.size()));
+    BOOST_TEST(report.total.length < 1.15 * expected.total.length);
+    BOOST_TEST(report.total.length > 0.85 * expected.total.length);
+  }
+}
+
+// Most of the points lie in a thin sheet, but not all.
+BOOST_AUTO_TEST_CASE(a_tree_on_wide_ground_is_no_sheet)
+{
+  Cloud points = cylinder(6000, 0.15, 9);
+  append(points, sheet(60000, 15, Vector(1, 0, 0), Vector(0, 1, 0), 0.01));
+  Tree tree;
+  const auto report = pcs::extract_tree_skeleton(points, tree);
+  BOOST_CHECK_EQUAL(report.status, pcs::Status::converged);
+  BOOST_TEST(report.number_of_ground_points > 55000u);
+  BOOST_CHECK_CLOSE(report.height, 9, 5.0);
 }
 
 BOOST_AUTO_TEST_CASE(shrubs_on_the_ground_are_no_trunk)

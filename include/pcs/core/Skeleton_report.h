@@ -32,8 +32,9 @@ struct Skeleton_report
   //! `converged`; `nothing_to_do` if nothing in the cloud is a branch; `cancelled`
   Status status = Status::nothing_to_do;
 
-  std::size_t number_of_points = 0;     ///< of the input [count]
-  std::size_t number_of_duplicates = 0; ///< points at the place of another one [count]
+  std::size_t number_of_points = 0; ///< of the input [count]
+  //! points at the place of another one, or so near to it, beside all others, that they are copies [count]
+  std::size_t number_of_duplicates = 0;
   std::size_t number_of_outliers =
       0; ///< points left out because they are far from all others [count]
   std::size_t number_of_leaf_points =

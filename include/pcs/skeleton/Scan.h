@@ -71,6 +71,12 @@ constexpr double outlier_factor = 3;
 /// ... and than is usual in the cloud; or so far from all that nothing else matters.
 constexpr double outlier_global_factor = 2, outlier_far_factor = 20;
 
+/// Where the usual distances to one neighbour and to the next differ by this factor, those nearer are copies of the point; on
+/// surfaces the factor is 1.6 at most, on lines of random points 2.4 [-].
+constexpr double copy_factor = 2.5;
+/// Copies of copies, at most [count].
+constexpr int copy_rounds = 3;
+
 namespace internal {
 
 /// Different places, sorted along an octree, and which of them each point is at.
@@ -153,6 +159,51 @@ void find_neighbors(Scan& scan)
   scan.spacing = median(nearest);
 }
 
+/// The distance within which points are copies of each other: most of the scan is there several times, with other digits or
+/// other noise. 0: it is not. From some ten thousand points spread over all.
+inline double reach_of_copies(const Scan& scan)
+{
+  constexpr std::size_t fewest = 200, enough = 20000;
+  const std::size_t n = scan.size(), step = 1 + n / enough;
+  double before = 0;
+  for (std::size_t k = 0; k < neighbors_per_point && n >= fewest; ++k) {
+    std::vector<double> distances;
+    for (std::size_t i = 0; i < n; i += step)
+      distances.push_back((scan.points[i] - scan.points[scan.neighbors[i][k]]).norm());
+    const double usual = median(distances);
+    if (k > 0 && usual > copy_factor * before)
+      return std::sqrt(before * usual);
+    before = usual;
+  }
+  return 0;
+}
+
+/// Keeps one point of those that are copies. Returns whether there are any; the neighbours must be found again then.
+inline bool merge_copies(Scan& scan)
+{
+  const double reach = reach_of_copies(scan);
+  if (!(reach > 0))
+    return false;
+  const Index n = static_cast<Index>(scan.size());
+  std::vector<Index> number(n, none);
+  std::vector<Vec3> kept;
+  for (Index i = 0; i < n; ++i) {
+    if (number[i] != none)
+      continue;
+    number[i] = static_cast<Index>(kept.size());
+    kept.push_back(scan.points[i]);
+    for (const Index j : scan.neighbors[i])
+      if (number[j] == none && (scan.points[i] - scan.points[j]).norm() <= reach)
+        number[j] = number[i];
+  }
+  if (kept.size() <= neighbors_per_point)
+    return false;
+  for (Index& i : scan.point_of_input)
+    i = number[i];
+  scan.points = std::move(kept);
+  return true;
+}
+
 template <class ConcurrencyTag>
 void mark_outliers(Scan& scan)
 {
@@ -186,6 +237,8 @@ void prepare_scan(const std::vector<Vec3>& input, const Vec3& up, Scan& scan)
 {
   internal::merge_duplicates<ConcurrencyTag>(input, up, scan);
   internal::find_neighbors<ConcurrencyTag>(scan);
+  for (int round = 0; round < copy_rounds && internal::merge_copies(scan); ++round)
+    internal::find_neighbors<ConcurrencyTag>(scan);
   internal::mark_outliers<ConcurrencyTag>(scan);
 }
 

@@ -14,10 +14,12 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -33,9 +35,14 @@ struct Ground_rules
   double keep = 2;     ///< what lies this many stem widths around the stem is kept [-]
   double filled = 0.4; ///< share of the cells of the sheet that hold points [-]
   int cells = 20;      ///< along the radius of the sheet
-  double thin = 0.1;   ///< of a cloud that is nothing else: deviation across it by that along it,
-  double full = 0.7;   ///< ... share of its cells that hold points,
-  double longest = 8;  ///< ... and its length by its width [-]
+  double steepest = 0.5; ///< slope up to which the sheet is followed above the bins,
+  double most = 0.2;  ///< ... if it has this share of the points; the feet of stems have less [-]
+  double thin = 0.1;  ///< of a cloud that is nothing else: deviation across it by that along it,
+  double full = 0.7;  ///< ... share of its cells that hold points,
+  double longest = 8; ///< ... and its length by its width [-]
+  double standing = 0.99;  ///< quantile of distances from its plane that tells what stands on it,
+  double tall = 0.2;       ///< ... which is this high, by the deviation along the sheet,
+  double outstanding = 10; ///< ... and by the median distance [-]
 };
 
 namespace internal {
@@ -196,11 +203,96 @@ inline Bin_extent extent_of(const Scan& scan, const std::vector<Index>& points, 
   return e;
 }
 
+/// The height of the lowest points of a scan over a level grid, and which cells of it are ground.
+class Ground_grid
+{
+public:
+  Ground_grid(const Scan& scan,
+              const Vec3& up,
+              const Vec3& origin,
+              double cell,
+              const std::vector<std::uint8_t>& is_used)
+    : m_cell_of_point(scan.size(), none)
+  {
+    const Vec3 e1 = up.unitOrthogonal(), e2 = up.cross(e1);
+    struct Entry
+    {
+      Key key;
+      double height;
+      Index point;
+      bool operator<(const Entry& e) const
+      {
+        return std::tie(key, height, point) < std::tie(e.key, e.height, e.point);
+      }
+    };
+    std::vector<Entry> order;
+    for (Index i = 0; i < scan.size(); ++i)
+      if (is_used[i]) {
+        const Vec3 d = (scan.points[i] - origin) / cell;
+        order.push_back(
+            {{std::floor(d.dot(e1)), std::floor(d.dot(e2))}, up.dot(scan.points[i]), i});
+      }
+    std::sort(order.begin(), order.end());
+    for (std::size_t from = 0, to = 0; from < order.size(); from = to) {
+      for (; to < order.size() && order[to].key == order[from].key; ++to)
+        m_cell_of_point[order[to].point] = static_cast<Index>(m_keys.size());
+      m_keys.push_back(order[from].key);
+      m_low.push_back(order[from + (to - from) / 20].height); // a few may lie below the ground
+    }
+    m_rise.assign(m_keys.size(), -1);
+  }
+
+  /// Follows the ground from the cells of `seeds` as long as it rises or falls by less than `steepest` from cell to cell.
+  void grow(const std::vector<Index>& seeds, double steepest)
+  {
+    std::vector<Index> stack;
+    const auto reach = [&](Index c) {
+      if (m_rise[c] >= 0)
+        return;
+      m_rise[c] = 0;
+      stack.push_back(c);
+    };
+    for (const Index i : seeds)
+      reach(m_cell_of_point[i]);
+    while (!stack.empty()) {
+      const Index c = stack.back();
+      stack.pop_back();
+      for (const Key& step : {Key{1, 0}, Key{-1, 0}, Key{0, 1}, Key{0, -1}}) {
+        const Key key{m_keys[c][0] + step[0], m_keys[c][1] + step[1]};
+        const auto at = std::lower_bound(m_keys.begin(), m_keys.end(), key);
+        if (at == m_keys.end() || *at != key)
+          continue;
+        const Index next = static_cast<Index>(at - m_keys.begin());
+        const double rise = std::abs(m_low[next] - m_low[c]);
+        if (rise > steepest)
+          continue;
+        m_rise[c] = std::max(m_rise[c], rise);
+        reach(next);
+      }
+    }
+  }
+
+  /// Whether a used point lies at most `thickness` above the ground of its cell, which may slope.
+  bool is_ground(Index i, double height, double thickness) const
+  {
+    const Index c = m_cell_of_point[i];
+    return m_rise[c] >= 0 && height <= m_low[c] + m_rise[c] + thickness;
+  }
+
+private:
+  using Key = std::array<double, 2>; ///< integers
+  std::vector<Index> m_cell_of_point;
+  std::vector<Key> m_keys; ///< sorted
+  std::vector<double> m_low,
+      m_rise; ///< height of the lowest points; to the next ground, -1: no ground
+};
+
 } // namespace internal
 
 /*!
   Takes ground out of `is_used`: points of the lowest bins, far from the stem, if they fill a sheet that is much wider than
-  the stem above. Returns their number. `links` are those between neighbours.
+  the stem above, and where this sheet goes on above the bins, on slopes. Returns their number. `links` are those between
+  neighbours.
 */
 inline std::size_t mark_ground(const Scan& scan,
                                const std::vector<Link>& links,
@@ -229,25 +321,66 @@ inline std::size_t mark_ground(const Scan& scan,
   if (first == extent.size())
     return 0;
   const Vec3 center = extent[first].center;
+  const auto across = [&](Index i) {
+    const Vec3 d = scan.points[i] - center;
+    return (d - up.dot(d) * up).norm();
+  };
   std::vector<Index> far;
   const double keep = rules.keep * stem + 4 * scan.spacing;
   bool is_wide = false;
   for (Index i = 0; i < n; ++i) {
     if (bins.bin[i] >= first) // `none` is the largest number
       continue;
-    const Vec3 d = scan.points[i] - center;
-    const double across = (d - up.dot(d) * up).norm();
-    is_wide = is_wide || across > rules.width * stem;
-    if (across > keep)
+    is_wide = is_wide || across(i) > rules.width * stem;
+    if (across(i) > keep)
       far.push_back(i);
   }
   const Vec3 e1 = up.unitOrthogonal(), e2 = up.cross(e1);
   if (!is_wide || !internal::is_filled_sheet(scan, far, center, e1, e2, rules))
     return 0;
-  for (const Index i : far)
-    is_used[i] = 0;
-  return far.size();
+  const auto used = std::count(is_used.begin(), is_used.end(), 1);
+  std::vector<Index> above;
+  if (double(far.size()) > rules.most * double(used)) {
+    double sum = 0;
+    for (const Index i : far)
+      sum += across(i) * across(i);
+    const double cell =
+        std::max(2 * bins.height, std::sqrt(sum / double(far.size())) / rules.cells);
+    internal::Ground_grid grid(scan, up, center, cell, is_used);
+    grid.grow(far, rules.steepest * cell);
+    for (Index i = 0; i < n; ++i)
+      if (is_used[i] && grid.is_ground(i, up.dot(scan.points[i]), bins.height) && across(i) > keep)
+        above.push_back(i);
+  }
+  for (const std::vector<Index>* points : {&far, &above})
+    for (const Index i : *points)
+      is_used[i] = 0;
+  return static_cast<std::size_t>(used - std::count(is_used.begin(), is_used.end(), 1));
 }
+
+namespace internal {
+
+/// Whether a tree stands on a sheet of a deviation `spread` along it: few points, but high ones.
+inline bool carries_a_tree(const Scan& scan,
+                           const std::vector<Index>& points,
+                           const Vec3& normal,
+                           double spread,
+                           const Ground_rules& rules)
+{
+  std::vector<double> heights;
+  for (const Index i : points)
+    heights.push_back(normal.dot(scan.points[i]));
+  const double level = median(heights);
+  for (double& h : heights)
+    h = std::abs(h - level);
+  const double usual = median(heights);
+  const auto at =
+      heights.begin() + static_cast<std::ptrdiff_t>(rules.standing * double(heights.size()));
+  std::nth_element(heights.begin(), at, heights.end());
+  return *at > rules.tall * spread && *at > rules.outstanding * usual;
+}
+
+} // namespace internal
 
 /// Whether all points together are one thin filled sheet, such as ground alone, or a wall; longer ones than
 /// `rules.longest` may be boards or rows of anything.
@@ -272,6 +405,8 @@ is_one_sheet(const Scan& scan, const std::vector<std::uint8_t>& is_used, const G
   Ground_rules full = rules;
   full.filled = rules.full;
   if (!(spread(0) < rules.thin * spread(1)) || !(spread(2) < rules.longest * spread(1)))
+    return false;
+  if (internal::carries_a_tree(scan, points, eigen.vectors.col(0), spread(1), rules))
     return false;
   const Vec3 across = spread(2) / spread(1) * eigen.vectors.col(1), along = eigen.vectors.col(2);
   return internal::is_filled_sheet(scan, points, mean, along, across, full);
