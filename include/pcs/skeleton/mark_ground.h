@@ -237,7 +237,8 @@ public:
       for (; to < order.size() && order[to].key == order[from].key; ++to)
         m_cell_of_point[order[to].point] = static_cast<Index>(m_keys.size());
       m_keys.push_back(order[from].key);
-      m_low.push_back(order[from + (to - from) / 20].height); // a few may lie below the ground
+      m_low.push_back(
+          order[from + std::min<std::size_t>(2, (to - from) / 20)].height); // a few may lie below
     }
     m_rise.assign(m_keys.size(), -1);
   }
