@@ -517,8 +517,8 @@ BOOST_AUTO_TEST_CASE(ground_is_followed_up_slopes)
 // Most of the points lie in a thin sheet, but not all.
 BOOST_AUTO_TEST_CASE(a_tree_on_wide_ground_is_no_sheet)
 {
-  Cloud points = cylinder(6000, 0.15, 9);
-  append(points, sheet(60000, 15, Vector(1, 0, 0), Vector(0, 1, 0), 0.01));
+  Cloud points = cylinder(1500, 0.15, 9);
+  append(points, sheet(60000, 40, Vector(1, 0, 0), Vector(0, 1, 0), 0.01));
   Tree tree;
   const auto report = pcs::extract_tree_skeleton(points, tree);
   BOOST_CHECK_EQUAL(report.status, pcs::Status::converged);
