@@ -56,8 +56,8 @@ LAS output: once more). At most --stream-points points, spread over the file, ar
 deformed; they carry the others, whereas points of handles move exactly. A file with no
 more points gives the same output, byte for byte, as without --stream; otherwise each
 kept point is linked to at least 10 neighbours. For example:
-  generate_points /tmp/large.ply 50000000 --float
-  deform_point_set --stream --input /tmp/large.ply --default-edit --output /tmp/out.ply
+  generate_points large.ply 50000000 --float
+  deform_point_set --stream --input large.ply --default-edit --output out.ply
 
 Exit codes: 0 success, 1 bad input or usage, 2 internal error.)";
 }
