@@ -79,7 +79,8 @@ inline void declare(CLI::App& app, Skeleton_options& options)
   app.add_option("--wood", options.wood, "property that tells wood (1) from leaves (0)");
   app.add_option("--skeleton",
                  options.given,
-                 "SWC: measure along this skeleton instead of looking for branches");
+                 "SWC: measure along this skeleton instead of looking for branches")
+      ->excludes("--root");
   app.add_option("--breast-height", options.breast_height, "height of the diameter in the report")
       ->capture_default_str();
   app.add_option("--tolerance", options.tolerance, "largest distance of the mesh from the sections")
@@ -91,13 +92,16 @@ inline void declare(CLI::App& app, Skeleton_options& options)
       ->capture_default_str();
   app.add_option("--fit", options.fit, "of the method `sections`: how a section is fitted")
       ->check(CLI::IsMember({"conic", "ellipse", "circle", "by_arc"}))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->needs("--method");
   app.add_flag("--all-points",
                options.do_use_all,
-               "of the method `sections`: not 20 points drawn at random");
+               "of the method `sections`: not 20 points drawn at random")
+      ->needs("--method");
   app.add_flag("--no-support",
                options.do_fit_all,
-               "of the method `sections`: a slice for every point");
+               "of the method `sections`: a slice for every point")
+      ->needs("--method");
   app.add_flag("--keep-ground", options.do_keep_ground, "do not look for ground");
   app.add_flag("--remove-leaves",
                options.do_remove_leaves,

@@ -323,7 +323,10 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
   refuses("--input tree.xyz --swc old.swc --skeleton forest.swc", "forest.swc");
   refuses("--input tree.xyz --swc old.swc --skeleton dot.swc", "lie at one place");
   refuses("--input tree.xyz --swc old.swc --skeleton far.swc", "away from the points");
+  refuses("--input tree.xyz --swc old.swc --skeleton dot.swc --root 0 0 0", "--root");
   refuses("--input tree.xyz --swc old.swc --method magic", "--method");
+  for (const std::string option : {"--fit circle", "--all-points", "--no-support"})
+    refuses("--input tree.xyz --swc old.swc " + option, "--method");
   refuses("--input tree.xyz --folder out --swc old.swc", "leave old.swc out");
   refuses("--input tree.xyz folder/tree.ply --folder out", "the same name");
   // Spelled otherwise, or made by another scan of the batch.
