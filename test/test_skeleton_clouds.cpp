@@ -282,7 +282,7 @@ BOOST_AUTO_TEST_CASE(the_stems_of_a_bush_are_branches)
   for (std::size_t k = 0; k < stems; ++k) {
     const auto count = votes(branch, k * n, (k + 1) * n);
     winners.push_back(winner(count));
-    BOOST_CHECK_GT(count.at(winners.back()), n * 8 / 10);
+    BOOST_CHECK_GT(count.at(winners.back()), n * 7 / 10);
   }
   std::sort(winners.begin(), winners.end());
   BOOST_TEST((std::unique(winners.begin(), winners.end()) == winners.end()));
@@ -494,24 +494,60 @@ BOOST_AUTO_TEST_CASE(ground_is_left_out)
   BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.2, 3.0);
 }
 
-// Relief and slopes rise above the slices that first tell what is ground.
+// Relief and slopes rise above the foot, and the points of ground are farther from each other than those of the tree.
 BOOST_AUTO_TEST_CASE(ground_is_followed_up_slopes)
 {
   Tree bare, tree;
   const Cloud& wood = pcs_test::small_scan().scan.points;
   const auto expected = pcs::extract_tree_skeleton(wood, bare);
-  for (const double slope : {0.0, 0.15}) {
+  for (const double slope : {0.0, 0.15, 0.6}) {
     Cloud points = wood;
     for (int i = -90; i <= 90; ++i)
       for (int j = -90; j <= 90; ++j) {
         const double x = 0.03 * i, y = 0.03 * j;
-        points.emplace_back(x, y, slope * x + 0.08 * std::sin(2 * x) * std::sin(2 * y));
+        points.emplace_back(x, y, slope * x + 0.15 * std::sin(2 * x) * std::sin(2 * y));
       }
     const auto report = pcs::extract_tree_skeleton(points, tree);
-    BOOST_TEST(double(report.number_of_ground_points) > 0.95 * double(points.size() - wood.size()));
-    BOOST_TEST(report.total.length < 1.15 * expected.total.length);
-    BOOST_TEST(report.total.length > 0.85 * expected.total.length);
+    BOOST_TEST(double(report.number_of_ground_points) > 0.97 * double(points.size() - wood.size()));
+    BOOST_CHECK_CLOSE(report.total.length, expected.total.length, 10.0);
+    BOOST_CHECK_CLOSE(report.total.volume, expected.total.volume, 15.0);
+    BOOST_CHECK_CLOSE(report.spacing, expected.spacing, 5.0);
   }
+}
+
+BOOST_AUTO_TEST_CASE(grass_goes_with_the_ground)
+{
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> place(-2, 2), share(0, 1);
+  Cloud points = cylinder(8000, 0.05, 4);
+  append(points, sheet(40000, 4, Vector(1, 0, 0), Vector(0, 1, 0), 0.01));
+  for (int blade = 0; blade < 1500; ++blade) {
+    const double x = place(random), y = place(random), height = 0.1 + 0.2 * share(random);
+    for (int k = 0; k < 12; ++k)
+      points.emplace_back(x, y, height * share(random));
+  }
+  Tree tree;
+  const auto report = pcs::extract_tree_skeleton(points, tree);
+  BOOST_TEST(report.number_of_ground_points > 54000u);
+  BOOST_TEST(report.total.length < 5);
+  BOOST_CHECK_CLOSE(report.height, 4, 3.0);
+}
+
+BOOST_AUTO_TEST_CASE(a_log_on_the_ground_is_told_from_it)
+{
+  Cloud points;
+  for (const Point& p : cylinder(12000, 0.2, 5, Point(-2.5, 0, 0.15), Vector(1, 0, 0)))
+    if (p.z() > 0)
+      points.push_back(p);
+  for (const Point& p : sheet(40000, 8, Vector(1, 0, 0), Vector(0, 1, 0), 0.005))
+    if (std::abs(p.x()) > 2.5 || std::abs(p.y()) > 0.15)
+      points.push_back(p);
+  Tree tree;
+  const auto report = pcs::extract_tree_skeleton(points, tree);
+  BOOST_CHECK_EQUAL(report.status, pcs::Status::converged);
+  BOOST_TEST(report.number_of_ground_points > 38000u);
+  BOOST_CHECK_CLOSE(report.total.length, 5, 5.0);
+  BOOST_CHECK_CLOSE(report.total.volume, CGAL_PI * 0.04 * 5, 15.0);
 }
 
 // Most of the points lie in a thin sheet, but not all.

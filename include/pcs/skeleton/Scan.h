@@ -204,14 +204,20 @@ inline bool merge_copies(Scan& scan)
   return true;
 }
 
+/// Among the points of `is_part`.
 template <class ConcurrencyTag>
-void mark_outliers(Scan& scan)
+void mark_outliers(const std::vector<std::uint8_t>& is_part, Scan& scan)
 {
   const std::size_t n = scan.size();
   scan.is_outlier.assign(n, 0);
-  std::vector<double> copy = scan.local_spacing;
-  const double usual = median(copy);
+  std::vector<double> spacings;
+  for (std::size_t i = 0; i < n; ++i)
+    if (is_part[i])
+      spacings.push_back(scan.local_spacing[i]);
+  const double usual = median(spacings);
   pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
+    if (!is_part[i])
+      return;
     // A point of a thin twig has two near neighbours, those next to it; an outlier has none.
     const Index second = scan.neighbors[i][outlier_neighbor - 1];
     const double own = second != none ? (scan.points[i] - scan.points[second]).norm()
@@ -239,7 +245,19 @@ void prepare_scan(const std::vector<Vec3>& input, const Vec3& up, Scan& scan)
   internal::find_neighbors<ConcurrencyTag>(scan);
   for (int round = 0; round < copy_rounds && internal::merge_copies(scan); ++round)
     internal::find_neighbors<ConcurrencyTag>(scan);
-  internal::mark_outliers<ConcurrencyTag>(scan);
+  internal::mark_outliers<ConcurrencyTag>(std::vector<std::uint8_t>(scan.size(), 1), scan);
+}
+
+/// Measures the spacing of those points alone, and tells which of them are outliers: the ground may have another density.
+template <class ConcurrencyTag>
+void measure_part(const std::vector<std::uint8_t>& is_part, Scan& scan)
+{
+  std::vector<double> nearest;
+  for (std::size_t i = 0; i < scan.size(); ++i)
+    if (is_part[i])
+      nearest.push_back((scan.points[i] - scan.points[scan.neighbors[i][0]]).norm());
+  scan.spacing = median(nearest);
+  internal::mark_outliers<ConcurrencyTag>(is_part, scan);
 }
 
 } // namespace skeleton

@@ -92,7 +92,7 @@ public:
       return progress(0.6);
     }
     std::vector<Link> links = links_of_used();
-    if (m_options.do_mark_ground && is_one_sheet(m_scan, m_is_used, m_options.ground)) {
+    if (m_options.do_mark_ground && is_one_sheet(m_scan, m_is_used, m_options.ground.sheet)) {
       m_report.number_of_ground_points =
           static_cast<std::size_t>(std::count(m_is_used.begin(), m_is_used.end(), 1));
       std::fill(m_is_used.begin(), m_is_used.end(), std::uint8_t(0));
@@ -117,7 +117,7 @@ public:
       return false; // nothing is left out yet
     m_report.number_of_ground_points = ground;
     if (ground > 0) {
-      use_only(is_above);
+      leave_out_ground(is_above);
       links = links_of_used();
       find_root_and_gaps();
     }
@@ -285,6 +285,21 @@ private:
     m_is_used = is_used;
     for (std::size_t i = 0; i < m_scan.size(); ++i)
       m_scan.is_outlier[i] = !m_is_used[i];
+  }
+
+  /// What stands on it has a spacing and more outliers of its own.
+  void leave_out_ground(std::vector<std::uint8_t> is_above)
+  {
+    measure_part<ConcurrencyTag>(is_above, m_scan);
+    const auto outliers =
+        static_cast<std::size_t>(std::count(m_scan.is_outlier.begin(), m_scan.is_outlier.end(), 1));
+    if (outliers < static_cast<std::size_t>(std::count(is_above.begin(), is_above.end(), 1))) {
+      for (std::size_t i = 0; i < m_scan.size(); ++i)
+        is_above[i] = is_above[i] && !m_scan.is_outlier[i];
+      m_report.number_of_outliers += outliers;
+    }
+    use_only(is_above);
+    m_report.spacing = m_scan.frame.unit * m_scan.spacing;
   }
 
   /// Paths from the root, and their layers. `links` close gaps, too.
