@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // Program: trees between scanned trees, beyond them, and like them.
 
+#include "orl_program/Results.h"
 #include "orl_program/Tree_file.h"
 #include "orl_program/align_trees.h"
 #include "orl_program/write_family.h"
@@ -75,12 +76,13 @@ pcs::Orl_correspondences read_stored(const Options& o)
                                     std::make_pair("--transport", " " + o.transport),
                                     std::make_pair("--published-energy", std::string())})
     if (o.is_given(name) && (stored.note + " ").find(name + value + " ") == std::string::npos)
-      throw pcs::Invalid_input("made with other options (" + stored.note + ") than " + name +
-                               value + "; leave this out, or name another file");
+      throw pcs::Invalid_input(o.correspondences + ": made with other options (" + stored.note +
+                               ") than " + name + value + "; leave this out, or name another file");
   return stored;
 }
 
-pcs::Orl_report build(Space& space, const Options& o)
+pcs::Orl_report
+build(Space& space, const Options& o, const std::optional<pcs::Orl_correspondences>& stored)
 {
   using namespace pcs::shape_space;
   program::Progress_line line(!o.is_quiet);
@@ -95,9 +97,9 @@ pcs::Orl_report build(Space& space, const Options& o)
     return true;
   };
   const auto form = np::orientation(orientation);
-  if (is_stored(o))
+  if (stored)
     try {
-      return space.build_from(read_stored(o), form);
+      return space.build_from(*stored, form);
     } catch (const pcs::Invalid_input& refusal) {
       throw pcs::Invalid_input(o.correspondences + ": " + refusal.what());
     }
@@ -185,6 +187,7 @@ std::string report_text(const Space& space,
   return json.dump(2) + "\n";
 }
 
+/// All files first: to find skeletons takes time.
 std::vector<Tree_file> read_trees(const Options& o)
 {
   std::vector<Tree_file> files;
@@ -192,8 +195,14 @@ std::vector<Tree_file> read_trees(const Options& o)
     return names.empty() ? std::string() : names[i];
   };
   for (std::size_t i = 0; i < o.number_of_trees(); ++i)
-    files.push_back(read_tree(file(o.trees, i), file(o.skeletons, i), o.do_extend_axes, o.up));
+    files.push_back(read_tree(file(o.trees, i), file(o.skeletons, i)));
   return files;
+}
+
+void complete_trees(const Options& o, std::vector<Tree_file>& files)
+{
+  for (std::size_t i = 0; i < files.size(); ++i)
+    complete_tree(files[i], o.trees.empty() ? "" : o.trees[i], o.do_extend_axes, o.up);
 }
 
 /// A file with a path of its own, found to be writable before the work.
@@ -219,19 +228,24 @@ private:
 void run(const Options& o)
 {
   check(o);
+  check_files(o);
+  const bool was_stored = is_stored(o);
+  const Result_folder folder(o.output);
+  Extra_file matches(o.matches), report_file(o.report), changes(o.changes), distances(o.distances);
+  probe_file(o.save);
+  if (!was_stored)
+    probe_file(o.correspondences);
   std::vector<Tree_file> files = read_trees(o);
   Space space;
   if (!o.load.empty()) {
     space.restore(pcs::IO::read_shape_space(o.load));
     check_numbers(o, space.number_of_trees());
   }
-  std::error_code error;
-  std::filesystem::create_directories(o.output, error);
-  if (!std::filesystem::is_directory(o.output))
-    throw pcs::IO_error(o.output, "cannot be made a folder");
-  Extra_file matches(o.matches), report_file(o.report), changes(o.changes), distances(o.distances);
+  std::optional<pcs::Orl_correspondences> stored;
+  if (was_stored && o.load.empty())
+    stored = read_stored(o);
+  complete_trees(o, files);
 
-  const bool was_stored = is_stored(o);
   std::vector<double> turns; // of more than two trees, which stand turned in the files
   pcs::Orl_report report;
   if (o.load.empty()) {
@@ -248,7 +262,7 @@ void run(const Options& o)
       for (const Tree_file& file : files)
         add(space, file);
     }
-    report = build(space, o);
+    report = build(space, o, stored);
   } else {
     report.status = pcs::Status::converged;
     report.number_of_trees = space.number_of_trees();

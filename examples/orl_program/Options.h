@@ -5,7 +5,6 @@
 #ifndef PCS_EXAMPLES_ORL_PROGRAM_OPTIONS_H
 #define PCS_EXAMPLES_ORL_PROGRAM_OPTIONS_H
 
-#include "program/Distinct_files.h"
 #include "program/is_seed.h"
 #include <pcs/core/errors.h>
 
@@ -16,7 +15,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
-#include <filesystem>
 #include <initializer_list>
 #include <limits>
 #include <map>
@@ -24,7 +22,6 @@
 #include <set>
 #include <sstream>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -214,32 +211,27 @@ Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
   });
 }
 
-/// No result may be an input, or another result. Trees that a family gives have the names of their kinds.
-inline void check_files(const Options& o)
+/// A name that a script left empty is not the same as no name.
+inline void check_names(const Options& o)
 {
-  namespace fs = std::filesystem;
-  program::Distinct_files files;
-  for (const auto* inputs : {&o.trees, &o.skeletons})
-    for (const std::string& input : *inputs)
-      files.add_input(input);
-  files.add_input(o.load);
-  for (const std::string* path :
-       {&o.correspondences, &o.matches, &o.report, &o.changes, &o.distances, &o.save})
-    files.add_output(*path);
-  if (o.has_places())
-    for (const double l : std::set<double>(o.lambda.begin(), o.lambda.end()))
-      for (const char* extension : {".ply", ".swc"})
-        files.add_output((fs::path(o.output) / (name_of(l) + extension)).string());
-  for (const auto* inputs : {&o.trees, &o.skeletons})
-    for (const std::string& input : *inputs) {
-      std::error_code error;
-      const std::string stem = fs::path(input).stem().string();
-      const fs::path folder = fs::path(input).parent_path();
-      const bool is_in_output = fs::equivalent(folder.empty() ? "." : folder, o.output, error);
-      for (const char* kind : {"mean", "mode_", "sample_", "growth_", "combination"})
-        if (o.is_family() && is_in_output && stem.rfind(kind, 0) == 0)
-          throw pcs::Invalid_input(input + " may be overwritten by a result in " + o.output);
-    }
+  const auto check_list = [](const char* name, const std::vector<std::string>& paths) {
+    for (const std::string& path : paths)
+      if (path.empty())
+        throw pcs::Invalid_input(std::string(name) + " has an empty name, expected a file");
+  };
+  check_list("--tree", o.trees);
+  check_list("--skeleton", o.skeletons);
+  for (const auto& [name, path] : {std::make_pair("--matches", &o.matches),
+                                   std::make_pair("--report", &o.report),
+                                   std::make_pair("--correspondences", &o.correspondences),
+                                   std::make_pair("--changes", &o.changes),
+                                   std::make_pair("--distances", &o.distances),
+                                   std::make_pair("--save-space", &o.save),
+                                   std::make_pair("--load-space", &o.load)})
+    if (o.is_given(name) && path->empty())
+      throw pcs::Invalid_input(std::string(name) + " has an empty name, expected a file");
+  if (o.output.empty())
+    throw pcs::Invalid_input("--output has an empty name, expected a folder");
 }
 
 /// What is asked for must have an effect.
@@ -300,6 +292,7 @@ inline void check_numbers(const Options& o, std::size_t number_of_trees)
 inline void check(const Options& o)
 {
   const auto fail = [](const std::string& what) { throw pcs::Invalid_input(what); };
+  check_names(o);
   if (!o.load.empty() && !(o.trees.empty() && o.skeletons.empty()))
     fail("--load-space is given with trees, expected one of both");
   if (o.load.empty()) {
@@ -329,7 +322,6 @@ inline void check(const Options& o)
   for (const double l : o.lambda)
     if (const auto [it, is_new] = names.emplace(name_of(l), l); !is_new && it->second != l)
       fail("--lambda has two places whose files would both be called " + it->first);
-  check_files(o);
   check_effects(o);
 }
 

@@ -104,25 +104,16 @@ check_place(const std::string& points, const std::string& skeleton, const Tree_f
                              " than it is large; both must be in the same coordinates and unit");
 }
 
-/// Either path may be empty, not both. `up`: the axis along which trees grow.
-inline Tree_file read_tree(const std::string& points,
-                           const std::string& skeleton,
-                           bool do_extend_axes,
-                           const std::string& up)
+/// What the files say. Either path may be empty, not both.
+inline Tree_file read_tree(const std::string& points, const std::string& skeleton)
 {
   Tree_file tree;
   if (!points.empty())
     tree.points = pcs::IO::read_points(points);
-  if (!skeleton.empty())
+  if (!skeleton.empty()) {
     read_skeleton(skeleton, tree);
-  else
-    extract_skeleton(points, up, tree);
-  if (!skeleton.empty())
     check_place(points, skeleton, tree);
-  if (do_extend_axes && !skeleton.empty())
-    pcs::shape_space::extend_axes(tree.skeleton, tree.points.points());
-  for (std::size_t v = tree.ids.size(); v < num_vertices(tree.skeleton); ++v) // the file has none
-    tree.ids.push_back(static_cast<std::int64_t>(v) + 1);
+  }
   if (tree.points.has_normals()) {
     tree.has_valid_normals = true;
     for (const auto& n : tree.points.normals()) {
@@ -132,6 +123,20 @@ inline Tree_file read_tree(const std::string& points,
     }
   }
   return tree;
+}
+
+/// Finds the skeleton if there is none, and names for nodes that have none. `up`: the axis along which trees grow.
+inline void complete_tree(Tree_file& tree,
+                          const std::string& points,
+                          bool do_extend_axes,
+                          const std::string& up)
+{
+  if (num_vertices(tree.skeleton) == 0)
+    extract_skeleton(points, up, tree);
+  else if (do_extend_axes)
+    pcs::shape_space::extend_axes(tree.skeleton, tree.points.points());
+  for (std::size_t v = tree.ids.size(); v < num_vertices(tree.skeleton); ++v) // the file has none
+    tree.ids.push_back(static_cast<std::int64_t>(v) + 1);
 }
 
 } // namespace orl_program

@@ -5,6 +5,7 @@
 #ifndef PCS_EXAMPLES_ORL_PROGRAM_WRITE_FAMILY_H
 #define PCS_EXAMPLES_ORL_PROGRAM_WRITE_FAMILY_H
 
+#include "Results.h"
 #include "program/Progress_line.h"
 #include "program/Report_file.h"
 #include "write_tree.h"
@@ -14,19 +15,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <sstream>
 #include <string>
 #include <vector>
 
 namespace orl_program {
-
-inline std::string numbered(const char* name, std::size_t i)
-{
-  char text[64];
-  std::snprintf(text, sizeof(text), "%s_%04zu", name, i);
-  return text;
-}
 
 inline void write_modes(const Space& space, const std::vector<Tree_file>& files, const Options& o)
 {

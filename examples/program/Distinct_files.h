@@ -54,6 +54,9 @@ private:
           is_same = true;
           other = use.path;
         }
+    if (is_same && path == other)
+      throw pcs::Invalid_input(path + " is named twice, they are the same file; a result would "
+                                      "destroy it");
     if (is_same)
       throw pcs::Invalid_input(path + " and " + other +
                                " are the same file; a result would destroy it");

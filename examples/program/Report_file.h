@@ -7,6 +7,8 @@
 
 #include <pcs/core/errors.h>
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -36,7 +38,8 @@ public:
       m_out.open(m_temporary);
     }
     if (!m_out)
-      throw pcs::IO_error(path, "cannot be opened for writing");
+      throw pcs::IO_error(path,
+                          std::string("cannot be opened for writing: ") + std::strerror(errno));
     remove_temporary(); // it only exists while it is written: the work may be killed
   }
 
@@ -55,7 +58,8 @@ public:
     if (m_out && !m_temporary.empty())
       std::filesystem::rename(m_temporary, m_target, error);
     if (!m_out || error)
-      throw pcs::IO_error(m_path, "cannot be written");
+      throw pcs::IO_error(m_path,
+                          "cannot be written: " + (error ? error.message() : std::strerror(errno)));
     m_temporary.clear();
   }
 

@@ -378,6 +378,45 @@ BOOST_AUTO_TEST_CASE(correspondences_are_kept)
   BOOST_TEST(number_in("three") == 0u);
 }
 
+BOOST_AUTO_TEST_CASE(results_that_cannot_be_written_are_found_before_the_work)
+{
+  // the trees are not even read: the second is none
+  const std::string no_trees = "--skeleton a.swc --skeleton b.ply --output ";
+  write("file", "old");
+  refuses(no_trees + "file", "file: is a file, expected a folder");
+  refuses(no_trees + "file/out", "file/out: cannot be made a folder: Not a directory");
+  refuses(no_trees + "''", "--output has an empty name, expected a folder");
+  refuses(no_trees + "/proc", "/proc: no files can be written in this folder");
+  std::filesystem::create_directories(folder / "taken" / "lambda_0.500.swc");
+  refuses(no_trees + "taken", "lambda_0.500.swc: is a directory, expected a file name");
+  for (const std::string option :
+       {"--matches", "--report", "--changes", "--distances", "--save-space", "--correspondences"}) {
+    const std::string of_file = no_trees + "new/out " + option;
+    refuses(of_file + " missing/x",
+            "missing/x: cannot be opened for writing: No such file or directory");
+    refuses(of_file + " ''", option + " has an empty name, expected a file");
+    if (option != "--correspondences") // a folder there is read
+      refuses(of_file + " taken", "taken: is a directory, expected a file name");
+  }
+  refuses(no_trees + "out --mean --report out/mean.swc", "out/mean.swc is named twice");
+  refuses("--skeleton a.swc --skeleton '' --output out", "--skeleton has an empty name");
+  refuses("--tree a.ply --tree '' --output out", "--tree has an empty name");
+  BOOST_TEST(!exists("new"));
+  BOOST_TEST(!exists("out"));
+  BOOST_TEST(content("file") == "old");
+  succeeds("--skeleton a.swc --skeleton b.swc --output new/out --report new/out/r.json");
+  BOOST_TEST(number_in("new/out") == 6u);
+}
+
+BOOST_AUTO_TEST_CASE(all_files_are_read_before_skeletons_are_extracted)
+{
+  write("no_tree.xyz", "0 0 0\n"); // cannot be extracted
+  refuses("--tree no_tree.xyz --tree missing.ply --output out", "missing.ply");
+  write("c.txt", "no correspondences");
+  refuses("--tree no_tree.xyz --tree no_tree.xyz --correspondences c.txt --output out", "c.txt");
+  BOOST_TEST(!exists("out"));
+}
+
 BOOST_AUTO_TEST_CASE(bad_input_is_refused_with_a_sentence)
 {
   refuses("--output out", "--skeleton");
