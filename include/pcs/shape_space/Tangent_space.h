@@ -57,12 +57,18 @@ public:
     return z;
   }
 
-  /// The tree at the end of a tangent vector. Lengths and radii end at 0, turns at pi, attachments on the parent.
+  /*!
+    The tree at the end of a tangent vector. Turns end at pi, attachments on the parent, and lengths at 0; what is left of a
+    length by rounding is 0. What cannot vanish ends at a share of what it is at the base: lengths of the trunk, and
+    radii where there is length.
+  */
   Orl_coordinates exp(const Eigen::VectorXd& z) const
   {
     Orl_coordinates x = m_base;
     const std::size_t n = x.length.size(), m = x.attachment.size();
     const auto over = [](double value, double weight) { return weight > 0 ? value / weight : 0; };
+    const std::size_t trunk_end =
+        m_layout->branches.empty() ? 0 : m_layout->branches[0].number_of_edges;
     Eigen::Index k = 0;
     for (std::size_t e = 0; e < n; ++e, k += 5) {
       Vec3 u = m_weights->orientation[e] > 0 ? Vec3(z.segment<3>(k) / m_weights->orientation[e])
@@ -72,11 +78,20 @@ public:
         u *= pi / u.norm();
       x.orientation[e] = m_base.orientation[e] * rotation_exp(u);
       x.orientation[e].normalize();
-      x.length[e] = std::max(0.0, x.length[e] + over(z[k + 3], m_weights->length[e]));
-      x.radius[e] = std::max(0.0, x.radius[e] + over(z[k + 4], m_weights->radius[e]));
+      const double length = x.length[e] + over(z[k + 3], m_weights->length[e]);
+      x.length[e] = length > rounding * x.length[e] ? length
+                    : e < trunk_end                 ? least_share * x.length[e]
+                                                    : 0;
+      x.radius[e] = radius_at(x.radius[e], over(z[k + 4], m_weights->radius[e]), x.length[e] > 0);
     }
     for (std::size_t b = 0; b < m; ++b, k += 2) {
-      x.base_radius[b] = std::max(0.0, x.base_radius[b] + over(z[k], m_weights->base_radius[b]));
+      const Orl_layout::Branch& branch = m_layout->branches[b];
+      const auto first = x.length.begin() + static_cast<std::ptrdiff_t>(branch.first_edge);
+      const bool is_there = std::any_of(first,
+                                        first + static_cast<std::ptrdiff_t>(branch.number_of_edges),
+                                        [](double length) { return length > 0; });
+      x.base_radius[b] =
+          radius_at(x.base_radius[b], over(z[k], m_weights->base_radius[b]), is_there);
       const std::size_t p = m_layout->branches[b].parent;
       const double last =
           p == none ? 0 : static_cast<double>(m_layout->branches[p].number_of_edges);
@@ -87,6 +102,16 @@ public:
   }
 
 private:
+  static constexpr double rounding = 1e-9, least_share = 0.01; // of what it is at the base
+
+  static double radius_at(double base, double step, bool is_there)
+  {
+    const double radius = base + step;
+    if (radius >= -rounding * base) // 0 where it is 0 in an input
+      return std::max(0.0, radius);
+    return is_there ? least_share * base : 0;
+  }
+
   const Orl_layout* m_layout = nullptr;
   Orl_coordinates m_base;
   const Orl_weights* m_weights = nullptr;

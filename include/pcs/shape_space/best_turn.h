@@ -9,6 +9,8 @@
 
 #include <Eigen/Core>
 
+#include <cmath>
+
 namespace pcs {
 namespace shape_space {
 
@@ -18,8 +20,12 @@ namespace shape_space {
   Newton's method where the trace is concave: three or four steps do for what `improve_rotation()` needs dozens, as its
   steps converge linearly when the bundle is narrow. Elsewhere its step is taken.
 */
-inline Quaternion best_turn(const Eigen::Matrix3d& covariance, Quaternion q)
+inline Quaternion best_turn(Eigen::Matrix3d covariance, Quaternion q)
 {
+  // cubes of numbers in any unit have a place; a power of 2 changes no bit
+  const double largest = covariance.cwiseAbs().maxCoeff();
+  if (largest > 0 && std::isfinite(largest))
+    covariance *= std::ldexp(1.0, -std::ilogb(largest));
   constexpr int most_steps = 50;
   for (int i = 0; i < most_steps; ++i) {
     const Eigen::Vector3d u = newton_turn(covariance * q.toRotationMatrix().transpose(), 0);

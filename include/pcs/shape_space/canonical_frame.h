@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <cmath>
 #include <cstddef>
 
 namespace pcs {
@@ -28,8 +29,10 @@ inline Eigen::Matrix3d canonical_frame(const Rooted_tree& tree)
     z = tree.points[tree.children[tree.first_child[0]]] - tree.points[0];
   z.normalize();
   double total = 0;
+  // squares of squares of lengths in any unit have a place; a power of 2 changes no bit
+  const int unit = std::ilogb(tree.extent);
   for (std::size_t v = 1; v < tree.size(); ++v) {
-    const double length = tree.edge_length(v);
+    const double length = std::ldexp(tree.edge_length(v), -unit);
     const Vec3 p = tree.points[v] - tree.points[0];
     const Vec3 off = p - p.dot(z) * z;
     total += length;

@@ -144,9 +144,10 @@ excess(const Tree_figures& x, const std::vector<Tree_figures>& others, bool has_
     else if (value > high * (1 + figure_tolerance) + least)
       sum += (value - high) / std::max(high, least);
   };
-  add([](const Tree_figures& f) { return f.length; });
-  add([](const Tree_figures& f) { return f.height; });
-  add([](const Tree_figures& f) { return f.crown_width; });
+  const double rounding = 1e-9 * x.length;
+  add([](const Tree_figures& f) { return f.length; }, false, rounding);
+  add([](const Tree_figures& f) { return f.height; }, false, rounding);
+  add([](const Tree_figures& f) { return f.crown_width; }, false, rounding);
   add([](const Tree_figures& f) { return f.depth; }, true, figure_tolerance * x.length);
   add([](const Tree_figures& f) { return f.lean; }, true, upright_tolerance * x.crown_width);
   add([](const Tree_figures& f) { return static_cast<double>(f.total_number_of_branches()); });
