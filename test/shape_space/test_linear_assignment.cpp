@@ -68,7 +68,8 @@ BOOST_AUTO_TEST_CASE(it_is_kept_up_to_date_when_entries_grow)
       p = std::min(0.0, uniform(random));
     pcs::shape_space::Assignment assignment(n, m, gain, prices);
     BOOST_TEST(assignment.bound() <= least_cost(n, m, gain) + 1e-12);
-    assignment.solve();
+    BOOST_TEST(assignment.solve());
+    BOOST_TEST(std::abs(assignment.bound() - least_cost(n, m, gain)) < 1e-12);
     for (int round = 0; round < 6; ++round) {
       const auto& column = assignment.columns();
       double cost = 0;
@@ -87,6 +88,26 @@ BOOST_AUTO_TEST_CASE(it_is_kept_up_to_date_when_entries_grow)
         gain[i * m + column[i]] += 0.2 + 0.5 * std::abs(uniform(random));
       assignment.raise(rows);
     }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(it_stops_when_it_is_known_to_cost_too_much)
+{
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1, 0.3);
+  std::vector<double> gain(6 * 6);
+  for (int repetition = 0; repetition < 300; ++repetition) {
+    for (double& g : gain)
+      g = uniform(random);
+    const double least = least_cost(6, 6, gain);
+    pcs::shape_space::Assignment dear(6, 6, gain), cheap(6, 6, gain);
+    BOOST_TEST(!dear.solve(least - 1e-9));
+    BOOST_TEST(dear.bound() <= least + 1e-12);
+    BOOST_TEST(cheap.solve(least + 1e-9));
+    // what is known by then is true of other problems, too
+    pcs::shape_space::Assignment again(6, 6, gain, dear.prices());
+    BOOST_TEST(again.solve());
+    BOOST_TEST(std::abs(again.bound() - least) < 1e-12);
   }
 }
 

@@ -249,11 +249,11 @@ public:
       if (const auto it = prices.find(b.start[j]); it != prices.end())
         known[j] = it->second;
     Assignment assignment(n, m, gain, known);
-    if (total * (1 - slack) + assignment.bound() > most)
-      return std::numeric_limits<double>::infinity();
-    assignment.solve();
+    const bool is_solved = assignment.solve(most - total * (1 - slack));
     for (std::size_t j = 0; j < m; ++j)
       prices[b.start[j]] = assignment.prices()[j];
+    if (!is_solved)
+      return std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < n; ++i)
       if (const std::size_t j = assignment.columns()[i]; j != none)
         total += gain[i * m + j];
@@ -364,30 +364,29 @@ private:
   {
     const std::size_t n = a.s.size(), m = b.s.size();
     std::vector<double> gain(n * m);
+    std::vector<Vec3> turned;
+    for (const Vec3& direction : b.direction)
+      turned.push_back(rotation * direction);
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j < m; ++j)
-        gain[i * m + j] = m_weights.curve * quick_cost(a, i, b, j, rotation) +
-                          position_term(a.length[i], b.length[j], a.s[i], b.s[j], parent_length) -
-                          single_term(a.weight[i]) - single_term(b.weight[j]);
+        gain[i * m + j] =
+            m_weights.curve * quick_cost(a.weight[i], b.weight[j], a.direction[i].dot(turned[j])) +
+            position_term(a.length[i], b.length[j], a.s[i], b.s[j], parent_length) -
+            single_term(a.weight[i]) - single_term(b.weight[j]);
     return gain;
   }
 
-  /// Cost of two subtrees as if each were one straight branch.
-  double quick_cost(const Children& a,
-                    std::size_t i,
-                    const Children& b,
-                    std::size_t j,
-                    const Eigen::Matrix3d& rotation) const
+  /// Cost of two subtrees of given weights as if each were one straight branch, at an angle of given cosine.
+  double quick_cost(double weight_1, double weight_2, double dot) const
   {
-    double cosine = std::max(0.0, a.direction[i].dot(rotation * b.direction[j]));
+    double cosine = std::max(0.0, dot);
     if (is_turned()) {
       const double t = m_weights.turn;
-      cosine = std::sqrt(1 + t * t + 2 * t * a.direction[i].dot(rotation * b.direction[j])) - t;
+      cosine = std::sqrt(1 + t * t + 2 * t * dot) - t;
     }
     if (grows_at_tips())
-      return 2 * std::min(a.weight[i], b.weight[j]) * (1 - cosine) +
-             length_term(a.weight[i], b.weight[j]);
-    return elastic_energy(a.weight[i], b.weight[j], cosine) + length_term(a.weight[i], b.weight[j]);
+      return 2 * std::min(weight_1, weight_2) * (1 - cosine) + length_term(weight_1, weight_2);
+    return elastic_energy(weight_1, weight_2, cosine) + length_term(weight_1, weight_2);
   }
 
   Matching_weights m_weights;

@@ -53,16 +53,17 @@ public:
       }
   }
 
-  /// What all pairs together cost at least, known before they are sought.
+  /// What all pairs together cost at least, as far as is known; after `solve()` what they cost.
   double bound() const { return m_bound; }
 
-  /// Finds the pairs of least cost.
-  void solve()
+  /// Finds the pairs of least cost; false as soon as it is known that they cost more than `most` together.
+  bool solve(double most = std::numeric_limits<double>::infinity())
   {
-    for (std::size_t r = 0; r < m_rows.partner.size(); ++r)
+    for (std::size_t r = 0; r < m_rows.partner.size() && m_bound <= most; ++r)
       augment(m_rows, m_columns, r);
-    for (std::size_t c = 0; c < m_columns.partner.size(); ++c)
+    for (std::size_t c = 0; c < m_columns.partner.size() && m_bound <= most; ++c)
       augment(m_columns, m_rows, c);
+    return m_bound <= most;
   }
 
   const std::vector<double>& prices() const { return m_columns.price; }
@@ -104,10 +105,12 @@ private:
     if (own.partner[r] != none || !(own.price[r] < 0))
       return;
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    const std::size_t m = other.price.size();
+    const std::size_t m = other.price.size(), stride = other.stride;
     m_least.assign(m, infinity);
     m_previous.resize(m);
     m_open = other.price; // -inf: in the tree
+    double *const least = m_least.data(), *const open = m_open.data();
+    std::size_t* const previous = m_previous.data();
     m_tree.assign(1, {r, none, 0});
     double single = -own.price[r]; // least reduced cost of leaving one of the tree single
     std::size_t single_row = r, end = none;
@@ -119,14 +122,14 @@ private:
       double nearest = single;
       std::size_t next = none;
       for (std::size_t j = 0; j < m; ++j) {
-        const double g = gain[j * other.stride];
-        const double reduced = begin + g - m_open[j];
-        if (g < 0 && reduced < m_least[j]) {
-          m_least[j] = reduced;
-          m_previous[j] = row;
+        const double g = gain[j * stride];
+        const double reduced = begin + g - open[j];
+        if (g < 0 && reduced < least[j]) {
+          least[j] = reduced;
+          previous[j] = row;
         }
-        if (m_least[j] < nearest && m_open[j] > -infinity) {
-          nearest = m_least[j];
+        if (least[j] < nearest && open[j] > -infinity) {
+          nearest = least[j];
           next = j;
         }
       }
@@ -137,7 +140,7 @@ private:
         end = next;
         break;
       }
-      m_open[next] = -infinity;
+      open[next] = -infinity;
       m_tree.push_back({other.partner[next], next, reached});
       const double alone = reached - own.price[m_tree.back().row];
       if (alone < single) {
@@ -145,6 +148,7 @@ private:
         single_row = m_tree.back().row;
       }
     }
+    m_bound += reached;
     for (const Reached& t : m_tree) {
       own.price[t.row] = std::min(0.0, own.price[t.row] + (reached - t.distance));
       if (t.column != none)
@@ -172,7 +176,7 @@ private:
 
   const std::vector<double>& m_gain;
   Side m_rows, m_columns;
-  double m_bound = 0;
+  double m_bound = 0; // sum of all prices
   std::vector<double> m_least, m_open;
   std::vector<std::size_t> m_previous;
   std::vector<Reached> m_tree;
