@@ -707,6 +707,30 @@ BOOST_AUTO_TEST_CASE(the_way_back_between_trees_of_the_same_lengths_is_as_long)
   }
 }
 
+BOOST_AUTO_TEST_CASE(the_way_back_between_copies_that_stand_differently_is_as_long)
+{
+  // no length tells which comes first
+  Tree star;
+  add_vertex(star);
+  for (const Vec3& p : {Vec3(0, 0, 1),
+                        Vec3(0.6, 0.1, 0.8),
+                        Vec3(-0.3, 0.7, 0.4),
+                        Vec3(0.2, -0.9, 0.3),
+                        Vec3(0.9, 0.2, 0.1),
+                        Vec3(-0.8, -0.2, 0.5),
+                        Vec3(-0.5, 0.4, 0.9)}) {
+    const auto v = add_vertex(star);
+    star[v].point = to_cgal(p.normalized());
+    add_edge(0, v, star);
+  }
+  for (const Tree& a : {star, random_tree(3, 4, 3), random_tree(8, 4, 3)})
+    for (const Vec3& side : {Vec3(-1, 1, 1), Vec3(-1, -1, 1)}) {
+      const Tree b = moved(a, side.asDiagonal().toDenseMatrix(), Vec3::Zero());
+      const double there = make_space(a, b).distance(0, 1), back = make_space(b, a).distance(0, 1);
+      BOOST_TEST(std::abs(there - back) < 1e-6 * there);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(a_tree_in_another_unit_is_the_same)
 {
   const Tree a = random_tree(15);
@@ -721,6 +745,28 @@ BOOST_AUTO_TEST_CASE(a_tree_in_another_unit_is_the_same)
       BOOST_TEST(report.unexplained_share < 1e-3);
       for (const pcs::Branch_match& m : space.matches())
         BOOST_TEST(m.tip[0] == m.tip[1]);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(two_trees_in_any_unit_are_the_same)
+{
+  const Tree a = random_tree(15), b = random_tree(16);
+  const Space space = make_space(a, b);
+  for (const int power : {-300, -40, 40, 250, 320}) { // 320: about 1e96
+    const double scale = std::ldexp(1.0, power);
+    const auto scaled = [&](const Tree& tree) {
+      return moved(tree, Eigen::Matrix3d::Identity(), Vec3::Zero(), scale);
+    };
+    const Space other = make_space(scaled(a), scaled(b));
+    BOOST_TEST_CONTEXT("2^" << power)
+    {
+      BOOST_TEST(std::abs(other.distance(0, 1) / scale - space.distance(0, 1)) <
+                 1e-6 * space.distance(0, 1));
+      const auto one = space.matches(), two = other.matches();
+      BOOST_TEST_REQUIRE(one.size() == two.size());
+      for (std::size_t k = 0; k < one.size(); ++k)
+        BOOST_TEST((one[k].tip == two[k].tip));
     }
   }
 }

@@ -244,7 +244,10 @@ inline bool is_clearly_shorter(const Rooted_tree& one, const Rooted_tree& two)
 
 } // namespace internal
 
-/// Matches the branches of two trees, in an order of their own: the way back has the same matching.
+/*!
+  Matches the branches of two trees, in an order of their own: the way back has the same matching. Where it cannot be told
+  which tree comes first, both orders are tried, and the matching is that which leaves less of what the trees differ by.
+*/
 template <class ConcurrencyTag>
 Matching_cost match_trees(const std::array<const Rooted_tree*, 2>& trees,
                           const Matching_weights& weights,
@@ -253,17 +256,32 @@ Matching_cost match_trees(const std::array<const Rooted_tree*, 2>& trees,
                           Common_topology& result)
 {
   using Matching = Tree_matching<ConcurrencyTag>;
-  if (!internal::is_clearly_shorter(*trees[1], *trees[0]))
-    return Matching(trees, weights, standing, progress, result).run();
-  Matching_cost cost = Matching({trees[1], trees[0]}, weights, standing, progress, result).run();
-  cost.turn = 0 - cost.turn; // no negative zero
-  std::swap(result.paths[0], result.paths[1]);
-  for (Common_branch& b : result.branches) {
+  constexpr double rounding = 1e-9;
+  Matching_cost cost;
+  cost.share = std::numeric_limits<double>::infinity();
+  if (!internal::is_clearly_shorter(*trees[1], *trees[0])) {
+    cost = Matching(trees, weights, standing, progress, result).run();
+    if (cost.share <= rounding || progress.is_cancelled() ||
+        internal::is_clearly_shorter(*trees[0], *trees[1]))
+      return cost;
+  }
+  Common_topology back;
+  Matching_cost cost_back = Matching({trees[1], trees[0]}, weights, standing, progress, back).run();
+  if (progress.is_cancelled()) {
+    result = Common_topology();
+    return cost_back;
+  }
+  if (!(cost_back.share < cost.share * (1 - rounding)))
+    return cost;
+  cost_back.turn = 0 - cost_back.turn; // no negative zero
+  std::swap(back.paths[0], back.paths[1]);
+  for (Common_branch& b : back.branches) {
     std::swap(b.path[0], b.path[1]);
     std::swap(b.node[0], b.node[1]);
     std::swap(b.attachment[0], b.attachment[1]);
   }
-  return cost;
+  result = std::move(back);
+  return cost_back;
 }
 
 } // namespace shape_space
