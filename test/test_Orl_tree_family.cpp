@@ -388,7 +388,12 @@ BOOST_AUTO_TEST_CASE(all_modes_give_the_inputs_back)
   for (std::size_t h = 0; h < 6; ++h) {
     const pcs::Orl_tree tree = space.tree(h);
     const double size = total_length(tree.coordinates());
-    BOOST_TEST(space.distance(space.reconstruct(modes, tree, 5), tree) < 1e-9 * size);
+    const pcs::Orl_tree same = space.reconstruct(modes, tree, 5);
+    BOOST_TEST(space.distance(same, tree) < 1e-9 * size);
+    Tree one, two; // branches that the tree lacks do not come with a length of rounding
+    space.skeleton(tree, one);
+    space.skeleton(same, two);
+    BOOST_TEST(num_vertices(one) == num_vertices(two));
     double last = 1e300;
     for (std::size_t k = 1; k <= 5; ++k) {
       const double d = space.project(space.modes(k), tree).distance;
@@ -413,6 +418,67 @@ BOOST_AUTO_TEST_CASE(all_modes_give_the_inputs_back)
           (all.directions.transpose() * all.directions - Eigen::MatrixXd::Identity(5, 5)).norm() <
           1e-9);
   }
+}
+
+BOOST_AUTO_TEST_CASE(trees_that_only_lack_branches_have_modes)
+{
+  const auto with = [](std::size_t number_of_branches) {
+    Tree tree;
+    const auto add = [&](std::size_t parent, const Vec3& p) {
+      const auto v = add_vertex(tree);
+      tree[v].point = to_cgal(p);
+      tree[v].radius = 0.1;
+      if (v > 0)
+        add_edge(parent, v, tree);
+      return v;
+    };
+    for (std::size_t k = 0; k < 6; ++k)
+      add(k - 1, Vec3(0, 0, static_cast<double>(k)));
+    for (std::size_t k = 1; k <= number_of_branches; ++k)
+      add(k, Vec3(k % 2 == 0 ? 0.5 : -0.5, 0.2, static_cast<double>(k) + 0.2));
+    return tree;
+  };
+  const Space space = make_space({with(4), with(2), with(4), with(2)});
+  const auto modes = space.modes(3);
+  BOOST_TEST_REQUIRE(modes.size() == 1u);
+  BOOST_TEST((modes.features.measure == Mode_measure::metric));
+  BOOST_TEST(modes.scores(0, 0) * modes.scores(1, 0) < 0);
+  BOOST_TEST(std::abs(modes.scores(0, 0) - modes.scores(2, 0)) < 1e-9);
+  for (std::size_t h = 0; h < 4; ++h)
+    BOOST_TEST(space.distance(space.reconstruct(modes, space.tree(h), 1), space.tree(h)) < 1e-9);
+  BOOST_TEST(space.modes(0).size() == 0u);
+}
+
+BOOST_AUTO_TEST_CASE(trees_far_out_on_a_mode_are_trees)
+{
+  const Family space(6);
+  const auto check = [&](const pcs::Orl_tree& tree) {
+    const Orl_coordinates& x = tree.coordinates();
+    for (std::size_t b = 0; b < space.layout().branches.size(); ++b) {
+      const Orl_layout::Branch& branch = space.layout().branches[b];
+      for (std::size_t e = branch.first_edge; e < branch.first_edge + branch.number_of_edges; ++e) {
+        BOOST_TEST(std::isfinite(x.length[e]));
+        BOOST_TEST((b > 0 || x.length[e] > 0));
+        BOOST_TEST((x.radius[e] > 0 || !(x.length[e] > 0)));
+        BOOST_TEST((x.base_radius[b] > 0 || !(x.length[e] > 0)));
+      }
+    }
+    Tree skeleton;
+    space.skeleton(tree, skeleton);
+    BOOST_TEST(num_vertices(skeleton) >= 2u);
+  };
+  const auto modes = space.modes(5);
+  for (std::size_t k = 0; k < modes.size(); ++k)
+    for (const double score : {-1000., -50., -5., 5., 50., 1000.}) {
+      std::vector<double> scores(k, 0);
+      scores.push_back(score);
+      check(space.tree(modes, scores));
+    }
+  for (const double step : {-100., -3., 4., 100.})
+    check(space.displaced(space.mean(np::tree_mean(Tree_mean::least_squares)),
+                          space.tree(0),
+                          space.tree(1),
+                          step));
 }
 
 BOOST_AUTO_TEST_CASE(two_known_modes_are_found)

@@ -41,7 +41,7 @@ struct Options
   // families
   bool do_mean = false, do_growth = false, do_mesh = false;
   bool is_monotone = false, may_leave_range = false;
-  std::string mean_kind = "l1", load, save, changes, distances;
+  std::string mean_kind = "l1", mode_measure = "branches", load, save, changes, distances;
   std::size_t number_of_modes = 0, number_of_samples = 0, number_of_frames = 11;
   std::int64_t seed = 1; // signed, so that CLI11 does not take -1 for a large number
   std::vector<double> weights, times;
@@ -104,6 +104,14 @@ inline void declare_family(CLI::App& app, Options& o)
                  "so many modes of variation, at two standard deviations either way: "
                  "mode_1_minus.swc, mode_1_plus.swc, ..., and modes.json")
       ->check(CLI::Range(0, 10000))
+      ->group(group);
+  app.add_option(
+         "--mode-measure",
+         o.mode_measure,
+         "what modes explain: how branches differ where trees have them, or the metric, for "
+         "trees that differ by which branches they have")
+      ->check(CLI::IsMember({"branches", "metric"}))
+      ->capture_default_str()
       ->group(group);
   app.add_option("--sample", o.number_of_samples, "so many new trees: sample_0000.swc, ...")
       ->check(CLI::Range(0, 10000))
@@ -259,6 +267,7 @@ inline void check_effects(const Options& o)
          {"--limit-radii"},
          "without --lambda or --sample");
   refuse(!o.do_mean, {"--mean-kind"}, "without --mean");
+  refuse(o.number_of_modes == 0, {"--mode-measure"}, "without --modes");
   refuse(o.number_of_samples == 0,
          {"--seed", "--any-range", "--pipe-model"},
          "without --sample: no new trees are drawn");

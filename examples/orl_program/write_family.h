@@ -24,9 +24,14 @@ namespace orl_program {
 inline void write_modes(const Space& space, const std::vector<Tree_file>& files, const Options& o)
 {
   program::Report_file report((std::filesystem::path(o.output) / "modes.json").string());
-  const pcs::shape_space::Modes_of_variation modes = space.modes(o.number_of_modes);
+  const pcs::shape_space::Modes_of_variation modes = space.modes(
+      o.number_of_modes,
+      np::mode_measure(o.mode_measure == "metric" ? pcs::shape_space::Mode_measure::metric
+                                                  : pcs::shape_space::Mode_measure::branches));
   nlohmann::ordered_json json;
   json["number_of_modes"] = modes.size();
+  json["measure"] =
+      modes.features.measure == pcs::shape_space::Mode_measure::metric ? "metric" : "branches";
   for (std::size_t k = 0; k < modes.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
     nlohmann::ordered_json mode;

@@ -123,7 +123,8 @@ public:
                 weights);
   }
 
-  //! `t`, changed by `step` times what leads from `a` to `b`: any tree, any direction [-]
+  //! `t`, changed by `step` times what leads from `a` to `b`: any tree, any direction [-]. Lengths end at 0, those of the trunk
+  //! and radii of what is there at a hundredth of what they are in `t`.
   Orl_tree displaced(const Orl_tree& t, const Orl_tree& a, const Orl_tree& b, double step) const
   {
     for (const Orl_tree* x : {&t, &a, &b})
@@ -145,7 +146,8 @@ public:
     Directions in the tangent space at the mean; where trees stand is left out. With all `number_of_trees() - 1` modes the
     inputs are reproduced. What makes a mode large is how branches differ in the trees that have them, each branch with one
     vote (Tyler's estimator; EM for branches that are not there), or the metric `Orl_metric::square`, where absent
-    branches and long edges prevail.
+    branches and long edges prevail: the measure for trees that differ by which branches they have, and little else. Where
+    they differ by nothing else it is taken at once.
     \param most modes that are wanted; there are fewer if the trees do not differ in so many ways
     \param np
     \npbegin
@@ -175,7 +177,8 @@ public:
                               shape_space::Mode_measure::branches));
   }
 
-  //! the tree with given scores, in standard deviations of the modes; missing scores are 0
+  //! the tree with given scores, in standard deviations of the modes; missing scores are 0. However large scores are, the
+  //! trunk keeps a hundredth of its lengths in the mean at least, and so do radii where there is length.
   Orl_tree tree(const shape_space::Modes_of_variation& modes,
                 const std::vector<double>& scores) const
   {

@@ -117,6 +117,10 @@ BOOST_AUTO_TEST_CASE(modes_and_new_trees_are_written)
   const std::string distances = content("d.csv");
   BOOST_TEST(std::count(distances.begin(), distances.end(), '\n') == 3);
   BOOST_TEST(std::count(distances.begin(), distances.end(), ',') == 6);
+  BOOST_TEST(modes["measure"] == "branches");
+  succeeds(skeletons + "--modes 2 --mode-measure metric --output metric");
+  BOOST_TEST(Json::parse(content("metric/modes.json"))["measure"] == "metric");
+  BOOST_TEST(content("metric/mode_1_plus.swc") != content("out/mode_1_plus.swc"));
   // a seed is a family
   succeeds(skeletons + "--sample 2 --seed 5 --output again");
   BOOST_TEST(content("out/sample_0001.swc") == content("again/sample_0001.swc"));
@@ -234,6 +238,7 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_with_a_sentence)
   BOOST_TEST(!exists("out"));
   refuses(skeletons + "--mean --times 0,1,2 --output out", "--growth");
   refuses(skeletons + "--mean --mean-kind l3 --output out", "mean-kind");
+  refuses(skeletons + "--modes 1 --mode-measure l2 --output out", "mode-measure");
   refuses(skeletons + "--sample -1 --output out", "sample");
   refuses(skeletons + "--modes -1 --output out", "modes");
   refuses(skeletons + "--mean --matches m.csv --output out", "two trees");
@@ -267,6 +272,7 @@ BOOST_AUTO_TEST_CASE(options_that_would_have_no_effect_are_refused)
                                    "--births-in-order",
                                    "--births-together",
                                    "--limit-radii",
+                                   "--mode-measure metric",
                                    "--seed 1",
                                    "--any-range",
                                    "--pipe-model 2",

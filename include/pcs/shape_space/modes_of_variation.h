@@ -190,7 +190,8 @@ inline void set_features(const Tree_features& features,
 
   Scores are the principal components of the `Tree_covariance` of `Tree_features`: what trees show of the branches that
   they have. A mode is the change of tangent vectors with its score, by least squares: lengths of branches that come and
-  go change with it, too. All modes together give all trees.
+  go change with it, too. All modes together give all trees. Where no branch differs between the trees that have it, all
+  that is left is which trees have it: the modes are those of `Mode_measure::metric`, as `features` tell.
 */
 template <class ConcurrencyTag>
 Modes_of_variation find_modes(const Orl_layout& layout,
@@ -253,6 +254,14 @@ Modes_of_variation find_modes(const Orl_layout& layout,
     deviations.push_back(deviation);
     shares.push_back(principal.shares[k]);
   }
+  if (deviations.empty() && most > 0 && measure == Mode_measure::branches)
+    return find_modes<ConcurrencyTag>(layout,
+                                      trees,
+                                      weights,
+                                      orientation,
+                                      mean,
+                                      most,
+                                      Mode_measure::metric);
   result.directions = std::move(directions);
   result.deviations =
       Eigen::Map<Eigen::VectorXd>(deviations.data(), static_cast<Eigen::Index>(deviations.size()));
