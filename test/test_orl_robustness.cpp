@@ -546,6 +546,30 @@ BOOST_AUTO_TEST_CASE(nodes_that_stand_twice_say_nothing_of_the_branches_there)
   BOOST_TEST(report.distance < 1e-9);
 }
 
+BOOST_AUTO_TEST_CASE(branches_may_begin_on_an_axis_that_lies_on_another_one)
+{
+  // the third begins near the second, which begins near the first, but not near the first
+  Tree tree;
+  const std::size_t root = add_node(tree, pcs::npos, Vec3(0, 0, 0), 0.1);
+  add_node(tree, root, Vec3(0, 0, 3), 0.1);
+  const std::size_t second = add_node(tree, root, Vec3(0.9e-4, 0, 2), 0.1);
+  add_node(tree, second, Vec3(1, 0, 2.5), 0.05);
+  const std::size_t third = add_node(tree, root, Vec3(1.35e-4, 0, 1), 0.1);
+  add_node(tree, third, Vec3(-1, 0, 1.5), 0.05);
+  const pcs::shape_space::Rooted_tree rooted =
+      pcs::shape_space::make_rooted_tree(tree,
+                                         get(&pcs::Tree_node<Kernel>::point, tree),
+                                         get(&pcs::Tree_node<Kernel>::radius, tree),
+                                         get(boost::vertex_index, tree),
+                                         "test");
+  double length = 0;
+  for (std::size_t v = 1; v < rooted.size(); ++v) {
+    BOOST_TEST_REQUIRE(rooted.parents[v] < v);
+    length += rooted.edge_length(v);
+  }
+  BOOST_TEST(std::abs(length - 3 - 2 * std::hypot(1, 0.5)) < 1e-3);
+}
+
 BOOST_AUTO_TEST_CASE(a_cycle_beside_the_root_is_refused)
 {
   Tree tree(5);

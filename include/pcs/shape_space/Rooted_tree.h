@@ -162,11 +162,10 @@ inline Rooted_tree with_nodes_at_bases(const Rooted_tree& all)
   };
   for (std::size_t p = 0; p < n; ++p) {
     std::vector<std::vector<Base>> bases(children[p].size());
-    std::vector<char> is_base(children[p].size(), 0);
+    std::vector<std::size_t> axis_of(children[p].size(), none);
     for (std::size_t i = 0; i < children[p].size(); ++i) {
       const Vec3 v = all.points[children[p][i]] - all.points[p];
-      std::size_t axis = none;
-      double longest = v.norm() * (1 + shortest_edge), share = 0;
+      double longest = v.norm() * (1 + shortest_edge);
       for (std::size_t j = 0; j < children[p].size() && v.norm() > shortest_edge * all.extent;
            ++j) {
         const Vec3 w = all.points[children[p][j]] - all.points[p];
@@ -174,18 +173,22 @@ inline Rooted_tree with_nodes_at_bases(const Rooted_tree& all)
         const double radius = (1 - t) * all.radii[p] + t * all.radii[children[p][j]];
         if (j != i && w.norm() > longest && t > 0 &&
             (v - t * w).norm() <= std::max(on_axis * radius, shortest_edge * all.extent)) {
-          axis = j;
+          axis_of[i] = j;
           longest = w.norm();
-          share = t;
         }
       }
-      if (axis != none) {
-        bases[axis].push_back({share, children[p][i]});
-        is_base[i] = 1;
-      }
     }
+    for (std::size_t i = 0; i < children[p].size(); ++i)
+      if (axis_of[i] != none) {
+        std::size_t axis = axis_of[i];
+        while (axis_of[axis] != none) // an axis that lies on a longer one itself
+          axis = axis_of[axis];
+        const Vec3 w = all.points[children[p][axis]] - all.points[p];
+        const double t = (all.points[children[p][i]] - all.points[p]).dot(w) / w.squaredNorm();
+        bases[axis].push_back({t, children[p][i]});
+      }
     for (std::size_t j = 0; j < children[p].size(); ++j)
-      if (!is_base[j]) {
+      if (axis_of[j] == none) {
         std::size_t last = new_node[p];
         const std::size_t w = children[p][j];
         std::stable_sort(bases[j].begin(), bases[j].end(), [](const Base& a, const Base& b) {
