@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cmath>
 
 namespace pcs {
@@ -25,7 +26,7 @@ inline Quaternion best_turn(Eigen::Matrix3d covariance, Quaternion q)
   // cubes of numbers in any unit have a place; a power of 2 changes no bit
   const double largest = covariance.cwiseAbs().maxCoeff();
   if (largest > 0 && std::isfinite(largest))
-    covariance *= std::ldexp(1.0, -std::ilogb(largest));
+    covariance *= std::ldexp(1.0, std::min(1000, -std::ilogb(largest)));
   constexpr int most_steps = 50;
   for (int i = 0; i < most_steps; ++i) {
     const Eigen::Vector3d u = newton_turn(covariance * q.toRotationMatrix().transpose(), 0);

@@ -30,7 +30,7 @@ inline Eigen::Matrix3d canonical_frame(const Rooted_tree& tree)
   z.normalize();
   double total = 0;
   // squares of squares of lengths in any unit have a place; a power of 2 changes no bit
-  const int unit = std::ilogb(tree.extent);
+  const int unit = tree.extent > 0 ? std::ilogb(tree.extent) : 0;
   for (std::size_t v = 1; v < tree.size(); ++v) {
     const double length = std::ldexp(tree.edge_length(v), -unit);
     const Vec3 p = tree.points[v] - tree.points[0];
