@@ -12,6 +12,7 @@
 #include <numeric>
 #include <thread>
 #include <type_traits>
+#include <vector>
 
 namespace {
 
@@ -276,6 +277,14 @@ BOOST_AUTO_TEST_CASE(points_are_carried_by_a_shape_and_its_handles_only)
     BOOST_TEST(pcs_test::largest_distance(other, s.points) < 1e-9);
     other = s.edit.points;
     s.session.preprocess();
+    BOOST_CHECK_EXCEPTION(s.session.apply(other), Invalid_input, message_has("call it first"));
+    BOOST_TEST((other == s.edit.points));
+    // The constraints are still those of another handle than the shape's.
+    const auto between =
+        pcs_test::select(s.edit.points, [](const Vec3& p) { return p.z() > 2.4 && p.z() < 2.6; });
+    const auto added = s.session.add_handle(between);
+    BOOST_CHECK_EXCEPTION(s.session.apply(other), Invalid_input, message_has("call it first"));
+    s.session.remove_handle(added);
     BOOST_CHECK_EXCEPTION(s.session.apply(other), Invalid_input, message_has("call it first"));
     BOOST_TEST((other == s.edit.points));
     s.session.deform();

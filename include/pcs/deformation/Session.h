@@ -119,6 +119,7 @@ public:
     m_has_solution = false;
     pcs::internal::Stopwatch watch;
     Node_constraints constraints = m_sites.find(m_body, m_handles, m_report);
+    m_setting_of_sites = m_setting;
     m_stiffness = stiffness;
     const bool is_regular = m_coarse.constrain(m_body.network, constraints, stiffness);
     bool is_extended = m_body.is_sampled;
@@ -213,8 +214,11 @@ public:
 
   /// Whether the present shape was solved with the present handles, or is the rest shape.
   bool has_shape_of_handles() const { return m_setting_of_shape == m_setting; }
-  /// Whether constraints were made for handles that the present shape was not solved with.
-  bool is_ahead_of_shape() const { return m_is_constrained && !has_shape_of_handles(); }
+  /// Whether constraints were made for other handles than those that the present shape was solved with.
+  bool is_ahead_of_shape() const
+  {
+    return !m_is_at_rest && m_setting_of_sites != m_setting_of_shape;
+  }
   /// Whether a snapshot is of this session, its rest shape and its present handles.
   bool is_of_setting(const Session_snapshot& s) const { return s.setting == m_setting; }
 
@@ -439,7 +443,9 @@ private:
   std::vector<Similarity> m_local_transforms; ///< those that the maps belong to
   std::vector<Similarity> m_next_transforms;
   std::vector<Similarity> m_shape_transforms; ///< motions that the present shape was solved for
-  std::uint64_t m_setting = 0, m_setting_of_shape = 0; ///< of now, and when the shape was solved
+  std::uint64_t m_setting = 0;                ///< of now
+  std::uint64_t m_setting_of_shape = 0;       ///< when the shape was solved
+  std::uint64_t m_setting_of_sites = 0;       ///< when what becomes of every site was found
   bool m_is_at_rest = true;
   Written_handles m_written_handles;
   std::vector<int> m_are_finite;
