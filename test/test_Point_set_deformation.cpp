@@ -6,12 +6,15 @@
 #include <support/deform_cloud.h>
 #include <support/exceptions.h>
 
+#include <CGAL/property_map.h>
+
 #include <boost/test/unit_test.hpp>
 
 #include <limits>
 #include <numeric>
 #include <thread>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -291,6 +294,26 @@ BOOST_AUTO_TEST_CASE(points_are_carried_by_a_shape_and_its_handles_only)
     s.session.apply(other);
     BOOST_TEST(pcs_test::largest_distance(other, s.points) < 1e-9);
   }
+}
+
+BOOST_AUTO_TEST_CASE(a_point_that_turns_in_its_place_turns_its_normal)
+{
+  using Element = std::pair<Vec3, Vec3>;
+  std::vector<Element> points;
+  for (int x = 0; x <= 4; ++x)
+    for (int y = 0; y <= 4; ++y)
+      points.emplace_back(Vec3(x, y, 0), Vec3(1, 0, 0));
+  const auto np = pcs::parameters::point_map(CGAL::First_of_pair_property_map<Element>())
+                      .normal_map(CGAL::Second_of_pair_property_map<Element>());
+  std::vector<Element> other = points;
+  const std::size_t middle = 12;
+  pcs::Point_set_deformation<std::vector<Element>, std::decay_t<decltype(np)>> session(points, np);
+  session.add_handle(std::vector<std::size_t>{middle});
+  session.set_rotation(0, Vec3(0, 0, 1), pi / 2);
+  session.deform();
+  session.apply(other, np);
+  BOOST_TEST((other[middle].first == Vec3(2, 2, 0)));
+  BOOST_TEST((other[middle].second - Vec3(0, 1, 0)).norm() < 1e-12);
 }
 
 BOOST_AUTO_TEST_CASE(what_became_of_the_points_is_accepted)

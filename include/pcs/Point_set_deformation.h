@@ -357,9 +357,10 @@ public:
       internal::for_each_index<ConcurrencyTag>(
           rest.size(),
           [&](std::size_t i) {
-            deformation::Vec3 p = rest[i], normal = other.normal(i);
+            const deformation::Vec3 rest_normal = other.normal(i);
+            deformation::Vec3 p = rest[i], normal = rest_normal;
             m_session->carry(p, normal);
-            if (p != rest[i])
+            if (p != rest[i] || normal != rest_normal) // a point may turn in its place
               other.write(i, p, normal, Eigen::Matrix3d::Identity());
           },
           256);
