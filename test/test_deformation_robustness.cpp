@@ -646,4 +646,20 @@ BOOST_AUTO_TEST_CASE(a_soft_handle_holds_a_body_of_one_sample)
   BOOST_TEST((result.points[0] - shift(edit.points[0])).norm() < 1e-9);
 }
 
+// The border of an exact handle may lie next to the only sample, which a stiff spring draws away.
+BOOST_AUTO_TEST_CASE(few_samples_throw_no_point_away)
+{
+  const Bar_edit edit;
+  const double size = pcs_test::diagonal(edit.points);
+  for (const int samples : {1, 2, 3})
+    for (std::size_t exact = 0; exact < edit.points.size(); exact += 11) {
+      const std::size_t drawn = (exact + 1) % edit.points.size();
+      const auto shift = pcs::translation(Vec3(0, size, 0));
+      const auto result = deform(edit.points,
+                                 {{{exact}, pcs::Similarity(), 0}, {{drawn}, shift, 1e-9}},
+                                 with_samples(samples));
+      BOOST_TEST(pcs_test::largest_distance(result.points, edit.points) < 2.5 * size);
+    }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

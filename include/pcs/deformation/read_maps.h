@@ -12,14 +12,26 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace pcs {
 namespace deformation {
 
-/// The deformation gradient of every sample, which carries stretch as well, about its new position. The samples are the
-/// first nodes of the network.
+/// Whether a sample has another one for a neighbour, and not only nodes on the borders of handles, which may be so near
+/// that a stretch measured there would throw the points of the sample away. The samples are the first nodes.
+inline bool
+has_sample_beside(const Weighted_graph& graph, std::size_t sample, std::size_t number_of_samples)
+{
+  return std::any_of(graph.begin(sample), graph.end(sample), [&](std::uint32_t other) {
+    return other < number_of_samples;
+  });
+}
+
+/// The deformation gradient of every sample, which carries stretch as well, about its new position; the frame of one
+/// without another beside it. The samples are the first nodes of the network.
 /// \param transforms of the handles, in the coordinates of the network
 /// \param rest of the samples [L]
 /// \param maps one for each sample
@@ -42,7 +54,9 @@ bool read_maps(const Elastic_state& state,
           return 1;
         }
         const bool is_rigid = state.constraints.is_prescribed(s);
-        const Eigen::Matrix3d a = is_rigid ? state.frame[s] : state.deformation_gradient(s);
+        const bool is_measured =
+            !is_rigid && has_sample_beside(state.network.surface, s, maps.size());
+        const Eigen::Matrix3d a = is_measured ? state.deformation_gradient(s) : state.frame[s];
         // A prescribed map is the handle's own, to the last bit.
         const Vec3 t = is_rigid ? transforms[static_cast<std::size_t>(h)].translation()
                                 : Vec3(state.position[s] - a * rest[s]);
