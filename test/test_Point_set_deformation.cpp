@@ -316,6 +316,18 @@ BOOST_AUTO_TEST_CASE(a_point_that_turns_in_its_place_turns_its_normal)
   BOOST_TEST((other[middle].second - Vec3(0, 1, 0)).norm() < 1e-12);
 }
 
+BOOST_AUTO_TEST_CASE(an_object_that_was_moved_from_says_so)
+{
+  Bar_session s(150);
+  Session taken(std::move(s.session));
+  BOOST_CHECK_EXCEPTION(s.session.deform(), Invalid_input, message_has("moved from"));
+  BOOST_CHECK_EXCEPTION(s.session.reset(), Invalid_input, message_has("moved from"));
+  BOOST_TEST(s.session.number_of_samples() == 0u);
+  BOOST_TEST(taken.deform().status == Status::converged);
+  s.session = std::move(taken);
+  BOOST_TEST(s.session.deform().status == Status::converged);
+}
+
 BOOST_AUTO_TEST_CASE(what_became_of_the_points_is_accepted)
 {
   for (const int samples : both_resolutions)

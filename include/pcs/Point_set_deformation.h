@@ -179,6 +179,8 @@ public:
     }
   }
 
+  /// Of an object that was moved from, only assignment, destruction and `number_of_samples()` are allowed; all other
+  /// calls throw `Invalid_input`.
   Point_set_deformation(Point_set_deformation&&) = default;
   Point_set_deformation& operator=(Point_set_deformation&&) = default;
 
@@ -306,12 +308,14 @@ public:
   */
   Deformation_report deform(Start start = Start::cold)
   {
-    if (!m_session || !m_session->is_ready()) {
+    const char* function = "pcs::Point_set_deformation::deform()";
+    require_session(function);
+    if (!m_session->is_ready()) {
       Deformation_report report;
       report.status = Status::cancelled;
       return report;
     }
-    require_all_points("pcs::Point_set_deformation::deform()");
+    require_all_points(function);
     internal::Progress progress(m_callback);
     const Deformation_report report = m_session->solve(m_elastic, start, progress);
     if (report.status == Status::cancelled || report.status == Status::numerical_failure)
@@ -435,9 +439,16 @@ public:
 private:
   using Session = deformation::Session<ConcurrencyTag>;
 
+  void require_session(const char* function) const
+  {
+    if (!m_session)
+      throw Invalid_input(std::string(function) + ": this object was moved from");
+  }
+
   void require_ready(const char* function) const
   {
-    if (!m_session || !m_session->is_ready())
+    require_session(function);
+    if (!m_session->is_ready())
       throw Invalid_input(std::string(function) +
                           ": the construction of this object was cancelled");
   }
