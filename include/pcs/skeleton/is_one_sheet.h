@@ -29,7 +29,7 @@ struct Sheet_rules
   double thin = 0.1;       ///< deviation across it by that along it [-],
   double full = 0.7;       ///< ... share of its cells that hold points,
   double longest = 8;      ///< ... and its length by its width [-]
-  double standing = 0.99;  ///< quantile of distances from its plane that tells what stands on it,
+  double standing = 0.999; ///< quantile of distances from its plane that tells what stands on it,
   double tall = 0.5;       ///< ... which is this high, by its deviation across,
   double outstanding = 10; ///< ... and by the median of all [-]
 };
