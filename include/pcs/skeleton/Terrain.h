@@ -76,19 +76,19 @@ public:
                    const std::vector<std::uint8_t>& is_used) const
   {
     const double half = 0.5 * m_cell;
-    std::size_t all = 0, below = 0, on = 0, above = 0;
-    for (std::size_t i = 0; i < scan.size(); ++i) {
+    const auto most_below =
+        rules.below * double(std::count(is_used.begin(), is_used.end(), std::uint8_t(1)));
+    std::size_t below = 0, on = 0, above = 0;
+    for (std::size_t i = 0; i < scan.size() && double(below) <= most_below; ++i) {
       if (!is_used[i])
         continue;
-      ++all;
       const double h = height(scan.points[i]);
       if (h < -half)
         ++below;
       else if (h <= 3 * half && is_surface(cell_of(place(scan.points[i]).q)))
         ++(h <= half ? on : above);
     }
-    return double(below) <= rules.below * double(all) && on > 0 &&
-           double(on) >= rules.sheet * double(above);
+    return double(below) <= most_below && on > 0 && double(on) >= rules.sheet * double(above);
   }
 
   /// How far nearly all points of the surface lie from it [L].
