@@ -19,7 +19,7 @@ namespace {
 using pcs::skeleton::Terrain;
 using pcs::skeleton::Vec3;
 
-constexpr double slope = 0.5;
+constexpr double slope = 0.5, pi = 3.14159265358979323846;
 
 double relief(double x, double y)
 {
@@ -102,13 +102,14 @@ BOOST_AUTO_TEST_CASE(a_bridge_hides_what_is_in_the_middle)
 {
   Found found(true);
   BOOST_REQUIRE(found.terrain);
-  Terrain bridged = *found.terrain;
-  bridged.bridge(found.scan.frame.to_local(Vec3(0, 1, 0)), 0.5 / found.scan.frame.unit);
-  const Vec3 inside = found.scan.frame.to_local(Vec3(0.1, 1, 0)),
-             outside = found.scan.frame.to_local(Vec3(-2.5, -2, 0));
   const double unit = found.scan.frame.unit;
+  Terrain bridged = *found.terrain;
+  const Vec3 top(0, pi / 3, relief(0, pi / 3)); // of a wave
+  bridged.bridge(found.scan.frame.to_local(top), 1 / unit);
+  const Vec3 outside = found.scan.frame.to_local(Vec3(-2.5, -2, 0));
   BOOST_TEST(bridged.height(outside) == found.terrain->height(outside));
-  BOOST_TEST(std::abs(unit * bridged.height(inside) + relief(0.1, 1)) < 0.1);
+  BOOST_TEST(std::abs(found.height(top)) < 0.02);
+  BOOST_TEST(unit * bridged.height(found.scan.frame.to_local(top)) > 0.04);
 }
 
 BOOST_AUTO_TEST_CASE(the_underside_of_a_crown_is_no_terrain)

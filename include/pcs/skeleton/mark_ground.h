@@ -170,16 +170,11 @@ inline Bin_extent extent_of(const Scan& scan, const std::vector<Index>& points, 
   return e;
 }
 
-} // namespace internal
-
-namespace internal {
-
 /// Where the stem of a tree leaves the ground.
 struct Stem_foot
 {
   Vec3 center = Vec3::Zero();
-  double width = 0;          ///< root mean square, of most bins
-  std::size_t first_bin = 0; ///< the lowest one that is the stem alone
+  double width = 0; ///< root mean square, of most bins
 
   /// Nothing if no stem is found in the bins.
   static std::optional<Stem_foot>
@@ -197,13 +192,12 @@ struct Stem_foot
     std::sort(widths.begin(), widths.end());
     Stem_foot foot;
     foot.width = widths[widths.size() / 4];
-    for (; foot.first_bin < extent.size(); ++foot.first_bin) {
-      const Bin_extent& bin = extent[foot.first_bin];
-      if (bin.count >= 6 && bin.width <= 1.5 * foot.width) {
+    for (const Bin_extent& bin : extent)
+      if (bin.count >= 6 &&
+          bin.width <= 1.5 * foot.width) { // the lowest one that is the stem alone
         foot.center = bin.center;
         return foot;
       }
-    }
     return std::nullopt;
   }
 };
