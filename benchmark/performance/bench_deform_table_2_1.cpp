@@ -69,7 +69,7 @@ struct Measured
   bool is_generated = true;
   std::size_t points = 0, samples = 0, links = 0, iterations = 0;
   Time neighbors, sampling, construction, factorization, solving, pass, upsampling, frame, drag;
-  Time knn, triad;
+  Time knn, triad, triad_of_vectors;
   double input_megabytes = none, peak_megabytes = none;
 };
 static_assert(std::is_trivially_copyable_v<Measured>);
@@ -177,8 +177,11 @@ Measured measure(const Row& row, const std::string& folder, int repetitions)
   m.drag = drag;
   // the point itself is one of seven
   m.knn = pcs_bench::repeat(repetitions, [&] { pcs_bench::query_neighbors(model.points, 7); });
-  pcs_bench::Triad triad(points.size());
-  m.triad = pcs_bench::repeat(5 * repetitions, [&] { triad(); });
+  for (const bool has_links : {true, false}) {
+    pcs_bench::Triad triad(points.size(), has_links);
+    (has_links ? m.triad : m.triad_of_vectors) =
+        pcs_bench::repeat(5 * repetitions, [&] { triad(); });
+  }
   return m;
 }
 
@@ -280,6 +283,7 @@ int main(int argc, char** argv)
                            "sampling / kNN",
                            "triad s",
                            "upsampling / triad",
+                           "/ triad of vectors",
                            "passes",
                            "frame s",
                            "drag s",
@@ -320,6 +324,8 @@ int main(int argc, char** argv)
                         "knn_median",
                         "triad",
                         "triad_median",
+                        "triad_of_vectors",
+                        "triad_of_vectors_median",
                         "input_megabytes",
                         "peak_megabytes"});
   bool any_generated = false;
@@ -362,6 +368,7 @@ int main(int argc, char** argv)
                     number(whole_sampling / m.knn.best),
                     number(m.triad.best),
                     number(m.upsampling.best / m.triad.best),
+                    number(m.upsampling.best / m.triad_of_vectors.best),
                     std::to_string(m.iterations),
                     number(m.frame.best),
                     number(m.drag.best),
@@ -390,7 +397,8 @@ int main(int argc, char** argv)
                               m.frame,
                               m.drag,
                               m.knn,
-                              m.triad}) {
+                              m.triad,
+                              m.triad_of_vectors}) {
           line.push_back(number(t.best, 4));
           line.push_back(number(t.median, 4));
         }
