@@ -101,6 +101,7 @@ inline Slopes make_slopes(int largest)
 class Elastic_matcher
 {
 public:
+  /// `largest_step`: of `make_slopes()`, at most 6.
   Elastic_matcher(std::size_t number_of_samples, int largest_step)
     : m_size(number_of_samples),
       m_steepest(static_cast<std::size_t>(largest_step)),
@@ -109,9 +110,16 @@ public:
       m_dots(number_of_samples * number_of_samples),
       m_best(number_of_samples * number_of_samples),
       m_step(number_of_samples * number_of_samples),
-      m_gain(number_of_samples),
       m_gamma(number_of_samples)
   {
+    for (const Slope& s : m_slopes) {
+      const double root = std::sqrt(static_cast<double>(s.b) / static_cast<double>(s.a));
+      m_weights.emplace_back();
+      for (int x = 0; x < s.a; ++x) {
+        const double f = static_cast<double>(x * s.b % s.a) / static_cast<double>(s.a);
+        m_weights.back().push_back({root * (1 - f), root * f});
+      }
+    }
   }
 
   std::size_t number_of_samples() const { return m_size; }
@@ -170,28 +178,46 @@ private:
     const std::size_t last = std::min(m_steepest * i, n - 1 - (rest + m_steepest - 1) / m_steepest);
     if (first > last)
       return;
-    const std::size_t count = last - first + 1; // cells j = first ... last, at [j - first]
-    double* const gain = m_gain.data();
-    std::fill(gain, gain + count, 0.0);
-    const double root = std::sqrt(static_cast<double>(b) / static_cast<double>(a));
-    for (std::size_t x = 0; x < a; ++x) {
-      const std::size_t whole = x * b / a;
-      const double f = static_cast<double>(x * b % a) / static_cast<double>(a);
-      const double* const row = m_dots.data() + (i - a + x) * n + whole + first - b;
-      const double w0 = root * (1 - f), w1 = root * f;
-      if (f == 0)
-        for (std::size_t j = 0; j < count; ++j)
-          gain[j] += w0 * row[j];
-      else
-        for (std::size_t j = 0; j < count; ++j)
-          gain[j] += w0 * row[j] + w1 * row[j + 1];
+    const Span span{i, first, last - first + 1};
+    switch (a) {
+    case 1:
+      return take_step<1>(span, k);
+    case 2:
+      return take_step<2>(span, k);
+    case 3:
+      return take_step<3>(span, k);
+    default:
+      return take_step<6>(span, k);
     }
-    const double* const from = m_best.data() + (i - a) * n + first - b;
-    double* const to = m_best.data() + i * n + first;
-    std::uint8_t* const step = m_step.data() + i * n + first;
+  }
+
+  /// Cells of a row.
+  struct Span
+  {
+    std::size_t row, first, size;
+  };
+
+  /// The step passes at most `Most` rows, for up to 3 exactly so many: what it gains stays in registers then.
+  template <std::size_t Most>
+  void take_step(const Span& span, std::size_t k)
+  {
+    const std::size_t n = m_size, b = m_slopes[k].b, a = Most > 3 ? m_slopes[k].a : Most;
+    std::array<const double*, Most> row;
+    std::array<double, Most> w0, w1;
+    for (std::size_t x = 0; x < a; ++x) {
+      row[x] = m_dots.data() + (span.row - a + x) * n + x * b / a + span.first - b;
+      w0[x] = m_weights[k][x][0];
+      w1[x] = m_weights[k][x][1];
+    }
+    const double* const from = m_best.data() + (span.row - a) * n + span.first - b;
+    double* const to = m_best.data() + span.row * n + span.first;
+    std::uint8_t* const step = m_step.data() + span.row * n + span.first;
     const auto id = static_cast<std::uint8_t>(k);
-    for (std::size_t j = 0; j < count; ++j) {
-      const double value = from[j] + gain[j];
+    for (std::size_t j = 0; j < span.size; ++j) {
+      double gain = w0[0] * row[0][j]; // the first place of a step is a node of the grid
+      for (std::size_t x = 1; x < a; ++x)
+        gain += w0[x] * row[x][j] + w1[x] * row[x][j + 1];
+      const double value = from[j] + gain;
       const bool is_better = value > to[j] + least_gain;
       to[j] = is_better ? value : to[j];
       step[j] = is_better ? id : step[j];
@@ -201,9 +227,11 @@ private:
   std::size_t m_size, m_steepest;
   Slopes m_slopes;
   Eigen::Matrix<double, Eigen::Dynamic, 3> m_turned; // tangents of curve 2
+  std::vector<std::vector<std::array<double, 2>>>
+      m_weights; // per slope and row of it: of a cell and the next one
   std::vector<double> m_dots, m_best;
   std::vector<std::uint8_t> m_step;
-  std::vector<double> m_gain, m_gamma;
+  std::vector<double> m_gamma;
 };
 
 /// The value at `t` in [0, 1] of a function given at places of equal distance.
