@@ -592,6 +592,57 @@ BOOST_AUTO_TEST_CASE(shrubs_on_the_ground_are_no_trunk)
   BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.2, 3.0);
 }
 
+// A wall with a ledge and posts beside it, and a roof: none of their points is left to be wood.
+BOOST_AUTO_TEST_CASE(walls_beside_the_tree_are_left_out)
+{
+  Tree bare, tree;
+  const Cloud& wood = pcs_test::small_scan().scan.points;
+  const auto expected = pcs::extract_tree_skeleton(wood, bare);
+  BOOST_CHECK_EQUAL(expected.number_of_wall_points, 0u);
+  const Vector y(0, 1, 0), z(0, 0, 1);
+  const auto moved = [](const Cloud& points, const Vector& by) {
+    Cloud result;
+    for (const Point& p : points)
+      result.push_back(p + by);
+    return result;
+  };
+  for (const bool has_ground : {false, true}) {
+    Cloud things = moved(sheet(40000, 4, y, z, 0.003), Vector(1.9, 0, 2));
+    append(things, moved(sheet(15000, 2, Vector(1, 0, 0.4), 2 * y, 0.003), Vector(2.9, 0, 4.4)));
+    append(things, cylinder(3000, 0.04, 4, Point(1.95, -2, 1.2), y));
+    for (const double at : {-1.5, 0.0, 1.5})
+      append(things, cylinder(1200, 0.05, 4, Point(1.95, at, 0.1)));
+    Cloud points = wood;
+    append(points, things);
+    if (has_ground)
+      append(points, sheet(40000, 7, Vector(1, 0, 0), y, 0.005));
+    const auto report = pcs::extract_tree_skeleton(points, tree);
+    BOOST_TEST(double(report.number_of_wall_points) > 0.98 * double(things.size()));
+    BOOST_CHECK_CLOSE(report.total.length, expected.total.length, 10.0);
+    BOOST_CHECK_CLOSE(report.total.volume, expected.total.volume, 15.0);
+    BOOST_CHECK_EQUAL(pcs::warnings(report).size(), 1u);
+    const auto kept =
+        pcs::extract_tree_skeleton(points, tree, pcs::parameters::do_remove_ground(false));
+    BOOST_CHECK_EQUAL(kept.number_of_wall_points, 0u);
+    BOOST_TEST(kept.total.volume > 2 * expected.total.volume);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(thick_stems_are_no_walls)
+{
+  for (const double height : {0.8, 2.0, 6.0})
+    for (const double noise : {0.0, 0.005})
+      for (const bool is_one_sided : {false, true}) {
+        Cloud points;
+        for (const Point& p : Jitter(noise)(cylinder(30000, 1, height)))
+          if (!is_one_sided || p.x() > 0.2)
+            points.push_back(p);
+        Tree tree;
+        const auto report = pcs::extract_tree_skeleton(points, tree);
+        BOOST_CHECK_EQUAL(report.number_of_wall_points, 0u);
+      }
+}
+
 BOOST_AUTO_TEST_CASE(a_bush_of_leaves_is_not_wood)
 {
   constexpr double radius = 0.06, height = 4, crown = 0.9;

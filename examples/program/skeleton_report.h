@@ -30,6 +30,7 @@ inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skele
                     {"outliers", r.number_of_outliers},
                     {"leaves", r.number_of_leaf_points},
                     {"ground", r.number_of_ground_points},
+                    {"walls", r.number_of_wall_points},
                     {"unexplained", r.number_of_unexplained_points},
                     {"out_of_reach", r.number_of_unreached_points}};
   json["spacing"] = r.spacing;

@@ -39,7 +39,8 @@ struct Skeleton_report
       0; ///< points left out because they are far from all others [count]
   std::size_t number_of_leaf_points =
       0; ///< points left out by `wood_map` or `do_remove_leaves` [count]
-  std::size_t number_of_ground_points = 0;      ///< points left out as ground [count]
+  std::size_t number_of_ground_points = 0; ///< points left out as ground [count]
+  std::size_t number_of_wall_points = 0;   ///< points left out as walls or other flat faces [count]
   std::size_t number_of_unexplained_points = 0; ///< other points that no branch explains [count]
   std::size_t number_of_unreached_points =
       0; ///< points of branches too far from the tree; these are not part of the result [count]
@@ -83,6 +84,7 @@ inline std::vector<std::string> warnings(const Skeleton_report& r)
       0.1; // of the spacing: below, points are on the surface, whatever the noise [-]
   // diameter of the trunk per length: trees 0.01 to 0.1, spheres more than 0.2 [-]
   constexpr double thickest_trunk = 0.2;
+  constexpr double thinnest_trunk = 0.002; // by the height [-]
   std::vector<std::string> sentences;
   if (r.number_of_other_stems > 0)
     sentences.push_back("more than one tree: " + std::to_string(r.number_of_other_stems) +
@@ -92,12 +94,19 @@ inline std::vector<std::string> warnings(const Skeleton_report& r)
     sentences.push_back(std::to_string(r.number_of_unreached_points) + " of " +
                         std::to_string(r.number_of_points) +
                         " points belong to branches that are too far from the tree");
+  if (r.number_of_wall_points > 0)
+    sentences.push_back(std::to_string(r.number_of_wall_points) +
+                        " points lie on walls or other flat faces, or beside them, and are left "
+                        "out; more of such things may be among the branches");
   if (r.status == Status::converged &&
       r.residual > std::max(largest_residual * r.noise, exact * r.spacing))
     sentences.push_back("half of the points lie far from the surfaces found; this may be no tree");
   if (!r.by_order.empty() && r.by_order.front().length > 0) {
     const auto& trunk = r.by_order.front();
     const double diameter = 2 * std::sqrt(trunk.volume / (3.14159265358979323846 * trunk.length));
+    if (diameter < thinnest_trunk * r.height)
+      sentences.push_back("the trunk is too thin for the height; the scan may show too little of "
+                          "it, or wood was taken for leaves (do_remove_leaves(false))");
     if (diameter > thickest_trunk * trunk.length)
       sentences.push_back("the trunk is shorter than five of its diameters; this may be no tree");
   }
@@ -109,14 +118,15 @@ inline std::ostream& operator<<(std::ostream& out, const Skeleton_report& r)
   out << "status " << r.status << ", " << r.number_of_points << " points ("
       << r.number_of_duplicates << " duplicates, " << r.number_of_outliers << " outliers, "
       << r.number_of_leaf_points << " leaves, " << r.number_of_ground_points << " on the ground, "
-      << r.number_of_unexplained_points << " unexplained, " << r.number_of_unreached_points
-      << " out of reach), " << r.number_of_other_stems << " other stems, " << r.number_of_branches
-      << " branches, " << r.number_of_nodes << " nodes, spacing " << r.spacing << ", noise "
-      << r.noise << ", residual " << r.residual << ", height " << r.height
-      << ", diameter at breast height " << r.diameter_at_breast_height << ", length "
-      << r.total.length << ", volume " << r.total.volume << "; seconds: neighbors "
-      << r.seconds.neighbors << ", paths " << r.seconds.paths << ", axes " << r.seconds.axes
-      << ", joints " << r.seconds.joints << ", sections " << r.seconds.sections;
+      << r.number_of_wall_points << " on walls, " << r.number_of_unexplained_points
+      << " unexplained, " << r.number_of_unreached_points << " out of reach), "
+      << r.number_of_other_stems << " other stems, " << r.number_of_branches << " branches, "
+      << r.number_of_nodes << " nodes, spacing " << r.spacing << ", noise " << r.noise
+      << ", residual " << r.residual << ", height " << r.height << ", diameter at breast height "
+      << r.diameter_at_breast_height << ", length " << r.total.length << ", volume "
+      << r.total.volume << "; seconds: neighbors " << r.seconds.neighbors << ", paths "
+      << r.seconds.paths << ", axes " << r.seconds.axes << ", joints " << r.seconds.joints
+      << ", sections " << r.seconds.sections;
   return out;
 }
 

@@ -11,6 +11,7 @@
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Branch_tree.h>
 #include <pcs/skeleton/Session_options.h>
+#include <pcs/skeleton/mark_walls.h>
 #include <pcs/skeleton/regroup_axes.h>
 #include <pcs/skeleton/report_sizes.h>
 #include <pcs/skeleton/root_axis.h>
@@ -91,7 +92,6 @@ public:
       m_stage = 2;
       return progress(0.6);
     }
-    std::vector<Link> links = links_of_used();
     if (m_options.do_mark_ground && is_one_sheet(m_scan, m_is_used, m_options.ground.sheet)) {
       m_report.number_of_ground_points =
           static_cast<std::size_t>(std::count(m_is_used.begin(), m_is_used.end(), 1));
@@ -99,6 +99,8 @@ public:
       m_stage = 2;
       return progress(0.6);
     }
+    leave_out_faces(true);
+    std::vector<Link> links = links_of_used();
     std::vector<Link> gaps;
     const auto find_root_and_gaps = [&] {
       m_root = root_points(links);
@@ -117,10 +119,12 @@ public:
       return false; // nothing is left out yet
     m_report.number_of_ground_points = ground;
     if (ground > 0) {
-      leave_out_ground(is_above);
+      leave_out(std::move(is_above));
       links = links_of_used();
-      find_root_and_gaps();
     }
+    const bool is_changed = leave_out_rest_of_faces(links) || ground > 0;
+    if (is_changed)
+      find_root_and_gaps();
     links.insert(links.end(), gaps.begin(), gaps.end());
     trace_paths(links);
     m_report.seconds.paths = watch.lap();
@@ -287,8 +291,59 @@ private:
       m_scan.is_outlier[i] = !m_is_used[i];
   }
 
-  /// What stands on it has a spacing and more outliers of its own.
-  void leave_out_ground(std::vector<std::uint8_t> is_above)
+  /// Takes walls out, and other faces where they are asked for. Returns whether there are any.
+  bool leave_out_faces(bool are_walls)
+  {
+    if (!m_options.do_mark_ground)
+      return false;
+    std::vector<Flat_face> faces = flat_faces(m_scan, m_options.walls, m_is_used);
+    if (are_walls)
+      faces.erase(std::remove_if(faces.begin(),
+                                 faces.end(),
+                                 [&](const Flat_face& face) {
+                                   return std::abs(m_options.up.dot(face.plane.normal)) >
+                                          m_options.walls.level;
+                                 }),
+                  faces.end());
+    std::vector<std::uint8_t> is_part = m_is_used;
+    const std::size_t marked = mark_faces(m_scan, faces, is_part);
+    if (!leave_out_walls(marked, is_part))
+      return false;
+    m_faces.insert(m_faces.end(), faces.begin(), faces.end());
+    return true;
+  }
+
+  /// Leaves all but `is_part` out, if that is anything. Returns whether it did.
+  bool leave_out_walls(std::size_t marked, const std::vector<std::uint8_t>& is_part)
+  {
+    const auto left = static_cast<std::size_t>(std::count(is_part.begin(), is_part.end(), 1));
+    if (marked == 0 || double(left) < m_options.walls.least * double(left + marked))
+      return false;
+    m_report.number_of_wall_points += marked;
+    leave_out(is_part);
+    return true;
+  }
+
+  /// The other faces, and what is left beside them. `links` are those between the used points, also afterwards. Returns
+  /// whether there is any.
+  bool leave_out_rest_of_faces(std::vector<Link>& links)
+  {
+    bool is_found = false;
+    for (int round = 1; round < m_options.walls.rounds && leave_out_faces(false); ++round)
+      is_found = true;
+    if (is_found)
+      links = links_of_used();
+    std::vector<std::uint8_t> is_part = m_is_used;
+    const std::size_t marked = mark_beside_faces(m_scan, m_faces, links, m_options.walls, is_part);
+    if (leave_out_walls(marked, is_part)) {
+      links = links_of_used();
+      is_found = true;
+    }
+    return is_found;
+  }
+
+  /// What is left of the scan has a spacing and more outliers of its own.
+  void leave_out(std::vector<std::uint8_t> is_above)
   {
     measure_part<ConcurrencyTag>(is_above, m_scan);
     const auto outliers =
@@ -451,6 +506,7 @@ private:
   std::vector<Index> m_point_of_input, m_root;
   Shortest_paths m_paths;
   Layer_tree m_layers;
+  std::vector<Flat_face> m_faces; ///< that are left out
   Axis_set m_axes;
   std::vector<Found_section> m_sections;
   std::vector<Joint> m_joints;

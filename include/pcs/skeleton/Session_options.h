@@ -15,6 +15,7 @@
 #include <pcs/skeleton/fuse_axes.h>
 #include <pcs/skeleton/join_axes.h>
 #include <pcs/skeleton/mark_ground.h>
+#include <pcs/skeleton/mark_walls.h>
 #include <pcs/skeleton/measure_given.h>
 #include <pcs/skeleton/mend_foot.h>
 #include <pcs/skeleton/merge_rings.h>
@@ -59,6 +60,7 @@ struct Session_options
   Ring_rules rings;
   Root_rules roots;
   Ground_rules ground;
+  Wall_rules walls;
   Leaf_rules leaves;
   Joint_rules joints;
   Stub_rules stubs;
