@@ -628,6 +628,35 @@ BOOST_AUTO_TEST_CASE(walls_beside_the_tree_are_left_out)
   }
 }
 
+// A roof alone has the shape of a terrain, with little of the stem below it.
+BOOST_AUTO_TEST_CASE(a_roof_is_no_ground)
+{
+  Cloud points = cylinder(6000, 0.15, 9, Point(-1.5, 0, 0));
+  const Vector y(0, 1, 0);
+  for (const Point& p : sheet(60000, 6, Vector(1, 0, 0), 1.5 * y, 0.003))
+    points.push_back(p + Vector(3, 0, 3));
+  for (const Point& p : sheet(40000, 3, Vector(0, 0, 1), 3 * y, 0.003))
+    points.push_back(p + Vector(0, 0, 1.5));
+  Tree tree;
+  const auto report = pcs::extract_tree_skeleton(points, tree);
+  BOOST_CHECK_EQUAL(report.number_of_ground_points, 0u);
+  BOOST_TEST(report.number_of_wall_points > 99000u);
+  BOOST_CHECK_CLOSE(report.height, 9, 1.0);
+}
+
+BOOST_AUTO_TEST_CASE(a_trunk_too_thin_for_its_height_is_named)
+{
+  pcs::Skeleton_report report;
+  report.status = pcs::Status::converged;
+  report.height = 12;
+  report.by_order.resize(1);
+  report.by_order[0].length = 12;
+  for (const double diameter : {0.01, 0.1}) {
+    report.by_order[0].volume = CGAL_PI / 4 * diameter * diameter * 12;
+    BOOST_CHECK_EQUAL(pcs::warnings(report).size(), diameter < 0.05 ? 1u : 0u);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(thick_stems_are_no_walls)
 {
   for (const double height : {0.8, 2.0, 6.0})

@@ -123,7 +123,8 @@ public:
       \np{slice_rules} the steps of the method `sections`: how slices are cut, fitted, tilted, and which points they spare
         \nptype `skeleton::Slice_rules`
         \npdefault the dissertation's, with which nothing is replaced
-      \np{do_remove_ground} whether a slice of ground around the foot is looked for and left out
+      \np{do_remove_ground} whether ground around the foot is looked for and left out, and flat faces, such as walls and
+          roofs, with what stands within one cell (a twelfth of the root mean square radius of the scan) beside them
         \nptype `bool`
         \npdefault `true`
       \np{breast_height} height of the diameter in the report, and unit of its size classes [L]

@@ -291,20 +291,14 @@ private:
       m_scan.is_outlier[i] = !m_is_used[i];
   }
 
-  /// Takes walls out, and other faces where they are asked for. Returns whether there are any.
+  /// Takes walls and roofs out, or all faces. Returns whether there are any.
   bool leave_out_faces(bool are_walls)
   {
     if (!m_options.do_mark_ground)
       return false;
     std::vector<Flat_face> faces = flat_faces(m_scan, m_options.walls, m_is_used);
     if (are_walls)
-      faces.erase(std::remove_if(faces.begin(),
-                                 faces.end(),
-                                 [&](const Flat_face& face) {
-                                   return std::abs(m_options.up.dot(face.plane.normal)) >
-                                          m_options.walls.level;
-                                 }),
-                  faces.end());
+      faces = walls_and_roofs(m_scan, faces, m_options.up, m_options.walls, m_is_used);
     std::vector<std::uint8_t> is_part = m_is_used;
     const std::size_t marked = mark_faces(m_scan, faces, is_part);
     if (!leave_out_walls(marked, is_part))

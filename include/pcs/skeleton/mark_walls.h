@@ -18,6 +18,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -40,6 +41,8 @@ struct Wall_rules
   double crowd = 5;    ///< small cells would hold so many of the points if these lay evenly
   double full = 0.6;   ///< ... and this share of them holds some [-]
   double level = 0.7;  ///< least cosine of normal and up where a face is no wall but a roof [-]
+  double roof =
+      0.15; ///< least height of a roof above the lowest point, relative to the extent upwards [-]
   double noise = 3;    ///< points within this many deviations belong to a face [-]
   double reach = 1;    ///< points within this many cells are beside a face;
   double beside = 0.5; ///< ... parts with this share of them go with it [-]
@@ -343,6 +346,37 @@ inline std::vector<Flat_face>
 flat_faces(const Scan& scan, const Wall_rules& rules, const std::vector<std::uint8_t>& is_used)
 {
   return std::move(internal::Face_finder(scan, rules, is_used).faces());
+}
+
+/// Those of the faces that are no ground: walls, and beside walls what begins high above all else.
+inline std::vector<Flat_face> walls_and_roofs(const Scan& scan,
+                                              const std::vector<Flat_face>& faces,
+                                              const Vec3& up,
+                                              const Wall_rules& rules,
+                                              const std::vector<std::uint8_t>& is_used)
+{
+  std::vector<Flat_face> walls, level;
+  for (const Flat_face& face : faces)
+    (std::abs(up.dot(face.plane.normal)) > rules.level ? level : walls).push_back(face);
+  if (walls.empty() || level.empty())
+    return walls;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  double low = infinity, high = -infinity;
+  std::vector<double> low_of(level.size(), infinity);
+  for (Index i = 0; i < scan.size(); ++i) {
+    if (!is_used[i])
+      continue;
+    const double height = up.dot(scan.points[i]);
+    low = std::min(low, height);
+    high = std::max(high, height);
+    for (std::size_t f = 0; f < level.size(); ++f)
+      if (height < low_of[f] && level[f].covers(scan.points[i], level[f].thickness))
+        low_of[f] = height;
+  }
+  for (std::size_t f = 0; f < level.size(); ++f)
+    if (low_of[f] > low + rules.roof * (high - low))
+      walls.push_back(level[f]);
+  return walls;
 }
 
 /// Takes the points of faces out of `is_used`, and returns their number. O(faces x n).
