@@ -239,10 +239,14 @@ BOOST_AUTO_TEST_CASE(a_stopped_session_goes_on_as_if_it_had_not_been)
   Cloud points = pcs_test::small_scan().scan.points;
   for (int i = 0; i < 100; ++i)
     for (int j = 0; j < 100; ++j)
-      points.emplace_back(-2 + 0.04 * i, -2 + 0.04 * j, 0.003 * ((7 * i + 5 * j) % 3));
+      for (const bool is_wall : {false, true}) {
+        const double x = -2 + 0.04 * i, y = -2 + 0.04 * j, z = 0.003 * ((7 * i + 5 * j) % 3);
+        points.push_back(is_wall ? Point(2.2 + z, x, y + 2.1) : Point(x, y, z));
+      }
   Tree full;
   const auto expected = pcs::extract_tree_skeleton(points, full);
   BOOST_TEST(expected.number_of_ground_points > 5000u);
+  BOOST_TEST(expected.number_of_wall_points > 9000u);
   const std::vector<double> stops = {0, 0.1, 0.42, 0.43, 0.6, 0.7, 0.9, 0.91, 0.95, 0.96, 0.97};
   std::size_t stopped = 0;
   const std::function<bool(double)> callback = [&](double f) {
@@ -259,6 +263,7 @@ BOOST_AUTO_TEST_CASE(a_stopped_session_goes_on_as_if_it_had_not_been)
   BOOST_TEST(stopped == stops.size());
   BOOST_TEST(report.status == pcs::Status::converged);
   BOOST_TEST(report.number_of_ground_points == expected.number_of_ground_points);
+  BOOST_TEST(report.number_of_wall_points == expected.number_of_wall_points);
   BOOST_TEST(report.total.length == expected.total.length);
   BOOST_REQUIRE(num_vertices(tree) == num_vertices(full));
   for (std::size_t v = 0; v < num_vertices(tree); ++v) {

@@ -92,14 +92,17 @@ public:
       m_stage = 2;
       return progress(0.6);
     }
-    if (m_options.do_mark_ground && is_one_sheet(m_scan, m_is_used, m_options.ground.sheet)) {
-      m_report.number_of_ground_points =
-          static_cast<std::size_t>(std::count(m_is_used.begin(), m_is_used.end(), 1));
-      std::fill(m_is_used.begin(), m_is_used.end(), std::uint8_t(0));
-      m_stage = 2;
-      return progress(0.6);
+    if (!m_are_walls_out) { // when stopped below, they are
+      if (m_options.do_mark_ground && is_one_sheet(m_scan, m_is_used, m_options.ground.sheet)) {
+        m_report.number_of_ground_points =
+            static_cast<std::size_t>(std::count(m_is_used.begin(), m_is_used.end(), 1));
+        std::fill(m_is_used.begin(), m_is_used.end(), std::uint8_t(0));
+        m_stage = 2;
+        return progress(0.6);
+      }
+      leave_out_faces(true);
     }
-    leave_out_faces(true);
+    m_are_walls_out = true;
     std::vector<Link> links = links_of_used();
     std::vector<Link> gaps;
     const auto find_root_and_gaps = [&] {
@@ -116,7 +119,7 @@ public:
         },
         find_root_and_gaps);
     if (!progress(0.42))
-      return false; // nothing is left out yet
+      return false; // the ground is not left out yet
     m_report.number_of_ground_points = ground;
     if (ground > 0) {
       leave_out(std::move(is_above));
@@ -501,6 +504,7 @@ private:
   Shortest_paths m_paths;
   Layer_tree m_layers;
   std::vector<Flat_face> m_faces; ///< that are left out
+  bool m_are_walls_out = false;
   Axis_set m_axes;
   std::vector<Found_section> m_sections;
   std::vector<Joint> m_joints;
