@@ -134,6 +134,51 @@ BOOST_AUTO_TEST_CASE(twigs_are_lines_and_leaves_around_them_are_not)
       0.0);
 }
 
+BOOST_AUTO_TEST_CASE(surroundings_tell_twigs_from_leaves)
+{
+  std::mt19937 random(1);
+  Points points;
+  for (int k = 0; k < 4; ++k)
+    add_twig(points, Vec3(0.2 * k - 0.3, 0.1 * k - 0.2, 0), 100, random);
+  const std::size_t wood = points.size();
+  add_leaves(points, 120, random);
+  const Prepared p(points, wood);
+  Flags is_likely(p.scan.size(), 0);
+  std::size_t visits = 0;
+  points_on_lines<CGAL::Sequential_tag>(
+      p.scan,
+      p.is_used,
+      Flags(p.scan.size(), 0),
+      {},
+      [&](std::size_t i, const internal::Line_search& search, float score) {
+        const double likeness = wood_likeness(search.surroundings(score));
+        BOOST_CHECK(std::isfinite(likeness));
+        is_likely[i] = likeness > 0;
+        ++visits;
+      });
+  BOOST_CHECK_EQUAL(visits, p.scan.size());
+  BOOST_CHECK_GT(p.shares(is_likely).first, 0.9);
+  BOOST_CHECK_LT(p.shares(is_likely).second, 0.2);
+}
+
+BOOST_AUTO_TEST_CASE(a_spread_is_that_of_the_points)
+{
+  Spread one, box;
+  one.add(Vec3(3, 4, 0));
+  const auto of_one = one.features();
+  BOOST_CHECK_CLOSE(of_one[0], std::log(2.0), 1e-9);
+  BOOST_CHECK_SMALL(of_one[1], 1e-6);
+  BOOST_CHECK_CLOSE(of_one[4], 5.0, 1e-9);
+  for (const double x : {-3.0, 3.0})
+    for (const double y : {-2.0, 2.0})
+      for (const double z : {0.0, 2.0})
+        box.add(Vec3(x, y, z));
+  const auto of_box = box.features();
+  const double expected[] = {std::log(9.0), 3, 2, 1, 1};
+  for (int k = 0; k < 5; ++k)
+    BOOST_CHECK_CLOSE(of_box[k], expected[k], 1e-6);
+}
+
 BOOST_AUTO_TEST_CASE(thick_wood_is_hollow)
 {
   const std::size_t count = 3000;

@@ -5,6 +5,8 @@
 #include <pcs/extract_tree_skeleton.h>
 #include <pcs/skeleton/bound_radii.h>
 #include <pcs/skeleton/mend_foot.h>
+#include <pcs/skeleton/root_axis.h>
+#include <support/axes.h>
 #include <support/tree_clouds.h>
 
 #include <boost/test/unit_test.hpp>
@@ -138,6 +140,24 @@ std::vector<Trunk> trunks_of_copies(const Cloud& cloud, unsigned copies)
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(trunk_foot)
+
+// Chance pieces of a foot have all of the root.
+BOOST_AUTO_TEST_CASE(the_root_is_of_the_trunk_and_not_of_a_piece_beside_it)
+{
+  using namespace pcs::skeleton;
+  Axis_set set = pcs_test::set_of(
+      {pcs_test::straight_axis(Vec3(0, 0, 0.5), Vec3(0, 0, 8), 400, 0.2, 0.1),
+       pcs_test::straight_axis(Vec3(-0.3, 0, 0), Vec3(0.3, 0, 0.4), 10, 0.05, 0.05)});
+  Scan scan;
+  for (Index i = 0; i < set.axis_of_point.size(); ++i)
+    scan.points.push_back(set.axes[set.axis_of_point[i]].axis[set.segment_of_point[i]].point);
+  const std::vector<Index> root = {400, 401, 402};
+  BOOST_CHECK_EQUAL(root_axis(scan, set, root, false), 0u);
+  BOOST_CHECK_EQUAL(root_axis(scan, set, root, true), 1u);
+  for (Axis_node& node : set.axes[0].axis)
+    node.point.x() += 2; // another tree
+  BOOST_CHECK_EQUAL(root_axis(scan, set, root, false), 1u);
+}
 
 BOOST_AUTO_TEST_CASE(buttresses_do_not_hide_the_trunk)
 {

@@ -413,7 +413,7 @@ private:
   /// The tree of the axes as they are. Returns the one that stands on the root.
   Index join_axes()
   {
-    const Index root = root_axis(m_scan, m_axes, m_root);
+    const Index root = root_axis(m_scan, m_axes, m_root, m_options.root.has_value());
     const Axis_joiner joiner(m_axes, m_scan.spacing, m_options.joints);
     m_joints = joiner.template run<ConcurrencyTag>(root);
     m_joints[root].is_reversed = is_root_reversed(m_scan, m_axes.axes[root].axis, m_root);

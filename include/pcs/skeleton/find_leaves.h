@@ -40,8 +40,10 @@ struct Leaf_rules
   double leafy = 0.15;        ///< share of these that must be deep in leaves: fewer are chance [-]
   std::size_t neighbors = 10; ///< that are leaves, too, around a point deep in leaves [count]
   double patchy = 0.035; ///< or the share of these that must lie in flat patches, in any crown [-]
-  int rounds = 2;        ///< how often wood is looked for among what is left [count]
-  double pipe_slack = 1.5; ///< `Pipe_rules::slack` where there are leaves [-]
+  double likeness = 0.2; ///< least logarithm of the odds that a point is of wood [-]
+  double likeness_on_line = -0.8; ///< the same on a line [-]
+  int rounds = 2;                 ///< how often wood is looked for among what is left [count]
+  double pipe_slack = 1.5;        ///< `Pipe_rules::slack` where there are leaves [-]
   Hollow_rules hollow;
   Line_rules lines;
   Patch_rules patches;
@@ -167,8 +169,8 @@ inline bool are_leaves(const Scan& scan,
 }
 
 /*!
-  The points of thick wood, which is hollow, and of thin wood, which is a line with little around it. Empty if what is left does
-  not look like leaves, unless `is_sure` says that there are some.
+  The points of thick wood, which is hollow, and of thin wood, by its surroundings. Empty if what is left when all lines are taken
+  for wood does not look like leaves, unless `is_sure` says that there are some.
 */
 template <class ConcurrencyTag>
 std::vector<std::uint8_t> wood_by_points(const Scan& scan,
@@ -181,11 +183,22 @@ std::vector<std::uint8_t> wood_by_points(const Scan& scan,
     return {};
   const std::vector<std::uint8_t> is_thick =
       points_on_hollow_sections<ConcurrencyTag>(scan, set, rules.hollow);
-  std::vector<std::uint8_t> is_wood =
-      points_on_lines<ConcurrencyTag>(scan, is_used, is_thick, rules.lines);
-  for (std::size_t i = 0; i < scan.size(); ++i)
-    is_wood[i] = is_used[i] && (is_wood[i] || is_thick[i]);
-  if (!is_sure && !are_leaves(scan, is_used, is_thick, is_wood, rules))
+  std::vector<float> likeness(scan.size());
+  std::vector<std::uint8_t> is_line = points_on_lines<ConcurrencyTag>(
+      scan,
+      is_used,
+      is_thick,
+      rules.lines,
+      [&](std::size_t i, const internal::Line_search& search, float score) {
+        likeness[i] = static_cast<float>(wood_likeness(search.surroundings(score)));
+      });
+  std::vector<std::uint8_t> is_wood(scan.size());
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    const double least = is_line[i] ? rules.likeness_on_line : rules.likeness;
+    is_wood[i] = is_used[i] && (is_thick[i] || double(likeness[i]) >= least);
+    is_line[i] = is_used[i] && (is_thick[i] || is_line[i]);
+  }
+  if (!is_sure && !are_leaves(scan, is_used, is_thick, is_line, rules))
     is_wood.clear();
   return is_wood;
 }

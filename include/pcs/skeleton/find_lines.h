@@ -7,6 +7,7 @@
 
 #include <pcs/internal/parallel.h>
 #include <pcs/skeleton/Scan.h>
+#include <pcs/skeleton/wood_likeness.h>
 
 #include <algorithm>
 #include <array>
@@ -67,6 +68,25 @@ public:
       }
     }
     return best;
+  }
+
+  /// Of the last point, which had `score`. Lengths are in radii of the tube.
+  Surroundings surroundings(float score) const
+  {
+    Surroundings result;
+    result.line = double(score);
+    auto& spread = result.spread;
+    spread[0].add(Vec3::Zero()); // the point
+    for (std::size_t k = 0; k < m_x.size(); ++k) {
+      const auto shell = std::find_if(squared_reaches.begin(), squared_reaches.end(), [&](float r) {
+        return m_square[k] <= r * m_rules.reach * m_rules.reach;
+      });
+      spread[static_cast<std::size_t>(shell - squared_reaches.begin())].add(
+          Vec3(double(m_x[k]), double(m_y[k]), double(m_z[k])));
+    }
+    for (std::size_t s = 1; s < spread.size(); ++s)
+      spread[s].add(spread[s - 1]);
+    return result;
   }
 
   /// Calls `visit` for the points of the last best line, where it is one.
@@ -144,6 +164,10 @@ private:
   }
 
   static constexpr float nearest_target = 2; ///< of a direction, from the point
+  /// Of all but the last of the surroundings, as shares of the square of the reach.
+  static constexpr std::array<float, Surroundings::number_of_spreads - 1> squared_reaches = {
+      0.0832F,
+      0.333F};
 
   const Scan& m_scan;
   const std::vector<std::uint8_t>& m_is_used;
@@ -158,16 +182,22 @@ private:
 
 } // namespace internal
 
+struct Ignore_line_search
+{
+  void operator()(std::size_t, const internal::Line_search&, float) const {}
+};
+
 /*!
   Which points lie on lines: around points that are used and not yet `is_sure`, tubes in several directions are tried. A tube is a
   line if most of its pieces hold points and the ring around them few; then its points are marked. In leaves, a tube is as
-  crowded as what is around it. O(open points * neighbours in reach * directions).
+  crowded as what is around it. `visit(i, search, score)` is called for each of these points, in any order, from any thread. O(open points * neighbours in reach * directions).
 */
-template <class ConcurrencyTag>
+template <class ConcurrencyTag, class Visit = Ignore_line_search>
 std::vector<std::uint8_t> points_on_lines(const Scan& scan,
                                           const std::vector<std::uint8_t>& is_used,
                                           const std::vector<std::uint8_t>& is_sure,
-                                          const Line_rules& rules)
+                                          const Line_rules& rules,
+                                          const Visit& visit = {})
 {
   std::vector<std::atomic<std::uint8_t>> is_marked(scan.size());
   pcs::internal::for_each_block<ConcurrencyTag>(
@@ -176,7 +206,11 @@ std::vector<std::uint8_t> points_on_lines(const Scan& scan,
       [&](std::size_t begin, std::size_t end) {
         internal::Line_search line(scan, is_used, rules);
         for (std::size_t i = begin; i < end; ++i) {
-          if (!is_used[i] || is_sure[i] || line(static_cast<Index>(i)) < rules.least)
+          if (!is_used[i] || is_sure[i])
+            continue;
+          const float score = line(static_cast<Index>(i));
+          visit(i, line, score);
+          if (score < rules.least)
             continue;
           // the order of writes does not matter: all write the same
           is_marked[i].store(1, std::memory_order_relaxed);
