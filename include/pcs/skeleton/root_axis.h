@@ -24,6 +24,20 @@ inline Vec3 middle_of(const Scan& scan, const std::vector<Index>& points)
   return sum / double(points.size());
 }
 
+inline Index nearest_axis(const Axis_set& set, const Vec3& p)
+{
+  Index best = 0;
+  double distance = std::numeric_limits<double>::infinity();
+  for (Index a = 0; a < set.axes.size(); ++a) {
+    const double d = nearest_place(set.axes[a].axis, p).distance;
+    if (d < distance) {
+      distance = d;
+      best = a;
+    }
+  }
+  return best;
+}
+
 /*!
   The axis that explains the root, and most else: a trunk may stand on buttresses that have more of the root. If none does, the
   nearest one. Instead of one that is small beside an axis which the root is near, too, that: chance pieces of a
@@ -34,29 +48,25 @@ root_axis(const Scan& scan, const Axis_set& set, const std::vector<Index>& root,
 {
   constexpr double small = 0.1, near = 4; // share of the points, radii from the axis
   const auto points_of = [&](Index a) { return double(set.axes[a].number_of_points); };
-  const Vec3 middle = middle_of(scan, root);
   std::vector<double> votes(set.axes.size(), 0);
   for (const Index i : root)
     if (set.is_covered(i))
       votes[set.axis_of_point[i]] += points_of(set.axis_of_point[i]);
-  Index nearest = 0, largest = none;
-  double distance = std::numeric_limits<double>::infinity();
+  const auto most = std::max_element(votes.begin(), votes.end());
+  const Index best = *most > 0 ? static_cast<Index>(most - votes.begin())
+                               : nearest_axis(set, scan.points[root.front()]);
+  if (is_given)
+    return best;
+  const Vec3 middle = middle_of(scan, root);
+  Index largest = best;
   for (Index a = 0; a < set.axes.size(); ++a) {
-    const Axis& axis = set.axes[a].axis;
-    const double d = nearest_place(axis, scan.points[root.front()]).distance;
-    if (d < distance) {
-      distance = d;
-      nearest = a;
-    }
-    const Axis_place place = nearest_place(axis, middle);
-    if (place.distance <= near * radius_at(axis, place) &&
-        (largest == none || points_of(a) > points_of(largest)))
+    if (small * points_of(a) <= points_of(best) || points_of(a) <= points_of(largest))
+      continue;
+    const Axis_place place = nearest_place(set.axes[a].axis, middle);
+    if (place.distance <= near * radius_at(set.axes[a].axis, place))
       largest = a;
   }
-  const auto most = std::max_element(votes.begin(), votes.end());
-  const Index best = *most > 0 ? static_cast<Index>(most - votes.begin()) : nearest;
-  return !is_given && largest != none && points_of(best) < small * points_of(largest) ? largest
-                                                                                      : best;
+  return largest;
 }
 
 /// Whether the root lies at the tip of its axis.
