@@ -75,6 +75,17 @@ struct Prepared
   }
 };
 
+Prepared twigs_in_leaves()
+{
+  std::mt19937 random(1);
+  Points points;
+  for (int k = 0; k < 4; ++k)
+    add_twig(points, Vec3(0.2 * k - 0.3, 0.1 * k - 0.2, 0), 100, random);
+  const std::size_t wood = points.size();
+  add_leaves(points, 120, random);
+  return Prepared(points, wood);
+}
+
 /// An axis along z from 0 to 1 that explains all points.
 Axis_set one_axis(const Scan& scan, double radius, double density, double x = 0)
 {
@@ -115,13 +126,7 @@ BOOST_AUTO_TEST_SUITE(find_leaves_of_scans)
 
 BOOST_AUTO_TEST_CASE(twigs_are_lines_and_leaves_around_them_are_not)
 {
-  std::mt19937 random(1);
-  Points points;
-  for (int k = 0; k < 4; ++k)
-    add_twig(points, Vec3(0.2 * k - 0.3, 0.1 * k - 0.2, 0), 100, random);
-  const std::size_t wood = points.size();
-  add_leaves(points, 120, random);
-  const Prepared p(points, wood);
+  const Prepared p = twigs_in_leaves();
   const Flags none_is_sure(p.scan.size(), 0);
   const auto [twigs, leaves] =
       p.shares(points_on_lines<CGAL::Sequential_tag>(p.scan, p.is_used, none_is_sure, {}));
@@ -136,13 +141,7 @@ BOOST_AUTO_TEST_CASE(twigs_are_lines_and_leaves_around_them_are_not)
 
 BOOST_AUTO_TEST_CASE(surroundings_tell_twigs_from_leaves)
 {
-  std::mt19937 random(1);
-  Points points;
-  for (int k = 0; k < 4; ++k)
-    add_twig(points, Vec3(0.2 * k - 0.3, 0.1 * k - 0.2, 0), 100, random);
-  const std::size_t wood = points.size();
-  add_leaves(points, 120, random);
-  const Prepared p(points, wood);
+  const Prepared p = twigs_in_leaves();
   Flags is_likely(p.scan.size(), 0);
   std::size_t visits = 0;
   points_on_lines<CGAL::Sequential_tag>(

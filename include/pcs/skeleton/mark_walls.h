@@ -6,6 +6,7 @@
 #define PCS_SKELETON_MARK_WALLS_H
 
 #include <pcs/linear_algebra/small_symmetric.h>
+#include <pcs/skeleton/Moments.h>
 #include <pcs/skeleton/Neighbor_graph.h>
 #include <pcs/skeleton/Scan.h>
 #include <pcs/skeleton/find_root.h>
@@ -52,38 +53,15 @@ struct Wall_rules
 
 namespace internal {
 
-/// Sums over points about a fixed place.
-struct Plane_moments
-{
-  double count = 0;
-  Vec3 sum = Vec3::Zero();
-  Eigen::Matrix3d square = Eigen::Matrix3d::Zero();
-
-  void add(const Vec3& p)
-  {
-    ++count;
-    sum += p;
-    square += p * p.transpose();
-  }
-  void add(const Plane_moments& other)
-  {
-    count += other.count;
-    sum += other.sum;
-    square += other.square;
-  }
-  Vec3 middle() const { return sum / count; }
-};
-
 /// The plane of least squares through points, with their deviations.
 struct Fitted_plane
 {
   Vec3 middle, normal, e1, e2;
   Vec3 deviation; ///< across, along the shorter and along the longer axis
 
-  explicit Fitted_plane(const Plane_moments& m) : middle(m.middle())
+  explicit Fitted_plane(const Moments& m) : middle(m.mean())
   {
-    const Eigen::Matrix3d covariance = m.square / m.count - middle * middle.transpose();
-    const auto eigen = linear_algebra::symmetric_eigen<3>(covariance);
+    const auto eigen = linear_algebra::symmetric_eigen<3>(m.covariance());
     normal = eigen.vectors.col(0);
     e1 = eigen.vectors.col(1);
     e2 = eigen.vectors.col(2);
@@ -157,7 +135,7 @@ public:
 private:
   struct Cell
   {
-    Plane_moments moments;
+    Moments moments;
     Fitted_plane plane;
     std::array<long, 3> place;
     std::vector<Index> points;
@@ -169,7 +147,7 @@ private:
   {
     const auto used = static_cast<std::size_t>(std::count(is_used.begin(), is_used.end(), 1));
     const std::size_t step = 1 + used / m_rules.most_points;
-    Plane_moments all;
+    Moments all;
     std::size_t k = 0;
     for (Index i = 0; i < m_scan.size(); ++i)
       if (is_used[i] && k++ % step == 0) {
@@ -207,17 +185,17 @@ private:
     }
   }
 
-  static Plane_moments one(const Vec3& p)
+  static Moments one(const Vec3& p)
   {
-    Plane_moments m;
+    Moments m;
     m.add(p);
     return m;
   }
 
   /// The points of a cell that lie on a plane.
-  Plane_moments near_part(const Cell& cell, const Fitted_plane& plane) const
+  Moments near_part(const Cell& cell, const Fitted_plane& plane) const
   {
-    Plane_moments near;
+    Moments near;
     for (const Index i : cell.points)
       if (std::abs(plane.height(m_scan.points[i])) <= m_rules.step * m_cell)
         near.add(m_scan.points[i]);
@@ -228,7 +206,7 @@ private:
   {
     std::vector<Index> patch{seed};
     m_cells[seed].is_taken = true;
-    Plane_moments moments = m_cells[seed].moments;
+    Moments moments = m_cells[seed].moments;
     Fitted_plane plane = m_cells[seed].plane;
     double refit = 2 * moments.count;
     for (std::size_t k = 0; k < patch.size(); ++k) {
@@ -242,7 +220,7 @@ private:
             Cell& next = m_cells[found->second];
             if (next.is_taken)
               continue;
-            const Plane_moments near = near_part(next, plane);
+            const Moments near = near_part(next, plane);
             if (near.count < m_rules.share * double(next.points.size()))
               continue;
             next.is_taken = true;

@@ -6,8 +6,7 @@
 #define PCS_SKELETON_WOOD_LIKENESS_H
 
 #include <pcs/linear_algebra/small_symmetric.h>
-
-#include <Eigen/Core>
+#include <pcs/skeleton/Moments.h>
 
 #include <algorithm>
 #include <array>
@@ -17,42 +16,19 @@
 namespace pcs {
 namespace skeleton {
 
-/// How the points within some distance of one of them lie. Lengths are in the unit of what is added.
-class Spread
+/// How the points within some distance of one of them lie; that one is the origin.
+struct Spread : Moments
 {
-public:
-  /// \param d from the point in the middle
-  void add(const Eigen::Vector3d& d)
-  {
-    m_count += 1;
-    m_sum += d;
-    m_square += d * d.transpose();
-  }
-  void add(const Spread& other)
-  {
-    m_count += other.m_count;
-    m_sum += other.m_sum;
-    m_square += other.m_square;
-  }
-
   static constexpr std::size_t number_of_features = 5;
 
   /// Logarithm of the count, the deviations along the longest to the shortest axis, and how far the mean is from the
-  /// middle.
+  /// origin.
   std::array<double, number_of_features> features() const
   {
-    const Eigen::Vector3d mean = m_sum / m_count;
-    const Eigen::Vector3d deviation =
-        linear_algebra::symmetric_eigen<3>(m_square / m_count - mean * mean.transpose())
-            .values.cwiseMax(0)
-            .cwiseSqrt();
-    return {std::log1p(m_count), deviation(2), deviation(1), deviation(0), mean.norm()};
+    const Vec3 deviation =
+        linear_algebra::symmetric_eigen<3>(covariance()).values.cwiseMax(0).cwiseSqrt();
+    return {std::log1p(count), deviation(2), deviation(1), deviation(0), mean().norm()};
   }
-
-private:
-  double m_count = 0;
-  Eigen::Vector3d m_sum = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d m_square = Eigen::Matrix3d::Zero();
 };
 
 /// What the surroundings of a point are judged by: spreads within three distances, and the score of the best line.
