@@ -125,8 +125,8 @@ public:
       leave_out(std::move(is_above));
       links = links_of_used();
     }
-    const bool is_changed = leave_out_rest_of_faces(links) || ground > 0;
-    if (is_changed)
+    const bool may_have_faces = m_has_faces || ground > 0; // if not, they were looked for already
+    if ((may_have_faces && leave_out_rest_of_faces(links)) || ground > 0)
       find_root_and_gaps();
     links.insert(links.end(), gaps.begin(), gaps.end());
     trace_paths(links);
@@ -300,6 +300,7 @@ private:
     if (!m_options.do_mark_ground)
       return false;
     std::vector<Flat_face> faces = flat_faces(m_scan, m_options.walls, m_is_used);
+    m_has_faces = !faces.empty();
     if (are_walls)
       faces = walls_and_roofs(m_scan, faces, m_options.up, m_options.walls, m_is_used);
     std::vector<std::uint8_t> is_part = m_is_used;
@@ -504,7 +505,7 @@ private:
   Shortest_paths m_paths;
   Layer_tree m_layers;
   std::vector<Flat_face> m_faces; ///< that are left out
-  bool m_are_walls_out = false;
+  bool m_are_walls_out = false, m_has_faces = false;
   Axis_set m_axes;
   std::vector<Found_section> m_sections;
   std::vector<Joint> m_joints;

@@ -190,7 +190,8 @@ struct Ignore_line_search
 /*!
   Which points lie on lines: around points that are used and not yet `is_sure`, tubes in several directions are tried. A tube is a
   line if most of its pieces hold points and the ring around them few; then its points are marked. In leaves, a tube is as
-  crowded as what is around it. `visit(i, search, score)` is called for each of these points, in any order, from any thread. O(open points * neighbours in reach * directions).
+  crowded as what is around it. `visit(i, search, score)` is called for each of these
+  points, in any order, from any thread. O(open points * neighbours in reach * directions).
 */
 template <class ConcurrencyTag, class Visit = Ignore_line_search>
 std::vector<std::uint8_t> points_on_lines(const Scan& scan,
