@@ -93,16 +93,16 @@ inline bool accept(const Scan& scan,
   return true;
 }
 
-/// The stretches of a chain that nothing explains although a part of it was fitted.
+/// The stretches of a chain, of at least `fewest` layers, in which most points are not explained.
 inline std::vector<Chain>
-rest_of(const Layer_tree& tree, const Axis_set& set, const Chain& chain, std::size_t fewest)
+open_stretches(const Layer_tree& tree, const Axis_set& set, const Chain& chain, std::size_t fewest)
 {
-  std::vector<Chain> pieces;
-  Chain piece;
+  std::vector<Chain> stretches;
+  Chain stretch;
   const auto finish = [&] {
-    if (piece.nodes.size() >= fewest && piece.nodes.size() < chain.nodes.size())
-      pieces.push_back(piece);
-    piece = Chain();
+    if (stretch.nodes.size() >= fewest)
+      stretches.push_back(stretch);
+    stretch = Chain();
   };
   Index before = chain.parent_node;
   for (const Index v : chain.nodes) {
@@ -110,22 +110,92 @@ rest_of(const Layer_tree& tree, const Axis_set& set, const Chain& chain, std::si
     for (Index k = tree.first[v]; k < tree.first[v + 1]; ++k)
       open += !set.is_covered(tree.point[k]);
     if (2 * open >= tree.count(v)) {
-      if (piece.nodes.empty())
-        piece.parent_node = before;
+      if (stretch.nodes.empty())
+        stretch.parent_node = before;
       else
-        piece.length += (tree.center[v] - tree.center[piece.nodes.back()]).norm();
-      piece.nodes.push_back(v);
+        stretch.length += (tree.center[v] - tree.center[stretch.nodes.back()]).norm();
+      stretch.nodes.push_back(v);
     } else
       finish();
     before = v;
   }
   finish();
-  return pieces;
+  return stretches;
 }
 
-/// Fits the chains of one tree of layers, in waves whose members do not see each other.
-/// Whether it does learn about the surface: what the first pass has left over is not typical.
-/// Returns `false` as soon as `progress` does, which sees a share of the work.
+/// The chains of one tree of layers in the order in which they are fitted, and the axes that they became.
+class Chain_queue
+{
+public:
+  Chain_queue(const Scan& scan, const Layer_tree& tree) : m_chain_of_node(tree.size())
+  {
+    add(chains_of(scan, tree), 0);
+    m_number_of_sorted = size();
+  }
+
+  /// Of all chains, those that were fitted, too.
+  std::size_t size() const { return m_order.size(); }
+  const Chain& operator[](std::size_t place) const { return m_chains[m_order[place]]; }
+  /// How often what was left of a chain was tried again until this one [count].
+  int cuts(std::size_t place) const { return m_cuts[m_order[place]]; }
+
+  /// Adds chains, or pieces of some that are there, at the end.
+  void add(std::vector<Chain> chains, int cuts)
+  {
+    for (Chain& chain : chains) {
+      const Index c = static_cast<Index>(m_chains.size());
+      for (const Index v : chain.nodes)
+        m_chain_of_node[v] = c;
+      m_order.push_back(c);
+      m_chains.push_back(std::move(chain));
+      m_axis.push_back(none);
+      m_cuts.push_back(cuts);
+    }
+  }
+
+  /// Sorts those that were added among the chains from a place on, the longest first.
+  void sort(std::size_t from)
+  {
+    const auto is_longer = [&](Index x, Index y) {
+      return m_chains[x].length > m_chains[y].length;
+    };
+    const auto begin = m_order.begin();
+    const auto added = begin + static_cast<std::ptrdiff_t>(m_number_of_sorted);
+    std::stable_sort(added, m_order.end(), is_longer);
+    std::inplace_merge(begin + static_cast<std::ptrdiff_t>(from), added, m_order.end(), is_longer);
+    m_number_of_sorted = size();
+  }
+
+  void set_axis(std::size_t place, Index axis) { m_axis[m_order[place]] = axis; }
+
+  /// The axis of the nearest chain on the way to the root that has one, or `none`.
+  Index parent_axis(std::size_t place) const
+  {
+    Index c = m_order[place];
+    while (m_chains[c].parent_node != none) {
+      c = m_chain_of_node[m_chains[c].parent_node];
+      if (m_axis[c] != none)
+        return m_axis[c];
+    }
+    return none;
+  }
+
+private:
+  std::vector<Chain> m_chains;
+  std::vector<Index> m_axis;  ///< of each chain; `none`: it has none so far
+  std::vector<int> m_cuts;    ///< of each chain
+  std::vector<Index> m_order; ///< numbers of chains
+  std::vector<Index> m_chain_of_node;
+  std::size_t m_number_of_sorted = 0;
+};
+
+/*!
+  Fits the chains of one tree of layers, in waves whose members do not see each other. Where a chain leads through layers
+  that are explained already, as a second arc of a trunk does, only its stretches between them are fitted, each by itself:
+  what is left over beside an axis that is there is not one branch.
+  Whether it does learn about the surface: what the first pass has left over is not typical.
+  Returns `false` as soon as `progress` does, which sees a share of the work.
+*/
 template <class ConcurrencyTag, class Progress>
 bool fit_chains(const Scan& scan,
                 const Layer_tree& tree,
@@ -135,61 +205,42 @@ bool fit_chains(const Scan& scan,
                 bool does_learn,
                 const Progress& progress)
 {
-  std::vector<Chain> chains = chains_of(scan, tree);
-  std::vector<Index> axis_of_chain(chains.size(), none), chain_of_node(tree.size());
-  for (Index c = 0; c < chains.size(); ++c)
-    for (const Index v : chains[c].nodes)
-      chain_of_node[v] = c;
-  const auto parent_axis = [&](Index c) {
-    while (chains[c].parent_node != none) {
-      c = chain_of_node[chains[c].parent_node];
-      if (axis_of_chain[c] != none)
-        return axis_of_chain[c];
-    }
-    return none;
-  };
-  // the next chains to fit, longest first
-  std::vector<Index> queue(chains.size());
-  for (Index c = 0; c < queue.size(); ++c)
-    queue[c] = c;
-  std::vector<int> depth(chains.size(), 0);
+  Chain_queue queue(scan, tree);
   std::size_t wave = 1;
   std::vector<Candidate> candidates;
+  std::vector<std::size_t> places; // of the chains of a wave
   for (std::size_t begin = 0; begin < queue.size();) {
     const std::size_t end = std::min(queue.size(), begin + wave);
-    candidates.assign(end - begin, Candidate());
+    places.clear();
+    for (std::size_t k = begin; k < end; ++k) {
+      std::vector<Chain> open = open_stretches(tree, set, queue[k], 1);
+      if (open.size() == 1 && open.front().nodes.size() == queue[k].nodes.size())
+        places.push_back(k);
+      else
+        queue.add(std::move(open), queue.cuts(k));
+    }
+    candidates.assign(places.size(), Candidate());
     pcs::internal::for_each_index<ConcurrencyTag>(
-        end - begin,
+        places.size(),
         [&](std::size_t k) {
-          candidates[k] = Chain_fit(scan, set, rules.chains)(tree, chains[queue[begin + k]]);
+          candidates[k] = Chain_fit(scan, set, rules.chains)(tree, queue[places[k]]);
         },
         1);
-    std::vector<Index> pieces;
-    for (std::size_t k = 0; k < candidates.size(); ++k) {
-      const Index c = queue[begin + k];
-
-      if (accept(scan, rules.chains, candidates[k], parent_axis(c), set, statistics))
-        axis_of_chain[c] = static_cast<Index>(set.axes.size() - 1);
-      if (depth[c] < rules.most_cuts)
-        for (Chain& piece : rest_of(tree, set, chains[c], rules.shortest_rest)) {
-          const Index number = static_cast<Index>(chains.size());
-          for (const Index v : piece.nodes)
-            chain_of_node[v] = number;
-          chains.push_back(std::move(piece));
-          axis_of_chain.push_back(none);
-          depth.push_back(depth[c] + 1);
-          pieces.push_back(number);
-        }
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const std::size_t place = places[k];
+      const Index parent = queue.parent_axis(place);
+      if (accept(scan, rules.chains, candidates[k], parent, set, statistics))
+        queue.set_axis(place, static_cast<Index>(set.axes.size() - 1));
+      if (queue.cuts(place) >= rules.most_cuts)
+        continue;
+      std::vector<Chain> rest = open_stretches(tree, set, queue[place], rules.shortest_rest);
+      if (rest.size() != 1 || rest.front().nodes.size() < queue[place].nodes.size())
+        queue.add(std::move(rest), queue.cuts(place) + 1);
     }
     if (does_learn || !(set.density > 0))
       statistics.learn(set);
     begin = end;
-    if (!pieces.empty()) {
-      queue.insert(queue.end(), pieces.begin(), pieces.end());
-      std::stable_sort(queue.begin() + static_cast<std::ptrdiff_t>(begin),
-                       queue.end(),
-                       [&](Index x, Index y) { return chains[x].length > chains[y].length; });
-    }
+    queue.sort(begin);
     if (!progress(double(end) / double(queue.size())))
       return false;
     wave = std::min(rules.largest_wave, 2 * wave);

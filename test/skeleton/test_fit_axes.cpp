@@ -1,0 +1,123 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Chains beside an axis that is there: what is left over along a trunk is not a second trunk.
+
+#include <pcs/skeleton/fit_axes.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+using namespace pcs::skeleton;
+using pcs::skeleton::internal::open_stretches;
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846, spacing = 0.01, radius = 0.1;
+constexpr Index number_of_layers = 60, layers_between_limbs = 12;
+
+/// A trunk in layers of two arcs each, as paths on both sides of it give them, with limbs that leave the smaller arc.
+struct Two_arcs
+{
+  Scan scan;
+  Layer_tree tree;
+
+  Two_arcs()
+  {
+    const double thickness = layer_thickness * spacing;
+    std::vector<Vec3> points;
+    for (Index layer = 0; layer < number_of_layers; ++layer) {
+      for (const Index arc : {0u, 1u}) {
+        tree.parent.push_back(layer > 0 ? 2 * (layer - 1) + arc : arc == 0 ? none : 0);
+        const double from = arc == 0 ? 0 : 4.2, to = arc == 0 ? 4.2 : 2 * pi;
+        for (double z = thickness * layer + spacing / 2; z < thickness * (layer + 1); z += spacing)
+          for (double a = from; a < to; a += spacing / radius)
+            add(points, Vec3(radius * std::cos(a), radius * std::sin(a), z));
+      }
+      if (layer % layers_between_limbs == layers_between_limbs - 1)
+        add_limb(points, thickness * (layer + 0.5), (layer / layers_between_limbs) % 2 ? 4.6 : 5.8);
+    }
+    prepare_scan<CGAL::Sequential_tag>(points, Vec3::UnitZ(), scan);
+    std::vector<Index> node(scan.size()); // the scan has its own order
+    for (std::size_t i = 0; i < points.size(); ++i)
+      node[scan.point_of_input[i]] = tree.node_of_point[i];
+    tree.node_of_point = std::move(node);
+    tree.next_in_ring.assign(tree.size(), none);
+    internal::collect_nodes(scan, tree);
+  }
+
+private:
+  /// To the node that was added last.
+  void add(std::vector<Vec3>& points, const Vec3& p)
+  {
+    points.push_back(p);
+    tree.node_of_point.push_back(static_cast<Index>(tree.parent.size() - 1));
+  }
+
+  void add_limb(std::vector<Vec3>& points, double z, double angle)
+  {
+    constexpr double thin = 0.015, length = 0.1;
+    const Vec3 out(std::cos(angle), std::sin(angle), 0), side(-out.y(), out.x(), 0);
+    for (double x = 1.2 * radius; x < radius + length; x += spacing)
+      for (double a = 0; a < 2 * pi; a += spacing / thin)
+        add(points,
+            x * out + thin * (std::cos(a) * side + std::sin(a) * Vec3::UnitZ()) +
+                z * Vec3::UnitZ());
+  }
+};
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(fit_axes_to_chains)
+
+BOOST_AUTO_TEST_CASE(limbs_on_an_arc_of_a_trunk_are_no_second_trunk)
+{
+  const Two_arcs shape;
+  const Axis_set set =
+      fit_axes<CGAL::Sequential_tag>(shape.scan, shape.tree, Axis_rules(), [](double) {
+        return true;
+      });
+  const double height = layer_thickness * spacing * number_of_layers / shape.scan.frame.unit;
+  BOOST_REQUIRE(set.axes.size() == 1 + number_of_layers / layers_between_limbs);
+  BOOST_TEST(length_of(set.axes.front().axis) > 0.9 * height);
+  for (std::size_t a = 1; a < set.axes.size(); ++a)
+    BOOST_TEST(length_of(set.axes[a].axis) < 0.1 * height);
+}
+
+BOOST_AUTO_TEST_CASE(a_chain_is_left_where_most_points_of_its_layers_have_no_axis)
+{
+  const Two_arcs shape;
+  Axis_set set;
+  set.axis_of_point.assign(shape.scan.size(), none);
+  const std::vector<Chain> chains = chains_of(shape.scan, shape.tree);
+  BOOST_REQUIRE(chains.size() == 2u);
+  const Chain& chain = chains.back();
+  BOOST_REQUIRE(chain.nodes.size() == number_of_layers);
+  const auto explain = [&](std::size_t layer, double share) {
+    const Index v = chain.nodes[layer];
+    for (Index k = 0; k < share * double(shape.tree.count(v)); ++k)
+      set.axis_of_point[shape.tree.point[shape.tree.first[v] + k]] = 0;
+  };
+  const auto stretches = [&](std::size_t fewest) {
+    return open_stretches(shape.tree, set, chain, fewest);
+  };
+  BOOST_TEST((stretches(1).size() == 1 && stretches(1).front().nodes == chain.nodes));
+  BOOST_TEST(std::abs(stretches(1).front().length - chain.length) < 1e-9 * chain.length);
+  explain(0, 0.4);
+  for (const std::size_t layer : {2, 3, 20})
+    explain(layer, 0.6);
+  const std::vector<Chain> found = stretches(1);
+  BOOST_REQUIRE(found.size() == 3u);
+  const std::size_t sizes[] = {2, 16, number_of_layers - 21};
+  for (std::size_t k = 0; k < 3; ++k)
+    BOOST_TEST(found[k].nodes.size() == sizes[k]);
+  BOOST_TEST(found[0].parent_node == chain.parent_node);
+  BOOST_TEST(found[1].parent_node == chain.nodes[3]);
+  BOOST_TEST(found[2].parent_node == chain.nodes[20]);
+  BOOST_TEST(stretches(3).size() == 2u);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
