@@ -87,6 +87,36 @@ BOOST_AUTO_TEST_CASE(limbs_on_an_arc_of_a_trunk_are_no_second_trunk)
     BOOST_TEST(length_of(set.axes[a].axis) < 0.1 * height);
 }
 
+// Paths over a scan pass from branch to branch where these touch.
+BOOST_AUTO_TEST_CASE(a_chain_goes_straight_on_rather_than_to_the_longer_branch)
+{
+  Scan scan;
+  scan.spacing = spacing;
+  Layer_tree tree;
+  const auto add = [&](Index parent, const Vec3& step) {
+    tree.parent.push_back(parent);
+    tree.center.push_back((parent == none ? Vec3(Vec3::Zero()) : tree.center[parent]) + step);
+    return static_cast<Index>(tree.parent.size() - 1);
+  };
+  const auto add_row = [&](Index from, const Vec3& direction, int count) {
+    for (int k = 0; k < count; ++k)
+      from = add(from, layer_thickness * spacing * direction);
+    return from;
+  };
+  const Index fork = add_row(none, Vec3::UnitZ(), 12);
+  const Index crooked = add_row(fork, Vec3(0.8, 0, 0.6), 40);
+  const Index straight = add_row(fork, Vec3::UnitZ(), 12);
+  tree.spread.assign(tree.size(), spacing);
+  tree.next_in_ring.assign(tree.size(), none);
+  tree.first.assign(tree.size() + 1, 0);
+  const std::vector<Chain> chains = chains_of(scan, tree);
+  BOOST_REQUIRE(chains.size() == 2u);
+  BOOST_TEST(chains[0].nodes.front() == 0u);
+  BOOST_TEST(chains[0].nodes.back() == straight);
+  BOOST_TEST(chains[1].parent_node == fork);
+  BOOST_TEST(chains[1].nodes.back() == crooked);
+}
+
 BOOST_AUTO_TEST_CASE(a_chain_is_left_where_most_points_of_its_layers_have_no_axis)
 {
   const Two_arcs shape;

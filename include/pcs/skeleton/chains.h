@@ -27,14 +27,14 @@ struct Chain
   double length = 0;        ///< along the centres [L]
 };
 
-/// How many layers back the direction of a chain is taken from.
-constexpr int direction_reach = 4;
+/// How many layers back the direction of a chain is taken from, and how many ahead that of a child [count].
+constexpr int direction_reach = 6, ahead_reach = 3;
 /// Added to the spread of a node, in spacings: thin nodes must not win by noise [-].
 constexpr double spread_offset = 0.4;
 /// Farther children than this many layers lie behind a gap; the way there must be this straight before and behind it [-].
 constexpr double gap_layers = 1.5, gap_cosine = 0.8;
-/// Added to the cosine between the parent's direction and a child's.
-constexpr double cosine_offset = 1.2;
+/// What a unit of the cosine between both counts against the logarithms of height and spread: branches are straight [-].
+constexpr double chain_straightness = 5;
 
 namespace internal {
 
@@ -79,20 +79,21 @@ inline std::vector<Chain> chains_of(const Scan& scan, const Layer_tree& tree)
       if (tree.parent[v] != none)
         child[next[tree.parent[v]]++] = v;
   }
+  // A short way on from a node towards the farthest tip.
+  const auto way_ahead = [&](Index v) {
+    for (int step = 0; step < ahead_reach && first[v] < first[v + 1]; ++step)
+      v = *std::max_element(child.begin() + first[v],
+                            child.begin() + first[v + 1],
+                            [&](Index a, Index b) { return height[a] < height[b]; });
+    return v;
+  };
   // Where points are missing on the way to a child, only what lies straight ahead may belong to the same branch.
   const auto is_crooked_gap = [&](Index v, Index c, const Vec3& along) {
     const Vec3 jump = tree.center[c] - tree.center[v];
     const double length = jump.norm();
     if (length <= gap_layers * layer_thickness * scan.spacing + tree.spread[v] + tree.spread[c])
       return false;
-    Index far = c;
-    for (int step = 0; step < direction_reach && first[far] < first[far + 1]; ++step) {
-      Index highest = child[first[far]];
-      for (Index k = first[far]; k < first[far + 1]; ++k)
-        if (height[child[k]] > height[highest])
-          highest = child[k];
-      far = highest;
-    }
+    const Index far = way_ahead(c);
     const Vec3 behind = tree.center[far] - tree.center[c];
     return along.dot(jump) < gap_cosine * length ||
            behind.dot(jump) < gap_cosine * length * behind.norm();
@@ -103,20 +104,18 @@ inline std::vector<Chain> chains_of(const Scan& scan, const Layer_tree& tree)
       return in_ring == v ? none : in_ring;
     const Vec3 along = internal::direction_to(tree, v);
     Index best = none;
-    double best_score = -1;
+    double best_score = 0;
     for (Index k = first[v]; k < first[v + 1]; ++k) {
       const Index c = child[k];
-      Index ahead = c; // a short way further on, to see where the child leads
-      for (int step = 0; step < direction_reach / 2 && first[ahead + 1] - first[ahead] == 1; ++step)
-        ahead = child[first[ahead]];
-      const Vec3 d = tree.center[ahead] - tree.center[v];
+      const Vec3 d = tree.center[way_ahead(c)] - tree.center[v];
       const double norm = d.norm(), cosine = norm > 0 ? along.dot(d) / norm : 0;
       if (is_crooked_gap(v, c, along))
         continue;
-      const double score = std::sqrt(height[c] + layer_thickness * scan.spacing) *
-                           (tree.spread[c] + spread_offset * scan.spacing) *
-                           (cosine_offset + cosine);
-      if (score > best_score) {
+      const double u = scan.spacing;
+      const double score = 0.5 * std::log(height[c] / u + layer_thickness) +
+                           std::log(tree.spread[c] / u + spread_offset) +
+                           chain_straightness * cosine;
+      if (best == none || score > best_score) {
         best_score = score;
         best = c;
       }
