@@ -11,9 +11,11 @@
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Branch_tree.h>
 #include <pcs/skeleton/Session_options.h>
-#include <pcs/skeleton/mark_walls.h>
+#include <pcs/skeleton/Used_points.h>
+#include <pcs/skeleton/Wall_removal.h>
 #include <pcs/skeleton/regroup_axes.h>
 #include <pcs/skeleton/report_sizes.h>
+#include <pcs/skeleton/residual_of_point.h>
 #include <pcs/skeleton/root_axis.h>
 
 #include <algorithm>
@@ -50,30 +52,8 @@ public:
     const double unit = m_scan.frame.unit;
     m_options.up = Vec3::UnitZ(); // from here on, all is in coordinates of the scan
     m_options.breast_height /= unit;
-    const std::size_t n = m_scan.size();
-    m_point_of_input = m_scan.point_of_input;
-    std::vector<std::uint8_t> is_wood(n, m_is_wood.empty());
-    for (std::size_t i = 0; i < m_is_wood.size(); ++i)
-      is_wood[m_scan.point_of_input[i]] |= m_is_wood[i];
-    m_is_used.resize(n);
-    for (std::size_t i = 0; i < n; ++i)
-      m_is_used[i] = is_wood[i] && !m_scan.is_outlier[i];
-    if (std::find(m_is_used.begin(), m_is_used.end(), 1) == m_is_used.end())
-      m_is_used = is_wood; // all are far from each other: better these than none
-    for (std::size_t i = 0; i < n; ++i)
-      m_scan.is_outlier[i] = !m_is_used[i];
     std::vector<Vec3>().swap(m_input);
-    m_is_leaf.resize(n);
-    m_is_found_leaf.assign(n, 0);
-    for (std::size_t i = 0; i < n; ++i)
-      m_is_leaf[i] = !is_wood[i];
-    m_report.number_of_duplicates = m_report.number_of_points - n;
-    const auto number_of = [](const std::vector<std::uint8_t>& flags, std::uint8_t value) {
-      return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), value));
-    };
-    m_report.number_of_leaf_points = number_of(is_wood, 0);
-    m_report.number_of_outliers = number_of(m_scan.is_outlier, 1) - m_report.number_of_leaf_points;
-    m_report.spacing = unit * m_scan.spacing;
+    m_used.start(m_is_wood);
     for (Vec3& s : m_options.scanners)
       s = m_scan.frame.to_local(s);
     m_report.seconds.neighbors = watch.lap();
@@ -92,25 +72,23 @@ public:
       m_stage = 2;
       return progress(0.6);
     }
-    if (!m_are_walls_out) { // when stopped below, they are
-      if (m_options.do_mark_ground && is_one_sheet(m_scan, m_is_used, m_options.ground.sheet)) {
-        m_report.number_of_ground_points =
-            static_cast<std::size_t>(std::count(m_is_used.begin(), m_is_used.end(), 1));
-        std::fill(m_is_used.begin(), m_is_used.end(), std::uint8_t(0));
+    if (m_options.do_mark_ground && !m_are_walls_out) { // when stopped below, they are
+      if (is_one_sheet(m_scan, m_used.flags(), m_options.ground.sheet)) {
+        m_used.leave_out_all();
         m_stage = 2;
         return progress(0.6);
       }
-      leave_out_faces(true);
+      m_wall_removal.leave_out_walls_and_roofs(m_options.up);
     }
     m_are_walls_out = true;
     std::vector<Link> links = links_of_used();
     std::vector<Link> gaps;
     const auto find_root_and_gaps = [&] {
       m_root = root_points(links);
-      gaps = links_across_gaps(m_scan, m_is_used, m_options.axes.links, links);
+      gaps = links_across_gaps(m_scan, m_used.flags(), m_options.axes.links, links);
     };
     // most scans have no ground, and what is found meanwhile stays
-    std::vector<std::uint8_t> is_above = m_is_used;
+    std::vector<std::uint8_t> is_above = m_used.flags();
     std::size_t ground = 0;
     pcs::internal::invoke_both<ConcurrencyTag>(
         [&] {
@@ -122,11 +100,13 @@ public:
       return false; // the ground is not left out yet
     m_report.number_of_ground_points = ground;
     if (ground > 0) {
-      leave_out(std::move(is_above));
+      m_used.leave_out_others(std::move(is_above));
       links = links_of_used();
     }
-    const bool may_have_faces = m_has_faces || ground > 0; // if not, they were looked for already
-    if ((may_have_faces && leave_out_rest_of_faces(links)) || ground > 0)
+    // faces that are not there were looked for already
+    const bool may_have_faces = m_wall_removal.has_faces() || ground > 0;
+    const auto find_links = [&] { return links_of_used(); };
+    if ((may_have_faces && m_wall_removal.leave_out_rest(find_links, links)) || ground > 0)
       find_root_and_gaps();
     links.insert(links.end(), gaps.begin(), gaps.end());
     trace_paths(links);
@@ -150,7 +130,7 @@ public:
       const std::vector<Surface_frame> frames = principal_curvatures<ConcurrencyTag>(m_scan);
       if (!progress(0.7))
         return false;
-      m_sections = detect_sections(m_scan, m_is_used, frames, m_options.slices);
+      m_sections = detect_sections(m_scan, m_used.flags(), frames, m_options.slices);
       m_report.seconds.axes = watch.lap();
       m_stage = 3;
       return progress(0.9);
@@ -169,7 +149,7 @@ public:
       ++m_leaf_rounds; // stopped from here on, the work goes on with the wood
     }
     if (m_leaf_rounds > 0)
-      reclaim();
+      m_used.reclaim_leaves(m_options.axes.chains, m_axes);
     fuse_axes<ConcurrencyTag>(m_scan.spacing, m_options.fusion, m_axes);
     const double unit = m_scan.frame.unit;
     m_report.noise = unit * m_axes.noise;
@@ -187,9 +167,9 @@ public:
       return true;
     pcs::internal::Stopwatch watch;
     if (m_options.given) {
-      m_tree = measure_given(m_scan, m_is_used, *m_options.given, m_options.given_rules);
+      m_tree = measure_given(m_scan, m_used.flags(), *m_options.given, m_options.given_rules);
     } else if (m_options.method == Skeleton_method::sections && !m_root.empty()) {
-      m_tree = section_skeleton(m_scan, m_is_used, m_sections, m_root, m_options.section_tree);
+      m_tree = section_skeleton(m_scan, m_used.flags(), m_sections, m_root, m_options.section_tree);
       correct_beam(m_options.scanners, m_options.beam_width, m_options.beam, m_tree);
       count();
       m_report.seconds.joints = watch.lap();
@@ -215,7 +195,7 @@ public:
         m_options.support.pipes.slack = m_options.leaves.pipe_slack;
       bound_radii(m_scan, support, m_axes.density, m_options.support, m_tree);
       mend_foot(m_scan,
-                m_is_used,
+                m_used.flags(),
                 support,
                 m_axes.density,
                 m_options.support,
@@ -236,7 +216,7 @@ public:
   }
 
   const Scan& scan() const { return m_scan; }
-  const std::vector<std::uint8_t>& is_used() const { return m_is_used; }
+  const std::vector<std::uint8_t>& is_used() const { return m_used.flags(); }
   const std::vector<Index>& root() const { return m_root; }
   const Shortest_paths& paths() const { return m_paths; }
   const Layer_tree& layers() const { return m_layers; }
@@ -248,25 +228,15 @@ public:
   Skeleton_report& report() { return m_report; }
 
   /// The node that explains an input point, or `none`.
-  Index node_of_input(std::size_t i) const { return m_tree.node_of_point[m_point_of_input[i]]; }
+  Index node_of_input(std::size_t i) const
+  {
+    return m_tree.node_of_point[m_scan.point_of_input[i]];
+  }
 
   /// The unit vector across its branch from the axis to an input point; null on the axis. It has a node.
   Vec3 normal_of_input(std::size_t i) const
   {
-    const Index p = m_point_of_input[i];
-    const Vec3& point = m_scan.points[p];
-    Vec3 across;
-    if (m_options.method == Skeleton_method::chains && !m_options.given) {
-      const Axis& axis = m_axes.axes[m_axes.axis_of_point[p]].axis;
-      across = point - point_at(axis, nearest_place(axis, m_axes.segment_of_point[p], point));
-    } else {
-      const Branch_node& node = m_tree.nodes[m_tree.node_of_point[p]];
-      const Vec3& base = node.parent == none ? node.point : m_tree.nodes[node.parent].point;
-      const Vec3 along = node.point - base;
-      const double length2 = along.squaredNorm();
-      const double t = length2 > 0 ? (point - base).dot(along) / length2 : 0;
-      across = point - base - std::min(1.0, std::max(0.0, t)) * along;
-    }
+    const Vec3 across = offset_of_point(m_scan, m_axes, m_tree, m_scan.point_of_input[i]);
     const double length = across.norm();
     return length > 0 ? m_scan.frame.direction_to_input(across / length) : Vec3(Vec3::Zero());
   }
@@ -274,85 +244,16 @@ public:
   /// Distance of an input point from the surface of its branch; negative inside. It has a node.
   double residual_of_input(std::size_t i) const
   {
-    return m_scan.frame.unit * residual_of_point(m_point_of_input[i]);
+    return m_scan.frame.unit * residual_of_point(m_scan, m_axes, m_tree, m_scan.point_of_input[i]);
   }
 
   /// Whether an input point is left out as a leaf, by the caller or because it was found to be one.
-  bool is_leaf_of_input(std::size_t i) const { return m_is_leaf[m_point_of_input[i]] != 0; }
+  bool is_leaf_of_input(std::size_t i) const { return m_used.is_leaf(m_scan.point_of_input[i]); }
 
 private:
   std::vector<Link> links_of_used() const
   {
-    return neighbor_links<ConcurrencyTag>(m_scan, m_is_used, m_options.axes.links);
-  }
-
-  /// The others stay where they are, for distances, and count as outliers.
-  void use_only(const std::vector<std::uint8_t>& is_used)
-  {
-    m_is_used = is_used;
-    for (std::size_t i = 0; i < m_scan.size(); ++i)
-      m_scan.is_outlier[i] = !m_is_used[i];
-  }
-
-  /// Takes walls and roofs out, or all faces. Returns whether there are any.
-  bool leave_out_faces(bool are_walls)
-  {
-    if (!m_options.do_mark_ground)
-      return false;
-    std::vector<Flat_face> faces = flat_faces(m_scan, m_options.walls, m_is_used);
-    m_has_faces = !faces.empty();
-    if (are_walls)
-      faces = walls_and_roofs(m_scan, faces, m_options.up, m_options.walls, m_is_used);
-    std::vector<std::uint8_t> is_part = m_is_used;
-    const std::size_t marked = mark_faces(m_scan, faces, is_part);
-    if (!leave_out_walls(marked, is_part))
-      return false;
-    m_faces.insert(m_faces.end(), faces.begin(), faces.end());
-    return true;
-  }
-
-  /// Leaves all but `is_part` out, if that is anything. Returns whether it did.
-  bool leave_out_walls(std::size_t marked, const std::vector<std::uint8_t>& is_part)
-  {
-    const auto left = static_cast<std::size_t>(std::count(is_part.begin(), is_part.end(), 1));
-    if (marked == 0 || double(left) < m_options.walls.least * double(left + marked))
-      return false;
-    m_report.number_of_wall_points += marked;
-    leave_out(is_part);
-    return true;
-  }
-
-  /// The other faces, and what is left beside them. `links` are those between the used points, also afterwards. Returns
-  /// whether there is any.
-  bool leave_out_rest_of_faces(std::vector<Link>& links)
-  {
-    bool is_found = false;
-    for (int round = 1; round < m_options.walls.rounds && leave_out_faces(false); ++round)
-      is_found = true;
-    if (is_found)
-      links = links_of_used();
-    std::vector<std::uint8_t> is_part = m_is_used;
-    const std::size_t marked = mark_beside_faces(m_scan, m_faces, links, m_options.walls, is_part);
-    if (leave_out_walls(marked, is_part)) {
-      links = links_of_used();
-      is_found = true;
-    }
-    return is_found;
-  }
-
-  /// What is left of the scan has a spacing and more outliers of its own.
-  void leave_out(std::vector<std::uint8_t> is_above)
-  {
-    measure_part<ConcurrencyTag>(is_above, m_scan);
-    const auto outliers =
-        static_cast<std::size_t>(std::count(m_scan.is_outlier.begin(), m_scan.is_outlier.end(), 1));
-    if (outliers < static_cast<std::size_t>(std::count(is_above.begin(), is_above.end(), 1))) {
-      for (std::size_t i = 0; i < m_scan.size(); ++i)
-        is_above[i] = is_above[i] && !m_scan.is_outlier[i];
-      m_report.number_of_outliers += outliers;
-    }
-    use_only(is_above);
-    m_report.spacing = m_scan.frame.unit * m_scan.spacing;
+    return neighbor_links<ConcurrencyTag>(m_scan, m_used.flags(), m_options.axes.links);
   }
 
   /// Paths from the root, and their layers. `links` close gaps, too.
@@ -373,42 +274,27 @@ private:
       return false;
     const bool is_sure = m_options.leaf_removal == Leaf_removal::always;
     const std::vector<std::uint8_t> is_wood =
-        m_leaf_rounds > 0
-            ? wood_by_axes<ConcurrencyTag>(m_scan,
-                                           m_axes,
-                                           m_is_used,
-                                           m_options.breast_height,
-                                           m_options.leaves)
-            : wood_by_points<ConcurrencyTag>(m_scan, m_axes, m_is_used, is_sure, m_options.leaves);
+        m_leaf_rounds > 0 ? wood_by_axes<ConcurrencyTag>(m_scan,
+                                                         m_axes,
+                                                         m_used.flags(),
+                                                         m_options.breast_height,
+                                                         m_options.leaves)
+                          : wood_by_points<ConcurrencyTag>(m_scan,
+                                                           m_axes,
+                                                           m_used.flags(),
+                                                           is_sure,
+                                                           m_options.leaves);
     const bool has_wood = std::find(is_wood.begin(), is_wood.end(), 1) != is_wood.end();
-    if (!has_wood || is_wood == m_is_used)
+    if (!has_wood || is_wood == m_used.flags())
       return false;
-    for (Index i = 0; i < m_scan.size(); ++i)
-      if (m_is_used[i] && !is_wood[i]) {
-        m_is_leaf[i] = m_is_found_leaf[i] = 1;
-        ++m_report.number_of_leaf_points;
-      }
-    use_only(is_wood);
+    m_used.leave_out_leaves(is_wood);
     std::vector<Link> links = links_of_used();
     m_root = root_points(links);
     const std::vector<Link> gaps =
-        links_across_gaps(m_scan, m_is_used, m_options.axes.links, links);
+        links_across_gaps(m_scan, m_used.flags(), m_options.axes.links, links);
     links.insert(links.end(), gaps.begin(), gaps.end());
     trace_paths(links);
     return true;
-  }
-
-  /// What lies on the surfaces is no leaf.
-  void reclaim()
-  {
-    m_report.number_of_leaf_points -=
-        reclaim_points<ConcurrencyTag>(m_scan, m_options.axes.chains, m_is_found_leaf, m_axes);
-    for (Index i = 0; i < m_scan.size(); ++i)
-      if (m_is_leaf[i] && m_axes.is_covered(i)) {
-        m_is_leaf[i] = 0;
-        m_is_used[i] = 1;
-        m_scan.is_outlier[i] = 0;
-      }
   }
 
   /// The tree of the axes as they are. Returns the one that stands on the root.
@@ -422,26 +308,13 @@ private:
     return root;
   }
 
-  double residual_of_point(Index p) const
-  {
-    const Index v = m_tree.node_of_point[p];
-    if (m_options.method == Skeleton_method::chains && !m_options.given)
-      return m_axes.height_above(p, m_scan.points[p]);
-    const Branch_node& node = m_tree.nodes[v];
-    const Branch_node& below = m_tree.nodes[node.parent == none ? v : node.parent];
-    const Vec3 d = node.point - below.point, q = m_scan.points[p] - below.point;
-    const double t =
-        d.squaredNorm() > 0 ? std::min(1.0, std::max(0.0, q.dot(d) / d.squaredNorm())) : 1;
-    return (q - t * d).norm() - (1 - t) * below.radius - t * node.radius;
-  }
-
   std::vector<Index> root_points(const std::vector<Link>& links) const
   {
     if (!m_options.root)
-      return find_root(m_scan, m_is_used, links, m_options.up, m_options.roots);
+      return find_root(m_scan, m_used.flags(), links, m_options.up, m_options.roots);
     const auto found = m_scan.search->nearest_if(m_scan.frame.to_local(*m_options.root),
                                                  std::numeric_limits<double>::max(),
-                                                 [&](Index i) { return m_is_used[i] != 0; });
+                                                 [&](Index i) { return m_used.flags()[i] != 0; });
     return {found.index};
   }
 
@@ -454,7 +327,7 @@ private:
     r.number_of_branches = m_tree.branches.size();
     r.number_of_unreached_branches = m_tree.number_of_unreached_axes;
     for (std::size_t i = 0; i < m_scan.size(); ++i) {
-      if (!m_is_used[i])
+      if (!m_used.flags()[i])
         continue;
       const bool has_node = !m_tree.node_of_point.empty() && m_tree.node_of_point[i] != none;
       const bool is_covered =
@@ -462,55 +335,30 @@ private:
       r.number_of_unexplained_points += !is_covered;
       r.number_of_unreached_points += is_covered && !has_node;
     }
-    r.residual = unit * median_residual();
+    r.residual = unit * median_residual(m_scan, m_axes, m_tree);
     report_sizes(m_tree, unit, m_options.up, m_options.breast_height, r);
     if (!m_tree.nodes.empty())
-      r.height =
-          std::max(r.height, unit * (top_of_leaves() - m_options.up.dot(m_tree.nodes[0].point)));
-  }
-
-  /// Height of the highest leaves that were found, but for one in a thousand; the lowest number without.
-  double top_of_leaves() const
-  {
-    std::vector<double> heights;
-    for (std::size_t i = 0; i < m_scan.size(); ++i)
-      if (m_is_found_leaf[i])
-        heights.push_back(m_options.up.dot(m_scan.points[i]));
-    if (heights.empty())
-      return std::numeric_limits<double>::lowest();
-    const auto at = heights.end() - 1 - static_cast<std::ptrdiff_t>(heights.size() / 1000);
-    std::nth_element(heights.begin(), at, heights.end());
-    return *at;
-  }
-
-  /// Of some ten thousand points spread over all.
-  double median_residual() const
-  {
-    std::vector<double> distances;
-    constexpr std::size_t enough = 20000;
-    const std::size_t n = m_tree.node_of_point.size(), step = 1 + n / enough;
-    for (std::size_t i = 0; i < n; i += step)
-      if (m_tree.node_of_point[i] != none)
-        distances.push_back(std::abs(residual_of_point(static_cast<Index>(i))));
-    return median(distances);
+      r.height = std::max(
+          r.height,
+          unit * (m_used.top_of_leaves(m_options.up) - m_options.up.dot(m_tree.nodes[0].point)));
   }
 
   std::vector<Vec3> m_input;
-  std::vector<std::uint8_t> m_is_wood, m_is_used;
-  std::vector<std::uint8_t> m_is_leaf, m_is_found_leaf; ///< the second: not by `wood_map`
+  std::vector<std::uint8_t> m_is_wood; ///< of the input
   Session_options m_options;
+  bool m_are_walls_out = false;
   int m_stage = 0, m_leaf_rounds = 0, m_regroupings = 0;
+  Skeleton_report m_report;
   Scan m_scan;
-  std::vector<Index> m_point_of_input, m_root;
+  Used_points<ConcurrencyTag> m_used{m_scan, m_report};
+  Wall_removal<ConcurrencyTag> m_wall_removal{m_scan, m_options.walls, m_used, m_report};
+  std::vector<Index> m_root;
   Shortest_paths m_paths;
   Layer_tree m_layers;
-  std::vector<Flat_face> m_faces; ///< that are left out
-  bool m_are_walls_out = false, m_has_faces = false;
   Axis_set m_axes;
   std::vector<Found_section> m_sections;
   std::vector<Joint> m_joints;
   Branch_tree m_tree;
-  Skeleton_report m_report;
 };
 
 } // namespace skeleton
