@@ -229,6 +229,36 @@ BOOST_AUTO_TEST_CASE(leaves_are_found_where_there_are_any)
   BOOST_CHECK_LT(insisted.number_of_leaf_points, s.scan.points.size() / 5);
 }
 
+BOOST_AUTO_TEST_CASE(trees_in_rows_keep_their_wood)
+{
+  const Small_scan& s = small_scan();
+  pcs::Virtual_scanner scanner;
+  scanner.angular_step = 0.04 * CGAL_PI / 180;
+  pcs::Virtual_scan<Kernel> scan;
+  pcs::scan_tree(s.truth, scan, scanner, pcs::parameters::random_seed(7));
+  std::vector<Point>
+      rows; // 7 mm wide, as of a scanner that moves by 6 cm from one profile to the next
+  for (const Point& p : scan.points) {
+    const double place = (p.z() + 0.3 * p.x()) / 0.06;
+    if (std::abs(place - std::round(place)) * 0.06 < 0.0035)
+      rows.push_back(p);
+  }
+  Tree tree, bare;
+  const auto report = pcs::extract_tree_skeleton(rows, tree);
+  const auto kept =
+      pcs::extract_tree_skeleton(rows, bare, pcs::parameters::do_remove_leaves(false));
+  BOOST_CHECK(report.is_in_rows);
+  BOOST_CHECK_EQUAL(pcs::warnings(report).size(), pcs::warnings(kept).size() + 1);
+  BOOST_CHECK_EQUAL(report.number_of_leaf_points, 0u);
+  BOOST_CHECK(are_equal(tree, bare));
+  // who wants leaves to go gets that, and loses most of the tree
+  Tree lost;
+  const auto always =
+      pcs::extract_tree_skeleton(rows, lost, pcs::parameters::do_remove_leaves(true));
+  BOOST_CHECK(!always.is_in_rows);
+  BOOST_CHECK_LT(2 * always.total.length, kept.total.length);
+}
+
 BOOST_AUTO_TEST_CASE(points_that_the_caller_calls_wood_are_no_leaves)
 {
   const Small_scan& s = small_scan();

@@ -40,6 +40,7 @@ inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skele
   json["branches"] = r.number_of_branches;
   json["branches_out_of_reach"] = r.number_of_unreached_branches;
   json["other_stems"] = r.number_of_other_stems;
+  json["in_rows"] = r.is_in_rows;
   json["warnings"] = pcs::warnings(r);
   json["height"] = r.height;
   json["diameter_at_breast_height"] = r.diameter_at_breast_height;

@@ -138,7 +138,8 @@ public:
           axes that end without wood on them and are short, or short and wide, are leaves, too, like all that no axis
           explains. `true`: always; `false`: never; `skeleton::Leaf_removal::where_found`: if 2.5 % of the points are
           not explained by the first fit, 5 % are thick wood, and of the others 3.5 % lie in flat patches, or these others are
-          40 % and 15 % of them lie deep in leaves. For the method `chains`
+          40 % and 15 % of them lie deep in leaves, unless the points lie in rows (`Skeleton_report::is_in_rows`). For the
+          method `chains`
         \nptype `bool` or `skeleton::Leaf_removal`
         \npdefault `skeleton::Leaf_removal::where_found`; with `wood_map` `false`
       \np{point_branch_map} written by `extract()`: the branch of a point, an index in the result, or `npos`

@@ -120,6 +120,16 @@ Points pipe(std::size_t count, double from, double to)
   return points;
 }
 
+/// The same points, moved along z into rings of some width.
+Points in_rings(Points points, double distance, double width)
+{
+  for (Vec3& p : points) {
+    const double ring = distance * std::round(p.z() / distance);
+    p.z() = ring + width / distance * (p.z() - ring);
+  }
+  return points;
+}
+
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(find_leaves_of_scans)
@@ -203,7 +213,7 @@ BOOST_AUTO_TEST_CASE(leaves_are_left_out_only_where_there_are_many)
     add_twig(points, Vec3(0.15 * k - 0.4, 0.1 * k - 0.2, 0), 100, random);
   const std::size_t wood = points.size();
   const auto find = [&](const Prepared& p, const Axis_set& set, bool is_sure) {
-    return wood_by_points<CGAL::Sequential_tag>(p.scan, set, p.is_used, is_sure, {});
+    return wood_by_points<CGAL::Sequential_tag>(p.scan, set, p.is_used, is_sure, {}).is_wood;
   };
   const auto axes_of = [&](const Prepared& p) {
     const double unit = p.scan.frame.unit;
@@ -250,8 +260,56 @@ BOOST_AUTO_TEST_CASE(a_few_leaves_are_noticed_on_much_wood)
     Axis_set set = one_axis(p.scan, 0.1 / unit, double(trunk) / 0.628 * unit * unit);
     for (std::size_t i = trunk; i < points.size(); ++i)
       set.axis_of_point[p.scan.point_of_input[i]] = none;
-    const Flags found = wood_by_points<CGAL::Sequential_tag>(p.scan, set, p.is_used, false, {});
+    const Flags found =
+        wood_by_points<CGAL::Sequential_tag>(p.scan, set, p.is_used, false, {}).is_wood;
     BOOST_CHECK_EQUAL(found.empty(), !is_flat);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(points_of_surfaces_have_dimension_two_and_rows_one)
+{
+  const auto dimension_of = [](const Points& points) {
+    const Prepared p(points, 0);
+    return sampling_dimension(p.scan, p.is_used);
+  };
+  const Points even = pipe(3000, 0.1, 0.1);
+  BOOST_CHECK_CLOSE(dimension_of(even), 2.0, 5.0);
+  BOOST_CHECK_GT(dimension_of(pipe(3000, 0, 0.1)), 2.5);
+  BOOST_CHECK_CLOSE(dimension_of(in_rings(even, 0.2, 0)), 1.0, 5.0);
+  // rings as wide as the space between them are surfaces again
+  BOOST_CHECK_GT(dimension_of(in_rings(pipe(30000, 0.1, 0.1), 0.1, 0.05)), 1.9);
+  // some part alone, and none at all
+  Points both = even;
+  for (const Vec3& p : in_rings(even, 0.2, 0))
+    both.push_back(p + Vec3(1, 0, 0));
+  const Prepared p(both, even.size());
+  BOOST_CHECK_CLOSE(sampling_dimension(p.scan, p.is_twig), 2.0, 5.0);
+  BOOST_CHECK(std::isinf(sampling_dimension(p.scan, Flags(p.scan.size(), 0))));
+}
+
+BOOST_AUTO_TEST_CASE(in_rows_leaves_are_not_told_from_wood)
+{
+  std::mt19937 random(6);
+  const Points surface = pipe(3000, 0.1, 0.1);
+  for (const bool is_in_rows : {false, true}) {
+    Points points = is_in_rows ? in_rings(surface, 0.1, 0) : surface;
+    const std::size_t trunk = points.size();
+    add_leaves(points, 120, random);
+    for (std::size_t i = trunk; i < points.size(); ++i)
+      points[i].x() += 2;
+    const Prepared p(points, trunk);
+    const double unit = p.scan.frame.unit;
+    Axis_set set = one_axis(p.scan, 0.1 / unit, double(trunk) / 0.628 * unit * unit);
+    for (std::size_t i = trunk; i < points.size(); ++i)
+      set.axis_of_point[p.scan.point_of_input[i]] = none;
+    const auto find = [&](bool is_sure) {
+      return wood_by_points<CGAL::Sequential_tag>(p.scan, set, p.is_used, is_sure, {});
+    };
+    BOOST_CHECK_EQUAL(find(false).is_in_rows, is_in_rows);
+    BOOST_CHECK_EQUAL(find(false).is_wood.empty(), is_in_rows);
+    // the caller knows better
+    BOOST_CHECK(!find(true).is_in_rows);
+    BOOST_CHECK(!find(true).is_wood.empty());
   }
 }
 

@@ -47,6 +47,8 @@ struct Skeleton_report
   std::size_t number_of_unreached_branches = 0; ///< [count]
   //! stems beside that of the root that stand at its height, out of reach or hanging by a branch: other trees [count]
   std::size_t number_of_other_stems = 0;
+  //! the points lie in rows that are far from each other, and were all kept, as leaves look like wood there
+  bool is_in_rows = false;
   std::size_t number_of_nodes = 0;    ///< [count]
   std::size_t number_of_branches = 0; ///< [count]
 
@@ -98,6 +100,10 @@ inline std::vector<std::string> warnings(const Skeleton_report& r)
     sentences.push_back(std::to_string(r.number_of_wall_points) +
                         " points lie on walls or other flat faces, or beside them, and are left "
                         "out; more of such things may be among the branches");
+  if (r.is_in_rows)
+    sentences.push_back(
+        "the points lie in rows that are far from each other; leaves cannot be told "
+        "from wood there, and are kept (do_remove_leaves(true))");
   if (r.status == Status::converged &&
       r.residual > std::max(largest_residual * r.noise, exact * r.spacing))
     sentences.push_back("half of the points lie far from the surfaces found; this may be no tree");

@@ -267,23 +267,28 @@ private:
     merge_rings(m_scan, m_options.rings, m_layers);
   }
 
+  /// Before anything was left out.
+  std::vector<std::uint8_t> wood_of_all()
+  {
+    const bool is_sure = m_options.leaf_removal == Leaf_removal::always;
+    Found_wood found =
+        wood_by_points<ConcurrencyTag>(m_scan, m_axes, m_used.flags(), is_sure, m_options.leaves);
+    m_report.is_in_rows = found.is_in_rows;
+    return std::move(found.is_wood);
+  }
+
   /// Takes the leaves out, and looks for paths over the rest. `false` if there is nothing to do.
   bool remove_leaves()
   {
     if (m_axes.axes.empty())
       return false;
-    const bool is_sure = m_options.leaf_removal == Leaf_removal::always;
     const std::vector<std::uint8_t> is_wood =
         m_leaf_rounds > 0 ? wood_by_axes<ConcurrencyTag>(m_scan,
                                                          m_axes,
                                                          m_used.flags(),
                                                          m_options.breast_height,
                                                          m_options.leaves)
-                          : wood_by_points<ConcurrencyTag>(m_scan,
-                                                           m_axes,
-                                                           m_used.flags(),
-                                                           is_sure,
-                                                           m_options.leaves);
+                          : wood_of_all();
     const bool has_wood = std::find(is_wood.begin(), is_wood.end(), 1) != is_wood.end();
     if (!has_wood || is_wood == m_used.flags())
       return false;

@@ -14,6 +14,7 @@
 #include <pcs/skeleton/find_hollow.h>
 #include <pcs/skeleton/find_lines.h>
 #include <pcs/skeleton/find_patches.h>
+#include <pcs/skeleton/sampling_dimension.h>
 
 #include <Eigen/Core>
 
@@ -35,6 +36,8 @@ struct Leaf_rules
   //! of the points that no axis explains: with fewer, leaves are not looked for [-]
   double unexplained = 0.025;
   double thick = 0.05; ///< share of the points that must be thick wood, or this is no tree [-]
+  //! least dimension of the points of thick wood; less have rows, which look like twigs [-]
+  double dimension = 1.9;
   double open =
       0.4; ///< least share of the points that must be no thick wood in a crown of leaves [-]
   double leafy = 0.15;        ///< share of these that must be deep in leaves: fewer are chance [-]
@@ -137,6 +140,19 @@ inline bool may_have_leaves(const Axis_set& set,
   return double(open) >= rules.unexplained * double(used);
 }
 
+/// Whether enough points are thick wood for a tree. O(points).
+inline bool has_thick_wood(const std::vector<std::uint8_t>& is_used,
+                           const std::vector<std::uint8_t>& is_thick,
+                           const Leaf_rules& rules)
+{
+  std::size_t used = 0, thick = 0;
+  for (std::size_t i = 0; i < is_used.size(); ++i) {
+    used += is_used[i];
+    thick += is_used[i] && is_thick[i];
+  }
+  return double(thick) >= rules.thick * double(used);
+}
+
 /*!
   Whether the points that are neither thick wood nor lines are leaves. Twigs that a scan just about sees are no lines, too,
   but are mixed with those that it sees well, and make no flat patches. O(points).
@@ -154,8 +170,6 @@ inline bool are_leaves(const Scan& scan,
     thin += is_used[i] && !is_thick[i];
     is_open[i] = is_used[i] && !is_wood[i];
   }
-  if (double(used - thin) < rules.thick * double(used))
-    return false;
   for (std::size_t i = 0; i < scan.size(); ++i) {
     std::size_t count = 0;
     for (const Index j : scan.neighbors[i])
@@ -168,21 +182,36 @@ inline bool are_leaves(const Scan& scan,
                         rules.patchy * double(thin);
 }
 
+/// The points of wood among all that are used.
+struct Found_wood
+{
+  std::vector<std::uint8_t> is_wood; ///< empty: all of them, as far as is known
+  bool is_in_rows = false;           ///< nothing is known, because the points lie in rows
+};
+
 /*!
-  The points of thick wood, which is hollow, and of thin wood, by its surroundings. Empty if what is left when all lines are taken
-  for wood does not look like leaves, unless `is_sure` says that there are some.
+  The points of thick wood, which is hollow, and of thin wood, by its surroundings. Without `is_sure`, which says that there are
+  leaves, all points are wood where what is left when all lines are taken for wood does not look like leaves, and where the points
+  of thick wood lie in rows: each of these is a line, and its surroundings are not those of a twig or of a leaf.
 */
 template <class ConcurrencyTag>
-std::vector<std::uint8_t> wood_by_points(const Scan& scan,
-                                         const Axis_set& set,
-                                         const std::vector<std::uint8_t>& is_used,
-                                         bool is_sure,
-                                         const Leaf_rules& rules)
+Found_wood wood_by_points(const Scan& scan,
+                          const Axis_set& set,
+                          const std::vector<std::uint8_t>& is_used,
+                          bool is_sure,
+                          const Leaf_rules& rules)
 {
+  Found_wood result;
   if (!is_sure && !may_have_leaves(set, is_used, rules))
-    return {};
+    return result;
   const std::vector<std::uint8_t> is_thick =
       points_on_hollow_sections<ConcurrencyTag>(scan, set, rules.hollow);
+  if (!is_sure && !has_thick_wood(is_used, is_thick, rules))
+    return result;
+  if (!is_sure && sampling_dimension(scan, is_thick) < rules.dimension) {
+    result.is_in_rows = true;
+    return result;
+  }
   std::vector<float> likeness(scan.size());
   std::vector<std::uint8_t> is_line = points_on_lines<ConcurrencyTag>(
       scan,
@@ -192,7 +221,8 @@ std::vector<std::uint8_t> wood_by_points(const Scan& scan,
       [&](std::size_t i, const internal::Line_search& search, float score) {
         likeness[i] = static_cast<float>(wood_likeness(search.surroundings(score)));
       });
-  std::vector<std::uint8_t> is_wood(scan.size());
+  std::vector<std::uint8_t>& is_wood = result.is_wood;
+  is_wood.resize(scan.size());
   for (std::size_t i = 0; i < scan.size(); ++i) {
     const double least = is_line[i] ? rules.likeness_on_line : rules.likeness;
     is_wood[i] = is_used[i] && (is_thick[i] || double(likeness[i]) >= least);
@@ -200,7 +230,7 @@ std::vector<std::uint8_t> wood_by_points(const Scan& scan,
   }
   if (!is_sure && !are_leaves(scan, is_used, is_thick, is_line, rules))
     is_wood.clear();
-  return is_wood;
+  return result;
 }
 
 /// Points that were taken for leaves but lie on the surfaces that were found are explained by these; returns how many.
