@@ -267,7 +267,7 @@ private:
     merge_rings(m_scan, m_options.rings, m_layers);
   }
 
-  /// Before anything was left out.
+  /// The wood among all points, before any leaves are left out; empty if there are none to leave out.
   std::vector<std::uint8_t> wood_of_all()
   {
     const bool is_sure = m_options.leaf_removal == Leaf_removal::always;
