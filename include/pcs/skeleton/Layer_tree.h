@@ -7,6 +7,7 @@
 
 #include <pcs/skeleton/Neighbor_graph.h>
 #include <pcs/skeleton/Scan.h>
+#include <pcs/skeleton/join_sparse_layers.h>
 
 #include <boost/graph/detail/d_ary_heap.hpp>
 #include <boost/property_map/property_map.hpp>
@@ -97,17 +98,12 @@ struct Layer_tree
 
 namespace internal {
 
-/// Numbers the connected parts of the layers by layer, then by their first point.
-inline void number_layer_parts(const std::vector<Link>& links,
-                               const std::vector<Index>& layer,
-                               Layer_tree& tree)
+/// Numbers the parts of the layers by their first layer, then by their first point.
+inline void number_layer_parts(Point_sets& sets, const std::vector<Index>& layer, Layer_tree& tree)
 {
   const std::size_t n = layer.size();
-  Point_sets sets(n);
-  for (const Link& l : links)
-    if (layer[l.first] == layer[l.second] && layer[l.first] != none)
-      sets.unite(l.first, l.second);
-  std::vector<Index> order; // first point of each part
+  std::vector<Index> order;        // first point of each part
+  std::vector<Index> lowest_layer; // of each part
   std::vector<Index> part(n, none);
   for (Index i = 0; i < n; ++i) {
     if (layer[i] == none)
@@ -116,14 +112,16 @@ inline void number_layer_parts(const std::vector<Link>& links,
     if (part[r] == none) {
       part[r] = static_cast<Index>(order.size());
       order.push_back(i);
+      lowest_layer.push_back(layer[i]);
     }
+    lowest_layer[part[r]] = std::min(lowest_layer[part[r]], layer[i]);
   }
   std::vector<Index> number(order.size());
   std::vector<Index> sorted(order.size());
   for (Index k = 0; k < sorted.size(); ++k)
     sorted[k] = k;
   std::sort(sorted.begin(), sorted.end(), [&](Index a, Index b) {
-    return std::make_pair(layer[order[a]], order[a]) < std::make_pair(layer[order[b]], order[b]);
+    return std::make_pair(lowest_layer[a], order[a]) < std::make_pair(lowest_layer[b], order[b]);
   });
   for (Index k = 0; k < sorted.size(); ++k)
     number[sorted[k]] = k;
@@ -170,7 +168,7 @@ inline void vote_for_parents(const std::vector<Index>& predecessor, Layer_tree& 
     votes.clear();
     for (Index k = tree.first[v]; k < tree.first[v + 1]; ++k) {
       const Index from = tree.node_of_point[predecessor[tree.point[k]]];
-      if (from != v)
+      if (from < v) // layers that were joined may have points before and behind a thin one
         votes.push_back(from);
     }
     std::sort(votes.begin(), votes.end());
@@ -207,7 +205,12 @@ layer_tree(const Scan& scan, const std::vector<Link>& links, const Shortest_path
       layer[i] = static_cast<Index>(std::min(paths.distance[i] / thickness, double(none - 1)));
   Layer_tree tree;
   tree.node_of_point.assign(n, none);
-  internal::number_layer_parts(links, layer, tree);
+  Point_sets sets(n);
+  for (const Link& l : links)
+    if (layer[l.first] == layer[l.second] && layer[l.first] != none)
+      sets.unite(l.first, l.second);
+  join_sparse_layers(scan, links, paths.distance, layer, thickness, Sparse_layer_rules(), sets);
+  internal::number_layer_parts(sets, layer, tree);
   internal::collect_nodes(scan, tree);
   internal::vote_for_parents(paths.predecessor, tree);
   tree.next_in_ring.assign(tree.size(), none);
