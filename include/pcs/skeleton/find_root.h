@@ -18,6 +18,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace pcs {
@@ -28,7 +29,8 @@ struct Root_rules
 {
   double slab = 0.03; ///< height in which it is looked for, relative to the extent upwards [-]
   double slab_spacings = 8; ///< ... at least this many spacings
-  double band = 0.4; ///< height of the points that are the root, in half widths of the stem [-]
+  double band = 0.4;   ///< height of the points that are the root, in half widths of the stem [-]
+  double rival = 0.03; ///< share of the lowest points of a stem that makes another one a rival [-]
   double smallest_component =
       0.05; ///< share of the points that a part must have to hold the root [-]
   double floating =
@@ -90,7 +92,80 @@ struct Point_parts
       if (is_used[i])
         ++size[part[i] = sets.find(i)];
   }
+
+  std::vector<Index> points_of(Index s) const
+  {
+    std::vector<Index> points;
+    for (Index i = 0; i < part.size(); ++i)
+      if (part[i] == s)
+        points.push_back(i);
+    return points;
+  }
 };
+
+/// Connected points near the lower end of their part.
+struct Stem
+{
+  std::vector<Index> points;
+  Slab_shape shape;
+  bool is_lying; ///< on its side
+
+  Stem(const Scan& scan,
+       const Vec3& up,
+       double slab,
+       const Point_parts& parts,
+       const Point_parts& low_parts,
+       Index s,
+       const Root_rules& rules)
+    : points(low_parts.points_of(s)), shape(scan, points, up)
+  {
+    const double length = std::sqrt(12.0) * shape.length; // of a line with this deviation
+    const double share = double(points.size()) / double(parts.size[parts.part[s]]);
+    is_lying =
+        (length > rules.lying_length * slab && shape.length > rules.lying_ratio * shape.width) ||
+        (length > rules.lying_side * slab && share > rules.lying_share);
+  }
+};
+
+/// Of all stems, that from which most of the points high up are nearest along the points; `first` if none has much more.
+/// `stem_of_point` tells those of the lowest points. O(points log points).
+inline Index busiest_stem(const Scan& scan,
+                          const std::vector<double>& height,
+                          const std::vector<Link>& links,
+                          const std::vector<Index>& stem_of_point,
+                          Index first)
+{
+  constexpr double much = 2; // times as many points as the first
+  constexpr double up = 0.5; // of the height of all that is reached
+  std::vector<Index> nearest = stem_of_point, sources, way;
+  for (Index i = 0; i < nearest.size(); ++i)
+    if (nearest[i] != none)
+      sources.push_back(i);
+  const Shortest_paths paths = shortest_paths(scan, graph_of(scan.size(), links), sources);
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (Index i = 0; i < nearest.size(); ++i) {
+    way.clear();
+    Index at = i;
+    for (; nearest[at] == none && paths.predecessor[at] != at; at = paths.predecessor[at])
+      way.push_back(at);
+    const Index stem = nearest[at];
+    if (stem == none)
+      continue; // out of reach
+    low = std::min(low, height[i]);
+    high = std::max(high, height[i]);
+    for (const Index j : way)
+      nearest[j] = stem;
+  }
+  std::vector<std::size_t> count(scan.size(), 0);
+  for (Index i = 0; i < nearest.size(); ++i)
+    if (nearest[i] != none && height[i] > low + up * (high - low))
+      ++count[nearest[i]];
+  Index best = first;
+  for (Index s = 0; s < count.size(); ++s)
+    if (double(count[s]) > std::max(double(count[best]), much * double(count[first])))
+      best = s;
+  return best;
+}
 
 } // namespace internal
 
@@ -128,7 +203,7 @@ inline std::vector<Index> find_root(const Scan& scan,
     if (is_used[i] && low_of[parts.part[i]] <= floating)
       is_low[i] = height[i] <= low_of[parts.part[i]] + slab;
   const internal::Point_parts low_parts(is_low, links);
-  Index stem = none;
+  Index first = none;
   double best = -1;
   for (Index s = 0; s < n; ++s)
     if (low_parts.size[s] > 0) {
@@ -137,34 +212,33 @@ inline std::vector<Index> find_root(const Scan& scan,
           double(low_parts.size[s]) * (high_of[part] - low_of[part] + scan.spacing);
       if (score > best) {
         best = score;
-        stem = s;
+        first = s;
       }
     }
-  std::vector<Index> root;
-  for (Index i = 0; i < n; ++i)
-    if (low_parts.part[i] == stem)
-      root.push_back(i);
-  const internal::Slab_shape shape(scan, root, up);
-  const double length = std::sqrt(12.0) * shape.length; // of a line with this deviation
-  const bool is_long =
-      length > rules.lying_length * slab && shape.length > rules.lying_ratio * shape.width;
-  const bool is_most =
-      length > rules.lying_side * slab &&
-      double(root.size()) > rules.lying_share * double(parts.size[parts.part[stem]]);
-  const bool is_lying = is_long || is_most;
+  internal::Stem stem(scan, up, slab, parts, low_parts, first, rules);
+  // shrubs about a tree may have more points near the ground than its trunk
+  const auto rivals = std::count_if(low_parts.size.begin(), low_parts.size.end(), [&](Index size) {
+    return double(size) > rules.rival * double(stem.points.size());
+  });
+  if (!stem.is_lying && rivals > 1) { // the stem itself is one
+    const Index busiest = internal::busiest_stem(scan, height, links, low_parts.part, first);
+    stem = internal::Stem(scan, up, slab, parts, low_parts, busiest, rules);
+  }
   // all around a thick stem, or the layers above would be tilted; of a lying one the end
-  const double spread = is_lying ? shape.width : std::hypot(shape.length, shape.width);
+  const double spread =
+      stem.is_lying ? stem.shape.width : std::hypot(stem.shape.length, stem.shape.width);
   const double band = std::max(layer_thickness * scan.spacing, rules.band * spread);
   const auto place = [&](Index i) {
-    return is_lying ? shape.along.dot(scan.points[i]) : height[i];
+    return stem.is_lying ? stem.shape.along.dot(scan.points[i]) : height[i];
   };
+  std::vector<Index>& root = stem.points;
   double foot = infinity;
   for (const Index i : root)
     foot = std::min(foot, place(i));
   root.erase(
       std::remove_if(root.begin(), root.end(), [&](Index i) { return place(i) > foot + band; }),
       root.end());
-  return root;
+  return std::move(root);
 }
 
 } // namespace skeleton

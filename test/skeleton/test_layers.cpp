@@ -1,0 +1,123 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The foot of a tree, and the layers of points above it.
+
+#include <pcs/skeleton/Layer_tree.h>
+#include <pcs/skeleton/Neighbor_graph.h>
+#include <pcs/skeleton/find_root.h>
+
+#include <CGAL/number_utils.h>
+#include <CGAL/tags.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+namespace {
+
+using pcs::skeleton::Index;
+using pcs::skeleton::Vec3;
+
+/// Points at random on an upright cylinder, `spacing` apart on the mean.
+void add_stem(const Vec3& base,
+              double radius,
+              double height,
+              double spacing,
+              std::mt19937& random,
+              std::vector<Vec3>& points)
+{
+  std::uniform_real_distribution<double> shift(-0.2, 0.2);
+  const int around = static_cast<int>(std::ceil(2 * CGAL_PI * radius / spacing));
+  const int rows = static_cast<int>(std::ceil(height / spacing));
+  for (int row = 0; row < rows; ++row)
+    for (int k = 0; k < around; ++k) {
+      const double turn = 2 * CGAL_PI * (k + 0.5 * (row % 2) + shift(random)) / around;
+      points.push_back(base + Vec3(radius * std::cos(turn),
+                                   radius * std::sin(turn),
+                                   spacing * (row + shift(random))));
+    }
+}
+
+struct Linked_scan
+{
+  pcs::skeleton::Scan scan;
+  std::vector<std::uint8_t> is_used;
+  std::vector<pcs::skeleton::Link> links;
+  std::vector<Index> root;
+
+  explicit Linked_scan(const std::vector<Vec3>& points)
+  {
+    pcs::skeleton::prepare_scan<CGAL::Sequential_tag>(points, Vec3::UnitZ(), scan);
+    is_used.assign(scan.size(), 1);
+    links = pcs::skeleton::neighbor_links<CGAL::Sequential_tag>(scan, is_used, {});
+    root = pcs::skeleton::find_root(scan, is_used, links, Vec3::UnitZ(), {});
+  }
+  pcs::skeleton::Layer_tree layers() const
+  {
+    const auto graph = pcs::skeleton::graph_of(scan.size(), links);
+    return layer_tree(scan, links, shortest_paths(scan, graph, root));
+  }
+  Vec3 place(Index i) const { return scan.frame.to_input(scan.points[i]); }
+};
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(layers_of_scans)
+
+BOOST_AUTO_TEST_CASE(the_root_is_what_most_points_stand_on)
+{
+  std::mt19937 random(1);
+  std::vector<Vec3> points;
+  add_stem(Vec3(0, 0, 0), 0.1, 4, 0.015, random, points);
+  for (int k = 0; k < 60; ++k) // a shrub, its stems side by side
+    add_stem(Vec3(0.3 + 0.03 * (k % 10), 0.03 * (k / 10), 0), 0.012, 0.7, 0.012, random, points);
+  for (int k = 0; k < 20; ++k) // one of its twigs touches the trunk
+    points.push_back(Vec3(0.1 + 0.01 * k, 0, 0.6));
+  const Linked_scan s(points);
+  BOOST_TEST(s.root.size() > 20u);
+  BOOST_TEST(std::all_of(s.root.begin(), s.root.end(), [&](Index i) {
+    return std::hypot(s.place(i).x(), s.place(i).y()) < 0.12;
+  }));
+}
+
+BOOST_AUTO_TEST_CASE(layers_of_a_sparse_stem_hang_together)
+{
+  std::mt19937 random(2);
+  std::vector<Vec3> points;
+  add_stem(Vec3(0, 0, 0), 0.15, 1, 0.008, random, points);
+  add_stem(Vec3(0, 0, 1.01), 0.15, 2, 0.03, random, points);
+  const Linked_scan s(points);
+  const pcs::skeleton::Layer_tree tree = s.layers();
+  std::size_t upper = 0, in_rings = 0;
+  for (Index i = 0; i < s.scan.size(); ++i)
+    if (s.place(i).z() > 1.2 && s.place(i).z() < 2.8) {
+      ++upper;
+      in_rings += tree.node_of_point[i] != pcs::skeleton::none &&
+                  tree.count(tree.node_of_point[i]) >= 20; // of the 31 of a row
+    }
+  BOOST_TEST(upper > 1000u);
+  BOOST_TEST(double(in_rings) > 0.9 * double(upper));
+  for (Index v = 0; v < tree.size(); ++v)
+    BOOST_TEST((tree.parent[v] == pcs::skeleton::none || tree.parent[v] < v));
+}
+
+BOOST_AUTO_TEST_CASE(layers_of_a_sparse_twig_stay_thin)
+{
+  std::mt19937 random(3);
+  std::vector<Vec3> points;
+  add_stem(Vec3(0, 0, 0), 0.15, 1, 0.008, random, points);
+  for (int k = 0; k < 40; ++k)
+    points.push_back(Vec3(0.15 + 0.03 * k, 0, 0.9 + 0.01 * k));
+  const Linked_scan s(points);
+  const pcs::skeleton::Layer_tree tree = s.layers();
+  for (Index i = 0; i < s.scan.size(); ++i)
+    if (s.place(i).x() > 0.25)
+      BOOST_TEST(tree.count(tree.node_of_point[i]) <= 2u);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
