@@ -27,25 +27,7 @@ Index add(Branch_tree& tree,
           double first,
           double last)
 {
-  const Index b = static_cast<Index>(tree.branches.size());
-  Branch branch;
-  if (seat != none) {
-    branch.parent = tree.nodes[seat].branch;
-    branch.order = tree.branches[branch.parent].order + 1;
-  }
-  Index before = seat;
-  for (const Axis_node& place : pcs_test::straight_axis(from, to, 20, first, last)) {
-    Branch_node node;
-    static_cast<Axis_node&>(node) = place;
-    node.is_measured = true;
-    node.parent = before;
-    node.branch = b;
-    before = static_cast<Index>(tree.nodes.size());
-    branch.nodes.push_back(before);
-    tree.nodes.push_back(node);
-  }
-  tree.branches.push_back(branch);
-  return b;
+  return pcs_test::add_branch(tree, seat, pcs_test::straight_axis(from, to, 20, first, last));
 }
 
 /// A stem of 2 m with branches of a given radius at its top.

@@ -7,6 +7,7 @@
 
 #include <pcs/skeleton/Axis.h>
 #include <pcs/skeleton/Axis_set.h>
+#include <pcs/skeleton/Branch_tree.h>
 
 #include <cstddef>
 #include <vector>
@@ -29,6 +30,33 @@ inline pcs::skeleton::Axis straight_axis(const pcs::skeleton::Vec3& from,
     axis.push_back(node);
   }
   return axis;
+}
+
+/// Adds a measured branch on the node `seat`, or the trunk; returns its number.
+inline pcs::skeleton::Index add_branch(pcs::skeleton::Branch_tree& tree,
+                                       pcs::skeleton::Index seat,
+                                       const pcs::skeleton::Axis& axis)
+{
+  using namespace pcs::skeleton;
+  const Index b = static_cast<Index>(tree.branches.size());
+  Branch branch;
+  if (seat != none) {
+    branch.parent = tree.nodes[seat].branch;
+    branch.order = tree.branches[branch.parent].order + 1;
+  }
+  Index before = seat;
+  for (const Axis_node& place : axis) {
+    Branch_node node;
+    static_cast<Axis_node&>(node) = place;
+    node.is_measured = true;
+    node.parent = before;
+    node.branch = b;
+    before = static_cast<Index>(tree.nodes.size());
+    branch.nodes.push_back(before);
+    tree.nodes.push_back(node);
+  }
+  tree.branches.push_back(branch);
+  return b;
 }
 
 /// One point per segment of each axis.

@@ -193,6 +193,11 @@ public:
           support_of_sections<ConcurrencyTag>(m_scan, m_tree, m_axes.noise, m_options.support);
       if (m_leaf_rounds > 0) // what is left of leaves makes twigs thick
         m_options.support.pipes.slack = m_options.leaves.pipe_slack;
+      std::vector<double> fitted(m_tree.nodes.size());
+      std::transform(m_tree.nodes.begin(),
+                     m_tree.nodes.end(),
+                     fitted.begin(),
+                     [](const Branch_node& node) { return node.radius; });
       bound_radii(m_scan, support, m_axes.density, m_options.support, m_tree);
       mend_foot(m_scan,
                 m_used.flags(),
@@ -201,6 +206,7 @@ public:
                 m_options.support,
                 m_options.foot,
                 m_tree);
+      follow_bounds(m_scan, fitted, m_axes.noise, m_options.following, m_tree);
       m_report.number_of_other_stems =
           count_other_stems(m_axes, m_joints, root, m_tree, m_options.stems);
     }

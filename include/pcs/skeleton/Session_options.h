@@ -12,6 +12,7 @@
 #include <pcs/skeleton/find_leaves.h>
 #include <pcs/skeleton/find_root.h>
 #include <pcs/skeleton/fit_axes.h>
+#include <pcs/skeleton/follow_bounds.h>
 #include <pcs/skeleton/fuse_axes.h>
 #include <pcs/skeleton/join_axes.h>
 #include <pcs/skeleton/mark_ground.h>
@@ -65,6 +66,7 @@ struct Session_options
   Joint_rules joints;
   Stub_rules stubs;
   Support_rules support;
+  Follow_rules following;
   Foot_rules foot;
   Stem_rules stems;
   Section_rules sections;
