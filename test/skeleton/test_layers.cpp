@@ -85,6 +85,22 @@ BOOST_AUTO_TEST_CASE(the_root_is_what_most_points_stand_on)
   }));
 }
 
+BOOST_AUTO_TEST_CASE(a_twig_that_hangs_below_the_foot_is_no_root)
+{
+  std::mt19937 random(4);
+  std::vector<Vec3> points;
+  add_stem(Vec3(0, 0, 0), 0.1, 4, 0.015, random, points);
+  for (int k = 0; k < 200; ++k) // a branch to one side at the top of the stem
+    points.push_back(Vec3(0.1 + 0.005 * k, 0, 3.95));
+  for (int k = 0; k < 800; ++k) // and a twig that hangs down from it, to 30 cm below the foot
+    points.push_back(Vec3(1.1, 0.0002 * (k % 20), 3.95 - 0.0053125 * k));
+  const Linked_scan s(points);
+  BOOST_TEST(s.root.size() > 20u);
+  BOOST_TEST(std::all_of(s.root.begin(), s.root.end(), [&](Index i) {
+    return std::hypot(s.place(i).x(), s.place(i).y()) < 0.12 && s.place(i).z() < 0.1;
+  }));
+}
+
 BOOST_AUTO_TEST_CASE(layers_of_a_sparse_stem_hang_together)
 {
   std::mt19937 random(2);

@@ -29,6 +29,9 @@ struct Root_rules
 {
   double slab = 0.03; ///< height in which it is looked for, relative to the extent upwards [-]
   double slab_spacings = 8; ///< ... at least this many spacings
+  double thin = 0.003;      ///< stems of less spread, relative to the extent, may be hanging twigs:
+  double wide_slab = 0.1;   ///< ... it is looked for in this share then, and taken if it is
+  double thicker = 3;       ///< ... another stem with this many times the spread [-]
   double band = 0.4;   ///< height of the points that are the root, in half widths of the stem [-]
   double rival = 0.03; ///< share of the lowest points of a stem that makes another one a rival [-]
   double smallest_component =
@@ -110,6 +113,8 @@ struct Stem
   Slab_shape shape;
   bool is_lying; ///< on its side
 
+  double spread() const { return std::hypot(shape.length, shape.width); }
+
   Stem(const Scan& scan,
        const Vec3& up,
        double slab,
@@ -167,6 +172,102 @@ inline Index busiest_stem(const Scan& scan,
   return best;
 }
 
+/// Looks for the stem at the lower end of the large connected parts.
+class Stem_search
+{
+public:
+  Stem_search(const Scan& scan,
+              const std::vector<std::uint8_t>& is_used,
+              const std::vector<Link>& links,
+              const Vec3& up,
+              const Root_rules& rules)
+    : m_scan(scan),
+      m_links(links),
+      m_up(up),
+      m_rules(rules),
+      m_parts(is_used, links),
+      m_height(scan.size()),
+      m_low_of(scan.size(), infinity),
+      m_high_of(scan.size(), -infinity)
+  {
+    const Index largest = *std::max_element(m_parts.size.begin(), m_parts.size.end());
+    const double smallest =
+        std::min(double(largest), rules.smallest_component * double(scan.size()));
+    for (Index i = 0; i < scan.size(); ++i) {
+      m_height[i] = up.dot(scan.points[i]);
+      if (!is_used[i] || m_parts.size[m_parts.part[i]] < smallest)
+        continue;
+      m_low = std::min(m_low, m_height[i]);
+      m_high = std::max(m_high, m_height[i]);
+      double &low = m_low_of[m_parts.part[i]], &high = m_high_of[m_parts.part[i]];
+      low = std::min(low, m_height[i]);
+      high = std::max(high, m_height[i]);
+    }
+  }
+
+  const std::vector<double>& height() const { return m_height; }
+
+  Stem operator()() const
+  {
+    Stem stem = within(m_rules.slab);
+    if (stem.spread() < m_rules.thin * (m_high - m_low)) {
+      Stem other = within(m_rules.wide_slab);
+      if (other.spread() > m_rules.thicker * stem.spread() &&
+          !std::binary_search(other.points.begin(), other.points.end(), stem.points.front()))
+        return other;
+    }
+    return stem;
+  }
+
+private:
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+  /// `share` is that of the extent upwards.
+  Stem within(double share) const
+  {
+    const Index n = static_cast<Index>(m_scan.size());
+    const double slab = std::max(share * (m_high - m_low), m_rules.slab_spacings * m_scan.spacing);
+    const double floating = m_low + m_rules.floating * (m_high - m_low);
+    std::vector<std::uint8_t> is_low(n, 0);
+    for (Index i = 0; i < n; ++i) {
+      const Index part = m_parts.part[i];
+      is_low[i] =
+          part != none && m_low_of[part] <= floating && m_height[i] <= m_low_of[part] + slab;
+    }
+    const Point_parts low_parts(is_low, m_links);
+    Index first = none;
+    double best = -1;
+    for (Index s = 0; s < n; ++s)
+      if (low_parts.size[s] > 0) {
+        const Index part = m_parts.part[s];
+        const double score =
+            double(low_parts.size[s]) * (m_high_of[part] - m_low_of[part] + m_scan.spacing);
+        if (score > best) {
+          best = score;
+          first = s;
+        }
+      }
+    Stem stem(m_scan, m_up, slab, m_parts, low_parts, first, m_rules);
+    // shrubs about a tree may have more points near the ground than its trunk
+    const auto rivals =
+        std::count_if(low_parts.size.begin(), low_parts.size.end(), [&](Index size) {
+          return double(size) > m_rules.rival * double(stem.points.size());
+        });
+    if (stem.is_lying || rivals < 2) // the stem itself is one
+      return stem;
+    const Index busiest = busiest_stem(m_scan, m_height, m_links, low_parts.part, first);
+    return Stem(m_scan, m_up, slab, m_parts, low_parts, busiest, m_rules);
+  }
+
+  const Scan& m_scan;
+  const std::vector<Link>& m_links;
+  const Vec3& m_up;
+  const Root_rules& m_rules;
+  Point_parts m_parts;
+  std::vector<double> m_height, m_low_of, m_high_of; ///< of points; of parts
+  double m_low = infinity, m_high = -infinity;       ///< of the large parts
+};
+
 } // namespace internal
 
 /*!
@@ -180,59 +281,16 @@ inline std::vector<Index> find_root(const Scan& scan,
                                     const Vec3& up,
                                     const Root_rules& rules)
 {
-  const Index n = static_cast<Index>(scan.size());
-  const internal::Point_parts parts(is_used, links);
-  const Index largest = *std::max_element(parts.size.begin(), parts.size.end());
-  const double smallest = std::min(double(largest), rules.smallest_component * double(n));
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  std::vector<double> height(n), low_of(n, infinity), high_of(n, -infinity);
-  double low = infinity, high = -infinity;
-  for (Index i = 0; i < n; ++i) {
-    height[i] = up.dot(scan.points[i]);
-    if (!is_used[i] || parts.size[parts.part[i]] < smallest)
-      continue;
-    low = std::min(low, height[i]);
-    high = std::max(high, height[i]);
-    low_of[parts.part[i]] = std::min(low_of[parts.part[i]], height[i]);
-    high_of[parts.part[i]] = std::max(high_of[parts.part[i]], height[i]);
-  }
-  const double slab = std::max(rules.slab * (high - low), rules.slab_spacings * scan.spacing);
-  const double floating = low + rules.floating * (high - low);
-  std::vector<std::uint8_t> is_low(n, 0);
-  for (Index i = 0; i < n; ++i)
-    if (is_used[i] && low_of[parts.part[i]] <= floating)
-      is_low[i] = height[i] <= low_of[parts.part[i]] + slab;
-  const internal::Point_parts low_parts(is_low, links);
-  Index first = none;
-  double best = -1;
-  for (Index s = 0; s < n; ++s)
-    if (low_parts.size[s] > 0) {
-      const Index part = parts.part[s];
-      const double score =
-          double(low_parts.size[s]) * (high_of[part] - low_of[part] + scan.spacing);
-      if (score > best) {
-        best = score;
-        first = s;
-      }
-    }
-  internal::Stem stem(scan, up, slab, parts, low_parts, first, rules);
-  // shrubs about a tree may have more points near the ground than its trunk
-  const auto rivals = std::count_if(low_parts.size.begin(), low_parts.size.end(), [&](Index size) {
-    return double(size) > rules.rival * double(stem.points.size());
-  });
-  if (!stem.is_lying && rivals > 1) { // the stem itself is one
-    const Index busiest = internal::busiest_stem(scan, height, links, low_parts.part, first);
-    stem = internal::Stem(scan, up, slab, parts, low_parts, busiest, rules);
-  }
+  const internal::Stem_search search(scan, is_used, links, up, rules);
+  internal::Stem stem = search();
   // all around a thick stem, or the layers above would be tilted; of a lying one the end
-  const double spread =
-      stem.is_lying ? stem.shape.width : std::hypot(stem.shape.length, stem.shape.width);
+  const double spread = stem.is_lying ? stem.shape.width : stem.spread();
   const double band = std::max(layer_thickness * scan.spacing, rules.band * spread);
   const auto place = [&](Index i) {
-    return stem.is_lying ? stem.shape.along.dot(scan.points[i]) : height[i];
+    return stem.is_lying ? stem.shape.along.dot(scan.points[i]) : search.height()[i];
   };
   std::vector<Index>& root = stem.points;
-  double foot = infinity;
+  double foot = std::numeric_limits<double>::infinity();
   for (const Index i : root)
     foot = std::min(foot, place(i));
   root.erase(
