@@ -5,6 +5,7 @@
 #include <pcs/concepts.h>
 
 #include <CGAL/Point_set_3.h>
+#include <CGAL/Simple_cartesian.h>
 #include <CGAL/property_map.h>
 
 #include <boost/test/unit_test.hpp>
@@ -13,6 +14,7 @@
 #include <deque>
 #include <list>
 #include <set>
+#include <utility>
 
 namespace {
 

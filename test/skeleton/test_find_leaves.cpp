@@ -184,7 +184,7 @@ BOOST_AUTO_TEST_CASE(a_spread_is_that_of_the_points)
         box.add(Vec3(x, y, z));
   const auto of_box = box.features();
   const double expected[] = {std::log(9.0), 3, 2, 1, 1};
-  for (int k = 0; k < 5; ++k)
+  for (std::size_t k = 0; k < 5; ++k)
     BOOST_CHECK_CLOSE(of_box[k], expected[k], 1e-6);
 }
 

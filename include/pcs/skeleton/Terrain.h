@@ -175,12 +175,11 @@ private:
   /// The cell of a place, or that at the border next to it.
   std::size_t cell_of(const Vec2& q) const
   {
-    std::array<std::size_t, 2> k{};
-    for (int d = 0; d < 2; ++d) {
-      const double x = std::floor((q(d) - m_origin(d)) / m_cell);
-      k[d] = static_cast<std::size_t>(std::clamp(x, 0.0, double(m_size[d] - 1)));
-    }
-    return k[0] * m_size[1] + k[1];
+    const Vec2 place = (q - m_origin) / m_cell;
+    const auto clamped = [](double x, std::size_t size) {
+      return static_cast<std::size_t>(std::clamp(std::floor(x), 0.0, double(size - 1)));
+    };
+    return clamped(place.x(), m_size[0]) * m_size[1] + clamped(place.y(), m_size[1]);
   }
 
   /// Calls `visit` for the cells next to one, those across its corners included if `is_across`.
@@ -209,17 +208,18 @@ private:
       }
     Vec2 extent;
     const auto cut = static_cast<std::size_t>(rules.clip * double(q[0].size()));
-    for (int d = 0; d < 2; ++d) {
+    for (std::size_t d = 0; d < 2; ++d) {
       const auto low = q[d].begin() + static_cast<std::ptrdiff_t>(cut);
       const auto high = q[d].end() - 1 - static_cast<std::ptrdiff_t>(cut);
       std::nth_element(q[d].begin(), low, q[d].end());
-      m_origin(d) = *low;
+      const auto axis = static_cast<Eigen::Index>(d);
+      m_origin(axis) = *low;
       std::nth_element(low, high, q[d].end());
-      extent(d) = *high - m_origin(d);
+      extent(axis) = *high - m_origin(axis);
     }
     m_cell = std::max(cell, extent.maxCoeff() / rules.most_cells);
-    for (int d = 0; d < 2; ++d)
-      m_size[d] = static_cast<std::size_t>(extent(d) / m_cell) + 1;
+    m_size[0] = static_cast<std::size_t>(extent.x() / m_cell) + 1;
+    m_size[1] = static_cast<std::size_t>(extent.y() / m_cell) + 1;
     m_cells.resize(m_size[0] * m_size[1]);
   }
 

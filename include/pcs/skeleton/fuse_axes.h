@@ -60,7 +60,7 @@ inline Loose_end loose_end(const Axis& axis, bool is_tip, double spacing, const 
   std::size_t k = 1;
   // line through the nodes, weighted by the lengths that they stand for
   Vec3 mean = Vec3::Zero(), moment = Vec3::Zero();
-  double square = 0, weight = 0;
+  double weight = 0;
   for (; k < n && (gone < wanted || k < 2); ++k) {
     const Vec3 step = node(k).point - node(k - 1).point;
     const double l = step.norm();
@@ -68,7 +68,6 @@ inline Loose_end loose_end(const Axis& axis, bool is_tip, double spacing, const 
     const double at = gone + 0.5 * l;
     mean += l * middle;
     moment += l * at * middle;
-    square += l * (at * at + l * l / 12);
     weight += l;
     radius += l * 0.5 * (node(k).radius + node(k - 1).radius);
     moment += l * l * l / 12 * (l > 0 ? Vec3(step / l) : Vec3(Vec3::Zero()));
