@@ -491,7 +491,7 @@ BOOST_AUTO_TEST_CASE(parts_without_a_sample_follow_their_handles)
     const auto h = session.add_handle(handle(0), softness);
     session.set_translation(h, shift);
     session.deform();
-    for (const std::size_t k : {0, 1, 2})
+    for (const std::size_t k : {0u, 1u, 2u})
       BOOST_TEST(is_moved(points, k, shift));
     const auto other = session.add_handle(handle(1)); // stays at rest
     session.deform();
@@ -499,7 +499,7 @@ BOOST_AUTO_TEST_CASE(parts_without_a_sample_follow_their_handles)
     BOOST_TEST(is_moved(points, 1, none));
     session.remove_handle(h);
     session.deform();
-    for (const std::size_t k : {0, 1, 2})
+    for (const std::size_t k : {0u, 1u, 2u})
       BOOST_TEST(is_moved(points, k, none));
     session.remove_handle(other);
     session.set_translation(session.add_handle(Bar_edit().handles[1].indices), shift);

@@ -87,7 +87,7 @@ BOOST_AUTO_TEST_CASE(no_points_are_refused)
 
 BOOST_AUTO_TEST_CASE(one_place_is_refused)
 {
-  for (const std::size_t n : {1, 2, 100})
+  for (const std::size_t n : {1u, 2u, 100u})
     BOOST_CHECK_EXCEPTION(deform(Points(n, Vec3(1, 2, 3)), {{{0}, {}, 0}}),
                           Invalid_input,
                           message_has("one place"));
@@ -95,7 +95,7 @@ BOOST_AUTO_TEST_CASE(one_place_is_refused)
 
 BOOST_AUTO_TEST_CASE(tiny_clouds_are_deformed)
 {
-  for (const std::size_t n : {2, 3, 4, 5, 7, 8, 9, 17}) {
+  for (const std::size_t n : {2u, 3u, 4u, 5u, 7u, 8u, 9u, 17u}) {
     const Points points = pcs_test::random_points(n, static_cast<unsigned>(n));
     check_at_all_resolutions(points, at_both_ends(points, some_motion()));
     check_at_all_resolutions(points, {{{0}, some_motion(), 0}});
@@ -183,7 +183,7 @@ BOOST_AUTO_TEST_CASE(points_that_are_not_finite_are_named)
 {
   Bar_edit edit;
   for (const double bad : {not_a_number, infinity, -infinity})
-    for (const std::size_t i : {0, 123}) {
+    for (const std::size_t i : {0u, 123u}) {
       Points points = edit.points;
       points[i].y() = bad;
       BOOST_CHECK_EXCEPTION(deform(points, edit.handles),
@@ -335,7 +335,7 @@ BOOST_AUTO_TEST_CASE(a_small_soft_handle_is_held_on_every_level)
 {
   // Of 1000 samples and more, there are coarser networks, in which no node is in the handle.
   const Points points = pcs_test::box(8, 8, 16, 0.1);
-  for (const std::size_t i : {0, 77, 301})
+  for (const std::size_t i : {0u, 77u, 301u})
     for (const long long samples : {1000, 1000000}) {
       const Vec3 shift(1, 2, 3);
       const auto result =

@@ -103,7 +103,7 @@ BOOST_AUTO_TEST_CASE(a_bar_twisted_by_720_degrees)
 BOOST_AUTO_TEST_CASE(what_coarse_samples_find_of_a_drag_is_where_the_passes_start)
 {
   const Deformation_case drag = pcs_test::plate_drag();
-  const auto share_at_start = [&](std::size_t samples) {
+  const auto share_at_start = [&](long long samples) {
     Options options;
     options.number_of_samples = samples;
     const auto report = deform(drag.points, handles_of(drag), options).report;

@@ -96,7 +96,7 @@ BOOST_AUTO_TEST_SUITE(orl_alignment)
 
 BOOST_FIXTURE_TEST_CASE(a_tree_that_was_turned_is_itself, Nodes)
 {
-  for (const unsigned seed : {21, 22, 23})
+  for (const unsigned seed : {21u, 22u, 23u})
     for (const double degrees : {50., 170., -95.})
       for (const Vec3& up : {Vec3(0, 0, 1), Vec3(0, 3, 0)}) {
         const double angle = degrees * CGAL_PI / 180;
@@ -187,7 +187,7 @@ BOOST_AUTO_TEST_CASE(the_ends_of_a_path_with_a_turn_are_the_inputs)
   space.add(a, scans[0]);
   space.add(b, scans[1]);
   BOOST_TEST(std::abs(space.build(turns).turn + 2) < 0.2);
-  for (const std::size_t end : {0, 1}) {
+  for (const std::size_t end : {0u, 1u}) {
     const pcs::Orl_tree tree = space.tree(end);
     std::vector<Point> points;
     space.points(tree, points);

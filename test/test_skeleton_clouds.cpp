@@ -127,7 +127,7 @@ BOOST_AUTO_TEST_CASE(copies_of_points_change_little)
   Tree once;
   const auto expected = pcs::extract_tree_skeleton(points, once);
   for (const double deviation : {1e-6, 1e-4, 1e-3})
-    for (const std::size_t every : {1, 2}) { // which points are there twice
+    for (const std::size_t every : {1u, 2u}) { // which points are there twice
       pcs_test::Jitter jitter(deviation);
       Cloud twice = points;
       for (std::size_t i = 0; i < points.size(); i += every)

@@ -137,7 +137,7 @@ BOOST_AUTO_TEST_CASE(a_chain_is_left_where_most_points_of_its_layers_have_no_axi
   BOOST_TEST((stretches(1).size() == 1 && stretches(1).front().nodes == chain.nodes));
   BOOST_TEST(std::abs(stretches(1).front().length - chain.length) < 1e-9 * chain.length);
   explain(0, 0.4);
-  for (const std::size_t layer : {std::size_t(2), std::size_t(3), std::size_t(20)})
+  for (const std::size_t layer : {2u, 3u, 20u})
     explain(layer, 0.6);
   const std::vector<Chain> found = stretches(1);
   BOOST_REQUIRE(found.size() == 3u);

@@ -51,7 +51,7 @@ grow_trees(pcs::Tree_habit habit, Second_parameter second, std::uint64_t seed, i
         range.largest += 0.3 * other;
       }
     else
-      for (const std::size_t k : {1, 2})
+      for (const std::size_t k : {1u, 2u})
         own.tropism[k] += 0.04 * other;
     pcs::Tree_skeleton<CGAL::Simple_cartesian<double>> tree;
     pcs::grow_tree(tree, own, pcs::parameters::random_seed(seed));

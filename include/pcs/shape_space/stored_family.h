@@ -174,7 +174,7 @@ inline Tree_family restore_family(const Orl_space_data& stored, const std::strin
   family.weights = {w.orientation, w.length, w.radius, w.base_radius, w.attachment, w.root};
   for (const double v : stored.matching)
     check(is_length(v), "a weight of the matching is not from 0 to 1e100");
-  for (const std::size_t i : {std::size_t(8), std::size_t(9)})
+  for (const std::size_t i : {8u, 9u})
     check(stored.matching[i] >= 1 && stored.matching[i] <= 1e15,
           "a number of paths or trials is out of range");
   Matching_weights& weights = family.matching;
