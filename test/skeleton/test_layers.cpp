@@ -101,6 +101,25 @@ BOOST_AUTO_TEST_CASE(a_twig_that_hangs_below_the_foot_is_no_root)
   }));
 }
 
+BOOST_AUTO_TEST_CASE(a_gap_is_closed_where_it_is_narrowest)
+{
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    std::mt19937 random(seed);
+    std::vector<Vec3> points;
+    add_stem(Vec3(0, 0, 0), 0.1, 1, 0.015, random, points);
+    add_stem(Vec3(0, 0, 1.2), 0.1, 0.5, 0.015, random, points);
+    const Linked_scan s(points);
+    const auto gaps = pcs::skeleton::links_across_gaps(s.scan, s.is_used, {}, s.links);
+    BOOST_REQUIRE(gaps.size() == 1u);
+    double narrowest = 1;
+    for (Index i = 0; i < s.scan.size(); ++i)
+      for (Index j = 0; j < s.scan.size(); ++j)
+        if (s.place(i).z() < 1.1 && s.place(j).z() > 1.1)
+          narrowest = std::min(narrowest, (s.place(i) - s.place(j)).norm());
+    BOOST_CHECK_CLOSE((s.place(gaps[0].first) - s.place(gaps[0].second)).norm(), narrowest, 1e-6);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(layers_of_a_sparse_stem_hang_together)
 {
   std::mt19937 random(2);

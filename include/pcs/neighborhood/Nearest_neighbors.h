@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -86,7 +87,7 @@ public:
 
   /*!
     The nearest point among those for which `is_wanted(index)` holds and that is closer than `radius`; ties by coordinates.
-    `squared_distance` is not less than the square of `radius` if there is none.
+    `squared_distance` is infinite if there is none.
   */
   template <class Predicate>
   Neighbor nearest_if(const Vec3& query, double radius, const Predicate& is_wanted) const
@@ -94,6 +95,8 @@ public:
     Filter<Predicate> filter{{0, radius * radius}, &m_adaptor.points, &is_wanted, false};
     if (!m_adaptor.points.empty())
       m_tree.findNeighbors(filter, query.data(), nanoflann::SearchParams());
+    if (!filter.is_found)
+      return {0, std::numeric_limits<double>::infinity()};
     return filter.best;
   }
 
