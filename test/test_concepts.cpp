@@ -34,7 +34,7 @@ struct Const_map
   using value_type = Point;
   using reference = Point;
   using category = boost::readable_property_map_tag;
-  friend Point get(const Const_map&, const Point& p) { return p; }
+  [[maybe_unused]] friend Point get(const Const_map&, const Point& p) { return p; }
 };
 
 } // namespace

@@ -82,7 +82,7 @@ double edge_change(const pcs_test::Deformation_case& c, const std::vector<Vec3>&
 {
   double sum = 0, count = 0;
   for (const auto& t : c.triangles)
-    for (int k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < 3; ++k) {
       const auto a = t[k], b = t[(k + 1) % 3];
       const double rest = (c.points[a] - c.points[b]).norm();
       if (!(rest > 0))

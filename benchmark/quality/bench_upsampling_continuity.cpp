@@ -165,7 +165,7 @@ int main(int argc, char** argv)
                        number(std::sqrt(error) / (high - low).norm())});
           };
       add("none", "every point solved", full);
-      for (const std::size_t samples : {50, 200, 1000})
+      for (const std::size_t samples : {50u, 200u, 1000u})
         for (const Variant& variant : variants)
           add(std::to_string(samples), variant.name, turn_head(rest, ends, samples, variant));
     }
