@@ -25,9 +25,9 @@ struct Follow_rules
 {
   double apart = 3;       ///< the points lie outside of the surface by this much noise on the mean,
   double one_side = 0.85; ///< ... the mean of their normals is at least as long as this [-],
-  double fewest = 3;      ///< ... and there are at least this many of them [count]
+  double fewest = 3;      ///< ... and their weights add up to at least this many [count]
   std::size_t reach = 3;  ///< nodes on both sides whose points count [count]
-  double far = 3;         ///< points at this many radii count half [-]
+  double far = 3;         ///< points at this many radii of the fit count half [-]
   double hold = 0.05;     ///< weight of the place where the axis was, relative to the points [-]
   int rounds = 3;
 };
@@ -114,6 +114,11 @@ inline std::size_t follow_bounds(const Scan& scan,
   std::vector<std::uint8_t> is_moving(n, 0);
   for (Index v = 0; v < n; ++v)
     is_moving[v] = !tree.is_base(v) && tree.nodes[v].radius < before[v];
+  const auto count = [&] {
+    return static_cast<std::size_t>(std::count(is_moving.begin(), is_moving.end(), 1));
+  };
+  if (count() == 0)
+    return 0;
   const internal::Points_of_nodes points(tree);
   std::vector<Vec3> moves(n);
   for (int round = 0; round < rules.rounds; ++round) {
@@ -143,7 +148,7 @@ inline std::size_t follow_bounds(const Scan& scan,
     for (Index v = 0; v < n; ++v) // bases of branches lie on their parents
       tree.nodes[v].point += moves[v != 0 && tree.is_base(v) ? tree.nodes[v].parent : v];
   }
-  return static_cast<std::size_t>(std::count(is_moving.begin(), is_moving.end(), 1));
+  return count();
 }
 
 } // namespace skeleton
