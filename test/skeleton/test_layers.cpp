@@ -141,6 +141,28 @@ BOOST_AUTO_TEST_CASE(layers_of_a_sparse_stem_hang_together)
     BOOST_TEST((tree.parent[v] == pcs::skeleton::none || tree.parent[v] < v));
 }
 
+BOOST_AUTO_TEST_CASE(joined_layers_and_thin_ones_are_one_tree)
+{
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    std::mt19937 random(seed);
+    std::vector<Vec3> both, points;
+    add_stem(Vec3(0, 0, 0), 0.15, 1, 0.008, random, points);
+    add_stem(Vec3(0, 0, 1), 0.15, 1, 0.008, random, both); // one side is seen well, ...
+    for (const Vec3& p : both)
+      if (p.x() < 0)
+        points.push_back(p);
+    both.clear();
+    add_stem(Vec3(0, 0, 1), 0.15, 1, 0.03, random, both); // ... the other one is not
+    for (const Vec3& p : both)
+      if (p.x() >= 0)
+        points.push_back(p);
+    const pcs::skeleton::Layer_tree tree = Linked_scan(points).layers();
+    BOOST_REQUIRE(tree.size() > 0u);
+    for (Index v = 1; v < tree.size(); ++v)
+      BOOST_TEST(tree.parent[v] < v); // none is larger
+  }
+}
+
 BOOST_AUTO_TEST_CASE(layers_of_a_sparse_twig_stay_thin)
 {
   std::mt19937 random(3);
