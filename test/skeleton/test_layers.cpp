@@ -101,6 +101,28 @@ BOOST_AUTO_TEST_CASE(a_twig_that_hangs_below_the_foot_is_no_root)
   }));
 }
 
+BOOST_AUTO_TEST_CASE(a_foot_that_is_cut_off_is_the_root_and_no_twig_that_hangs_beside_it)
+{
+  std::mt19937 random(5);
+  std::vector<Vec3> points, ring;
+  add_stem(Vec3(0, 0, 0), 0.1, 1, 0.015, random, ring);
+  add_stem(Vec3(0, 0, 1.4), 0.09, 3, 0.015, random, ring); // something hides what is between them
+  for (const Vec3& p : ring)
+    if (p.x() > 0) // one station sees half of it
+      points.push_back(p);
+  for (int k = 0; k < 200; ++k) // a branch of the upper part
+    points.push_back(Vec3(0.09 + 0.004 * k, 0, 2));
+  for (int k = 0; k < 200; ++k) // and a twig that hangs down from it, as low as the foot
+    points.push_back(Vec3(0.89, 0.0002 * (k % 20), 2 - 0.0098 * k));
+  for (int k = 0; k < 20; ++k) // with a branch of its own
+    points.push_back(Vec3(0.89 + 0.01 * k, 0, 0.1));
+  const Linked_scan s(points);
+  BOOST_TEST(s.root.size() > 10u);
+  BOOST_TEST(std::all_of(s.root.begin(), s.root.end(), [&](Index i) {
+    return std::hypot(s.place(i).x(), s.place(i).y()) < 0.12;
+  }));
+}
+
 BOOST_AUTO_TEST_CASE(a_gap_is_closed_where_it_is_narrowest)
 {
   for (unsigned seed = 1; seed <= 20; ++seed) {

@@ -35,7 +35,8 @@ struct Support_rules
                         ///< where the points prove it, by ...
   double proof_expected = 0.5; ///< ... this share of the expected ones on the surface,
   double proof_filled = 0.05;  ///< ... at most this share inside,
-  double proof_error = 0.1;    ///< ... a standard error below this many radii [-]
+  double proof_error = 0.1;    ///< ... a standard error below this many radii [-];
+  double proof_precise = 0.03; ///< with an error below this, `expected` is enough: half is hidden
   double mostly = 0.7;         ///< with this share of its volume proven a branch is no bush [-]
   double slack =
       3; ///< bound of a section that nothing speaks for or against, in radii by allometry
@@ -150,7 +151,9 @@ struct Branch_support
         expected[k] +=
             2 * 3.14159265358979323846 * tree.nodes[w].radius * density * length_at(tree, w);
       }
-      is_proven[k] = on[k] >= rules.proof_expected * expected[k] &&
+      const bool is_precise =
+          node.radius_error <= rules.proof_precise * node.radius && on[k] >= rules.fewest;
+      is_proven[k] = on[k] >= (is_precise ? rules.expected : rules.proof_expected) * expected[k] &&
                      inside[k] <= rules.proof_filled * (on[k] + inside[k]) &&
                      node.radius_error <= rules.proof_error * node.radius;
       const double volume = node.radius * node.radius * length_at(tree, branch.nodes[k]);

@@ -9,6 +9,7 @@
 #include <pcs/skeleton/Layer_tree.h>
 #include <pcs/skeleton/Neighbor_graph.h>
 #include <pcs/skeleton/Scan.h>
+#include <pcs/skeleton/circle_fit.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -38,10 +39,12 @@ struct Root_rules
       0.05; ///< share of the points that a part must have to hold the root [-]
   double floating =
       0.05; ///< such parts begin at most this high, relative to the extent upwards [-]
-  double lying_length = 6;  ///< a stem of this many heights of the slab lies on its side,
-  double lying_ratio = 3;   ///< ... if it is also longer than this many of its widths [-];
-  double lying_share = 0.3; ///< so does one with this share of its part's points in the slab,
-  double lying_side = 2;    ///< ... if it is longer than this many heights of the slab [-]
+  double ring_deviation = 0.15; ///< a trunk is a ring: deviation of its points, in radii [-],
+  double ring_spreads = 2;      ///< ... which is at most this many times its spread [-]
+  double lying_length = 6;      ///< a stem of this many heights of the slab lies on its side,
+  double lying_ratio = 3;       ///< ... if it is also longer than this many of its widths [-];
+  double lying_share = 0.3;     ///< so does one with this share of its part's points in the slab,
+  double lying_side = 2;        ///< ... if it is longer than this many heights of the slab [-]
 };
 
 namespace internal {
@@ -114,6 +117,20 @@ struct Stem
   bool is_lying; ///< on its side
 
   double spread() const { return std::hypot(shape.length, shape.width); }
+
+  /// Of the circle that all its points lie on, seen along `up`; 0 if they do not.
+  double ring_radius(const Scan& scan, const Vec3& up, const Root_rules& rules) const
+  {
+    const Vec3 e1 = up.unitOrthogonal(), e2 = up.cross(e1);
+    std::vector<Vec2> plane;
+    for (const Index i : points)
+      plane.emplace_back((scan.points[i] - shape.mean).dot(e1),
+                         (scan.points[i] - shape.mean).dot(e2));
+    const Circle circle = fit_circle(plane);
+    const bool is_ring = circle.deviation < rules.ring_deviation * circle.radius &&
+                         circle.radius < rules.ring_spreads * spread();
+    return is_ring ? circle.radius : 0;
+  }
 
   Stem(const Scan& scan,
        const Vec3& up,
@@ -256,7 +273,11 @@ private:
     if (stem.is_lying || rivals < 2) // the stem itself is one
       return stem;
     const Index busiest = busiest_stem(m_scan, m_height, m_links, low_parts.part, first);
-    return Stem(m_scan, m_up, slab, m_parts, low_parts, busiest, m_rules);
+    Stem other(m_scan, m_up, slab, m_parts, low_parts, busiest, m_rules);
+    // the foot of a trunk that is cut off from the crown leads to none of its points, a hanging twig to all
+    const double ring = stem.ring_radius(m_scan, m_up, m_rules);
+    const bool is_foot = ring > m_rules.thicker * other.ring_radius(m_scan, m_up, m_rules);
+    return is_foot ? stem : other;
   }
 
   const Scan& m_scan;
