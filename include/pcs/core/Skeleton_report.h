@@ -87,6 +87,9 @@ inline std::vector<std::string> warnings(const Skeleton_report& r)
   // diameter of the trunk per length: trees 0.01 to 0.1, spheres more than 0.2 [-]
   constexpr double thickest_trunk = 0.2;
   constexpr double thinnest_trunk = 0.002; // by the height [-]
+  // volume by the cube of the height or of the length of the trunk: trees up to 0.003, a post of ten diameters 0.008, spheres
+  // that are taken for many thin branches 0.02 and more [-]
+  constexpr double most_wood = 0.015;
   std::vector<std::string> sentences;
   if (r.number_of_other_stems > 0)
     sentences.push_back("more than one tree: " + std::to_string(r.number_of_other_stems) +
@@ -115,6 +118,8 @@ inline std::vector<std::string> warnings(const Skeleton_report& r)
                           "it, or wood was taken for leaves (do_remove_leaves(false))");
     if (diameter > thickest_trunk * trunk.length)
       sentences.push_back("the trunk is shorter than five of its diameters; this may be no tree");
+    else if (r.total.volume > most_wood * std::pow(std::max(r.height, trunk.length), 3))
+      sentences.push_back("there is more wood than a tree of this height has; this may be no tree");
   }
   return sentences;
 }

@@ -45,12 +45,22 @@ struct Fit_model
   double deviation(double radius) const { return std::max(noise, bark * radius); }
 };
 
-/// A radius expected without looking at the points' positions.
+/// A radius expected without looking at how far the points are from the axis.
 struct Radius_prior
 {
   double radius = 0;
   double deviation = 0; ///< 0: no expectation
+  double measured = 0;  ///< part of 1 / deviation^2 that other places of the points tell [1/L^2]
 };
+
+/// What two independent expectations say together. At least the second one is one.
+inline Radius_prior joined(const Radius_prior& a, const Radius_prior& b)
+{
+  if (!(a.deviation > 0))
+    return b;
+  const double u = 1 / (a.deviation * a.deviation), v = 1 / (b.deviation * b.deviation);
+  return {(u * a.radius + v * b.radius) / (u + v), 1 / std::sqrt(u + v), a.measured + b.measured};
+}
 
 /// Where the points of a section lie: their middle is expected at `radius * facing` from its center.
 struct Center_prior
@@ -315,7 +325,8 @@ inline void Axis_fit::estimate_errors()
     m_axis[k].radius_error = std::sqrt(std::max(0.0, variance[4 * k + 3]));
     const bool has_prior = k < m_priors.size() && m_priors[k].deviation > 0;
     const double prior = has_prior ? 1 / (m_priors[k].deviation * m_priors[k].deviation) : 0;
-    m_axis[k].is_measured = m_information[k] > prior && m_information[k] > 0;
+    const double measured = has_prior ? m_priors[k].measured : 0;
+    m_axis[k].is_measured = m_information[k] + measured > prior - measured && m_information[k] > 0;
   }
 }
 

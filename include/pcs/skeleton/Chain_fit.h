@@ -183,8 +183,10 @@ inline void Chain_fit::set_priors(const std::vector<double>& visible, Axis_fit& 
             m_rules.prior_share * priors[k].radius + m_rules.prior_offset * m_scan.spacing;
       }
   }
+  const Section_sides sides(m_view, fit);
+  add_width_priors(m_view, fit.axis(), sides, priors);
   fit.set_priors(std::move(priors));
-  fit.set_priors(center_priors(m_view, fit));
+  fit.set_priors(center_priors(m_view, fit.axis(), sides));
 }
 
 inline bool Chain_fit::run(Axis_fit& fit, double widening) const

@@ -35,7 +35,13 @@ struct Chain_rules
   double prior_offset = 0.15; ///< ... and spacings
   //! deviation of the middle of the points of a thin branch from its place: this many times the usual one ...
   double facing_share = 5;
-  double facing_noise = 0.5;  ///< ... and this much noise
+  double facing_noise = 0.5; ///< ... and this much noise
+  //! where the mean normal of the points is longer than this, and there are so many, ...
+  double width_one_sided = 0.6, width_count = 6;
+  double width_radius = 8; ///< ... axes thinner than this have a radius by the width of the points,
+  double width_factor = 1.7320508075688772; ///< ... this many times their deviation [-]
+  //! standard deviation of that radius, in radii and noise [-]
+  double width_share = 0.15, width_noise = 0.5;
   double visible = 0.5;       ///< share of a section that such a radius must be counted on [-]
   double counted_share = 0.7; ///< of the expected points: below, other axes may hide a section [-]
   double hiding_radius = 4;   ///< how far such an axis is looked for, in radii ...
