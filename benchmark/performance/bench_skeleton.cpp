@@ -3,6 +3,7 @@
 // Seconds of the stages of a skeleton and of its mesh, beside those of a query for 25 neighbours of every point.
 
 #include <pcs/IO/read_points.h>
+#include <pcs/core/keep_memory.h>
 #include <pcs/extract_tree_skeleton.h>
 #include <pcs/generators/grow_tree.h>
 #include <pcs/generators/scan_tree.h>
@@ -119,6 +120,7 @@ void add_rows(const std::string& name,
 
 int main(int argc, char** argv)
 {
+  pcs::keep_memory();
   std::vector<std::string> files;
   std::string csv;
   double degrees = 0.08;

@@ -6,6 +6,7 @@
 #define PCS_EXAMPLES_PROGRAM_RUN_PROGRAM_H
 
 #include <pcs/core/errors.h>
+#include <pcs/core/keep_memory.h>
 
 #include <CLI/CLI.hpp>
 
@@ -29,6 +30,7 @@ int run_program(CLI::App& app, int argc, char** argv, const Work& work)
 #ifdef SIGXFSZ
   std::signal(SIGXFSZ, SIG_IGN); // a limit of the size of files is an error like a full disk
 #endif
+  pcs::keep_memory();
   try {
     app.parse(argc, argv);
     return work() ? 0 : bad_input;
