@@ -85,6 +85,9 @@ std::vector<Variant> variants()
   add("ours, no prior by counting", Session_options(), [](auto& o) {
     o.axes.chains.prior_share = 1e6;
   });
+  add("ours, no radii by width", Session_options(), [](auto& o) {
+    o.axes.chains.width_count = std::numeric_limits<double>::infinity();
+  });
   add("ours, radii not bounded", Session_options(), [](auto& o) {
     pcs::skeleton::Support_rules& r = o.support;
     r.filled = r.branch_filled = r.thicker = std::numeric_limits<double>::infinity();

@@ -52,7 +52,8 @@ struct Seen_twig
     const Vec3 base(behind, 0, 0), tip(behind, 0, length());
     Axis_fit fit(pcs_test::straight_axis(base, tip, number_of_segments, other, other),
                  Fit_model::of(spacing, noise));
-    fit.set_points(points, std::vector<Index>(points.size(), number_of_segments / 2));
+    fit.set_points(points,
+                   std::vector<Index>(points.size(), static_cast<Index>(number_of_segments / 2)));
     fit.project();
     return fit;
   }
