@@ -229,15 +229,15 @@ BOOST_AUTO_TEST_CASE(half_a_trunk_that_is_hidden_is_proven_by_precise_radii)
 {
   using namespace pcs::skeleton;
   constexpr double step = 0.1, radius = 0.1, density = 1000;
-  // of a trunk behind a thin base, with a third of the points
-  const auto last_radius = [&](double error) {
+  // of a limb behind a thin piece of a trunk, with a third of the points
+  const auto limb_radius = [&](double trunk, double error) {
     Branch_tree tree;
     tree.branches.emplace_back();
-    for (Index k = 0; k < 40; ++k) {
+    for (Index k = 0; k < 60; ++k) {
       Branch_node node;
       node.point = step * double(k) * Vec3::UnitZ();
-      node.radius = k < 20 ? 0.1 * radius : radius;
-      node.radius_error = (k < 20 ? 0.001 : error) * radius;
+      node.radius = k < 20 ? trunk : k < 40 ? 0.1 * radius : radius;
+      node.radius_error = (k < 40 ? 0.01 : error) * node.radius;
       node.is_measured = true;
       node.parent = k > 0 ? k - 1 : none;
       node.branch = 0;
@@ -245,8 +245,8 @@ BOOST_AUTO_TEST_CASE(half_a_trunk_that_is_hidden_is_proven_by_precise_radii)
       tree.branches[0].nodes.push_back(k);
     }
     Section_support support(tree);
-    for (Index k = 0; k < 40; ++k)
-      support.on[k] = 2 * pi * tree.nodes[k].radius * step * density / 3;
+    for (Index k = 0; k < 60; ++k)
+      support.on[k] = 2 * pi * tree.nodes[k].radius * step * density / (k < 40 ? 1 : 3);
     Scan scan;
     scan.spacing = 0.1 * radius;
     Support_rules rules;
@@ -254,8 +254,9 @@ BOOST_AUTO_TEST_CASE(half_a_trunk_that_is_hidden_is_proven_by_precise_radii)
     bound_radii(scan, support, density, rules, tree);
     return tree.nodes.back().radius;
   };
-  BOOST_TEST(last_radius(0.02) == radius);
-  BOOST_TEST(last_radius(0.06) < 0.5 * radius);
+  BOOST_TEST(limb_radius(1.2 * radius, 0.02) == radius);
+  BOOST_TEST(limb_radius(1.2 * radius, 0.06) < 0.5 * radius);
+  BOOST_TEST(limb_radius(0.5 * radius, 0.02) < 0.5 * radius); // nothing is as thick below
 }
 
 BOOST_AUTO_TEST_CASE(an_outline_has_the_area_of_its_circle)

@@ -36,8 +36,9 @@ struct Support_rules
   double proof_expected = 0.5; ///< ... this share of the expected ones on the surface,
   double proof_filled = 0.05;  ///< ... at most this share inside,
   double proof_error = 0.1;    ///< ... a standard error below this many radii [-];
-  double proof_precise = 0.03; ///< with an error below this, `expected` is enough: half is hidden
-  double mostly = 0.7;         ///< with this share of its volume proven a branch is no bush [-]
+  //! with an error below this, and where something as thick is below, `expected` is enough: one side may be hidden
+  double proof_precise = 0.03;
+  double mostly = 0.7; ///< with this share of its volume proven a branch is no bush [-]
   double slack =
       3; ///< bound of a section that nothing speaks for or against, in radii by allometry
   double filled_slack = 1; ///< the same of a filled one
@@ -121,7 +122,7 @@ namespace internal {
 struct Branch_support
 {
   std::vector<double> on, inside, expected; ///< points about each node
-  std::vector<std::uint8_t> is_proven;
+  std::vector<std::uint8_t> is_proven, is_precise;
   bool is_mostly_proven = false; ///< then what is filled is no cloud of leaves
 
   Branch_support(const Section_support& support,
@@ -129,7 +130,11 @@ struct Branch_support
                  const Branch_tree& tree,
                  double density,
                  const Support_rules& rules)
-    : on(branch.nodes.size(), 0), inside(on), expected(on), is_proven(on.size(), 0)
+    : on(branch.nodes.size(), 0),
+      inside(on),
+      expected(on),
+      is_proven(on.size(), 0),
+      is_precise(on.size(), 0)
   {
     const std::size_t n = on.size();
     double all = 0, proven = 0; // squared radii times lengths
@@ -151,11 +156,11 @@ struct Branch_support
         expected[k] +=
             2 * 3.14159265358979323846 * tree.nodes[w].radius * density * length_at(tree, w);
       }
-      const bool is_precise =
-          node.radius_error <= rules.proof_precise * node.radius && on[k] >= rules.fewest;
-      is_proven[k] = on[k] >= (is_precise ? rules.expected : rules.proof_expected) * expected[k] &&
-                     inside[k] <= rules.proof_filled * (on[k] + inside[k]) &&
+      const bool is_hollow = inside[k] <= rules.proof_filled * (on[k] + inside[k]);
+      is_proven[k] = on[k] >= rules.proof_expected * expected[k] && is_hollow &&
                      node.radius_error <= rules.proof_error * node.radius;
+      is_precise[k] = on[k] >= rules.expected * expected[k] && on[k] >= rules.fewest && is_hollow &&
+                      node.radius_error <= rules.proof_precise * node.radius;
       const double volume = node.radius * node.radius * length_at(tree, branch.nodes[k]);
       all += volume;
       proven += is_proven[k] && node.is_measured && on[k] >= rules.fewest ? volume : 0;
@@ -249,6 +254,7 @@ inline std::size_t bound_radii(const Scan& scan,
   {
     double radius = 0, way = 0; ///< of the last supported node towards the root; 0: none
     double narrowest = 0;       ///< radius since the last proven one
+    double thickest = 0;        ///< of all supported ones
   };
   std::vector<Reference> reference(tree.nodes.size());
   std::vector<std::uint8_t> is_sure(tree.nodes.size(), 0);
@@ -266,12 +272,13 @@ inline std::size_t bound_radii(const Scan& scan,
       const double expected = sections.expected[k];
       all_on += support.on[v];
       all_inside += support.inside[v];
+      const Reference below = node.parent == none ? Reference() : reference[node.parent];
       // then the joint is wrong, or the parent
-      const bool is_proven = sections.is_proven[k] != 0;
+      const bool is_proven = sections.is_proven[k] != 0 ||
+                             (sections.is_precise[k] != 0 && node.radius <= below.thickest);
       const bool is_bush = all_inside > rules.branch_filled * (all_on + all_inside) &&
                            !(is_proven && sections.is_mostly_proven);
       const bool is_filled = inside > rules.filled * (on + inside);
-      const Reference below = node.parent == none ? Reference() : reference[node.parent];
       const bool is_too_thick =
           below.way > 0 && !is_proven && node.radius > rules.thicker * below.narrowest;
       const bool is_supported = node.is_measured && !is_bush && !is_filled && !is_too_thick &&
@@ -286,7 +293,8 @@ inline std::size_t bound_radii(const Scan& scan,
           reference[v] = {typical,
                           way[v],
                           is_proven || !(below.way > 0) ? typical
-                                                        : std::min(typical, below.narrowest)};
+                                                        : std::min(typical, below.narrowest),
+                          std::max(typical, below.thickest)};
         continue;
       }
       const double slack = is_filled || is_bush ? rules.filled_slack : rules.slack;
