@@ -137,6 +137,28 @@ std::vector<Trunk> trunks_of_copies(const Cloud& cloud, unsigned copies)
   return trunks;
 }
 
+/// One branch of `n` measured nodes upwards.
+template <class Radius, class Error>
+pcs::skeleton::Branch_tree
+standing_branch(pcs::skeleton::Index n, double step, const Radius& radius_at, const Error& error_at)
+{
+  using namespace pcs::skeleton;
+  Branch_tree tree;
+  tree.branches.emplace_back();
+  for (Index k = 0; k < n; ++k) {
+    Branch_node node;
+    node.point = step * double(k) * Vec3::UnitZ();
+    node.radius = radius_at(k);
+    node.radius_error = error_at(k);
+    node.is_measured = true;
+    node.parent = k > 0 ? k - 1 : none;
+    node.branch = 0;
+    tree.nodes.push_back(node);
+    tree.branches[0].nodes.push_back(k);
+  }
+  return tree;
+}
+
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(trunk_foot)
@@ -189,19 +211,11 @@ BOOST_AUTO_TEST_CASE(a_filled_foot_does_not_bound_what_is_proven_above)
   using namespace pcs::skeleton;
   constexpr double step = 0.1, radius = 0.1, density = 1000;
   const auto bounded = [&](Index end_of_filling, double error) { // behind a thin base
-    Branch_tree tree;
-    tree.branches.emplace_back();
-    for (Index k = 0; k < 60; ++k) {
-      Branch_node node;
-      node.point = step * double(k) * Vec3::UnitZ();
-      node.radius = k < 4 ? 0.3 * radius : radius;
-      node.radius_error = (k < 4 ? 0.01 : error) * radius;
-      node.is_measured = true;
-      node.parent = k > 0 ? k - 1 : none;
-      node.branch = 0;
-      tree.nodes.push_back(node);
-      tree.branches[0].nodes.push_back(k);
-    }
+    Branch_tree tree = standing_branch(
+        60,
+        step,
+        [&](Index k) { return k < 4 ? 0.3 * radius : radius; },
+        [&](Index k) { return (k < 4 ? 0.01 : error) * radius; });
     Section_support support(tree);
     for (Index k = 0; k < 60; ++k) {
       support.on[k] = 2 * pi * radius * step * density;
@@ -231,19 +245,10 @@ BOOST_AUTO_TEST_CASE(half_a_trunk_that_is_hidden_is_proven_by_precise_radii)
   constexpr double step = 0.1, radius = 0.1, density = 1000;
   // of a limb behind a thin piece of a trunk, with a third of the points
   const auto limb_radius = [&](double trunk, double error) {
-    Branch_tree tree;
-    tree.branches.emplace_back();
-    for (Index k = 0; k < 60; ++k) {
-      Branch_node node;
-      node.point = step * double(k) * Vec3::UnitZ();
-      node.radius = k < 20 ? trunk : k < 40 ? 0.1 * radius : radius;
-      node.radius_error = (k < 40 ? 0.01 : error) * node.radius;
-      node.is_measured = true;
-      node.parent = k > 0 ? k - 1 : none;
-      node.branch = 0;
-      tree.nodes.push_back(node);
-      tree.branches[0].nodes.push_back(k);
-    }
+    const auto radius_at = [&](Index k) { return k < 20 ? trunk : k < 40 ? 0.1 * radius : radius; };
+    Branch_tree tree = standing_branch(60, step, radius_at, [&](Index k) {
+      return (k < 40 ? 0.01 : error) * radius_at(k);
+    });
     Section_support support(tree);
     for (Index k = 0; k < 60; ++k)
       support.on[k] = 2 * pi * tree.nodes[k].radius * step * density / (k < 40 ? 1 : 3);
