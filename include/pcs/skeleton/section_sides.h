@@ -38,7 +38,13 @@ struct Section_sides
     std::vector<double> own(n, 0);
     std::vector<Vec3> offsets(n, Vec3::Zero()), normals(n, Vec3::Zero());
     std::vector<Eigen::Matrix3d> moments(n, Eigen::Matrix3d::Zero());
-    const double thickest = view.rules.width_radius * view.scan.spacing;
+    // moments cost most, so only windows with an axis that `add_width_priors()` asks about have them
+    std::vector<char> is_thin(n, false);
+    for (std::size_t k = 0; k < n; ++k)
+      if (axis[k].radius < view.rules.width_radius * view.scan.spacing)
+        std::fill(is_thin.begin() + std::ptrdiff_t(k >= 2 ? k - 2 : 0),
+                  is_thin.begin() + std::ptrdiff_t(std::min(n, k + 3)),
+                  true);
     for (std::size_t i = 0; i < fit.places().size(); i += fit.stride()) {
       const Axis_place& p = fit.places()[i];
       const double r = radius_at(axis, p);
@@ -52,7 +58,7 @@ struct Section_sides
         own[nodes[m]] += shares[m];
         offsets[nodes[m]] += shares[m] * d;
         normals[nodes[m]] += shares[m] / p.distance * d;
-        if (axis[nodes[m]].radius < thickest)
+        if (is_thin[nodes[m]])
           moments[nodes[m]] += shares[m] * d * d.transpose();
       }
     }
