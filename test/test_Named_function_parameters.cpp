@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+namespace test_Named_function_parameters {
+
 namespace {
 
 namespace np = pcs::parameters;
@@ -114,3 +116,5 @@ BOOST_AUTO_TEST_CASE(values_of_any_type_are_kept)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_Named_function_parameters

@@ -21,6 +21,8 @@
 #include <set>
 #include <unistd.h>
 
+namespace test_Orl_shape_space {
+
 using namespace orl_test;
 using namespace pcs::shape_space;
 namespace np = pcs::parameters;
@@ -1130,3 +1132,5 @@ BOOST_AUTO_TEST_CASE(cancelling_leaves_outputs_and_the_space_as_they_were)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_Orl_shape_space

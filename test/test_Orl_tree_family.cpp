@@ -21,6 +21,8 @@
 #include <set>
 #include <unistd.h>
 
+namespace test_Orl_tree_family {
+
 using namespace orl_test;
 using namespace pcs::shape_space;
 namespace np = pcs::parameters;
@@ -1401,3 +1403,5 @@ BOOST_AUTO_TEST_CASE(wrong_values_are_named)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_Orl_tree_family

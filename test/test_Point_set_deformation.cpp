@@ -17,6 +17,8 @@
 #include <utility>
 #include <vector>
 
+namespace test_Point_set_deformation {
+
 namespace {
 
 using pcs::Invalid_input;
@@ -895,3 +897,5 @@ BOOST_AUTO_TEST_CASE(independent_sessions_run_in_two_threads)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_Point_set_deformation

@@ -16,6 +16,8 @@
 #include <set>
 #include <utility>
 
+namespace test_concepts {
+
 namespace {
 
 using Kernel = CGAL::Simple_cartesian<double>;
@@ -96,3 +98,5 @@ BOOST_AUTO_TEST_CASE(index_ranges_are_recognised)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_concepts

@@ -20,6 +20,8 @@
 #include <set>
 #include <tuple>
 
+namespace test_deform_point_set {
+
 namespace {
 
 using pcs_test::Points;
@@ -288,3 +290,5 @@ BOOST_AUTO_TEST_CASE(numbers_of_the_parameters_may_have_any_type)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_deform_point_set

@@ -7,6 +7,8 @@
 
 #include <boost/test/unit_test.hpp>
 
+namespace test_deformation_drag {
+
 namespace {
 
 using pcs::Start;
@@ -129,3 +131,5 @@ BOOST_AUTO_TEST_CASE(every_number_of_threads_gives_the_same_bits)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_deformation_drag

@@ -9,6 +9,8 @@
 
 #include <map>
 
+namespace test_deformation_laws {
+
 namespace {
 
 using pcs::Similarity;
@@ -401,3 +403,5 @@ BOOST_AUTO_TEST_CASE(the_same_call_gives_the_same_bits)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_deformation_laws

@@ -13,6 +13,8 @@
 #include <stdexcept>
 #include <thread>
 
+namespace test_deformation_robustness {
+
 namespace {
 
 using pcs::Invalid_input;
@@ -663,3 +665,5 @@ BOOST_AUTO_TEST_CASE(few_samples_throw_no_point_away)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_deformation_robustness

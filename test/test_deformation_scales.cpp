@@ -11,6 +11,8 @@
 #include <cmath>
 #include <random>
 
+namespace test_deformation_scales {
+
 namespace {
 
 using pcs_test::deform;
@@ -156,3 +158,5 @@ BOOST_AUTO_TEST_CASE(an_open_shell_does_not_buckle_at_once)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_deformation_scales

@@ -9,6 +9,8 @@
 
 #include <cmath>
 
+namespace test_deformation_shapes {
+
 namespace {
 
 using pcs_test::deform;
@@ -436,3 +438,5 @@ BOOST_AUTO_TEST_CASE(the_variants_of_the_dissertation_run_and_differ)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_deformation_shapes

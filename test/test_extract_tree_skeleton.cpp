@@ -25,6 +25,8 @@
 #include <utility>
 #include <vector>
 
+namespace test_extract_tree_skeleton {
+
 namespace {
 
 using pcs_test::check_is_a_tree;
@@ -518,3 +520,5 @@ BOOST_AUTO_TEST_CASE(outliers_hardly_change_the_result)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_extract_tree_skeleton

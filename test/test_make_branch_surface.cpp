@@ -30,6 +30,8 @@
 #include <utility>
 #include <vector>
 
+namespace test_make_branch_surface {
+
 using pcs_test::small_scan;
 using pcs_test::Tree;
 using Kernel = pcs_test::Tree_kernel;
@@ -263,3 +265,5 @@ BOOST_AUTO_TEST_CASE(an_empty_tree_has_no_surface)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_make_branch_surface

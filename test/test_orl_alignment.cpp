@@ -17,6 +17,8 @@
 #include <random>
 #include <unistd.h>
 
+namespace test_orl_alignment {
+
 using namespace orl_test;
 using pcs::shape_space::Alignment;
 namespace np = pcs::parameters;
@@ -297,3 +299,5 @@ BOOST_FIXTURE_TEST_CASE(short_edges_at_bases_turn_nothing, Nodes)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_orl_alignment

@@ -18,6 +18,8 @@
 #include <random>
 #include <vector>
 
+namespace test_orl_robustness {
+
 using namespace orl_test;
 using pcs_test::message_has;
 
@@ -839,3 +841,5 @@ BOOST_AUTO_TEST_CASE(surfaces_do_not_tear_where_bends_grow)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_orl_robustness

@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <string>
 
+namespace test_orl_truth {
+
 using namespace orl_test;
 
 BOOST_AUTO_TEST_SUITE(orl_truth)
@@ -134,3 +136,5 @@ BOOST_AUTO_TEST_CASE(a_plant_in_the_middle_is_predicted_from_the_ends)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_orl_truth

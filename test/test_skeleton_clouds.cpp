@@ -21,6 +21,8 @@
 #include <string>
 #include <vector>
 
+namespace test_skeleton_clouds {
+
 using pcs_test::append;
 using pcs_test::check_is_a_tree;
 using pcs_test::cylinder;
@@ -716,3 +718,5 @@ BOOST_AUTO_TEST_CASE(leaves_may_be_named)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_skeleton_clouds

@@ -19,6 +19,8 @@
 #include <string>
 #include <vector>
 
+namespace test_skeleton_fuzz {
+
 using pcs_test::Tree;
 using Point = pcs_test::Tree_point;
 using Vector = pcs_test::Tree_vector;
@@ -207,3 +209,5 @@ BOOST_AUTO_TEST_CASE(any_cloud_has_a_valid_tree_or_none)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_skeleton_fuzz

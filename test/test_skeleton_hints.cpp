@@ -19,6 +19,8 @@
 #include <type_traits>
 #include <vector>
 
+namespace test_skeleton_hints {
+
 using pcs_test::append;
 using pcs_test::cylinder;
 using pcs_test::Tree;
@@ -273,3 +275,5 @@ BOOST_AUTO_TEST_CASE(a_stopped_session_goes_on_as_if_it_had_not_been)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_skeleton_hints

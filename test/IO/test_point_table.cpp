@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+namespace test_point_table {
+
 using pcs::Invalid_input;
 using pcs::IO::Point_table;
 using Point_3 = Point_table::Point_3;
@@ -100,3 +102,5 @@ BOOST_AUTO_TEST_CASE(tables_with_other_properties_cannot_be_appended)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_point_table

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+namespace test_read_las {
+
 using pcs::IO::Point_table;
 using Point_3 = Point_table::Point_3;
 
@@ -164,3 +166,5 @@ BOOST_AUTO_TEST_CASE(long_counts_and_records_are_checked)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_read_las

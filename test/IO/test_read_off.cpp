@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+namespace test_read_off {
+
 using pcs::IO::Point_table;
 using pcs::IO::Scalar_type;
 using Point_3 = Point_table::Point_3;
@@ -84,3 +86,5 @@ BOOST_AUTO_TEST_CASE(zero_points_are_legal)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_read_off

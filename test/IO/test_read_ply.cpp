@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+namespace test_read_ply {
+
 using pcs::IO::Point_table;
 using pcs::IO::Scalar_type;
 using Point_3 = Point_table::Point_3;
@@ -257,3 +259,5 @@ BOOST_AUTO_TEST_CASE(the_content_decides_on_the_format)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_read_ply

@@ -17,6 +17,8 @@
 #include <string>
 #include <vector>
 
+namespace test_read_points {
+
 using pcs::IO::Point_reader;
 using pcs::IO::Point_table;
 using Point_3 = Point_table::Point_3;
@@ -123,3 +125,5 @@ BOOST_AUTO_TEST_CASE(missing_files_and_folders_are_refused)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_read_points

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+namespace test_read_text {
+
 using pcs::IO::Point_table;
 using Point_3 = Point_table::Point_3;
 
@@ -131,3 +133,5 @@ BOOST_AUTO_TEST_CASE(the_locale_of_the_program_does_not_matter)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_read_text

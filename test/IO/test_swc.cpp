@@ -18,6 +18,8 @@
 #include <string>
 #include <vector>
 
+namespace test_swc {
+
 using Kernel = CGAL::Simple_cartesian<double>;
 using Tree = pcs::Tree_skeleton<Kernel>;
 using Point_3 = Kernel::Point_3;
@@ -186,3 +188,5 @@ BOOST_AUTO_TEST_CASE(what_cannot_be_written_leaves_no_file)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_swc

@@ -16,6 +16,8 @@
 #include <string>
 #include <vector>
 
+namespace test_tree_csv {
+
 using Kernel = CGAL::Simple_cartesian<double>;
 using Tree = pcs::Tree_skeleton<Kernel>;
 
@@ -159,3 +161,5 @@ BOOST_AUTO_TEST_CASE(the_truth_of_the_virtual_scans_loads)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_tree_csv

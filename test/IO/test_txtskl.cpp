@@ -13,6 +13,8 @@
 #include <cstddef>
 #include <string>
 
+namespace test_txtskl {
+
 using Kernel = CGAL::Simple_cartesian<double>;
 using Tree = pcs::Tree_skeleton<Kernel>;
 using Point_3 = Kernel::Point_3;
@@ -99,3 +101,5 @@ BOOST_AUTO_TEST_CASE(a_file_that_was_cut_is_refused)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_txtskl

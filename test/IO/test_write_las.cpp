@@ -17,6 +17,8 @@
 #include <string>
 #include <vector>
 
+namespace test_write_las {
+
 using pcs::Invalid_input;
 using pcs::IO_error;
 using pcs::IO::Point_reader;
@@ -202,3 +204,5 @@ BOOST_AUTO_TEST_CASE(zero_points_are_written)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_write_las

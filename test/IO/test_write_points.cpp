@@ -24,6 +24,8 @@
 #include <unistd.h>
 #include <vector>
 
+namespace test_write_points {
+
 using pcs::Invalid_input;
 using pcs::IO_error;
 using pcs::IO::Ply_encoding;
@@ -342,3 +344,5 @@ BOOST_AUTO_TEST_CASE(ranges_of_points_are_written)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_write_points

@@ -11,6 +11,8 @@
 #include <sstream>
 #include <string>
 
+namespace test_Deformation_report {
+
 BOOST_AUTO_TEST_SUITE(Deformation_report)
 
 BOOST_AUTO_TEST_CASE(every_status_has_a_name_of_its_own)
@@ -52,3 +54,5 @@ BOOST_AUTO_TEST_CASE(a_file_error_names_its_file)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_Deformation_report

@@ -16,6 +16,8 @@
 
 #include <limits>
 
+namespace test_Similarity {
+
 namespace {
 
 using pcs::Similarity;
@@ -260,3 +262,5 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(points_and_vectors_of_cgal_serve_as_centre_and_axi
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_Similarity

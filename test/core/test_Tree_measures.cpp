@@ -9,6 +9,8 @@
 
 #include <boost/test/unit_test.hpp>
 
+namespace test_Tree_measures {
+
 using Kernel = CGAL::Simple_cartesian<double>;
 
 namespace {
@@ -58,3 +60,5 @@ BOOST_AUTO_TEST_CASE(nothing_measures_nothing)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_Tree_measures

@@ -15,6 +15,8 @@
 #include <cstddef>
 #include <vector>
 
+namespace test_Tree_skeleton {
+
 using Kernels = boost::mpl::list<CGAL::Simple_cartesian<float>,
                                  CGAL::Simple_cartesian<double>,
                                  CGAL::Exact_predicates_inexact_constructions_kernel>;
@@ -51,3 +53,5 @@ BOOST_AUTO_TEST_CASE(property_maps_reach_the_nodes)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_Tree_skeleton

@@ -12,6 +12,8 @@
 #include <cstddef>
 #include <vector>
 
+namespace test_assign_branches {
+
 using Kernel = CGAL::Simple_cartesian<double>;
 using Tree = pcs::Tree_skeleton<Kernel>;
 
@@ -87,3 +89,5 @@ BOOST_AUTO_TEST_CASE(what_is_no_tree_is_refused_and_unchanged)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_assign_branches

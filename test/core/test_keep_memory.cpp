@@ -13,6 +13,8 @@
 #include <sys/resource.h>
 #endif
 
+namespace test_keep_memory {
+
 BOOST_AUTO_TEST_SUITE(keep_memory)
 
 BOOST_AUTO_TEST_CASE(pages_are_used_again)
@@ -43,3 +45,5 @@ BOOST_AUTO_TEST_CASE(it_may_be_said_again)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_keep_memory

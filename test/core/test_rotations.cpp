@@ -9,6 +9,8 @@
 
 #include <Eigen/SVD>
 
+namespace test_rotations {
+
 namespace {
 
 using pcs::Quaternion;
@@ -208,3 +210,5 @@ BOOST_AUTO_TEST_CASE(every_bundle_gives_a_rotation)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_rotations

@@ -7,6 +7,8 @@
 
 #include <boost/test/unit_test.hpp>
 
+namespace test_Elastic_network {
+
 BOOST_AUTO_TEST_SUITE(Elastic_network)
 
 BOOST_AUTO_TEST_CASE(weights_are_symmetric_have_mean_one_and_fall_with_the_square)
@@ -53,3 +55,5 @@ BOOST_AUTO_TEST_CASE(a_graph_without_edges_has_no_weights)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_Elastic_network

@@ -11,6 +11,8 @@
 
 #include <algorithm>
 
+namespace test_Harmonic_system {
+
 namespace {
 
 using pcs::deformation::free_node;
@@ -166,3 +168,5 @@ BOOST_AUTO_TEST_CASE(without_free_node_nothing_is_solved)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_Harmonic_system

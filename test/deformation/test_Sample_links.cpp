@@ -12,6 +12,8 @@
 #include <map>
 #include <set>
 
+namespace test_Sample_links {
+
 namespace {
 
 using pcs::Sample_weights;
@@ -273,3 +275,5 @@ BOOST_AUTO_TEST_CASE(every_number_of_threads_gives_the_same_bits)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_Sample_links

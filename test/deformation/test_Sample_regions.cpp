@@ -11,6 +11,8 @@
 
 #include <queue>
 
+namespace test_Sample_regions {
+
 namespace {
 
 using pcs::neighborhood::Proximity_graph;
@@ -182,3 +184,5 @@ BOOST_AUTO_TEST_CASE(parallel_sheets_are_not_linked)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_Sample_regions

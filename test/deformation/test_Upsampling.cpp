@@ -15,6 +15,8 @@
 #include <cstring>
 #include <functional>
 
+namespace test_Upsampling {
+
 namespace {
 
 using pcs::deformation::Affine_map;
@@ -472,3 +474,5 @@ BOOST_AUTO_TEST_CASE(every_number_of_threads_gives_the_same_bits)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_Upsampling

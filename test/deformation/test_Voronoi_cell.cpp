@@ -11,6 +11,8 @@
 #include <map>
 #include <vector>
 
+namespace test_Voronoi_cell {
+
 namespace {
 
 using pcs::deformation::Vec2;
@@ -108,3 +110,5 @@ BOOST_AUTO_TEST_CASE(beyond_its_reach_nothing_cuts)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_Voronoi_cell

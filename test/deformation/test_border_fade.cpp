@@ -14,6 +14,8 @@
 #include <limits>
 #include <vector>
 
+namespace test_border_fade {
+
 namespace {
 
 using namespace pcs::deformation;
@@ -194,3 +196,5 @@ BOOST_AUTO_TEST_CASE(between_two_handles_the_shares_pass_from_one_to_the_other)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_border_fade

@@ -14,6 +14,8 @@
 #include <cstddef>
 #include <cstdint>
 
+namespace test_coherent_order {
+
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -96,3 +98,5 @@ BOOST_AUTO_TEST_CASE(tiny_clouds_and_equal_points_have_an_answer)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_coherent_order

@@ -16,6 +16,8 @@
 #include <memory>
 #include <vector>
 
+namespace test_fit_rotations {
+
 namespace {
 
 using namespace pcs::deformation;
@@ -196,3 +198,5 @@ BOOST_AUTO_TEST_CASE(fits_beyond_the_count_do_not_matter)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_fit_rotations

@@ -8,6 +8,8 @@
 
 #include <boost/test/unit_test.hpp>
 
+namespace test_handle_boundary {
+
 namespace {
 
 using namespace pcs::deformation;
@@ -159,3 +161,5 @@ BOOST_AUTO_TEST_CASE(without_handle_nothing_is_added)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_handle_boundary

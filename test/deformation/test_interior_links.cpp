@@ -10,6 +10,8 @@
 
 #include <map>
 
+namespace test_interior_links {
+
 namespace {
 
 using pcs::deformation::Weighted_graph;
@@ -197,3 +199,5 @@ BOOST_AUTO_TEST_CASE(every_number_of_threads_gives_the_same_bits)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_interior_links

@@ -9,6 +9,8 @@
 
 #include <set>
 
+namespace test_octree_samples {
+
 namespace {
 
 using pcs_test::Points;
@@ -115,3 +117,5 @@ BOOST_AUTO_TEST_CASE(a_shifted_grid_has_the_shifted_samples)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_octree_samples

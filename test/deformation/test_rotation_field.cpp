@@ -9,6 +9,8 @@
 
 #include <Eigen/QR>
 
+namespace test_rotation_field {
+
 namespace {
 
 using pcs::Quaternion;
@@ -230,3 +232,5 @@ BOOST_AUTO_TEST_CASE(a_soft_handle_turns_its_node_part_of_the_way)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_rotation_field

@@ -12,6 +12,8 @@
 #include <cmath>
 #include <random>
 
+namespace test_straighten_borders {
+
 namespace {
 
 using pcs::deformation::Elastic_network;
@@ -138,3 +140,5 @@ BOOST_AUTO_TEST_CASE(edges_keep_their_slope_and_stay_symmetric)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_straighten_borders

@@ -21,6 +21,8 @@
 #include <utility>
 #include <vector>
 
+namespace test_stream_block {
+
 namespace {
 
 using Kernel = CGAL::Simple_cartesian<double>;
@@ -186,3 +188,5 @@ BOOST_AUTO_TEST_CASE(only_what_no_cache_keeps_is_streamed)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_stream_block

@@ -14,6 +14,8 @@
 #include <random>
 #include <vector>
 
+namespace test_voronoi_graph {
+
 namespace {
 
 using pcs::deformation::Weighted_graph;
@@ -192,3 +194,5 @@ BOOST_AUTO_TEST_CASE(threads_do_not_matter)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_voronoi_graph

@@ -16,6 +16,8 @@
 #include <string>
 #include <vector>
 
+namespace test_orl_family_program {
+
 namespace {
 
 struct Three_trees : Program_run
@@ -287,3 +289,5 @@ BOOST_AUTO_TEST_CASE(options_that_would_have_no_effect_are_refused)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_orl_family_program

@@ -21,6 +21,8 @@
 #include <sys/resource.h>
 #include <vector>
 
+namespace test_orl_geodesic {
+
 namespace {
 
 struct Two_trees : Program_run
@@ -468,3 +470,5 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_with_a_sentence)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_orl_geodesic

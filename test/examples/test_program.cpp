@@ -16,6 +16,8 @@
 #include <string>
 #include <vector>
 
+namespace test_program {
+
 namespace {
 
 using Vec3 = Eigen::Vector3d;
@@ -397,3 +399,5 @@ BOOST_FIXTURE_TEST_CASE(names_that_are_not_utf8_do_not_break_the_report, Program
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_program

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+namespace test_program_errors {
+
 namespace {
 
 const std::string arguments =
@@ -316,3 +318,5 @@ BOOST_FIXTURE_TEST_CASE(clouds_that_cannot_be_deformed_are_refused, Program_run)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_program_errors

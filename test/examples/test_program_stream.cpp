@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+namespace test_program_stream {
+
 namespace {
 
 const std::string edit_text = R"({"handles": [
@@ -286,3 +288,5 @@ BOOST_FIXTURE_TEST_CASE(one_place_in_two_handles_is_refused_in_a_stream, Program
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_program_stream

@@ -15,6 +15,8 @@
 #include <limits>
 #include <vector>
 
+namespace test_edit_branches {
+
 using Kernel = CGAL::Simple_cartesian<double>;
 using Tree = pcs::Tree_skeleton<Kernel>;
 using Point_3 = Kernel::Point_3;
@@ -107,3 +109,5 @@ BOOST_AUTO_TEST_CASE(wrong_values_are_refused)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_edit_branches

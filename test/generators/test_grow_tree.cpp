@@ -19,6 +19,8 @@
 #include <string>
 #include <vector>
 
+namespace test_grow_tree {
+
 using Kernel = CGAL::Simple_cartesian<double>;
 using Tree = pcs::Tree_skeleton<Kernel>;
 using Kernels = boost::mpl::list<CGAL::Simple_cartesian<float>,
@@ -216,3 +218,5 @@ BOOST_AUTO_TEST_CASE(senseless_habits_are_refused_and_name_the_value)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_grow_tree

@@ -17,6 +17,8 @@
 #include <cstddef>
 #include <vector>
 
+namespace test_scan_statistics {
+
 using Kernel = CGAL::Simple_cartesian<double>;
 using Tree = pcs::Tree_skeleton<Kernel>;
 using Scan = pcs::Virtual_scan<Kernel>;
@@ -276,3 +278,5 @@ BOOST_AUTO_TEST_CASE(wide_beams_thicken_twigs_and_make_ghosts)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_scan_statistics

@@ -22,6 +22,8 @@
 #include <tuple>
 #include <vector>
 
+namespace test_scan_tree {
+
 using Kernel = CGAL::Simple_cartesian<double>;
 using Tree = pcs::Tree_skeleton<Kernel>;
 using Scan = pcs::Virtual_scan<Kernel>;
@@ -376,3 +378,5 @@ BOOST_AUTO_TEST_CASE(senseless_scanners_are_refused_and_name_the_value)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_scan_tree

@@ -17,6 +17,8 @@
 #include <set>
 #include <vector>
 
+namespace test_tree_at_age {
+
 using Kernel = CGAL::Simple_cartesian<double>;
 using Tree = pcs::Tree_skeleton<Kernel>;
 
@@ -120,3 +122,5 @@ BOOST_AUTO_TEST_CASE(a_minimal_kernel_will_do)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_tree_at_age

@@ -15,6 +15,8 @@
 #include <functional>
 #include <vector>
 
+namespace test_tree_fixtures {
+
 using Kernel = CGAL::Simple_cartesian<double>;
 using Tree = pcs::Tree_skeleton<Kernel>;
 using Point_3 = Kernel::Point_3;
@@ -144,3 +146,5 @@ BOOST_AUTO_TEST_CASE(lengths_that_make_no_sense_are_refused)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_tree_fixtures

@@ -8,6 +8,8 @@
 
 #include <cmath>
 
+namespace test_Random_stream {
+
 using pcs::internal::Random_stream;
 
 BOOST_AUTO_TEST_SUITE(Random_stream_numbers)
@@ -51,3 +53,5 @@ BOOST_AUTO_TEST_CASE(mean_and_variance_are_right)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_Random_stream

@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+namespace test_parallel {
+
 namespace {
 
 using Any_tag = CGAL::Parallel_if_available_tag;
@@ -131,3 +133,5 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(an_exception_in_a_loop_reaches_the_caller, Tag, Ta
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_parallel

@@ -9,6 +9,8 @@
 #include <limits>
 #include <vector>
 
+namespace test_progress {
+
 BOOST_AUTO_TEST_SUITE(progress)
 
 BOOST_AUTO_TEST_CASE(values_never_decrease_and_stay_between_0_and_1)
@@ -63,3 +65,5 @@ BOOST_AUTO_TEST_CASE(without_callback_nothing_stops)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_progress

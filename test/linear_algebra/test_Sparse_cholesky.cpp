@@ -20,6 +20,8 @@
 #include <utility>
 #include <vector>
 
+namespace test_Sparse_cholesky {
+
 namespace {
 
 using Cholesky = pcs::linear_algebra::Sparse_cholesky;
@@ -342,3 +344,5 @@ BOOST_AUTO_TEST_CASE(all_kernels_give_the_same_bits)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_Sparse_cholesky

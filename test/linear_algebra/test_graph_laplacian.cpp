@@ -7,6 +7,8 @@
 
 #include <boost/test/unit_test.hpp>
 
+namespace test_graph_laplacian {
+
 namespace {
 
 struct Graph
@@ -129,3 +131,5 @@ BOOST_AUTO_TEST_CASE(a_node_without_edges_has_only_its_extra_weight)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_graph_laplacian

@@ -11,6 +11,8 @@
 #include <limits>
 #include <random>
 
+namespace test_small_symmetric {
+
 namespace {
 
 template <int N>
@@ -110,3 +112,5 @@ BOOST_AUTO_TEST_CASE(refuses_what_is_not_semi_definite)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_small_symmetric

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <limits>
 
+namespace test_Nearest_neighbors {
+
 namespace {
 
 using Tree = pcs::neighborhood::Nearest_neighbors;
@@ -104,3 +106,5 @@ BOOST_AUTO_TEST_CASE(copies_and_unlike_scales_are_found)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_Nearest_neighbors

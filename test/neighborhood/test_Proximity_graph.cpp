@@ -11,6 +11,8 @@
 #include <numeric>
 #include <set>
 
+namespace test_Proximity_graph {
+
 namespace {
 
 using pcs::neighborhood::nearest_neighbor_graph;
@@ -197,3 +199,5 @@ BOOST_AUTO_TEST_CASE(components_are_those_of_repeated_merging)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_Proximity_graph

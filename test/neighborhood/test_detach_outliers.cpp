@@ -10,6 +10,8 @@
 
 #include <random>
 
+namespace test_detach_outliers {
+
 namespace {
 
 using pcs::neighborhood::detach_outliers;
@@ -77,3 +79,5 @@ BOOST_AUTO_TEST_CASE(few_points_are_not_judged)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_detach_outliers

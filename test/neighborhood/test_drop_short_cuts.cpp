@@ -8,6 +8,8 @@
 
 #include <boost/test/unit_test.hpp>
 
+namespace test_drop_short_cuts {
+
 namespace {
 
 using pcs::neighborhood::connected_components;
@@ -63,3 +65,5 @@ BOOST_AUTO_TEST_CASE(a_clump_of_outliers_keeps_a_link)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_drop_short_cuts

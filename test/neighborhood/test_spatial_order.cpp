@@ -8,6 +8,8 @@
 
 #include <boost/test/unit_test.hpp>
 
+namespace test_spatial_order {
+
 namespace {
 
 using pcs_test::Points;
@@ -139,3 +141,5 @@ BOOST_AUTO_TEST_CASE(neighbours_in_the_order_are_neighbours_in_space)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_spatial_order

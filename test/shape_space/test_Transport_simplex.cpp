@@ -10,6 +10,8 @@
 #include <limits>
 #include <random>
 
+namespace test_Transport_simplex {
+
 using namespace pcs::shape_space;
 
 namespace {
@@ -365,3 +367,5 @@ BOOST_AUTO_TEST_CASE(the_correspondence_survives_rotation_and_anisotropic_scale)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_Transport_simplex

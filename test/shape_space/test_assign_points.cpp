@@ -11,6 +11,8 @@
 #include <cmath>
 #include <random>
 
+namespace test_assign_points {
+
 using namespace pcs::shape_space;
 
 namespace {
@@ -99,3 +101,5 @@ BOOST_AUTO_TEST_CASE(without_radii_the_nearest_axis_is_taken)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_assign_points

@@ -8,6 +8,8 @@
 
 #include <cmath>
 
+namespace test_elastic_curves {
+
 using namespace pcs::shape_space;
 
 namespace {
@@ -80,3 +82,5 @@ BOOST_AUTO_TEST_CASE(a_known_warp_is_found)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_elastic_curves

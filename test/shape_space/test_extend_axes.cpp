@@ -9,6 +9,8 @@
 
 #include <limits>
 
+namespace test_extend_axes {
+
 using namespace orl_test;
 using pcs::shape_space::extend_axes;
 
@@ -82,3 +84,5 @@ BOOST_AUTO_TEST_CASE(nothing_to_say)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_extend_axes

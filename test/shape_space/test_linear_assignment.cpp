@@ -9,6 +9,8 @@
 #include <functional>
 #include <random>
 
+namespace test_linear_assignment {
+
 namespace {
 
 double least_cost(std::size_t n, std::size_t m, const std::vector<double>& gain)
@@ -112,3 +114,5 @@ BOOST_AUTO_TEST_CASE(it_stops_when_it_is_known_to_cost_too_much)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_linear_assignment

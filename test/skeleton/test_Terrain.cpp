@@ -14,6 +14,8 @@
 #include <random>
 #include <vector>
 
+namespace test_Terrain {
+
 namespace {
 
 using pcs::skeleton::Terrain;
@@ -118,3 +120,5 @@ BOOST_AUTO_TEST_CASE(the_underside_of_a_crown_is_no_terrain)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_Terrain

@@ -11,6 +11,8 @@
 #include <cstddef>
 #include <vector>
 
+namespace test_chain_ends {
+
 using namespace pcs::skeleton;
 
 namespace {
@@ -78,3 +80,5 @@ BOOST_AUTO_TEST_CASE(axes_that_taper_and_bushes_begin_where_they_did)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_chain_ends

@@ -17,6 +17,8 @@
 #include <cstddef>
 #include <vector>
 
+namespace test_density_field {
+
 using namespace pcs::skeleton;
 
 namespace {
@@ -226,3 +228,5 @@ BOOST_AUTO_TEST_CASE(a_few_pairs_among_many_axes_go)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_density_field

@@ -15,6 +15,8 @@
 #include <utility>
 #include <vector>
 
+namespace test_find_leaves {
+
 using namespace pcs::skeleton;
 
 namespace {
@@ -362,3 +364,5 @@ BOOST_AUTO_TEST_CASE(leaves_on_a_surface_are_no_leaves)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_find_leaves

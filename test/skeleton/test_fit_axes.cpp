@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+namespace test_fit_axes {
+
 using namespace pcs::skeleton;
 using pcs::skeleton::internal::open_stretches;
 
@@ -151,3 +153,5 @@ BOOST_AUTO_TEST_CASE(a_chain_is_left_where_most_points_of_its_layers_have_no_axi
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_fit_axes

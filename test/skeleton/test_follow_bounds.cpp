@@ -13,6 +13,8 @@
 #include <cstddef>
 #include <vector>
 
+namespace test_follow_bounds {
+
 using namespace pcs::skeleton;
 
 namespace {
@@ -96,3 +98,5 @@ BOOST_AUTO_TEST_CASE(axes_with_points_all_around_do_not_move)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_follow_bounds

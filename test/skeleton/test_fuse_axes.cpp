@@ -14,6 +14,8 @@
 #include <cstddef>
 #include <vector>
 
+namespace test_fuse_axes {
+
 using namespace pcs::skeleton;
 
 namespace {
@@ -130,3 +132,5 @@ BOOST_AUTO_TEST_CASE(short_branches_go_and_their_points_stay_with_the_parent)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_fuse_axes

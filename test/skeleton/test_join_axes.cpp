@@ -15,6 +15,8 @@
 #include <cstddef>
 #include <vector>
 
+namespace test_join_axes {
+
 using namespace pcs::skeleton;
 
 namespace {
@@ -154,3 +156,5 @@ BOOST_AUTO_TEST_CASE(axes_out_of_reach_stay)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_join_axes

@@ -18,6 +18,8 @@
 #include <random>
 #include <vector>
 
+namespace test_layers {
+
 namespace {
 
 using pcs::skeleton::Index;
@@ -200,3 +202,5 @@ BOOST_AUTO_TEST_CASE(layers_of_a_sparse_twig_stay_thin)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_layers

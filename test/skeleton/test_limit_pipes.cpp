@@ -13,6 +13,8 @@
 #include <cstdint>
 #include <vector>
 
+namespace test_limit_pipes {
+
 using namespace pcs::skeleton;
 
 namespace {
@@ -133,3 +135,5 @@ BOOST_AUTO_TEST_CASE(stems_that_stand_beside_the_root_are_counted)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_limit_pipes

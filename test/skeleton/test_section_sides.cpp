@@ -13,6 +13,8 @@
 #include <random>
 #include <vector>
 
+namespace test_section_sides {
+
 using namespace pcs::skeleton;
 
 namespace {
@@ -136,3 +138,5 @@ BOOST_AUTO_TEST_CASE(two_expectations_are_joined_by_their_variances)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_section_sides

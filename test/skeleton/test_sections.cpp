@@ -20,6 +20,8 @@
 #include <random>
 #include <vector>
 
+namespace test_sections {
+
 namespace {
 
 using pcs::skeleton::Vec2;
@@ -387,3 +389,5 @@ BOOST_AUTO_TEST_CASE(the_way_of_the_dissertation_runs_from_end_to_end)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_sections

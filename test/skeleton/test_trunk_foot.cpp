@@ -17,6 +17,8 @@
 #include <random>
 #include <vector>
 
+namespace test_trunk_foot {
+
 using pcs_test::append;
 using pcs_test::check_is_a_tree;
 using pcs_test::cylinder;
@@ -276,3 +278,5 @@ BOOST_AUTO_TEST_CASE(an_outline_has_the_area_of_its_circle)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_trunk_foot
