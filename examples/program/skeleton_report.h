@@ -34,6 +34,7 @@ inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skele
                     {"unexplained", r.number_of_unexplained_points},
                     {"out_of_reach", r.number_of_unreached_points}};
   json["spacing"] = r.spacing;
+  json["grid_step"] = r.grid_step;
   json["noise"] = r.noise;
   json["residual"] = r.residual;
   json["nodes"] = r.number_of_nodes;

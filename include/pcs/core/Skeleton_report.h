@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <ostream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -53,7 +54,9 @@ struct Skeleton_report
   std::size_t number_of_branches = 0; ///< [count]
 
   double spacing = 0; ///< median distance to the nearest neighbour [L]
-  double noise = 0;   ///< standard deviation of the points from the surface [L]
+  //! size of the voxels whose centers the points are, and which was taken out of the radii; 0: they are not [L]
+  double grid_step = 0;
+  double noise = 0; ///< standard deviation of the points from the surface [L]
   //! median distance of the points from the surface of their branches; several times `noise`: something is wrong [L]
   double residual = 0;
   double density = 0; ///< points per area of the surface of branches; 0: not known [1/L^2]
@@ -103,6 +106,12 @@ inline std::vector<std::string> warnings(const Skeleton_report& r)
     sentences.push_back(std::to_string(r.number_of_wall_points) +
                         " points lie on walls or other flat faces, or beside them, and are left "
                         "out; more of such things may be among the branches");
+  if (r.grid_step > 0) {
+    std::ostringstream size;
+    size << r.grid_step;
+    sentences.push_back("the points lie on a grid of step " + size.str() +
+                        "; branches that are not several times as thick are rough guesses");
+  }
   if (r.is_in_rows)
     sentences.push_back(
         "the points lie in rows that are far from each other; leaves cannot be told "

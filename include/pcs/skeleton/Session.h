@@ -170,7 +170,7 @@ public:
       m_tree = measure_given(m_scan, m_used.flags(), *m_options.given, m_options.given_rules);
     } else if (m_options.method == Skeleton_method::sections && !m_root.empty()) {
       m_tree = section_skeleton(m_scan, m_used.flags(), m_sections, m_root, m_options.section_tree);
-      correct_beam(m_options.scanners, m_options.beam_width, m_options.beam, m_tree);
+      correct_widening();
       count();
       m_report.seconds.joints = watch.lap();
       m_stage = 4;
@@ -213,7 +213,7 @@ public:
     m_report.seconds.joints = watch.lap();
     if (!progress(0.97))
       return false;
-    correct_beam(m_options.scanners, m_options.beam_width, m_options.beam, m_tree);
+    correct_widening();
     estimate_sections<ConcurrencyTag>(m_scan, m_axes.noise, m_options.sections, m_tree);
     count();
     m_report.seconds.sections = watch.lap();
@@ -327,6 +327,15 @@ private:
                                                  std::numeric_limits<double>::max(),
                                                  [&](Index i) { return m_used.flags()[i] != 0; });
     return {found.index};
+  }
+
+  /// Takes out of the radii what beams and voxels add to them.
+  void correct_widening()
+  {
+    correct_beam(m_options.scanners, m_options.beam_width, m_options.beam, m_tree);
+    const double step = grid_step(m_scan, m_options.grid);
+    correct_grid(step, m_options.grid, m_tree);
+    m_report.grid_step = m_scan.frame.unit * step;
   }
 
   void count()

@@ -7,6 +7,7 @@
 
 #include <pcs/skeleton/bound_radii.h>
 #include <pcs/skeleton/correct_beam.h>
+#include <pcs/skeleton/correct_grid.h>
 #include <pcs/skeleton/count_stems.h>
 #include <pcs/skeleton/estimate_sections.h>
 #include <pcs/skeleton/find_leaves.h>
@@ -72,6 +73,7 @@ struct Session_options
   Section_rules sections;
   Given_rules given_rules;
   Beam_rules beam;
+  Grid_rules grid;
 };
 
 } // namespace skeleton
