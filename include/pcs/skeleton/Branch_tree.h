@@ -24,6 +24,16 @@ struct Branch_node : Axis_node
   Index branch = none;
   double major_radius = 0, minor_radius = 0; ///< of the section; 0: a circle [L]
   Vec3 major_axis = Vec3::Zero();
+
+  /// Makes the section smaller or larger, of the same shape.
+  void resize(double new_radius)
+  {
+    if (radius > 0) {
+      major_radius *= new_radius / radius;
+      minor_radius *= new_radius / radius;
+    }
+    radius = new_radius;
+  }
 };
 
 struct Branch

@@ -51,11 +51,7 @@ inline void correct_beam(const std::vector<Vec3>& scanners,
       const double share = rules.edge_share * w / (2 * r + rules.edge_share * w);
       (r + rules.shift * share * w > found ? high : low) = r;
     }
-    node.radius = 0.5 * (low + high);
-    if (found > 0) {
-      node.major_radius *= node.radius / found;
-      node.minor_radius *= node.radius / found;
-    }
+    node.resize(0.5 * (low + high));
   }
 }
 

@@ -73,12 +73,8 @@ inline void correct_grid(double step, const Grid_rules& rules, Branch_tree& tree
     return;
   for (Branch_node& node : tree.nodes) {
     const double found = node.radius;
-    node.radius = std::max(rules.least * found,
-                           std::sqrt(std::max(0.0, found * found - rules.widening * step * step)));
-    if (found > 0) {
-      node.major_radius *= node.radius / found;
-      node.minor_radius *= node.radius / found;
-    }
+    node.resize(std::max(rules.least * found,
+                         std::sqrt(std::max(0.0, found * found - rules.widening * step * step))));
   }
 }
 
