@@ -108,6 +108,7 @@ inline std::vector<std::string> warnings(const Skeleton_report& r)
                         "out; more of such things may be among the branches");
   if (r.grid_step > 0) {
     std::ostringstream size;
+    size.precision(3);
     size << r.grid_step;
     sentences.push_back("the points lie on a grid of step " + size.str() +
                         "; branches that are not several times as thick are rough guesses");
