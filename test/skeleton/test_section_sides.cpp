@@ -48,11 +48,14 @@ struct Seen_twig
   double length() const { return double(number_of_segments) * 2 * spacing; }
 
   /// Its points on an axis of another radius, on which they lie in front as well.
-  Axis_fit fit(double other) const
+  Axis_fit fit(double other) const { return fit(other, other); }
+
+  /// ... on one of radii that change evenly along it.
+  Axis_fit fit(double other, double last) const
   {
     const double behind = other > radius ? radius - other : 0;
     const Vec3 base(behind, 0, 0), tip(behind, 0, length());
-    Axis_fit fit(pcs_test::straight_axis(base, tip, number_of_segments, other, other),
+    Axis_fit fit(pcs_test::straight_axis(base, tip, number_of_segments, other, last),
                  Fit_model::of(spacing, noise));
     fit.set_points(points,
                    std::vector<Index>(points.size(), static_cast<Index>(number_of_segments / 2)));
@@ -119,6 +122,18 @@ BOOST_AUTO_TEST_CASE(few_points_and_thick_axes_have_no_such_radius)
   twig.rules.width_radius = 0.5 * radius / spacing;
   for (const Radius_prior& p : twig.priors(twig.fit(radius), {}))
     BOOST_TEST(p.deviation == 0);
+}
+
+BOOST_AUTO_TEST_CASE(thin_nodes_beside_thick_ones_are_as_wide_as_others)
+{
+  Seen_twig twig(false, 4000);
+  twig.rules.width_radius = radius / spacing; // halfway along the axis
+  const std::vector<Radius_prior> priors = twig.priors(twig.fit(1.02 * radius, 0.98 * radius), {});
+  const std::size_t middle = twig.number_of_segments / 2;
+  for (std::size_t k = 0; k < middle; ++k)
+    BOOST_TEST(priors[k].deviation == 0);
+  for (std::size_t k = middle + 1; k + 3 < priors.size(); ++k)
+    BOOST_TEST(std::abs(priors[k].radius - radius) < 0.1 * radius);
 }
 
 BOOST_AUTO_TEST_CASE(width_tells_what_neither_noise_nor_density_does)
