@@ -96,7 +96,6 @@ inline void query_neighbors(const std::vector<Vec3>& points, std::size_t count)
   using Tree = nanoflann::KDTreeSingleIndexAdaptor<Metric, Neighbor_adaptor, 3, std::uint32_t>;
   const Neighbor_adaptor adaptor{points};
   Tree tree(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(10));
-  tree.buildIndex();
   std::vector<std::uint32_t> indices(count);
   std::vector<double> distances(count);
   double sum = 0;

@@ -36,7 +36,6 @@ public:
   explicit Nearest_neighbors(const std::vector<Vec3>& points)
     : m_adaptor{points}, m_tree(3, m_adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(12))
   {
-    m_tree.buildIndex();
   }
 
   Nearest_neighbors(const Nearest_neighbors&) = delete;
@@ -81,8 +80,7 @@ public:
   void append_within(const Vec3& query, double radius, std::vector<std::uint32_t>& result) const
   {
     Collector collector{radius * radius, &result};
-    if (!m_adaptor.points.empty())
-      m_tree.findNeighbors(collector, query.data(), nanoflann::SearchParams());
+    search(query, collector);
   }
 
   /*!
@@ -93,20 +91,23 @@ public:
   Neighbor nearest_if(const Vec3& query, double radius, const Predicate& is_wanted) const
   {
     Filter<Predicate> filter{{0, radius * radius}, &m_adaptor.points, &is_wanted, false};
-    if (!m_adaptor.points.empty())
-      m_tree.findNeighbors(filter, query.data(), nanoflann::SearchParams());
+    search(query, filter);
     if (!filter.is_found)
       return {0, std::numeric_limits<double>::infinity()};
     return filter.best;
   }
 
 private:
-  // Result sets in the sense of nanoflann.
+  // Result sets in the sense of nanoflann; what later versions than 1.4 ask for, too.
   struct Collector
   {
+    using DistanceType = double;
+
     double squared_radius;
     std::vector<std::uint32_t>* result;
     bool full() const { return true; }
+    std::size_t size() const { return result->size(); }
+    void sort() {}
     double worstDist() const { return squared_radius; }
     bool addPoint(double d, std::uint32_t i)
     {
@@ -118,11 +119,15 @@ private:
   template <class Predicate>
   struct Filter
   {
+    using DistanceType = double;
+
     Neighbor best;
     const std::vector<Vec3>* points;
     const Predicate* is_wanted;
     bool is_found;
     bool full() const { return true; }
+    std::size_t size() const { return is_found ? 1 : 0; }
+    void sort() {}
     double worstDist() const
     {
       // one step up: a tie must be seen
@@ -161,8 +166,16 @@ private:
                                                    3,
                                                    std::uint32_t>;
 
+  /// Hands points to `results`. nanoflann's default options have a different name in every other version.
+  template <class Results>
+  void search(const Vec3& query, Results& results) const
+  {
+    if (!m_adaptor.points.empty())
+      static_cast<void>(m_tree.radiusSearchCustomCallback(query.data(), results));
+  }
+
   Adaptor m_adaptor;
-  Tree m_tree;
+  Tree m_tree; ///< its constructor builds it
 };
 
 } // namespace neighborhood
