@@ -174,6 +174,29 @@ BOOST_AUTO_TEST_CASE(predictions_stay_within_the_samples)
   }
 }
 
+BOOST_AUTO_TEST_CASE(a_trunk_says_nothing_of_the_crown)
+{
+  // a trunk that is bent a little; whatever its sides look like there, it goes on as at its end
+  pcs::internal::Random_stream random(8, 1);
+  std::vector<Density_sample> samples;
+  for (int k = 0; k < 150; ++k) {
+    const double z = 0.02 * k, bend = 0.05 * std::sin(2 * z);
+    const Vec3 place(bend, 0, z), along = Vec3(0.1 * std::cos(2 * z), 0, 1).normalized();
+    const double density = 1000 * std::exp(10 * bend - 0.2 * z + random.uniform(-0.05, 0.05));
+    const Vec3 facing(0.3 + 5 * bend, random.uniform(-0.05, 0.05), 0);
+    samples.push_back({density, 0.05, place, along, facing - facing.dot(along) * along});
+  }
+  Density_field density;
+  Facing_field facing;
+  density.learn(samples);
+  facing.learn(samples);
+  const Vec3 up = Vec3::UnitZ(), top(0, 0, 3);
+  for (const Vec3& far : {Vec3(2, 0, 3), Vec3(0, 2, 3), Vec3(-2, 1, 4), Vec3(0, 0, 8)}) {
+    BOOST_TEST(std::abs(std::log(density(far, up) / density(top, up))) < 0.5);
+    BOOST_TEST((facing(far, up) - facing(top, up)).norm() < 0.35);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(few_samples_leave_the_median)
 {
   Axis_set set;

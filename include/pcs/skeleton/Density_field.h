@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_DENSITY_FIELD_H
 #define PCS_SKELETON_DENSITY_FIELD_H
 
+#include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/Scan.h>
 
 #include <Eigen/Cholesky>
@@ -28,7 +29,8 @@ struct Density_sample
   Vec3 facing = Vec3::Zero(); ///< mean of the outward normals of its points
 };
 
-/// Places relative to the middle of samples, in their spread.
+/// Places relative to the middle of samples, in their spread. Beyond the samples a field goes on as at the nearest place among
+/// them: a polynomial that was learned on a trunk says nothing of the crown.
 class Sample_frame
 {
 public:
@@ -43,13 +45,30 @@ public:
     for (const Density_sample& s : samples)
       spread += (s.place - m_center).squaredNorm();
     m_scale = spread > 0 ? std::sqrt(3 * double(samples.size()) / spread) : 1;
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    for (const Density_sample& s : samples) {
+      const Vec3 q = (*this)(s.place);
+      covariance += q * q.transpose() / double(samples.size());
+    }
+    const auto eigen = linear_algebra::symmetric_eigen<3>(covariance);
+    m_sides = eigen.vectors;
+    m_reach = std::sqrt(3.0) * eigen.values.cwiseMax(0).cwiseSqrt(); // of even samples
   }
 
   Vec3 operator()(const Vec3& place) const { return m_scale * (place - m_center); }
 
+  /// That of the nearest place in the box about nearly all samples.
+  Vec3 within(const Vec3& place) const
+  {
+    const Vec3 q = m_sides.transpose() * (*this)(place);
+    return m_sides * q.cwiseMin(m_reach).cwiseMax(-m_reach);
+  }
+
 private:
   Vec3 m_center = Vec3::Zero();
   double m_scale = 1;
+  Eigen::Matrix3d m_sides = Eigen::Matrix3d::Identity(); ///< of the box, by columns
+  Vec3 m_reach = Vec3::Zero();                           ///< half its lengths, in the frame
 };
 
 /// Some thousand of all samples, evenly.
@@ -65,8 +84,8 @@ inline std::vector<Density_sample> some_of(const std::vector<Density_sample>& al
 
 /*!
   Points thin out with the distance from a station, and where a branch points to it: the logarithm of the density is a
-  polynomial of second degree of the place and of the direction. Robust least squares with a ridge; no prediction leaves the
-  range of the samples.
+  polynomial of second degree of the place and of the direction. Robust least squares with a ridge; neither a place nor a
+  prediction leaves the range of the samples.
 */
 class Density_field
 {
@@ -96,7 +115,7 @@ public:
     m_highest = sorted[sorted.size() - 1 - tail];
     std::vector<Row> rows;
     for (const Density_sample& s : samples)
-      rows.push_back(row(s.place, s.along));
+      rows.push_back(row(m_frame(s.place), s.along));
     m_weights.setZero();
     constexpr int rounds = 4;
     for (int round = 0; round < rounds; ++round) {
@@ -119,7 +138,7 @@ public:
   /// Points per area of a branch at `place` that runs along the unit vector `along` [1/L^2].
   double operator()(const Vec3& place, const Vec3& along) const
   {
-    const double value = m_middle + m_weights.dot(row(place, along));
+    const double value = m_middle + m_weights.dot(row(m_frame.within(place), along));
     return std::exp(std::min(m_highest, std::max(m_lowest, value)));
   }
 
@@ -128,10 +147,10 @@ private:
   static constexpr double least_deviation = 0.05;
   using Row = Eigen::Matrix<double, size, 1>;
 
-  Row row(const Vec3& place, const Vec3& t) const
+  /// `q` is a place in the frame.
+  static Row row(const Vec3& q, const Vec3& t)
   {
     const double root = std::sqrt(2.0); // the ridge is the same for a turned scan
-    const Vec3 q = m_frame(place);
     Row r;
     r << 1, q.x(), q.y(), q.z(), q.x() * q.x(), q.y() * q.y(), q.z() * q.z(), root * q.x() * q.y(),
         root * q.x() * q.z(), root * q.y() * q.z(), t.x() * t.x(), t.y() * t.y(), t.z() * t.z(),

@@ -92,7 +92,7 @@ private:
 
   Row row(const Vec3& place) const
   {
-    const Vec3 q = m_frame(place);
+    const Vec3 q = m_frame.within(place);
     return Row(1, q.x(), q.y(), q.z());
   }
 
