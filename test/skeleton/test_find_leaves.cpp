@@ -240,6 +240,27 @@ BOOST_AUTO_TEST_CASE(leaves_are_left_out_only_where_there_are_many)
   BOOST_CHECK(find(leafy, all, false).empty());
 }
 
+BOOST_AUTO_TEST_CASE(a_crown_is_noticed_beside_a_stem_that_most_points_lie_on)
+{
+  std::mt19937 random(4);
+  std::normal_distribution<double> place(0, 0.15);
+  Points points = pipe(5000, 0.1, 0.1);
+  const std::size_t trunk = points.size();
+  const auto find = [&](std::size_t crown) {
+    Points all = points;
+    for (std::size_t k = 0; k < crown; ++k) // a cloud without lines or patches
+      all.emplace_back(1 + place(random), place(random), 0.5 + place(random));
+    const Prepared p(all, trunk);
+    const double unit = p.scan.frame.unit;
+    Axis_set set = one_axis(p.scan, 0.1 / unit, double(trunk) / 0.628 * unit * unit);
+    for (std::size_t i = trunk; i < all.size(); ++i)
+      set.axis_of_point[p.scan.point_of_input[i]] = none;
+    return wood_by_points<CGAL::Sequential_tag>(p.scan, set, p.is_used, false, {}).is_wood;
+  };
+  BOOST_CHECK(!find(2500).empty());
+  BOOST_CHECK(find(400).empty());
+}
+
 BOOST_AUTO_TEST_CASE(a_few_leaves_are_noticed_on_much_wood)
 {
   std::mt19937 random(3);

@@ -38,12 +38,11 @@ struct Leaf_rules
   double thick = 0.05; ///< share of the points that must be thick wood, or this is no tree [-]
   //! least dimension of the points of thick wood; less have rows, which look like twigs [-]
   double dimension = 1.9;
-  double open =
-      0.4; ///< least share of the points that must be no thick wood in a crown of leaves [-]
-  double leafy = 0.15;        ///< share of these that must be deep in leaves: fewer are chance [-]
+  double leafy = 0.16; ///< share of the points that must be deep in leaves: fewer are chance [-]
   std::size_t neighbors = 10; ///< that are leaves, too, around a point deep in leaves [count]
-  double patchy = 0.035; ///< or the share of these that must lie in flat patches, in any crown [-]
-  double likeness = 0.2; ///< least logarithm of the odds that a point is of wood [-]
+  //! or the share of those that are no thick wood that must lie in flat patches [-]
+  double patchy = 0.035;
+  double likeness = 0.2;          ///< least logarithm of the odds that a point is of wood [-]
   double likeness_on_line = -0.8; ///< the same on a line [-]
   int rounds = 2;                 ///< how often wood is looked for among what is left [count]
   double pipe_slack = 1.5;        ///< `Pipe_rules::slack` where there are leaves [-]
@@ -176,10 +175,9 @@ inline bool are_leaves(const Scan& scan,
       count += j != none && is_open[j];
     deep += is_open[i] && count >= rules.neighbors;
   }
-  const bool is_full =
-      double(thin) >= rules.open * double(used) && double(deep) >= rules.leafy * double(thin);
-  return is_full || double(count_patch_points(scan, is_open, is_thick, rules.patches)) >=
-                        rules.patchy * double(thin);
+  return double(deep) >= rules.leafy * double(used) ||
+         double(count_patch_points(scan, is_open, is_thick, rules.patches)) >=
+             rules.patchy * double(thin);
 }
 
 /// The points of wood among all that are used.
