@@ -289,6 +289,7 @@ private:
                          CGAL::internal_np::point_map,
                          CGAL::Identity_property_map<std::decay_t<typename Types::Element>>());
     std::vector<skeleton::Vec3> input;
+    input.reserve(static_cast<std::size_t>(std::end(*m_points) - std::begin(*m_points)));
     for (auto it = std::begin(*m_points); it != std::end(*m_points); ++it) {
       const skeleton::Vec3 p = skeleton::internal::to_vec3(get(point_map, *it));
       if (!skeleton::internal::is_coordinate(p))
@@ -310,6 +311,7 @@ private:
                     "pcs::extract_tree_skeleton(): named parameter `wood_map` must be readable, "
                     "accept an element of `points` as key, and store bool");
       std::size_t count = 0;
+      is_wood.reserve(static_cast<std::size_t>(std::end(*m_points) - std::begin(*m_points)));
       if constexpr (is_map_ok)
         for (auto it = std::begin(*m_points); it != std::end(*m_points); ++it) {
           is_wood.push_back(get(map, *it) ? 1 : 0);
@@ -323,7 +325,21 @@ private:
     return is_wood;
   }
 
-  /// Writes the maps over the points; nothing is there to write if there is no tree.
+  /// Calls `f(i)` for every input point that a branch explains, side by side where the tag allows it.
+  template <class F>
+  void for_each_explained(const F& f) const
+  {
+    if (m_session->tree().nodes.empty())
+      return;
+    internal::for_each_index<ConcurrencyTag>(m_session->report().number_of_points,
+                                             [&](std::size_t i) {
+                                               if (m_session->node_of_input(i) != skeleton::none)
+                                                 f(i);
+                                             });
+  }
+
+  /// Writes the maps over the points; nothing is there to write if there is no tree. Maps of the caller are written one point
+  /// after the other.
   void write_points() const
   {
     const skeleton::Branch_tree& found = m_session->tree();
@@ -342,9 +358,10 @@ private:
     if constexpr (internal::is_given_v<NamedParameters, internal_np::point_residual_map_t>) {
       const auto map = CGAL::parameters::get_parameter(m_np, internal_np::point_residual_map);
       using R = pcs::Map_value<std::decay_t<decltype(map)>>;
-      for_each_point([&](auto&& key, std::size_t i, skeleton::Index v) {
-        put(map, key, R(v == skeleton::none ? 0.0 : m_session->residual_of_input(i)));
-      });
+      std::vector<double> residuals(m_session->report().number_of_points, 0);
+      for_each_explained([&](std::size_t i) { residuals[i] = m_session->residual_of_input(i); });
+      for_each_point(
+          [&](auto&& key, std::size_t i, skeleton::Index) { put(map, key, R(residuals[i])); });
     }
     if constexpr (internal::is_given_v<NamedParameters, internal_np::point_is_leaf_map_t>) {
       const auto map = CGAL::parameters::get_parameter(m_np, internal_np::point_is_leaf_map);
@@ -370,9 +387,11 @@ private:
                     "and a constructor from three coordinates");
       if constexpr (is_map_ok) {
         using FT = std::decay_t<decltype(std::declval<const V&>().x())>;
-        for_each_point([&](auto&& key, std::size_t i, skeleton::Index v) {
-          const skeleton::Vec3 n = v == skeleton::none ? skeleton::Vec3(skeleton::Vec3::Zero())
-                                                       : m_session->normal_of_input(i);
+        std::vector<skeleton::Vec3> normals(m_session->report().number_of_points,
+                                            skeleton::Vec3::Zero());
+        for_each_explained([&](std::size_t i) { normals[i] = m_session->normal_of_input(i); });
+        for_each_point([&](auto&& key, std::size_t i, skeleton::Index) {
+          const skeleton::Vec3& n = normals[i];
           put(map, key, V(FT(n.x()), FT(n.y()), FT(n.z())));
         });
       }

@@ -4,6 +4,8 @@
 
 #include <pcs/skeleton/fit_axes.h>
 
+#include <CGAL/tags.h>
+
 #include <boost/test/unit_test.hpp>
 
 #include <cmath>
@@ -48,7 +50,7 @@ struct Two_arcs
       node[scan.point_of_input[i]] = tree.node_of_point[i];
     tree.node_of_point = std::move(node);
     tree.next_in_ring.assign(tree.size(), none);
-    internal::collect_nodes(scan, tree);
+    internal::collect_nodes<CGAL::Sequential_tag>(scan, tree);
   }
 
 private:

@@ -49,7 +49,8 @@ struct Linked_scan
 {
   pcs::skeleton::Scan scan;
   std::vector<std::uint8_t> is_used;
-  std::vector<pcs::skeleton::Link> links;
+  pcs::skeleton::Links links;
+  pcs::skeleton::Point_parts parts;
   std::vector<Index> root;
 
   explicit Linked_scan(const std::vector<Vec3>& points)
@@ -57,12 +58,15 @@ struct Linked_scan
     pcs::skeleton::prepare_scan<CGAL::Sequential_tag>(points, Vec3::UnitZ(), scan);
     is_used.assign(scan.size(), 1);
     links = pcs::skeleton::neighbor_links<CGAL::Sequential_tag>(scan, is_used, {});
-    root = pcs::skeleton::find_root(scan, is_used, links, Vec3::UnitZ(), {});
+    parts = pcs::skeleton::connected_parts<CGAL::Sequential_tag>(is_used, links);
+    root = pcs::skeleton::find_root(scan, is_used, links, parts, Vec3::UnitZ(), {});
   }
   pcs::skeleton::Layer_tree layers() const
   {
     const auto graph = pcs::skeleton::graph_of(scan.size(), links);
-    return layer_tree(scan, links, shortest_paths(scan, graph, root));
+    return pcs::skeleton::layer_tree<CGAL::Sequential_tag>(scan,
+                                                           links,
+                                                           shortest_paths(scan, graph, root));
   }
   Vec3 place(Index i) const { return scan.frame.to_input(scan.points[i]); }
 };
@@ -133,7 +137,7 @@ BOOST_AUTO_TEST_CASE(a_gap_is_closed_where_it_is_narrowest)
     add_stem(Vec3(0, 0, 0), 0.1, 1, 0.015, random, points);
     add_stem(Vec3(0, 0, 1.2), 0.1, 0.5, 0.015, random, points);
     const Linked_scan s(points);
-    const auto gaps = pcs::skeleton::links_across_gaps(s.scan, s.is_used, {}, s.links);
+    const auto gaps = pcs::skeleton::links_across_gaps(s.scan, s.is_used, {}, s.parts);
     BOOST_REQUIRE(gaps.size() == 1u);
     double narrowest = 1;
     for (Index i = 0; i < s.scan.size(); ++i)

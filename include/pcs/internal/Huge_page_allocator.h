@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Large arrays that are read from end to end: on pages of 2 MB where the system has them.
+// Large arrays: on pages of 2 MB where the system has them, and touched first by those who fill them.
 
 #ifndef PCS_INTERNAL_HUGE_PAGE_ALLOCATOR_H
 #define PCS_INTERNAL_HUGE_PAGE_ALLOCATOR_H
@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <limits>
 #include <new>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #ifdef __linux__
@@ -18,7 +20,9 @@ namespace pcs {
 namespace internal {
 
 /// Like `std::allocator`. Blocks of several huge pages begin at the border of one, and Linux is told to use them: a walk
-/// through 50 MB misses the cache of page addresses 12,000 times otherwise.
+/// through 50 MB misses the cache of page addresses 12,000 times otherwise. Elements that are made without arguments, as by
+/// `resize()`, are default-initialised: numbers have no value until they get one, and threads that fill an array side by
+/// side are the first to touch its pages, which the system clears then.
 template <class T>
 struct Huge_page_allocator
 {
@@ -46,6 +50,17 @@ struct Huge_page_allocator
   void deallocate(T* memory, std::size_t n) noexcept
   {
     ::operator delete(memory, alignment_of(n * sizeof(T)));
+  }
+
+  template <class U>
+  void construct(U* place) noexcept(std::is_nothrow_default_constructible<U>::value)
+  {
+    ::new (static_cast<void*>(place)) U;
+  }
+  template <class U, class... Arguments>
+  void construct(U* place, Arguments&&... arguments)
+  {
+    ::new (static_cast<void*>(place)) U(std::forward<Arguments>(arguments)...);
   }
 
   friend bool operator==(const Huge_page_allocator&, const Huge_page_allocator&)

@@ -5,6 +5,7 @@
 #ifndef PCS_NEIGHBORHOOD_SPATIAL_ORDER_H
 #define PCS_NEIGHBORHOOD_SPATIAL_ORDER_H
 
+#include <pcs/internal/Huge_page_allocator.h>
 #include <pcs/internal/parallel.h>
 
 #include <Eigen/Core>
@@ -60,17 +61,17 @@ struct Octree_cell
 /// Cells of at most this many points are not split further by `spatial_order()`; it sorts them by coordinates.
 constexpr std::size_t octree_leaf_size = 16;
 
-namespace internal {
-
 struct Order_entry
 {
   Vec3 point;
   std::uint32_t index;
 };
 
+namespace internal {
+
 template <class ConcurrencyTag>
-void order_cell(std::vector<Order_entry>& entries,
-                std::vector<Order_entry>& buffer,
+void order_cell(pcs::internal::Huge_vector<Order_entry>& entries,
+                pcs::internal::Huge_vector<Order_entry>& buffer,
                 std::size_t begin,
                 std::size_t end)
 {
@@ -124,19 +125,27 @@ void order_cell(std::vector<Order_entry>& entries,
 } // namespace internal
 
 /*!
-  Returns the indices of `points` in octree order. Exact duplicates are consecutive, the smaller index first.
-  Apart from duplicates the sequence of positions does not depend on the order of the input. O(n log n).
+  The points `point_at(i)` of `[0, n)` with their indices, in octree order. Exact duplicates are consecutive, the smaller index
+  first. Apart from duplicates the sequence of positions does not depend on the order of the input. O(n log n).
 */
+template <class ConcurrencyTag, class PointAt>
+pcs::internal::Huge_vector<Order_entry> ordered_entries(std::size_t n, const PointAt& point_at)
+{
+  pcs::internal::Huge_vector<Order_entry> entries(n), buffer(n);
+  pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
+    entries[i] = {point_at(i), static_cast<std::uint32_t>(i)};
+  });
+  internal::order_cell<ConcurrencyTag>(entries, buffer, 0, n);
+  return entries;
+}
+
+/// The indices of `points` in octree order.
 template <class ConcurrencyTag>
 std::vector<std::uint32_t> spatial_order(const std::vector<Vec3>& points)
 {
-  std::vector<internal::Order_entry> entries(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i)
-    entries[i] = {points[i], static_cast<std::uint32_t>(i)};
-  {
-    std::vector<internal::Order_entry> buffer(points.size());
-    internal::order_cell<ConcurrencyTag>(entries, buffer, 0, entries.size());
-  }
+  const auto entries =
+      ordered_entries<ConcurrencyTag>(points.size(),
+                                      [&](std::size_t i) -> const Vec3& { return points[i]; });
   std::vector<std::uint32_t> order(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
     order[i] = entries[i].index;

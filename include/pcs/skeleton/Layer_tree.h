@@ -8,9 +8,7 @@
 #include <pcs/skeleton/Neighbor_graph.h>
 #include <pcs/skeleton/Scan.h>
 #include <pcs/skeleton/join_sparse_layers.h>
-
-#include <boost/graph/detail/d_ary_heap.hpp>
-#include <boost/property_map/property_map.hpp>
+#include <pcs/skeleton/shortest_paths.h>
 
 #include <algorithm>
 #include <cmath>
@@ -26,59 +24,6 @@ namespace skeleton {
 
 /// Thickness of a layer in spacings [-].
 constexpr double layer_thickness = 3;
-
-/// The shortest paths from a set of sources; unreached points have an infinite distance and are their own predecessor.
-struct Shortest_paths
-{
-  std::vector<double> distance;
-  std::vector<Index> predecessor;
-};
-
-inline Shortest_paths
-shortest_paths(const Scan& scan, const Neighbor_graph& graph, const std::vector<Index>& sources)
-{
-  const std::size_t n = scan.size();
-  Shortest_paths paths;
-  paths.distance.assign(n, std::numeric_limits<double>::infinity());
-  paths.predecessor.resize(n);
-  for (std::size_t i = 0; i < n; ++i)
-    paths.predecessor[i] = static_cast<Index>(i);
-  for (const Index s : sources)
-    paths.distance[s] = 0;
-  if (sources.empty())
-    return paths;
-  // The loop of boost::dijkstra_shortest_paths(), which asks for the cost of every edge several times.
-  const auto index = get(boost::vertex_index, graph);
-  const auto distance = boost::make_iterator_property_map(paths.distance.begin(), index);
-  std::vector<Index> place(n, 0); // in the heap
-  const auto place_map = boost::make_iterator_property_map(place.begin(), index);
-  boost::d_ary_heap_indirect<Index, 4, decltype(place_map), decltype(distance), std::less<double>>
-      heap(distance, place_map);
-  for (const Index s : sources)
-    heap.push(s);
-  std::vector<std::uint8_t> is_done(n, 0);
-  while (!heap.empty()) {
-    const Index v = heap.top();
-    heap.pop();
-    is_done[v] = 1;
-    for (auto [w, end] = adjacent_vertices(v, graph); w != end; ++w) {
-      const Index to = static_cast<Index>(*w);
-      if (is_done[to])
-        continue;
-      const double d = paths.distance[v] + step_cost(scan, v, to);
-      if (!(d < paths.distance[to]))
-        continue;
-      const bool is_new = std::isinf(paths.distance[to]);
-      paths.distance[to] = d;
-      paths.predecessor[to] = v;
-      if (is_new)
-        heap.push(to);
-      else
-        heap.update(to);
-    }
-  }
-  return paths;
-}
 
 /// A node is a connected part of a layer. Parents have smaller numbers than their children.
 struct Layer_tree
@@ -132,7 +77,8 @@ inline void number_layer_parts(Point_sets& sets, const std::vector<Index>& layer
 }
 
 /// Sorts the points by node and computes centres and spreads.
-inline void collect_nodes(const Scan& scan, Layer_tree& tree)
+template <class ConcurrencyTag>
+void collect_nodes(const Scan& scan, Layer_tree& tree)
 {
   const std::size_t n = scan.size(), m = tree.size();
   tree.first.assign(m + 1, 0);
@@ -148,7 +94,8 @@ inline void collect_nodes(const Scan& scan, Layer_tree& tree)
       tree.point[next[tree.node_of_point[i]]++] = i;
   tree.center.assign(m, Vec3::Zero());
   tree.spread.assign(m, 0);
-  for (Index v = 0; v < m; ++v) {
+  pcs::internal::for_each_index<ConcurrencyTag>(m, [&](std::size_t node) {
+    const Index v = static_cast<Index>(node);
     const double count = double(tree.count(v));
     for (Index k = tree.first[v]; k < tree.first[v + 1]; ++k)
       tree.center[v] += scan.points[tree.point[k]];
@@ -156,15 +103,15 @@ inline void collect_nodes(const Scan& scan, Layer_tree& tree)
     for (Index k = tree.first[v]; k < tree.first[v + 1]; ++k)
       tree.spread[v] += (scan.points[tree.point[k]] - tree.center[v]).squaredNorm();
     tree.spread[v] = std::sqrt(tree.spread[v] / count);
-  }
+  });
 }
 
 /// The parent of a node is the one that most shortest paths of its points come from; among equals the one with more
 /// points, or the wider one.
-inline void vote_for_parents(const std::vector<Index>& predecessor, Layer_tree& tree)
+template <class ConcurrencyTag>
+void vote_for_parents(const std::vector<Index>& predecessor, Layer_tree& tree)
 {
-  std::vector<Index> votes;
-  for (Index v = 0; v < tree.size(); ++v) {
+  const auto vote = [&](Index v, std::vector<Index>& votes) {
     votes.clear();
     for (Index k = tree.first[v]; k < tree.first[v + 1]; ++k) {
       const Index from = tree.node_of_point[predecessor[tree.point[k]]];
@@ -185,7 +132,14 @@ inline void vote_for_parents(const std::vector<Index>& predecessor, Layer_tree& 
         tree.parent[v] = votes[b];
       }
     }
-  }
+  };
+  pcs::internal::for_each_block<ConcurrencyTag>(tree.size(),
+                                                pcs::internal::default_block,
+                                                [&](std::size_t begin, std::size_t end) {
+                                                  std::vector<Index> votes;
+                                                  for (std::size_t v = begin; v < end; ++v)
+                                                    vote(static_cast<Index>(v), votes);
+                                                });
 }
 
 } // namespace internal
@@ -194,25 +148,31 @@ inline void vote_for_parents(const std::vector<Index>& predecessor, Layer_tree& 
   Cuts the shortest paths into layers and returns the tree of their connected parts.
   `links` are the edges of the graph that the paths were found in.
 */
-inline Layer_tree
-layer_tree(const Scan& scan, const std::vector<Link>& links, const Shortest_paths& paths)
+template <class ConcurrencyTag>
+Layer_tree layer_tree(const Scan& scan, const Links& links, const Shortest_paths& paths)
 {
   const std::size_t n = scan.size();
   const double thickness = layer_thickness * scan.spacing;
   std::vector<Index> layer(n, none);
-  for (std::size_t i = 0; i < n; ++i)
+  pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
     if (std::isfinite(paths.distance[i]))
       layer[i] = static_cast<Index>(std::min(paths.distance[i] / thickness, double(none - 1)));
+  });
   Layer_tree tree;
   tree.node_of_point.assign(n, none);
-  Point_sets sets(n);
-  for (const Link& l : links)
-    if (layer[l.first] == layer[l.second] && layer[l.first] != none)
-      sets.unite(l.first, l.second);
-  join_sparse_layers(scan, links, paths.distance, layer, thickness, Sparse_layer_rules(), sets);
+  Point_sets sets = united_points<ConcurrencyTag>(n, links, [&](const Link& l) {
+    return layer[l.first] == layer[l.second] && layer[l.first] != none;
+  });
+  join_sparse_layers<ConcurrencyTag>(scan,
+                                     links,
+                                     paths.distance,
+                                     layer,
+                                     thickness,
+                                     Sparse_layer_rules(),
+                                     sets);
   internal::number_layer_parts(sets, layer, tree);
-  internal::collect_nodes(scan, tree);
-  internal::vote_for_parents(paths.predecessor, tree);
+  internal::collect_nodes<ConcurrencyTag>(scan, tree);
+  internal::vote_for_parents<ConcurrencyTag>(paths.predecessor, tree);
   tree.next_in_ring.assign(tree.size(), none);
   return tree;
 }

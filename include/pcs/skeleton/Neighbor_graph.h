@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_NEIGHBOR_GRAPH_H
 #define PCS_SKELETON_NEIGHBOR_GRAPH_H
 
+#include <pcs/internal/Huge_page_allocator.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/skeleton/Scan.h>
 
@@ -53,7 +54,17 @@ inline double step_cost(const Scan& scan, Index i, Index j)
   return d * std::max(1.0, d / (cheap_step * scan.spacing));
 }
 
-using Link = std::pair<Index, Index>;
+/// Two points that are linked, the smaller index first.
+struct Link
+{
+  Index first, second;
+
+  friend bool operator<(const Link& a, const Link& b)
+  {
+    return a.first != b.first ? a.first < b.first : a.second < b.second;
+  }
+};
+using Links = pcs::internal::Huge_vector<Link>;
 
 /// Sets of points that hang together: union by size, path halving.
 class Point_sets
@@ -87,77 +98,157 @@ private:
   std::vector<Index> m_size, m_parent;
 };
 
-/// Links between the points of `is_used` that are neighbours, each once, in increasing order.
+/// Links between the points of `is_used` that are neighbours, each once, nearly in increasing order.
 template <class ConcurrencyTag>
-std::vector<Link>
-neighbor_links(const Scan& scan, const std::vector<std::uint8_t>& is_used, const Link_rule& rule)
+Links neighbor_links(const Scan& scan,
+                     const std::vector<std::uint8_t>& is_used,
+                     const Link_rule& rule)
 {
-  const std::size_t n = scan.size(), block = 4096;
-  std::vector<std::vector<Link>> parts((n + block - 1) / block);
+  const std::size_t n = scan.size(), block = 4096, number_of_blocks = (n + block - 1) / block;
   const auto is_link = [&](Index i, Index j) {
     const double longest = std::max(rule.longest(scan, i), rule.longest(scan, j));
     return (scan.points[i] - scan.points[j]).squaredNorm() <= longest * longest;
   };
+  const auto knows = [&](Index i, Index j) {
+    bool does = false;
+    for (const Index k : scan.neighbors[i])
+      does |= k == j; // all of them: no branch to be guessed
+    return does;
+  };
+  std::vector<std::uint16_t> links_of(
+      n); // bit b: the link to the b-th neighbour is listed with this point
+  static_assert(neighbors_per_point <= 16, "pcs: one bit per neighbour");
+  std::vector<std::size_t> first(number_of_blocks + 1, 0);
   pcs::internal::for_each_block<ConcurrencyTag>(n, block, [&](std::size_t begin, std::size_t end) {
-    auto& part = parts[begin / block];
+    std::size_t count = 0;
     for (std::size_t k = begin; k < end; ++k) {
       const Index i = static_cast<Index>(k);
       if (!is_used[i])
         continue;
-      for (const Index j : scan.neighbors[i]) {
-        if (j == none || !is_used[j] || !is_link(i, j))
+      unsigned bits = 0;
+      for (std::size_t b = 0; b < neighbors_per_point; ++b) {
+        const Index j = scan.neighbors[i][b];
+        // of two that know each other, the smaller one lists the link
+        if (j == none || !is_used[j] || !is_link(i, j) || (j < i && knows(j, i)))
           continue;
-        // the other side stores it if both know each other
-        const auto& other = scan.neighbors[j];
-        if (j < i && std::find(other.begin(), other.end(), i) != other.end())
-          continue;
-        part.emplace_back(std::min(i, j), std::max(i, j));
+        bits |= 1U << b;
+        ++count;
       }
+      links_of[i] = static_cast<std::uint16_t>(bits);
     }
+    first[begin / block + 1] = count;
   });
-  std::vector<std::size_t> first(parts.size() + 1, 0);
-  for (std::size_t b = 0; b < parts.size(); ++b)
-    first[b + 1] = first[b] + parts[b].size();
-  std::vector<Link> links;
+  for (std::size_t b = 0; b < number_of_blocks; ++b)
+    first[b + 1] += first[b];
+  Links links;
   links.reserve(first.back() + first.back() / 16); // for those that close gaps
   links.resize(first.back());
-  pcs::internal::for_each_index<ConcurrencyTag>(
-      parts.size(),
-      [&](std::size_t b) {
-        std::copy(parts[b].begin(), parts[b].end(), links.begin() + std::ptrdiff_t(first[b]));
-        std::vector<Link>().swap(parts[b]);
-      },
-      1);
+  pcs::internal::for_each_block<ConcurrencyTag>(n, block, [&](std::size_t begin, std::size_t end) {
+    Link* next = links.data() + first[begin / block];
+    for (std::size_t k = begin; k < end; ++k) {
+      const Index i = static_cast<Index>(k);
+      for (std::size_t b = 0; b < neighbors_per_point; ++b)
+        if (links_of[i] >> b & 1U) {
+          const Index j = scan.neighbors[i][b];
+          *next++ = {std::min(i, j), std::max(i, j)};
+        }
+    }
+  });
   return links;
 }
 
 /*!
-  The shortest links that join components, in Boruvka's rounds, up to the widest gap of the rule. The largest component
-  never searches: the others find it.
+  The sets of points that hang together by the links for which `is_wanted(link)` holds. Stretches of links are united side by
+  side as far as both ends are in one stretch of points, which is nearly always so in spatial order; then the rest.
 */
-inline std::vector<Link> links_across_gaps(const Scan& scan,
-                                           const std::vector<std::uint8_t>& is_used,
-                                           const Link_rule& rule,
-                                           const std::vector<Link>& links)
+template <class ConcurrencyTag, class IsWanted>
+Point_sets united_points(std::size_t n, const Links& links, const IsWanted& is_wanted)
 {
-  std::vector<Link> across;
+  constexpr std::size_t block = std::size_t(1) << 17;
+  const std::size_t number_of_blocks = (links.size() + block - 1) / block;
+  std::vector<Index> border(number_of_blocks + 1,
+                            static_cast<Index>(n)); // of the stretches of points
+  for (std::size_t b = 0; b < number_of_blocks; ++b)
+    border[b] = b == 0 ? 0 : std::max(border[b - 1], links[b * block].first);
+  Point_sets sets(n);
+  std::vector<std::vector<Link>> rest(number_of_blocks);
+  pcs::internal::for_each_block<ConcurrencyTag>(links.size(),
+                                                block,
+                                                [&](std::size_t begin, std::size_t end) {
+                                                  const std::size_t b = begin / block;
+                                                  for (std::size_t k = begin; k < end; ++k) {
+                                                    const Link& l = links[k];
+                                                    if (!is_wanted(l))
+                                                      continue;
+                                                    if (l.first >= border[b] &&
+                                                        l.second < border[b + 1])
+                                                      sets.unite(l.first, l.second);
+                                                    else
+                                                      rest[b].push_back(l);
+                                                  }
+                                                });
+  for (const std::vector<Link>& part : rest)
+    for (const Link& l : part)
+      sets.unite(l.first, l.second);
+  return sets;
+}
+
+/// The connected parts of some points: the set of each point, and the size of each set.
+struct Point_parts
+{
+  std::vector<Index> part; ///< a point of the part; `none` if not used
+  std::vector<Index> size; ///< by that point
+
+  std::vector<Index> points_of(Index s) const
+  {
+    std::vector<Index> points;
+    for (Index i = 0; i < part.size(); ++i)
+      if (part[i] == s)
+        points.push_back(i);
+    return points;
+  }
+};
+
+/// The connected parts of the points of `is_used`.
+template <class ConcurrencyTag>
+Point_parts connected_parts(const std::vector<std::uint8_t>& is_used, const Links& links)
+{
+  const std::size_t n = is_used.size();
+  Point_sets sets = united_points<ConcurrencyTag>(n, links, [&](const Link& l) {
+    return is_used[l.first] && is_used[l.second];
+  });
+  Point_parts parts{std::vector<Index>(n, none), std::vector<Index>(n, 0)};
+  for (Index i = 0; i < n; ++i)
+    if (is_used[i])
+      ++parts.size[parts.part[i] = sets.find(i)];
+  return parts;
+}
+
+/*!
+  The shortest links that join the parts of the points of `is_used`, in Boruvka's rounds, up to the widest gap of the rule. The
+  largest part never searches: the others find it.
+*/
+inline Links links_across_gaps(const Scan& scan,
+                               const std::vector<std::uint8_t>& is_used,
+                               const Link_rule& rule,
+                               const Point_parts& parts)
+{
+  Links across;
   const std::size_t n = scan.size();
   const double widest = rule.gap * scan.spacing;
-  Point_sets sets(n);
-  for (const Link& l : links)
-    sets.unite(l.first, l.second);
+  Point_sets sets(n); // of parts
   struct Best
   {
     double squared_distance;
     Link link;
   };
-  std::vector<Index> label(n, none), size(n, 0);
+  std::vector<Index> label = parts.part, size;
   std::vector<Best> best;
   while (widest > 0) {
-    std::fill(size.begin(), size.end(), 0);
+    size.assign(n, 0);
     for (Index i = 0; i < n; ++i)
       if (is_used[i])
-        ++size[label[i] = sets.find(i)];
+        ++size[label[i] = sets.find(parts.part[i])];
     const Index largest =
         static_cast<Index>(std::max_element(size.begin(), size.end()) - size.begin());
     best.assign(n, {widest * widest, {none, none}});
@@ -181,12 +272,14 @@ inline std::vector<Link> links_across_gaps(const Scan& scan,
                                                       : a.link < b.link;
     });
     bool is_joined = false;
-    for (const Best& b : chosen)
-      if (sets.find(b.link.first) != sets.find(b.link.second)) {
-        sets.unite(b.link.first, b.link.second);
+    for (const Best& b : chosen) {
+      const Index one = parts.part[b.link.first], other = parts.part[b.link.second];
+      if (sets.find(one) != sets.find(other)) {
+        sets.unite(one, other);
         across.push_back(b.link);
         is_joined = true;
       }
+    }
     if (!is_joined)
       break;
   }
@@ -195,38 +288,62 @@ inline std::vector<Link> links_across_gaps(const Scan& scan,
 
 namespace internal {
 
-/// Every link in both directions.
-class Edge_iterator
-  : public boost::iterator_facade<Edge_iterator, Link, boost::forward_traversal_tag, Link>
+/// Every link of two lists in both directions.
+class Edge_iterator : public boost::iterator_facade<Edge_iterator,
+                                                    std::pair<Index, Index>,
+                                                    boost::forward_traversal_tag,
+                                                    std::pair<Index, Index>>
 {
 public:
-  explicit Edge_iterator(const Link* link) : m_link(link) {}
+  static Edge_iterator begin(const Links& first, const Links& second)
+  {
+    const Link *end = first.data() + first.size(), *next = second.data();
+    return first.empty() ? Edge_iterator(next, nullptr, nullptr)
+                         : Edge_iterator(first.data(), end, next);
+  }
+  static Edge_iterator end(const Links& second)
+  {
+    return Edge_iterator(second.data() + second.size(), nullptr, nullptr);
+  }
 
 private:
   friend class boost::iterator_core_access;
+
+  Edge_iterator(const Link* link, const Link* end, const Link* next)
+    : m_link(link), m_end(end), m_next(next)
+  {
+  }
+
   void increment()
   {
     m_link += m_is_reverse;
+    if (m_link == m_end)
+      m_link = m_next;
     m_is_reverse = !m_is_reverse;
   }
   bool equal(const Edge_iterator& other) const
   {
     return m_link == other.m_link && m_is_reverse == other.m_is_reverse;
   }
-  Link dereference() const { return m_is_reverse ? Link(m_link->second, m_link->first) : *m_link; }
+  std::pair<Index, Index> dereference() const
+  {
+    return m_is_reverse ? std::make_pair(m_link->second, m_link->first)
+                        : std::make_pair(m_link->first, m_link->second);
+  }
 
-  const Link* m_link;
+  const Link *m_link, *m_end,
+      *m_next; ///< where it is; where the first list ends, and the other begins
   bool m_is_reverse = false;
 };
 
 } // namespace internal
 
-/// Rows from links, each link in both directions.
-inline Neighbor_graph graph_of(std::size_t n, const std::vector<Link>& links)
+/// Rows from links and those that close gaps, each in both directions.
+inline Neighbor_graph graph_of(std::size_t n, const Links& links, const Links& gaps = Links())
 {
   return Neighbor_graph(boost::edges_are_unsorted_multi_pass,
-                        internal::Edge_iterator(links.data()),
-                        internal::Edge_iterator(links.data() + links.size()),
+                        internal::Edge_iterator::begin(links, gaps),
+                        internal::Edge_iterator::end(gaps),
                         static_cast<Index>(n));
 }
 

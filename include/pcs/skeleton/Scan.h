@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_SCAN_H
 #define PCS_SKELETON_SCAN_H
 
+#include <pcs/internal/Huge_page_allocator.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/neighborhood/Nearest_neighbors.h>
 #include <pcs/neighborhood/spatial_order.h>
@@ -44,7 +45,8 @@ struct Scan
   Scan_frame frame;
   std::vector<Vec3> points;
   std::vector<Index> point_of_input; ///< which of `points` an input point became
-  std::vector<std::array<Index, neighbors_per_point>> neighbors; ///< nearest first, `none` behind
+  pcs::internal::Huge_vector<std::array<Index, neighbors_per_point>>
+      neighbors;                     ///< nearest first, `none` behind
   std::vector<double> local_spacing; ///< distance to the 4th neighbour [L]
   std::vector<std::uint8_t> is_outlier;
   double spacing = 0; ///< median distance to the nearest neighbour [L]
@@ -90,23 +92,38 @@ struct Distinct_places
 template <class ConcurrencyTag>
 Distinct_places distinct_places(const std::vector<Vec3>& points, const Scan_frame& frame)
 {
-  std::vector<Vec3> local(points.size());
-  pcs::internal::for_each_index<ConcurrencyTag>(points.size(), [&](std::size_t i) {
-    local[i] = frame.to_grid(points[i]);
+  const std::size_t n = points.size(), block = 4096, number_of_blocks = (n + block - 1) / block;
+  const auto entries = neighborhood::ordered_entries<ConcurrencyTag>(n, [&](std::size_t i) {
+    return frame.to_grid(points[i]);
   });
-  const std::vector<Index> order = neighborhood::spatial_order<ConcurrencyTag>(local);
+  const auto is_first = [&](std::size_t i) {
+    return i == 0 || entries[i].point != entries[i - 1].point;
+  };
+  std::vector<std::size_t> first(number_of_blocks + 1, 0); // place of each block
+  pcs::internal::for_each_block<ConcurrencyTag>(n, block, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      first[begin / block + 1] += is_first(i);
+  });
+  for (std::size_t b = 0; b < number_of_blocks; ++b)
+    first[b + 1] += first[b];
   Distinct_places result;
-  result.places.reserve(points.size());
-  result.chosen.reserve(points.size());
-  result.of_point.resize(points.size());
-  for (const Index i : order) {
-    if (result.places.empty() || result.places.back() != local[i]) {
-      result.places.push_back(local[i]);
-      result.chosen.push_back(i);
-    } else if (neighborhood::lexicographically_less(points[i], points[result.chosen.back()]))
-      result.chosen.back() = i;
-    result.of_point[i] = static_cast<Index>(result.places.size() - 1);
-  }
+  result.places.resize(first.back());
+  result.chosen.resize(first.back());
+  result.of_point.resize(n);
+  pcs::internal::for_each_block<ConcurrencyTag>(n, block, [&](std::size_t begin, std::size_t end) {
+    std::size_t next = first[begin / block];
+    for (std::size_t i = begin; i < end; ++i) {
+      if (is_first(i)) {
+        Index chosen = entries[i].index;
+        for (std::size_t k = i + 1; k < n && !is_first(k); ++k)
+          if (neighborhood::lexicographically_less(points[entries[k].index], points[chosen]))
+            chosen = entries[k].index;
+        result.places[next] = entries[i].point;
+        result.chosen[next++] = chosen;
+      }
+      result.of_point[entries[i].index] = static_cast<Index>(next - 1);
+    }
+  });
   return result;
 }
 

@@ -23,6 +23,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -81,12 +82,9 @@ public:
       m_wall_removal.leave_out_walls_and_roofs(m_options.up);
     }
     m_are_walls_out = true;
-    std::vector<Link> links = links_of_used();
-    std::vector<Link> gaps;
-    const auto find_root_and_gaps = [&] {
-      m_root = root_points(links);
-      gaps = links_across_gaps(m_scan, m_used.flags(), m_options.axes.links, links);
-    };
+    Links links = links_of_used();
+    Linked_parts linked;
+    const auto link = [&] { link_parts(links, linked); };
     // most scans have no ground, and what is found meanwhile stays
     std::vector<std::uint8_t> is_above = m_used.flags();
     std::size_t ground = 0;
@@ -95,7 +93,7 @@ public:
           if (m_options.do_mark_ground)
             ground = mark_ground(m_scan, links, m_options.up, m_options.ground, is_above);
         },
-        find_root_and_gaps);
+        link);
     if (!progress(0.42))
       return false; // the ground is not left out yet
     m_report.number_of_ground_points = ground;
@@ -107,9 +105,8 @@ public:
     const bool may_have_faces = m_wall_removal.has_faces() || ground > 0;
     const auto find_links = [&] { return links_of_used(); };
     if ((may_have_faces && m_wall_removal.leave_out_rest(find_links, links)) || ground > 0)
-      find_root_and_gaps();
-    links.insert(links.end(), gaps.begin(), gaps.end());
-    trace_paths(links);
+      link();
+    trace_paths(links, linked);
     m_report.seconds.paths = watch.lap();
     m_stage = 2;
     return progress(0.6);
@@ -257,20 +254,43 @@ public:
   bool is_leaf_of_input(std::size_t i) const { return m_used.is_leaf(m_scan.point_of_input[i]); }
 
 private:
-  std::vector<Link> links_of_used() const
+  Links links_of_used() const
   {
     return neighbor_links<ConcurrencyTag>(m_scan, m_used.flags(), m_options.axes.links);
   }
 
-  /// Paths from the root, and their layers. `links` close gaps, too.
-  void trace_paths(const std::vector<Link>& links)
+  /// All points in one graph: where parts are apart, the gaps between them are closed.
+  struct Linked_parts
   {
-    {
-      const Neighbor_graph graph = graph_of(m_scan.size(), links);
-      m_paths = shortest_paths(m_scan, graph, m_root);
-    }
-    m_layers = layer_tree(m_scan, links, m_paths);
-    merge_rings(m_scan, m_options.rings, m_layers);
+    Links gaps;
+    std::unique_ptr<Neighbor_graph> graph;
+  };
+
+  /// Finds the root, and the graph of `links` with those that close gaps.
+  void link_parts(const Links& links, Linked_parts& linked)
+  {
+    linked.graph.reset(); // large
+    const Point_parts parts = connected_parts<ConcurrencyTag>(m_used.flags(), links);
+    if (m_options.root)
+      m_root = {m_scan.search
+                    ->nearest_if(m_scan.frame.to_local(*m_options.root),
+                                 std::numeric_limits<double>::max(),
+                                 [&](Index i) { return m_used.flags()[i] != 0; })
+                    .index};
+    else
+      m_root = find_root(m_scan, m_used.flags(), links, parts, m_options.up, m_options.roots);
+    linked.gaps = links_across_gaps(m_scan, m_used.flags(), m_options.axes.links, parts);
+    linked.graph.reset(new Neighbor_graph(graph_of(m_scan.size(), links, linked.gaps)));
+  }
+
+  /// Paths from the root, and their layers. Appends those that close gaps to `links`.
+  void trace_paths(Links& links, Linked_parts& linked)
+  {
+    m_paths = shortest_paths(m_scan, *linked.graph, m_root);
+    linked.graph.reset();
+    links.insert(links.end(), linked.gaps.begin(), linked.gaps.end());
+    m_layers = layer_tree<ConcurrencyTag>(m_scan, links, m_paths);
+    merge_rings<ConcurrencyTag>(m_scan, m_options.rings, m_layers);
   }
 
   /// The wood among all points, before any leaves are left out; empty if there are none to leave out.
@@ -299,12 +319,10 @@ private:
     if (!has_wood || is_wood == m_used.flags())
       return false;
     m_used.leave_out_leaves(is_wood);
-    std::vector<Link> links = links_of_used();
-    m_root = root_points(links);
-    const std::vector<Link> gaps =
-        links_across_gaps(m_scan, m_used.flags(), m_options.axes.links, links);
-    links.insert(links.end(), gaps.begin(), gaps.end());
-    trace_paths(links);
+    Links links = links_of_used();
+    Linked_parts linked;
+    link_parts(links, linked);
+    trace_paths(links, linked);
     return true;
   }
 
@@ -317,16 +335,6 @@ private:
     m_joints[root].is_reversed = is_root_reversed(m_scan, m_axes.axes[root].axis, m_root);
     m_tree = branch_tree(m_axes, m_joints, root, m_scan.spacing);
     return root;
-  }
-
-  std::vector<Index> root_points(const std::vector<Link>& links) const
-  {
-    if (!m_options.root)
-      return find_root(m_scan, m_used.flags(), links, m_options.up, m_options.roots);
-    const auto found = m_scan.search->nearest_if(m_scan.frame.to_local(*m_options.root),
-                                                 std::numeric_limits<double>::max(),
-                                                 [&](Index i) { return m_used.flags()[i] != 0; });
-    return {found.index};
   }
 
   /// Takes out of the radii what beams and voxels add to them.

@@ -36,18 +36,52 @@ struct Terrain_rules
   double sheet = 2; ///< points within half a cell by those up to one cell above them, at least [-]
 };
 
+/// The rectangle across the direction up that holds nearly all points.
+struct Terrain_bounds
+{
+  Vec3 e1, e2; ///< its sides
+  Eigen::Vector2d origin = Eigen::Vector2d::Zero(), extent = Eigen::Vector2d::Zero();
+
+  Terrain_bounds(const Scan& scan,
+                 const Vec3& up,
+                 const Terrain_rules& rules,
+                 const std::vector<std::uint8_t>& is_used)
+    : e1(up.unitOrthogonal()), e2(up.cross(e1))
+  {
+    std::vector<double> q;
+    q.reserve(scan.size());
+    for (Eigen::Index d = 0; d < 2; ++d) {
+      const Vec3& along = d == 0 ? e1 : e2;
+      q.clear();
+      for (std::size_t i = 0; i < scan.size(); ++i)
+        if (is_used[i])
+          q.push_back(along.dot(scan.points[i]));
+      const auto cut = static_cast<std::ptrdiff_t>(rules.clip * double(q.size()));
+      const auto low = q.begin() + cut, high = q.end() - 1 - cut;
+      std::nth_element(q.begin(), low, q.end());
+      origin(d) = *low;
+      std::nth_element(low, high, q.end());
+      extent(d) = *high - origin(d);
+    }
+  }
+};
+
 /// The largest connected surface of lowest points of a scan.
 class Terrain
 {
 public:
   Terrain(const Scan& scan,
           const Vec3& up,
+          const Terrain_bounds& bounds,
           double cell,
           const Terrain_rules& rules,
           const std::vector<std::uint8_t>& is_used)
-    : m_up(up), m_e1(up.unitOrthogonal()), m_e2(up.cross(m_e1))
+    : m_up(up), m_e1(bounds.e1), m_e2(bounds.e2), m_origin(bounds.origin)
   {
-    set_grid(scan, cell, rules, is_used);
+    m_cell = std::max(cell, bounds.extent.maxCoeff() / rules.most_cells);
+    m_size[0] = static_cast<std::size_t>(bounds.extent.x() / m_cell) + 1;
+    m_size[1] = static_cast<std::size_t>(bounds.extent.y() / m_cell) + 1;
+    m_cells.resize(m_size[0] * m_size[1]);
     find_lowest(scan, is_used);
     const std::vector<std::size_t> surface = largest_surface(rules.steepest * m_cell);
     for (const std::size_t c : surface)
@@ -195,34 +229,6 @@ private:
             visit(std::size_t(a) * m_size[1] + std::size_t(b));
   }
 
-  void set_grid(const Scan& scan,
-                double cell,
-                const Terrain_rules& rules,
-                const std::vector<std::uint8_t>& is_used)
-  {
-    std::array<std::vector<double>, 2> q;
-    for (std::size_t i = 0; i < scan.size(); ++i)
-      if (is_used[i]) {
-        q[0].push_back(m_e1.dot(scan.points[i]));
-        q[1].push_back(m_e2.dot(scan.points[i]));
-      }
-    Vec2 extent;
-    const auto cut = static_cast<std::size_t>(rules.clip * double(q[0].size()));
-    for (std::size_t d = 0; d < 2; ++d) {
-      const auto low = q[d].begin() + static_cast<std::ptrdiff_t>(cut);
-      const auto high = q[d].end() - 1 - static_cast<std::ptrdiff_t>(cut);
-      std::nth_element(q[d].begin(), low, q[d].end());
-      const auto axis = static_cast<Eigen::Index>(d);
-      m_origin(axis) = *low;
-      std::nth_element(low, high, q[d].end());
-      extent(axis) = *high - m_origin(axis);
-    }
-    m_cell = std::max(cell, extent.maxCoeff() / rules.most_cells);
-    m_size[0] = static_cast<std::size_t>(extent.x() / m_cell) + 1;
-    m_size[1] = static_cast<std::size_t>(extent.y() / m_cell) + 1;
-    m_cells.resize(m_size[0] * m_size[1]);
-  }
-
   void find_lowest(const Scan& scan, const std::vector<std::uint8_t>& is_used)
   {
     struct Lowest
@@ -367,8 +373,9 @@ inline std::optional<Terrain> find_terrain(const Scan& scan,
       sum += (scan.points[i] - mean).squaredNorm() - std::pow(up.dot(scan.points[i] - mean), 2);
   double cell =
       std::max(rules.cell * std::sqrt(std::max(0.0, sum) / count), rules.spacings * scan.spacing);
+  const Terrain_bounds bounds(scan, up, rules, is_used);
   for (int scale = 0; scale < rules.scales; ++scale, cell *= 2) {
-    Terrain terrain(scan, up, cell, rules, is_used);
+    Terrain terrain(scan, up, bounds, cell, rules, is_used);
     if (terrain.carries_all(scan, rules, is_used))
       return terrain;
   }

@@ -45,7 +45,7 @@ public:
   /// The other faces, and what is left beside them. `find_links` gives the links between the used points. Returns whether there
   /// is any.
   template <class FindLinks>
-  bool leave_out_rest(const FindLinks& find_links, std::vector<Link>& links)
+  bool leave_out_rest(const FindLinks& find_links, Links& links)
   {
     bool is_found = false;
     for (int round = 1; round < m_rules.rounds && leave_out(find_faces()); ++round)

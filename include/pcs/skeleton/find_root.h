@@ -81,34 +81,6 @@ struct Slab_shape
   }
 };
 
-/// The connected parts of the points of `is_used`: the set of each point, and the size of each set.
-struct Point_parts
-{
-  std::vector<Index> part; ///< a point of the part; `none` if not used
-  std::vector<Index> size; ///< by that point
-
-  Point_parts(const std::vector<std::uint8_t>& is_used, const std::vector<Link>& links)
-    : part(is_used.size(), none), size(is_used.size(), 0)
-  {
-    Point_sets sets(is_used.size());
-    for (const Link& l : links)
-      if (is_used[l.first] && is_used[l.second])
-        sets.unite(l.first, l.second);
-    for (Index i = 0; i < is_used.size(); ++i)
-      if (is_used[i])
-        ++size[part[i] = sets.find(i)];
-  }
-
-  std::vector<Index> points_of(Index s) const
-  {
-    std::vector<Index> points;
-    for (Index i = 0; i < part.size(); ++i)
-      if (part[i] == s)
-        points.push_back(i);
-    return points;
-  }
-};
-
 /// Connected points near the lower end of their part.
 struct Stem
 {
@@ -153,7 +125,7 @@ struct Stem
 /// `stem_of_point` tells those of the lowest points. O(points log points).
 inline Index busiest_stem(const Scan& scan,
                           const std::vector<double>& height,
-                          const std::vector<Link>& links,
+                          const Links& links,
                           const std::vector<Index>& stem_of_point,
                           Index first)
 {
@@ -195,14 +167,15 @@ class Stem_search
 public:
   Stem_search(const Scan& scan,
               const std::vector<std::uint8_t>& is_used,
-              const std::vector<Link>& links,
+              const Links& links,
+              const Point_parts& parts,
               const Vec3& up,
               const Root_rules& rules)
     : m_scan(scan),
       m_links(links),
       m_up(up),
       m_rules(rules),
-      m_parts(is_used, links),
+      m_parts(parts),
       m_height(scan.size()),
       m_low_of(scan.size(), infinity),
       m_high_of(scan.size(), -infinity)
@@ -251,7 +224,7 @@ private:
       is_low[i] =
           part != none && m_low_of[part] <= floating && m_height[i] <= m_low_of[part] + slab;
     }
-    const Point_parts low_parts(is_low, m_links);
+    const Point_parts low_parts = connected_parts<CGAL::Sequential_tag>(is_low, m_links);
     Index first = none;
     double best = -1;
     for (Index s = 0; s < n; ++s)
@@ -281,10 +254,10 @@ private:
   }
 
   const Scan& m_scan;
-  const std::vector<Link>& m_links;
+  const Links& m_links;
   const Vec3& m_up;
   const Root_rules& m_rules;
-  Point_parts m_parts;
+  const Point_parts& m_parts;
   std::vector<double> m_height, m_low_of, m_high_of; ///< of points; of parts
   double m_low = infinity, m_high = -infinity;       ///< of the large parts
 };
@@ -294,15 +267,16 @@ private:
 /*!
   The lowest layer of points of the thickest thing that stands at the lower end of a large connected part, the tall ones
   first. Of a stem that lies on its side, or of a flat cloud, one end. `links` are those between neighbours, without closed
-  gaps. Never empty if a point is used.
+  gaps, `parts` what hangs together by them. Never empty if a point is used.
 */
 inline std::vector<Index> find_root(const Scan& scan,
                                     const std::vector<std::uint8_t>& is_used,
-                                    const std::vector<Link>& links,
+                                    const Links& links,
+                                    const Point_parts& parts,
                                     const Vec3& up,
                                     const Root_rules& rules)
 {
-  const internal::Stem_search search(scan, is_used, links, up, rules);
+  const internal::Stem_search search(scan, is_used, links, parts, up, rules);
   internal::Stem stem = search();
   // all around a thick stem, or the layers above would be tilted; of a lying one the end
   const double spread = stem.is_lying ? stem.shape.width : stem.spread();

@@ -249,15 +249,14 @@ bool fit_chains(const Scan& scan,
 }
 
 /// In every component, the point nearest to an axis.
-inline std::vector<Index> nearest_to_axes(const Scan& scan,
-                                          const Axis_set& set,
-                                          const std::vector<std::uint8_t>& is_used,
-                                          const std::vector<Link>& links)
+template <class ConcurrencyTag>
+std::vector<Index> nearest_to_axes(const Scan& scan,
+                                   const Axis_set& set,
+                                   const std::vector<std::uint8_t>& is_used,
+                                   const Links& links)
 {
   const std::size_t n = scan.size();
-  Point_sets sets(n);
-  for (const Link& l : links)
-    sets.unite(l.first, l.second);
+  Point_sets sets = united_points<ConcurrencyTag>(n, links, [](const Link&) { return true; });
   // a tree of the points of axes, where a search among all would pass many others, as in leaves
   std::vector<Vec3> covered;
   for (Index i = 0; i < n; ++i)
@@ -333,10 +332,12 @@ Axis_set fit_axes(const Scan& scan,
     std::vector<std::uint8_t> is_used(n);
     for (Index i = 0; i < n; ++i)
       is_used[i] = !scan.is_outlier[i] && !set.is_covered(i);
-    const std::vector<Link> rest = neighbor_links<ConcurrencyTag>(scan, is_used, later.links);
-    const std::vector<Index> sources = internal::nearest_to_axes(scan, set, is_used, rest);
+    const Links rest = neighbor_links<ConcurrencyTag>(scan, is_used, later.links);
+    const std::vector<Index> sources =
+        internal::nearest_to_axes<ConcurrencyTag>(scan, set, is_used, rest);
     const Neighbor_graph graph = graph_of(n, rest);
-    const Layer_tree tree = layer_tree(scan, rest, shortest_paths(scan, graph, sources));
+    const Layer_tree tree =
+        layer_tree<ConcurrencyTag>(scan, rest, shortest_paths(scan, graph, sources));
     const double done = 0.7 + 0.3 * double(pass - 1) / double(rules.passes - 1);
     if (!internal::fit_chains<ConcurrencyTag>(scan,
                                               tree,

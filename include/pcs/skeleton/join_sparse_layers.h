@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_JOIN_SPARSE_LAYERS_H
 #define PCS_SKELETON_JOIN_SPARSE_LAYERS_H
 
+#include <pcs/internal/parallel.h>
 #include <pcs/skeleton/Neighbor_graph.h>
 #include <pcs/skeleton/Scan.h>
 #include <pcs/skeleton/circle_fit.h>
@@ -38,6 +39,35 @@ struct Sparse_layer_rules
 
 namespace internal {
 
+/// How often the layers about each point must be doubled to hang together.
+template <class ConcurrencyTag>
+std::vector<std::uint8_t> doublings_of_layers(const Scan& scan,
+                                              const std::vector<Index>& layer,
+                                              double thickness,
+                                              const Sparse_layer_rules& rules)
+{
+  std::vector<std::uint8_t> level(scan.size(), 0);
+  pcs::internal::for_each_index<ConcurrencyTag>(scan.size(), [&](std::size_t i) {
+    if (layer[i] == none || rules.thinnest * scan.local_spacing[i] <= thickness)
+      return;
+    std::array<double, neighbors_per_point> others;
+    std::size_t count = 0; // single points may lie far from the others
+    for (const Index j : scan.neighbors[i])
+      if (j != none)
+        others[count++] = scan.local_spacing[j];
+    if (count == 0)
+      return;
+    const auto middle = others.begin() + static_cast<std::ptrdiff_t>(count / 2);
+    std::nth_element(others.begin(), middle, others.begin() + static_cast<std::ptrdiff_t>(count));
+    // long steps cost more than their length
+    const double wanted =
+        rules.thinnest * *middle * std::max(1.0, *middle / (cheap_step * scan.spacing));
+    while (level[i] < rules.doublings && std::ldexp(thickness, level[i]) < wanted)
+      ++level[i];
+  });
+  return level;
+}
+
 /// Finds the parts of thicker layers that lie on circles, where scans are sparse.
 class Sparse_layer_joiner
 {
@@ -47,37 +77,15 @@ public:
   Sparse_layer_joiner(const Scan& scan,
                       const std::vector<double>& distance,
                       const std::vector<Index>& layer,
-                      double thickness,
-                      const Sparse_layer_rules& rules)
-    : m_scan(scan),
-      m_distance(distance),
-      m_layer(layer),
-      m_rules(rules),
-      m_level(scan.size(), std::uint8_t(0))
+                      const Sparse_layer_rules& rules,
+                      std::vector<std::uint8_t> level)
+    : m_scan(scan), m_distance(distance), m_layer(layer), m_rules(rules), m_level(std::move(level))
   {
-    std::array<double, neighbors_per_point> others;
-    for (Index i = 0; i < scan.size(); ++i) {
-      if (layer[i] == none || m_rules.thinnest * scan.local_spacing[i] <= thickness)
-        continue;
-      std::size_t count = 0; // single points may lie far from the others
-      for (const Index j : scan.neighbors[i])
-        if (j != none)
-          others[count++] = scan.local_spacing[j];
-      if (count == 0)
-        continue;
-      const auto middle = others.begin() + static_cast<std::ptrdiff_t>(count / 2);
-      std::nth_element(others.begin(), middle, others.begin() + static_cast<std::ptrdiff_t>(count));
-      // long steps cost more than their length
-      const double wanted =
-          m_rules.thinnest * *middle * std::max(1.0, *middle / (cheap_step * scan.spacing));
-      while (m_level[i] < m_rules.doublings && std::ldexp(thickness, m_level[i]) < wanted)
-        ++m_level[i];
-    }
   }
 
-  void run(const std::vector<Link>& links, Point_sets& sets) const
+  void run(const Links& links, Point_sets& sets) const
   {
-    std::vector<Link> sparse; // most scans have few
+    Links sparse; // most scans have few
     std::copy_if(links.begin(), links.end(), std::back_inserter(sparse), [&](const Link& l) {
       return m_level[l.first] > 0 && m_level[l.second] > 0;
     });
@@ -148,7 +156,7 @@ private:
   const std::vector<double>& m_distance;
   const std::vector<Index>& m_layer;
   Sparse_layer_rules m_rules;
-  std::vector<std::uint8_t> m_level; ///< doublings that the layers about a point need
+  std::vector<std::uint8_t> m_level; ///< doublings that the layers about each point need
 };
 
 } // namespace internal
@@ -159,15 +167,18 @@ private:
   other, are left as they are. `layer` is that of each point, `sets` has the connected parts of the layers. O(links + p log p) with p points in
   sparse layers.
 */
-inline void join_sparse_layers(const Scan& scan,
-                               const std::vector<Link>& links,
-                               const std::vector<double>& distance,
-                               const std::vector<Index>& layer,
-                               double thickness,
-                               const Sparse_layer_rules& rules,
-                               Point_sets& sets)
+template <class ConcurrencyTag>
+void join_sparse_layers(const Scan& scan,
+                        const Links& links,
+                        const std::vector<double>& distance,
+                        const std::vector<Index>& layer,
+                        double thickness,
+                        const Sparse_layer_rules& rules,
+                        Point_sets& sets)
 {
-  internal::Sparse_layer_joiner(scan, distance, layer, thickness, rules).run(links, sets);
+  std::vector<std::uint8_t> level =
+      internal::doublings_of_layers<ConcurrencyTag>(scan, layer, thickness, rules);
+  internal::Sparse_layer_joiner(scan, distance, layer, rules, std::move(level)).run(links, sets);
 }
 
 } // namespace skeleton

@@ -94,7 +94,7 @@ struct Low_bins
 
 /// What of each bin belongs to the stem of the tallest thing above the bins: followed downwards from part to part.
 inline std::vector<std::vector<Index>> stem_in_bins(const Scan& scan,
-                                                    const std::vector<Link>& links,
+                                                    const Links& links,
                                                     const std::vector<double>& height_of,
                                                     const std::vector<std::uint8_t>& is_used,
                                                     const Low_bins& bins)
@@ -102,7 +102,7 @@ inline std::vector<std::vector<Index>> stem_in_bins(const Scan& scan,
   const Index n = static_cast<Index>(scan.size());
   const std::size_t count = bins.members.size();
   Point_sets above(n), sets(n); // parts above all bins, and in each of them
-  std::vector<Link> across;
+  Links across;
   for (const Link& l : links) {
     const Index a = bins.bin[l.first], b = bins.bin[l.second];
     if (a == b)
@@ -207,7 +207,7 @@ class Ground_finder
 {
 public:
   Ground_finder(const Scan& scan,
-                const std::vector<Link>& links,
+                const Links& links,
                 const Vec3& up,
                 const Ground_rules& rules,
                 const std::vector<std::uint8_t>& is_used)
@@ -281,7 +281,7 @@ private:
     const Sheet_disc sheet = disc(layer, center / double(layer.size()));
     if (!sheet.is_filled(sheet.cell_of(m_rules.crowd), m_rules.spread))
       return;
-    std::vector<Link> links;
+    Links links;
     for (const Link& l : m_links)
       if (is_standing[l.first] && is_standing[l.second])
         links.push_back(l);
@@ -311,7 +311,7 @@ private:
   }
 
   /// The bins that plants fill, and those parts of as many bins above them that go on from there.
-  void add_plants(const Low_bins& bins, const std::vector<Link>& links, const Stem_foot& foot)
+  void add_plants(const Low_bins& bins, const Links& links, const Stem_foot& foot)
   {
     std::size_t filled = 0;
     while (filled < bins.members.size() && is_filled(far_from(foot, bins.members[filled]), foot))
@@ -323,7 +323,7 @@ private:
         is_low[i] = 1;
         low.push_back(i);
       }
-    const Point_parts parts(is_low, links);
+    const Point_parts parts = connected_parts<CGAL::Sequential_tag>(is_low, links);
     for (const Index i : low)
       is_plant[parts.part[i]] |= bins.bin[i] < filled;
     for (const Index i : low)
@@ -332,7 +332,7 @@ private:
   }
 
   const Scan& m_scan;
-  const std::vector<Link>& m_links;
+  const Links& m_links;
   Vec3 m_up;
   const Ground_rules& m_rules;
   const std::vector<std::uint8_t>& m_is_used;
@@ -347,7 +347,7 @@ private:
   between neighbours. O(n log n).
 */
 inline std::size_t mark_ground(const Scan& scan,
-                               const std::vector<Link>& links,
+                               const Links& links,
                                const Vec3& up,
                                const Ground_rules& rules,
                                std::vector<std::uint8_t>& is_used)

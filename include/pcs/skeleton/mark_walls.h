@@ -376,13 +376,13 @@ inline std::size_t mark_faces(const Scan& scan,
 /// the number of their points. O(faces x n).
 inline std::size_t mark_beside_faces(const Scan& scan,
                                      const std::vector<Flat_face>& faces,
-                                     const std::vector<Link>& links,
+                                     const Links& links,
                                      const Wall_rules& rules,
                                      std::vector<std::uint8_t>& is_used)
 {
   if (faces.empty())
     return 0;
-  const internal::Point_parts parts(is_used, links);
+  const Point_parts parts = connected_parts<CGAL::Sequential_tag>(is_used, links);
   std::vector<Index> beside(scan.size(), 0);
   for (Index i = 0; i < scan.size(); ++i)
     if (is_used[i])

@@ -213,7 +213,8 @@ private:
 } // namespace internal
 
 /// Merges arcs of one ring into one node.
-inline void merge_rings(const Scan& scan, const Ring_rules& rules, Layer_tree& tree)
+template <class ConcurrencyTag>
+void merge_rings(const Scan& scan, const Ring_rules& rules, Layer_tree& tree)
 {
   internal::Ring_merger merger(scan, tree, rules);
   const std::vector<Index>& leader = merger();
@@ -231,7 +232,7 @@ inline void merge_rings(const Scan& scan, const Ring_rules& rules, Layer_tree& t
     if (leader[v] == v && merger.next()[v] != none)
       tree.next_in_ring[number[v]] = number[merger.next()[v]];
   tree.parent = std::move(parent);
-  internal::collect_nodes(scan, tree);
+  internal::collect_nodes<ConcurrencyTag>(scan, tree);
 }
 
 } // namespace skeleton

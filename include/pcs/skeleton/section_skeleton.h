@@ -243,8 +243,11 @@ private:
       is_rest[i] = m_is_used[i] && m_node_of_point[i] == none;
     std::vector<std::uint8_t> is_used = m_is_used;
     Link_rule rule;
-    std::vector<Link> links = neighbor_links<CGAL::Sequential_tag>(m_scan, is_used, rule);
-    const std::vector<Link> gaps = links_across_gaps(m_scan, is_used, rule, links);
+    Links links = neighbor_links<CGAL::Sequential_tag>(m_scan, is_used, rule);
+    const Links gaps = links_across_gaps(m_scan,
+                                         is_used,
+                                         rule,
+                                         connected_parts<CGAL::Sequential_tag>(is_used, links));
     links.insert(links.end(), gaps.begin(), gaps.end());
     // all dense points are sources: every subtree of the rest begins where the dense region ends
     std::vector<Index> sources;
@@ -254,7 +257,7 @@ private:
     if (sources.empty())
       sources = root;
     const Shortest_paths paths = shortest_paths(m_scan, graph_of(n, links), sources);
-    std::vector<Link> inner;
+    Links inner;
     for (const Link& l : links)
       if (is_rest[l.first] && is_rest[l.second])
         inner.push_back(l);
@@ -264,7 +267,7 @@ private:
         rest.distance[i] = std::numeric_limits<double>::infinity();
       else if (m_node_of_point[paths.predecessor[i]] != none)
         rest.predecessor[i] = static_cast<Index>(i);
-    const Layer_tree tree = layer_tree(m_scan, inner, rest);
+    const Layer_tree tree = layer_tree<CGAL::Sequential_tag>(m_scan, inner, rest);
     std::vector<double> importance(tree.size(), 0);
     for (std::size_t v = tree.size(); v-- > 0;) {
       importance[v] +=
