@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Where axes begin: wood does not grow thicker towards its tip.
+// Where axes begin and end: wood does not grow thicker towards its tip, nor thin at once.
 
 #include <pcs/skeleton/chain_ends.h>
 #include <support/axes.h>
@@ -77,6 +77,31 @@ BOOST_AUTO_TEST_CASE(axes_that_taper_and_bushes_begin_where_they_did)
     cut_thin_base({stem->scan, stem->set, stem->rules}, stem->fit);
     BOOST_TEST(stem->fit.axis().size() == 26u);
   }
+}
+
+BOOST_AUTO_TEST_CASE(only_a_tip_that_collapses_is_left_out)
+{
+  const Chain_rules rules;
+  Axis axis = pcs_test::straight_axis(Vec3(0, 0, 0), Vec3(0, 0, 2), 20, radius, 0.7 * radius);
+  const std::size_t trunk = axis.size();
+  BOOST_TEST(size_without_collapse(rules, axis) == trunk);
+  BOOST_TEST(size_without_collapse(rules, {}) == 0u);
+  // it turns into a limb beside it: from 7 cm to 2 cm in 15 cm
+  const Axis limb = pcs_test::straight_axis(Vec3(0.02, 0, 2),
+                                            Vec3(0.17, 0, 2.02),
+                                            10,
+                                            0.65 * radius,
+                                            0.2 * radius);
+  Axis turned = axis;
+  turned.insert(turned.end(), limb.begin(), limb.end());
+  const std::size_t left = size_without_collapse(rules, turned);
+  BOOST_TEST(left >= trunk);
+  BOOST_TEST(left <= trunk + 3);
+  // wood that thins out on a longer way stays
+  const Axis taper =
+      pcs_test::straight_axis(Vec3(0, 0, 2.1), Vec3(0, 0, 4), 20, 0.68 * radius, 0.1 * radius);
+  axis.insert(axis.end(), taper.begin(), taper.end());
+  BOOST_TEST(size_without_collapse(rules, axis) == axis.size());
 }
 
 BOOST_AUTO_TEST_SUITE_END()

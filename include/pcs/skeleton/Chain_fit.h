@@ -328,7 +328,7 @@ inline Axis Chain_fit::piece_ahead(const Axis& axis, std::size_t first, double s
 
 /*!
   Follows a thick branch beyond its tip, piece by piece, as long as there are points around it: paths over the surface
-  end at occlusions, or turn into a side branch. Where points lie inside, as at a whorl, it is looked for straight ahead.
+  end at occlusions, or turn into a side branch: a tip that collapses is left out then. Where points lie inside, as at a whorl, it is looked for straight ahead.
   Returns whether the axis grew.
 */
 inline bool Chain_fit::follow(Axis_fit& fit) const
@@ -337,6 +337,8 @@ inline bool Chain_fit::follow(Axis_fit& fit) const
   const double u = m_scan.spacing;
   Axis& axis = fit.axis();
   bool is_longer = false;
+  const Axis whole = axis;
+  axis.resize(size_without_collapse(m_rules, axis));
   const double thickest = 1.1 * axis.back().radius;
   for (int piece = 0; piece < most_pieces; ++piece) {
     const double radius = axis.back().radius;
@@ -361,6 +363,8 @@ inline bool Chain_fit::follow(Axis_fit& fit) const
     axis.insert(axis.end(), longer.begin() + (is_connected ? 1 : 0), longer.end());
     is_longer = true;
   }
+  if (!is_longer)
+    axis = whole;
   return is_longer;
 }
 

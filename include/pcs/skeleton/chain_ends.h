@@ -178,6 +178,23 @@ inline void cut_thin_base(const Chain_view& view, Axis_fit& fit)
   fit.project();
 }
 
+/// The number of nodes before a tip that collapses within a few radii, as where a trunk turns into one of its limbs; all nodes
+/// if it does not. Never 0 for an axis that has nodes.
+inline std::size_t size_without_collapse(const Chain_rules& rules, const Axis& axis)
+{
+  double widest = 0, length = 0; // of the last stretch
+  for (std::size_t k = axis.size(); k-- > 0 && length <= rules.steady * widest;) {
+    widest = std::max(widest, axis[k].radius);
+    length += k > 0 ? (axis[k].point - axis[k - 1].point).norm() : 0;
+  }
+  std::size_t size = axis.size();
+  if (axis.empty() || axis.back().radius >= rules.thin_base * widest)
+    return size;
+  while (axis[size - 1].radius < rules.thick_base * widest)
+    --size;
+  return size;
+}
+
 /// Cuts the ends where the points end: outwards from the places of `base` and `tip`, as far as there are enough.
 inline void trim(const Chain_view& view, const Vec3& base, const Vec3& tip, Axis_fit& fit)
 {
