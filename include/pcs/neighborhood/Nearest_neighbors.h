@@ -166,7 +166,7 @@ private:
                                                    3,
                                                    std::uint32_t>;
 
-  /// Hands points to `results`. nanoflann's default options have a different name in every other version.
+  /// Hands points to `results`. The options are nanoflann's defaults, which have another name since version 1.5.
   template <class Results>
   void search(const Vec3& query, Results& results) const
   {

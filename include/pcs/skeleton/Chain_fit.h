@@ -328,8 +328,8 @@ inline Axis Chain_fit::piece_ahead(const Axis& axis, std::size_t first, double s
 
 /*!
   Follows a thick branch beyond its tip, piece by piece, as long as there are points around it: paths over the surface
-  end at occlusions, or turn into a side branch: a tip that collapses is left out then. Where points lie inside, as at a whorl, it is looked for straight ahead.
-  Returns whether the axis grew.
+  end at occlusions, or turn into a side branch; a tip that collapses is left out then. Where points lie inside, as at a
+  whorl, it is looked for straight ahead. Returns whether the axis grew; if not, it is as it was.
 */
 inline bool Chain_fit::follow(Axis_fit& fit) const
 {

@@ -115,8 +115,8 @@ Links neighbor_links(const Scan& scan,
       does |= k == j; // all of them: no branch to be guessed
     return does;
   };
-  std::vector<std::uint16_t> links_of(
-      n); // bit b: the link to the b-th neighbour is listed with this point
+  // bit b: the link to the b-th neighbour is listed with this point
+  std::vector<std::uint16_t> links_of(n);
   static_assert(neighbors_per_point <= 16, "pcs: one bit per neighbour");
   std::vector<std::size_t> first(number_of_blocks + 1, 0);
   pcs::internal::for_each_block<ConcurrencyTag>(n, block, [&](std::size_t begin, std::size_t end) {
@@ -166,8 +166,8 @@ Point_sets united_points(std::size_t n, const Links& links, const IsWanted& is_w
 {
   constexpr std::size_t block = std::size_t(1) << 17;
   const std::size_t number_of_blocks = (links.size() + block - 1) / block;
-  std::vector<Index> border(number_of_blocks + 1,
-                            static_cast<Index>(n)); // of the stretches of points
+  // of the stretches of points
+  std::vector<Index> border(number_of_blocks + 1, static_cast<Index>(n));
   for (std::size_t b = 0; b < number_of_blocks; ++b)
     border[b] = b == 0 ? 0 : std::max(border[b - 1], links[b * block].first);
   Point_sets sets(n);
@@ -331,8 +331,8 @@ private:
                         : std::make_pair(m_link->first, m_link->second);
   }
 
-  const Link *m_link, *m_end,
-      *m_next; ///< where it is; where the first list ends, and the other begins
+  const Link* m_link;
+  const Link *m_end, *m_next; ///< where the first list ends, and the other one begins
   bool m_is_reverse = false;
 };
 

@@ -280,6 +280,7 @@ private:
     else
       m_root = find_root(m_scan, m_used.flags(), links, parts, m_options.up, m_options.roots);
     linked.gaps = links_across_gaps(m_scan, m_used.flags(), m_options.axes.links, parts);
+    // made where it stays: such graphs are copied, not moved
     linked.graph.reset(new Neighbor_graph(graph_of(m_scan.size(), links, linked.gaps)));
   }
 
