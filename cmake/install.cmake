@@ -13,6 +13,8 @@ install(DIRECTORY include/pcs DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATC
 install(FILES
   ${PROJECT_BINARY_DIR}/pcsConfig.cmake
   ${PROJECT_BINARY_DIR}/pcsConfigVersion.cmake
+  cmake/pcsCompiled.cmake
   cmake/pcsFindNanoflann.cmake
   DESTINATION ${PCS_CMAKE_DIR})
+install(DIRECTORY cmake/compiled DESTINATION ${PCS_CMAKE_DIR})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

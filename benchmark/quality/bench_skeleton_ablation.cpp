@@ -8,7 +8,7 @@
 #include <pcs/generators/grow_tree.h>
 #include <pcs/generators/scan_tree.h>
 #include <pcs/internal/progress.h>
-#include <pcs/skeleton/Session.h>
+#include <pcs/skeleton/Session_stages.h>
 #include <pcs/skeleton/write_result.h>
 
 #include <CGAL/Simple_cartesian.h>
@@ -131,9 +131,9 @@ std::vector<std::string> row_of(const Scene& scene, const Variant& variant)
   for (const auto& p : scene.scan.points)
     points.emplace_back(p.x(), p.y(), p.z());
   const pcs_bench::Timer timer;
-  pcs::skeleton::Session<CGAL::Parallel_if_available_tag> session(std::move(points),
-                                                                  {},
-                                                                  variant.options);
+  pcs::skeleton::Session_stages<CGAL::Parallel_if_available_tag> session(std::move(points),
+                                                                         {},
+                                                                         variant.options);
   pcs::internal::Progress progress{std::function<bool(double)>()};
   session.join(progress);
   const double seconds = timer.seconds();

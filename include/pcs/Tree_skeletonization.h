@@ -178,14 +178,13 @@ public:
     : m_points(&points), m_np(np)
   {
     if constexpr (is_ok) {
-      skeleton::Session_options options = skeleton::read_options(m_np, function);
+      skeleton::Session_hints hints = skeleton::read_options(m_np, function);
       m_callback =
           internal::choose(m_np, CGAL::internal_np::callback, std::function<bool(double)>());
       std::vector<skeleton::Vec3> input = read_points();
-      skeleton::check_input(input, options, function);
+      skeleton::check_input(input, hints, function);
       std::vector<std::uint8_t> is_wood = read_wood();
-      m_session =
-          std::make_unique<Session>(std::move(input), std::move(is_wood), std::move(options));
+      m_session = std::make_unique<Session>(std::move(input), std::move(is_wood), std::move(hints));
     }
   }
 

@@ -8,7 +8,7 @@ target_compile_definitions(pcs_test_main PUBLIC BOOST_TEST_DYN_LINK)
 target_compile_features(pcs_test_main PUBLIC cxx_std_17)
 
 add_library(pcs_test_flags INTERFACE)
-target_link_libraries(pcs_test_flags INTERFACE pcs::pcs pcs_dev_flags pcs_test_main)
+target_link_libraries(pcs_test_flags INTERFACE ${PCS_LIBRARY} pcs_dev_flags pcs_test_main)
 target_include_directories(pcs_test_flags INTERFACE ${PROJECT_SOURCE_DIR}/test)
 target_compile_definitions(pcs_test_flags INTERFACE
   CGAL_DEBUG # preconditions throw in release builds, too

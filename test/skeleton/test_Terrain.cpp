@@ -3,6 +3,7 @@
 
 #include <pcs/internal/parallel.h>
 #include <pcs/skeleton/Terrain.h>
+#include <pcs/skeleton/prepare_scan.h>
 
 #include <CGAL/tags.h>
 

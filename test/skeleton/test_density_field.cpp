@@ -7,6 +7,7 @@
 #include <pcs/skeleton/Density_field.h>
 #include <pcs/skeleton/Facing_field.h>
 #include <pcs/skeleton/drop_pairs.h>
+#include <pcs/skeleton/learn_fields.h>
 
 #include <boost/test/unit_test.hpp>
 

@@ -3,6 +3,7 @@
 // Thin wood is a line, thick wood is hollow, and leaves are neither.
 
 #include <pcs/skeleton/find_leaves.h>
+#include <pcs/skeleton/prepare_scan.h>
 #include <support/axes.h>
 
 #include <boost/test/unit_test.hpp>

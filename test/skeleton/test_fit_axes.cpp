@@ -3,6 +3,7 @@
 // Chains beside an axis that is there: what is left over along a trunk is not a second trunk.
 
 #include <pcs/skeleton/fit_axes.h>
+#include <pcs/skeleton/prepare_scan.h>
 
 #include <CGAL/tags.h>
 

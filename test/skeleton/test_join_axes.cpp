@@ -3,6 +3,7 @@
 // Which axis sits on which, which branch goes on at a fork, and what a second look makes of it.
 
 #include <pcs/skeleton/Branch_tree.h>
+#include <pcs/skeleton/group_branches.h>
 #include <pcs/skeleton/join_axes.h>
 #include <pcs/skeleton/regroup_axes.h>
 #include <support/axes.h>

@@ -4,7 +4,9 @@
 
 #include <pcs/skeleton/Layer_tree.h>
 #include <pcs/skeleton/Neighbor_graph.h>
+#include <pcs/skeleton/cut_layers.h>
 #include <pcs/skeleton/find_root.h>
+#include <pcs/skeleton/prepare_scan.h>
 
 #include <CGAL/number_utils.h>
 #include <CGAL/tags.h>

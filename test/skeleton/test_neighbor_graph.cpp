@@ -3,6 +3,7 @@
 // The places of a scan, the links between them, and the shortest paths over these, against plain ways to find them.
 
 #include <pcs/skeleton/Neighbor_graph.h>
+#include <pcs/skeleton/prepare_scan.h>
 #include <pcs/skeleton/shortest_paths.h>
 
 #include <CGAL/tags.h>

@@ -6,6 +6,7 @@
 #include <pcs/linear_algebra/Banded_cholesky.h>
 #include <pcs/skeleton/Axis_fit.h>
 #include <pcs/skeleton/ellipse_fit.h>
+#include <pcs/skeleton/prepare_scan.h>
 #include <pcs/skeleton/principal_curvatures.h>
 #include <pcs/skeleton/section_counts.h>
 

@@ -5,10 +5,8 @@
 #ifndef PCS_SKELETON_DENSITY_FIELD_H
 #define PCS_SKELETON_DENSITY_FIELD_H
 
-#include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/Scan.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -35,25 +33,8 @@ class Sample_frame
 {
 public:
   Sample_frame() = default;
-  /// At least one sample.
-  explicit Sample_frame(const std::vector<Density_sample>& samples)
-  {
-    for (const Density_sample& s : samples)
-      m_center += s.place;
-    m_center /= double(samples.size());
-    double spread = 0;
-    for (const Density_sample& s : samples)
-      spread += (s.place - m_center).squaredNorm();
-    m_scale = spread > 0 ? std::sqrt(3 * double(samples.size()) / spread) : 1;
-    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-    for (const Density_sample& s : samples) {
-      const Vec3 q = (*this)(s.place);
-      covariance += q * q.transpose() / double(samples.size());
-    }
-    const auto eigen = linear_algebra::symmetric_eigen<3>(covariance);
-    m_sides = eigen.vectors;
-    m_reach = std::sqrt(3.0) * eigen.values.cwiseMax(0).cwiseSqrt(); // of even samples
-  }
+  /// At least one sample. In learn_fields.h.
+  explicit Sample_frame(const std::vector<Density_sample>& samples);
 
   Vec3 operator()(const Vec3& place) const { return m_scale * (place - m_center); }
 
@@ -71,17 +52,6 @@ private:
   Vec3 m_reach = Vec3::Zero();                           ///< half its lengths, in the frame
 };
 
-/// Some thousand of all samples, evenly.
-inline std::vector<Density_sample> some_of(const std::vector<Density_sample>& all)
-{
-  constexpr std::size_t most = 3000;
-  std::vector<Density_sample> samples;
-  const std::size_t stride = (all.size() + most - 1) / most;
-  for (std::size_t i = 0; i < all.size(); i += stride)
-    samples.push_back(all[i]);
-  return samples;
-}
-
 /*!
   Points thin out with the distance from a station, and where a branch points to it: the logarithm of the density is a
   polynomial of second degree of the place and of the direction. Robust least squares with a ridge; neither a place nor a
@@ -96,44 +66,8 @@ public:
   /// Whether there were enough samples.
   bool is_known() const { return m_is_known; }
 
-  /// Fits the field to samples of positive density. O(samples).
-  void learn(const std::vector<Density_sample>& all)
-  {
-    m_is_known = all.size() >= fewest_samples;
-    if (!m_is_known)
-      return;
-    const std::vector<Density_sample> samples = some_of(all);
-    m_frame = Sample_frame(samples);
-    std::vector<double> values, errors(samples.size());
-    for (const Density_sample& s : samples)
-      values.push_back(std::log(s.density));
-    std::vector<double> sorted = values;
-    std::sort(sorted.begin(), sorted.end());
-    const std::size_t tail = sorted.size() / 20; // odd ones
-    m_middle = sorted[sorted.size() / 2];
-    m_lowest = sorted[tail];
-    m_highest = sorted[sorted.size() - 1 - tail];
-    std::vector<Row> rows;
-    for (const Density_sample& s : samples)
-      rows.push_back(row(m_frame(s.place), s.along));
-    m_weights.setZero();
-    constexpr int rounds = 4;
-    for (int round = 0; round < rounds; ++round) {
-      for (std::size_t i = 0; i < rows.size(); ++i)
-        errors[i] = std::abs(values[i] - m_middle - m_weights.dot(rows[i]));
-      std::vector<double> copy = errors;
-      const double deviation = std::max(least_deviation, 1.4826 * median(copy));
-      Eigen::Matrix<double, size, size> matrix = Eigen::Matrix<double, size, size>::Identity();
-      Row right = Row::Zero();
-      for (std::size_t i = 0; i < rows.size(); ++i) {
-        const double x = errors[i] / (2 * deviation);
-        const double w = 1 / ((1 + x * x) * deviation * deviation * shared);
-        matrix.selfadjointView<Eigen::Lower>().rankUpdate(rows[i], w);
-        right += w * (values[i] - m_middle) * rows[i];
-      }
-      m_weights = matrix.selfadjointView<Eigen::Lower>().ldlt().solve(right);
-    }
-  }
+  /// Fits the field to samples of positive density. O(samples). In learn_fields.h, as it takes long to compile.
+  void learn(const std::vector<Density_sample>& all);
 
   /// Points per area of a branch at `place` that runs along the unit vector `along` [1/L^2].
   double operator()(const Vec3& place, const Vec3& along) const

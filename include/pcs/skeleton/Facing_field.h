@@ -8,7 +8,6 @@
 #include <pcs/skeleton/Density_field.h>
 #include <pcs/skeleton/Scan.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -30,40 +29,8 @@ public:
   /// Whether there were enough samples.
   bool is_known() const { return m_is_known; }
 
-  /// Fits the field. O(samples).
-  void learn(const std::vector<Density_sample>& all)
-  {
-    m_is_known = all.size() >= Density_field::fewest_samples;
-    if (!m_is_known)
-      return;
-    const std::vector<Density_sample> samples = some_of(all);
-    m_frame = Sample_frame(samples);
-    m_weights.setZero();
-    m_deviation = 0;
-    std::vector<double> errors(samples.size());
-    constexpr int rounds = 4;
-    for (int round = 0; round < rounds; ++round) {
-      for (std::size_t i = 0; i < samples.size(); ++i)
-        errors[i] = (samples[i].facing - (*this)(samples[i].place, samples[i].along)).norm();
-      std::vector<double> copy = errors;
-      m_deviation = std::max(least_deviation, median(copy));
-      Matrix matrix = Matrix::Identity();
-      Weights right = Weights::Zero();
-      for (std::size_t i = 0; i < samples.size(); ++i) {
-        const double x = errors[i] / (2 * m_deviation);
-        const double w = 1 / ((1 + x * x) * m_deviation * m_deviation * Density_field::shared);
-        const Row r = row(samples[i].place);
-        const Vec3& t = samples[i].along;
-        const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - t * t.transpose();
-        for (Eigen::Index a = 0; a < size; ++a) {
-          for (Eigen::Index b = 0; b < size; ++b)
-            matrix.block<3, 3>(3 * a, 3 * b) += w * r[a] * r[b] * across;
-          right.segment<3>(3 * a) += w * r[a] * (across * samples[i].facing);
-        }
-      }
-      m_weights = matrix.ldlt().solve(right);
-    }
-  }
+  /// Fits the field. O(samples). In learn_fields.h.
+  void learn(const std::vector<Density_sample>& all);
 
   /// The mean outward normal of the points of a branch at `place` that runs along the unit vector `along`; short where
   /// points lie on all sides.

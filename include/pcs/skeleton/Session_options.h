@@ -1,10 +1,11 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What a skeletonization may be told, and all of its rules.
+// All rules of a skeletonization, and what it was told.
 
 #ifndef PCS_SKELETON_SESSION_OPTIONS_H
 #define PCS_SKELETON_SESSION_OPTIONS_H
 
+#include <pcs/skeleton/Session_hints.h>
 #include <pcs/skeleton/bound_radii.h>
 #include <pcs/skeleton/correct_beam.h>
 #include <pcs/skeleton/correct_grid.h>
@@ -24,39 +25,18 @@
 #include <pcs/skeleton/prune_stubs.h>
 #include <pcs/skeleton/section_skeleton.h>
 
-#include <optional>
-#include <vector>
+#include <utility>
 
 namespace pcs {
 namespace skeleton {
 
-/// How branches are found.
-enum class Skeleton_method {
-  chains, ///< whole axes are fitted to the layers of the paths from the root
-  sections ///< the dissertation: sections at centers of curvature, spanning trees where there are none
-};
-
-/// Whether points of leaves are looked for and left out.
-enum class Leaf_removal {
-  where_found, ///< where there is evidence of them
-  always,
-  never
-};
-
 /// All rules of the pipeline, and the hints of the caller.
-struct Session_options
+struct Session_options : Session_hints
 {
-  Vec3 up = Vec3::UnitZ();
-  std::optional<Vec3> root; ///< in the coordinates of the input, as the next two
-  std::vector<Vec3> scanners;
-  std::optional<Given_skeleton> given; ///< measured, instead of looking for branches
-  double beam_width = 0;               ///< of the scanners [rad]
-  bool do_mark_ground = true;
-  Leaf_removal leaf_removal = Leaf_removal::where_found; ///< by the method `chains`
-  double breast_height = 1.3;                            ///< [L]
-  Skeleton_method method = Skeleton_method::chains;
-  Slice_rules slices; ///< of the method `sections`, like the next
-  Section_tree_rules section_tree;
+  Session_options() = default;
+  explicit Session_options(Session_hints hints) : Session_hints(std::move(hints)) {}
+
+  Section_tree_rules section_tree; ///< of the method `sections`
   Axis_rules axes;
   Fuse_rules fusion;
   Ring_rules rings;

@@ -9,6 +9,7 @@
 #include <pcs/skeleton/Chain_rules.h>
 #include <pcs/skeleton/Scan.h>
 #include <pcs/skeleton/find_leaves.h>
+#include <pcs/skeleton/prepare_scan.h>
 
 #include <algorithm>
 #include <cstddef>

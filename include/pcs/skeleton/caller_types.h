@@ -9,7 +9,8 @@
 #include <pcs/concepts.h>
 #include <pcs/core/Tree_skeleton.h>
 #include <pcs/core/errors.h>
-#include <pcs/skeleton/measure_given.h>
+#include <pcs/skeleton/Given_skeleton.h>
+#include <pcs/skeleton/Scan.h>
 
 #include <CGAL/number_utils.h>
 #include <CGAL/property_map.h>

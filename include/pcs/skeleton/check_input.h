@@ -7,8 +7,8 @@
 
 #include <pcs/core/errors.h>
 #include <pcs/internal/text.h>
-#include <pcs/skeleton/Session_options.h>
-#include <pcs/skeleton/measure_given.h>
+#include <pcs/skeleton/Given_skeleton.h>
+#include <pcs/skeleton/Session_hints.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -67,9 +67,8 @@ inline void check_given(const Given_skeleton& given, const std::string& function
   Throws `Invalid_input`, whose text begins with `function`, if there are too few points, or if the root or all of the given
   skeleton is farther away from them than they are wide. O(n).
 */
-inline void check_input(const std::vector<Vec3>& input,
-                        const Session_options& options,
-                        const std::string& function)
+inline void
+check_input(const std::vector<Vec3>& input, const Session_hints& hints, const std::string& function)
 {
   internal::check_number_of_points(input, function);
   Vec3 low = input.front(), high = low;
@@ -85,12 +84,12 @@ inline void check_input(const std::vector<Vec3>& input,
                           " away from the points, which lie in a box with a diagonal of " +
                           pcs::internal::to_text(diagonal));
   };
-  if (options.root)
-    check(distance(*options.root), "root_position");
-  if (options.given) {
-    internal::check_given(*options.given, function);
+  if (hints.root)
+    check(distance(*hints.root), "root_position");
+  if (hints.given) {
+    internal::check_given(*hints.given, function);
     double nearest = std::numeric_limits<double>::infinity();
-    for (const Vec3& p : options.given->points)
+    for (const Vec3& p : hints.given->points)
       nearest = std::min(nearest, distance(p));
     check(nearest, "given_skeleton");
   }

@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_DETECT_SECTIONS_H
 #define PCS_SKELETON_DETECT_SECTIONS_H
 
+#include <pcs/skeleton/Slice_rules.h>
 #include <pcs/skeleton/ellipse_fit.h>
 #include <pcs/skeleton/principal_curvatures.h>
 
@@ -17,23 +18,6 @@
 
 namespace pcs {
 namespace skeleton {
-
-/// The rules of section 3.7 of the dissertation; each may be replaced by ours.
-struct Slice_rules
-{
-  Section_fit fit = Section_fit::conic;
-  double height = 5;              ///< of a slice, in spacings [-]
-  bool is_height_local = false;   ///< multiples of the local spacing instead of the median
-  std::size_t lowest_count = 10;  ///< points of a slice
-  std::size_t highest_count = 20; ///< more are drawn at random; 0: all are used
-  double upright = 0.9;           ///< ratio of the half axes below which a slice is tilted [-]
-  int tilts = 5;                  ///< tries
-  bool do_mark_support = true;    ///< points that agree with a section need none of their own
-  double support_radius = 0.35;   ///< relative difference of the radii that is agreement [-]
-  double support_cosine = 0.9;    ///< of the angle between the axes
-  double largest_radius = 200;    ///< of a center candidate, in spacings [-]
-  unsigned seed = 0;
-};
 
 /// A detected section.
 struct Found_section

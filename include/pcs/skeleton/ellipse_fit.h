@@ -6,6 +6,7 @@
 #define PCS_SKELETON_ELLIPSE_FIT_H
 
 #include <pcs/linear_algebra/small_symmetric.h>
+#include <pcs/skeleton/Slice_rules.h>
 #include <pcs/skeleton/circle_fit.h>
 
 #include <Eigen/Core>
@@ -17,14 +18,6 @@
 
 namespace pcs {
 namespace skeleton {
-
-/// How a section is fitted.
-enum class Section_fit {
-  conic,   ///< least squares for the conic with constant term 1; the dissertation's
-  ellipse, ///< the direct fit of Halir and Flusser; never a hyperbola
-  circle,  ///< Taubin's circle; right on short arcs
-  by_arc   ///< an ellipse where nearly the whole turn is seen, else a circle
-};
 
 struct Ellipse
 {

@@ -10,6 +10,7 @@
 #include <pcs/skeleton/Neighbor_graph.h>
 #include <pcs/skeleton/Scan.h>
 #include <pcs/skeleton/circle_fit.h>
+#include <pcs/skeleton/shortest_paths.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

@@ -10,6 +10,8 @@
 #include <pcs/skeleton/Chain_fit.h>
 #include <pcs/skeleton/Layer_tree.h>
 #include <pcs/skeleton/Neighbor_graph.h>
+#include <pcs/skeleton/Scan_statistics.h>
+#include <pcs/skeleton/cut_layers.h>
 #include <pcs/skeleton/drop_pairs.h>
 
 #include <algorithm>

@@ -9,6 +9,7 @@
 #include <pcs/neighborhood/Nearest_neighbors.h>
 #include <pcs/skeleton/Axis.h>
 #include <pcs/skeleton/Axis_set.h>
+#include <pcs/skeleton/Joint.h>
 
 #include <algorithm>
 #include <array>
@@ -48,15 +49,6 @@ struct Joint_rules
   double taper = 0.85;      ///< gain of a base that is thicker than the tip, per logarithm
   double reversal = 1.1;    ///< for using the tip as the base
   double thinnest = 0.1;    ///< smaller radii count as this one
-};
-
-/// Where an axis sits on its parent.
-struct Joint
-{
-  Index parent = none; ///< `none`: the root, or out of reach
-  Axis_place place;
-  bool is_reversed = false; ///< its tip is the base
-  double cost = std::numeric_limits<double>::infinity();
 };
 
 namespace internal {

@@ -6,8 +6,10 @@
 #define PCS_SKELETON_MEASURE_GIVEN_H
 
 #include <pcs/skeleton/Branch_tree.h>
+#include <pcs/skeleton/Given_skeleton.h>
 #include <pcs/skeleton/Scan.h>
 #include <pcs/skeleton/circle_fit.h>
+#include <pcs/skeleton/group_branches.h>
 
 #include <Eigen/Geometry>
 
@@ -21,13 +23,6 @@
 
 namespace pcs {
 namespace skeleton {
-
-/// A rooted tree of positions; parents come before their children.
-struct Given_skeleton
-{
-  std::vector<Vec3> points;  ///< in the coordinates of the input
-  std::vector<Index> parent; ///< `none`: the root
-};
 
 /// How points are given to edges, and when a circle through them counts.
 struct Given_rules

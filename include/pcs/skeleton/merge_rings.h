@@ -7,6 +7,7 @@
 
 #include <pcs/skeleton/Layer_tree.h>
 #include <pcs/skeleton/circle_fit.h>
+#include <pcs/skeleton/cut_layers.h>
 
 #include <Eigen/Geometry>
 

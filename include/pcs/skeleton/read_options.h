@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The named parameters of a skeletonization as options of its session.
+// The named parameters of a skeletonization as hints of its session.
 
 #ifndef PCS_SKELETON_READ_OPTIONS_H
 #define PCS_SKELETON_READ_OPTIONS_H
@@ -9,7 +9,7 @@
 #include <pcs/concepts.h>
 #include <pcs/core/errors.h>
 #include <pcs/internal/text.h>
-#include <pcs/skeleton/Session_options.h>
+#include <pcs/skeleton/Session_hints.h>
 #include <pcs/skeleton/caller_types.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ namespace skeleton {
 namespace internal {
 
 template <class NamedParameters>
-void read_scanners(const NamedParameters& np, const std::string& function, Session_options& options)
+void read_scanners(const NamedParameters& np, const std::string& function, Session_hints& hints)
 {
   if constexpr (pcs::internal::is_given_v<NamedParameters, pcs::internal_np::scanner_positions_t>) {
     const auto positions = CGAL::parameters::get_parameter(np, pcs::internal_np::scanner_positions);
@@ -39,20 +39,20 @@ void read_scanners(const NamedParameters& np, const std::string& function, Sessi
                   "range of points with x(), y(), z()");
     if constexpr (are_points_ok)
       for (const auto& p : positions) {
-        options.scanners.push_back(internal::to_vec3(p));
-        if (!options.scanners.back().allFinite())
+        hints.scanners.push_back(internal::to_vec3(p));
+        if (!hints.scanners.back().allFinite())
           throw Invalid_input(function + ": a scanner position is not finite");
       }
-    options.beam_width = static_cast<double>(
+    hints.beam_width = static_cast<double>(
         pcs::internal::choose(np, pcs::internal_np::beam_width, default_beam_width));
-    if (!std::isfinite(options.beam_width) || options.beam_width < 0)
-      throw Invalid_input(function + ": beam_width is " +
-                          pcs::internal::to_text(options.beam_width) + "; it must not be negative");
+    if (!std::isfinite(hints.beam_width) || hints.beam_width < 0)
+      throw Invalid_input(function + ": beam_width is " + pcs::internal::to_text(hints.beam_width) +
+                          "; it must not be negative");
   }
 }
 
 template <class NamedParameters>
-void read_given_skeleton(const NamedParameters& np, Session_options& options)
+void read_given_skeleton(const NamedParameters& np, Session_hints& hints)
 {
   if constexpr (pcs::internal::is_given_v<NamedParameters, pcs::internal_np::given_skeleton_t>) {
     // a copy, or a reference in its wrapper
@@ -65,61 +65,61 @@ void read_given_skeleton(const NamedParameters& np, Session_options& options)
                   "pcs::extract_tree_skeleton(): a `given_skeleton` that is no "
                   "pcs::Tree_skeleton needs the named parameter `given_point_map`");
     if constexpr (has_map)
-      options.given = internal::read_given(
+      hints.given = internal::read_given(
           given,
           CGAL::parameters::get_parameter(np, pcs::internal_np::given_point_map));
     else if constexpr (pcs::internal::Is_tree_skeleton<Given>::value)
-      options.given = internal::read_given(given, get(&Given::vertex_bundled::point, given));
+      hints.given = internal::read_given(given, get(&Given::vertex_bundled::point, given));
   }
 }
 
 /// By evidence, unless the caller says yes or no, or which points are wood.
 template <class NamedParameters>
-void read_leaf_removal(const NamedParameters& np, Session_options& options)
+void read_leaf_removal(const NamedParameters& np, Session_hints& hints)
 {
   using pcs::internal::choose;
   if constexpr (pcs::internal::is_given_v<NamedParameters, pcs::internal_np::wood_map_t>)
-    options.leaf_removal = Leaf_removal::never;
-  const auto wish = choose(np, pcs::internal_np::do_remove_leaves, options.leaf_removal);
+    hints.leaf_removal = Leaf_removal::never;
+  const auto wish = choose(np, pcs::internal_np::do_remove_leaves, hints.leaf_removal);
   if constexpr (std::is_same_v<std::decay_t<decltype(wish)>, Leaf_removal>)
-    options.leaf_removal = wish;
+    hints.leaf_removal = wish;
   else
-    options.leaf_removal = wish ? Leaf_removal::always : Leaf_removal::never;
+    hints.leaf_removal = wish ? Leaf_removal::always : Leaf_removal::never;
 }
 
 } // namespace internal
 
 /// Throws `Invalid_input`, whose text begins with `function`, if a hint is out of range.
 template <class NamedParameters>
-Session_options read_options(const NamedParameters& np, const std::string& function)
+Session_hints read_options(const NamedParameters& np, const std::string& function)
 {
   using pcs::internal::choose;
-  Session_options options;
+  Session_hints hints;
   if constexpr (pcs::internal::is_given_v<NamedParameters, pcs::internal_np::up_direction_t>)
-    options.up =
+    hints.up =
         internal::to_vec3(CGAL::parameters::get_parameter(np, pcs::internal_np::up_direction));
-  const double largest = options.up.cwiseAbs().maxCoeff();
-  if (!options.up.allFinite() || !(largest > 0))
+  const double largest = hints.up.cwiseAbs().maxCoeff();
+  if (!hints.up.allFinite() || !(largest > 0))
     throw Invalid_input(function + ": up_direction must be finite and not the null vector");
-  options.up = (options.up / largest).normalized(); // squares may overflow
+  hints.up = (hints.up / largest).normalized(); // squares may overflow
   if constexpr (pcs::internal::is_given_v<NamedParameters, pcs::internal_np::root_position_t>) {
-    options.root =
+    hints.root =
         internal::to_vec3(CGAL::parameters::get_parameter(np, pcs::internal_np::root_position));
-    if (!options.root->allFinite())
+    if (!hints.root->allFinite())
       throw Invalid_input(function + ": root_position must be finite");
   }
-  internal::read_scanners(np, function, options);
-  internal::read_given_skeleton(np, options);
-  options.method = choose(np, pcs::internal_np::skeleton_method, Skeleton_method::chains);
-  options.slices = choose(np, pcs::internal_np::slice_rules, Slice_rules());
-  options.do_mark_ground = choose(np, pcs::internal_np::do_remove_ground, true);
-  internal::read_leaf_removal(np, options);
-  options.breast_height =
+  internal::read_scanners(np, function, hints);
+  internal::read_given_skeleton(np, hints);
+  hints.method = choose(np, pcs::internal_np::skeleton_method, Skeleton_method::chains);
+  hints.slices = choose(np, pcs::internal_np::slice_rules, Slice_rules());
+  hints.do_mark_ground = choose(np, pcs::internal_np::do_remove_ground, true);
+  internal::read_leaf_removal(np, hints);
+  hints.breast_height =
       static_cast<double>(choose(np, pcs::internal_np::breast_height, default_breast_height));
-  if (!std::isfinite(options.breast_height) || !(options.breast_height > 0))
+  if (!std::isfinite(hints.breast_height) || !(hints.breast_height > 0))
     throw Invalid_input(function + ": breast_height is " +
-                        pcs::internal::to_text(options.breast_height) + "; it must be positive");
-  return options;
+                        pcs::internal::to_text(hints.breast_height) + "; it must be positive");
+  return hints;
 }
 
 } // namespace skeleton

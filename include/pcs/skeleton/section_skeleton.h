@@ -7,7 +7,9 @@
 
 #include <pcs/skeleton/Branch_tree.h>
 #include <pcs/skeleton/Layer_tree.h>
+#include <pcs/skeleton/cut_layers.h>
 #include <pcs/skeleton/detect_sections.h>
+#include <pcs/skeleton/group_branches.h>
 
 #include <boost/graph/adjacency_list.hpp>
 #include <boost/graph/dijkstra_shortest_paths.hpp>

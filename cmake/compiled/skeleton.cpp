@@ -1,0 +1,11 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Compiled once: what of tree skeletons depends on no type of the caller.
+
+#include <pcs/internal/parallel.h>
+#include <pcs/skeleton/Session_impl.h>
+
+template class pcs::skeleton::Session<CGAL::Sequential_tag>;
+#ifdef CGAL_LINKED_WITH_TBB
+template class pcs::skeleton::Session<CGAL::Parallel_tag>;
+#endif

@@ -1,0 +1,401 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The stages of a skeletonization, one after the other, with all that they leave behind.
+
+#ifndef PCS_SKELETON_SESSION_STAGES_H
+#define PCS_SKELETON_SESSION_STAGES_H
+
+#include <pcs/core/Skeleton_report.h>
+#include <pcs/internal/Stopwatch.h>
+#include <pcs/internal/parallel.h>
+#include <pcs/internal/progress.h>
+#include <pcs/skeleton/Branch_tree.h>
+#include <pcs/skeleton/Session_options.h>
+#include <pcs/skeleton/Used_points.h>
+#include <pcs/skeleton/Wall_removal.h>
+#include <pcs/skeleton/cut_layers.h>
+#include <pcs/skeleton/group_branches.h>
+#include <pcs/skeleton/prepare_scan.h>
+#include <pcs/skeleton/regroup_axes.h>
+#include <pcs/skeleton/report_sizes.h>
+#include <pcs/skeleton/residual_of_point.h>
+#include <pcs/skeleton/root_axis.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// Runs the stages in order; each runs those before it that have not run yet, and stops when cancelled.
+template <class ConcurrencyTag>
+class Session_stages
+{
+public:
+  /// `input` is finite, with at least two different points; `is_wood` is empty or has one entry per point.
+  Session_stages(std::vector<Vec3> input,
+                 std::vector<std::uint8_t> is_wood,
+                 Session_options options)
+    : m_input(std::move(input)), m_is_wood(std::move(is_wood)), m_options(std::move(options))
+  {
+    m_report.number_of_points = m_input.size();
+  }
+
+  bool find_neighbors(pcs::internal::Progress& progress)
+  {
+    if (m_stage >= 1)
+      return true;
+    pcs::internal::Stopwatch watch;
+    if (!progress(0))
+      return false;
+    prepare_scan<ConcurrencyTag>(m_input, m_options.up, m_scan);
+    const double unit = m_scan.frame.unit;
+    m_options.up = Vec3::UnitZ(); // from here on, all is in coordinates of the scan
+    m_options.breast_height /= unit;
+    std::vector<Vec3>().swap(m_input);
+    m_used.start(m_is_wood);
+    for (Vec3& s : m_options.scanners)
+      s = m_scan.frame.to_local(s);
+    m_report.seconds.neighbors = watch.lap();
+    m_stage = 1;
+    return progress(0.35);
+  }
+
+  bool find_paths(pcs::internal::Progress& progress)
+  {
+    if (!find_neighbors(progress))
+      return false;
+    if (m_stage >= 2)
+      return true;
+    pcs::internal::Stopwatch watch;
+    if (m_options.given) {
+      m_stage = 2;
+      return progress(0.6);
+    }
+    if (m_options.do_mark_ground && !m_are_walls_out) { // when stopped below, they are
+      if (is_one_sheet(m_scan, m_used.flags(), m_options.ground.sheet)) {
+        m_used.leave_out_all();
+        m_stage = 2;
+        return progress(0.6);
+      }
+      m_wall_removal.leave_out_walls_and_roofs(m_options.up);
+    }
+    m_are_walls_out = true;
+    Links links = links_of_used();
+    Linked_parts linked;
+    const auto link = [&] { link_parts(links, linked); };
+    // most scans have no ground, and what is found meanwhile stays
+    std::vector<std::uint8_t> is_above = m_used.flags();
+    std::size_t ground = 0;
+    pcs::internal::invoke_both<ConcurrencyTag>(
+        [&] {
+          if (m_options.do_mark_ground)
+            ground = mark_ground(m_scan, links, m_options.up, m_options.ground, is_above);
+        },
+        link);
+    if (!progress(0.42))
+      return false; // the ground is not left out yet
+    m_report.number_of_ground_points = ground;
+    if (ground > 0) {
+      m_used.leave_out_others(std::move(is_above));
+      links = links_of_used();
+    }
+    // faces that are not there were looked for already
+    const bool may_have_faces = m_wall_removal.has_faces() || ground > 0;
+    const auto find_links = [&] { return links_of_used(); };
+    if ((may_have_faces && m_wall_removal.leave_out_rest(find_links, links)) || ground > 0)
+      link();
+    trace_paths(links, linked);
+    m_report.seconds.paths = watch.lap();
+    m_stage = 2;
+    return progress(0.6);
+  }
+
+  bool fit_axes(pcs::internal::Progress& progress)
+  {
+    if (!find_paths(progress))
+      return false;
+    if (m_stage >= 3)
+      return true;
+    pcs::internal::Stopwatch watch;
+    if (m_root.empty()) { // nothing is a tree, or it is known
+      m_stage = 3;
+      return progress(0.9);
+    }
+    if (m_options.method == Skeleton_method::sections) {
+      const std::vector<Surface_frame> frames = principal_curvatures<ConcurrencyTag>(m_scan);
+      if (!progress(0.7))
+        return false;
+      m_sections = detect_sections(m_scan, m_used.flags(), frames, m_options.slices);
+      m_report.seconds.axes = watch.lap();
+      m_stage = 3;
+      return progress(0.9);
+    }
+    const int rounds = m_options.leaf_removal == Leaf_removal::never ? 0 : m_options.leaves.rounds;
+    for (bool is_running = true;;) {
+      const double from = m_leaf_rounds == 0 ? 0.6 : 0.75 + 0.15 * (m_leaf_rounds - 1) / rounds;
+      const double width = m_leaf_rounds == 0 ? 0.15 : 0.15 / rounds;
+      m_axes = skeleton::fit_axes<ConcurrencyTag>(m_scan, m_layers, m_options.axes, [&](double f) {
+        return is_running = progress(from + width * f);
+      });
+      if (!is_running)
+        return false;
+      if (m_leaf_rounds >= rounds || !remove_leaves())
+        break;
+      ++m_leaf_rounds; // stopped from here on, the work goes on with the wood
+    }
+    if (m_leaf_rounds > 0)
+      m_used.reclaim_leaves(m_options.axes.chains, m_axes);
+    fuse_axes<ConcurrencyTag>(m_scan.spacing, m_options.fusion, m_axes);
+    const double unit = m_scan.frame.unit;
+    m_report.noise = unit * m_axes.noise;
+    m_report.density = m_axes.density / (unit * unit);
+    m_report.seconds.axes = watch.lap();
+    m_stage = 3;
+    return progress(0.9);
+  }
+
+  bool join(pcs::internal::Progress& progress)
+  {
+    if (!fit_axes(progress))
+      return false;
+    if (m_stage >= 4)
+      return true;
+    pcs::internal::Stopwatch watch;
+    if (m_options.given) {
+      m_tree = measure_given(m_scan, m_used.flags(), *m_options.given, m_options.given_rules);
+    } else if (m_options.method == Skeleton_method::sections && !m_root.empty()) {
+      m_tree = section_skeleton(m_scan, m_used.flags(), m_sections, m_root, m_options.section_tree);
+      correct_widening();
+      count();
+      m_report.seconds.joints = watch.lap();
+      m_stage = 4;
+      return progress(0.97);
+    }
+    if (!m_axes.axes.empty()) { // none with a given skeleton
+      Index root = join_axes();
+      while (m_regroupings + 1 < m_options.joints.rounds) {
+        if (!progress(0.9 + 0.05 * (m_regroupings + 1) / m_options.joints.rounds))
+          return false;
+        regroup_axes(m_tree, m_axes);
+        fuse_axes<ConcurrencyTag>(m_scan.spacing, m_options.fusion, m_axes);
+        ++m_regroupings; // stopped from here on, the work goes on with these axes
+        root = join_axes();
+      }
+      if (!progress(0.95))
+        return false;
+      prune_stubs(m_scan.spacing, m_options.stubs, m_tree);
+      const Section_support support =
+          support_of_sections<ConcurrencyTag>(m_scan, m_tree, m_axes.noise, m_options.support);
+      if (m_leaf_rounds > 0) // what is left of leaves makes twigs thick
+        m_options.support.pipes.slack = m_options.leaves.pipe_slack;
+      std::vector<double> fitted(m_tree.nodes.size());
+      std::transform(m_tree.nodes.begin(),
+                     m_tree.nodes.end(),
+                     fitted.begin(),
+                     [](const Branch_node& node) { return node.radius; });
+      bound_radii(m_scan, support, m_axes.density, m_options.support, m_tree);
+      mend_foot(m_scan,
+                m_used.flags(),
+                support,
+                m_axes.density,
+                m_options.support,
+                m_options.foot,
+                m_tree);
+      follow_bounds(m_scan, fitted, m_axes.noise, m_options.following, m_tree);
+      m_report.number_of_other_stems =
+          count_other_stems(m_axes, m_joints, root, m_tree, m_options.stems);
+    }
+    m_report.seconds.joints = watch.lap();
+    if (!progress(0.97))
+      return false;
+    correct_widening();
+    estimate_sections<ConcurrencyTag>(m_scan, m_axes.noise, m_options.sections, m_tree);
+    count();
+    m_report.seconds.sections = watch.lap();
+    m_stage = 4;
+    return true;
+  }
+
+  const Scan& scan() const { return m_scan; }
+  const std::vector<std::uint8_t>& is_used() const { return m_used.flags(); }
+  const std::vector<Index>& root() const { return m_root; }
+  const Shortest_paths& paths() const { return m_paths; }
+  const Layer_tree& layers() const { return m_layers; }
+  const Axis_set& axes() const { return m_axes; }
+  const std::vector<Found_section>& sections() const { return m_sections; }
+  const std::vector<Joint>& joints() const { return m_joints; }
+  const Branch_tree& tree() const { return m_tree; }
+  const Skeleton_report& report() const { return m_report; }
+  Skeleton_report& report() { return m_report; }
+
+  /// The node that explains an input point, or `none`.
+  Index node_of_input(std::size_t i) const
+  {
+    return m_tree.node_of_point[m_scan.point_of_input[i]];
+  }
+
+  /// The unit vector across its branch from the axis to an input point; null on the axis. It has a node.
+  Vec3 normal_of_input(std::size_t i) const
+  {
+    const Vec3 across = offset_of_point(m_scan, m_axes, m_tree, m_scan.point_of_input[i]);
+    const double length = across.norm();
+    return length > 0 ? m_scan.frame.direction_to_input(across / length) : Vec3(Vec3::Zero());
+  }
+
+  /// Distance of an input point from the surface of its branch; negative inside. It has a node.
+  double residual_of_input(std::size_t i) const
+  {
+    return m_scan.frame.unit * residual_of_point(m_scan, m_axes, m_tree, m_scan.point_of_input[i]);
+  }
+
+  /// Whether an input point is left out as a leaf, by the caller or because it was found to be one.
+  bool is_leaf_of_input(std::size_t i) const { return m_used.is_leaf(m_scan.point_of_input[i]); }
+
+private:
+  Links links_of_used() const
+  {
+    return neighbor_links<ConcurrencyTag>(m_scan, m_used.flags(), m_options.axes.links);
+  }
+
+  /// All points in one graph: where parts are apart, the gaps between them are closed.
+  struct Linked_parts
+  {
+    Links gaps;
+    std::unique_ptr<Neighbor_graph> graph;
+  };
+
+  /// Finds the root, and the graph of `links` with those that close gaps.
+  void link_parts(const Links& links, Linked_parts& linked)
+  {
+    linked.graph.reset(); // large
+    const Point_parts parts = connected_parts<ConcurrencyTag>(m_used.flags(), links);
+    if (m_options.root)
+      m_root = {m_scan.search
+                    ->nearest_if(m_scan.frame.to_local(*m_options.root),
+                                 std::numeric_limits<double>::max(),
+                                 [&](Index i) { return m_used.flags()[i] != 0; })
+                    .index};
+    else
+      m_root = find_root(m_scan, m_used.flags(), links, parts, m_options.up, m_options.roots);
+    linked.gaps = links_across_gaps(m_scan, m_used.flags(), m_options.axes.links, parts);
+    // made where it stays: such graphs are copied, not moved
+    linked.graph.reset(new Neighbor_graph(graph_of(m_scan.size(), links, linked.gaps)));
+  }
+
+  /// Paths from the root, and their layers. Appends those that close gaps to `links`.
+  void trace_paths(Links& links, Linked_parts& linked)
+  {
+    m_paths = shortest_paths(m_scan, *linked.graph, m_root);
+    linked.graph.reset();
+    links.insert(links.end(), linked.gaps.begin(), linked.gaps.end());
+    m_layers = layer_tree<ConcurrencyTag>(m_scan, links, m_paths);
+    merge_rings<ConcurrencyTag>(m_scan, m_options.rings, m_layers);
+  }
+
+  /// The wood among all points, before any leaves are left out; empty if there are none to leave out.
+  std::vector<std::uint8_t> wood_of_all()
+  {
+    const bool is_sure = m_options.leaf_removal == Leaf_removal::always;
+    Found_wood found =
+        wood_by_points<ConcurrencyTag>(m_scan, m_axes, m_used.flags(), is_sure, m_options.leaves);
+    m_report.is_in_rows = found.is_in_rows;
+    return std::move(found.is_wood);
+  }
+
+  /// Takes the leaves out, and looks for paths over the rest. `false` if there is nothing to do.
+  bool remove_leaves()
+  {
+    if (m_axes.axes.empty())
+      return false;
+    const std::vector<std::uint8_t> is_wood =
+        m_leaf_rounds > 0 ? wood_by_axes<ConcurrencyTag>(m_scan,
+                                                         m_axes,
+                                                         m_used.flags(),
+                                                         m_options.breast_height,
+                                                         m_options.leaves)
+                          : wood_of_all();
+    const bool has_wood = std::find(is_wood.begin(), is_wood.end(), 1) != is_wood.end();
+    if (!has_wood || is_wood == m_used.flags())
+      return false;
+    m_used.leave_out_leaves(is_wood);
+    Links links = links_of_used();
+    Linked_parts linked;
+    link_parts(links, linked);
+    trace_paths(links, linked);
+    return true;
+  }
+
+  /// The tree of the axes as they are. Returns the one that stands on the root.
+  Index join_axes()
+  {
+    const Index root = root_axis(m_scan, m_axes, m_root, m_options.root.has_value());
+    const Axis_joiner joiner(m_axes, m_scan.spacing, m_options.joints);
+    m_joints = joiner.template run<ConcurrencyTag>(root);
+    m_joints[root].is_reversed = is_root_reversed(m_scan, m_axes.axes[root].axis, m_root);
+    m_tree = branch_tree(m_axes, m_joints, root, m_scan.spacing);
+    return root;
+  }
+
+  /// Takes out of the radii what beams and voxels add to them.
+  void correct_widening()
+  {
+    correct_beam(m_options.scanners, m_options.beam_width, m_options.beam, m_tree);
+    const double step = grid_step(m_scan, m_options.grid);
+    correct_grid(step, m_options.grid, m_tree);
+    m_report.grid_step = m_scan.frame.unit * step;
+  }
+
+  void count()
+  {
+    Skeleton_report& r = m_report;
+    const double unit = m_scan.frame.unit;
+    r.status = m_tree.nodes.empty() ? Status::nothing_to_do : Status::converged;
+    r.number_of_nodes = m_tree.nodes.size();
+    r.number_of_branches = m_tree.branches.size();
+    r.number_of_unreached_branches = m_tree.number_of_unreached_axes;
+    for (std::size_t i = 0; i < m_scan.size(); ++i) {
+      if (!m_used.flags()[i])
+        continue;
+      const bool has_node = !m_tree.node_of_point.empty() && m_tree.node_of_point[i] != none;
+      const bool is_covered =
+          has_node || (!m_axes.axis_of_point.empty() && m_axes.is_covered(static_cast<Index>(i)));
+      r.number_of_unexplained_points += !is_covered;
+      r.number_of_unreached_points += is_covered && !has_node;
+    }
+    r.residual = unit * median_residual(m_scan, m_axes, m_tree);
+    report_sizes(m_tree, unit, m_options.up, m_options.breast_height, r);
+    if (!m_tree.nodes.empty())
+      r.height = std::max(
+          r.height,
+          unit * (m_used.top_of_leaves(m_options.up) - m_options.up.dot(m_tree.nodes[0].point)));
+  }
+
+  std::vector<Vec3> m_input;
+  std::vector<std::uint8_t> m_is_wood; ///< of the input
+  Session_options m_options;
+  bool m_are_walls_out = false;
+  int m_stage = 0, m_leaf_rounds = 0, m_regroupings = 0;
+  Skeleton_report m_report;
+  Scan m_scan;
+  Used_points<ConcurrencyTag> m_used{m_scan, m_report};
+  Wall_removal<ConcurrencyTag> m_wall_removal{m_scan, m_options.walls, m_used, m_report};
+  std::vector<Index> m_root;
+  Shortest_paths m_paths;
+  Layer_tree m_layers;
+  Axis_set m_axes;
+  std::vector<Found_section> m_sections;
+  std::vector<Joint> m_joints;
+  Branch_tree m_tree;
+};
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_SESSION_STAGES_H

@@ -1,0 +1,41 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The steps of the method `sections`: how slices are cut and fitted.
+
+#ifndef PCS_SKELETON_SLICE_RULES_H
+#define PCS_SKELETON_SLICE_RULES_H
+
+#include <cstddef>
+
+namespace pcs {
+namespace skeleton {
+
+/// How a section is fitted.
+enum class Section_fit {
+  conic,   ///< least squares for the conic with constant term 1; the dissertation's
+  ellipse, ///< the direct fit of Halir and Flusser; never a hyperbola
+  circle,  ///< Taubin's circle; right on short arcs
+  by_arc   ///< an ellipse where nearly the whole turn is seen, else a circle
+};
+
+/// The rules of section 3.7 of the dissertation; each may be replaced by ours.
+struct Slice_rules
+{
+  Section_fit fit = Section_fit::conic;
+  double height = 5;              ///< of a slice, in spacings [-]
+  bool is_height_local = false;   ///< multiples of the local spacing instead of the median
+  std::size_t lowest_count = 10;  ///< points of a slice
+  std::size_t highest_count = 20; ///< more are drawn at random; 0: all are used
+  double upright = 0.9;           ///< ratio of the half axes below which a slice is tilted [-]
+  int tilts = 5;                  ///< tries
+  bool do_mark_support = true;    ///< points that agree with a section need none of their own
+  double support_radius = 0.35;   ///< relative difference of the radii that is agreement [-]
+  double support_cosine = 0.9;    ///< of the angle between the axes
+  double largest_radius = 200;    ///< of a center candidate, in spacings [-]
+  unsigned seed = 0;
+};
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_SLICE_RULES_H
