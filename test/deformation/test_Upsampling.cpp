@@ -5,6 +5,7 @@
 #include <pcs/core/Similarity.h>
 #include <pcs/core/rotations.h>
 #include <pcs/deformation/Upsampling.h>
+#include <pcs/deformation/blend_block_impl.h>
 #include <pcs/deformation/octree_samples.h>
 #include <support/networks.h>
 #include <support/threads.h>

@@ -6,6 +6,7 @@
 #define PCS_SKELETON_FRAME_OF_SCAN_H
 
 #include <pcs/internal/parallel.h>
+#include <pcs/skeleton/Scan.h>
 #include <pcs/skeleton/Scan_frame.h>
 
 #include <Eigen/Core>
@@ -54,9 +55,8 @@ std::array<double, 4> exact_sums(std::size_t n, const Terms& terms)
 
 /// The frame of a scan. `input` is finite and not empty, `up` a unit vector. The order of the points does not matter. O(n).
 template <class ConcurrencyTag>
-Scan_frame frame_of_scan(const std::vector<Eigen::Vector3d>& input, const Eigen::Vector3d& up)
+Scan_frame frame_of_scan(const std::vector<Vec3>& input, const Vec3& up)
 {
-  using Vec3 = Eigen::Vector3d;
   using Terms = std::array<double, 4>;
   Scan_frame frame;
   const std::size_t n = input.size();
