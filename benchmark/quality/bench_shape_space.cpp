@@ -9,6 +9,7 @@
 #include <pcs/generators/grow_tree.h>
 #include <pcs/internal/Random_stream.h>
 #include <pcs/internal/Stopwatch.h>
+#include <pcs/shape_space/Tree_distribution.h>
 #include <support/trees_of_parameters.h>
 
 #include <CGAL/Simple_cartesian.h>
@@ -104,7 +105,7 @@ void run_group(const std::vector<std::string>& files, const std::string& folder)
             "mode_" + std::to_string(k + 1) + (side < 0 ? "_minus" : "_plus"));
     }
   const auto distribution = space.distribution();
-  std::printf("shrinkage %.2f\n", distribution.distribution.shrinkage());
+  std::printf("shrinkage %.2f\n", distribution.distribution->shrinkage());
   std::size_t number_inside = 0, number_alike = 0;
   for (std::uint64_t i = 0; i < 12; ++i) {
     const pcs::Orl_tree tree = space.sample(distribution, 1, i);

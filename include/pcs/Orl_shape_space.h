@@ -16,11 +16,9 @@
 #include <pcs/internal/Stopwatch.h>
 #include <pcs/internal/progress.h>
 #include <pcs/shape_space/Embedded_pair.h>
-#include <pcs/shape_space/build_family.h>
-#include <pcs/shape_space/build_pair.h>
+#include <pcs/shape_space/Family_options.h>
+#include <pcs/shape_space/Space_engine.h>
 #include <pcs/shape_space/read_options.h>
-#include <pcs/shape_space/stored_family.h>
-#include <pcs/shape_space/stored_topology.h>
 #include <pcs/shape_space/tree_input.h>
 
 #include <CGAL/Simple_cartesian.h>
@@ -63,6 +61,7 @@ template <class Kernel = CGAL::Simple_cartesian<double>,
 class Orl_shape_space : public Orl_tree_paths<ConcurrencyTag>
 {
   using Paths = Orl_tree_paths<ConcurrencyTag>;
+  using Engine = typename Paths::Engine;
 
 public:
   using FT = typename Kernel::FT;
@@ -186,7 +185,7 @@ public:
     Embedded_pair built;
     read_form(np, built);
     std::vector<Point_pair> pairs;
-    if (!find_correspondences<ConcurrencyTag>(inputs(), options, progress, built, pairs, report))
+    if (!Engine::find_correspondences(inputs(), options, progress, built, pairs, report))
       return cancelled(report);
     pcs::internal::Stopwatch watch;
     finish(built, std::move(pairs), options.weights, report);
@@ -210,19 +209,9 @@ public:
     pcs::internal::Stopwatch watch;
     shape_space::Embedded_pair built;
     shape_space::read_form(np, built);
-    built.topology = shape_space::restore_topology(correspondences,
-                                                   inputs(),
-                                                   "pcs::Orl_shape_space::build_from()");
-    const auto& [w, x, y, z] = correspondences.turn;
-    built.turn = Quaternion(w, x, y, z);
-    shape_space::embed(inputs(), built);
+    Engine::embed_stored(correspondences, inputs(), "pcs::Orl_shape_space::build_from()", built);
     report.seconds.topology = watch.lap();
     const bool has_points = !m_inputs[0].points.empty() || !m_inputs[1].points.empty();
-    if (has_points)
-      shape_space::check_pairs(correspondences,
-                               built.layout.number_of_edges(),
-                               {m_inputs[0].points.size(), m_inputs[1].points.size()},
-                               "pcs::Orl_shape_space::build_from()");
     finish(built,
            has_points ? correspondences.pairs : std::vector<shape_space::Point_pair>(),
            shape_space::Matching_weights(),
@@ -236,10 +225,7 @@ public:
   {
     this->check_built("correspondences");
     check_inputs("correspondences");
-    return shape_space::store_topology(this->m_built.topology,
-                                       this->m_built.turn,
-                                       inputs(),
-                                       this->m_built.instances.pairs());
+    return Engine::store_topology(this->m_built, inputs());
   }
 
   //! branches that correspond, parents first; \pre it was built
@@ -276,20 +262,20 @@ public:
                                              std::vector<Point_3>(),
                                              np,
                                              "pcs::Orl_shape_space::embed()");
-    return this->make(shape_space::embed_tree<ConcurrencyTag>(this->m_family, input.tree, share));
+    return this->make(Engine::embed_tree(this->m_family, input.tree, share));
   }
 
   //! the whole space as numbers, for `IO::write_shape_space()`; \pre it was built
   Orl_space_data data() const
   {
     this->check_built("data");
-    Orl_space_data result = shape_space::store_family(this->m_family);
+    Orl_space_data result = Engine::store_family(this->m_family);
     result.points = m_stored_points;
     result.partners = m_stored_partners;
     result.has_normals = this->has_normals();
     if (this->is_pair()) {
       result.pairs = this->m_built.instances.pairs();
-      shape_space::store_points(inputs(), result);
+      Engine::store_points(inputs(), result);
     }
     return result;
   }
@@ -301,7 +287,7 @@ public:
   void restore(const Orl_space_data& stored)
   {
     Orl_shape_space space;
-    space.m_family = shape_space::restore_family(stored, "pcs::Orl_shape_space::restore()");
+    space.m_family = Engine::restore_family(stored, "pcs::Orl_shape_space::restore()");
     space.set_points(stored);
     space.m_is_built = space.m_is_restored = true;
     *this = std::move(space);
@@ -343,24 +329,13 @@ private:
               const shape_space::Matching_weights& weights,
               Orl_report& report)
   {
-    built.instances.set(built.layout,
-                        built.geometry,
-                        {m_inputs[0].points, shape_space::points_of_second(inputs())},
-                        {m_inputs[0].normals, m_inputs[1].normals},
-                        built.is_relative,
-                        std::move(pairs),
-                        ConcurrencyTag());
+    this->m_family = Engine::finish_pair(inputs(), std::move(pairs), weights, built, report);
     this->m_built = std::move(built);
-    this->m_family = shape_space::make_family(this->m_built, inputs(), weights);
-    this->m_family.first_point =
-        shape_space::first_of_edges(this->m_built.instances.pairs(),
-                                    this->m_built.layout.number_of_edges());
     this->m_points = shape_space::Family_points();
     m_stored_points.clear();
     m_stored_partners.clear();
     this->m_is_built = true;
     report.status = Status::converged;
-    shape_space::describe(this->m_built, report);
   }
 
   template <class NamedParameters>
@@ -373,13 +348,13 @@ private:
     shape_space::read_form(np, form);
     shape_space::Built_family built;
     built.family.orientation = form.orientation;
-    if (!shape_space::build_family<ConcurrencyTag>(m_inputs,
-                                                   options,
-                                                   form.direction,
-                                                   form.has_unit_weights,
-                                                   progress,
-                                                   built,
-                                                   report))
+    if (!Engine::build_family(m_inputs,
+                              options,
+                              form.direction,
+                              form.has_unit_weights,
+                              progress,
+                              built,
+                              report))
       return cancelled(report);
     pcs::internal::Stopwatch watch;
     this->m_family = std::move(built.family);
@@ -399,30 +374,21 @@ private:
                          std::vector<Orl_space_data::Partner> partners,
                          bool has_normals)
   {
-    using namespace shape_space;
-    const Tree_family& family = this->m_family;
-    std::vector<Orl_geometry> geometry(family.x.size());
-    for (std::size_t t = 0; t < family.x.size(); ++t)
-      build_geometry(family.layout, family.x[t], family.orientation, geometry[t]);
-    this->m_points.set(family.layout, geometry, points, partners, has_normals, ConcurrencyTag());
+    Engine::set_points(points, partners, has_normals, this->m_family, this->m_points);
     m_stored_points = std::move(points);
     m_stored_partners = std::move(partners);
-    this->m_family.first_point = this->m_points.first();
   }
 
   /// What `data()` gave, once the family is there.
   void set_points(const Orl_space_data& stored)
   {
-    using namespace shape_space;
     const char* const caller = "pcs::Orl_shape_space::restore()";
-    const std::size_t n = this->m_family.layout.number_of_edges();
     if (this->number_of_trees() > 2) {
-      check_family_points(stored, n, caller);
+      Engine::check_family_points(stored, this->m_family.layout.number_of_edges(), caller);
       set_family_points(stored.points, stored.partners, stored.has_normals);
       return;
     }
-    m_inputs = restore_pair<ConcurrencyTag>(stored, this->m_family, caller, this->m_built);
-    this->m_family.first_point = first_of_edges(this->m_built.instances.pairs(), n);
+    m_inputs = Engine::restore_pair(stored, caller, this->m_family, this->m_built);
   }
 
   std::vector<shape_space::Tree_input> m_inputs;

@@ -10,18 +10,18 @@
 #include <pcs/Orl_tree_set.h>
 #include <pcs/core/errors.h>
 #include <pcs/internal/Random_stream.h>
-#include <pcs/shape_space/Tree_distribution.h>
+#include <pcs/shape_space/Modes_of_variation.h>
+#include <pcs/shape_space/Sampling_options.h>
+#include <pcs/shape_space/Space_engine.h>
+#include <pcs/shape_space/Tree_mean.h>
 #include <pcs/shape_space/check_sampling.h>
 #include <pcs/shape_space/growth_path.h>
-#include <pcs/shape_space/keep_in_range.h>
-#include <pcs/shape_space/limit_pipes.h>
-#include <pcs/shape_space/mean_tree.h>
-#include <pcs/shape_space/modes_of_variation.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,8 +32,8 @@ namespace pcs {
 //! what new trees are drawn from: a distribution, and the figures of the trees it was learned from
 struct Orl_distribution
 {
-  shape_space::Tree_distribution distribution;
-  std::vector<shape_space::Tree_figures> figures; ///< of the inputs
+  std::shared_ptr<const shape_space::Tree_distribution> distribution; ///< null: of no space
+  std::vector<shape_space::Tree_figures> figures;                     ///< of the inputs
 };
 
 //! \ingroup PkgPcsShapeSpaceRef
@@ -131,13 +131,7 @@ public:
       check_tree(*x, "displaced");
     if (!std::isfinite(step))
       throw Invalid_input("pcs::Orl_shape_space::displaced(): `step` is not finite");
-    using shape_space::Tangent_space;
-    // turns are carried over in the frames of the edges themselves
-    const Tangent_space from(m_family.layout, a.m_x, m_family.weights);
-    const Tangent_space at(m_family.layout, t.m_x, m_family.weights);
-    shape_space::Orl_coordinates x = at.exp(step * from.log(b.m_x));
-    x.root = t.m_x.root + step * (b.m_x.root - a.m_x.root);
-    return make(std::move(x), -1, t.m_share);
+    return make(Engine::displaced(m_family, t.m_x, a.m_x, b.m_x, step), -1, t.m_share);
   }
 
   /*!
@@ -164,17 +158,11 @@ public:
                                         const NamedParameters& np = NamedParameters()) const
   {
     check_family("modes");
-    const std::vector<double> ones(number_of_trees(), 1);
-    return shape_space::find_modes<ConcurrencyTag>(
-        m_family.layout,
-        pointers(),
-        m_family.weights,
-        m_family.orientation,
-        mean_of(ones, shape_space::Tree_mean::least_squares),
-        most,
-        pcs::internal::choose(np,
-                              pcs::internal_np::mode_measure,
-                              shape_space::Mode_measure::branches));
+    return Engine::find_modes(m_family,
+                              most,
+                              pcs::internal::choose(np,
+                                                    pcs::internal_np::mode_measure,
+                                                    shape_space::Mode_measure::branches));
   }
 
   //! the tree with given scores, in standard deviations of the modes; missing scores are 0. However large scores are, the
@@ -189,7 +177,7 @@ public:
     for (const double s : scores)
       if (!std::isfinite(s))
         throw Invalid_input("pcs::Orl_shape_space::tree(): a score is not finite");
-    return make(shape_space::tree_of_modes(m_family.layout, m_family.weights, modes, scores));
+    return make(Engine::tree_of_modes(m_family, modes, scores));
   }
 
   //! where a tree lies in the space of the modes, and how far from it; branches that it lacks do not count
@@ -198,11 +186,7 @@ public:
   {
     check_modes(modes, "project");
     check_tree(t, "project");
-    return shape_space::project_on_modes(m_family.layout,
-                                         m_family.weights,
-                                         m_family.orientation,
-                                         modes,
-                                         t.m_x);
+    return Engine::project_on_modes(m_family, modes, t.m_x, modes.size());
   }
 
   //! the tree in the space of the first `k` modes that is nearest to `t`
@@ -211,12 +195,7 @@ public:
   {
     check_modes(modes, "reconstruct");
     check_tree(t, "reconstruct");
-    const shape_space::Mode_coordinates at = shape_space::project_on_modes(m_family.layout,
-                                                                           m_family.weights,
-                                                                           m_family.orientation,
-                                                                           modes,
-                                                                           t.m_x,
-                                                                           k);
+    const shape_space::Mode_coordinates at = Engine::project_on_modes(m_family, modes, t.m_x, k);
     const std::vector<double> scores(at.scores.data(), at.scores.data() + at.scores.size());
     Orl_tree result = tree(modes, scores);
     result.m_x.root = t.m_x.root;
@@ -226,20 +205,14 @@ public:
   //! how unlike the added trees a tree is: about 1 for one like them, see `shape_space::outlier_score()` [-]
   double outlier_score(const shape_space::Modes_of_variation& modes, const Orl_tree& t) const
   {
-    return shape_space::outlier_score(modes, project(modes, t));
+    return Engine::outlier_score(modes, project(modes, t));
   }
 
   //! what new trees are drawn from; learn it once, draw many
   Orl_distribution distribution() const
   {
     check_family("distribution");
-    Orl_distribution result{shape_space::Tree_distribution(m_family.layout,
-                                                           pointers(),
-                                                           m_family.has,
-                                                           m_family.orientation,
-                                                           m_family.up,
-                                                           ConcurrencyTag()),
-                            {}};
+    Orl_distribution result{Engine::distribution(m_family), {}};
     for (std::size_t t = 0; t < number_of_trees(); ++t)
       result.figures.push_back(figures(tree(t)));
     return result;
@@ -272,7 +245,7 @@ public:
     const auto o =
         pcs::internal::choose(np, pcs::internal_np::sampling_options, Sampling_options());
     check_sampling(o, "pcs::Orl_shape_space::sample()");
-    if (from.figures.size() != number_of_trees())
+    if (!from.distribution || from.figures.size() != number_of_trees())
       throw Invalid_input("pcs::Orl_shape_space::sample(): the distribution is of another space");
     Orl_tree best;
     Sample_report done;
@@ -285,21 +258,20 @@ public:
       nearer.spread =
           o.spread * std::min(1.0, 1.5 - static_cast<double>(k) / static_cast<double>(trials));
       // a trial is a stream of its own
-      Orl_coordinates x = from.distribution.draw(pcs::internal::mix_bits(seed) + k, index, nearer);
-      if (o.do_keep_in_range)
-        limit_angles(m_family.layout, m_family.orientation, from.figures, x);
-      if (o.do_keep_in_range && 2 * k >= trials)
-        limit_lengths(m_family.layout, m_family.orientation, m_family.up, from.figures, x);
-      if (o.pipe_exponent > 0)
-        limit_pipes(m_family.layout, o.pipe_exponent, x);
-      if (o.do_limit_radii)
-        limit_radii(m_family.layout, x);
-      Orl_tree candidate = make(std::move(x), -1, share);
+      Orl_tree candidate = make(Engine::draw(m_family,
+                                             *from.distribution,
+                                             from.figures,
+                                             pcs::internal::mix_bits(seed) + k,
+                                             index,
+                                             nearer,
+                                             2 * k >= trials),
+                                -1,
+                                share);
       double beyond = 0, whole = 0; // of all figures, and of those of the tree as a whole
       if (o.do_keep_in_range) {
         const Tree_figures f = figures(candidate);
-        beyond = excess(f, from.figures);
-        whole = excess(f, from.figures, false);
+        beyond = Engine::excess(f, from.figures, true);
+        whole = Engine::excess(f, from.figures, false);
       }
       if (k == 0 || whole < least || (whole == least && beyond < done.excess)) {
         best = std::move(candidate);
@@ -384,6 +356,7 @@ protected:
   using Set::check_tree;
   using Set::m_family;
   using Set::make;
+  using typename Set::Engine;
 
 private:
   /// Those of the scans before and after a time.
@@ -415,18 +388,10 @@ private:
                           "(): the modes are of another space");
   }
 
-  std::vector<const shape_space::Orl_coordinates*> pointers() const
-  {
-    std::vector<const shape_space::Orl_coordinates*> result;
-    for (const shape_space::Orl_coordinates& x : m_family.x)
-      result.push_back(&x);
-    return result;
-  }
-
   shape_space::Orl_coordinates mean_of(const std::vector<double>& weights,
                                        shape_space::Tree_mean kind) const
   {
-    return shape_space::mean_tree<ConcurrencyTag>(m_family.layout, pointers(), weights, kind);
+    return Engine::mean_tree(m_family, weights, kind);
   }
 };
 

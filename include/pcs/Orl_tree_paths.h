@@ -16,7 +16,8 @@
 #include <pcs/shape_space/Births.h>
 #include <pcs/shape_space/Embedded_pair.h>
 #include <pcs/shape_space/Family_points.h>
-#include <pcs/shape_space/Near_end.h>
+#include <pcs/shape_space/Point_instances.h>
+#include <pcs/shape_space/Space_engine.h>
 #include <pcs/shape_space/tree_input.h>
 #include <pcs/shape_space/write_skeleton.h>
 
@@ -327,37 +328,34 @@ protected:
                  const NamedParameters& np,
                  Orl_tree& result) const
   {
-    const double maximal_turn = pcs::internal::choose(np,
-                                                      pcs::internal_np::maximal_turn,
-                                                      0.25 * static_cast<double>(EIGEN_PI));
-    const bool do_limit = pcs::internal::choose(np, pcs::internal_np::do_limit_radii, false);
-    const auto births = pcs::internal::choose(np,
-                                              pcs::internal_np::birth_order,
-                                              shape_space::Birth_order::together);
+    shape_space::Path_options options;
+    options.maximal_turn = pcs::internal::choose(np,
+                                                 pcs::internal_np::maximal_turn,
+                                                 0.25 * static_cast<double>(EIGEN_PI));
+    options.do_limit_radii = pcs::internal::choose(np, pcs::internal_np::do_limit_radii, false);
+    options.births = pcs::internal::choose(np,
+                                           pcs::internal_np::birth_order,
+                                           shape_space::Birth_order::together);
     if (!std::isfinite(t))
       throw Invalid_input("pcs::Orl_shape_space::geodesic(): `lambda` is not finite");
-    if (!(maximal_turn >= 0))
+    if (!(options.maximal_turn >= 0))
       throw Invalid_input("pcs::Orl_shape_space::geodesic(): `maximal_turn` is " +
-                          pcs::internal::to_text(maximal_turn) + ", expected at least 0");
-    const shape_space::Tree_family& family = this->m_family;
-    shape_space::coordinates_at(family.layout, a, b, t, maximal_turn, result.m_x);
-    if (births == shape_space::Birth_order::in_order && t > 0 && t < 1)
-      shape_space::Births(family.layout, result.m_births)(a, b, t, result.m_x);
-    if (t < 0 || t > 1)
-      shape_space::Near_end(family.layout,
-                            family.orientation,
-                            family.up,
-                            maximal_turn,
-                            result.m_buffers)(t < 0 ? a : b, t < 0 ? b : a, result.m_x);
-    if (do_limit)
-      shape_space::limit_radii(family.layout, result.m_x);
+                          pcs::internal::to_text(options.maximal_turn) + ", expected at least 0");
+    Family::Engine::tree_at(this->m_family,
+                            a,
+                            b,
+                            t,
+                            options,
+                            result.m_buffers,
+                            result.m_births,
+                            result.m_x,
+                            result.m_geometry);
     result.m_lambda = lambda;
-    shape_space::build_geometry(family.layout, result.m_x, family.orientation, result.m_geometry);
     for (const shape_space::Vec3& p : result.m_geometry.node)
       if (!p.allFinite())
         throw Invalid_input("pcs::Orl_shape_space::geodesic(): `lambda` is " +
                             pcs::internal::to_text(t) + ", lengths there are no finite numbers");
-    family.find_offsets(result.m_x, result.m_offset);
+    this->m_family.find_offsets(result.m_x, result.m_offset);
   }
 
   shape_space::Embedded_pair m_built;  // of two trees

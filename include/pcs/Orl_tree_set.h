@@ -10,9 +10,10 @@
 #include <pcs/core/errors.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/text.h>
+#include <pcs/shape_space/Orl_coordinates.h>
+#include <pcs/shape_space/Space_engine.h>
 #include <pcs/shape_space/Tree_family.h>
 #include <pcs/shape_space/change_table.h>
-#include <pcs/shape_space/modes_of_variation.h>
 #include <pcs/shape_space/tree_figures.h>
 
 #include <algorithm>
@@ -128,14 +129,14 @@ public:
       if (!(x >= 0))
         throw Invalid_input("pcs::Orl_shape_space::changes(): a limit is " +
                             pcs::internal::to_text(x) + ", expected at least 0");
-    return shape_space::find_changes(m_family.layout, m_family.x[a], m_family.x[b], limits);
+    return Engine::find_changes(m_family, m_family.x[a], m_family.x[b], limits);
   }
 
   //! length, height, width, branches and angles of a tree; height is measured along `growth_direction()`
   shape_space::Tree_figures figures(const Orl_tree& t) const
   {
     check_tree(t, "figures");
-    return shape_space::measure(m_family.layout, t.m_x, t.m_geometry, m_family.up);
+    return Engine::measure(m_family, t.m_x, t.m_geometry);
   }
 
   //! unit vector from the roots to the middle of the trees: upwards, if they grow that way
@@ -146,6 +147,8 @@ public:
   const shape_space::Orl_weights& weights() const { return m_family.weights; }
 
 protected:
+  using Engine = shape_space::Space_engine<ConcurrencyTag>;
+
   void check_family(const char* caller) const
   {
     if (m_family.x.empty())
@@ -181,12 +184,9 @@ protected:
       result.m_share = std::move(share);
     result.m_x = std::move(x);
     result.m_lambda = lambda >= 0              ? lambda
-                      : number_of_trees() == 2 ? share_of_second(result.m_x)
+                      : number_of_trees() == 2 ? Engine::share_of_second(m_family, result.m_x)
                                                : 0;
-    shape_space::build_geometry(m_family.layout,
-                                result.m_x,
-                                m_family.orientation,
-                                result.m_geometry);
+    Engine::build_geometry(m_family, result.m_x, result.m_geometry);
     for (const shape_space::Vec3& p : result.m_geometry.node)
       if (!p.allFinite())
         throw Invalid_input("pcs::Orl_shape_space: a step, weight or score leads to lengths that "
@@ -222,20 +222,11 @@ private:
                      const shape_space::Orl_coordinates& b,
                      const NamedParameters& np) const
   {
-    return shape_space::distance(
+    return Engine::distance(
+        m_family,
         a,
         b,
-        m_family.weights,
         pcs::internal::choose(np, pcs::internal_np::metric, shape_space::Orl_metric::sum));
-  }
-
-  /// The place of the nearest tree on the geodesic of two trees, in [0, 1].
-  double share_of_second(const shape_space::Orl_coordinates& x) const
-  {
-    const shape_space::Tangent_space tangent(m_family.layout, m_family.x[0], m_family.weights);
-    const Eigen::VectorXd way = tangent.log(m_family.x[1]);
-    const double length = way.squaredNorm();
-    return length > 0 ? std::min(1.0, std::max(0.0, tangent.log(x).dot(way) / length)) : 0;
   }
 };
 

@@ -4,6 +4,7 @@
 
 #include <pcs/core/Skeleton_report.h>
 #include <pcs/extract_tree_skeleton.h>
+#include <pcs/skeleton/correct_grid.h>
 #include <pcs/skeleton/prepare_scan.h>
 #include <support/tree_clouds.h>
 

@@ -7,6 +7,7 @@
 
 #include <pcs/internal/parallel.h>
 #include <pcs/shape_space/Reference_tree.h>
+#include <pcs/shape_space/elastic_curves.h>
 #include <pcs/shape_space/embed_trees.h>
 #include <pcs/shape_space/mean_rotation.h>
 

@@ -7,6 +7,7 @@
 
 #include <pcs/shape_space/Common_topology.h>
 #include <pcs/shape_space/Shared_topology.h>
+#include <pcs/shape_space/build_topology.h>
 #include <pcs/shape_space/order_of_trees.h>
 
 #include <algorithm>

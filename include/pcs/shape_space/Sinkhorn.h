@@ -5,6 +5,7 @@
 #ifndef PCS_SHAPE_SPACE_SINKHORN_H
 #define PCS_SHAPE_SPACE_SINKHORN_H
 
+#include <pcs/shape_space/Transport_options.h>
 #include <pcs/shape_space/Transport_simplex.h>
 
 #include <algorithm>
@@ -15,13 +16,6 @@
 
 namespace pcs {
 namespace shape_space {
-
-struct Sinkhorn_options
-{
-  double regularization = 0.02;  ///< final epsilon, as a share of the largest cost
-  std::size_t iterations = 1000; ///< at the final epsilon
-  double tolerance = 1e-6;       ///< stops at this violation of the marginals
-};
 
 /*!
   Alternating projections (M. Cuturi, 2013) with potentials; epsilon is halved from the largest cost down. Of the plan,

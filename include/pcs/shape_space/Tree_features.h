@@ -5,6 +5,7 @@
 #ifndef PCS_SHAPE_SPACE_TREE_FEATURES_H
 #define PCS_SHAPE_SPACE_TREE_FEATURES_H
 
+#include <pcs/shape_space/Modes_of_variation.h>
 #include <pcs/shape_space/Tangent_space.h>
 
 #include <Eigen/Core>
@@ -15,12 +16,6 @@
 
 namespace pcs {
 namespace shape_space {
-
-/// What modes of variation explain.
-enum class Mode_measure {
-  branches, ///< how branches differ where trees have them; each branch has one vote
-  metric    ///< the distance `Orl_metric::square`: a branch that is not there has the length 0
-};
 
 /*!
   Numbers of a tree in blocks; a tree either has all numbers of a block, or none.

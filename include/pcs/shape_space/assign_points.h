@@ -8,6 +8,7 @@
 #include <pcs/internal/parallel.h>
 #include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/neighborhood/Nearest_neighbors.h>
+#include <pcs/shape_space/Assignment_options.h>
 #include <pcs/shape_space/Rooted_tree.h>
 
 #include <Eigen/Core>
@@ -29,14 +30,6 @@ struct Tube
   Vec3 from, to;                 ///< [L]
   double from_radius, to_radius; ///< [L]
   std::size_t branch;
-};
-
-struct Assignment_options
-{
-  double noise =
-      0.1; ///< points lie off the surface by this share of the radius; the text's factor 1.1 [-]
-  double normal_angle = 0.5; ///< deviation of normals that counts as much as the noise [rad]
-  std::size_t number_of_neighbors = 12; ///< for normals, where none are given
 };
 
 /// A tree of boxes around tubes; finds the tubes that a point may lie on.

@@ -9,9 +9,11 @@
 #include <pcs/core/Orl_space_data.h>
 #include <pcs/internal/Stopwatch.h>
 #include <pcs/internal/progress.h>
-#include <pcs/shape_space/Family_points.h>
+#include <pcs/shape_space/Family_options.h>
+#include <pcs/shape_space/Family_points_impl.h>
 #include <pcs/shape_space/Tree_family.h>
 #include <pcs/shape_space/find_turns.h>
+#include <pcs/shape_space/make_family.h>
 #include <pcs/shape_space/star_correspondences.h>
 
 #include <cstddef>
@@ -28,24 +30,6 @@ inline void describe(const Transport_summary& summary, Orl_report& report)
   report.worst_marginal_violation = summary.worst_violation;
   report.mean_marginal_violation = summary.mean_violation;
 }
-
-struct Family_options
-{
-  Matching_weights weights;
-  Standing standing;
-  Assignment_options assignment;
-  Transport_options transport;
-  std::size_t number_of_rounds = 3;
-  std::size_t points_of = none; ///< scan that gives the points where it can
-};
-
-struct Built_family
-{
-  Tree_family family;
-  std::vector<Orl_space_data::Point> points;     ///< by edge
-  std::vector<Orl_space_data::Partner> partners; ///< by point
-  bool has_normals = false;
-};
 
 /// `false` when `progress` asks to stop. Reads `built.family.orientation`.
 template <class ConcurrencyTag>

@@ -10,7 +10,11 @@
 #include <pcs/internal/Stopwatch.h>
 #include <pcs/internal/progress.h>
 #include <pcs/shape_space/Embedded_pair.h>
+#include <pcs/shape_space/Family_options.h>
+#include <pcs/shape_space/Point_instances.h>
+#include <pcs/shape_space/Point_pair.h>
 #include <pcs/shape_space/build_family.h>
+#include <pcs/shape_space/embed_pair.h>
 #include <pcs/shape_space/match_trees.h>
 #include <pcs/shape_space/point_correspondences.h>
 

@@ -6,9 +6,9 @@
 #define PCS_SHAPE_SPACE_CHECK_OPTIONS_H
 
 #include <pcs/core/errors.h>
+#include <pcs/shape_space/Assignment_options.h>
 #include <pcs/shape_space/Matched_branch.h>
-#include <pcs/shape_space/assign_points.h>
-#include <pcs/shape_space/match_points.h>
+#include <pcs/shape_space/Transport_options.h>
 
 #include <cmath>
 #include <string>

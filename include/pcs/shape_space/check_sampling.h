@@ -7,7 +7,7 @@
 
 #include <pcs/core/errors.h>
 #include <pcs/internal/text.h>
-#include <pcs/shape_space/Tree_distribution.h>
+#include <pcs/shape_space/Sampling_options.h>
 
 #include <cmath>
 #include <cstddef>

@@ -9,6 +9,7 @@
 #include <pcs/shape_space/Common_topology.h>
 #include <pcs/shape_space/Embedding.h>
 #include <pcs/shape_space/Orl_coordinates.h>
+#include <pcs/shape_space/Virtual_direction.h>
 
 #include <algorithm>
 #include <array>
@@ -19,12 +20,6 @@
 
 namespace pcs {
 namespace shape_space {
-
-/// Where a branch without partner points in the tree that does not have it.
-enum class Virtual_direction {
-  of_partner,  ///< as in the other tree: it grows in its direction
-  along_parent ///< along its parent: it grows upwards, then bends, as in the text
-};
 
 /// Edges of the common topology. Orientations at a fork refer to the edge before the mean attachment.
 inline Orl_layout make_layout(const std::vector<Common_branch>& branches)

@@ -7,6 +7,7 @@
 
 #include <pcs/internal/parallel.h>
 #include <pcs/shape_space/Matching_energy.h>
+#include <pcs/shape_space/Standing.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -19,19 +20,6 @@
 
 namespace pcs {
 namespace shape_space {
-
-/// Whether the second of two trees may stand turned as a whole.
-enum class Alignment {
-  as_given, ///< both stand in the same axes
-  turns     ///< about the vertical, by any angle: pots are put down anew
-};
-
-/// How the two trees stand to each other.
-struct Standing
-{
-  Alignment alignment = Alignment::as_given;
-  Vec3 up = Vec3::UnitZ(); ///< the vertical, of unit length
-};
 
 namespace internal {
 

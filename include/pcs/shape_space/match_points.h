@@ -9,6 +9,7 @@
 #include <pcs/shape_space/Places.h>
 #include <pcs/shape_space/Rooted_tree.h>
 #include <pcs/shape_space/Sinkhorn.h>
+#include <pcs/shape_space/Transport_options.h>
 #include <pcs/shape_space/Transport_simplex.h>
 
 #include <algorithm>
@@ -20,28 +21,6 @@
 
 namespace pcs {
 namespace shape_space {
-
-enum class Point_transport {
-  exact,   ///< network simplex
-  sinkhorn ///< regularised, as in the text
-};
-
-enum class Point_weights {
-  area, ///< a point stands for the surface around it, for less of it far from the other tree
-  equal ///< all points alike, as in the text
-};
-
-struct Transport_options
-{
-  Point_transport method = Point_transport::exact;
-  Point_weights weights = Point_weights::area;
-  bool is_squared =
-      true; ///< cost is the squared distance, as a 2-Wasserstein distance wants; the text's is not
-  std::size_t number_of_neighbors = 16; ///< candidates of each point in the other tree
-  std::size_t largest_window = 1000;    ///< points of a tree that are transported together
-  std::size_t least_window = 24;        ///< edges are joined until both trees have as many points
-  Sinkhorn_options sinkhorn;
-};
 
 namespace internal {
 

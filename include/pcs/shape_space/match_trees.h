@@ -8,6 +8,7 @@
 #include <pcs/internal/progress.h>
 #include <pcs/shape_space/Branch_matching.h>
 #include <pcs/shape_space/Common_topology.h>
+#include <pcs/shape_space/build_topology.h>
 #include <pcs/shape_space/find_turns.h>
 #include <pcs/shape_space/refine_turn.h>
 

@@ -7,6 +7,7 @@
 
 #include <pcs/internal/parallel.h>
 #include <pcs/shape_space/Orl_coordinates.h>
+#include <pcs/shape_space/Tree_mean.h>
 #include <pcs/shape_space/mean_rotation.h>
 
 #include <algorithm>
@@ -16,12 +17,6 @@
 
 namespace pcs {
 namespace shape_space {
-
-/// What a mean makes least.
-enum class Tree_mean {
-  least_sum,    ///< of distances, (4.16): medians; trees unlike all others have no say
-  least_squares ///< of squared distances, each coordinate apart
-};
 
 namespace internal {
 

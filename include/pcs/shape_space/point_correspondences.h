@@ -8,6 +8,7 @@
 #include <pcs/core/Orl_correspondences.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/shape_space/Orl_coordinates.h>
+#include <pcs/shape_space/Point_pair.h>
 #include <pcs/shape_space/flat_sections.h>
 #include <pcs/shape_space/match_points.h>
 #include <pcs/shape_space/tube_coordinates.h>
@@ -22,19 +23,6 @@
 
 namespace pcs {
 namespace shape_space {
-
-constexpr std::uint32_t no_point = Orl_correspondences::no_point;
-
-/// A point of tree 1 and one of tree 2, on an edge. One of them may be missing.
-using Point_pair = Orl_correspondences::Pair;
-
-struct Transport_summary
-{
-  std::size_t number_of_windows = 0;
-  std::size_t number_of_failures = 0; ///< windows whose method did not come to its end
-  double worst_violation = 0;         ///< of the marginals of a window, whose mass is 1 [-]
-  double mean_violation = 0;          ///< over windows
-};
 
 /// Points of both trees on the edges of the common topology, and their partners.
 template <class ConcurrencyTag>

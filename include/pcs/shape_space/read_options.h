@@ -8,8 +8,10 @@
 #include <pcs/Named_function_parameters.h>
 #include <pcs/core/errors.h>
 #include <pcs/shape_space/Embedded_pair.h>
-#include <pcs/shape_space/build_family.h>
+#include <pcs/shape_space/Family_options.h>
+#include <pcs/shape_space/Standing.h>
 #include <pcs/shape_space/check_options.h>
+#include <pcs/shape_space/tree_input.h>
 
 #include <cmath>
 #include <cstddef>

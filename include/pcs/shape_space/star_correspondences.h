@@ -8,6 +8,7 @@
 #include <pcs/core/Orl_space_data.h>
 #include <pcs/shape_space/Family_points.h>
 #include <pcs/shape_space/Tree_family.h>
+#include <pcs/shape_space/make_family.h>
 #include <pcs/shape_space/point_correspondences.h>
 
 #include <algorithm>

@@ -7,8 +7,13 @@
 
 #include <pcs/core/Orl_space_data.h>
 #include <pcs/core/errors.h>
+#include <pcs/shape_space/Embedded_pair.h>
+#include <pcs/shape_space/Point_instances_impl.h>
 #include <pcs/shape_space/Tree_family.h>
+#include <pcs/shape_space/make_family.h>
 #include <pcs/shape_space/stored_topology.h>
+#include <pcs/shape_space/surface_pieces.h>
+#include <pcs/shape_space/tree_input.h>
 
 #include <algorithm>
 #include <array>

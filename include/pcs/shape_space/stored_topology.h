@@ -7,6 +7,7 @@
 
 #include <pcs/core/Orl_correspondences.h>
 #include <pcs/core/errors.h>
+#include <pcs/core/rotations.h>
 #include <pcs/shape_space/Common_topology.h>
 #include <pcs/shape_space/tree_input.h>
 
