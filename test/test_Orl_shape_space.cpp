@@ -4,6 +4,7 @@
 
 #include <pcs/IO/read_correspondences.h>
 #include <pcs/IO/write_correspondences.h>
+#include <pcs/neighborhood/Nearest_neighbors.h>
 #include <pcs/orl_geodesic.h>
 #include <support/archetypes.h>
 #include <support/exceptions.h>

@@ -6,6 +6,12 @@
 #include <pcs/IO/read_txtskl.h>
 #include <pcs/IO/write_shape_space.h>
 #include <pcs/Orl_shape_space.h>
+#include <pcs/shape_space/Tangent_space.h>
+#include <pcs/shape_space/find_modes.h>
+#include <pcs/shape_space/keep_in_range.h>
+#include <pcs/shape_space/limit_pipes.h>
+#include <pcs/shape_space/mean_rotation.h>
+#include <pcs/shape_space/mean_tree.h>
 #include <support/archetypes.h>
 #include <support/exceptions.h>
 #include <support/orl_trees.h>

@@ -7,6 +7,7 @@
 #include <pcs/deformation/Upsampling.h>
 #include <pcs/deformation/blend_block_impl.h>
 #include <pcs/deformation/octree_samples.h>
+#include <pcs/internal/instruction_set.h>
 #include <support/networks.h>
 #include <support/threads.h>
 

@@ -10,6 +10,7 @@
 #include <pcs/deformation/Sampled_body.h>
 #include <pcs/deformation/Site_constraints.h>
 #include <pcs/deformation/affine_maps.h>
+#include <pcs/internal/instruction_set.h>
 
 #include <Eigen/Core>
 

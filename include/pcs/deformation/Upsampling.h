@@ -8,6 +8,8 @@
 #include <pcs/deformation/Sample_links.h>
 #include <pcs/deformation/blend_block.h>
 #include <pcs/internal/Huge_page_allocator.h>
+#include <pcs/internal/instruction_set.h>
+#include <pcs/internal/lanes.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/streaming_stores.h>
 
