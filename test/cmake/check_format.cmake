@@ -12,7 +12,7 @@ if(NOT version MATCHES "version 14\\.")
 endif()
 
 set(files)
-foreach(folder include test examples benchmark)
+foreach(folder include test examples benchmark cmake)
   file(GLOB_RECURSE found ${PCS_ROOT}/${folder}/*.h ${PCS_ROOT}/${folder}/*.cpp)
   list(APPEND files ${found})
 endforeach()

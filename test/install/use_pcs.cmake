@@ -22,9 +22,11 @@ if(WAY STREQUAL "find_package")
   run(${CMAKE_COMMAND} --install ${PCS_BUILD} --prefix ${WORK_DIR}/prefix)
   # Move it: an installed package must not remember where it was put.
   file(RENAME ${WORK_DIR}/prefix ${WORK_DIR}/moved)
-  build_and_run_consumer(-D CMAKE_PREFIX_PATH=${WORK_DIR}/moved)
+  build_and_run_consumer(-D CMAKE_PREFIX_PATH=${WORK_DIR}/moved
+    -D PCS_LIBRARY=pcs::compiled_deformation)
 elseif(WAY STREQUAL "add_subdirectory")
-  build_and_run_consumer(-D PCS_ROOT=${PCS_ROOT} -D PCS_WITH_TBB=${PCS_WITH_TBB})
+  build_and_run_consumer(-D PCS_ROOT=${PCS_ROOT} -D PCS_WITH_TBB=${PCS_WITH_TBB}
+    -D PCS_LIBRARY=pcs::pcs)
 else() # copied headers, the compiler alone, without oneTBB
   file(COPY ${PCS_ROOT}/include DESTINATION ${WORK_DIR})
   run(${CXX} -std=c++17 -O0 -I ${WORK_DIR}/include -isystem ${EIGEN_INCLUDE_DIR}
