@@ -131,7 +131,7 @@ BOOST_AUTO_TEST_SUITE(Sample_links)
 BOOST_AUTO_TEST_CASE(the_nearest_of_the_two_rings_move_a_point)
 {
   for (const Points& cloud : {pcs_test::random_points(800, 1), pcs_test::sphere(1500)})
-    for (const std::size_t k : {1, 4, 6, 32})
+    for (const std::size_t k : {1u, 4u, 6u, 32u})
       for (const auto kind : {Sample_weights::compact, Sample_weights::inverse_square}) {
         const Sampled s(cloud, 60);
         const auto links = s.by_regions(k, kind);
@@ -224,7 +224,7 @@ BOOST_AUTO_TEST_CASE(compact_weights_are_continuous_and_the_texts_jump)
 
 BOOST_AUTO_TEST_CASE(fewer_samples_than_k_all_move_every_point)
 {
-  for (const std::size_t count : {1, 2, 3}) {
+  for (const std::size_t count : {1u, 2u, 3u}) {
     const Sampled s(pcs_test::random_points(100, 2), count);
     for (const auto& links :
          {s.by_regions(6, Sample_weights::compact), s.by_hops(6, Sample_weights::inverse_square)}) {

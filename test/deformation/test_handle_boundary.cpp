@@ -110,7 +110,7 @@ BOOST_AUTO_TEST_CASE(boundary_nodes_are_points_of_their_handle_and_prescribed)
 
 BOOST_AUTO_TEST_CASE(rows_increase_and_weights_are_symmetric)
 {
-  for (const std::size_t count : {5, 20, 60, 200}) {
+  for (const std::size_t count : {5u, 20u, 60u, 200u}) {
     const Plate plate(count);
     Node_constraints extended = plate.constraints;
     const auto g = plate.with_boundary(extended).surface;

@@ -36,7 +36,7 @@ BOOST_AUTO_TEST_CASE(there_are_exactly_as_many_as_asked_for_and_all_differ)
   const Points points = pcs_test::in_spatial_order(pcs_test::random_points(1000, 1));
   for (std::size_t count = 1; count < 300; ++count)
     checked_samples(points, count);
-  for (const std::size_t count : {500, 998, 999, 1000, 1001, 5000})
+  for (const std::size_t count : {500u, 998u, 999u, 1000u, 1001u, 5000u})
     checked_samples(points, count);
 }
 
@@ -49,7 +49,7 @@ BOOST_AUTO_TEST_CASE(any_cloud_can_be_sampled)
     sequence.push_back(Vec3(std::ldexp(1.0, -i), 0, 0));
   sequence.push_back(Vec3(1e9, 0, 0));
   for (const Points& points : {line, sequence, pcs_test::plate(25, 25, .1), Points{Vec3(1, 2, 3)}})
-    for (const std::size_t count : {1, 2, 3, 10, 99, 400})
+    for (const std::size_t count : {1u, 2u, 3u, 10u, 99u, 400u})
       checked_samples(pcs_test::in_spatial_order(points), count);
 }
 
@@ -111,7 +111,7 @@ BOOST_AUTO_TEST_CASE(a_shifted_grid_has_the_shifted_samples)
   for (const Vec3& p : a)
     shifted.push_back((p + shift) - shift); // with the rounding that a shift brings
   const Points b = pcs_test::in_spatial_order(shifted);
-  for (const std::size_t count : {50, 200, 700})
+  for (const std::size_t count : {50u, 200u, 700u})
     BOOST_TEST(pcs_test::largest_distance(pcs_test::permuted(a, checked_samples(a, count)),
                                           pcs_test::permuted(b, checked_samples(b, count))) < 1e-8);
 }

@@ -199,7 +199,7 @@ BOOST_AUTO_TEST_CASE(trees_that_were_put_down_anew_are_turned_back_on_request)
   const Json turns = Json::parse(content("r.json"))["turns_degrees"];
   BOOST_TEST_REQUIRE(turns.size() == 3u);
   BOOST_TEST(turns[0].get<double>() == 0);
-  for (const std::size_t k : {1, 2}) // all others refer to the one before, which was turned back
+  for (const std::size_t k : {1u, 2u}) // all others refer to the one before, which was turned back
     BOOST_TEST(std::abs(std::remainder(turns[k].get<double>() + 1.3 * double(k) * 180 / CGAL_PI,
                                        360)) < 0.2);
 }

@@ -231,7 +231,7 @@ BOOST_AUTO_TEST_CASE(skeletons_are_extracted_where_none_are_given)
            "--report r.json");
   BOOST_TEST(number_in("out") == 4u);
   const Json r = Json::parse(content("r.json"));
-  for (const int t : {0, 1}) {
+  for (const std::size_t t : {0u, 1u}) {
     BOOST_TEST(r["number_of_branches"][t].get<std::size_t>() >= 3u);
     BOOST_TEST(r["number_of_points"][t].get<std::size_t>() == 20000u);
   }

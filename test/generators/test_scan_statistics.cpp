@@ -231,7 +231,7 @@ BOOST_AUTO_TEST_CASE(fewer_stations_hide_more_branches)
   Tree tree;
   pcs::grow_tree(tree, pcs::broadleaf_habit());
   std::size_t last = tree[boost::graph_bundle].branches.size(), last_nodes = num_vertices(tree);
-  for (const std::size_t n : {1, 2, 4, 8}) {
+  for (const std::size_t n : {1u, 2u, 4u, 8u}) {
     pcs::Virtual_scanner scanner;
     scanner.number_of_stations = n;
     scanner.angular_step = 0.0025;

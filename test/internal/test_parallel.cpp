@@ -48,7 +48,7 @@ BOOST_AUTO_TEST_SUITE(parallel)
 
 BOOST_AUTO_TEST_CASE_TEMPLATE(every_index_is_visited_once, Tag, Tags)
 {
-  for (const std::size_t n : {0, 1, 1023, 1024, 1025, 2048, 100000}) {
+  for (const std::size_t n : {0u, 1u, 1023u, 1024u, 1025u, 2048u, 100000u}) {
     std::vector<std::atomic<int>> visits(n);
     internal::for_each_index<Tag>(n, [&](std::size_t i) { ++visits[i]; });
     std::size_t once = 0;
@@ -60,7 +60,7 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(every_index_is_visited_once, Tag, Tags)
 
 BOOST_AUTO_TEST_CASE_TEMPLATE(blocks_are_consecutive_and_never_empty, Tag, Tags)
 {
-  for (const std::size_t block : {1, 7, 1000, 5000}) {
+  for (const std::size_t block : {1u, 7u, 1000u, 5000u}) {
     std::vector<std::atomic<std::size_t>> end_of_block((1000 + block - 1) / block);
     internal::for_each_block<Tag>(1000, block, [&](std::size_t begin, std::size_t end) {
       end_of_block[begin / block] = begin % block == 0 && begin < end ? end : 0;

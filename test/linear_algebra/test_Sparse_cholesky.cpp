@@ -294,7 +294,7 @@ BOOST_AUTO_TEST_CASE(all_kernels_give_the_same_bits)
   using namespace pcs::linear_algebra;
   std::mt19937 random(9);
   for (std::size_t width = 1; width <= 23; ++width)
-    for (const std::size_t below : {0, 1, 3, 8, 21, 40}) {
+    for (const std::size_t below : {0u, 1u, 3u, 8u, 21u, 40u}) {
       const std::size_t height = width + below;
       const Eigen::MatrixXd spd = random_spd(static_cast<Eigen::Index>(height), unsigned(width));
       const Eigen::MatrixXd panel = spd.leftCols(static_cast<Eigen::Index>(width));

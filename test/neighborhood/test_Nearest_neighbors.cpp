@@ -40,7 +40,7 @@ BOOST_AUTO_TEST_CASE(they_are_the_nearest_and_come_in_order)
   for (int repetition = 0; repetition < 100; ++repetition) {
     const Vec3 query = 1.5 * pcs_test::random_vector(random);
     const auto expected = nearest_squared_distances(points, query);
-    for (const std::size_t k : {1, 2, 7, 64}) {
+    for (const std::size_t k : {1u, 2u, 7u, 64u}) {
       nearest(query, k, found);
       BOOST_REQUIRE(found.size() == k);
       for (std::size_t b = 0; b < k; ++b) {
@@ -54,7 +54,7 @@ BOOST_AUTO_TEST_CASE(they_are_the_nearest_and_come_in_order)
 
 BOOST_AUTO_TEST_CASE(fewer_points_than_asked_for_are_all_returned)
 {
-  for (const std::size_t n : {0, 1, 2, 5}) {
+  for (const std::size_t n : {0u, 1u, 2u, 5u}) {
     const Points points = pcs_test::random_points(n, 3);
     const Tree nearest(points);
     std::vector<Tree::Neighbor> found(3);

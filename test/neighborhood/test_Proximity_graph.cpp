@@ -88,7 +88,7 @@ BOOST_AUTO_TEST_SUITE(Proximity_graph)
 
 BOOST_AUTO_TEST_CASE(rows_hold_the_k_nearest_of_random_points)
 {
-  for (const std::size_t k : {2, 6, 20, 60})
+  for (const std::size_t k : {2u, 6u, 20u, 60u})
     check_against_brute_force(pcs_test::random_points(300, 1), k);
 }
 
@@ -104,7 +104,7 @@ BOOST_AUTO_TEST_CASE(rows_hold_all_equals_on_grids)
 
 BOOST_AUTO_TEST_CASE(graphs_of_few_points_are_complete)
 {
-  for (const std::size_t n : {0, 1, 2, 3, 6, 7}) {
+  for (const std::size_t n : {0u, 1u, 2u, 3u, 6u, 7u}) {
     const auto g = nearest_neighbor_graph<Any_tag>(pcs_test::random_points(n, 2), 6);
     check_shape(g, n);
     BOOST_TEST(g.neighbor.size() == (n < 2 ? 0 : n * (n - 1)));

@@ -63,7 +63,7 @@ BOOST_AUTO_TEST_SUITE(spatial_order)
 
 BOOST_AUTO_TEST_CASE(random_points)
 {
-  for (const std::size_t n : {0, 1, 2, 16, 17, 100, 30000})
+  for (const std::size_t n : {0u, 1u, 2u, 16u, 17u, 100u, 30000u})
     check(pcs_test::random_points(n, 1));
 }
 
