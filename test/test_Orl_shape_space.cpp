@@ -7,6 +7,7 @@
 #include <pcs/neighborhood/Nearest_neighbors.h>
 #include <pcs/orl_geodesic.h>
 #include <support/archetypes.h>
+#include <support/drawn.h>
 #include <support/exceptions.h>
 #include <support/orl_spaces.h>
 #include <support/orl_trees.h>
@@ -37,7 +38,7 @@ Orl_coordinates random_coordinates(const Orl_layout& layout, std::mt19937& rando
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform(0, 1);
   Orl_coordinates x;
-  x.root = Vec3(normal(random), normal(random), normal(random));
+  x.root = pcs_test::drawn<Vec3>([&] { return normal(random); });
   for (std::size_t e = 0; e < layout.number_of_edges(); ++e) {
     pcs::Quaternion q(normal(random), normal(random), normal(random), normal(random));
     q.normalize(); // of either sign
@@ -277,7 +278,7 @@ BOOST_AUTO_TEST_CASE(turning_and_moving_both_trees_turns_and_moves_the_path)
   for (unsigned seed = 7; seed < 11; ++seed) {
     const Tree a = random_tree(seed), b = random_tree(seed + 100);
     const std::vector<Point> scan_a = tube_points(a, 1000, 1), scan_b = tube_points(b, 1500, 2);
-    const Vec3 axis(normal(random), normal(random), normal(random));
+    const Vec3 axis = pcs_test::drawn<Vec3>([&] { return normal(random); });
     const Eigen::Matrix3d r =
         Eigen::AngleAxisd(2 * normal(random), axis.normalized()).toRotationMatrix();
     const double scale = seed % 2 == 0 ? 1 : 100;
@@ -435,9 +436,10 @@ BOOST_AUTO_TEST_CASE(noise_of_an_axis_does_not_turn_what_is_behind_it)
     std::normal_distribution<double> normal;
     std::vector<Vec3> nodes{Vec3::Zero()};
     for (int k = 0; k < 24; ++k)
-      nodes.push_back(nodes.back() +
-                      (Vec3::UnitZ() + 0.7 * Vec3(normal(random), normal(random), normal(random)))
-                          .normalized());
+      nodes.push_back(nodes.back() + (Vec3::UnitZ() +
+                                      0.7 * pcs_test::drawn<Vec3>([&] {
+                                        return normal(random);
+                                      })).normalized());
     for (int k = 0; k < 4; ++k)
       nodes.push_back(nodes.back() + 5 * Vec3::UnitZ());
     Tree tree;
@@ -514,7 +516,7 @@ BOOST_AUTO_TEST_CASE(a_pruned_and_turned_tree_is_matched_to_itself)
     for (std::size_t b = 1; b < branches.size(); ++b) {
       turns[b] =
           Eigen::AngleAxisd(0.3 * normal(random),
-                            Vec3(normal(random), normal(random), normal(random)).normalized())
+                            pcs_test::drawn<Vec3>([&] { return normal(random); }).normalized())
               .toRotationMatrix();
       kept[b] = uniform(random) > 0.3;
     }

@@ -13,6 +13,7 @@
 #include <pcs/shape_space/mean_rotation.h>
 #include <pcs/shape_space/mean_tree.h>
 #include <support/archetypes.h>
+#include <support/drawn.h>
 #include <support/exceptions.h>
 #include <support/orl_trees.h>
 #include <support/threads.h>
@@ -53,7 +54,7 @@ relatives(std::size_t n, unsigned seed, double sigma = 0.15, double cut = 0.15, 
     std::vector<char> is_kept(all.size(), 1);
     for (std::size_t b = 0; b < all.size(); ++b) {
       const Vec3 u =
-          (b == 0 ? 0.3 : 1) * sigma * Vec3(normal(random), normal(random), normal(random));
+          (b == 0 ? 0.3 : 1) * sigma * pcs_test::drawn<Vec3>([&] { return normal(random); });
       turns[b] = Eigen::AngleAxisd(u.norm(), u.normalized()).toRotationMatrix();
       const double stretch = std::exp(0.1 * normal(random));
       for (Vec3& p : branches[b].points)
@@ -285,12 +286,12 @@ BOOST_AUTO_TEST_CASE(no_tree_near_the_mean_is_better)
       const double scale = std::pow(10.0, -2 - 2 * (i % 2));
       x.orientation[e] =
           x.orientation[e] *
-          pcs::rotation_exp(scale * Vec3(normal(random), normal(random), normal(random)));
+          pcs::rotation_exp(scale * pcs_test::drawn<Vec3>([&] { return normal(random); }));
       x.length[e] = std::max(0.0, x.length[e] + scale * normal(random));
       x.radius[e] = std::max(0.0, x.radius[e] + scale * normal(random));
       x.base_radius[b] += scale * normal(random);
       x.attachment[b] += scale * normal(random);
-      x.root += scale * Vec3(normal(random), normal(random), normal(random));
+      x.root += scale * pcs_test::drawn<Vec3>([&] { return normal(random); });
       number_better += sum_of_distances(space, x, is_squared) < least * (1 - 1e-12);
     }
     BOOST_TEST(number_better == 0u);
@@ -316,12 +317,12 @@ BOOST_AUTO_TEST_CASE(gross_outliers_do_not_move_an_L1_rotation)
   std::normal_distribution<double> normal;
   for (int i = 0; i < 50; ++i) {
     const Quaternion center =
-        pcs::rotation_exp(Vec3(normal(random), normal(random), normal(random)));
+        pcs::rotation_exp(pcs_test::drawn<Vec3>([&] { return normal(random); }));
     std::vector<Quaternion> q;
     for (int k = 0; k < 10; ++k) {
       const Vec3 u = k < 7
-                         ? 0.05 * Vec3(normal(random), normal(random), normal(random))
-                         : 1.4 * Vec3(normal(random), normal(random), normal(random)).normalized();
+                         ? 0.05 * pcs_test::drawn<Vec3>([&] { return normal(random); })
+                         : 1.4 * pcs_test::drawn<Vec3>([&] { return normal(random); }).normalized();
       q.push_back(center * pcs::rotation_exp(u));
       if (k % 2)
         q.back().coeffs() = -q.back().coeffs();
@@ -549,7 +550,7 @@ BOOST_AUTO_TEST_CASE(age_and_crown_angle_of_trees_with_different_branches_are_fo
         for (Vec3& p : branches[b].points)
           p *= size;
         is_kept[b] = b == 0 || (size > 0.1 && uniform(random) > 0.08);
-        const Vec3 noise = 0.05 * Vec3(normal(random), normal(random), normal(random));
+        const Vec3 noise = 0.05 * pcs_test::drawn<Vec3>([&] { return normal(random); });
         const Vec3 d = all[b].points.back().normalized();
         if (b > 0)
           turns[b] = (Eigen::AngleAxisd(noise.norm(), noise.normalized()) *

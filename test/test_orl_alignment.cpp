@@ -5,6 +5,7 @@
 #include <pcs/IO/read_correspondences.h>
 #include <pcs/IO/write_correspondences.h>
 #include <pcs/Orl_shape_space.h>
+#include <support/drawn.h>
 #include <support/exceptions.h>
 #include <support/orl_spaces.h>
 #include <support/threads.h>
@@ -42,8 +43,8 @@ Tree grown(const std::vector<Branch>& branches, double turn, unsigned seed)
   Turns own(branches.size(), Eigen::Matrix3d::Identity());
   std::vector<char> kept(branches.size(), 1);
   for (std::size_t b = 1; b < branches.size(); ++b) {
-    own[b] = about(Vec3(normal(random), normal(random), normal(random)).normalized(),
-                   turn * normal(random));
+    const double angle = turn * normal(random);
+    own[b] = about(pcs_test::drawn<Vec3>([&] { return normal(random); }).normalized(), angle);
     kept[b] = uniform(random) > 0.3;
   }
   std::vector<std::size_t> tip;
@@ -273,7 +274,7 @@ BOOST_FIXTURE_TEST_CASE(short_edges_at_bases_turn_nothing, Nodes)
         for (Branch& b : branches) {
           const double length = b.points.back().norm();
           for (std::size_t k = 1; k < b.points.size(); ++k)
-            b.points[k] += length * Vec3(normal(random), normal(random), normal(random));
+            b.points[k] += length * pcs_test::drawn<Vec3>([&] { return normal(random); });
         }
         return make_tree(branches);
       };

@@ -4,6 +4,7 @@
 
 #include <pcs/extract_tree_skeleton.h>
 #include <pcs/generators/tree_fixtures.h>
+#include <support/drawn.h>
 #include <support/tree_clouds.h>
 
 #include <CGAL/squared_distance_3.h>
@@ -321,9 +322,9 @@ BOOST_AUTO_TEST_CASE(bodies_give_some_tree_that_stays_within_them)
   std::uniform_real_distribution<double> share(-1, 1);
   Cloud sphere, dust;
   for (int i = 0; i < 3000; ++i) {
-    const Vector d(normal(random), normal(random), normal(random));
+    const Vector d = pcs_test::drawn<Vector>([&] { return normal(random); });
     sphere.push_back(CGAL::ORIGIN + d / std::sqrt(d.squared_length()));
-    dust.emplace_back(share(random), share(random), share(random));
+    dust.push_back(pcs_test::drawn<Point>([&] { return share(random); }));
   }
   for (const Cloud& points : {sphere, dust}) {
     Tree tree;
@@ -349,7 +350,7 @@ BOOST_AUTO_TEST_CASE(spheres_are_doubted)
         std::mt19937 random(seed);
         Cloud sphere;
         for (int i = 0; i < n; ++i) {
-          const Vector d(normal(random), normal(random), normal(random));
+          const Vector d = pcs_test::drawn<Vector>([&] { return normal(random); });
           sphere.push_back(CGAL::ORIGIN + size * d / std::sqrt(d.squared_length()));
         }
         Tree tree;
@@ -682,7 +683,7 @@ BOOST_AUTO_TEST_CASE(a_bush_of_leaves_is_mostly_not_wood)
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> share(-crown, crown);
     while (points.size() < 16000) {
-      const Vector d(share(random), share(random), share(random));
+      const Vector d = pcs_test::drawn<Vector>([&] { return share(random); });
       if (d.squared_length() < crown * crown)
         points.push_back(Point(0, 0, height + 0.6 * crown) + d);
     }

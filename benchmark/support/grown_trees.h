@@ -7,6 +7,7 @@
 
 #include <pcs/core/Tree_skeleton.h>
 #include <pcs/shape_space/Branch_paths.h>
+#include <support/drawn.h>
 
 #include <CGAL/Simple_cartesian.h>
 
@@ -85,7 +86,7 @@ inline std::vector<Branch> grow(std::vector<Branch> branches, const Growth& grow
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform(0, 1);
   for (std::size_t b = 1; b < branches.size(); ++b) {
-    const Vec3 axis(normal(random), normal(random), normal(random));
+    const Vec3 axis = pcs_test::drawn<Vec3>([&] { return normal(random); });
     Branch& branch = branches[b];
     branch.turn =
         Eigen::AngleAxisd(growth.turn * normal(random), axis.normalized()).toRotationMatrix();

@@ -3,6 +3,7 @@
 // Transport against an independent solver, and recovery of a known correspondence.
 
 #include <pcs/shape_space/point_correspondences.h>
+#include <support/drawn.h>
 
 #include <boost/test/unit_test.hpp>
 
@@ -349,7 +350,7 @@ BOOST_AUTO_TEST_CASE(the_correspondence_survives_rotation_and_anisotropic_scale)
       for (const Vec3& p : local) {
         aligned.push_back(point_of(two, tube_coordinates(one, p, true), true));
         const double s = noise * spacing;
-        const Vec3 q = p + s * Vec3(normal(random), normal(random), normal(random));
+        const Vec3 q = p + s * pcs_test::drawn<Vec3>([&] { return normal(random); });
         target.push_back(two.from + r * Vec3(1.7 * q.x(), 1.7 * q.y(), 0.6 * q.z()));
       }
       Transport_options options;

@@ -5,6 +5,7 @@
 #include <pcs/skeleton/find_leaves.h>
 #include <pcs/skeleton/prepare_scan.h>
 #include <support/axes.h>
+#include <support/drawn.h>
 
 #include <boost/test/unit_test.hpp>
 
@@ -42,8 +43,8 @@ void add_leaves(Points& points, std::size_t count, std::mt19937& random)
   std::normal_distribution<double> any;
   for (std::size_t k = 0; k < count; ++k) {
     const Vec3 middle(share(random), share(random), 0.5 + share(random));
-    const Vec3 a = Vec3(any(random), any(random), any(random)).normalized();
-    const Vec3 b = a.cross(Vec3(any(random), any(random), any(random))).normalized();
+    const Vec3 a = pcs_test::drawn<Vec3>([&] { return any(random); }).normalized();
+    const Vec3 b = a.cross(pcs_test::drawn<Vec3>([&] { return any(random); })).normalized();
     for (int i = 0; i < 30; ++i)
       points.push_back(middle + 0.06 * (share(random) * a + share(random) * b));
   }

@@ -5,6 +5,7 @@
 #include <pcs/skeleton/Neighbor_graph.h>
 #include <pcs/skeleton/prepare_scan.h>
 #include <pcs/skeleton/shortest_paths.h>
+#include <support/drawn.h>
 
 #include <CGAL/tags.h>
 
@@ -222,7 +223,8 @@ BOOST_AUTO_TEST_CASE(copies_of_a_point_are_one_place)
   std::uniform_int_distribution<int> copies(1, 3);
   std::vector<Vec3> points;
   for (int i = 0; i < 8000; ++i) {
-    const Vec3 p(share(random), share(random), 3 * share(random));
+    Vec3 p = pcs_test::drawn<Vec3>([&] { return share(random); });
+    p.z() *= 3;
     for (int k = i == 4000 ? 20000 : copies(random); k > 0;
          --k)                                      // one of them more than blocks are long
       points.push_back(p + Vec3(1e-12 * k, 0, 0)); // far below the grid

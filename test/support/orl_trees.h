@@ -6,6 +6,7 @@
 #define PCS_TEST_SUPPORT_ORL_TREES_H
 
 #include <pcs/core/Tree_skeleton.h>
+#include <support/drawn.h>
 
 #include <CGAL/Simple_cartesian.h>
 
@@ -57,7 +58,7 @@ inline std::vector<Branch> random_branches(unsigned seed, int children = 6, int 
     for (int k = 0; k <= n; ++k) {
       b.points.push_back(p);
       b.radii.push_back(radius * (1 - 0.8 * k / n));
-      d = (d + 0.12 * Vec3(normal(random), normal(random), normal(random))).normalized();
+      d = (d + 0.12 * pcs_test::drawn<Vec3>([&] { return normal(random); })).normalized();
       p += length / n * d;
     }
     return b;

@@ -8,6 +8,7 @@
 #include <pcs/core/rotations.h>
 #include <pcs/shape_space/Orl_coordinates.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -38,6 +39,26 @@ inline Embedding empty_embedding(const Orl_layout& layout, const Vec3& root)
   x.base_radius.assign(m, 0);
   x.attachment.assign(m, 0);
   return result;
+}
+
+/// Length and direction of an edge. A path that comes back to where it was, or a node of the other tree beside one of its own,
+/// still has an edge there, without a direction: see `lend_directions()`.
+inline void set_edge(const Vec3& way, double shortest, double& length, Vec3& direction)
+{
+  const double norm = way.norm();
+  length = std::max(norm, shortest);
+  direction = norm > shortest ? Vec3(way / norm) : Vec3(Vec3::Zero());
+}
+
+/// Edges without a direction point like the one before on their branch, or like the first that has one.
+inline void lend_directions(const Orl_layout::Branch& branch, std::vector<Vec3>& direction)
+{
+  const auto begin = direction.begin() + static_cast<std::ptrdiff_t>(branch.first_edge);
+  const auto end = begin + static_cast<std::ptrdiff_t>(branch.number_of_edges);
+  const auto known = std::find_if(begin, end, [](const Vec3& d) { return d != Vec3::Zero(); });
+  Vec3 last = known != end ? *known : Vec3(Vec3::UnitZ());
+  for (auto d = begin; d != end; ++d)
+    last = *d = *d != Vec3::Zero() ? *d : last;
 }
 
 /// Carries frames along the edges that exist without twist, from `root` at the beginning of the trunk.

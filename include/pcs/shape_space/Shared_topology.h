@@ -112,13 +112,11 @@ inline Embedding embed(const Orl_layout& layout,
     for (std::size_t j = 0; j < layout.branches[b].number_of_edges; ++j) {
       const std::size_t e = layout.branches[b].first_edge + j;
       const auto [to, end_radius] = node_at(tree, path, branches[b].node[t][j + 1]);
-      // a path that comes back to where it was still has an edge there
-      x.length[e] = std::max((to - from).norm(), shortest_edge * tree.extent);
       x.radius[e] = end_radius;
-      result.direction[e] =
-          (to - from).norm() > 0 ? Vec3((to - from).normalized()) : Vec3(Vec3::UnitZ());
+      set_edge(to - from, shortest_edge * tree.extent, x.length[e], result.direction[e]);
       from = to;
     }
+    lend_directions(layout.branches[b], result.direction);
   }
   return result;
 }

@@ -95,11 +95,11 @@ inline Embedding embed(const Orl_layout& layout,
     for (std::size_t j = 0; j < layout.branches[b].number_of_edges; ++j) {
       const std::size_t e = layout.branches[b].first_edge + j;
       const auto [to, end_radius] = node_at(tree, path, branches[b].node[i][j + 1]);
-      x.length[e] = (to - from).norm();
       x.radius[e] = end_radius;
-      result.direction[e] = (to - from) / x.length[e];
+      set_edge(to - from, shortest_edge * tree.extent, x.length[e], result.direction[e]);
       from = to;
     }
+    lend_directions(layout.branches[b], result.direction);
   }
   return result;
 }

@@ -12,6 +12,7 @@
 #include <pcs/generators/internal/Ray_tree.h>
 #include <pcs/generators/internal/Scan_station.h>
 #include <pcs/generators/internal/Scene.h>
+#include <pcs/generators/internal/normal_vector.h>
 #include <pcs/internal/Random_stream.h>
 #include <pcs/internal/Stopwatch.h>
 #include <pcs/internal/parallel.h>
@@ -198,7 +199,8 @@ private:
     });
     for (const std::size_t b : by_order) {
       Random_stream random(m_seed, 31, station, b);
-      Eigen::Vector3d sway(random.normal(), random.normal(), 0.3 * random.normal());
+      Eigen::Vector3d sway = normal_vector(random);
+      sway.z() *= 0.3;
       sway *= m_scanner.wind * random.uniform(1.0 / 3, 1) / std::max(sway.norm(), 1e-12);
       const std::vector<std::size_t>& branch = wood.branches[b];
       const Eigen::Vector3d base =

@@ -7,6 +7,7 @@
 
 #include <pcs/generators/Virtual_scanner.h>
 #include <pcs/generators/internal/Ray_tree.h>
+#include <pcs/generators/internal/normal_vector.h>
 #include <pcs/internal/Random_stream.h>
 
 #include <Eigen/Core>
@@ -279,7 +280,7 @@ private:
   void add_leaf(const Eigen::Vector3d& on_axis, double radius, Random_stream& random, int label)
   {
     const auto direction = [&] {
-      Eigen::Vector3d d(random.normal(), random.normal(), random.normal());
+      const Eigen::Vector3d d = normal_vector(random);
       return Eigen::Vector3d(d.squaredNorm() > 0 ? d.normalized() : Eigen::Vector3d::UnitX());
     };
     const double size = m_scanner->leaf_radius * random.uniform(0.7, 1.3);

@@ -8,6 +8,7 @@
 #include <pcs/core/Tree_skeleton.h>
 #include <pcs/core/errors.h>
 #include <pcs/generators/Tree_habit.h>
+#include <pcs/generators/internal/normal_vector.h>
 #include <pcs/internal/Random_stream.h>
 
 #include <Eigen/Core>
@@ -53,7 +54,9 @@ public:
   {
     Random_stream random(m_seed, 1);
     Bud trunk;
-    trunk.direction = Vector3(m_habit.lean * random.normal(), m_habit.lean * random.normal(), 1);
+    const double lean_y = m_habit.lean * random.normal();
+    const double lean_x = m_habit.lean * random.normal();
+    trunk.direction = Vector3(lean_x, lean_y, 1);
     trunk.direction.normalize();
     trunk.radius = m_habit.trunk_radius;
     trunk.length = m_habit.height;
@@ -187,7 +190,7 @@ private:
       if (at + 1.5 * step > bud.length)
         step = bud.length - at;
       if (do_renew || random.uniform() < m_habit.bend_renewal)
-        bend = m_habit.bend[i] * Vector3(random.normal(), random.normal(), random.normal());
+        bend = m_habit.bend[i] * normal_vector(random);
       do_renew = false;
       const double sag = bud.kind == Kind::branch ? m_habit.sag * at / bud.length : 0;
       direction +=
