@@ -217,6 +217,22 @@ BOOST_AUTO_TEST_CASE(senseless_habits_are_refused_and_name_the_value)
   refuses([&](auto& h) { h.largest_step = h.smallest_step = 1e-7; }, "more than 10000000 nodes");
 }
 
+// With any compiler: in what order the arguments of a call are drawn is theirs.
+BOOST_AUTO_TEST_CASE(a_seed_is_one_tree_everywhere)
+{
+  const Tree tree = grown(pcs::fruit_habit());
+  double x = 0, y = 0, z = 0;
+  for (std::size_t v = 0; v < num_vertices(tree); ++v) {
+    x += tree[v].point.x();
+    y += tree[v].point.y();
+    z += tree[v].point.z();
+  }
+  BOOST_TEST(num_vertices(tree) == 4086u);
+  BOOST_TEST(x == 845.597293946, boost::test_tools::tolerance(1e-6));
+  BOOST_TEST(y == -1484.93343301, boost::test_tools::tolerance(1e-6));
+  BOOST_TEST(z == 7171.60074839, boost::test_tools::tolerance(1e-6));
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 } // namespace test_grow_tree

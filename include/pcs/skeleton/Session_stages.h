@@ -224,16 +224,11 @@ public:
   }
 
   const Scan& scan() const { return m_scan; }
-  const std::vector<std::uint8_t>& is_used() const { return m_used.flags(); }
-  const std::vector<Index>& root() const { return m_root; }
-  const Shortest_paths& paths() const { return m_paths; }
   const Layer_tree& layers() const { return m_layers; }
   const Axis_set& axes() const { return m_axes; }
-  const std::vector<Found_section>& sections() const { return m_sections; }
   const std::vector<Joint>& joints() const { return m_joints; }
   const Branch_tree& tree() const { return m_tree; }
   const Skeleton_report& report() const { return m_report; }
-  Skeleton_report& report() { return m_report; }
 
   /// The node that explains an input point, or `none`.
   Index node_of_input(std::size_t i) const
