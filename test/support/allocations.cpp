@@ -40,11 +40,23 @@ void* operator new(std::size_t size, std::align_val_t alignment)
 {
   return allocate(size, static_cast<std::size_t>(alignment));
 }
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept
+{
+  try {
+    return allocate(size, alignof(std::max_align_t));
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
 void operator delete(void* p) noexcept
 {
   std::free(p);
 }
 void operator delete(void* p, std::size_t) noexcept
+{
+  std::free(p);
+}
+void operator delete(void* p, const std::nothrow_t&) noexcept
 {
   std::free(p);
 }

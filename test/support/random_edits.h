@@ -25,7 +25,8 @@ struct Random_edit
 
 inline Points random_shape(std::mt19937& random)
 {
-  const std::size_t n = 1 + random() % (random() % 4 == 0 ? 600 : 40);
+  const std::size_t most = random() % 4 == 0 ? 600 : 40; // of its own, as operands have no order
+  const std::size_t n = 1 + random() % most;
   Points points = random_points(n, static_cast<unsigned>(random()));
   switch (random() % 9) {
   case 0: // a line
@@ -44,9 +45,9 @@ inline Points random_shape(std::mt19937& random)
     for (Vec3& p : points)
       p += 1e3 * std::floor(2.99 * std::abs(p.x())) * Vec3(1, 1, 0);
     break;
-  case 4: // a geometric sequence
+  case 4: // a geometric sequence, as far as squares of lengths are numbers
     for (std::size_t i = 0; i < n; ++i)
-      points[i] *= std::ldexp(1.0, -static_cast<int>(i));
+      points[i] *= std::ldexp(1.0, -static_cast<int>(i % 400));
     break;
   case 5: // a sphere
     for (Vec3& p : points)
@@ -99,7 +100,8 @@ inline Random_edit random_edit(unsigned seed)
   const std::size_t n = edit.points.size();
   for (std::size_t h = 1 + random() % 4; h-- > 0;) {
     pcs::Deformation_handle handle;
-    for (std::size_t k = 1 + random() % (random() % 3 == 0 ? n : 3); k-- > 0;)
+    const std::size_t most = random() % 3 == 0 ? n : 3;
+    for (std::size_t k = 1 + random() % most; k-- > 0;)
       handle.indices.push_back(random() % n);
     handle.transformation = random_motion(random, edit.points);
     if (random() % 4 == 0)
