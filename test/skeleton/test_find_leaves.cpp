@@ -2,10 +2,15 @@
 // SPDX-License-Identifier: BSL-1.0
 // Thin wood is a line, thick wood is hollow, and leaves are neither.
 
+#include <pcs/skeleton/Neighbor_graph.h>
 #include <pcs/skeleton/find_leaves.h>
 #include <pcs/skeleton/prepare_scan.h>
+#include <pcs/skeleton/shortest_paths.h>
+#include <pcs/skeleton/wood_by_paths.h>
 #include <support/axes.h>
 #include <support/drawn.h>
+
+#include <CGAL/tags.h>
 
 #include <boost/test/unit_test.hpp>
 
@@ -13,6 +18,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <random>
 #include <utility>
 #include <vector>
@@ -25,6 +31,7 @@ namespace {
 
 using Points = std::vector<Vec3>;
 using Flags = std::vector<std::uint8_t>;
+using Any_tag = CGAL::Parallel_if_available_tag;
 
 /// A twig of 1 m along z, seen from all sides.
 void add_twig(Points& points, const Vec3& base, std::size_t count, std::mt19937& random)
@@ -55,7 +62,8 @@ struct Prepared
 {
   Scan scan;
   Flags is_used, is_twig;
-  Axis_set set; ///< without axes
+  Axis_set set;         ///< without axes
+  Shortest_paths paths; ///< from the lowest point
 
   /// The first `number_of_wood` points are wood.
   Prepared(const Points& points, std::size_t number_of_wood)
@@ -67,6 +75,14 @@ struct Prepared
       is_twig[scan.point_of_input[i]] = 1;
     set.axis_of_point.assign(scan.size(), none);
     set.segment_of_point.assign(scan.size(), none);
+    const Links links = neighbor_links<CGAL::Sequential_tag>(scan, is_used, {});
+    const auto lowest =
+        std::min_element(scan.points.begin(), scan.points.end(), [](const Vec3& a, const Vec3& b) {
+          return a.z() < b.z();
+        });
+    paths = shortest_paths(scan,
+                           graph_of(scan.size(), links),
+                           {static_cast<Index>(lowest - scan.points.begin())});
   }
 
   /// Shares of the twigs and of the other points that a flag is set for.
@@ -87,6 +103,30 @@ Prepared twigs_in_leaves()
     add_twig(points, Vec3(0.2 * k - 0.3, 0.1 * k - 0.2, 0), 100, random);
   const std::size_t wood = points.size();
   add_leaves(points, 120, random);
+  return Prepared(points, wood);
+}
+
+/// The same, but with leaves that hang on the twigs.
+Prepared twigs_with_leaves()
+{
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> share(0, 1);
+  std::normal_distribution<double> any;
+  Points points;
+  std::vector<Vec3> bases;
+  for (int k = 0; k < 5; ++k) {
+    bases.emplace_back(0.1 * k, 0.02 * k, 0);
+    add_twig(points, bases.back(), 200, random);
+  }
+  const std::size_t wood = points.size();
+  for (const Vec3& base : bases)
+    for (int k = 0; k < 25; ++k) {
+      const Vec3 foot = base + Vec3(0, 0, 0.1 + 0.9 * share(random));
+      const Vec3 a = pcs_test::drawn<Vec3>([&] { return any(random); }).normalized();
+      const Vec3 b = a.cross(pcs_test::drawn<Vec3>([&] { return any(random); })).normalized();
+      for (int i = 0; i < 25; ++i)
+        points.push_back(foot + 0.06 * (share(random) * a + (share(random) - 0.5) * b));
+    }
   return Prepared(points, wood);
 }
 
@@ -174,6 +214,100 @@ BOOST_AUTO_TEST_CASE(surroundings_tell_twigs_from_leaves)
   BOOST_CHECK_LT(p.shares(is_likely).second, 0.2);
 }
 
+BOOST_AUTO_TEST_CASE(paths_carry_those_that_lead_through_them)
+{
+  // a path of four points with a corner, a second tip at its corner, and a point without a path
+  Scan scan;
+  scan.points =
+      {Vec3(0, 0, 0), Vec3(0, 0, 1), Vec3(0, 0, 2), Vec3(1, 0, 2), Vec3(0, 1, 2), Vec3(9, 9, 9)};
+  Shortest_paths paths;
+  paths.predecessor = {0, 0, 1, 2, 2, 5};
+  paths.distance = {0, 1, 2, 3, 3, std::numeric_limits<double>::infinity()};
+  const std::vector<float> score = {3, 2, 1, -1, -2, -4};
+  const double reach = 2, share = std::exp(-1 / reach);
+  const std::vector<Path_context> found = path_contexts(scan, paths, score, reach);
+  BOOST_REQUIRE_EQUAL(found.size(), score.size());
+  const double carried[] = {5, 4, 3, 1, 1, 1};
+  for (std::size_t i = 0; i < found.size(); ++i)
+    BOOST_CHECK_EQUAL(found[i].carried, carried[i]);
+  BOOST_CHECK_EQUAL(found[0].upstream, 3);
+  BOOST_CHECK_CLOSE(found[1].upstream, (2 + share * 3) / (1 + share), 1e-6);
+  BOOST_CHECK_CLOSE(found[2].upstream,
+                    (1 + share * 2 + share * share * 3) / (1 + share + share * share),
+                    1e-6);
+  BOOST_CHECK_EQUAL(found[3].downstream, 0);
+  BOOST_CHECK_CLOSE(found[2].downstream, -1.5, 1e-6);
+  BOOST_CHECK_CLOSE(found[1].downstream, (1 + share * -3) / (1 + 2 * share), 1e-6);
+  // steps along z, and then one along x that counts most
+  BOOST_CHECK_EQUAL(found[0].straightness, 1);
+  BOOST_CHECK_CLOSE(found[2].straightness, 1, 1e-9);
+  const double along_z = share * (1 + share);
+  BOOST_CHECK_CLOSE(found[3].straightness, std::hypot(1, along_z) / (1 + along_z), 1e-6);
+  BOOST_CHECK_EQUAL(found[5].upstream, -4);
+  BOOST_CHECK_EQUAL(found[5].downstream, 0);
+  BOOST_CHECK_EQUAL(found[5].straightness, 1);
+  BOOST_CHECK(path_contexts(Scan(), Shortest_paths(), {}, 1).empty());
+}
+
+BOOST_AUTO_TEST_CASE(paths_tell_twigs_from_leaves_better)
+{
+  const Prepared p = twigs_with_leaves();
+  const Flags none_is_thick(p.scan.size(), 0);
+  std::vector<float> likeness(p.scan.size());
+  points_on_lines<CGAL::Sequential_tag>(
+      p.scan,
+      p.is_used,
+      none_is_thick,
+      {},
+      [&](std::size_t i, const internal::Line_search& search, float score) {
+        likeness[i] = static_cast<float>(wood_likeness(search.surroundings(score)));
+      });
+  const std::vector<float> by_paths =
+      wood_by_paths<CGAL::Sequential_tag>(p.scan, p.is_used, none_is_thick, p.paths, likeness);
+  BOOST_CHECK(by_paths ==
+              wood_by_paths<Any_tag>(p.scan, p.is_used, none_is_thick, p.paths, likeness));
+  // of the twigs, what as many leaves pass for
+  const auto found_at = [&](const std::vector<float>& values, double leaves) {
+    std::vector<float> others;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (!p.is_twig[i])
+        others.push_back(values[i]);
+    std::sort(others.rbegin(), others.rend());
+    const float limit = others[static_cast<std::size_t>(leaves * double(others.size()))];
+    Flags is_wood(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i)
+      is_wood[i] = values[i] > limit;
+    return p.shares(is_wood).first;
+  };
+  BOOST_CHECK(
+      std::all_of(by_paths.begin(), by_paths.end(), [](float l) { return std::isfinite(l); }));
+  for (const double leaves : {0.02, 0.1})
+    BOOST_CHECK_GT(found_at(by_paths, leaves), found_at(likeness, leaves) + 0.1);
+}
+
+BOOST_AUTO_TEST_CASE(what_is_sure_or_not_used_is_not_judged_by_paths)
+{
+  const Prepared p = twigs_in_leaves();
+  Flags is_used(p.scan.size(), 0);
+  for (std::size_t i = 0; i < is_used.size(); ++i)
+    is_used[i] = i % 3 != 0;
+  const Flags& is_thick = p.is_twig;
+  const std::vector<float> likeness(p.scan.size(), std::numeric_limits<float>::quiet_NaN());
+  std::vector<float> of_used = likeness;
+  for (std::size_t i = 0; i < is_used.size(); ++i)
+    if (is_used[i] && !is_thick[i])
+      of_used[i] = -1;
+  const std::vector<float> found =
+      wood_by_paths<CGAL::Sequential_tag>(p.scan, is_used, is_thick, p.paths, of_used);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    BOOST_REQUIRE(std::isfinite(found[i]));
+    if (!is_used[i])
+      BOOST_CHECK_EQUAL(found[i], 0);
+    else if (is_thick[i])
+      BOOST_CHECK_GT(found[i], 0);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(a_spread_is_that_of_the_points)
 {
   Spread one, box;
@@ -217,7 +351,8 @@ BOOST_AUTO_TEST_CASE(leaves_are_left_out_only_where_there_are_many)
     add_twig(points, Vec3(0.15 * k - 0.4, 0.1 * k - 0.2, 0), 100, random);
   const std::size_t wood = points.size();
   const auto find = [&](const Prepared& p, const Axis_set& set, bool is_sure) {
-    return wood_by_points<CGAL::Sequential_tag>(p.scan, set, p.is_used, is_sure, {}).is_wood;
+    return wood_by_points<CGAL::Sequential_tag>(p.scan, set, p.is_used, p.paths, is_sure, {})
+        .is_wood;
   };
   const auto axes_of = [&](const Prepared& p) {
     const double unit = p.scan.frame.unit;
@@ -257,7 +392,7 @@ BOOST_AUTO_TEST_CASE(a_crown_is_noticed_beside_a_stem_that_most_points_lie_on)
     Axis_set set = one_axis(p.scan, 0.1 / unit, double(trunk) / 0.628 * unit * unit);
     for (std::size_t i = trunk; i < all.size(); ++i)
       set.axis_of_point[p.scan.point_of_input[i]] = none;
-    return wood_by_points<CGAL::Sequential_tag>(p.scan, set, p.is_used, false, {}).is_wood;
+    return wood_by_points<CGAL::Sequential_tag>(p.scan, set, p.is_used, p.paths, false, {}).is_wood;
   };
   BOOST_CHECK(!find(2500).empty());
   BOOST_CHECK(find(400).empty());
@@ -286,7 +421,7 @@ BOOST_AUTO_TEST_CASE(a_few_leaves_are_noticed_on_much_wood)
     for (std::size_t i = trunk; i < points.size(); ++i)
       set.axis_of_point[p.scan.point_of_input[i]] = none;
     const Flags found =
-        wood_by_points<CGAL::Sequential_tag>(p.scan, set, p.is_used, false, {}).is_wood;
+        wood_by_points<CGAL::Sequential_tag>(p.scan, set, p.is_used, p.paths, false, {}).is_wood;
     BOOST_CHECK_EQUAL(found.empty(), !is_flat);
   }
 }
@@ -328,7 +463,7 @@ BOOST_AUTO_TEST_CASE(in_rows_leaves_are_not_told_from_wood)
     for (std::size_t i = trunk; i < points.size(); ++i)
       set.axis_of_point[p.scan.point_of_input[i]] = none;
     const auto find = [&](bool is_sure) {
-      return wood_by_points<CGAL::Sequential_tag>(p.scan, set, p.is_used, is_sure, {});
+      return wood_by_points<CGAL::Sequential_tag>(p.scan, set, p.is_used, p.paths, is_sure, {});
     };
     BOOST_CHECK_EQUAL(find(false).is_in_rows, is_in_rows);
     BOOST_CHECK_EQUAL(find(false).is_wood.empty(), is_in_rows);

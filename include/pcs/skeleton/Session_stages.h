@@ -298,8 +298,12 @@ private:
   std::vector<std::uint8_t> wood_of_all()
   {
     const bool is_sure = m_options.leaf_removal == Leaf_removal::always;
-    Found_wood found =
-        wood_by_points<ConcurrencyTag>(m_scan, m_axes, m_used.flags(), is_sure, m_options.leaves);
+    Found_wood found = wood_by_points<ConcurrencyTag>(m_scan,
+                                                      m_axes,
+                                                      m_used.flags(),
+                                                      m_paths,
+                                                      is_sure,
+                                                      m_options.leaves);
     m_report.is_in_rows = found.is_in_rows;
     return std::move(found.is_wood);
   }

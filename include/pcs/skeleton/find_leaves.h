@@ -15,6 +15,8 @@
 #include <pcs/skeleton/find_lines.h>
 #include <pcs/skeleton/find_patches.h>
 #include <pcs/skeleton/sampling_dimension.h>
+#include <pcs/skeleton/shortest_paths.h>
+#include <pcs/skeleton/wood_by_paths.h>
 
 #include <Eigen/Core>
 
@@ -42,12 +44,12 @@ struct Leaf_rules
   std::size_t neighbors = 10; ///< that are leaves, too, around a point deep in leaves [count]
   //! or the share of those that are no thick wood that must lie in flat patches [-]
   double patchy = 0.035;
-  double likeness = 0.2;          ///< least logarithm of the odds that a point is of wood [-]
-  double likeness_on_line = -0.8; ///< the same on a line [-]
-  int rounds = 2;                 ///< how often wood is looked for among what is left [count]
-  double pipe_slack = 1.5;        ///< `Pipe_rules::slack` where there are leaves [-]
+  double likeness = -0.8;  ///< least logarithm of the odds that a point is of wood [-]
+  int rounds = 2;          ///< how often wood is looked for among what is left [count]
+  double pipe_slack = 1.5; ///< `Pipe_rules::slack` where there are leaves [-]
   Hollow_rules hollow;
   Line_rules lines;
+  Path_rules paths;
   Patch_rules patches;
 };
 
@@ -188,14 +190,16 @@ struct Found_wood
 };
 
 /*!
-  The points of thick wood, which is hollow, and of thin wood, by its surroundings. Without `is_sure`, which says that there are
-  leaves, all points are wood where what is left when all lines are taken for wood does not look like leaves, and where the points
-  of thick wood lie in rows: each of these is a line, and its surroundings are not those of a twig or of a leaf.
+  The points of thick wood, which is hollow, and of thin wood, by its surroundings and the paths that it carries: `paths` lead
+  over all points that are used. Without `is_sure`, which says that there are leaves, all points are wood where what is left when
+  all lines are taken for wood does not look like leaves, and where the points of thick wood lie in rows: each of these is a line,
+  and its surroundings are not those of a twig or of a leaf.
 */
 template <class ConcurrencyTag>
 Found_wood wood_by_points(const Scan& scan,
                           const Axis_set& set,
                           const std::vector<std::uint8_t>& is_used,
+                          const Shortest_paths& paths,
                           bool is_sure,
                           const Leaf_rules& rules)
 {
@@ -219,15 +223,14 @@ Found_wood wood_by_points(const Scan& scan,
       [&](std::size_t i, const internal::Line_search& search, float score) {
         likeness[i] = static_cast<float>(wood_likeness(search.surroundings(score)));
       });
-  std::vector<std::uint8_t>& is_wood = result.is_wood;
-  is_wood.resize(scan.size());
-  for (std::size_t i = 0; i < scan.size(); ++i) {
-    const double least = is_line[i] ? rules.likeness_on_line : rules.likeness;
-    is_wood[i] = is_used[i] && (is_thick[i] || double(likeness[i]) >= least);
+  for (std::size_t i = 0; i < scan.size(); ++i)
     is_line[i] = is_used[i] && (is_thick[i] || is_line[i]);
-  }
   if (!is_sure && !are_leaves(scan, is_used, is_thick, is_line, rules))
-    is_wood.clear();
+    return result;
+  likeness = wood_by_paths<ConcurrencyTag>(scan, is_used, is_thick, paths, likeness, rules.paths);
+  result.is_wood.resize(scan.size());
+  for (std::size_t i = 0; i < scan.size(); ++i)
+    result.is_wood[i] = is_used[i] && (is_thick[i] || double(likeness[i]) >= rules.likeness);
   return result;
 }
 

@@ -7,6 +7,7 @@
 
 #include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/Moments.h>
+#include <pcs/skeleton/Rectified_network.h>
 
 #include <algorithm>
 #include <array>
@@ -58,8 +59,8 @@ namespace internal {
 
 // Trained on scans of 40 virtual trees with leaves (benchmark/README.md).
 // clang-format off
-constexpr std::size_t number_of_units = 12;
-constexpr double unit_weights[number_of_units][Surroundings::number_of_features] = {
+constexpr Rectified_network<Surroundings::number_of_features, 12> likeness_of_surroundings = {
+{
 {2.158, -2.137, -0.8619, -0.7728, -1.64, -1.332, -1.295, -0.995, 0.4832, 1.276, -0.1837, 0.393, 0.1117, -0.07737, 0.04131, -0.137},
 {1.479, -0.2693, -0.6825, -0.9676, -1.334, 0.2317, -0.5098, -0.04056, -0.274, -0.02204, -1.422, -1.065, -0.8172, 0.02052, 0.4566, -0.1372},
 {1.625, 0.1737, -7.25, 0.6791, -2.468, 0.2174, 1.092, 0.2721, -0.4314, 1.037, 0.195, -0.03119, 0.333, -0.07296, 0.2692, 0.08848},
@@ -71,26 +72,18 @@ constexpr double unit_weights[number_of_units][Surroundings::number_of_features]
 {2.716, -1.048, 0.523, -9.551, 0.1889, 0.1596, 0.0698, 0.1108, -0.07939, 0.005081, 0.02741, 0.075, -0.0442, 0.06463, 0.1024, -0.1042},
 {0.5609, -0.4281, -0.6741, 0.6235, -0.441, 1.808, 0.7472, -0.3846, -0.4893, -0.5902, -0.7832, -0.8141, 0.2268, -0.05136, 0.1007, -0.03321},
 {-1.57, -0.3573, 0.5135, 0.6463, -0.0233, 0.9321, 0.4081, -0.6919, -1.576, 0.2661, 0.4109, -0.8735, 0.8239, 0.2299, -0.1189, 0.1206},
-{-0.2291, 0.112, -0.08957, -3.346, -1.479, 0.3739, -0.533, 1.349, -0.1192, 0.452, 1.34, 0.1307, -0.365, 0.2384, 0.1596, -0.436}};
-constexpr double unit_offsets[number_of_units] = {5.842, 11.59, -5.662, 15.1, 2.309, -0.852, -0.5171, -13.82, -4.542, -1.399, 0.6533, -2.808};
-constexpr double output_weights[number_of_units] = {-0.7463, -0.5947, 0.8056, 0.8209, 1.262, 1.031, -0.7219, 0.9005, -1.122, -0.9207, -0.4588, -0.5577};
-constexpr double output_offset = -0.6171;
+{-0.2291, 0.112, -0.08957, -3.346, -1.479, 0.3739, -0.533, 1.349, -0.1192, 0.452, 1.34, 0.1307, -0.365, 0.2384, 0.1596, -0.436}},
+{5.842, 11.59, -5.662, 15.1, 2.309, -0.852, -0.5171, -13.82, -4.542, -1.399, 0.6533, -2.808},
+{-0.7463, -0.5947, 0.8056, 0.8209, 1.262, 1.031, -0.7219, 0.9005, -1.122, -0.9207, -0.4588, -0.5577},
+-0.6171};
 // clang-format on
 
 } // namespace internal
 
-/// Logarithm of the odds that a point with these surroundings is of wood and not of leaves: one layer of rectified sums.
+/// Logarithm of the odds that a point with these surroundings is of wood and not of leaves.
 inline double wood_likeness(const Surroundings& surroundings)
 {
-  const auto features = surroundings.features();
-  double result = internal::output_offset;
-  for (std::size_t u = 0; u < internal::number_of_units; ++u) {
-    double sum = internal::unit_offsets[u];
-    for (std::size_t f = 0; f < features.size(); ++f)
-      sum += internal::unit_weights[u][f] * features[f];
-    result += internal::output_weights[u] * std::max(0.0, sum);
-  }
-  return result;
+  return internal::likeness_of_surroundings(surroundings.features());
 }
 
 } // namespace skeleton
