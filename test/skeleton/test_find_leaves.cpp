@@ -6,6 +6,7 @@
 #include <pcs/skeleton/find_leaves.h>
 #include <pcs/skeleton/prepare_scan.h>
 #include <pcs/skeleton/shortest_paths.h>
+#include <pcs/skeleton/wood_by_axes.h>
 #include <pcs/skeleton/wood_by_paths.h>
 #include <support/axes.h>
 #include <support/drawn.h>
@@ -324,6 +325,132 @@ BOOST_AUTO_TEST_CASE(a_spread_is_that_of_the_points)
   const double expected[] = {std::log(9.0), 3, 2, 1, 1};
   for (std::size_t k = 0; k < 5; ++k)
     BOOST_CHECK_CLOSE(of_box[k], expected[k], 1e-6);
+}
+
+BOOST_AUTO_TEST_CASE(evidence_of_an_axis)
+{
+  // two axes end to end along z, one with points beside it; every fourth point is left out
+  Points points;
+  for (int k = 0; k < 40; ++k)
+    points.emplace_back(0.01 * (k % 2 == 0 ? 1 : -1), 0, 0.025 * k);
+  Prepared p(points, 0);
+  const double unit = p.scan.frame.unit;
+  Axis_set set = one_axis(p.scan, 0.015 / unit, 1);
+  set.axes.push_back(set.axes[0]);
+  for (auto& node : set.axes[1].axis)
+    node.point += p.scan.frame.to_local(Vec3(0, 0, 1)) - p.scan.frame.to_local(Vec3(0, 0, 0));
+  set.axes[1].parent = 0;
+  std::vector<float> likeness(p.scan.size());
+  std::vector<std::size_t> place(p.scan.size());
+  for (std::size_t q = 0; q < points.size(); ++q) {
+    place[p.scan.point_of_input[q]] = q;
+    likeness[p.scan.point_of_input[q]] = q < 10 ? 9 : -1;
+  }
+  for (std::size_t i = 0; i < p.scan.size(); ++i) {
+    p.is_used[i] = place[i] % 4 != 3;
+    if (!p.is_used[i])
+      set.axis_of_point[i] = none;
+  }
+  const auto found = evidence_of_axes<Any_tag>(p.scan, set, p.is_used, p.paths, likeness, 2 / unit);
+  BOOST_REQUIRE_EQUAL(found.size(), 2);
+  const Axis_evidence& e = found[0];
+  const double spacing = p.scan.spacing * unit;
+  BOOST_CHECK_CLOSE(e.length, 1 / spacing, 1e-6);
+  BOOST_CHECK_CLOSE(e.length_in_breast_heights, 0.5, 1e-6);
+  BOOST_CHECK_CLOSE(e.residual, 0.005 / spacing, 1e-3);
+  BOOST_CHECK_CLOSE(e.mean_likeness,
+                    (8 * 6 - 22 * 1) / 30.0,
+                    1e-6); // what is surer than 6 counts 6
+  BOOST_CHECK_EQUAL(e.high_likeness, 9);
+  BOOST_CHECK_EQUAL(e.parent_length, 0);
+  BOOST_CHECK_EQUAL(e.carried, double(points.size()));
+  BOOST_CHECK_GT(e.leaves, 0.15);
+  BOOST_CHECK_LT(e.leaves, 0.35);
+  BOOST_CHECK_SMALL(e.depth, 1e-6);
+  BOOST_CHECK_GT(e.width, 0.02);
+  BOOST_CHECK_LT(e.width, 0.05);
+  BOOST_CHECK_GT(e.seen, 0.85);
+  // without points
+  BOOST_CHECK_CLOSE(found[1].parent_length, e.length, 1e-6);
+  BOOST_CHECK_EQUAL(found[1].seen, 0);
+  BOOST_CHECK(std::isfinite(wood_likeness(found[1])));
+  BOOST_CHECK(
+      evidence_of_axes<Any_tag>(p.scan, Axis_set(), p.is_used, p.paths, likeness, 1).empty());
+}
+
+BOOST_AUTO_TEST_CASE(axes_of_twigs_are_of_wood_and_stubs_in_leaves_are_not)
+{
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> share(-0.5, 0.5);
+  // a trunk, a twig on it, and a leaf on each side of the twig, the second of which carries a twig
+  Points points = pipe(600, 0.05, 0.05);
+  std::vector<std::size_t> first = {0, points.size()};
+  const auto turned = [](const Vec3& p) { return Vec3(0.05 + p.z(), p.x(), 0.5 + p.y()); };
+  Points twig;
+  add_twig(twig, Vec3(0, 0, 0), 200, random);
+  for (const Vec3& p : twig)
+    points.push_back(turned(p));
+  first.push_back(points.size());
+  const Vec3 leaves[] = {Vec3(0.5, 0.03, 0.5), Vec3(0.7, -0.03, 0.5)};
+  for (const Vec3& middle : leaves) {
+    for (int i = 0; i < 40; ++i)
+      points.push_back(middle + 0.05 * Vec3(share(random), share(random), 0));
+    first.push_back(points.size());
+  }
+  for (const Vec3& p : twig)
+    points.push_back(Vec3(0.7, -0.055 - p.z(), 0.5) + Vec3(p.x(), 0, p.y()));
+  first.push_back(points.size());
+  const Prepared p(points, 0);
+  const double unit = p.scan.frame.unit;
+  const auto axis_from = [&](const Vec3& from, const Vec3& to, double radius, Index parent) {
+    return Fitted_axis{pcs_test::straight_axis(p.scan.frame.to_local(from),
+                                               p.scan.frame.to_local(to),
+                                               20,
+                                               radius / unit,
+                                               radius / unit),
+                       parent,
+                       40,
+                       1};
+  };
+  Axis_set set;
+  set.axes = {axis_from(Vec3(0, 0, 0), Vec3(0, 0, 1), 0.05, none),
+              axis_from(Vec3(0.05, 0, 0.5), Vec3(1.05, 0, 0.5), 0.004, 0),
+              axis_from(Vec3(0.5, 0.01, 0.5), Vec3(0.5, 0.05, 0.5), 0.012, 1),
+              axis_from(Vec3(0.7, -0.01, 0.5), Vec3(0.7, -0.05, 0.5), 0.012, 1),
+              axis_from(Vec3(0.7, -0.055, 0.5), Vec3(0.7, -1.055, 0.5), 0.004, 3)};
+  set.axis_of_point.resize(p.scan.size());
+  set.segment_of_point.resize(p.scan.size());
+  std::vector<float> likeness(p.scan.size());
+  for (std::size_t a = 0; a < set.axes.size(); ++a)
+    for (std::size_t q = first[a]; q < first[a + 1]; ++q) {
+      const Index i = p.scan.point_of_input[q];
+      set.axis_of_point[i] = static_cast<Index>(a);
+      set.segment_of_point[i] = nearest_place(set.axes[a].axis, p.scan.points[i]).segment;
+      likeness[i] = a == 0 ? 3 : 0; // not known, but that of the trunk
+    }
+  const auto evidence =
+      evidence_of_axes<Any_tag>(p.scan, set, p.is_used, p.paths, likeness, 1.3 / unit);
+  const double least = Leaf_rules().axis_likeness;
+  const bool expected[] = {true, true, false, false, true};
+  for (std::size_t a = 0; a < set.axes.size(); ++a)
+    BOOST_CHECK_EQUAL(wood_likeness(evidence[a]) >= least, expected[a]);
+  const auto wood_at = [&](double limit) {
+    return wood_by_axes<CGAL::Sequential_tag>(p.scan,
+                                              set,
+                                              p.is_used,
+                                              p.paths,
+                                              likeness,
+                                              1.3 / unit,
+                                              limit);
+  };
+  // the second leaf carries a twig
+  const Flags found = wood_at(least);
+  for (std::size_t i = 0; i < p.scan.size(); ++i)
+    BOOST_CHECK_EQUAL(found[i] != 0, set.axis_of_point[i] != 2);
+  // the first axis is of wood whatever it looks like
+  const Flags one = wood_at(1e9);
+  for (std::size_t i = 0; i < p.scan.size(); ++i)
+    BOOST_CHECK_EQUAL(one[i] != 0, set.axis_of_point[i] == 0);
 }
 
 BOOST_AUTO_TEST_CASE(thick_wood_is_hollow)

@@ -20,6 +20,7 @@
 #include <pcs/skeleton/report_sizes.h>
 #include <pcs/skeleton/residual_of_point.h>
 #include <pcs/skeleton/root_axis.h>
+#include <pcs/skeleton/wood_by_axes.h>
 
 #include <algorithm>
 #include <cmath>
@@ -305,6 +306,7 @@ private:
                                                       is_sure,
                                                       m_options.leaves);
     m_report.is_in_rows = found.is_in_rows;
+    m_likeness = std::move(found.likeness);
     return std::move(found.is_wood);
   }
 
@@ -317,8 +319,10 @@ private:
         m_leaf_rounds > 0 ? wood_by_axes<ConcurrencyTag>(m_scan,
                                                          m_axes,
                                                          m_used.flags(),
+                                                         m_paths,
+                                                         m_likeness,
                                                          m_options.breast_height,
-                                                         m_options.leaves)
+                                                         m_options.leaves.axis_likeness)
                           : wood_of_all();
     const bool has_wood = std::find(is_wood.begin(), is_wood.end(), 1) != is_wood.end();
     if (!has_wood || is_wood == m_used.flags())
@@ -387,6 +391,7 @@ private:
   Wall_removal<ConcurrencyTag> m_wall_removal{m_scan, m_options.walls, m_used, m_report};
   std::vector<Index> m_root;
   Shortest_paths m_paths;
+  std::vector<float> m_likeness; ///< of wood, where leaves are left out
   Layer_tree m_layers;
   Axis_set m_axes;
   std::vector<Found_section> m_sections;

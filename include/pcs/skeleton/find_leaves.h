@@ -1,12 +1,11 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Tells the points of leaves from those of wood, by lines and surfaces, and by the axes that were fitted to both.
+// Tells the points of leaves from those of wood, by lines, surfaces and paths.
 
 #ifndef PCS_SKELETON_FIND_LEAVES_H
 #define PCS_SKELETON_FIND_LEAVES_H
 
 #include <pcs/internal/parallel.h>
-#include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/Axis.h>
 #include <pcs/skeleton/Axis_set.h>
 #include <pcs/skeleton/Chain_rules.h>
@@ -18,10 +17,7 @@
 #include <pcs/skeleton/shortest_paths.h>
 #include <pcs/skeleton/wood_by_paths.h>
 
-#include <Eigen/Core>
-
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -29,12 +25,9 @@
 namespace pcs {
 namespace skeleton {
 
-/// When points and axes are leaves. Lengths are in breast heights [-].
+/// When points and axes are leaves.
 struct Leaf_rules
 {
-  double shortest = 0.06; ///< an axis without wood on it that is shorter is a leaf, ...
-  double longest = 0.12;  ///< ... or one that is shorter than this,
-  double flatness = 0.1;  ///< ... if it is wider than this share of its length [-]
   //! of the points that no axis explains: with fewer, leaves are not looked for [-]
   double unexplained = 0.025;
   double thick = 0.05; ///< share of the points that must be thick wood, or this is no tree [-]
@@ -44,88 +37,16 @@ struct Leaf_rules
   std::size_t neighbors = 10; ///< that are leaves, too, around a point deep in leaves [count]
   //! or the share of those that are no thick wood that must lie in flat patches [-]
   double patchy = 0.035;
-  double likeness = -0.8;  ///< least logarithm of the odds that a point is of wood [-]
-  int rounds = 2;          ///< how often wood is looked for among what is left [count]
+  double likeness = -0.8;      ///< least logarithm of the odds that a point is of wood [-]
+  double axis_likeness = -0.4; ///< the same of an axis [-]
+  int rounds =
+      3; ///< how often wood is looked for among what is left: points once, then axes [count]
   double pipe_slack = 1.5; ///< `Pipe_rules::slack` where there are leaves [-]
   Hollow_rules hollow;
   Line_rules lines;
   Path_rules paths;
   Patch_rules patches;
 };
-
-/*!
-  Axes that end without wood on them, and are short, or short and wide: of a leaf the fit makes a stub, of its rim and midrib
-  some more. `breast_height` is the unit of the rules. O(points).
-*/
-template <class ConcurrencyTag>
-std::vector<std::uint8_t>
-leaf_axes(const Axis_set& set, const Scan& scan, double breast_height, const Leaf_rules& rules)
-{
-  const std::size_t m = set.axes.size();
-  std::vector<std::uint8_t> is_leaf(m, 0);
-  std::vector<Index> first(m + 1, 0);
-  for (const Index a : set.axis_of_point)
-    if (a != none)
-      ++first[a + 1];
-  for (std::size_t a = 0; a < m; ++a)
-    first[a + 1] += first[a];
-  std::vector<Index> point(first[m]);
-  std::vector<Index> next(first.begin(), first.end() - 1);
-  for (Index i = 0; i < set.axis_of_point.size(); ++i)
-    if (set.axis_of_point[i] != none)
-      point[next[set.axis_of_point[i]]++] = i;
-  pcs::internal::for_each_index<ConcurrencyTag>(
-      m,
-      [&](std::size_t a) {
-        const double length = length_of(set.axes[a].axis);
-        if (!(length < rules.longest * breast_height))
-          return;
-        const Index begin = first[a], end = first[a + 1];
-        bool is_short = length < rules.shortest * breast_height || end - begin < 3;
-        if (!is_short) {
-          Vec3 mean = Vec3::Zero();
-          for (Index k = begin; k < end; ++k)
-            mean += scan.points[point[k]];
-          mean /= double(end - begin);
-          Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-          for (Index k = begin; k < end; ++k) {
-            const Vec3 d = scan.points[point[k]] - mean;
-            covariance += d * d.transpose();
-          }
-          const Vec3 spread = linear_algebra::symmetric_eigen<3>(covariance).values;
-          is_short = spread(1) > rules.flatness * rules.flatness * spread(2);
-        }
-        is_leaf[a] = is_short;
-      },
-      64);
-  // what carries wood is wood; the axes on it come later
-  std::vector<std::uint8_t> carries_wood(m, 0);
-  for (std::size_t a = m; a-- > 0;) {
-    if (a == 0 || carries_wood[a])
-      is_leaf[a] = 0;
-    const Index parent = set.axes[a].parent;
-    if (!is_leaf[a] && parent != none)
-      carries_wood[parent] = 1;
-  }
-  return is_leaf;
-}
-
-/// The points of the axes that are not leaves; others are parts of leaves. O(points).
-template <class ConcurrencyTag>
-std::vector<std::uint8_t> wood_by_axes(const Scan& scan,
-                                       const Axis_set& set,
-                                       const std::vector<std::uint8_t>& is_used,
-                                       double breast_height,
-                                       const Leaf_rules& rules)
-{
-  const std::vector<std::uint8_t> is_leaf =
-      leaf_axes<ConcurrencyTag>(set, scan, breast_height, rules);
-  std::vector<std::uint8_t> is_wood(scan.size(), 0);
-  for (std::size_t i = 0; i < scan.size(); ++i)
-    is_wood[i] =
-        is_used[i] && set.is_covered(static_cast<Index>(i)) && !is_leaf[set.axis_of_point[i]];
-  return is_wood;
-}
 
 /// Whether enough points are not explained to look for leaves.
 inline bool may_have_leaves(const Axis_set& set,
@@ -186,6 +107,7 @@ inline bool are_leaves(const Scan& scan,
 struct Found_wood
 {
   std::vector<std::uint8_t> is_wood; ///< empty: all of them, as far as is known
+  std::vector<float> likeness;       ///< of wood: logarithm of the odds, by point; empty as well
   bool is_in_rows = false;           ///< nothing is known, because the points lie in rows
 };
 
@@ -227,10 +149,11 @@ Found_wood wood_by_points(const Scan& scan,
     is_line[i] = is_used[i] && (is_thick[i] || is_line[i]);
   if (!is_sure && !are_leaves(scan, is_used, is_thick, is_line, rules))
     return result;
-  likeness = wood_by_paths<ConcurrencyTag>(scan, is_used, is_thick, paths, likeness, rules.paths);
+  result.likeness =
+      wood_by_paths<ConcurrencyTag>(scan, is_used, is_thick, paths, likeness, rules.paths);
   result.is_wood.resize(scan.size());
   for (std::size_t i = 0; i < scan.size(); ++i)
-    result.is_wood[i] = is_used[i] && (is_thick[i] || double(likeness[i]) >= rules.likeness);
+    result.is_wood[i] = is_used[i] && (is_thick[i] || double(result.likeness[i]) >= rules.likeness);
   return result;
 }
 

@@ -158,6 +158,37 @@ shortest_paths(const Scan& scan, const Neighbor_graph& graph, const std::vector<
   return paths;
 }
 
+/// All points, each before the one that its path leads to. O(points).
+inline std::vector<Index> tips_first(const Shortest_paths& paths)
+{
+  const std::size_t n = paths.predecessor.size();
+  std::vector<Index> children(n, 0), order;
+  for (std::size_t i = 0; i < n; ++i)
+    if (paths.predecessor[i] != i)
+      ++children[paths.predecessor[i]];
+  order.reserve(n);
+  for (Index i = 0; i < n; ++i)
+    if (children[i] == 0)
+      order.push_back(i);
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const Index next = paths.predecessor[order[k]];
+    if (next != order[k] && --children[next] == 0)
+      order.push_back(next);
+  }
+  return order;
+}
+
+/// How many paths lead through each point, its own with them, for points in the order of `tips_first()` [count]. O(points).
+inline std::vector<double> carried_paths(const Shortest_paths& paths,
+                                         const std::vector<Index>& order)
+{
+  std::vector<double> carried(paths.predecessor.size(), 1);
+  for (const Index i : order)
+    if (paths.predecessor[i] != i)
+      carried[paths.predecessor[i]] += carried[i];
+  return carried;
+}
+
 } // namespace skeleton
 } // namespace pcs
 

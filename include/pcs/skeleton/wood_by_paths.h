@@ -46,32 +46,19 @@ inline std::vector<Path_context> path_contexts(const Scan& scan,
                                                double reach)
 {
   const std::size_t n = scan.size();
-  // from the tips on: a point comes when all that come through it have
-  std::vector<Index> children(n, 0), order;
-  for (std::size_t i = 0; i < n; ++i)
-    if (paths.predecessor[i] != i)
-      ++children[paths.predecessor[i]];
-  order.reserve(n);
-  for (Index i = 0; i < n; ++i)
-    if (children[i] == 0)
-      order.push_back(i);
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const Index next = paths.predecessor[order[k]];
-    if (next != order[k] && --children[next] == 0)
-      order.push_back(next);
-  }
+  const std::vector<Index> order = tips_first(paths);
+  const std::vector<double> carried = carried_paths(paths, order);
   const auto share_of_step = [&](Index i, Index next) {
     return std::exp((paths.distance[next] - paths.distance[i]) / reach);
   };
   std::vector<Path_context> result(n);
   std::vector<double> weight(n, 0);
   for (const Index i : order) {
-    Path_context& c = result[i];
     const Index next = paths.predecessor[i];
+    result[i].carried = carried[i];
     if (next != i) {
       const double share = share_of_step(i, next);
-      result[next].carried += c.carried;
-      result[next].downstream += share * (double(score[i]) + c.downstream);
+      result[next].downstream += share * (double(score[i]) + result[i].downstream);
       weight[next] += share * (1 + weight[i]);
     }
   }
