@@ -134,12 +134,11 @@ public:
         \nptype model of `ReadablePropertyMap`, key: element of `points`, value: `bool`
         \npdefault all points
       \np{do_remove_leaves} whether points of leaves are looked for and left out. After the first fit, points of hollow
-          sections are wood, and such that lie on lines with little around them; the rest is leaves. Wood is fitted again;
-          axes that end without wood on them and are short, or short and wide, are leaves, too, like all that no axis
-          explains. `true`: always; `false`: never; `skeleton::Leaf_removal::where_found`: if 2.5 % of the points are
-          not explained by the first fit, 5 % are thick wood, and of the others 3.5 % lie in flat patches, or these others are
-          40 % and 15 % of them lie deep in leaves, unless the points lie in rows (`Skeleton_report::is_in_rows`). For the
-          method `chains`
+          sections are wood, and such whose surroundings and paths to the root are those of twigs; the rest is leaves. Wood is
+          fitted again, twice, each time without the axes that look like leaves and what no axis explains. `true`: always;
+          `false`: never; `skeleton::Leaf_removal::where_found`: if 2.5 % of the points are not explained by the first fit,
+          5 % are thick wood, and of the others 3.5 % lie in flat patches, or 16 % of all points lie deep among such that are
+          neither thick wood nor lines, unless the points lie in rows (`Skeleton_report::is_in_rows`). For the method `chains`
         \nptype `bool` or `skeleton::Leaf_removal`
         \npdefault `skeleton::Leaf_removal::where_found`; with `wood_map` `false`
       \np{point_branch_map} written by `extract()`: the branch of a point, an index in the result, or `npos`

@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_CHAINS_H
 #define PCS_SKELETON_CHAINS_H
 
+#include <pcs/skeleton/Index_groups.h>
 #include <pcs/skeleton/Layer_tree.h>
 #include <pcs/skeleton/Scan.h>
 
@@ -67,24 +68,13 @@ inline std::vector<Chain> chains_of(const Scan& scan, const Layer_tree& tree)
 {
   const std::size_t m = tree.size();
   const std::vector<double> height = internal::heights(tree);
-  std::vector<Index> first(m + 1, 0), child(m);
-  for (Index v = 0; v < m; ++v)
-    if (tree.parent[v] != none)
-      ++first[tree.parent[v] + 1];
-  for (std::size_t v = 0; v < m; ++v)
-    first[v + 1] += first[v];
-  {
-    std::vector<Index> next(first.begin(), first.end() - 1);
-    for (Index v = 0; v < m; ++v)
-      if (tree.parent[v] != none)
-        child[next[tree.parent[v]]++] = v;
-  }
+  const Index_groups children(m, tree.parent);
   // A short way on from a node towards the farthest tip.
   const auto way_ahead = [&](Index v) {
-    for (int step = 0; step < ahead_reach && first[v] < first[v + 1]; ++step)
-      v = *std::max_element(child.begin() + first[v],
-                            child.begin() + first[v + 1],
-                            [&](Index a, Index b) { return height[a] < height[b]; });
+    for (int step = 0; step < ahead_reach && !children[v].empty(); ++step)
+      v = *std::max_element(children[v].begin(), children[v].end(), [&](Index a, Index b) {
+        return height[a] < height[b];
+      });
     return v;
   };
   // Where points are missing on the way to a child, only what lies straight ahead may belong to the same branch.
@@ -105,8 +95,7 @@ inline std::vector<Chain> chains_of(const Scan& scan, const Layer_tree& tree)
     const Vec3 along = internal::direction_to(tree, v);
     Index best = none;
     double best_score = 0;
-    for (Index k = first[v]; k < first[v + 1]; ++k) {
-      const Index c = child[k];
+    for (const Index c : children[v]) {
       const Vec3 d = tree.center[way_ahead(c)] - tree.center[v];
       const double norm = d.norm(), cosine = norm > 0 ? along.dot(d) / norm : 0;
       if (is_crooked_gap(v, c, along))

@@ -8,6 +8,7 @@
 #include <pcs/internal/parallel.h>
 #include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/Branch_tree.h>
+#include <pcs/skeleton/Index_groups.h>
 #include <pcs/skeleton/circle_fit.h>
 
 #include <Eigen/Core>
@@ -41,16 +42,7 @@ void estimate_sections(const Scan& scan,
                        Branch_tree& tree)
 {
   const std::size_t n = tree.nodes.size();
-  std::vector<Index> first(n + 1, 0);
-  for (const Index v : tree.node_of_point)
-    if (v != none)
-      ++first[v + 1];
-  for (std::size_t v = 0; v < n; ++v)
-    first[v + 1] += first[v];
-  std::vector<Index> points(first[n]), next(first.begin(), first.end() - 1);
-  for (Index i = 0; i < tree.node_of_point.size(); ++i)
-    if (tree.node_of_point[i] != none)
-      points[next[tree.node_of_point[i]]++] = i;
+  const Index_groups points(n, tree.node_of_point);
   std::vector<Index> successor(n, none);
   for (Index v = 0; v < n; ++v)
     if (!tree.is_base(v))
@@ -58,7 +50,7 @@ void estimate_sections(const Scan& scan,
   pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t k) {
     Branch_node& node = tree.nodes[k];
     const Index v = static_cast<Index>(k), w = successor[v];
-    if (w == none || tree.is_base(v) || first[v + 1] - first[v] < rules.lowest_count ||
+    if (w == none || tree.is_base(v) || points[v].size() < rules.lowest_count ||
         node.radius < rules.thickness * noise)
       return;
     const Vec3 step = tree.nodes[w].point - node.point;
@@ -66,8 +58,8 @@ void estimate_sections(const Scan& scan,
       return;
     const Vec3 along = step.normalized(), e1 = along.unitOrthogonal(), e2 = along.cross(e1);
     std::vector<Vec2> plane;
-    for (Index i = first[v]; i < first[v + 1]; ++i) {
-      const Vec3 d = scan.points[points[i]] - node.point;
+    for (const Index i : points[v]) {
+      const Vec3 d = scan.points[i] - node.point;
       const Vec2 q(d.dot(e1), d.dot(e2));
       if (std::abs(q.norm() - node.radius) < std::max(4 * noise, 0.3 * node.radius))
         plane.push_back(q);

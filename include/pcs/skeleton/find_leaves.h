@@ -39,9 +39,8 @@ struct Leaf_rules
   double patchy = 0.035;
   double likeness = -0.8;      ///< least logarithm of the odds that a point is of wood [-]
   double axis_likeness = -0.4; ///< the same of an axis [-]
-  int rounds =
-      3; ///< how often wood is looked for among what is left: points once, then axes [count]
-  double pipe_slack = 1.5; ///< `Pipe_rules::slack` where there are leaves [-]
+  int rounds = 3;              ///< of leaving out: points first, then axes twice [count]
+  double pipe_slack = 1.5;     ///< `Pipe_rules::slack` where there are leaves [-]
   Hollow_rules hollow;
   Line_rules lines;
   Path_rules paths;

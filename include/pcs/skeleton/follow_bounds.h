@@ -6,6 +6,7 @@
 #define PCS_SKELETON_FOLLOW_BOUNDS_H
 
 #include <pcs/skeleton/Branch_tree.h>
+#include <pcs/skeleton/Index_groups.h>
 #include <pcs/skeleton/Scan.h>
 
 #include <Eigen/Cholesky>
@@ -33,26 +34,6 @@ struct Follow_rules
 };
 
 namespace internal {
-
-/// The points of each node.
-struct Points_of_nodes
-{
-  std::vector<Index> first, point;
-
-  explicit Points_of_nodes(const Branch_tree& tree) : first(tree.nodes.size() + 1, 0)
-  {
-    for (const Index v : tree.node_of_point)
-      if (v != none)
-        ++first[v + 1];
-    for (std::size_t v = 0; v < tree.nodes.size(); ++v)
-      first[v + 1] += first[v];
-    point.resize(first.back());
-    std::vector<Index> place(first.begin(), first.end() - 1);
-    for (Index i = 0; i < tree.node_of_point.size(); ++i)
-      if (tree.node_of_point[i] != none)
-        point[place[tree.node_of_point[i]]++] = i;
-  }
-};
 
 /// Least squares of the distances of points from a surface, over the place of its axis across it.
 class Axis_place_fit
@@ -119,7 +100,7 @@ inline std::size_t follow_bounds(const Scan& scan,
   };
   if (count() == 0)
     return 0;
-  const internal::Points_of_nodes points(tree);
+  const Index_groups points(tree.nodes.size(), tree.node_of_point);
   std::vector<Vec3> moves(n);
   for (int round = 0; round < rules.rounds; ++round) {
     std::fill(moves.begin(), moves.end(), Vec3::Zero());
@@ -137,8 +118,8 @@ inline std::size_t follow_bounds(const Scan& scan,
                                      rules.far * before[v]);
         for (std::size_t j = begin; j < end; ++j) {
           const Index w = branch.nodes[j];
-          for (Index i = points.first[w]; i < points.first[w + 1]; ++i)
-            fit.add(scan.points[points.point[i]] - tree.nodes[w].point);
+          for (const Index i : points[w])
+            fit.add(scan.points[i] - tree.nodes[w].point);
         }
         if (round == 0 && !fit.is_far_on_one_side(noise, rules))
           is_moving[v] = 0;

@@ -9,6 +9,7 @@
 #include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/Axis.h>
 #include <pcs/skeleton/Axis_set.h>
+#include <pcs/skeleton/Index_groups.h>
 #include <pcs/skeleton/Rectified_network.h>
 #include <pcs/skeleton/Scan.h>
 #include <pcs/skeleton/shortest_paths.h>
@@ -62,31 +63,6 @@ struct Axis_evidence
 
 namespace internal {
 
-/// The points of each axis, in their order.
-class Points_of_axes
-{
-public:
-  explicit Points_of_axes(const Axis_set& set) : m_first(set.axes.size() + 1, 0)
-  {
-    for (const Index a : set.axis_of_point)
-      if (a != none)
-        ++m_first[a + 1];
-    for (std::size_t a = 0; a < set.axes.size(); ++a)
-      m_first[a + 1] += m_first[a];
-    m_points.resize(m_first.back());
-    std::vector<Index> next(m_first.begin(), m_first.end() - 1);
-    for (Index i = 0; i < set.axis_of_point.size(); ++i)
-      if (set.axis_of_point[i] != none)
-        m_points[next[set.axis_of_point[i]]++] = i;
-  }
-
-  const Index* begin(std::size_t a) const { return m_points.data() + m_first[a]; }
-  const Index* end(std::size_t a) const { return m_points.data() + m_first[a + 1]; }
-
-private:
-  std::vector<Index> m_first, m_points;
-};
-
 constexpr double surest = 6; ///< what is surer is not told apart
 
 // Trained on scans of 75 virtual trees with leaves (benchmark/README.md).
@@ -128,7 +104,7 @@ std::vector<Axis_evidence> evidence_of_axes(const Scan& scan,
                                             double breast_height)
 {
   const std::size_t m = set.axes.size();
-  const internal::Points_of_axes points(set);
+  const Index_groups points_of_axis(m, set.axis_of_point);
   const std::vector<double> carried = carried_paths(paths, tips_first(paths));
   std::vector<double> length(m);
   for (std::size_t a = 0; a < m; ++a)
@@ -143,15 +119,14 @@ std::vector<Axis_evidence> evidence_of_axes(const Scan& scan,
         e.length_in_breast_heights = length[a] / breast_height;
         if (fitted.parent != none)
           e.parent_length = length[fitted.parent] / scan.spacing;
-        const Index *const begin = points.begin(a), *const end = points.end(a);
-        if (begin == end)
+        const auto points = points_of_axis[a];
+        if (points.empty())
           return;
         Vec3 mean = Vec3::Zero();
         double neighbors = 0;
         std::vector<float> of_points;
         std::vector<Index> segments;
-        for (const Index* p = begin; p != end; ++p) {
-          const Index i = *p;
+        for (const Index i : points) {
           mean += scan.points[i];
           of_points.push_back(likeness[i]);
           segments.push_back(set.segment_of_point[i]);
@@ -179,8 +154,8 @@ std::vector<Axis_evidence> evidence_of_axes(const Scan& scan,
         segments.erase(std::unique(segments.begin(), segments.end()), segments.end());
         e.seen = double(segments.size()) / std::max(1.0, double(fitted.axis.size()) - 1);
         Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-        for (const Index* p = begin; p != end; ++p) {
-          const Vec3 d = scan.points[*p] - mean;
+        for (const Index i : points) {
+          const Vec3 d = scan.points[i] - mean;
           covariance += d * d.transpose();
         }
         const Vec3 spread = linear_algebra::symmetric_eigen<3>(covariance).values.cwiseMax(0);

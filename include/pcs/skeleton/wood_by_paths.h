@@ -7,7 +7,6 @@
 
 #include <pcs/internal/parallel.h>
 #include <pcs/linear_algebra/small_symmetric.h>
-#include <pcs/skeleton/Moments.h>
 #include <pcs/skeleton/Rectified_network.h>
 #include <pcs/skeleton/Scan.h>
 #include <pcs/skeleton/shortest_paths.h>
