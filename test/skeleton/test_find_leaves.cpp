@@ -15,6 +15,8 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include <Eigen/Core>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -248,6 +250,33 @@ BOOST_AUTO_TEST_CASE(paths_carry_those_that_lead_through_them)
   BOOST_CHECK_EQUAL(found[5].downstream, 0);
   BOOST_CHECK_EQUAL(found[5].straightness, 1);
   BOOST_CHECK(path_contexts(Scan(), Shortest_paths(), {}, 1).empty());
+}
+
+BOOST_AUTO_TEST_CASE(evidence_of_a_point)
+{
+  Scan scan;
+  scan.spacing = 2;
+  scan.points = {Vec3(1, 0, 0), Vec3(5, 0, 0), Vec3(1, 2, 0), Vec3(1, 0, 9)};
+  std::vector<Path_context> path(4);
+  const double carried[] = {1, 2, 5, 100};
+  for (std::size_t i = 0; i < 4; ++i)
+    path[i].carried = carried[i];
+  path[0].upstream = 0.5;
+  const std::vector<float> score = {-1, 2, 0.5F, 4};
+  const Wood_evidence e = evidence_of_point(scan, {1, 1, 1, 0}, score, path, 0, {3, 2, 1, 0});
+  BOOST_CHECK_EQUAL(e.score, -1);
+  BOOST_CHECK_EQUAL(e.path.upstream, 0.5);
+  BOOST_CHECK_EQUAL(e.count, 3);
+  BOOST_CHECK_CLOSE(e.mean_score, 0.5, 1e-9);
+  BOOST_CHECK_EQUAL(e.largest_score, 2);
+  BOOST_CHECK_EQUAL(e.most_carried, 5);
+  BOOST_CHECK_SMALL((e.mean - Vec3(2, 1, 0) / 3).norm(), 1e-12);
+  BOOST_CHECK_SMALL((e.mean_of_paths - Vec3(4, 5, 0) / 8).norm(), 1e-12);
+  Eigen::Matrix3d expected = Eigen::Matrix3d::Zero();
+  expected(0, 0) = 2 * 4 / 8.0 - 0.25;
+  expected(1, 1) = 5 * 1 / 8.0 - 25 / 64.0;
+  expected(0, 1) = expected(1, 0) = -0.5 * 0.625;
+  BOOST_CHECK_SMALL((e.covariance_of_paths - expected).norm(), 1e-12);
 }
 
 BOOST_AUTO_TEST_CASE(paths_tell_twigs_from_leaves_better)

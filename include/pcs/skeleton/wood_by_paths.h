@@ -165,6 +165,40 @@ inline double wood_likeness(const Wood_evidence& evidence)
   return internal::likeness_by_evidence(evidence.features());
 }
 
+/// The evidence for point `i`, which is used, by the points of `near` that are used; it is one of them.
+inline Wood_evidence evidence_of_point(const Scan& scan,
+                                       const std::vector<std::uint8_t>& is_used,
+                                       const std::vector<float>& score,
+                                       const std::vector<Path_context>& path,
+                                       Index i,
+                                       const std::vector<Index>& near)
+{
+  Wood_evidence e;
+  e.score = e.largest_score = double(score[i]);
+  e.path = path[i];
+  double carried = 0;
+  for (const Index j : near) {
+    if (!is_used[j])
+      continue;
+    const Vec3 d = (scan.points[j] - scan.points[i]) / scan.spacing;
+    const double w = path[j].carried;
+    e.count += 1;
+    e.mean_score += double(score[j]);
+    e.largest_score = std::max(e.largest_score, double(score[j]));
+    e.most_carried = std::max(e.most_carried, w);
+    e.mean += d;
+    carried += w;
+    e.mean_of_paths += w * d;
+    e.covariance_of_paths += w * d * d.transpose();
+  }
+  e.mean_score /= e.count;
+  e.mean /= e.count;
+  e.mean_of_paths /= carried;
+  e.covariance_of_paths =
+      e.covariance_of_paths / carried - e.mean_of_paths * e.mean_of_paths.transpose();
+  return e;
+}
+
 /*!
   The same for all points that are used and not of thick wood, which is certain; `likeness` holds what their surroundings say
   (`wood_likeness(Surroundings)`), `paths` lead over all points that are used. O(points * neighbours).
@@ -196,31 +230,8 @@ std::vector<float> wood_by_paths(const Scan& scan,
             continue;
           near.clear();
           scan.search->append_within(scan.points[i], rules.radius * scan.spacing, near);
-          Wood_evidence e;
-          e.score = double(score[i]);
-          e.path = path[i];
-          e.largest_score = -internal::largest_likeness;
-          double carried = 0;
-          for (const Index j : near) {
-            if (!is_used[j])
-              continue;
-            const Vec3 d = (scan.points[j] - scan.points[i]) / scan.spacing;
-            const double w = path[j].carried;
-            e.count += 1;
-            e.mean_score += double(score[j]);
-            e.largest_score = std::max(e.largest_score, double(score[j]));
-            e.most_carried = std::max(e.most_carried, w);
-            e.mean += d;
-            carried += w;
-            e.mean_of_paths += w * d;
-            e.covariance_of_paths += w * d * d.transpose();
-          }
-          e.mean_score /= e.count; // the point is one of them
-          e.mean /= e.count;
-          e.mean_of_paths /= carried;
-          e.covariance_of_paths =
-              e.covariance_of_paths / carried - e.mean_of_paths * e.mean_of_paths.transpose();
-          result[i] = static_cast<float>(wood_likeness(e));
+          result[i] = static_cast<float>(wood_likeness(
+              evidence_of_point(scan, is_used, score, path, static_cast<Index>(i), near)));
         }
       });
   return result;
