@@ -73,6 +73,24 @@ double distance_between(const Tree& a, const Tree& b, double share)
   return distances[static_cast<std::size_t>(share * double(distances.size() - 1))];
 }
 
+/// Length of the pieces of `tree` whose middle is further than 2.5 cm from all pieces of `truth`.
+double astray(const Tree& tree, const Tree& truth)
+{
+  double sum = 0;
+  for (const auto e : boost::make_iterator_range(edges(tree))) {
+    const Kernel::Segment_3 piece(tree[source(e, tree)].point, tree[target(e, tree)].point);
+    const Point middle = CGAL::midpoint(piece.source(), piece.target());
+    const auto all = edges(truth);
+    if (std::none_of(all.first, all.second, [&](auto f) {
+          const Kernel::Segment_3 other(truth[source(f, truth)].point,
+                                        truth[target(f, truth)].point);
+          return CGAL::squared_distance(other, middle) < 0.025 * 0.025;
+        }))
+      sum += std::sqrt(piece.squared_length());
+  }
+  return sum;
+}
+
 template <class Transform>
 std::vector<Point> transformed(const std::vector<Point>& points, const Transform& f)
 {
@@ -229,6 +247,47 @@ BOOST_AUTO_TEST_CASE(leaves_are_found_where_there_are_any)
   const auto insisted = pcs::extract_tree_skeleton(s.scan.points, bare, always);
   BOOST_CHECK_GT(insisted.number_of_leaf_points, 0u);
   BOOST_CHECK_LT(insisted.number_of_leaf_points, s.scan.points.size() / 5);
+}
+
+BOOST_AUTO_TEST_CASE(what_strays_from_wood_is_no_branch_and_no_leaf)
+{
+  const Small_scan& s = small_scan();
+  double away = 0, away_with_stray = 0;
+  for (const unsigned seed : {8u, 9u, 10u}) {
+    pcs::Virtual_scanner scanner;
+    scanner.angular_step = 0.2 * CGAL_PI / 180;
+    scanner.range_noise = 0.004;
+    pcs::Virtual_scan<Kernel> scan;
+    pcs::scan_tree(s.truth, scan, scanner, pcs::parameters::random_seed(seed));
+    std::map<Point, bool> leaf;
+    std::map<Point, std::size_t> branch;
+    Tree tree, with_stray;
+    const auto found = pcs::extract_tree_skeleton(
+        scan.points,
+        tree,
+        pcs::parameters::point_is_leaf_map(boost::make_assoc_property_map(leaf))
+            .point_branch_map(boost::make_assoc_property_map(branch)));
+    const auto kept = pcs::extract_tree_skeleton(scan.points,
+                                                 with_stray,
+                                                 pcs::parameters::do_remove_leaves(false));
+    check_is_a_tree(tree);
+    away += astray(tree, s.truth);
+    away_with_stray += astray(with_stray, s.truth);
+    BOOST_CHECK_CLOSE(found.height, kept.height, 2.0);
+    BOOST_CHECK_GT(length_of(tree), 0.9 * length_of(with_stray));
+    // there are no leaves: its points are used, but may belong to no branch
+    BOOST_CHECK_EQUAL(found.number_of_leaf_points, 0u);
+    BOOST_CHECK_EQUAL(found.number_of_outliers, kept.number_of_outliers);
+    std::size_t without_branch = 0;
+    for (const Point& p : scan.points) {
+      BOOST_CHECK(!leaf.at(p));
+      without_branch += branch.at(p) == pcs::npos;
+    }
+    BOOST_CHECK_EQUAL(without_branch,
+                      found.number_of_unexplained_points + found.number_of_unreached_points +
+                          found.number_of_outliers);
+  }
+  BOOST_CHECK_LT(away, 0.8 * away_with_stray);
 }
 
 BOOST_AUTO_TEST_CASE(trees_in_rows_keep_their_wood)

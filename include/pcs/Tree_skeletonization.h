@@ -138,7 +138,10 @@ public:
           fitted again, twice, each time without the axes that look like leaves and what no axis explains. `true`: always;
           `false`: never; `skeleton::Leaf_removal::where_found`: if 2.5 % of the points are not explained by the first fit,
           5 % are thick wood, and of the others 3.5 % lie in flat patches, or 16 % of all points lie deep among such that are
-          neither thick wood nor lines, unless the points lie in rows (`Skeleton_report::is_in_rows`). For the method `chains`
+          neither thick wood nor lines, unless the points lie in rows (`Skeleton_report::is_in_rows`). If only the third is
+          missing, there are no leaves, and one more fit goes without what strays from the wood: axes that do not look like
+          it, and points that no axis explains and that do not, either, away from the trunk; all are used again after it. For the
+          method `chains`
         \nptype `bool` or `skeleton::Leaf_removal`
         \npdefault `skeleton::Leaf_removal::where_found`; with `wood_map` `false`
       \np{point_branch_map} written by `extract()`: the branch of a point, an index in the result, or `npos`

@@ -463,23 +463,67 @@ BOOST_AUTO_TEST_CASE(axes_of_twigs_are_of_wood_and_stubs_in_leaves_are_not)
   const bool expected[] = {true, true, false, false, true};
   for (std::size_t a = 0; a < set.axes.size(); ++a)
     BOOST_CHECK_EQUAL(wood_likeness(evidence[a]) >= least, expected[a]);
-  const auto wood_at = [&](double limit) {
+  const auto wood_at = [&](double limit, double limit_of_point) {
     return wood_by_axes<CGAL::Sequential_tag>(p.scan,
                                               set,
                                               p.is_used,
                                               p.paths,
                                               likeness,
                                               1.3 / unit,
-                                              limit);
+                                              limit,
+                                              limit_of_point);
   };
+  const double infinity = std::numeric_limits<double>::infinity();
   // the second leaf carries a twig
-  const Flags found = wood_at(least);
+  const Flags found = wood_at(least, infinity);
   for (std::size_t i = 0; i < p.scan.size(); ++i)
     BOOST_CHECK_EQUAL(found[i] != 0, set.axis_of_point[i] != 2);
   // the first axis is of wood whatever it looks like
-  const Flags one = wood_at(1e9);
+  const Flags one = wood_at(1e9, infinity);
   for (std::size_t i = 0; i < p.scan.size(); ++i)
     BOOST_CHECK_EQUAL(one[i] != 0, set.axis_of_point[i] == 0);
+  // points that no axis explains speak for themselves
+  for (std::size_t i = 0; i < p.scan.size(); ++i)
+    if (set.axis_of_point[i] == 0) {
+      set.axis_of_point[i] = none;
+      likeness[i] = i % 2 == 0 ? 1.0f : 0.9f;
+    }
+  const Flags points_too = wood_at(-1e9, 1), points_not = wood_at(-1e9, infinity);
+  for (std::size_t i = 0; i < p.scan.size(); ++i) {
+    const bool has_axis = set.axis_of_point[i] != none;
+    BOOST_CHECK_EQUAL(points_too[i] != 0, has_axis || i % 2 == 0);
+    BOOST_CHECK_EQUAL(points_not[i] != 0, has_axis);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(nothing_strays_beside_the_trunk)
+{
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> share(-1, 1);
+  Points points;
+  for (int i = 0; i < 500; ++i)
+    points.push_back(pcs_test::drawn<Vec3>([&] { return share(random); }));
+  const Prepared p(points, 0);
+  const double unit = p.scan.frame.unit;
+  const Axis axis = pcs_test::straight_axis(p.scan.frame.to_local(Vec3(0, 0, -1)),
+                                            p.scan.frame.to_local(Vec3(0, 0, 1)),
+                                            400,
+                                            0.3 / unit,
+                                            0.1 / unit);
+  Flags is_used(p.scan.size(), 1), is_wood(p.scan.size());
+  const Index unused = 3, already = 5;
+  is_used[unused] = 0;
+  is_wood[already] = 1;
+  keep_around<Any_tag>(p.scan, axis, 2.5, is_used, is_wood);
+  for (std::size_t q = 0; q < points.size(); ++q) {
+    const Index i = p.scan.point_of_input[q];
+    const Vec3& x = points[q];
+    const double radius = 0.2 - 0.1 * x.z(), reach = x.head<2>().norm() / radius;
+    if (i == unused || i == already)
+      BOOST_CHECK_EQUAL(is_wood[i] != 0, i == already);
+    else if (std::abs(reach - 2.5) > 0.2)
+      BOOST_CHECK_EQUAL(is_wood[i] != 0, reach < 2.5);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(thick_wood_is_hollow)
@@ -507,8 +551,7 @@ BOOST_AUTO_TEST_CASE(leaves_are_left_out_only_where_there_are_many)
     add_twig(points, Vec3(0.15 * k - 0.4, 0.1 * k - 0.2, 0), 100, random);
   const std::size_t wood = points.size();
   const auto find = [&](const Prepared& p, const Axis_set& set, bool is_sure) {
-    return wood_by_points<CGAL::Sequential_tag>(p.scan, set, p.is_used, p.paths, is_sure, {})
-        .is_wood;
+    return wood_by_points<CGAL::Sequential_tag>(p.scan, set, p.is_used, p.paths, is_sure, {});
   };
   const auto axes_of = [&](const Prepared& p) {
     const double unit = p.scan.frame.unit;
@@ -518,19 +561,28 @@ BOOST_AUTO_TEST_CASE(leaves_are_left_out_only_where_there_are_many)
     return set;
   };
   const Prepared bare(points, wood);
-  BOOST_CHECK(find(bare, axes_of(bare), false).empty());
-  BOOST_CHECK_GT(bare.shares(find(bare, axes_of(bare), true)).first, 0.9);
+  const Found_wood of_bare = find(bare, axes_of(bare), false);
+  BOOST_CHECK(of_bare.is_wood.empty());
+  // what points look like is known all the same
+  BOOST_REQUIRE_EQUAL(of_bare.likeness.size(), bare.scan.size());
+  Flags looks_like_wood(bare.scan.size());
+  for (std::size_t i = 0; i < bare.scan.size(); ++i)
+    looks_like_wood[i] = of_bare.likeness[i] > 0;
+  BOOST_CHECK_GT(bare.shares(looks_like_wood).first, 0.9);
+  BOOST_CHECK_GT(bare.shares(find(bare, axes_of(bare), true).is_wood).first, 0.9);
   add_leaves(points, 120, random);
   const Prepared leafy(points, wood);
-  const Flags found = find(leafy, axes_of(leafy), false);
+  const Flags found = find(leafy, axes_of(leafy), false).is_wood;
   BOOST_REQUIRE(!found.empty());
   BOOST_CHECK_GT(leafy.shares(found).first, 2 * leafy.shares(found).second);
   // without a stem it is no tree
-  BOOST_CHECK(find(leafy, leafy.set, false).empty());
+  BOOST_CHECK(find(leafy, leafy.set, false).is_wood.empty());
+  BOOST_CHECK(find(leafy, leafy.set, false).likeness.empty());
   // where axes explain all points, nothing is looked for
   Axis_set all = axes_of(leafy);
   all.axis_of_point.assign(leafy.scan.size(), 0);
-  BOOST_CHECK(find(leafy, all, false).empty());
+  BOOST_CHECK(find(leafy, all, false).is_wood.empty());
+  BOOST_CHECK(find(leafy, all, false).likeness.empty());
 }
 
 BOOST_AUTO_TEST_CASE(a_crown_is_noticed_beside_a_stem_that_most_points_lie_on)

@@ -90,7 +90,7 @@ public:
     m_are_walls_out = true;
     Links links = links_of_used();
     Linked_parts linked;
-    const auto link = [&] { link_parts(links, linked); };
+    const auto link = [&] { link_parts(links, false, linked); };
     // most scans have no ground, and what is found meanwhile stays
     std::vector<std::uint8_t> is_above = m_used.flags();
     std::size_t ground = 0;
@@ -153,6 +153,8 @@ public:
     }
     if (m_leaf_rounds > 0)
       m_used.reclaim_leaves(m_options.axes.chains, m_axes);
+    if (!m_has_leaves)
+      m_used.return_leaves();
     fuse_axes<ConcurrencyTag>(m_scan.spacing, m_options.fusion, m_axes);
     const double unit = m_scan.frame.unit;
     m_report.noise = unit * m_axes.noise;
@@ -194,7 +196,7 @@ public:
       prune_stubs(m_scan.spacing, m_options.stubs, m_tree);
       const Section_support support =
           support_of_sections<ConcurrencyTag>(m_scan, m_tree, m_axes.noise, m_options.support);
-      if (m_leaf_rounds > 0) // what is left of leaves makes twigs thick
+      if (m_has_leaves && m_leaf_rounds > 0) // what is left of leaves makes twigs thick
         m_options.support.pipes.slack = m_options.leaves.pipe_slack;
       std::vector<double> fitted(m_tree.nodes.size());
       std::transform(m_tree.nodes.begin(),
@@ -267,19 +269,25 @@ private:
     std::unique_ptr<Neighbor_graph> graph;
   };
 
-  /// Finds the root, and the graph of `links` with those that close gaps.
-  void link_parts(const Links& links, Linked_parts& linked)
+  /// The points that the tree stands on.
+  std::vector<Index> points_of_root(const Links& links, const Point_parts& parts) const
+  {
+    if (!m_options.root)
+      return find_root(m_scan, m_used.flags(), links, parts, m_options.up, m_options.roots);
+    return {m_scan.search
+                ->nearest_if(m_scan.frame.to_local(*m_options.root),
+                             std::numeric_limits<double>::max(),
+                             [&](Index i) { return m_used.flags()[i] != 0; })
+                .index};
+  }
+
+  /// Finds the root, unless it is known, and the graph of `links` with those that close gaps.
+  void link_parts(const Links& links, bool is_root_known, Linked_parts& linked)
   {
     linked.graph.reset(); // large
     const Point_parts parts = connected_parts<ConcurrencyTag>(m_used.flags(), links);
-    if (m_options.root)
-      m_root = {m_scan.search
-                    ->nearest_if(m_scan.frame.to_local(*m_options.root),
-                                 std::numeric_limits<double>::max(),
-                                 [&](Index i) { return m_used.flags()[i] != 0; })
-                    .index};
-    else
-      m_root = find_root(m_scan, m_used.flags(), links, parts, m_options.up, m_options.roots);
+    if (!is_root_known)
+      m_root = points_of_root(links, parts);
     linked.gaps = links_across_gaps(m_scan, m_used.flags(), m_options.axes.links, parts);
     // made where it stays: such graphs are copied, not moved
     linked.graph.reset(new Neighbor_graph(graph_of(m_scan.size(), links, linked.gaps)));
@@ -295,7 +303,7 @@ private:
     merge_rings<ConcurrencyTag>(m_scan, m_options.rings, m_layers);
   }
 
-  /// The wood among all points, before any leaves are left out; empty if there are none to leave out.
+  /// The wood among all points, before any of them are left out; empty if nothing is known of it.
   std::vector<std::uint8_t> wood_of_all()
   {
     const bool is_sure = m_options.leaf_removal == Leaf_removal::always;
@@ -307,30 +315,50 @@ private:
                                                       m_options.leaves);
     m_report.is_in_rows = found.is_in_rows;
     m_likeness = std::move(found.likeness);
-    return std::move(found.is_wood);
+    m_has_leaves = !found.is_wood.empty();
+    if (m_has_leaves || m_likeness.empty())
+      return std::move(found.is_wood);
+    std::vector<std::uint8_t> result = wood_of_axes();
+    for (const Index i : m_root)
+      result[i] = 1; // the tree stands where it stood
+    const Index trunk = root_axis(m_scan, m_axes, m_root, m_options.root.has_value());
+    keep_around<ConcurrencyTag>(m_scan,
+                                m_axes.axes[trunk].axis,
+                                m_options.leaves.bare_reach,
+                                m_used.flags(),
+                                result);
+    return result;
   }
 
-  /// Takes the leaves out, and looks for paths over the rest. `false` if there is nothing to do.
+  /// The points of axes of wood; without leaves, all but what strays from the wood.
+  std::vector<std::uint8_t> wood_of_axes() const
+  {
+    const Leaf_rules& rules = m_options.leaves;
+    return wood_by_axes<ConcurrencyTag>(
+        m_scan,
+        m_axes,
+        m_used.flags(),
+        m_paths,
+        m_likeness,
+        m_options.breast_height,
+        m_has_leaves ? rules.axis_likeness : rules.bare_axis_likeness,
+        m_has_leaves ? std::numeric_limits<double>::infinity() : rules.bare_point_likeness);
+  }
+
+  /// Takes the leaves out, or what strays from the wood if there are none, and looks for paths over the rest. `false` if there is
+  /// nothing to do.
   bool remove_leaves()
   {
-    if (m_axes.axes.empty())
+    if (m_axes.axes.empty() || (m_leaf_rounds > 0 && !m_has_leaves))
       return false;
-    const std::vector<std::uint8_t> is_wood =
-        m_leaf_rounds > 0 ? wood_by_axes<ConcurrencyTag>(m_scan,
-                                                         m_axes,
-                                                         m_used.flags(),
-                                                         m_paths,
-                                                         m_likeness,
-                                                         m_options.breast_height,
-                                                         m_options.leaves.axis_likeness)
-                          : wood_of_all();
+    const std::vector<std::uint8_t> is_wood = m_leaf_rounds > 0 ? wood_of_axes() : wood_of_all();
     const bool has_wood = std::find(is_wood.begin(), is_wood.end(), 1) != is_wood.end();
     if (!has_wood || is_wood == m_used.flags())
       return false;
     m_used.leave_out_leaves(is_wood);
     Links links = links_of_used();
     Linked_parts linked;
-    link_parts(links, linked);
+    link_parts(links, !m_has_leaves, linked);
     trace_paths(links, linked);
     return true;
   }
@@ -383,7 +411,7 @@ private:
   std::vector<Vec3> m_input;
   std::vector<std::uint8_t> m_is_wood; ///< of the input
   Session_options m_options;
-  bool m_are_walls_out = false;
+  bool m_are_walls_out = false, m_has_leaves = false;
   int m_stage = 0, m_leaf_rounds = 0, m_regroupings = 0;
   Skeleton_report m_report;
   Scan m_scan;

@@ -104,6 +104,18 @@ public:
       }
   }
 
+  /// What was left out like leaves, but is none, is used again.
+  void return_leaves()
+  {
+    for (Index i = 0; i < m_scan.size(); ++i)
+      if (m_is_found_leaf[i]) {
+        m_is_leaf[i] = m_is_found_leaf[i] = 0;
+        m_is_used[i] = 1;
+        m_scan.is_outlier[i] = 0;
+        --m_report.number_of_leaf_points;
+      }
+  }
+
   /// Height of the highest leaves that were found, but for one in a thousand; the lowest number without [L].
   double top_of_leaves(const Vec3& up) const
   {

@@ -39,8 +39,11 @@ struct Leaf_rules
   double patchy = 0.035;
   double likeness = -0.8;      ///< least logarithm of the odds that a point is of wood [-]
   double axis_likeness = -0.4; ///< the same of an axis [-]
-  int rounds = 3;              ///< of leaving out: points first, then axes twice [count]
-  double pipe_slack = 1.5;     ///< `Pipe_rules::slack` where there are leaves [-]
+  //! the same where there are no leaves: of an axis, and of a point that no axis explains [-]
+  double bare_axis_likeness = -2, bare_point_likeness = 1;
+  double bare_reach = 2.5; ///< radii of the trunk around its axis where nothing strays [-]
+  int rounds = 3;          ///< of leaving out: points first, then axes twice [count]
+  double pipe_slack = 1.5; ///< `Pipe_rules::slack` where there are leaves [-]
   Hollow_rules hollow;
   Line_rules lines;
   Path_rules paths;
@@ -105,9 +108,10 @@ inline bool are_leaves(const Scan& scan,
 /// The points of wood among all that are used.
 struct Found_wood
 {
-  std::vector<std::uint8_t> is_wood; ///< empty: all of them, as far as is known
-  std::vector<float> likeness;       ///< of wood: logarithm of the odds, by point; empty as well
-  bool is_in_rows = false;           ///< nothing is known, because the points lie in rows
+  std::vector<std::uint8_t> is_wood; ///< empty: there are no leaves, as far as is known
+  //! of wood: logarithm of the odds, by point; empty: nothing is known
+  std::vector<float> likeness;
+  bool is_in_rows = false; ///< nothing is known, because the points lie in rows
 };
 
 /*!
@@ -146,10 +150,10 @@ Found_wood wood_by_points(const Scan& scan,
       });
   for (std::size_t i = 0; i < scan.size(); ++i)
     is_line[i] = is_used[i] && (is_thick[i] || is_line[i]);
-  if (!is_sure && !are_leaves(scan, is_used, is_thick, is_line, rules))
-    return result;
   result.likeness =
       wood_by_paths<ConcurrencyTag>(scan, is_used, is_thick, paths, likeness, rules.paths);
+  if (!is_sure && !are_leaves(scan, is_used, is_thick, is_line, rules))
+    return result;
   result.is_wood.resize(scan.size());
   for (std::size_t i = 0; i < scan.size(); ++i)
     result.is_wood[i] = is_used[i] && (is_thick[i] || double(result.likeness[i]) >= rules.likeness);

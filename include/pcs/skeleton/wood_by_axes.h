@@ -169,8 +169,9 @@ std::vector<Axis_evidence> evidence_of_axes(const Scan& scan,
 }
 
 /*!
-  The points of the axes that are of wood; others are parts of leaves. An axis that carries one of wood is of wood, and so is the
-  first. Parameters as of `evidence_of_axes()`; `least` is the least likeness of an axis. O(points).
+  The points of the axes that are of wood, and such that no axis explains but that look like wood; others are parts of leaves, or
+  stray. An axis that carries one of wood is of wood, and so is the first. Parameters as of `evidence_of_axes()`; `least` is the
+  least likeness of an axis, `least_of_point` that of a point without one. O(points).
 */
 template <class ConcurrencyTag>
 std::vector<std::uint8_t> wood_by_axes(const Scan& scan,
@@ -179,7 +180,8 @@ std::vector<std::uint8_t> wood_by_axes(const Scan& scan,
                                        const Shortest_paths& paths,
                                        const std::vector<float>& likeness,
                                        double breast_height,
-                                       double least)
+                                       double least,
+                                       double least_of_point)
 {
   const std::vector<Axis_evidence> evidence =
       evidence_of_axes<ConcurrencyTag>(scan, set, is_used, paths, likeness, breast_height);
@@ -193,8 +195,28 @@ std::vector<std::uint8_t> wood_by_axes(const Scan& scan,
   }
   std::vector<std::uint8_t> is_wood(scan.size(), 0);
   for (Index i = 0; i < scan.size(); ++i)
-    is_wood[i] = is_used[i] && set.is_covered(i) && is_of_wood[set.axis_of_point[i]];
+    is_wood[i] = is_used[i] && (set.is_covered(i) ? is_of_wood[set.axis_of_point[i]] != 0
+                                                  : double(likeness[i]) >= least_of_point);
   return is_wood;
+}
+
+/// Adds the used points within `reach` radii of the nodes of an axis. O(points without wood x nodes).
+template <class ConcurrencyTag>
+void keep_around(const Scan& scan,
+                 const Axis& axis,
+                 double reach,
+                 const std::vector<std::uint8_t>& is_used,
+                 std::vector<std::uint8_t>& is_wood)
+{
+  pcs::internal::for_each_index<ConcurrencyTag>(
+      scan.size(),
+      [&](std::size_t i) {
+        if (is_used[i] && !is_wood[i])
+          is_wood[i] = std::any_of(axis.begin(), axis.end(), [&](const Axis_node& node) {
+            return (scan.points[i] - node.point).norm() < reach * node.radius;
+          });
+      },
+      1024);
 }
 
 } // namespace skeleton
