@@ -3,6 +3,7 @@
 // Loops, sums and sorting give the same bits for every number of threads.
 
 #include <pcs/internal/parallel.h>
+#include <pcs/internal/thread_tasks.h>
 #include <support/point_clouds.h>
 #include <support/threads.h>
 
@@ -13,6 +14,7 @@
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace test_parallel {
@@ -130,6 +132,33 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(an_exception_in_a_loop_reaches_the_caller, Tag, Ta
                                                       throw std::range_error("stop");
                                                   }),
                     std::range_error);
+}
+
+// What runs instead of oneTBB under the thread sanitizer.
+BOOST_AUTO_TEST_CASE(tasks_run_in_two_threads_and_end_before_an_exception_leaves)
+{
+  for (const std::size_t n : {0u, 1u, 2u, 7u}) {
+    std::vector<int> visits(n);
+    std::vector<std::thread::id> thread(n);
+    internal::run_tasks_in_two_threads(n, [&](std::size_t i) {
+      ++visits[i];
+      thread[i] = std::this_thread::get_id();
+    });
+    for (std::size_t i = 0; i < n; ++i) {
+      BOOST_TEST(visits[i] == 1);
+      BOOST_TEST((thread[i] == std::this_thread::get_id()) == (i % 2 == 0));
+    }
+  }
+  for (const bool is_first : {true, false}) {
+    bool has_ended = false;
+    const auto stop = [] { throw std::range_error("stop"); };
+    const auto end = [&] { has_ended = true; };
+    if (is_first)
+      BOOST_CHECK_THROW(internal::run_in_two_threads(stop, end), std::range_error);
+    else
+      BOOST_CHECK_THROW(internal::run_in_two_threads(end, stop), std::range_error);
+    BOOST_TEST(has_ended);
+  }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

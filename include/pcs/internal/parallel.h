@@ -27,6 +27,17 @@
 #define PCS_HAS_TBB 0
 #endif
 
+#if defined(__SANITIZE_THREAD__)
+#define PCS_HAS_THREAD_SANITIZER 1
+#elif defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define PCS_HAS_THREAD_SANITIZER 1
+#endif
+#endif
+#if defined(PCS_HAS_THREAD_SANITIZER)
+#include <pcs/internal/thread_tasks.h>
+#endif
+
 namespace pcs {
 namespace internal {
 
@@ -56,11 +67,16 @@ void for_each_block(std::size_t n, std::size_t block, const F& f)
 #if PCS_HAS_TBB
     if (n > block) {
       const std::size_t number_of_blocks = (n + block - 1) / block;
+      const auto run = [&](std::size_t b) { f(b * block, std::min(n, (b + 1) * block)); };
+#if defined(PCS_HAS_THREAD_SANITIZER)
+      run_tasks_in_two_threads(number_of_blocks, run);
+#else
       tbb::parallel_for(tbb::blocked_range<std::size_t>(0, number_of_blocks),
                         [&](const tbb::blocked_range<std::size_t>& r) {
                           for (std::size_t b = r.begin(); b != r.end(); ++b)
-                            f(b * block, std::min(n, (b + 1) * block));
+                            run(b);
                         });
+#endif
       return;
     }
 #endif
@@ -119,7 +135,11 @@ void invoke_both(const F& f, const G& g)
 {
   if constexpr (is_parallel<ConcurrencyTag>()) {
 #if PCS_HAS_TBB
+#if defined(PCS_HAS_THREAD_SANITIZER)
+    run_in_two_threads(f, g);
+#else
     tbb::parallel_invoke(f, g);
+#endif
     return;
 #endif
   }
