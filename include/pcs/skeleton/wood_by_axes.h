@@ -208,15 +208,12 @@ void keep_around(const Scan& scan,
                  const std::vector<std::uint8_t>& is_used,
                  std::vector<std::uint8_t>& is_wood)
 {
-  pcs::internal::for_each_index<ConcurrencyTag>(
-      scan.size(),
-      [&](std::size_t i) {
-        if (is_used[i] && !is_wood[i])
-          is_wood[i] = std::any_of(axis.begin(), axis.end(), [&](const Axis_node& node) {
-            return (scan.points[i] - node.point).norm() < reach * node.radius;
-          });
-      },
-      1024);
+  pcs::internal::for_each_index<ConcurrencyTag>(scan.size(), [&](std::size_t i) {
+    if (is_used[i] && !is_wood[i])
+      is_wood[i] = std::any_of(axis.begin(), axis.end(), [&](const Axis_node& node) {
+        return (scan.points[i] - node.point).norm() < reach * node.radius;
+      });
+  });
 }
 
 } // namespace skeleton
