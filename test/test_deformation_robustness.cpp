@@ -348,6 +348,44 @@ BOOST_AUTO_TEST_CASE(a_small_soft_handle_is_held_on_every_level)
     }
 }
 
+BOOST_AUTO_TEST_CASE(small_exact_handles_are_held_on_every_level)
+{
+  // The same with exact ones, which are nodes of no network but have some on their border.
+  const Points points = pcs_test::box(8, 8, 16, 0.1);
+  const Vec3 shift(1, 2, 3);
+  for (const std::size_t i : {0u, 77u, 301u})
+    for (const std::size_t n : {1u, 3u, 30u})
+      for (const long long samples : {1000, 1300, 1000000}) {
+        std::vector<std::size_t> indices;
+        for (std::size_t k = 0; k < n; ++k)
+          indices.push_back(i + k);
+        const auto result =
+            deform(points, {{indices, pcs::translation(shift)}}, with_samples(samples));
+        BOOST_TEST(result.report.status == Status::converged,
+                   i << ", " << n << " points, " << samples << " samples");
+        for (std::size_t k = 0; k < points.size(); ++k)
+          BOOST_REQUIRE((result.points[k] - (points[k] + shift)).norm() < 1e-6);
+      }
+}
+
+BOOST_AUTO_TEST_CASE(two_small_exact_handles_are_both_where_they_should_be)
+{
+  const Points points = pcs_test::box(8, 8, 16, 0.1);
+  const Vec3 shift(0.1, 0, 0.1);
+  for (const long long samples : {1000, 1300, 1000000}) {
+    const auto result = deform(
+        points,
+        {{{77}, pcs::translation(Vec3::Zero())}, {{points.size() - 20}, pcs::translation(shift)}},
+        with_samples(samples));
+    BOOST_TEST(result.report.status != Status::numerical_failure);
+    BOOST_TEST((result.points[77] - points[77]).norm() < 1e-9);
+    const std::size_t moved = points.size() - 20;
+    BOOST_TEST((result.points[moved] - (points[moved] + shift)).norm() < 1e-9);
+    for (std::size_t k = 0; k < points.size(); ++k)
+      BOOST_REQUIRE((result.points[k] - points[k]).norm() < 1);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(soft_handles_lie_between_free_and_exact)
 {
   const Bar_edit edit;

@@ -11,6 +11,7 @@
 #include <pcs/deformation/Sample_links.h>
 #include <pcs/deformation/Sample_regions.h>
 #include <pcs/deformation/handle_boundary.h>
+#include <pcs/deformation/hold_free_components.h>
 #include <pcs/deformation/interior_links.h>
 #include <pcs/deformation/octree_samples.h>
 #include <pcs/internal/parallel.h>
@@ -86,6 +87,10 @@ public:
     for (const auto node : m_node_of_sample)
       m_constraints.handle_of_node.push_back(of_finer.handle_of_node[node]);
     draw_nodes_of_soft_handles(of_finer);
+    hold_free_components([&](std::size_t node) { return m_component[node]; },
+                         m_sample_of_node,
+                         [&](std::size_t i) { return of_finer.handle_of_node[i]; },
+                         m_constraints);
   }
 
   /// Prepares `improve()`. Returns `false` if a matrix is singular.

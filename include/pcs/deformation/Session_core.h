@@ -20,6 +20,7 @@
 #include <pcs/deformation/Written_handles.h>
 #include <pcs/deformation/affine_maps.h>
 #include <pcs/deformation/handle_boundary.h>
+#include <pcs/deformation/hold_free_components.h>
 #include <pcs/deformation/read_maps.h>
 #include <pcs/deformation/straighten_borders.h>
 #include <pcs/internal/Stopwatch.h>
@@ -112,7 +113,14 @@ public:
     Node_constraints constraints = m_sites.find(m_body, m_handles, m_report);
     m_setting_of_sites = m_setting;
     m_stiffness = stiffness;
-    const bool is_regular = m_coarse.constrain(m_body.network, constraints, stiffness);
+    Node_constraints of_samples =
+        constraints; // exact handles without a sample get nodes on their border below
+    hold_free_components(
+        [&](std::size_t s) { return m_body.component_of_site[m_body.site_of_sample[s]]; },
+        m_body.sample_of_site,
+        [&](std::size_t site) { return m_handles.exact_handle(site); },
+        of_samples);
+    const bool is_regular = m_coarse.constrain(m_body.network, of_samples, stiffness);
     bool is_extended = m_body.is_sampled;
     std::vector<Border_edge> border;
     if (m_body.is_sampled) {
