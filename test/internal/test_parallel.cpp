@@ -22,7 +22,11 @@ namespace test_parallel {
 namespace {
 
 using Any_tag = CGAL::Parallel_if_available_tag;
+#if PCS_HAS_TBB
 using Tags = boost::mpl::list<CGAL::Sequential_tag, Any_tag>;
+#else
+using Tags = boost::mpl::list<CGAL::Sequential_tag>; // both are the same
+#endif
 namespace internal = pcs::internal;
 
 std::vector<double> wild_numbers(std::size_t n)
