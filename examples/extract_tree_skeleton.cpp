@@ -8,6 +8,7 @@
 #include "program/check_output.h"
 #include "program/run_program.h"
 #include "program/skeleton_report.h"
+#include "program/up_direction.h"
 #include <pcs/IO/Point_table.h>
 #include <pcs/IO/internal/Output_file.h>
 #include <pcs/IO/read_points.h>
@@ -51,13 +52,6 @@ namespace program {
 
 using Kernel = CGAL::Simple_cartesian<double>;
 using Tree = pcs::Tree_skeleton<Kernel>;
-
-Kernel::Vector_3 up_direction(const std::string& name)
-{
-  const double sign = name.front() == '-' ? -1 : 1;
-  const char axis = name.back();
-  return {axis == 'x' ? sign : 0, axis == 'y' ? sign : 0, axis == 'z' ? sign : 0};
-}
 
 pcs::skeleton::Section_fit section_fit(const std::string& name)
 {
@@ -144,7 +138,7 @@ pcs::Skeleton_report extract(const pcs::IO::Point_table& table,
   const auto np = pcs::parameters::point_map(points)
                       .skeleton_method(method)
                       .slice_rules(slices)
-                      .up_direction(up_direction(options.up))
+                      .up_direction(up_direction<Kernel>(options.up))
                       .breast_height(options.breast_height)
                       .do_remove_ground(!options.do_keep_ground)
                       .wood_map(is_wood)
@@ -335,7 +329,9 @@ bool run_batch(const Skeleton_options& options)
       json = run_one(input, one);
     } catch (const std::exception& e) { // one bad tree never ends the batch
       json = {{"input", input}, {"status", "failed"}, {"error", e.what()}};
-      std::cerr << "extract_tree_skeleton: " << e.what() << '\n';
+      const std::string what = e.what(),
+                        scan = what.find(input) == std::string::npos ? input + ": " : "";
+      std::cerr << "extract_tree_skeleton: " << scan << what << '\n';
       is_good = false;
     }
     out << json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << std::endl;

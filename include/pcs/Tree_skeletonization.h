@@ -289,16 +289,7 @@ private:
         internal::choose(m_np,
                          CGAL::internal_np::point_map,
                          CGAL::Identity_property_map<std::decay_t<typename Types::Element>>());
-    std::vector<skeleton::Vec3> input;
-    input.reserve(static_cast<std::size_t>(std::end(*m_points) - std::begin(*m_points)));
-    for (auto it = std::begin(*m_points); it != std::end(*m_points); ++it) {
-      const skeleton::Vec3 p = skeleton::internal::to_vec3(get(point_map, *it));
-      if (!skeleton::internal::is_coordinate(p))
-        throw Invalid_input(std::string(function) + ": point " + std::to_string(input.size()) +
-                            " is not finite, or beyond 1e100");
-      input.push_back(p);
-    }
-    return input;
+    return skeleton::internal::read_input(*m_points, point_map, function);
   }
 
   std::vector<std::uint8_t> read_wood() const

@@ -227,6 +227,8 @@ public:
   }
 
   const Scan& scan() const { return m_scan; }
+  /// 1 for the points of the scan that may be the tree, else 0.
+  const std::vector<std::uint8_t>& used_points() const { return m_used.flags(); }
   const Layer_tree& layers() const { return m_layers; }
   const Axis_set& axes() const { return m_axes; }
   const std::vector<Joint>& joints() const { return m_joints; }

@@ -9,9 +9,11 @@
 #include <pcs/internal/text.h>
 #include <pcs/skeleton/Given_skeleton.h>
 #include <pcs/skeleton/Session_hints.h>
+#include <pcs/skeleton/caller_types.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <vector>
@@ -32,6 +34,23 @@ namespace internal {
 inline bool is_coordinate(const Vec3& p)
 {
   return p.allFinite() && p.cwiseAbs().maxCoeff() <= largest_coordinate;
+}
+
+/// The positions of a range. Throws `Invalid_input`, whose text begins with `function`, at one that is none.
+template <class PointRange, class PointMap>
+std::vector<Vec3>
+read_input(const PointRange& points, const PointMap& point_map, const std::string& function)
+{
+  std::vector<Vec3> input;
+  input.reserve(static_cast<std::size_t>(std::end(points) - std::begin(points)));
+  for (auto it = std::begin(points); it != std::end(points); ++it) {
+    const Vec3 p = to_vec3(get(point_map, *it));
+    if (!is_coordinate(p))
+      throw Invalid_input(function + ": point " + std::to_string(input.size()) +
+                          " is not finite, or beyond 1e100");
+    input.push_back(p);
+  }
+  return input;
 }
 
 inline void check_number_of_points(const std::vector<Vec3>& input, const std::string& function)

@@ -107,16 +107,25 @@ public:
   template <class ConcurrencyTag>
   std::vector<Joint> run(Index root) const
   {
+    return run<ConcurrencyTag>(std::vector<Index>{root});
+  }
+  /// The same with several roots, each of which becomes a tree.
+  template <class ConcurrencyTag>
+  std::vector<Joint> run(const std::vector<Index>& roots) const
+  {
     const std::size_t n = m_set.axes.size();
+    std::vector<std::uint8_t> is_root(n, 0);
+    for (const Index root : roots)
+      is_root[root] = 1;
     std::vector<std::vector<Joint>> options(n);
     pcs::internal::for_each_index<ConcurrencyTag>(
         n,
         [&](std::size_t a) {
-          if (a != root)
+          if (!is_root[a])
             options[a] = options_of(static_cast<Index>(a));
         },
         16);
-    return choose(root, options);
+    return choose(roots, options);
   }
 
 private:
@@ -162,7 +171,8 @@ private:
     return std::max(r, thinnest) / std::max(to, thinnest);
   }
   std::vector<Joint> options_of(Index a) const;
-  static std::vector<Joint> choose(Index root, const std::vector<std::vector<Joint>>& options);
+  static std::vector<Joint> choose(const std::vector<Index>& roots,
+                                   const std::vector<std::vector<Joint>>& options);
 
   const Axis_set& m_set;
   double m_spacing;
@@ -285,17 +295,17 @@ inline std::vector<Joint> Axis_joiner::options_of(Index a) const
 }
 
 /*!
-  Every axis takes its cheapest option. What then does not hang on the root, because it runs in a circle, is led back
+  Every axis takes its cheapest option; roots have none. What then does not hang on a root, because it runs in a circle, is led back
   axis by axis where the change to an option that does costs least.
 */
-inline std::vector<Joint> Axis_joiner::choose(Index root,
+inline std::vector<Joint> Axis_joiner::choose(const std::vector<Index>& roots,
                                               const std::vector<std::vector<Joint>>& options)
 {
   const std::size_t n = options.size();
   std::vector<Joint> joints(n);
   std::vector<std::vector<Index>> children(n), users(n); // users: who has an option on an axis
   for (Index a = 0; a < n; ++a) {
-    if (a == root || options[a].empty())
+    if (options[a].empty())
       continue;
     joints[a] = options[a].front();
     children[joints[a].parent].push_back(a);
@@ -325,7 +335,8 @@ inline std::vector<Joint> Axis_joiner::choose(Index root,
             break; // they are sorted
           }
   };
-  reach(root);
+  for (const Index root : roots)
+    reach(root);
   while (!changes.empty()) {
     const auto [cost, a, k] = changes.top();
     changes.pop();

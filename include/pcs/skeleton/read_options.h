@@ -89,19 +89,38 @@ void read_leaf_removal(const NamedParameters& np, Session_hints& hints)
 
 } // namespace internal
 
+/// A unit vector. Throws `Invalid_input`, whose text begins with `function`, if there is none.
+template <class NamedParameters>
+Vec3 read_up_direction(const NamedParameters& np, const std::string& function)
+{
+  Vec3 up = Vec3::UnitZ();
+  if constexpr (pcs::internal::is_given_v<NamedParameters, pcs::internal_np::up_direction_t>)
+    up = internal::to_vec3(CGAL::parameters::get_parameter(np, pcs::internal_np::up_direction));
+  const double largest = up.cwiseAbs().maxCoeff();
+  if (!up.allFinite() || !(largest > 0))
+    throw Invalid_input(function + ": up_direction must be finite and not the null vector");
+  return (up / largest).normalized(); // squares may overflow
+}
+
+/// Throws `Invalid_input`, whose text begins with `function`, if it is not positive [L].
+template <class NamedParameters>
+double read_breast_height(const NamedParameters& np, const std::string& function)
+{
+  const auto height = static_cast<double>(
+      pcs::internal::choose(np, pcs::internal_np::breast_height, default_breast_height));
+  if (!std::isfinite(height) || !(height > 0))
+    throw Invalid_input(function + ": breast_height is " + pcs::internal::to_text(height) +
+                        "; it must be positive");
+  return height;
+}
+
 /// Throws `Invalid_input`, whose text begins with `function`, if a hint is out of range.
 template <class NamedParameters>
 Session_hints read_options(const NamedParameters& np, const std::string& function)
 {
   using pcs::internal::choose;
   Session_hints hints;
-  if constexpr (pcs::internal::is_given_v<NamedParameters, pcs::internal_np::up_direction_t>)
-    hints.up =
-        internal::to_vec3(CGAL::parameters::get_parameter(np, pcs::internal_np::up_direction));
-  const double largest = hints.up.cwiseAbs().maxCoeff();
-  if (!hints.up.allFinite() || !(largest > 0))
-    throw Invalid_input(function + ": up_direction must be finite and not the null vector");
-  hints.up = (hints.up / largest).normalized(); // squares may overflow
+  hints.up = read_up_direction(np, function);
   if constexpr (pcs::internal::is_given_v<NamedParameters, pcs::internal_np::root_position_t>) {
     hints.root =
         internal::to_vec3(CGAL::parameters::get_parameter(np, pcs::internal_np::root_position));
@@ -114,11 +133,7 @@ Session_hints read_options(const NamedParameters& np, const std::string& functio
   hints.slices = choose(np, pcs::internal_np::slice_rules, Slice_rules());
   hints.do_mark_ground = choose(np, pcs::internal_np::do_remove_ground, true);
   internal::read_leaf_removal(np, hints);
-  hints.breast_height =
-      static_cast<double>(choose(np, pcs::internal_np::breast_height, default_breast_height));
-  if (!std::isfinite(hints.breast_height) || !(hints.breast_height > 0))
-    throw Invalid_input(function + ": breast_height is " +
-                        pcs::internal::to_text(hints.breast_height) + "; it must be positive");
+  hints.breast_height = read_breast_height(np, function);
   return hints;
 }
 

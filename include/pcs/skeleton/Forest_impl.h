@@ -1,0 +1,414 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Definitions of Forest.h.
+
+#ifndef PCS_SKELETON_FOREST_IMPL_H
+#define PCS_SKELETON_FOREST_IMPL_H
+
+#include <pcs/skeleton/Axis_set.h>
+#include <pcs/skeleton/Forest.h>
+#include <pcs/skeleton/Neighbor_graph.h>
+#include <pcs/skeleton/Session_options.h>
+#include <pcs/skeleton/Session_stages.h>
+#include <pcs/skeleton/count_stems.h>
+#include <pcs/skeleton/cut_layers.h>
+#include <pcs/skeleton/fit_axes.h>
+#include <pcs/skeleton/fuse_axes.h>
+#include <pcs/skeleton/join_axes.h>
+#include <pcs/skeleton/merge_rings.h>
+#include <pcs/skeleton/shortest_paths.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+namespace internal {
+
+/// One point of every cube, and which of them stands for each point of the input. Neither depends on the order of the input.
+struct Thinned_points
+{
+  std::vector<Vec3> points;
+  std::vector<Index> of_input;
+
+  Thinned_points(const std::vector<Vec3>& input, double side) : of_input(input.size())
+  {
+    Vec3 low = input.front(), high = low;
+    for (const Vec3& p : input) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    const double cell = std::max(side, 1e-15 * (high - low).maxCoeff()); // cubes have numbers
+    struct Entry
+    {
+      std::array<std::int64_t, 3> cube;
+      Index point;
+    };
+    std::vector<Entry> entries(input.size());
+    for (Index i = 0; i < entries.size(); ++i) {
+      const Vec3 q = (input[i] - low) / cell;
+      entries[i] = {{static_cast<std::int64_t>(q.x()),
+                     static_cast<std::int64_t>(q.y()),
+                     static_cast<std::int64_t>(q.z())},
+                    i};
+    }
+    std::sort(entries.begin(), entries.end(), [&](const Entry& a, const Entry& b) {
+      return a.cube != b.cube
+                 ? a.cube < b.cube
+                 : neighborhood::lexicographically_less(input[a.point], input[b.point]);
+    });
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+      if (k == 0 || entries[k].cube != entries[k - 1].cube)
+        points.push_back(input[entries[k].point]);
+      of_input[entries[k].point] = static_cast<Index>(points.size() - 1);
+    }
+  }
+};
+
+/// The lowest points of a scan in a level grid, from which the ground rises at most by a slope.
+class Lowest_ground
+{
+public:
+  Lowest_ground(const Scan& scan,
+                double cell,
+                double slope,
+                const std::vector<std::uint8_t>& is_solid)
+    : m_slope(slope)
+  {
+    std::map<std::pair<double, double>, Vec3> lowest;
+    for (std::size_t i = 0; i < scan.size(); ++i) {
+      if (!is_solid[i])
+        continue;
+      const Vec3& p = scan.points[i];
+      const auto [at, is_new] =
+          lowest.emplace(std::make_pair(std::floor(p.x() / cell), std::floor(p.y() / cell)), p);
+      if (!is_new && p.z() < at->second.z())
+        at->second = p;
+    }
+    for (const auto& entry : lowest)
+      m_lowest.push_back(entry.second);
+  }
+
+  /// How far a place lies above it. O(cells).
+  double height(const Vec3& p) const
+  {
+    double ground = std::numeric_limits<double>::infinity();
+    for (const Vec3& q : m_lowest)
+      ground = std::min(ground, q.z() + m_slope * std::hypot(p.x() - q.x(), p.y() - q.y()));
+    return p.z() - ground;
+  }
+
+private:
+  double m_slope;
+  std::vector<Vec3> m_lowest;
+};
+
+/// A stem in a scan, and the tree that it belongs to.
+struct Found_stem
+{
+  Index axis, tree;
+  Vec3 foot;
+  double radius;
+};
+
+/*!
+  Axes are fitted twice. First along the paths from the lowest points of all that hangs together, to find stems; then along the
+  paths from the feet of these. Every axis of the second fit sits on another one by the odds of `Axis_joiner`, and so belongs
+  to a tree. z is up.
+*/
+template <class ConcurrencyTag>
+class Tree_finder
+{
+public:
+  Tree_finder(const Scan& scan,
+              const std::vector<std::uint8_t>& is_used,
+              double breast_height,
+              const Session_options& options,
+              const Forest_rules& rules)
+    : m_scan(scan),
+      m_is_used(is_used),
+      m_breast_height(breast_height),
+      m_options(options),
+      m_rules(rules)
+  {
+  }
+
+  /// `false` if the work was cancelled.
+  bool run(pcs::internal::Progress& progress)
+  {
+    m_links = neighbor_links<ConcurrencyTag>(m_scan, m_is_used, m_options.axes.links);
+    const Links gaps = links_across_gaps(m_scan,
+                                         m_is_used,
+                                         m_options.axes.links,
+                                         connected_parts<ConcurrencyTag>(m_is_used, m_links));
+    m_links.insert(m_links.end(), gaps.begin(), gaps.end());
+    const Neighbor_graph graph = graph_of(m_scan.size(), m_links);
+    m_tree_of_point.assign(m_scan.size(), none);
+    m_is_solid = solid_points();
+    const std::vector<Index> lowest = lowest_points();
+    if (lowest.empty())
+      return progress(1);
+    if (!fit_along(shortest_paths(m_scan, graph, lowest), progress, 0.5, 0.75))
+      return false;
+    find_stems();
+    const std::vector<Index> sources = points_of_feet();
+    if (sources.empty())
+      return progress(1);
+    const Shortest_paths paths = shortest_paths(m_scan, graph, sources);
+    if (!fit_along(paths, progress, 0.75, 1))
+      return false;
+    label_axes(sources);
+    label_points(paths);
+    return true;
+  }
+
+  const std::vector<Found_stem>& stems() const { return m_stems; } ///< those of a tree in a row
+  /// By point of the scan; `none`: of no tree.
+  const std::vector<Index>& tree_of_point() const { return m_tree_of_point; }
+
+private:
+  /// Of every part, those within one layer of its lowest one.
+  std::vector<Index> lowest_points() const
+  {
+    const Point_parts parts = connected_parts<ConcurrencyTag>(m_is_used, m_links);
+    std::vector<double> low(m_scan.size(), std::numeric_limits<double>::infinity());
+    for (Index i = 0; i < m_scan.size(); ++i)
+      if (m_is_used[i])
+        low[parts.part[i]] = std::min(low[parts.part[i]], m_scan.points[i].z());
+    std::vector<Index> sources;
+    for (Index i = 0; i < m_scan.size(); ++i)
+      if (m_is_used[i] && parts.size[parts.part[i]] >= m_rules.solid_part &&
+          m_scan.points[i].z() <= low[parts.part[i]] + layer_thickness * m_scan.spacing)
+        sources.push_back(i);
+    return sources;
+  }
+
+  bool
+  fit_along(const Shortest_paths& paths, pcs::internal::Progress& progress, double from, double to)
+  {
+    Layer_tree layers = layer_tree<ConcurrencyTag>(m_scan, m_links, paths);
+    merge_rings<ConcurrencyTag>(m_scan, m_options.rings, layers);
+    bool is_running = true;
+    m_axes = fit_axes<ConcurrencyTag>(m_scan, layers, m_options.axes, [&](double f) {
+      return is_running = progress(from + (to - from) * f);
+    });
+    if (is_running)
+      fuse_axes<ConcurrencyTag>(m_scan.spacing, m_options.fusion, m_axes);
+    return is_running;
+  }
+
+  /// What hangs together in numbers, and may be ground or stand on it, whether it is used or not.
+  std::vector<std::uint8_t> solid_points() const
+  {
+    std::vector<std::uint8_t> is_solid(m_scan.size(), 1);
+    const Point_parts parts = connected_parts<ConcurrencyTag>(
+        is_solid,
+        neighbor_links<ConcurrencyTag>(m_scan, is_solid, m_options.axes.links));
+    for (std::size_t i = 0; i < is_solid.size(); ++i)
+      is_solid[i] = parts.size[parts.part[i]] >= m_rules.solid_part;
+    return is_solid;
+  }
+
+  /// Steep axes that begin near the ground and are not thinner there.
+  void find_stems()
+  {
+    const double unit = m_breast_height;
+    const Lowest_ground ground(m_scan,
+                               m_rules.ground_cell * unit,
+                               m_rules.ground_slope,
+                               m_is_solid);
+    std::vector<Found_stem> found;
+    for (Index a = 0; a < m_axes.axes.size(); ++a) {
+      const Axis& axis = m_axes.axes[a].axis;
+      const Standing standing(axis.size(),
+                              [&](std::size_t k) -> const Axis_node& { return axis[k]; });
+      if (standing.rise < m_rules.rise * unit || standing.rise < m_rules.steep * standing.length ||
+          standing.lower_radius < standing.upper_radius)
+        continue;
+      const Axis_node& foot =
+          axis.front().point.z() <= axis.back().point.z() ? axis.front() : axis.back();
+      if (ground.height(foot.point) <=
+          std::min(m_rules.foot * unit, m_rules.foot_radii * standing.lower_radius))
+        found.push_back({a, none, foot.point, radius_near(axis, foot.point)});
+    }
+    std::stable_sort(found.begin(), found.end(), [](const Found_stem& a, const Found_stem& b) {
+      return a.radius > b.radius;
+    });
+    std::vector<Found_stem> thickest; // of every tree
+    for (Found_stem& stem : found) {
+      const auto own = std::find_if(thickest.begin(), thickest.end(), [&](const Found_stem& other) {
+        const Vec3 d = stem.foot - other.foot;
+        return std::hypot(d.x(), d.y()) < m_rules.stool_radii * other.radius + m_rules.stool * unit;
+      });
+      stem.tree = static_cast<Index>(own - thickest.begin());
+      if (own == thickest.end())
+        thickest.push_back(stem);
+    }
+    std::stable_sort(found.begin(), found.end(), [](const Found_stem& a, const Found_stem& b) {
+      return a.tree < b.tree;
+    });
+    m_stems = std::move(found);
+  }
+
+  /// Largest radius of the lowest part of a stem.
+  double radius_near(const Axis& axis, const Vec3& foot) const
+  {
+    double radius = 0;
+    for (const Axis_node& node : axis)
+      if (node.point.z() <= foot.z() + m_rules.root * m_breast_height)
+        radius = std::max(radius, node.radius);
+    return radius;
+  }
+
+  /// The lowest points of all stems, which belong to their trees.
+  std::vector<Index> points_of_feet()
+  {
+    std::vector<Index> stem_of_axis(m_axes.axes.size(), none), sources;
+    for (Index s = 0; s < m_stems.size(); ++s)
+      stem_of_axis[m_stems[s].axis] = s;
+    m_stem_of_point.assign(m_scan.size(), none);
+    for (Index i = 0; i < m_scan.size(); ++i) {
+      const Index s = m_axes.is_covered(i) ? stem_of_axis[m_axes.axis_of_point[i]] : none;
+      if (s == none || m_scan.points[i].z() > m_stems[s].foot.z() + m_rules.root * m_breast_height)
+        continue;
+      m_stem_of_point[i] = s;
+      m_tree_of_point[i] = m_stems[s].tree;
+      sources.push_back(i);
+    }
+    return sources;
+  }
+
+  /// The axis that explains the foot of a stem, and most else, is a root; the others belong to the tree that they hang on.
+  void label_axes(const std::vector<Index>& sources)
+  {
+    std::map<std::pair<Index, Index>, double> votes; // of stem and axis
+    for (const Index i : sources)
+      if (m_axes.is_covered(i)) {
+        const Index a = m_axes.axis_of_point[i];
+        votes[{m_stem_of_point[i], a}] += double(m_axes.axes[a].number_of_points);
+      }
+    std::vector<Index> best(m_stems.size(), none);
+    for (const auto& [pair, vote] : votes) {
+      Index& b = best[pair.first];
+      if (b == none || vote > votes[{pair.first, b}])
+        b = pair.second;
+    }
+    m_tree_of_axis.assign(m_axes.axes.size(), none);
+    std::vector<Index> roots;
+    for (Index s = 0; s < m_stems.size(); ++s) {
+      if (best[s] == none || m_tree_of_axis[best[s]] != none)
+        continue;
+      m_tree_of_axis[best[s]] = m_stems[s].tree;
+      roots.push_back(best[s]);
+    }
+    const Axis_joiner joiner(m_axes, m_scan.spacing, m_options.joints);
+    const std::vector<Joint> joints = joiner.template run<ConcurrencyTag>(roots);
+    std::vector<Index> way;
+    for (Index a = 0; a < joints.size(); ++a) {
+      way.clear();
+      Index at = a;
+      for (; at != none && m_tree_of_axis[at] == none; at = joints[at].parent)
+        way.push_back(at);
+      for (const Index b : way)
+        m_tree_of_axis[b] = at == none ? none : m_tree_of_axis[at];
+    }
+  }
+
+  /// By its axis; where that has no tree, or there is none, by the path from the nearest foot.
+  void label_points(const Shortest_paths& paths)
+  {
+    std::vector<Index> way;
+    for (Index i = 0; i < m_scan.size(); ++i) {
+      way.clear();
+      Index at = i;
+      for (; m_tree_of_point[at] == none && paths.predecessor[at] != at; at = paths.predecessor[at])
+        way.push_back(at);
+      for (const Index j : way)
+        m_tree_of_point[j] = m_tree_of_point[at];
+    }
+    for (Index i = 0; i < m_scan.size(); ++i)
+      if (m_axes.is_covered(i) && m_tree_of_axis[m_axes.axis_of_point[i]] != none)
+        m_tree_of_point[i] = m_tree_of_axis[m_axes.axis_of_point[i]];
+    return_feet();
+  }
+
+  /// The part of the stems that was left out with the ground.
+  void return_feet()
+  {
+    for (Index i = 0; i < m_scan.size(); ++i) {
+      if (m_is_used[i] || !m_is_solid[i])
+        continue;
+      for (const Found_stem& stem : m_stems) {
+        const Vec3 d = m_scan.points[i] - stem.foot;
+        if (d.z() <= 0 && d.z() >= -m_rules.foot * m_breast_height &&
+            std::hypot(d.x(), d.y()) <= m_rules.base_radii * stem.radius + m_scan.spacing)
+          m_tree_of_point[i] = stem.tree;
+      }
+    }
+  }
+
+  const Scan& m_scan;
+  const std::vector<std::uint8_t>& m_is_used;
+  double m_breast_height; ///< in the unit of the scan
+  const Session_options& m_options;
+  const Forest_rules& m_rules;
+  std::vector<std::uint8_t> m_is_solid;
+  Links m_links;
+  Axis_set m_axes;
+  std::vector<Found_stem> m_stems;
+  std::vector<Index> m_stem_of_point; ///< of those at the feet
+  std::vector<Index> m_tree_of_point, m_tree_of_axis;
+};
+
+} // namespace internal
+
+template <class ConcurrencyTag>
+bool find_trees(const std::vector<Vec3>& input,
+                const Session_hints& hints,
+                pcs::internal::Progress& progress,
+                Forest& forest)
+{
+  const Forest_rules rules;
+  const internal::Thinned_points thinned(input, rules.cell * hints.breast_height);
+  if (thinned.points.size() < rules.solid_part) { // far smaller than a tree
+    forest = Forest{{}, std::vector<Index>(input.size(), none)};
+    return progress(1);
+  }
+  Session_options options(hints);
+  options.leaf_removal = Leaf_removal::never;
+  Session_stages<ConcurrencyTag> session(thinned.points, {}, options);
+  progress.stage(0, 0.5);
+  if (!session.find_paths(progress))
+    return false;
+  progress.stage(0, 1);
+  const Scan& scan = session.scan();
+  internal::Tree_finder<ConcurrencyTag> finder(scan,
+                                               session.used_points(),
+                                               hints.breast_height / scan.frame.unit,
+                                               options,
+                                               rules);
+  if (!finder.run(progress))
+    return false;
+  Forest result;
+  for (const internal::Found_stem& stem : finder.stems())
+    if (stem.tree == result.trees.size()) // the first of its tree is the thickest
+      result.trees.push_back({scan.frame.to_input(stem.foot), scan.frame.unit * stem.radius});
+  result.tree_of_input.reserve(input.size());
+  for (const Index i : thinned.of_input)
+    result.tree_of_input.push_back(finder.tree_of_point()[scan.point_of_input[i]]);
+  forest = std::move(result);
+  return true;
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_FOREST_IMPL_H

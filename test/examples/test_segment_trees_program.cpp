@@ -1,0 +1,116 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The program segment_trees: files of trees, labels and report agree, and bad input is refused.
+
+#include <pcs/IO/Point_table.h>
+#include <pcs/IO/read_points.h>
+#include <pcs/IO/write_points.h>
+#include <pcs/generators/grow_tree.h>
+#include <pcs/generators/scan_tree.h>
+
+#include <CGAL/Simple_cartesian.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <examples/Program_run.h>
+#include <string>
+#include <vector>
+
+namespace test_segment_trees_program {
+
+using Kernel = CGAL::Simple_cartesian<double>;
+
+namespace {
+
+/// Two trees beside each other, with a property of the points.
+struct Stand_run : Program_run
+{
+  Stand_run()
+  {
+    pcs::Tree_skeleton<Kernel> tree;
+    pcs::grow_tree(tree, pcs::fruit_habit(), pcs::parameters::random_seed(5));
+    pcs::Virtual_scanner scanner;
+    scanner.angular_step = 0.2 * CGAL_PI / 180;
+    pcs::Virtual_scan<Kernel> scan;
+    pcs::scan_tree(tree, scan, scanner);
+    std::vector<Kernel::Point_3> points = scan.points;
+    for (const Kernel::Point_3& p : scan.points)
+      points.push_back(p + Kernel::Vector_3(2.5, 0, 0));
+    std::vector<std::int32_t> number;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      number.push_back(static_cast<std::int32_t>(i));
+    pcs::IO::Point_table table(points);
+    table.add_property("number", number);
+    pcs::IO::write_points(path("stand.ply"), table);
+  }
+};
+
+} // namespace
+
+BOOST_FIXTURE_TEST_SUITE(segment_trees_program, Stand_run)
+
+BOOST_AUTO_TEST_CASE(files_labels_and_report_agree)
+{
+  const int code =
+      run("--input stand.ply --folder trees --points labelled.ply --report report.json");
+  BOOST_TEST_REQUIRE(code == 0, err);
+  const auto json = nlohmann::json::parse(content("report.json"));
+  const auto labelled = pcs::IO::read_points(path("labelled.ply"));
+  const auto& tree = labelled.property<std::int32_t>("tree");
+  BOOST_TEST_REQUIRE(json["trees"].size() == 2u);
+  std::size_t assigned = 0;
+  for (std::int32_t t = 0; t < 2; ++t) {
+    const auto& row = json["trees"][static_cast<std::size_t>(t)];
+    const auto count = static_cast<std::size_t>(std::count(tree.begin(), tree.end(), t));
+    BOOST_TEST(row["points"] == count);
+    const auto own = pcs::IO::read_points(path("trees/stand_" + std::to_string(t + 1) + ".ply"));
+    BOOST_TEST_REQUIRE(own.number_of_points() == count);
+    const auto& number = own.property<std::int32_t>("number");
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto i = static_cast<std::size_t>(number[k]);
+      BOOST_REQUIRE(tree[i] == t);
+      BOOST_REQUIRE(own.points()[k] == labelled.points()[i]);
+    }
+    assigned += count;
+  }
+  BOOST_TEST(json["points"] == tree.size());
+  BOOST_TEST(json["unassigned_points"] == tree.size() - assigned);
+  BOOST_TEST(double(assigned) > 0.98 * double(tree.size()));
+}
+
+BOOST_AUTO_TEST_CASE(small_trees_get_no_file)
+{
+  const int code = run("--input stand.ply --folder trees --least-points 100000000");
+  BOOST_TEST_REQUIRE(code == 0, err);
+  BOOST_TEST(!exists("trees/stand_1.ply"));
+}
+
+BOOST_AUTO_TEST_CASE(bad_input_is_refused)
+{
+  write("empty.ply", "");
+  write("floor.xyz", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n2 1 0\n2 2 0\n3 2 0\n3 1 0\n1 3 0\n2 3 0\n");
+  write("file", "a file");
+  const auto refuses = [&](const std::string& arguments, const std::string& word) {
+    const int code = run(arguments);
+    BOOST_TEST(code == 1, arguments << ": exit code " << code);
+    BOOST_TEST(err.find(word) != std::string::npos, word << " in " << err);
+  };
+  refuses("--input stand.ply", "--folder");
+  refuses("--input missing.ply --folder trees", "missing.ply");
+  refuses("--input empty.ply --folder trees", "empty.ply");
+  refuses("--input floor.xyz --folder trees", "no stem");
+  refuses("--input stand.ply --folder file", "directory");
+  refuses("--input stand.ply --points stand.ply", "stand.ply");
+  refuses("--input stand.ply --folder trees --breast-height 0", "breast_height");
+  BOOST_TEST(!exists("trees/stand_1.ply"));
+  BOOST_TEST(content("file") == "a file");
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_segment_trees_program

@@ -1,0 +1,373 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// segment_trees(): stands of virtual trees whose crowns touch, with and without ground, and clouds without a stem.
+
+#include <pcs/core/errors.h>
+#include <pcs/extract_tree_skeleton.h>
+#include <pcs/segment_trees.h>
+#include <support/threads.h>
+#include <support/tree_clouds.h>
+
+#include <boost/property_map/property_map.hpp>
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <iterator>
+#include <limits>
+#include <numeric>
+#include <random>
+#include <utility>
+#include <vector>
+
+namespace test_segment_trees {
+
+using pcs_test::append;
+using pcs_test::cylinder;
+using pcs_test::Jitter;
+using pcs_test::small_scan;
+using Point = pcs_test::Tree_point;
+using Vector = pcs_test::Tree_vector;
+using Cloud = std::vector<Point>;
+using Labels = std::vector<std::size_t>;
+
+namespace {
+
+constexpr std::size_t no_tree = 1000; // the truth about ground
+
+/// Trees that touch, on a level floor or on a slope.
+struct Stand
+{
+  Cloud points;
+  Labels truth;
+  std::vector<Point> feet;
+
+  Stand(const std::vector<Vector>& places, double slope)
+  {
+    const auto& scan = small_scan();
+    for (std::size_t t = 0; t < places.size(); ++t) {
+      const double c = std::cos(2.1 * double(t)), s = std::sin(2.1 * double(t));
+      const Vector place = places[t] + Vector(0, 0, slope * places[t].x());
+      feet.push_back(CGAL::ORIGIN + place);
+      for (std::size_t i = 0; i < scan.scan.points.size(); ++i) {
+        if (scan.scan.node[i] < 0)
+          continue;
+        const Point& p = scan.scan.points[i];
+        points.push_back(Point(c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z()) + place);
+        truth.push_back(t);
+      }
+    }
+  }
+
+  void add_ground(double slope)
+  {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> side(-4, 6);
+    std::normal_distribution<double> noise(0, 0.005);
+    for (int i = 0; i < 60000; ++i) {
+      const double x = side(random), y = side(random);
+      points.emplace_back(x, y, slope * x + noise(random));
+      truth.push_back(no_tree);
+    }
+  }
+};
+
+Stand three_trees(double slope = 0)
+{
+  return Stand({Vector(0, 0, 0), Vector(1.7, 0.3, 0), Vector(0.5, 1.9, 0)}, slope);
+}
+
+template <class ConcurrencyTag = CGAL::Parallel_if_available_tag>
+pcs::Segmentation_report
+segment(const Cloud& points, Labels& trees, double breast_height = pcs::default_breast_height)
+{
+  trees.assign(points.size(), no_tree);
+  std::vector<std::size_t> indices(points.size());
+  std::iota(indices.begin(), indices.end(), 0);
+  const auto identity = boost::typed_identity_property_map<std::size_t>();
+  return pcs::segment_trees<ConcurrencyTag>(
+      indices,
+      boost::make_iterator_property_map(trees.begin(), identity),
+      pcs::parameters::point_map(boost::make_iterator_property_map(points.begin(), identity))
+          .breast_height(breast_height));
+}
+
+/// The tree of the report whose foot is nearest.
+std::size_t
+nearest_tree(const pcs::Segmentation_report& report, const Point& foot, double& distance)
+{
+  std::size_t best = no_tree;
+  distance = std::numeric_limits<double>::infinity();
+  for (std::size_t t = 0; t < report.trees.size(); ++t) {
+    const std::array<double, 3>& f = report.trees[t].foot;
+    const double d = std::sqrt(CGAL::squared_distance(Point(f[0], f[1], f[2]), foot));
+    if (d < distance) {
+      distance = d;
+      best = t;
+    }
+  }
+  return best;
+}
+
+/// The share of the points of trees that are given to their tree, and that of the others that are given to one.
+std::pair<double, double>
+shares(const Stand& stand, const Labels& trees, const pcs::Segmentation_report& report)
+{
+  Labels found;
+  for (const Point& foot : stand.feet) {
+    double distance = 0;
+    found.push_back(nearest_tree(report, foot, distance));
+  }
+  std::array<double, 2> right{}, all{};
+  for (std::size_t i = 0; i < trees.size(); ++i) {
+    const bool is_ground = stand.truth[i] == no_tree;
+    all[is_ground] += 1;
+    right[is_ground] += is_ground ? trees[i] != pcs::npos : trees[i] == found[stand.truth[i]];
+  }
+  return {right[0] / all[0], all[1] > 0 ? right[1] / all[1] : 0};
+}
+
+void check_counts(const pcs::Segmentation_report& report, const Labels& trees)
+{
+  BOOST_TEST(report.number_of_points == trees.size());
+  BOOST_TEST(report.number_of_unassigned_points ==
+             std::size_t(std::count(trees.begin(), trees.end(), pcs::npos)));
+  for (std::size_t t = 0; t < report.trees.size(); ++t)
+    BOOST_TEST(report.trees[t].number_of_points ==
+               std::size_t(std::count(trees.begin(), trees.end(), t)));
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(segment_trees)
+
+BOOST_AUTO_TEST_CASE(touching_trees_are_told_apart)
+{
+  for (const double slope : {0.0, 0.4}) {
+    const Stand stand = three_trees(slope);
+    Labels trees;
+    const auto report = segment(stand.points, trees);
+    BOOST_TEST((report.status == pcs::Status::converged));
+    BOOST_TEST_REQUIRE(report.trees.size() == 3u);
+    check_counts(report, trees);
+    for (const Point& foot : stand.feet) {
+      double distance = 0;
+      nearest_tree(report, foot, distance);
+      BOOST_TEST(distance < 0.25, "a foot is " << distance << " away");
+    }
+    const double right = shares(stand, trees, report).first;
+    BOOST_TEST(right > 0.97, "slope " << slope << ": " << right);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(ground_is_no_trees)
+{
+  for (const double slope : {0.0, 0.4}) {
+    Stand stand = three_trees(slope);
+    stand.add_ground(slope);
+    Labels trees;
+    const auto report = segment(stand.points, trees);
+    BOOST_TEST_REQUIRE(report.trees.size() == 3u);
+    const auto [right, ground] = shares(stand, trees, report);
+    BOOST_TEST(right > 0.96, "slope " << slope << ": " << right);
+    BOOST_TEST(ground < 0.01, "slope " << slope << ": " << ground);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_tree_alone_keeps_its_points)
+{
+  const Stand stand({Vector(0, 0, 0)}, 0);
+  Labels trees;
+  const auto report = segment(stand.points, trees);
+  BOOST_TEST_REQUIRE(report.trees.size() == 1u);
+  BOOST_TEST(report.trees[0].number_of_points > 0.99 * double(stand.points.size()));
+  BOOST_TEST(std::abs(report.trees[0].radius - small_scan().truth[0].radius) <
+             0.5 * small_scan().truth[0].radius);
+}
+
+BOOST_AUTO_TEST_CASE(a_segmented_tree_has_the_skeleton_of_the_tree_alone)
+{
+  const Stand stand = three_trees();
+  Labels trees;
+  const auto report = segment(stand.points, trees);
+  double distance = 0;
+  const std::size_t tree = nearest_tree(report, stand.feet[0], distance);
+  Cloud own, alone;
+  for (std::size_t i = 0; i < trees.size(); ++i) {
+    if (trees[i] == tree)
+      own.push_back(stand.points[i]);
+    if (stand.truth[i] == 0)
+      alone.push_back(stand.points[i]);
+  }
+  pcs_test::Tree of_own, of_alone;
+  const auto found = pcs::extract_tree_skeleton(own, of_own);
+  const auto wanted = pcs::extract_tree_skeleton(alone, of_alone);
+  BOOST_TEST(found.total.length == wanted.total.length, boost::test_tools::tolerance(0.05));
+  BOOST_TEST(found.total.volume == wanted.total.volume, boost::test_tools::tolerance(0.05));
+}
+
+BOOST_AUTO_TEST_CASE(neither_threads_nor_order_change_anything)
+{
+  const Stand stand = three_trees();
+  Labels expected;
+  const auto report = segment<CGAL::Sequential_tag>(stand.points, expected);
+  for (const int threads : pcs_test::thread_counts)
+    pcs_test::with_threads(threads, [&] {
+      Labels trees;
+      const auto other = segment(stand.points, trees);
+      BOOST_TEST((trees == expected));
+      BOOST_TEST((other.trees[0].foot == report.trees[0].foot));
+    });
+
+  std::vector<std::size_t> order(stand.points.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::shuffle(order.begin(), order.end(), std::mt19937(4));
+  Cloud shuffled;
+  for (const std::size_t i : order)
+    shuffled.push_back(stand.points[i]);
+  Labels trees;
+  segment(shuffled, trees);
+  std::size_t different = 0;
+  for (std::size_t k = 0; k < order.size(); ++k)
+    different += trees[k] != expected[order[k]];
+  BOOST_TEST(different == 0u);
+}
+
+BOOST_AUTO_TEST_CASE(units_and_far_coordinates_do_not_matter)
+{
+  const Stand stand = three_trees();
+  Labels expected;
+  const auto report = segment(stand.points, expected);
+  const Vector far(5e5, 5e6, 300);
+  Stand other = stand;
+  for (Point& p : other.points)
+    p = CGAL::ORIGIN + 1000 * (p - CGAL::ORIGIN) + far;
+  for (Point& p : other.feet)
+    p = CGAL::ORIGIN + 1000 * (p - CGAL::ORIGIN) + far;
+  Labels trees;
+  const auto scaled = segment(other.points, trees, 1300);
+  BOOST_TEST_REQUIRE(scaled.trees.size() == report.trees.size());
+  BOOST_TEST(shares(other, trees, scaled).first > 0.97);
+}
+
+BOOST_AUTO_TEST_CASE(up_may_be_another_axis)
+{
+  Stand stand = three_trees();
+  for (Point& p : stand.points)
+    p = Point(p.z(), p.x(), p.y());
+  for (Point& p : stand.feet)
+    p = Point(p.z(), p.x(), p.y());
+  Labels trees(stand.points.size());
+  std::vector<std::size_t> indices(stand.points.size());
+  std::iota(indices.begin(), indices.end(), 0);
+  const auto identity = boost::typed_identity_property_map<std::size_t>();
+  const auto report = pcs::segment_trees(
+      indices,
+      boost::make_iterator_property_map(trees.begin(), identity),
+      pcs::parameters::point_map(boost::make_iterator_property_map(stand.points.begin(), identity))
+          .up_direction(Vector(2, 0, 0)));
+  BOOST_TEST_REQUIRE(report.trees.size() == 3u);
+  BOOST_TEST(shares(stand, trees, report).first > 0.97);
+}
+
+BOOST_AUTO_TEST_CASE(clouds_without_a_stem_have_no_trees)
+{
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> share(-1, 1);
+  Cloud floor, dust, tiny, hanging;
+  for (int i = 0; i < 3000; ++i) {
+    floor.emplace_back(3 * share(random), 3 * share(random), 0.001 * share(random));
+    dust.emplace_back(0.3 * share(random), 0.3 * share(random), 0.3 * share(random));
+    tiny.emplace_back(1e-4 * share(random), 1e-4 * share(random), 1e-4 * share(random));
+  }
+  // a pole that hangs three metres above the floor
+  append(hanging, cylinder(4000, 0.05, 3, Point(0, 0, 3)));
+  append(hanging, floor);
+  for (const Cloud* cloud : {&floor, &dust, &tiny, &hanging}) {
+    Labels trees;
+    const auto report = segment(*cloud, trees);
+    BOOST_TEST((report.status == pcs::Status::nothing_to_do));
+    BOOST_TEST(report.trees.size() == 0u);
+    BOOST_TEST(report.number_of_unassigned_points == cloud->size());
+    BOOST_TEST(std::count(trees.begin(), trees.end(), pcs::npos) == std::ptrdiff_t(cloud->size()));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(poles_side_by_side_are_trees_of_their_own_and_a_stool_is_one)
+{
+  const auto count = [](double distance) {
+    Cloud points = Jitter(0.001)(cylinder(6000, 0.06, 3));
+    append(points, Jitter(0.001, 2)(cylinder(6000, 0.06, 3, Point(distance, 0, 0))));
+    Labels trees;
+    return segment(points, trees).trees.size();
+  };
+  BOOST_TEST(count(1.0) == 2u);
+  BOOST_TEST(count(0.2) == 1u);
+}
+
+BOOST_AUTO_TEST_CASE(an_outlier_far_below_hides_no_tree)
+{
+  Stand stand = three_trees();
+  stand.points.emplace_back(0.4, 0.4, -30);
+  stand.points.emplace_back(900, 0.4, 2);
+  stand.truth.insert(stand.truth.end(), 2, no_tree);
+  Labels trees;
+  const auto report = segment(stand.points, trees);
+  BOOST_TEST(report.trees.size() == 3u);
+  BOOST_TEST(trees.back() == pcs::npos);
+}
+
+BOOST_AUTO_TEST_CASE(bad_input_is_refused)
+{
+  Labels trees;
+  BOOST_CHECK_THROW(segment({}, trees), pcs::Invalid_input);
+  BOOST_CHECK_THROW(segment(Cloud(50, Point(1, 2, 3)), trees), pcs::Invalid_input);
+  Cloud points = cylinder(100, 0.1, 2);
+  for (const double height : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()})
+    BOOST_CHECK_THROW(segment(points, trees, height), pcs::Invalid_input);
+  points[7] = Point(0, std::numeric_limits<double>::infinity(), 0);
+  BOOST_CHECK_THROW(segment(points, trees), pcs::Invalid_input);
+}
+
+BOOST_AUTO_TEST_CASE(cancelled_work_leaves_the_map_alone)
+{
+  const Stand stand = three_trees();
+  std::vector<std::size_t> indices(stand.points.size());
+  std::iota(indices.begin(), indices.end(), 0);
+  const auto identity = boost::typed_identity_property_map<std::size_t>();
+  double last = 0;
+  int calls = 0;
+  bool is_growing = true;
+  const auto run = [&](int limit) {
+    Labels trees(stand.points.size(), no_tree);
+    calls = 0;
+    last = 0;
+    const auto report =
+        pcs::segment_trees(indices,
+                           boost::make_iterator_property_map(trees.begin(), identity),
+                           pcs::parameters::point_map(
+                               boost::make_iterator_property_map(stand.points.begin(), identity))
+                               .callback(std::function<bool(double)>([&](double f) {
+                                 is_growing = is_growing && f >= last && f <= 1;
+                                 last = f;
+                                 return ++calls <= limit;
+                               })));
+    const bool is_untouched =
+        std::count(trees.begin(), trees.end(), no_tree) == std::ptrdiff_t(trees.size());
+    BOOST_TEST(is_untouched == (report.status == pcs::Status::cancelled));
+    return report.status;
+  };
+  BOOST_TEST((run(1 << 20) == pcs::Status::converged));
+  const int all = calls;
+  BOOST_TEST(is_growing);
+  BOOST_TEST(all > 5);
+  for (const int limit : {0, 2, all / 2, all - 1})
+    BOOST_TEST((run(limit) == pcs::Status::cancelled));
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_segment_trees
