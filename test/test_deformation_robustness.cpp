@@ -351,7 +351,7 @@ BOOST_AUTO_TEST_CASE(a_small_soft_handle_is_held_on_every_level)
 BOOST_AUTO_TEST_CASE(small_exact_handles_are_held_on_every_level)
 {
   // The same with exact ones, which are nodes of no network but have some on their border.
-  const Points points = pcs_test::box(8, 8, 16, 0.1);
+  const Points points = pcs_test::box(20, 20, 40, 0.1);
   const Vec3 shift(1, 2, 3);
   for (const std::size_t i : {0u, 77u, 301u})
     for (const std::size_t n : {1u, 3u, 30u})
@@ -370,7 +370,7 @@ BOOST_AUTO_TEST_CASE(small_exact_handles_are_held_on_every_level)
 
 BOOST_AUTO_TEST_CASE(two_small_exact_handles_are_both_where_they_should_be)
 {
-  const Points points = pcs_test::box(8, 8, 16, 0.1);
+  const Points points = pcs_test::box(20, 20, 40, 0.1);
   const Vec3 shift(0.1, 0, 0.1);
   for (const long long samples : {1000, 1300, 1000000}) {
     const auto result = deform(
