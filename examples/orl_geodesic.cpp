@@ -7,6 +7,7 @@
 #include "orl_program/align_trees.h"
 #include "orl_program/write_family.h"
 #include "program/run_program.h"
+#include "program/up_direction.h"
 #include <pcs/IO/read_correspondences.h>
 #include <pcs/IO/read_shape_space.h>
 #include <pcs/IO/write_correspondences.h>
@@ -109,7 +110,7 @@ build(Space& space, const Options& o, const std::optional<pcs::Orl_correspondenc
       space.build(form.matching_weights(weights_of(o))
                       .transport_options(transport)
                       .alignment(may_turn ? Alignment::turns : Alignment::as_given)
-                      .up_direction(up_direction(o.up))
+                      .up_direction(program::up_direction<Kernel>(o.up))
                       .callback(callback));
   if (!o.correspondences.empty()) {
     pcs::Orl_correspondences found = space.correspondences();

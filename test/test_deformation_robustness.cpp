@@ -336,7 +336,7 @@ BOOST_AUTO_TEST_CASE(every_softness_gives_a_finite_result)
 BOOST_AUTO_TEST_CASE(a_small_soft_handle_is_held_on_every_level)
 {
   // Of 1000 samples and more, there are coarser networks, in which no node is in the handle.
-  const Points points = pcs_test::box(8, 8, 16, 0.1);
+  const Points points = pcs_test::box(20, 20, 40, 0.1);
   for (const std::size_t i : {0u, 77u, 301u})
     for (const long long samples : {1000, 1000000}) {
       const Vec3 shift(1, 2, 3);

@@ -130,6 +130,33 @@ shares(const Stand& stand, const Labels& trees, const pcs::Segmentation_report& 
   return {right[0] / all[0], all[1] > 0 ? right[1] / all[1] : 0};
 }
 
+/// Thinner at the top, from a height on.
+Cloud pole(double height)
+{
+  Cloud points = cylinder(6000, 0.05, 3);
+  for (Point& p : points) {
+    const double taper = 1 - 0.1 * p.z();
+    p = Point(taper * p.x(), taper * p.y(), height + p.z());
+  }
+  return Jitter(0.001)(points);
+}
+
+/// Of the points of trees near their feet, those that are given to a tree.
+double share_of_feet(const Stand& stand, const Labels& trees)
+{
+  std::size_t all = 0, given = 0;
+  for (std::size_t i = 0; i < trees.size(); ++i) {
+    if (stand.truth[i] == no_tree)
+      continue;
+    const Vector d = stand.points[i] - stand.feet[stand.truth[i]];
+    if (d.z() > 0.3 || std::hypot(d.x(), d.y()) > 0.3)
+      continue;
+    ++all;
+    given += trees[i] != pcs::npos;
+  }
+  return double(given) / double(all);
+}
+
 void check_counts(const pcs::Segmentation_report& report, const Labels& trees)
 {
   BOOST_TEST(report.number_of_points == trees.size());
@@ -174,6 +201,8 @@ BOOST_AUTO_TEST_CASE(ground_is_no_trees)
     const auto [right, ground] = shares(stand, trees, report);
     BOOST_TEST(right > 0.96, "slope " << slope << ": " << right);
     BOOST_TEST(ground < 0.01, "slope " << slope << ": " << ground);
+    const double feet = share_of_feet(stand, trees);
+    BOOST_TEST(feet > 0.93, "slope " << slope << ": " << feet);
   }
 }
 
@@ -283,8 +312,7 @@ BOOST_AUTO_TEST_CASE(clouds_without_a_stem_have_no_trees)
     dust.emplace_back(0.3 * share(random), 0.3 * share(random), 0.3 * share(random));
     tiny.emplace_back(1e-4 * share(random), 1e-4 * share(random), 1e-4 * share(random));
   }
-  // a pole that hangs three metres above the floor
-  append(hanging, cylinder(4000, 0.05, 3, Point(0, 0, 3)));
+  append(hanging, pole(3)); // three metres above the floor
   append(hanging, floor);
   for (const Cloud* cloud : {&floor, &dust, &tiny, &hanging}) {
     Labels trees;
@@ -293,6 +321,23 @@ BOOST_AUTO_TEST_CASE(clouds_without_a_stem_have_no_trees)
     BOOST_TEST(report.trees.size() == 0u);
     BOOST_TEST(report.number_of_unassigned_points == cloud->size());
     BOOST_TEST(std::count(trees.begin(), trees.end(), pcs::npos) == std::ptrdiff_t(cloud->size()));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_stem_begins_near_the_ground)
+{
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> side(-3, 3);
+  std::normal_distribution<double> noise(0, 0.001);
+  Cloud floor;
+  for (int i = 0; i < 3000; ++i)
+    floor.emplace_back(side(random), side(random), noise(random));
+  for (const auto& [height, number] :
+       {std::pair(0.0, 1u), std::pair(0.3, 1u), std::pair(1.0, 0u)}) {
+    Cloud points = pole(height);
+    append(points, floor);
+    Labels trees;
+    BOOST_TEST(segment(points, trees).trees.size() == number, "a pole " << height << " m above");
   }
 }
 

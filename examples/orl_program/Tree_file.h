@@ -5,6 +5,7 @@
 #ifndef PCS_EXAMPLES_ORL_PROGRAM_TREE_FILE_H
 #define PCS_EXAMPLES_ORL_PROGRAM_TREE_FILE_H
 
+#include "../program/up_direction.h"
 #include <pcs/IO/Point_table.h>
 #include <pcs/IO/read_points.h>
 #include <pcs/IO/read_swc.h>
@@ -54,19 +55,15 @@ inline void read_skeleton(const std::string& path, Tree_file& tree)
     pcs::IO::read_swc<Kernel>(path, tree.skeleton, tree.ids);
 }
 
-inline Kernel::Vector_3 up_direction(const std::string& up)
-{
-  return Kernel::Vector_3(up == "x" ? 1 : 0, up == "y" ? 1 : 0, up == "z" ? 1 : 0);
-}
-
 inline void extract_skeleton(const std::string& points, const std::string& up, Tree_file& tree)
 {
 #if PCS_CAN_EXTRACT_SKELETONS
   const auto report = [&] {
     try {
-      return pcs::extract_tree_skeleton(tree.points.points(),
-                                        tree.skeleton,
-                                        pcs::parameters::up_direction(up_direction(up)));
+      return pcs::extract_tree_skeleton(
+          tree.points.points(),
+          tree.skeleton,
+          pcs::parameters::up_direction(program::up_direction<Kernel>(up)));
     } catch (const pcs::Invalid_input& error) {
       throw pcs::Invalid_input(points + ": " + error.what() + "; give a skeleton with --skeleton");
     }

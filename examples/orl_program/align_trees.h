@@ -5,6 +5,7 @@
 #ifndef PCS_EXAMPLES_ORL_PROGRAM_ALIGN_TREES_H
 #define PCS_EXAMPLES_ORL_PROGRAM_ALIGN_TREES_H
 
+#include "../program/up_direction.h"
 #include "Tree_file.h"
 #include <pcs/Orl_shape_space.h>
 
@@ -52,7 +53,7 @@ inline std::vector<double> align_trees(std::vector<Tree_file>& trees,
     turns[i] = space
                    .build(pcs::parameters::matching_weights(weights)
                               .alignment(pcs::shape_space::Alignment::turns)
-                              .up_direction(up_direction(up)))
+                              .up_direction(program::up_direction<Kernel>(up)))
                    .turn;
     if (turns[i] != 0)
       turn_tree(trees[i], up, turns[i]);

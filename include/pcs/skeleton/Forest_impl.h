@@ -111,6 +111,21 @@ private:
   std::vector<Vec3> m_lowest;
 };
 
+/// What has no label gets that of its nearest ancestor with one. `parent(i)` is `none` at a root. O(n).
+template <class Parent>
+void inherit(std::vector<Index>& labels, const Parent& parent)
+{
+  std::vector<Index> way;
+  for (Index i = 0; i < labels.size(); ++i) {
+    way.clear();
+    Index at = i;
+    for (; at != none && labels[at] == none; at = parent(at))
+      way.push_back(at);
+    for (const Index j : way)
+      labels[j] = at == none ? none : labels[at];
+  }
+}
+
 /// A stem in a scan, and the tree that it belongs to.
 struct Found_stem
 {
@@ -311,36 +326,21 @@ private:
     }
     const Axis_joiner joiner(m_axes, m_scan.spacing, m_options.joints);
     const std::vector<Joint> joints = joiner.template run<ConcurrencyTag>(roots);
-    std::vector<Index> way;
-    for (Index a = 0; a < joints.size(); ++a) {
-      way.clear();
-      Index at = a;
-      for (; at != none && m_tree_of_axis[at] == none; at = joints[at].parent)
-        way.push_back(at);
-      for (const Index b : way)
-        m_tree_of_axis[b] = at == none ? none : m_tree_of_axis[at];
-    }
+    inherit(m_tree_of_axis, [&](Index a) { return joints[a].parent; });
   }
 
   /// By its axis; where that has no tree, or there is none, by the path from the nearest foot.
   void label_points(const Shortest_paths& paths)
   {
-    std::vector<Index> way;
-    for (Index i = 0; i < m_scan.size(); ++i) {
-      way.clear();
-      Index at = i;
-      for (; m_tree_of_point[at] == none && paths.predecessor[at] != at; at = paths.predecessor[at])
-        way.push_back(at);
-      for (const Index j : way)
-        m_tree_of_point[j] = m_tree_of_point[at];
-    }
+    inherit(m_tree_of_point,
+            [&](Index i) { return paths.predecessor[i] == i ? none : paths.predecessor[i]; });
     for (Index i = 0; i < m_scan.size(); ++i)
       if (m_axes.is_covered(i) && m_tree_of_axis[m_axes.axis_of_point[i]] != none)
         m_tree_of_point[i] = m_tree_of_axis[m_axes.axis_of_point[i]];
     return_feet();
   }
 
-  /// The part of the stems that was left out with the ground.
+  /// The part of the stems that was left out with the ground. On a slope it reaches above their feet.
   void return_feet()
   {
     for (Index i = 0; i < m_scan.size(); ++i) {
@@ -348,7 +348,7 @@ private:
         continue;
       for (const Found_stem& stem : m_stems) {
         const Vec3 d = m_scan.points[i] - stem.foot;
-        if (d.z() <= 0 && d.z() >= -m_rules.foot * m_breast_height &&
+        if (d.z() <= m_rules.base_radii * stem.radius && d.z() >= -m_rules.foot * m_breast_height &&
             std::hypot(d.x(), d.y()) <= m_rules.base_radii * stem.radius + m_scan.spacing)
           m_tree_of_point[i] = stem.tree;
       }
