@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // A program that turns the scan of a tree into a skeleton with radii, a mesh, and tables.
 
+#include "program/Batch_log.h"
 #include "program/Progress_line.h"
 #include "program/Report_file.h"
 #include "program/Skeleton_options.h"
@@ -37,14 +38,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
-#include <filesystem>
-#include <fstream>
 #include <functional>
 #include <iostream>
 #include <memory>
-#include <set>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -94,7 +91,8 @@ pcs::Skeleton_report extract_with_scanners(const Range& indices,
   return pcs::extract_tree_skeleton(indices, tree, np.scanner_positions(scanners).beam_width(beam));
 }
 
-pcs::Skeleton_report extract(const pcs::IO::Point_table& table,
+pcs::Skeleton_report extract(const std::string& input,
+                             const pcs::IO::Point_table& table,
                              const Skeleton_options& options,
                              Tree& tree,
                              Labels& labels)
@@ -110,6 +108,10 @@ pcs::Skeleton_report extract(const pcs::IO::Point_table& table,
   if (table.has_property(name)) {
     wood = table.property_as_double(name);
     is_labelled = true;
+    if (!options.is_quiet && (options.do_keep_leaves || options.do_remove_leaves))
+      std::cerr
+          << "extract_tree_skeleton: warning: " << input << ": '" << name
+          << "' of the points tells which are leaves, --keep-leaves and --remove-leaves do not\n";
   } else if (!options.wood.empty())
     throw pcs::Invalid_input("the scan has no property '" + name + "'");
   // the points are numbers here, and everything about them is a map
@@ -208,8 +210,7 @@ void write_points_to(const std::string& path,
     check_output(path, table.schema());
 }
 
-/// One scan; throws if there is no tree in it, or before the work if a result cannot be written.
-nlohmann::ordered_json run_one(const std::string& input, const Skeleton_options& options)
+nlohmann::ordered_json work_on(const std::string& input, const Skeleton_options& options)
 {
   for (const std::string* path : {&options.swc,
                                   &options.mesh,
@@ -228,13 +229,13 @@ nlohmann::ordered_json run_one(const std::string& input, const Skeleton_options&
   const double reading = watch.lap();
   Tree tree;
   Labels labels;
-  const pcs::Skeleton_report report = extract(table, options, tree, labels);
+  const pcs::Skeleton_report report = extract(input, table, options, tree, labels);
   if (report.status != pcs::Status::converged)
-    throw pcs::Invalid_input(input + ": there is no tree in this scan (" +
+    throw pcs::Invalid_input("there is no tree in this scan (" +
                              std::to_string(report.number_of_points) + " points)");
   nlohmann::ordered_json json = to_json(input, report);
   if (!options.is_quiet)
-    for (const std::string& sentence : pcs::warnings(report))
+    for (const std::string sentence : json["warnings"])
       std::cerr << "extract_tree_skeleton: warning: " << input << ": " << sentence << '\n';
   watch.lap();
   if (!options.mesh.empty())
@@ -255,6 +256,16 @@ nlohmann::ordered_json run_one(const std::string& input, const Skeleton_options&
   return json;
 }
 
+/// One scan; throws if there is no tree in it, or before the work if a result cannot be written. Says of which scan.
+nlohmann::ordered_json run_one(const std::string& input, const Skeleton_options& options)
+{
+  try {
+    return work_on(input, options);
+  } catch (const pcs::Invalid_input& e) {
+    throw pcs::Invalid_input(input + ": " + e.what());
+  }
+}
+
 void run_single(const Skeleton_options& options)
 {
   std::unique_ptr<Report_file> file;
@@ -266,79 +277,45 @@ void run_single(const Skeleton_options& options)
   if (!options.is_quiet)
     std::cout << "branches " << json["branches"] << ", nodes " << json["nodes"] << ", height "
               << json["height"] << ", diameter at breast height "
-              << json["diameter_at_breast_height"] << ", length " << json["total"]["length"]
-              << ", volume " << json["total"]["volume"] << '\n';
+              << (json["diameter_at_breast_height"].is_null()
+                      ? "none"
+                      : json["diameter_at_breast_height"].dump())
+              << ", length " << json["total"]["length"] << ", volume " << json["total"]["volume"]
+              << '\n';
 }
 
-/// Whether all results are there, and no older than the scan.
-bool is_complete(const std::string& input, const Skeleton_options& one)
-{
-  namespace fs = std::filesystem;
-  std::error_code error;
-  const auto of_scan = fs::last_write_time(input, error);
-  if (error)
-    return false;
-  for (const std::string* path : {&one.swc, &one.mesh, &one.cylinders, &one.edges, &one.points})
-    if (!path->empty()) {
-      const auto of_result = fs::last_write_time(*path, error);
-      if (error || of_result < of_scan)
-        return false;
-    }
-  return true;
-}
-
-/// The scans that have a line of success. The last line may be torn: a new line is begun behind it.
-std::set<std::string> read_log(const std::filesystem::path& log, bool& is_torn)
-{
-  std::set<std::string> done;
-  std::ifstream in(log);
-  is_torn = false;
-  for (std::string line; std::getline(in, line);) {
-    is_torn = in.eof();
-    const auto json = nlohmann::json::parse(line, nullptr, false);
-    if (json.is_object() && json.value("status", nlohmann::json()) == "converged" &&
-        json.contains("input") && json["input"].is_string())
-      done.insert(json["input"].get<std::string>());
-  }
-  return done;
-}
-
-/// Many scans; returns whether all are done.
+/// Many scans; returns whether all have a skeleton.
 bool run_batch(const Skeleton_options& options)
 {
-  namespace fs = std::filesystem;
-  const fs::path folder = options.folder, log = folder / "batch.jsonl";
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (!fs::is_directory(folder))
-    throw pcs::IO_error(options.folder, "is not a directory and cannot be made one");
-  bool is_torn = false;
-  const std::set<std::string> done = read_log(log, is_torn);
-  std::ofstream out(log, std::ios::app);
-  if (is_torn)
-    out << '\n';
-  if (!out)
-    throw pcs::IO_error(log.string(), "cannot be opened for writing");
-  bool is_good = true;
+  Batch_log log(options.folder);
+  std::size_t done_before = 0, done_now = 0;
   for (const std::string& input : options.inputs) {
     const Skeleton_options one = options_of_one(input, options);
-    if (done.count(input) != 0 && is_complete(input, one))
-      continue;
+    const nlohmann::ordered_json origin = origin_of(input, one);
     nlohmann::ordered_json json;
     try {
+      log.check_owner(one, origin);
+      if (log.is_done(one, origin)) {
+        ++done_before;
+        continue;
+      }
+      log.remove_outdated(one, origin);
       json = run_one(input, one);
     } catch (const std::exception& e) { // one bad tree never ends the batch
-      json = {{"input", input}, {"status", "failed"}, {"error", e.what()}};
       const std::string what = e.what(),
                         scan = what.find(input) == std::string::npos ? input + ": " : "";
       std::cerr << "extract_tree_skeleton: " << scan << what << '\n';
-      is_good = false;
+      log.add_failure(input, scan + what);
+      continue;
     }
-    out << json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << std::endl;
-    if (!out)
-      throw pcs::IO_error(log.string(), "cannot be written");
+    log.add_success(one, origin, json);
+    ++done_now;
   }
-  return is_good;
+  if (!options.is_quiet)
+    std::cout << done_before + done_now << " of " << options.inputs.size()
+              << " scans have a skeleton, " << done_before << " of them from before; see "
+              << log.path().string() << '\n';
+  return done_before + done_now == options.inputs.size();
 }
 
 } // namespace program

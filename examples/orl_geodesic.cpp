@@ -144,6 +144,7 @@ std::string matches_text(const Space& space, const Tree_file& one, const Tree_fi
 /// What was not found in this run is left out.
 std::string report_text(const Space& space,
                         const pcs::Orl_report& r,
+                        const std::vector<Tree_file>& files,
                         const Options& o,
                         bool is_stored,
                         const std::vector<double>& turns)
@@ -157,12 +158,16 @@ std::string report_text(const Space& space,
                       {"cone", space.distance(a, b, np::metric(Orl_metric::cone))}};
   json["number_of_trees"] = r.number_of_trees;
   json["number_of_common_branches"] = r.number_of_common_branches;
-  json["share_of_changes"] = r.share_of_changes;
-  if (!is_stored) {
+  const bool is_pair = r.number_of_trees == 2;
+  if (!is_stored && is_pair) {
     json["matching_energy"] = r.matching_energy;
     json["unexplained_share"] = r.unexplained_share;
     json["is_grown_at_tips"] = r.is_grown_at_tips;
     json["turn_degrees"] = r.turn * 180 / CGAL_PI;
+  }
+  if (!is_stored) {
+    if (!is_pair)
+      json["share_of_changes"] = r.share_of_changes;
     for (const double turn : turns)
       json["turns_degrees"].push_back(turn * 180 / CGAL_PI);
     json["number_of_windows"] = r.number_of_windows;
@@ -172,10 +177,14 @@ std::string report_text(const Space& space,
   }
   json["number_of_edges"] = r.number_of_edges;
   if (o.load.empty()) {
-    json["number_of_nodes"] = r.number_of_nodes;
-    json["number_of_branches"] = r.number_of_branches;
-    json["number_of_matched_branches"] = r.number_of_matched_branches;
-    json["number_of_points"] = r.number_of_points;
+    for (const Tree_file& file : files)
+      json["number_of_nodes"].push_back(num_vertices(file.skeleton));
+    if (is_pair) {
+      json["number_of_branches"] = r.number_of_branches;
+      json["number_of_matched_branches"] = r.number_of_matched_branches;
+    }
+    for (const Tree_file& file : files)
+      json["number_of_points"].push_back(file.points.number_of_points());
     json["number_of_point_pairs"] = r.number_of_point_pairs;
     json["number_of_single_points"] = r.number_of_single_points;
   }
@@ -285,7 +294,7 @@ void run(const Options& o)
     matches.write([&] { return matches_text(space, files[0], files[1]); });
   changes.write([&] { return changes_text(space, files); });
   distances.write([&] { return distances_text(space); });
-  report_file.write([&] { return report_text(space, report, o, was_stored, turns); });
+  report_file.write([&] { return report_text(space, report, files, o, was_stored, turns); });
   if (!o.is_quiet && o.load.empty())
     std::cout << report << '\n';
 }

@@ -219,29 +219,6 @@ Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
   });
 }
 
-/// A name that a script left empty is not the same as no name.
-inline void check_names(const Options& o)
-{
-  const auto check_list = [](const char* name, const std::vector<std::string>& paths) {
-    for (const std::string& path : paths)
-      if (path.empty())
-        throw pcs::Invalid_input(std::string(name) + " has an empty name, expected a file");
-  };
-  check_list("--tree", o.trees);
-  check_list("--skeleton", o.skeletons);
-  for (const auto& [name, path] : {std::make_pair("--matches", &o.matches),
-                                   std::make_pair("--report", &o.report),
-                                   std::make_pair("--correspondences", &o.correspondences),
-                                   std::make_pair("--changes", &o.changes),
-                                   std::make_pair("--distances", &o.distances),
-                                   std::make_pair("--save-space", &o.save),
-                                   std::make_pair("--load-space", &o.load)})
-    if (o.is_given(name) && path->empty())
-      throw pcs::Invalid_input(std::string(name) + " has an empty name, expected a file");
-  if (o.output.empty())
-    throw pcs::Invalid_input("--output has an empty name, expected a folder");
-}
-
 /// What is asked for must have an effect.
 inline void check_effects(const Options& o)
 {
@@ -301,7 +278,6 @@ inline void check_numbers(const Options& o, std::size_t number_of_trees)
 inline void check(const Options& o)
 {
   const auto fail = [](const std::string& what) { throw pcs::Invalid_input(what); };
-  check_names(o);
   if (!o.load.empty() && !(o.trees.empty() && o.skeletons.empty()))
     fail("--load-space is given with trees, expected one of both");
   if (o.load.empty()) {

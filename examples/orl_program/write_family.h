@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <iostream>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -28,6 +29,9 @@ inline void write_modes(const Space& space, const std::vector<Tree_file>& files,
       o.number_of_modes,
       np::mode_measure(o.mode_measure == "metric" ? pcs::shape_space::Mode_measure::metric
                                                   : pcs::shape_space::Mode_measure::branches));
+  if (modes.size() < o.number_of_modes && !o.is_quiet)
+    std::cerr << "orl_geodesic: warning: these " << space.number_of_trees()
+              << " trees have no more than " << modes.size() << " mode(s)\n";
   nlohmann::ordered_json json;
   json["number_of_modes"] = modes.size();
   json["measure"] =

@@ -9,7 +9,9 @@
 #include <pcs/core/errors.h>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -23,14 +25,43 @@ struct Skeleton_options
 {
   std::vector<std::string> inputs, also;
   std::string swc, mesh, leaves, cylinders, edges, points, report, folder;
-  std::string up = "z", method = "chains", fit = "conic", wood, given;
+  std::string up = "z", method = "chains", fit, wood, given; // no fit: the default of the library
   std::vector<double> root, scanners;
   double beam_milliradians = -1; // < 0: the default of the library
   double tolerance = -1;         // < 0: the default of the library
   double breast_height = 1.3;
   bool do_keep_ground = false, do_remove_leaves = false, do_keep_leaves = false,
        do_separate = false, do_use_all = false, do_fit_all = false, is_quiet = false;
+
+  bool has_mesh() const
+  {
+    return !mesh.empty() || std::find(also.begin(), also.end(), "mesh") != also.end();
+  }
 };
+
+/// What decides about results, beside the scan and what can only be given for one scan.
+inline nlohmann::ordered_json to_json(const Skeleton_options& o)
+{
+  nlohmann::ordered_json json = {{"up", o.up},
+                                 {"method", o.method},
+                                 {"wood", o.wood},
+                                 {"keep_ground", o.do_keep_ground},
+                                 {"leaves",
+                                  o.do_keep_leaves     ? "keep"
+                                  : o.do_remove_leaves ? "remove"
+                                                       : "automatic"},
+                                 {"breast_height", o.breast_height}};
+  if (o.method == "sections") {
+    json["fit"] = o.fit;
+    json["all_points"] = o.do_use_all;
+    json["no_support"] = o.do_fit_all;
+  }
+  if (o.has_mesh()) {
+    json["tolerance"] = o.tolerance;
+    json["separate"] = o.do_separate;
+  }
+  return json;
+}
 
 inline const char* skeleton_help()
 {
@@ -46,7 +77,8 @@ and `leaf` (1: left out as a leaf).
 Several scans, with --folder DIR: for each one DIR/NAME.swc, what --also names (DIR/NAME_mesh.ply,
 DIR/NAME_cylinders.csv, DIR/NAME_edges.ply, DIR/NAME_points.ply), and a line of JSON in
 DIR/batch.jsonl. A scan that fails gets a line with its error and the others go on. Started again,
-the batch leaves out what has succeeded.
+the batch leaves out what has succeeded; of scans that changed, or with other options, it replaces
+all that it made before.
 
 Exit codes: 0 success, 1 bad input or usage, or a scan of several failed, 2 internal error.)";
 }
@@ -75,7 +107,8 @@ inline void declare(CLI::App& app, Skeleton_options& options)
   app.add_option("--beam-milliradians",
                  options.beam_milliradians,
                  "width of the scanner's beam; widens thin branches, with --scanner")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::NonNegativeNumber)
+      ->needs("--scanner");
   app.add_option("--wood", options.wood, "property that tells wood (1) from leaves (0)");
   app.add_option("--skeleton",
                  options.given,
@@ -90,18 +123,16 @@ inline void declare(CLI::App& app, Skeleton_options& options)
                  "how branches are found; `sections` is the dissertation's way")
       ->check(CLI::IsMember({"chains", "sections"}))
       ->capture_default_str();
-  app.add_option("--fit", options.fit, "of the method `sections`: how a section is fitted")
-      ->check(CLI::IsMember({"conic", "ellipse", "circle", "by_arc"}))
-      ->capture_default_str()
-      ->needs("--method");
+  app.add_option("--fit",
+                 options.fit,
+                 "of the method `sections`: how a section is fitted; `conic` if not given")
+      ->check(CLI::IsMember({"conic", "ellipse", "circle", "by_arc"}));
   app.add_flag("--all-points",
                options.do_use_all,
-               "of the method `sections`: not 20 points drawn at random")
-      ->needs("--method");
+               "of the method `sections`: not 20 points drawn at random");
   app.add_flag("--no-support",
                options.do_fit_all,
-               "of the method `sections`: a slice for every point")
-      ->needs("--method");
+               "of the method `sections`: a slice for every point");
   app.add_flag("--keep-ground", options.do_keep_ground, "do not look for ground");
   app.add_flag("--remove-leaves",
                options.do_remove_leaves,
@@ -154,12 +185,17 @@ inline void check_single(const Skeleton_options& options)
   }
 }
 
+/// Where the results of one scan of several go, without what tells them apart.
+inline std::string name_of_results(const std::string& input, const std::string& folder)
+{
+  return (std::filesystem::path(folder) / std::filesystem::path(input).stem()).string();
+}
+
 /// The names of the results of one scan of several.
 inline Skeleton_options options_of_one(const std::string& input, const Skeleton_options& options)
 {
   Skeleton_options one = options;
-  const std::string name =
-      (std::filesystem::path(options.folder) / std::filesystem::path(input).stem()).string();
+  const std::string name = name_of_results(input, options.folder);
   one.swc = name + ".swc";
   for (const std::string& kind : options.also)
     if (kind == "mesh")
@@ -212,6 +248,16 @@ inline void check(const Skeleton_options& options)
                              std::to_string(options.scanners.size()) + " numbers");
   if (!std::isfinite(options.tolerance)) // for CLI11 everything is in range that is not out of it
     throw pcs::Invalid_input("--tolerance must be a finite number");
+  const auto refuse = [](bool is_given, const char* name, const char* lacking) {
+    if (is_given)
+      throw pcs::Invalid_input(std::string(name) + " has no effect without " + lacking);
+  };
+  const bool has_sections = options.method == "sections";
+  refuse(!options.fit.empty() && !has_sections, "--fit", "--method sections");
+  refuse(options.do_use_all && !has_sections, "--all-points", "--method sections");
+  refuse(options.do_fit_all && !has_sections, "--no-support", "--method sections");
+  refuse(options.tolerance >= 0 && !options.has_mesh(), "--tolerance", "a mesh");
+  refuse(options.do_separate && !options.has_mesh(), "--separate", "a mesh");
   if (options.folder.empty())
     check_single(options);
   else

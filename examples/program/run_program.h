@@ -33,6 +33,10 @@ int run_program(CLI::App& app, int argc, char** argv, const Work& work)
   pcs::keep_memory();
   try {
     app.parse(argc, argv);
+    for (const CLI::Option* option : app.get_options())
+      for (const std::string& value : option->results())
+        if (value.empty()) // a variable of a script that is not set
+          throw pcs::Invalid_input(option->get_name() + " has an empty value");
     return work() ? 0 : bad_input;
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0)

@@ -11,8 +11,24 @@
 
 #include <cstddef>
 #include <string>
+#include <utility>
 
 namespace program {
+
+/// A warning of the library, with the options of the program in the place of parameters.
+inline std::string in_options(std::string sentence)
+{
+  for (const auto& [parameter, option] :
+       {std::make_pair("do_remove_leaves(true)", "--remove-leaves"),
+        std::make_pair("do_remove_leaves(false)", "--keep-leaves"),
+        std::make_pair("which a root position chooses", "which --root chooses"),
+        std::make_pair("breast height, which", "--breast-height, which")}) {
+    const std::size_t at = sentence.find(parameter);
+    if (at != std::string::npos)
+      sentence.replace(at, std::string(parameter).size(), option);
+  }
+  return sentence;
+}
 
 inline nlohmann::ordered_json to_json(const pcs::Wood& wood)
 {
@@ -42,9 +58,14 @@ inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skele
   json["branches_out_of_reach"] = r.number_of_unreached_branches;
   json["other_stems"] = r.number_of_other_stems;
   json["in_rows"] = r.is_in_rows;
-  json["warnings"] = pcs::warnings(r);
+  json["warnings"] = nlohmann::ordered_json::array();
+  for (const std::string& sentence : pcs::warnings(r))
+    json["warnings"].push_back(in_options(sentence));
   json["height"] = r.height;
-  json["diameter_at_breast_height"] = r.diameter_at_breast_height;
+  json["breast_height"] = r.breast_height;
+  json["diameter_at_breast_height"] = nullptr;
+  if (r.diameter_at_breast_height > 0) // else nothing is that high
+    json["diameter_at_breast_height"] = r.diameter_at_breast_height;
   json["total"] = to_json(r.total);
   json["by_order"] = nlohmann::ordered_json::array();
   for (const pcs::Wood& wood : r.by_order)

@@ -120,7 +120,20 @@ BOOST_AUTO_TEST_CASE(modes_and_new_trees_are_written)
   BOOST_TEST(std::count(distances.begin(), distances.end(), '\n') == 3);
   BOOST_TEST(std::count(distances.begin(), distances.end(), ',') == 6);
   BOOST_TEST(modes["measure"] == "branches");
-  succeeds(skeletons + "--modes 2 --mode-measure metric --output metric");
+  succeeds(skeletons + "--modes 5 --output many");
+  BOOST_TEST(err.find("no more than 2 mode(s)") != std::string::npos, err);
+  succeeds(skeletons + "--modes 2 --mode-measure metric --output metric --report three.json");
+  // of more than two trees there are no figures of pairs
+  const Json three = Json::parse(content("three.json"));
+  for (const char* name : {"matching_energy",
+                           "unexplained_share",
+                           "is_grown_at_tips",
+                           "turn_degrees",
+                           "number_of_matched_branches"})
+    BOOST_TEST(!three.contains(name), name);
+  BOOST_TEST(three["number_of_nodes"].size() == 3u);
+  BOOST_TEST(three["number_of_points"].size() == 3u);
+  BOOST_TEST(three.contains("share_of_changes"));
   BOOST_TEST(Json::parse(content("metric/modes.json"))["measure"] == "metric");
   BOOST_TEST(content("metric/mode_1_plus.swc") != content("out/mode_1_plus.swc"));
   // a seed is a family

@@ -387,7 +387,7 @@ BOOST_AUTO_TEST_CASE(results_that_cannot_be_written_are_found_before_the_work)
   write("file", "old");
   refuses(no_trees + "file", "file: is a file, expected a folder");
   refuses(no_trees + "file/out", "file/out: cannot be made a folder: Not a directory");
-  refuses(no_trees + "''", "--output has an empty name, expected a folder");
+  refuses(no_trees + "''", "--output has an empty value");
   refuses(no_trees + "/proc", "/proc: no files can be written in this folder");
   std::filesystem::create_directories(folder / "taken" / "lambda_0.500.swc");
   refuses(no_trees + "taken", "lambda_0.500.swc: is a directory, expected a file name");
@@ -396,13 +396,13 @@ BOOST_AUTO_TEST_CASE(results_that_cannot_be_written_are_found_before_the_work)
     const std::string of_file = no_trees + "new/out " + option;
     refuses(of_file + " missing/x",
             "missing/x: cannot be opened for writing: No such file or directory");
-    refuses(of_file + " ''", option + " has an empty name, expected a file");
+    refuses(of_file + " ''", option + " has an empty value");
     if (option != "--correspondences") // a folder there is read
       refuses(of_file + " taken", "taken: is a directory, expected a file name");
   }
   refuses(no_trees + "out --mean --report out/mean.swc", "out/mean.swc is named twice");
-  refuses("--skeleton a.swc --skeleton '' --output out", "--skeleton has an empty name");
-  refuses("--tree a.ply --tree '' --output out", "--tree has an empty name");
+  refuses("--skeleton a.swc --skeleton '' --output out", "--skeleton has an empty value");
+  refuses("--tree a.ply --tree '' --output out", "--tree has an empty value");
   BOOST_TEST(!exists("new"));
   BOOST_TEST(!exists("out"));
   BOOST_TEST(content("file") == "old");

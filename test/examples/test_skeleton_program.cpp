@@ -225,7 +225,7 @@ BOOST_AUTO_TEST_CASE(options_change_what_they_say)
   BOOST_TEST(tubes["mesh"]["joined_branches"] == 0);
   BOOST_TEST(plain["mesh"]["joined_branches"] == 1);
   const Json low = report_of("--swc b.swc --breast-height 3");
-  BOOST_TEST(low["diameter_at_breast_height"] == 0);
+  BOOST_TEST(low["diameter_at_breast_height"].is_null());
   const Json sections = report_of("--swc b.swc --method sections");
   BOOST_TEST(content("b.swc") != content("a.swc"));
   BOOST_TEST(std::abs(sections["diameter_at_breast_height"].get<double>() - 0.2) < 0.02);
@@ -326,7 +326,12 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
   refuses("--input tree.xyz --swc old.swc --skeleton dot.swc --root 0 0 0", "--root");
   refuses("--input tree.xyz --swc old.swc --method magic", "--method");
   for (const std::string option : {"--fit circle", "--all-points", "--no-support"})
-    refuses("--input tree.xyz --swc old.swc " + option, "--method");
+    refuses("--input tree.xyz --swc old.swc " + option, "--method sections");
+  refuses("--input tree.xyz --swc old.swc --method chains --fit circle", "--method sections");
+  refuses("--input tree.xyz --swc old.swc --tolerance 0.1", "--tolerance has no effect");
+  refuses("--input tree.xyz --swc old.swc --separate", "--separate has no effect");
+  refuses("--input tree.xyz --swc old.swc --beam-milliradians 1", "--scanner");
+  refuses("--input tree.xyz --swc old.swc --mesh ''", "--mesh has an empty value");
   refuses("--input tree.xyz --folder out --swc old.swc", "leave old.swc out");
   refuses("--input tree.xyz folder/tree.ply --folder out", "the same name");
   // Spelled otherwise, or made by another scan of the batch.
@@ -396,6 +401,71 @@ BOOST_AUTO_TEST_CASE(a_batch_goes_on_and_resumes)
   BOOST_TEST(run("--quiet --input good.xyz --folder out") == 0, err);
   BOOST_TEST((std::filesystem::last_write_time(path("out/good.swc")) != before));
   BOOST_TEST(run("--quiet --input tree.xyz bad.xyz good.xyz --folder out") == 0, err);
+}
+
+BOOST_AUTO_TEST_CASE(a_batch_replaces_what_is_out_of_date)
+{
+  const std::string batch = "--input tree.xyz --folder out ";
+  BOOST_TEST_REQUIRE(run("--quiet " + batch + "--also mesh") == 0, err);
+  const std::string swc = content("out/tree.swc"), mesh = content("out/tree_mesh.ply");
+  BOOST_TEST(run(batch) == 0, err);
+  BOOST_TEST(log().size() == 1u); // all there
+  BOOST_TEST(out.find("1 of 1 scans have a skeleton, 1 of them from before") != std::string::npos);
+
+  // other options, of the mesh and of the tree
+  BOOST_TEST(run(batch + "--also mesh --separate") == 0, err);
+  BOOST_TEST(log().size() == 2u);
+  BOOST_TEST(content("out/tree_mesh.ply") != mesh);
+  BOOST_TEST(run(batch + "--breast-height 1") == 0, err);
+  BOOST_TEST_REQUIRE(log().size() == 3u);
+  BOOST_TEST(log()[2]["breast_height"] == 1.0);
+  BOOST_TEST(!exists("out/tree_mesh.ply"));
+  BOOST_TEST(run(batch + "--breast-height 1") == 0, err);
+  BOOST_TEST(log().size() == 3u);
+
+  // another scan of the same name
+  std::filesystem::create_directory(path("other"));
+  write("other/tree.xyz", "1 2 3\n");
+  BOOST_TEST(run("--input other/tree.xyz --folder out") == 1);
+  BOOST_TEST(err.find("another folder") != std::string::npos, err);
+  BOOST_TEST(content("out/tree.swc") == swc);
+  BOOST_TEST(log().size() == 4u);
+
+  // the scan was replaced by an older one, and then by one without a tree
+  const auto now = std::filesystem::last_write_time(path("tree.xyz"));
+  write("tree.xyz", fork_text() + "0.1 0 0.2\n");
+  std::filesystem::last_write_time(path("tree.xyz"), now - std::chrono::hours(1));
+  BOOST_TEST(run(batch + "--breast-height 1") == 0, err);
+  BOOST_TEST(log().size() == 5u);
+  write("tree.xyz", "1 2 3\n");
+  BOOST_TEST(run(batch + "--breast-height 1") == 1);
+  BOOST_TEST(!exists("out/tree.swc"));
+
+  // nothing goes when the scan is away
+  write("tree.xyz", fork_text());
+  BOOST_TEST(run(batch) == 0, err);
+  std::filesystem::remove(path("tree.xyz"));
+  BOOST_TEST(run(batch) == 1);
+  BOOST_TEST(content("out/tree.swc") == swc);
+
+  // what is no line of this program is passed over
+  write("tree.xyz", fork_text());
+  write("out/batch.jsonl",
+        "[]\n{\"status\": 3}\n{\"status\": \"converged\", \"input\": \"tree.xyz\"}\n"
+        "{\"status\": \"converged\", \"input\": \"tree.xyz\", \"made_from\": {\"file\": \"t\", "
+        "\"options\": {}}, \"files\": [\"../tree.xyz\"]}\n");
+  BOOST_TEST(run(batch) == 0, err);
+  BOOST_TEST(exists("tree.xyz"));
+}
+
+BOOST_AUTO_TEST_CASE(what_is_not_there_is_no_number)
+{
+  BOOST_TEST_REQUIRE(run("--input tree.xyz --swc t.swc --breast-height 50 --report r.json") == 0,
+                     err);
+  BOOST_TEST(Json::parse(content("r.json"))["diameter_at_breast_height"].is_null());
+  BOOST_TEST(out.find("none") != std::string::npos, out);
+  BOOST_TEST_REQUIRE(run("--input tree.xyz --swc t.swc --breast-height 0.001") == 0, err);
+  BOOST_TEST(err.find("--breast-height, which may be in another unit") != std::string::npos, err);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

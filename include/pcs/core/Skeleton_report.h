@@ -65,6 +65,7 @@ struct Skeleton_report
       0; ///< from the root to the highest node or leaf that was found, along the up direction [L]
   //! of the trunk; where it ends below, of the thickest branch there; 0: nothing is that high [L]
   double diameter_at_breast_height = 0;
+  double breast_height = 0; ///< of that diameter, above the root [L]
   Wood total;
   std::vector<Wood> by_order; ///< trunk first
   //! upper bounds of the radius in the classes of `by_size`, the last class has none
@@ -93,6 +94,8 @@ inline std::vector<std::string> warnings(const Skeleton_report& r)
   // volume by the cube of the height or of the length of the trunk: trees up to 0.003, a post of ten diameters 0.008, spheres
   // that are taken for many thin branches 0.02 and more [-]
   constexpr double most_wood = 0.015;
+  constexpr double tallest =
+      100; // by the breast height; the tallest of all trees is 116 m high [-]
   std::vector<std::string> sentences;
   if (r.number_of_other_stems > 0)
     sentences.push_back("more than one tree: " + std::to_string(r.number_of_other_stems) +
@@ -120,6 +123,13 @@ inline std::vector<std::string> warnings(const Skeleton_report& r)
   if (r.status == Status::converged &&
       r.residual > std::max(largest_residual * r.noise, exact * r.spacing))
     sentences.push_back("half of the points lie far from the surfaces found; this may be no tree");
+  if (r.breast_height > 0 && r.height > tallest * r.breast_height) {
+    std::ostringstream sentence;
+    sentence.precision(3);
+    sentence << "the tree is " << r.height / r.breast_height
+             << " times as high as breast height, which may be in another unit than the scan";
+    sentences.push_back(sentence.str());
+  }
   if (!r.by_order.empty() && r.by_order.front().length > 0) {
     const auto& trunk = r.by_order.front();
     const double diameter = 2 * std::sqrt(trunk.volume / (3.14159265358979323846 * trunk.length));

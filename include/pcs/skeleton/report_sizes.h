@@ -24,6 +24,7 @@ inline void report_sizes(const Branch_tree& tree,
                          double breast_height,
                          Skeleton_report& r)
 {
+  r.breast_height = unit * breast_height;
   for (const double b : size_bounds_by_breast_height)
     r.size_bounds.push_back(unit * b * breast_height);
   r.by_size.resize(r.size_bounds.size() + 1);
