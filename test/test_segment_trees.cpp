@@ -130,15 +130,41 @@ shares(const Stand& stand, const Labels& trees, const pcs::Segmentation_report& 
   return {right[0] / all[0], all[1] > 0 ? right[1] / all[1] : 0};
 }
 
-/// Thinner at the top, from a height on.
-Cloud pole(double height)
+/// From a height on; `top` is the share of the radius that is left at the top.
+Cloud pole(double height, double length = 3, double top = 0.7)
 {
-  Cloud points = cylinder(6000, 0.05, 3);
+  Cloud points = cylinder(6000, 0.05, length);
   for (Point& p : points) {
-    const double taper = 1 - 0.1 * p.z();
+    const double taper = 1 - (1 - top) * p.z() / length;
     p = Point(taper * p.x(), taper * p.y(), height + p.z());
   }
   return Jitter(0.001)(points);
+}
+
+Cloud level_floor()
+{
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> side(-3, 3);
+  std::normal_distribution<double> noise(0, 0.001);
+  Cloud points;
+  for (int i = 0; i < 3000; ++i)
+    points.emplace_back(side(random), side(random), noise(random));
+  return points;
+}
+
+/// A pole that bends over at its top and hangs down again.
+Cloud crook()
+{
+  const double length = 5, straight = 2, bend = 0.4;
+  Cloud points = pole(0, length, 0.3);
+  for (Point& p : points) {
+    const double angle = std::min(std::max(p.z() - straight, 0.0) / bend, CGAL_PI);
+    const double x = bend * (1 - std::cos(angle)),
+                 z = std::min(p.z(), straight) + bend * std::sin(angle) -
+                     std::max(0.0, p.z() - straight - CGAL_PI * bend);
+    p = Point(x + p.x() * std::cos(angle), p.y(), z - p.x() * std::sin(angle));
+  }
+  return points;
 }
 
 /// Of the points of trees near their feet, those that are given to a tree.
@@ -326,19 +352,28 @@ BOOST_AUTO_TEST_CASE(clouds_without_a_stem_have_no_trees)
 
 BOOST_AUTO_TEST_CASE(a_stem_begins_near_the_ground)
 {
-  std::mt19937 random(1);
-  std::uniform_real_distribution<double> side(-3, 3);
-  std::normal_distribution<double> noise(0, 0.001);
-  Cloud floor;
-  for (int i = 0; i < 3000; ++i)
-    floor.emplace_back(side(random), side(random), noise(random));
   for (const auto& [height, number] :
-       {std::pair(0.0, 1u), std::pair(0.3, 1u), std::pair(1.0, 0u)}) {
+       {std::pair(0.0, 1u), std::pair(0.3, 1u), std::pair(1.5, 0u)}) {
     Cloud points = pole(height);
-    append(points, floor);
+    append(points, level_floor());
     Labels trees;
     BOOST_TEST(segment(points, trees).trees.size() == number, "a pole " << height << " m above");
   }
+}
+
+BOOST_AUTO_TEST_CASE(a_stem_rises)
+{
+  const auto count = [](const Cloud& points) {
+    Labels trees;
+    return segment(points, trees).trees.size();
+  };
+  BOOST_TEST(count(pole(0, 1.2)) == 1u);
+  BOOST_TEST(count(pole(0, 0.5)) == 0u);
+  BOOST_TEST(count(pole(0, 3, 1.1)) == 1u);
+  BOOST_TEST(count(pole(0, 3, 3)) == 0u); // the tip of a branch that hangs to the ground
+  BOOST_TEST(count(crook()) == 1u);
+  Cloud rod = cylinder(6000, 0.008, 3);
+  BOOST_TEST(count(Jitter(0.0005)(rod)) == 0u); // a twig
 }
 
 BOOST_AUTO_TEST_CASE(poles_side_by_side_are_trees_of_their_own_and_a_stool_is_one)
@@ -351,6 +386,18 @@ BOOST_AUTO_TEST_CASE(poles_side_by_side_are_trees_of_their_own_and_a_stool_is_on
   };
   BOOST_TEST(count(1.0) == 2u);
   BOOST_TEST(count(0.2) == 1u);
+
+  // the branch of a shrub begins above the ground, away from the foot
+  const auto count_leaning = [](double distance) {
+    Cloud points = level_floor();
+    append(points, pole(0));
+    for (const Point& p : pole(0.4, 2))
+      points.push_back(p + Vector(distance + 0.5 * (p.z() - 0.4), 0, 0));
+    Labels trees;
+    return segment(points, trees).trees.size();
+  };
+  BOOST_TEST(count_leaning(0.5) == 1u);
+  BOOST_TEST(count_leaning(1.2) == 2u);
 }
 
 BOOST_AUTO_TEST_CASE(an_outlier_far_below_hides_no_tree)

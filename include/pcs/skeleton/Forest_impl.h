@@ -132,6 +132,7 @@ struct Found_stem
   Index axis, tree;
   Vec3 foot;
   double radius;
+  double height; ///< of the foot above the ground
 };
 
 /*!
@@ -232,27 +233,22 @@ private:
     return is_solid;
   }
 
-  /// Steep axes that begin near the ground and are not thinner there.
+  /// Steep axes that begin near the ground and are not much thinner there.
   void find_stems()
   {
-    const double unit = m_breast_height;
     const Lowest_ground ground(m_scan,
-                               m_rules.ground_cell * unit,
+                               m_rules.ground_cell * m_breast_height,
                                m_rules.ground_slope,
                                m_is_solid);
     std::vector<Found_stem> found;
     for (Index a = 0; a < m_axes.axes.size(); ++a) {
-      const Axis& axis = m_axes.axes[a].axis;
-      const Standing standing(axis.size(),
-                              [&](std::size_t k) -> const Axis_node& { return axis[k]; });
-      if (standing.rise < m_rules.rise * unit || standing.rise < m_rules.steep * standing.length ||
-          standing.lower_radius < standing.upper_radius)
-        continue;
-      const Axis_node& foot =
-          axis.front().point.z() <= axis.back().point.z() ? axis.front() : axis.back();
-      if (ground.height(foot.point) <=
-          std::min(m_rules.foot * unit, m_rules.foot_radii * standing.lower_radius))
-        found.push_back({a, none, foot.point, radius_near(axis, foot.point)});
+      const Axis_node* const foot = foot_of(m_axes.axes[a].axis, ground);
+      if (foot != nullptr)
+        found.push_back({a,
+                         none,
+                         foot->point,
+                         radius_near(m_axes.axes[a].axis, foot->point),
+                         ground.height(foot->point)});
     }
     std::stable_sort(found.begin(), found.end(), [](const Found_stem& a, const Found_stem& b) {
       return a.radius > b.radius;
@@ -261,7 +257,9 @@ private:
     for (Found_stem& stem : found) {
       const auto own = std::find_if(thickest.begin(), thickest.end(), [&](const Found_stem& other) {
         const Vec3 d = stem.foot - other.foot;
-        return std::hypot(d.x(), d.y()) < m_rules.stool_radii * other.radius + m_rules.stool * unit;
+        return std::hypot(d.x(), d.y()) <
+               m_rules.stool_radii * other.radius + m_rules.stool * m_breast_height +
+                   m_rules.lean * std::max({0.0, stem.height, other.height});
       });
       stem.tree = static_cast<Index>(own - thickest.begin());
       if (own == thickest.end())
@@ -271,6 +269,39 @@ private:
       return a.tree < b.tree;
     });
     m_stems = std::move(found);
+  }
+
+  /// The end from which an axis rises as stems do, whatever it does above; null if there is none.
+  const Axis_node* foot_of(const Axis& axis, const Lowest_ground& ground) const
+  {
+    const Axis_node* foot = nullptr;
+    double largest = 0; // radius
+    for (const bool is_reversed : {false, true}) {
+      const auto node_at = [&](std::size_t k) -> const Axis_node& {
+        return axis[is_reversed ? axis.size() - 1 - k : k];
+      };
+      double length = 0;
+      bool is_steep = false; // up to somewhere
+      std::size_t top = 0;
+      for (std::size_t k = 1; k < axis.size(); ++k) {
+        length += (node_at(k).point - node_at(k - 1).point).norm();
+        const double rise = node_at(k).point.z() - node_at(0).point.z();
+        is_steep =
+            is_steep || rise >= std::max(m_rules.rise * m_breast_height, m_rules.steep * length);
+        top = node_at(k).point.z() > node_at(top).point.z() ? k : top;
+      }
+      const Standing part(top + 1, node_at);
+      const double highest_foot =
+          std::min(m_rules.foot * m_breast_height, m_rules.foot_radii * part.lower_radius);
+      if (is_steep && part.rise >= m_rules.stout * part.lower_radius &&
+          part.lower_radius >= m_rules.taper * part.upper_radius &&
+          part.lower_radius >= m_rules.thinnest * m_breast_height && part.lower_radius > largest &&
+          ground.height(node_at(0).point) <= highest_foot) {
+        foot = &node_at(0);
+        largest = part.lower_radius;
+      }
+    }
+    return foot;
   }
 
   /// Largest radius of the lowest part of a stem.
