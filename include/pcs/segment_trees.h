@@ -59,11 +59,12 @@ struct Segmentation_report
   \ingroup PkgPcsSkeletonRef
   \brief finds the trees in the scan of a stand, and tells for every point whose it is.
 
-  A stem is a steep axis that begins near the ground, is not thinner there, and rises by at least the breast height. Stems whose
-  feet are nearer than three radii and a tenth of the breast height are one tree. Where crowns touch, the points of an axis belong to the tree whose branch it
-  most likely prolongs, by the same odds of distance, direction and radius that `extract_tree_skeleton()` joins axes by; points
-  without an axis to the tree whose foot is nearest along the points. Ground, walls and outliers are left out as there, but for
-  the ground's part of the stems. One point is looked at in every cube of a 65th of the breast height, and decides for the others.
+  A stem is an axis that begins near the ground, is not much thinner there, and rises steeply by half the breast height at
+  least. Stems whose feet are nearer than three radii, a tenth of the breast height and as much as one of them is above the
+  ground are one tree. Where crowns touch, the points of an axis belong to the tree whose branch it most likely prolongs, by
+  the same odds of distance, direction and radius that `extract_tree_skeleton()` joins axes by; points without an axis to the
+  tree whose foot is nearest along the points. Ground, walls and outliers are left out as there, but for the ground's part of
+  the stems. One point is looked at in every cube of a 65th of the breast height, and decides for the others.
 
   The points of one tree are a scan for `extract_tree_skeleton()`.
 
