@@ -258,7 +258,7 @@ public:
   /// Whether an input point is left out as a leaf, by the caller or because it was found to be one.
   bool is_leaf_of_input(std::size_t i) const { return m_used.is_leaf(m_scan.point_of_input[i]); }
 
-private:
+protected: // benchmark/training looks at what leaves are told by
   Links links_of_used() const
   {
     return neighbor_links<ConcurrencyTag>(m_scan, m_used.flags(), m_options.axes.links);

@@ -65,7 +65,7 @@ namespace internal {
 
 constexpr double surest = 6; ///< what is surer is not told apart
 
-// Trained on scans of 75 virtual trees with leaves (benchmark/README.md).
+// Trained on scans of 75 virtual trees with leaves, see benchmark/results/leaves.md.
 // clang-format off
 constexpr Rectified_network<Axis_evidence::number_of_features, 12> likeness_by_axis = {
 {

@@ -136,7 +136,7 @@ namespace internal {
 constexpr double largest_likeness = 4;  ///< what is surer is not told apart
 constexpr double likeness_of_thick = 3; ///< of points of thick wood
 
-// Trained on scans of 60 virtual trees with leaves (benchmark/README.md).
+// Trained on scans of 60 virtual trees with leaves, see benchmark/results/leaves.md.
 // clang-format off
 constexpr Rectified_network<Wood_evidence::number_of_features, 12> likeness_by_evidence = {
 {
@@ -199,8 +199,22 @@ inline Wood_evidence evidence_of_point(const Scan& scan,
   return e;
 }
 
+/// What `path_contexts()` sums up: the likeness by the surroundings, within limits, and that of thick wood.
+inline std::vector<float> scores_of_surroundings(const std::vector<std::uint8_t>& is_used,
+                                                 const std::vector<std::uint8_t>& is_thick,
+                                                 const std::vector<float>& likeness)
+{
+  const auto most = static_cast<float>(internal::largest_likeness);
+  std::vector<float> score(is_used.size(), 0);
+  for (std::size_t i = 0; i < score.size(); ++i)
+    if (is_used[i])
+      score[i] = is_thick[i] ? static_cast<float>(internal::likeness_of_thick)
+                             : std::min(most, std::max(-most, likeness[i]));
+  return score;
+}
+
 /*!
-  The same for all points that are used and not of thick wood, which is certain; `likeness` holds what their surroundings say
+  The likeness for all points that are used and not of thick wood, which is certain; `likeness` holds what their surroundings say
   (`wood_likeness(Surroundings)`), `paths` lead over all points that are used. O(points * neighbours).
 */
 template <class ConcurrencyTag>
@@ -211,12 +225,7 @@ std::vector<float> wood_by_paths(const Scan& scan,
                                  const std::vector<float>& likeness,
                                  const Path_rules& rules = {})
 {
-  const auto most = static_cast<float>(internal::largest_likeness);
-  std::vector<float> score(scan.size(), 0);
-  for (std::size_t i = 0; i < scan.size(); ++i)
-    if (is_used[i])
-      score[i] = is_thick[i] ? static_cast<float>(internal::likeness_of_thick)
-                             : std::min(most, std::max(-most, likeness[i]));
+  const std::vector<float> score = scores_of_surroundings(is_used, is_thick, likeness);
   const std::vector<Path_context> path =
       path_contexts(scan, paths, score, rules.reach * scan.spacing);
   std::vector<float> result(score);

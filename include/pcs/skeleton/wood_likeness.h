@@ -57,7 +57,7 @@ struct Surroundings
 
 namespace internal {
 
-// Trained on scans of 40 virtual trees with leaves (benchmark/README.md).
+// Trained on scans of 40 virtual trees with leaves, see benchmark/results/leaves.md.
 // clang-format off
 constexpr Rectified_network<Surroundings::number_of_features, 12> likeness_of_surroundings = {
 {
