@@ -97,10 +97,14 @@ void run(const Options& options)
   if (!options.report.empty())
     report_file.emplace(options.report);
 
-  if (options.is_streamed)
-    Streamed_deformation(options, run).run(std::move(edit));
-  else
-    run_in_memory(options, std::move(edit), run);
+  try {
+    if (options.is_streamed)
+      Streamed_deformation(options, run).run(std::move(edit));
+    else
+      run_in_memory(options, std::move(edit), run);
+  } catch (const pcs::Invalid_input& e) {
+    throw pcs::IO_error(options.input, e.what());
+  }
   for (const std::string& warning : run.warnings)
     std::cerr << "deform_point_set: warning: " << options.input << ": " << warning << '\n';
   run.seconds_total = total.seconds();

@@ -293,18 +293,21 @@ bool run_batch(const Skeleton_options& options)
     const Skeleton_options one = options_of_one(input, options);
     const nlohmann::ordered_json origin = origin_of(input, one);
     nlohmann::ordered_json json;
+    bool is_ours = false;
     try {
       log.check_owner(one, origin);
+      is_ours = true;
       if (log.is_done(one, origin)) {
         ++done_before;
         continue;
       }
-      log.remove_outdated(one, origin);
       json = run_one(input, one);
     } catch (const std::exception& e) { // one bad tree never ends the batch
       const std::string what = e.what(),
                         scan = what.find(input) == std::string::npos ? input + ": " : "";
       std::cerr << "extract_tree_skeleton: " << scan << what << '\n';
+      if (is_ours)
+        log.remove_outdated(one, origin);
       log.add_failure(input, scan + what);
       continue;
     }

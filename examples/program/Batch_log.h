@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -57,10 +58,16 @@ public:
   /// Whether all results are there, made from the same scan with the same options.
   bool is_done(const Skeleton_options& one, const Json& origin) const
   {
-    for (const std::string& name : names_of_results(one))
-      if (!is_there(m_folder / name))
+    if (!is_same(one, origin))
+      return false;
+    const Sizes& sizes = m_entries.at(one.swc).sizes;
+    for (const std::string& name : names_of_results(one)) {
+      const auto size =
+          sizes.find(name); // others may have been written since, by a batch that was stopped
+      if (size == sizes.end() || size_of(name) != size->second)
         return false;
-    return is_same(one, origin);
+    }
+    return true;
   }
 
   /// Throws `pcs::Invalid_input` if the results are there, but of another scan, which still exists.
@@ -75,27 +82,37 @@ public:
       throw pcs::Invalid_input(one.swc + " is the skeleton of " + before + "; use another folder");
   }
 
-  /// Removes what was made from a former state of the scan, or with other options.
-  void remove_outdated(const Skeleton_options& one, const Json& origin)
+  /// Removes what was made from a former state of the scan, or with other options, but for what was `made` now. For after the work:
+  /// it may be stopped.
+  void remove_outdated(const Skeleton_options& one,
+                       const Json& origin,
+                       const std::set<std::string>& made = {})
   {
     const auto entry = m_entries.find(one.swc);
     if (entry == m_entries.end() || is_same(one, origin) ||
         !is_there(origin["file"].get<std::string>()))
       return;
     std::error_code error;
-    for (const std::string& name : entry->second.files)
-      std::filesystem::remove(m_folder / std::filesystem::path(name).filename(), error);
+    for (const auto& size : entry->second.sizes) {
+      const std::filesystem::path name = std::filesystem::path(size.first).filename();
+      if (made.count(name.string()) == 0)
+        std::filesystem::remove(m_folder / name, error);
+    }
     m_entries.erase(entry);
   }
 
   /// Of results that are written. Throws `pcs::IO_error`.
   void add_success(const Skeleton_options& one, const Json& origin, Json line)
   {
-    std::set<std::string> files = names_of_results(one);
+    const std::set<std::string> made = names_of_results(one);
+    remove_outdated(one, origin, made);
+    Sizes sizes;
+    for (const std::string& name : made)
+      sizes[name] = size_of(name);
     if (const auto entry = m_entries.find(one.swc); entry != m_entries.end())
-      files.insert(entry->second.files.begin(), entry->second.files.end());
+      sizes.insert(entry->second.sizes.begin(), entry->second.sizes.end());
     line["made_from"] = origin;
-    line["files"] = files;
+    line["files"] = sizes;
     add(line);
   }
 
@@ -106,16 +123,25 @@ public:
   }
 
 private:
+  using Sizes = std::map<std::string, std::uintmax_t>; ///< of files [bytes]
+
   struct Entry
   {
     Json origin;
-    std::set<std::string> files;
+    Sizes sizes;
   };
 
   static bool is_there(const std::filesystem::path& path)
   {
     std::error_code error;
     return std::filesystem::exists(path, error);
+  }
+
+  /// The largest number if it is not there.
+  std::uintmax_t size_of(const std::string& name) const
+  {
+    std::error_code error;
+    return std::filesystem::file_size(m_folder / name, error);
   }
 
   static std::set<std::string> names_of_results(const Skeleton_options& one)
@@ -155,7 +181,7 @@ private:
         if (line.at("status") != "converged")
           continue;
         const std::string scan = line.at("input"), file = line.at("made_from").at("file");
-        const Entry entry{line.at("made_from"), line.at("files").get<std::set<std::string>>()};
+        const Entry entry{line.at("made_from"), line.at("files").get<Sizes>()};
         if (entry.origin.at("options").is_object())
           m_entries[name_of_results(scan, m_folder.string()) + ".swc"] = entry;
       } catch (const Json::exception&) {

@@ -103,7 +103,7 @@ BOOST_AUTO_TEST_CASE(files_without_points_are_refused)
 BOOST_AUTO_TEST_CASE(unknown_formats_are_refused)
 {
   refuses("a.e57", "ASTM-E57", "unknown format 'e57'");
-  refuses("a", "1 2 3", "unknown format ''");
+  refuses("a", "1 2 3", "a name without extension, expected ply");
   refuses("a.laz", "whatever", "LAZ is compressed");
 }
 

@@ -276,7 +276,7 @@ BOOST_FIXTURE_TEST_CASE(files_are_checked_before_the_work, Program_run)
   refuses_files(in + " --output no/out.ply", {"no/out.ply: cannot be opened for writing"});
   refuses_files(in + " --output .", {"."});
   refuses_files(in + " --output out.laz", {"out.laz"});
-  refuses_files(in + " --output out", {"out: unknown format"});
+  refuses_files(in + " --output out", {"out: a name without extension"});
   refuses_files(in + " --output out.off", {"out.off", "OFF cannot store the property"});
   refuses_files(in + " --output out.ply --report no/report.json",
                 {"no/report.json: cannot be opened for writing"});
@@ -300,13 +300,14 @@ BOOST_FIXTURE_TEST_CASE(clouds_that_cannot_be_deformed_are_refused, Program_run)
         refuses(*this, "--input in.xyz --output out.ply " + edit, {word}, edit + " on " + text);
       };
   for (const std::string edit : {"--default-edit", "--edit edit.json"}) {
+    const std::string by = edit == "--default-edit" ? "in.xyz" : ""; // else it may be the edit
     refuses_cloud("", edit, "in.xyz: the file is empty");
-    refuses_cloud("# nothing\n", edit, "");
-    refuses_cloud("1 2 3\n", edit, "");
-    refuses_cloud("1 2 3\n1 2 3\n1 2 3\n", edit, "");
+    refuses_cloud("# nothing\n", edit, "in.xyz");
+    refuses_cloud("1 2 3\n", edit, by);
+    refuses_cloud("1 2 3\n1 2 3\n1 2 3\n", edit, by);
     refuses_cloud("1 2 3\nnan 2 3\n", edit, "in.xyz");
-    refuses_cloud("-1e308 0 0\n1e308 0 0\n0 1 0\n", edit, "");
-    refuses_cloud("1e308 0 0\n1e308 1e308 0\n0 1 0\n", edit, "");
+    refuses_cloud("-1e308 0 0\n1e308 0 0\n0 1 0\n", edit, by);
+    refuses_cloud("1e308 0 0\n1e308 1e308 0\n0 1 0\n", edit, by);
     refuses_cloud("1 2\n", edit, "in.xyz");
   }
   write("in.ply",

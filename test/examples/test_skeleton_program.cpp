@@ -423,20 +423,26 @@ BOOST_AUTO_TEST_CASE(a_batch_replaces_what_is_out_of_date)
   BOOST_TEST(run(batch + "--breast-height 1") == 0, err);
   BOOST_TEST(log().size() == 3u);
 
+  // stopped between a result and its line
+  write("out/tree.swc", swc + "# of other options\n");
+  BOOST_TEST(run(batch + "--breast-height 1") == 0, err);
+  BOOST_TEST(log().size() == 4u);
+  BOOST_TEST(content("out/tree.swc") == swc);
+
   // another scan of the same name
   std::filesystem::create_directory(path("other"));
   write("other/tree.xyz", "1 2 3\n");
   BOOST_TEST(run("--input other/tree.xyz --folder out") == 1);
   BOOST_TEST(err.find("another folder") != std::string::npos, err);
   BOOST_TEST(content("out/tree.swc") == swc);
-  BOOST_TEST(log().size() == 4u);
+  BOOST_TEST(log().size() == 5u);
 
   // the scan was replaced by an older one, and then by one without a tree
   const auto now = std::filesystem::last_write_time(path("tree.xyz"));
   write("tree.xyz", fork_text() + "0.1 0 0.2\n");
   std::filesystem::last_write_time(path("tree.xyz"), now - std::chrono::hours(1));
   BOOST_TEST(run(batch + "--breast-height 1") == 0, err);
-  BOOST_TEST(log().size() == 5u);
+  BOOST_TEST(log().size() == 6u);
   write("tree.xyz", "1 2 3\n");
   BOOST_TEST(run(batch + "--breast-height 1") == 1);
   BOOST_TEST(!exists("out/tree.swc"));
@@ -453,7 +459,7 @@ BOOST_AUTO_TEST_CASE(a_batch_replaces_what_is_out_of_date)
   write("out/batch.jsonl",
         "[]\n{\"status\": 3}\n{\"status\": \"converged\", \"input\": \"tree.xyz\"}\n"
         "{\"status\": \"converged\", \"input\": \"tree.xyz\", \"made_from\": {\"file\": \"t\", "
-        "\"options\": {}}, \"files\": [\"../tree.xyz\"]}\n");
+        "\"options\": {}}, \"files\": {\"../tree.xyz\": 5}}\n");
   BOOST_TEST(run(batch) == 0, err);
   BOOST_TEST(exists("tree.xyz"));
 }

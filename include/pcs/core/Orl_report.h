@@ -53,14 +53,20 @@ struct Orl_report
   } seconds;
 };
 
+/// A line; figures of pairs for two trees alone.
 inline std::ostream& operator<<(std::ostream& out, const Orl_report& r)
 {
-  out << "status " << r.status << ", " << r.number_of_branches[0] << " and "
-      << r.number_of_branches[1] << " branches, " << r.number_of_matched_branches << " matched, "
-      << r.number_of_edges << " edges of " << r.number_of_trees << " trees, distance " << r.distance
-      << "; " << r.number_of_points[0] << " and " << r.number_of_points[1] << " points, "
-      << r.number_of_point_pairs << " pairs (" << r.number_of_single_points << " single), "
-      << r.number_of_windows << " windows (" << r.number_of_failed_windows
+  out << "status " << r.status << ", ";
+  if (r.number_of_trees == 2)
+    out << r.number_of_branches[0] << " and " << r.number_of_branches[1] << " branches, "
+        << r.number_of_matched_branches << " matched, " << r.number_of_edges << " edges, distance "
+        << r.distance << "; " << r.number_of_points[0] << " and " << r.number_of_points[1]
+        << " points, " << r.number_of_point_pairs << " pairs (" << r.number_of_single_points
+        << " single), ";
+  else
+    out << r.number_of_trees << " trees, " << r.number_of_common_branches << " common branches, "
+        << r.number_of_edges << " edges; " << r.number_of_point_pairs << " points, ";
+  out << r.number_of_windows << " windows (" << r.number_of_failed_windows
       << " failed), marginal violation " << r.worst_marginal_violation << "; seconds: matching "
       << r.seconds.matching << ", topology " << r.seconds.topology << ", assignment "
       << r.seconds.assignment << ", transport " << r.seconds.transport << ", instances "

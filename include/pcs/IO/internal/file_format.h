@@ -48,9 +48,13 @@ inline File_format format_by_extension(const std::string& path)
       return File_format::text;
   if (extension == "laz")
     throw IO_error(path, "LAZ is compressed and not supported, expected an uncompressed LAS file");
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error))
+    throw IO_error(path, "is a directory, expected a file name");
   throw IO_error(path,
-                 "unknown format '" + extension +
-                     "', expected ply, las, off, xyz, txt, csv, asc, pts or pwn");
+                 (extension.empty() ? std::string("a name without extension")
+                                    : "unknown format '" + extension + "'") +
+                     ", expected ply, las, off, xyz, txt, csv, asc, pts or pwn");
 }
 
 //! the format by the first bytes, else by the extension; opens the file
