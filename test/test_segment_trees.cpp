@@ -400,6 +400,37 @@ BOOST_AUTO_TEST_CASE(poles_side_by_side_are_trees_of_their_own_and_a_stool_is_on
   BOOST_TEST(count_leaning(1.2) == 2u);
 }
 
+BOOST_AUTO_TEST_CASE(a_tree_of_few_points_is_found_among_dense_ones)
+{
+  struct Sparse_pole
+  {
+    std::size_t number_of_points;
+    double radius;
+  };
+  for (const Sparse_pole& sparse : {Sparse_pole{1200, 0.15}, {400, 0.1}, {300, 0.15}}) {
+    Cloud points;
+    for (const double x : {0.0, 2.0, 4.0})
+      for (const Point& p : pole(0))
+        points.push_back(p + Vector(x, 0, 0));
+    const std::size_t number_of_dense = points.size();
+    for (const Point& p : Jitter(0.001)(cylinder(sparse.number_of_points, sparse.radius, 3)))
+      points.push_back(p + Vector(1, 1.5, 0));
+    Labels trees;
+    const pcs::Segmentation_report report = segment(points, trees);
+    BOOST_TEST_CONTEXT(sparse.number_of_points << " points")
+    {
+      BOOST_TEST_REQUIRE(report.trees.size() == 4u);
+      BOOST_TEST(std::abs(report.trees[0].radius - sparse.radius) < 0.1 * sparse.radius);
+      for (std::size_t t = 0; t < 3; ++t)
+        BOOST_TEST(report.trees[t].radius >= report.trees[t + 1].radius);
+      const auto first = trees.begin() + static_cast<std::ptrdiff_t>(number_of_dense);
+      BOOST_TEST(std::count(trees.begin(), first, 0u) == 0);
+      BOOST_TEST(std::size_t(std::count(first, trees.end(), 0u)) == sparse.number_of_points);
+      check_counts(report, trees);
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(an_outlier_far_below_hides_no_tree)
 {
   Stand stand = three_trees();

@@ -64,7 +64,9 @@ struct Segmentation_report
   ground are one tree. Where crowns touch, the points of an axis belong to the tree whose branch it most likely prolongs, by
   the same odds of distance, direction and radius that `extract_tree_skeleton()` joins axes by; points without an axis to the
   tree whose foot is nearest along the points. Ground, walls and outliers are left out as there, but for the ground's part of
-  the stems. One point is looked at in every cube of a 65th of the breast height, and decides for the others.
+  the stems. One point is looked at in every cube of a 65th of the breast height, and decides for the others. Trees of which the
+  points are farther apart than those of others are looked for once more in cubes three times as large; they get what they
+  have there of such points, and of those that are nobody's.
 
   The points of one tree are a scan for `extract_tree_skeleton()`.
 

@@ -48,6 +48,9 @@ struct Forest_rules
   double lean = 1;           ///< ... and this per height of the foot [-], are one tree
   double root = 0.5;         ///< height of the lowest part of a stem, where its paths begin
   double base_radii = 1.25; ///< of what was left out as ground, this lies on the foot of a stem [-]
+  double coarser =
+      3; ///< side of the cubes in which stems of few points are looked for, in `cell` [-]
+  double sparse = 1.6; ///< points so much farther apart than the median of all are few [-]
 };
 
 /*!

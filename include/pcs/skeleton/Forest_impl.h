@@ -8,6 +8,7 @@
 #include <pcs/skeleton/Axis_set.h>
 #include <pcs/skeleton/Forest.h>
 #include <pcs/skeleton/Neighbor_graph.h>
+#include <pcs/skeleton/Scan_frame.h>
 #include <pcs/skeleton/Session_options.h>
 #include <pcs/skeleton/Session_stages.h>
 #include <pcs/skeleton/count_stems.h>
@@ -135,6 +136,18 @@ struct Found_stem
   double height; ///< of the foot above the ground
 };
 
+/// Whether a stem belongs to the tree of one that is not thinner. z is up.
+inline bool are_of_one_tree(const Found_stem& stem,
+                            const Found_stem& thicker,
+                            double breast_height,
+                            const Forest_rules& rules)
+{
+  const Vec3 d = stem.foot - thicker.foot;
+  return std::hypot(d.x(), d.y()) < rules.stool_radii * thicker.radius +
+                                        rules.stool * breast_height +
+                                        rules.lean * std::max({0.0, stem.height, thicker.height});
+}
+
 /*!
   Axes are fitted twice. First along the paths from the lowest points of all that hangs together, to find stems; then along the
   paths from the feet of these. Every axis of the second fit sits on another one by the odds of `Axis_joiner`, and so belongs
@@ -168,6 +181,7 @@ public:
     m_links.insert(m_links.end(), gaps.begin(), gaps.end());
     const Neighbor_graph graph = graph_of(m_scan.size(), m_links);
     m_tree_of_point.assign(m_scan.size(), none);
+    m_stem_of_point.assign(m_scan.size(), none);
     m_is_solid = solid_points();
     const std::vector<Index> lowest = lowest_points();
     if (lowest.empty())
@@ -189,6 +203,8 @@ public:
   const std::vector<Found_stem>& stems() const { return m_stems; } ///< those of a tree in a row
   /// By point of the scan; `none`: of no tree.
   const std::vector<Index>& tree_of_point() const { return m_tree_of_point; }
+  /// By point of the scan, of the lowest part of stems; `none`: of no stem.
+  const std::vector<Index>& stem_of_point() const { return m_stem_of_point; }
 
 private:
   /// Of every part, those within one layer of its lowest one.
@@ -256,10 +272,7 @@ private:
     std::vector<Found_stem> thickest; // of every tree
     for (Found_stem& stem : found) {
       const auto own = std::find_if(thickest.begin(), thickest.end(), [&](const Found_stem& other) {
-        const Vec3 d = stem.foot - other.foot;
-        return std::hypot(d.x(), d.y()) <
-               m_rules.stool_radii * other.radius + m_rules.stool * m_breast_height +
-                   m_rules.lean * std::max({0.0, stem.height, other.height});
+        return are_of_one_tree(stem, other, m_breast_height, m_rules);
       });
       stem.tree = static_cast<Index>(own - thickest.begin());
       if (own == thickest.end())
@@ -320,7 +333,6 @@ private:
     std::vector<Index> stem_of_axis(m_axes.axes.size(), none), sources;
     for (Index s = 0; s < m_stems.size(); ++s)
       stem_of_axis[m_stems[s].axis] = s;
-    m_stem_of_point.assign(m_scan.size(), none);
     for (Index i = 0; i < m_scan.size(); ++i) {
       const Index s = m_axes.is_covered(i) ? stem_of_axis[m_axes.axis_of_point[i]] : none;
       if (s == none || m_scan.points[i].z() > m_stems[s].foot.z() + m_rules.root * m_breast_height)
@@ -399,6 +411,100 @@ private:
   std::vector<Index> m_tree_of_point, m_tree_of_axis;
 };
 
+/// What is found among one point of every cube of a side. By point of the input, if not said otherwise.
+struct Stand
+{
+  Scan_frame frame;
+  std::vector<Found_stem> stems; ///< those of a tree in a row; in coordinates of `frame`
+  std::vector<Index> tree_of_input, stem_of_input;
+  std::vector<float> spacing_of_input; ///< from one cube to another, in those of the median
+};
+
+/// `false` if the work was cancelled. `progress` stands at 0.
+template <class ConcurrencyTag>
+bool find_stand(const std::vector<Vec3>& input,
+                double side,
+                const Session_hints& hints,
+                const Forest_rules& rules,
+                pcs::internal::Progress& progress,
+                Stand& stand)
+{
+  stand.tree_of_input.assign(input.size(), none);
+  stand.stem_of_input.assign(input.size(), none);
+  const Thinned_points thinned(input, side);
+  if (thinned.points.size() < rules.solid_part) // far smaller than a tree
+    return progress(1);
+  Session_options options(hints);
+  options.leaf_removal = Leaf_removal::never;
+  Session_stages<ConcurrencyTag> session(thinned.points, {}, options);
+  if (!session.find_paths(progress))
+    return false;
+  const Scan& scan = session.scan();
+  stand.frame = scan.frame;
+  Tree_finder<ConcurrencyTag> finder(scan,
+                                     session.used_points(),
+                                     hints.breast_height / scan.frame.unit,
+                                     options,
+                                     rules);
+  if (!finder.run(progress))
+    return false;
+  stand.stems = finder.stems();
+  std::vector<double> spacings = scan.local_spacing;
+  const double spacing = median(spacings);
+  stand.spacing_of_input.resize(input.size());
+  for (std::size_t i = 0; i < input.size(); ++i) {
+    const Index p = scan.point_of_input[thinned.of_input[i]];
+    stand.tree_of_input[i] = finder.tree_of_point()[p];
+    stand.stem_of_input[i] = finder.stem_of_point()[p];
+    stand.spacing_of_input[i] = static_cast<float>(scan.local_spacing[p] / spacing);
+  }
+  return true;
+}
+
+/*!
+  Adds the trees of `coarse` that have few points: between those of others, their stems fall to pieces. Such trees get their points
+  that are few or nobody's. O(points log points + stems^2).
+*/
+inline void
+add_sparse_trees(const Stand& coarse, double breast_height, const Forest_rules& rules, Stand& stand)
+{
+  if (coarse.stems.empty() || stand.spacing_of_input.empty())
+    return;
+  std::vector<std::vector<float>> spacings(coarse.stems.size());
+  for (std::size_t i = 0; i < coarse.stem_of_input.size(); ++i)
+    if (coarse.stem_of_input[i] != none)
+      spacings[coarse.stem_of_input[i]].push_back(stand.spacing_of_input[i]);
+  Index number_of_trees = stand.stems.empty() ? 0 : stand.stems.back().tree + 1;
+  std::vector<Index> tree_of_coarse(coarse.stems.back().tree + 1, none);
+  for (std::size_t s = 0; s < coarse.stems.size(); ++s) {
+    Found_stem stem = coarse.stems[s];
+    Index& tree = tree_of_coarse[stem.tree];
+    if (tree != none || median(spacings[s]) < rules.sparse)
+      continue;
+    stem.foot = stand.frame.to_local(coarse.frame.to_input(stem.foot));
+    stem.radius *= coarse.frame.unit / stand.frame.unit;
+    stem.height *= coarse.frame.unit / stand.frame.unit;
+    const auto own = std::find_if(stand.stems.begin(), stand.stems.end(), [&](const Found_stem& o) {
+      const bool is_thicker = o.radius >= stem.radius;
+      return are_of_one_tree(is_thicker ? stem : o,
+                             is_thicker ? o : stem,
+                             breast_height / stand.frame.unit,
+                             rules);
+    });
+    tree = own == stand.stems.end() ? number_of_trees++ : own->tree;
+    if (own == stand.stems.end()) {
+      stem.tree = tree;
+      stand.stems.push_back(stem);
+    }
+  }
+  for (std::size_t i = 0; i < coarse.tree_of_input.size(); ++i) {
+    const Index c = coarse.tree_of_input[i];
+    if (c != none && tree_of_coarse[c] != none &&
+        (stand.tree_of_input[i] == none || double(stand.spacing_of_input[i]) >= rules.sparse))
+      stand.tree_of_input[i] = tree_of_coarse[c];
+  }
+}
+
 } // namespace internal
 
 template <class ConcurrencyTag>
@@ -408,33 +514,37 @@ bool find_trees(const std::vector<Vec3>& input,
                 Forest& forest)
 {
   const Forest_rules rules;
-  const internal::Thinned_points thinned(input, rules.cell * hints.breast_height);
-  if (thinned.points.size() < rules.solid_part) { // far smaller than a tree
-    forest = Forest{{}, std::vector<Index>(input.size(), none)};
-    return progress(1);
-  }
-  Session_options options(hints);
-  options.leaf_removal = Leaf_removal::never;
-  Session_stages<ConcurrencyTag> session(thinned.points, {}, options);
-  progress.stage(0, 0.5);
-  if (!session.find_paths(progress))
+  const double side = rules.cell * hints.breast_height;
+  internal::Stand stand, coarse;
+  progress.stage(0, 0.75);
+  if (!internal::find_stand<ConcurrencyTag>(input, side, hints, rules, progress, stand))
     return false;
-  progress.stage(0, 1);
-  const Scan& scan = session.scan();
-  internal::Tree_finder<ConcurrencyTag> finder(scan,
-                                               session.used_points(),
-                                               hints.breast_height / scan.frame.unit,
-                                               options,
-                                               rules);
-  if (!finder.run(progress))
+  progress.stage(0.75, 1);
+  if (!internal::find_stand<ConcurrencyTag>(input,
+                                            rules.coarser * side,
+                                            hints,
+                                            rules,
+                                            progress,
+                                            coarse))
     return false;
+  internal::add_sparse_trees(coarse, hints.breast_height, rules, stand);
+
+  std::vector<internal::Found_stem> thickest; // of every tree, thick ones first
+  for (const internal::Found_stem& stem : stand.stems)
+    if (stem.tree == thickest.size())
+      thickest.push_back(stem);
+  std::stable_sort(thickest.begin(), thickest.end(), [](const auto& a, const auto& b) {
+    return a.radius > b.radius;
+  });
   Forest result;
-  for (const internal::Found_stem& stem : finder.stems())
-    if (stem.tree == result.trees.size()) // the first of its tree is the thickest
-      result.trees.push_back({scan.frame.to_input(stem.foot), scan.frame.unit * stem.radius});
-  result.tree_of_input.reserve(input.size());
-  for (const Index i : thinned.of_input)
-    result.tree_of_input.push_back(finder.tree_of_point()[scan.point_of_input[i]]);
+  std::vector<Index> place(thickest.size());
+  for (const internal::Found_stem& stem : thickest) {
+    place[stem.tree] = static_cast<Index>(result.trees.size());
+    result.trees.push_back({stand.frame.to_input(stem.foot), stand.frame.unit * stem.radius});
+  }
+  for (Index& tree : stand.tree_of_input)
+    tree = tree == none ? none : place[tree];
+  result.tree_of_input = std::move(stand.tree_of_input);
   forest = std::move(result);
   return true;
 }
