@@ -50,7 +50,7 @@ struct Forest_rules
   double base_radii = 1.25; ///< of what was left out as ground, this lies on the foot of a stem [-]
   double coarser =
       3; ///< side of the cubes in which stems of few points are looked for, in `cell` [-]
-  double sparse = 1.6; ///< points so much farther apart than the median of all are few [-]
+  double sparse = 1.6; ///< points so much farther apart than the median of trees are few [-]
 };
 
 /*!

@@ -417,7 +417,8 @@ struct Stand
   Scan_frame frame;
   std::vector<Found_stem> stems; ///< those of a tree in a row; in coordinates of `frame`
   std::vector<Index> tree_of_input, stem_of_input;
-  std::vector<float> spacing_of_input; ///< from one cube to another, in those of the median
+  std::vector<float>
+      spacing_of_input; ///< among one point of each cube, by the median of those of trees [-]
 };
 
 /// `false` if the work was cancelled. `progress` stands at 0.
@@ -449,7 +450,12 @@ bool find_stand(const std::vector<Vec3>& input,
   if (!finder.run(progress))
     return false;
   stand.stems = finder.stems();
-  std::vector<double> spacings = scan.local_spacing;
+  std::vector<double> spacings; // the ground may have its own
+  for (Index i = 0; i < scan.size(); ++i)
+    if (finder.tree_of_point()[i] != none)
+      spacings.push_back(scan.local_spacing[i]);
+  if (spacings.empty())
+    spacings = scan.local_spacing;
   const double spacing = median(spacings);
   stand.spacing_of_input.resize(input.size());
   for (std::size_t i = 0; i < input.size(); ++i) {
