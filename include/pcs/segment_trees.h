@@ -97,7 +97,7 @@ struct Segmentation_report
 
   \throws Invalid_input if there are too few points, a coordinate is not finite or beyond 1e100, or a parameter is out of range
   \par Complexity
-  \f$O(n \log n)\f$ in time, 350 bytes per point that is looked at, and some 40 bytes per other point.
+  \f$O(n \log n)\f$ in time, 350 bytes per point that is looked at, and some 70 bytes per other point.
   \par Determinism
   Same result for every number of threads and for the sequential tag.
 */

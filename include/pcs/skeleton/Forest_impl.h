@@ -26,6 +26,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -170,8 +171,8 @@ public:
   {
   }
 
-  /// `false` if the work was cancelled.
-  bool run(pcs::internal::Progress& progress)
+  /// The first fit, and the stems in it. `false` if the work was cancelled.
+  bool find(pcs::internal::Progress& progress)
   {
     m_links = neighbor_links<ConcurrencyTag>(m_scan, m_is_used, m_options.axes.links);
     const Links gaps = links_across_gaps(m_scan,
@@ -179,23 +180,29 @@ public:
                                          m_options.axes.links,
                                          connected_parts<ConcurrencyTag>(m_is_used, m_links));
     m_links.insert(m_links.end(), gaps.begin(), gaps.end());
-    const Neighbor_graph graph = graph_of(m_scan.size(), m_links);
+    m_graph.reset(new Neighbor_graph(graph_of(m_scan.size(), m_links)));
     m_tree_of_point.assign(m_scan.size(), none);
     m_stem_of_point.assign(m_scan.size(), none);
     m_is_solid = solid_points();
     const std::vector<Index> lowest = lowest_points();
     if (lowest.empty())
       return progress(1);
-    if (!fit_along(shortest_paths(m_scan, graph, lowest), progress, 0.5, 0.75))
+    if (!fit_along(shortest_paths(m_scan, *m_graph, lowest), progress, 0.5, 0.75))
       return false;
     find_stems();
-    const std::vector<Index> sources = points_of_feet();
-    if (sources.empty())
+    m_feet = points_of_feet();
+    return true;
+  }
+
+  /// The second fit, along the paths from the stems, and the trees of all points. `false` if the work was cancelled.
+  bool label(pcs::internal::Progress& progress)
+  {
+    if (m_feet.empty())
       return progress(1);
-    const Shortest_paths paths = shortest_paths(m_scan, graph, sources);
+    const Shortest_paths paths = shortest_paths(m_scan, *m_graph, m_feet);
     if (!fit_along(paths, progress, 0.75, 1))
       return false;
-    label_axes(sources);
+    label_axes();
     label_points(paths);
     return true;
   }
@@ -345,10 +352,10 @@ private:
   }
 
   /// The axis that explains the foot of a stem, and most else, is a root; the others belong to the tree that they hang on.
-  void label_axes(const std::vector<Index>& sources)
+  void label_axes()
   {
     std::map<std::pair<Index, Index>, double> votes; // of stem and axis
-    for (const Index i : sources)
+    for (const Index i : m_feet)
       if (m_axes.is_covered(i)) {
         const Index a = m_axes.axis_of_point[i];
         votes[{m_stem_of_point[i], a}] += double(m_axes.axes[a].number_of_points);
@@ -405,9 +412,11 @@ private:
   const Forest_rules& m_rules;
   std::vector<std::uint8_t> m_is_solid;
   Links m_links;
+  std::unique_ptr<Neighbor_graph> m_graph; // such graphs are copied, not moved
   Axis_set m_axes;
   std::vector<Found_stem> m_stems;
   std::vector<Index> m_stem_of_point; ///< of those at the feet
+  std::vector<Index> m_feet;          ///< these points
   std::vector<Index> m_tree_of_point, m_tree_of_axis;
 };
 
@@ -421,13 +430,14 @@ struct Stand
       spacing_of_input; ///< among one point of each cube, by the median of those of trees [-]
 };
 
-/// `false` if the work was cancelled. `progress` stands at 0.
-template <class ConcurrencyTag>
+/// Points get trees only if `are_wanted(stand)`, with the stems. `false` if the work was cancelled.
+template <class ConcurrencyTag, class Are_wanted>
 bool find_stand(const std::vector<Vec3>& input,
                 double side,
                 const Session_hints& hints,
                 const Forest_rules& rules,
                 pcs::internal::Progress& progress,
+                const Are_wanted& are_wanted,
                 Stand& stand)
 {
   stand.tree_of_input.assign(input.size(), none);
@@ -447,9 +457,17 @@ bool find_stand(const std::vector<Vec3>& input,
                                      hints.breast_height / scan.frame.unit,
                                      options,
                                      rules);
-  if (!finder.run(progress))
+  if (!finder.find(progress))
     return false;
   stand.stems = finder.stems();
+  const auto point_of = [&](std::size_t i) { return scan.point_of_input[thinned.of_input[i]]; };
+  if (!stand.stems.empty())
+    for (std::size_t i = 0; i < input.size(); ++i)
+      stand.stem_of_input[i] = finder.stem_of_point()[point_of(i)];
+  if (!are_wanted(stand))
+    return progress(1);
+  if (!finder.label(progress))
+    return false;
   std::vector<double> spacings; // the ground may have its own
   for (Index i = 0; i < scan.size(); ++i)
     if (finder.tree_of_point()[i] != none)
@@ -459,33 +477,44 @@ bool find_stand(const std::vector<Vec3>& input,
   const double spacing = median(spacings);
   stand.spacing_of_input.resize(input.size());
   for (std::size_t i = 0; i < input.size(); ++i) {
-    const Index p = scan.point_of_input[thinned.of_input[i]];
-    stand.tree_of_input[i] = finder.tree_of_point()[p];
-    stand.stem_of_input[i] = finder.stem_of_point()[p];
-    stand.spacing_of_input[i] = static_cast<float>(scan.local_spacing[p] / spacing);
+    stand.tree_of_input[i] = finder.tree_of_point()[point_of(i)];
+    stand.spacing_of_input[i] = static_cast<float>(scan.local_spacing[point_of(i)] / spacing);
   }
   return true;
 }
 
-/*!
-  Adds the trees of `coarse` that have few points: between those of others, their stems fall to pieces. Such trees get their points
-  that are few or nobody's. O(points log points + stems^2).
-*/
-inline void
-add_sparse_trees(const Stand& coarse, double breast_height, const Forest_rules& rules, Stand& stand)
+/// Which stems of `coarse` have few points in `stand`. O(points).
+inline std::vector<bool>
+sparse_stems(const Stand& coarse, const Forest_rules& rules, const Stand& stand)
 {
+  std::vector<bool> result(coarse.stems.size(), false);
   if (coarse.stems.empty() || stand.spacing_of_input.empty())
-    return;
+    return result;
   std::vector<std::vector<float>> spacings(coarse.stems.size());
   for (std::size_t i = 0; i < coarse.stem_of_input.size(); ++i)
     if (coarse.stem_of_input[i] != none)
       spacings[coarse.stem_of_input[i]].push_back(stand.spacing_of_input[i]);
+  for (std::size_t s = 0; s < result.size(); ++s)
+    result[s] = double(median(spacings[s])) >= rules.sparse;
+  return result;
+}
+
+/*!
+  Adds the trees of `coarse` that have few points: between those of others, their stems fall to pieces. Such trees get their points
+  that are few or nobody's. O(points + stems^2).
+*/
+inline void
+add_sparse_trees(const Stand& coarse, double breast_height, const Forest_rules& rules, Stand& stand)
+{
+  if (coarse.stems.empty())
+    return;
+  const std::vector<bool> is_sparse = sparse_stems(coarse, rules, stand);
   Index number_of_trees = stand.stems.empty() ? 0 : stand.stems.back().tree + 1;
   std::vector<Index> tree_of_coarse(coarse.stems.back().tree + 1, none);
   for (std::size_t s = 0; s < coarse.stems.size(); ++s) {
     Found_stem stem = coarse.stems[s];
     Index& tree = tree_of_coarse[stem.tree];
-    if (tree != none || median(spacings[s]) < rules.sparse)
+    if (tree != none || !is_sparse[s])
       continue;
     stem.foot = stand.frame.to_local(coarse.frame.to_input(stem.foot));
     stem.radius *= coarse.frame.unit / stand.frame.unit;
@@ -523,14 +552,20 @@ bool find_trees(const std::vector<Vec3>& input,
   const double side = rules.cell * hints.breast_height;
   internal::Stand stand, coarse;
   progress.stage(0, 0.75);
-  if (!internal::find_stand<ConcurrencyTag>(input, side, hints, rules, progress, stand))
+  const auto always = [](const internal::Stand&) { return true; };
+  if (!internal::find_stand<ConcurrencyTag>(input, side, hints, rules, progress, always, stand))
     return false;
+  const auto has_sparse_stems = [&](const internal::Stand& other) {
+    const std::vector<bool> is_sparse = internal::sparse_stems(other, rules, stand);
+    return std::find(is_sparse.begin(), is_sparse.end(), true) != is_sparse.end();
+  };
   progress.stage(0.75, 1);
   if (!internal::find_stand<ConcurrencyTag>(input,
                                             rules.coarser * side,
                                             hints,
                                             rules,
                                             progress,
+                                            has_sparse_stems,
                                             coarse))
     return false;
   internal::add_sparse_trees(coarse, hints.breast_height, rules, stand);
