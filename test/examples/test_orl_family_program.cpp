@@ -124,6 +124,8 @@ BOOST_AUTO_TEST_CASE(modes_and_new_trees_are_written)
   BOOST_TEST(err.find("no more than 2 mode(s)") != std::string::npos, err);
   succeeds(skeletons + "--modes 2 --mode-measure metric --output metric --report three.json");
   // of more than two trees there are no figures of pairs
+  BOOST_TEST(out.find("3 trees, ") != std::string::npos, out);
+  BOOST_TEST(out.find("distance") == std::string::npos, out);
   const Json three = Json::parse(content("three.json"));
   for (const char* name : {"matching_energy",
                            "unexplained_share",
