@@ -431,6 +431,23 @@ BOOST_AUTO_TEST_CASE(a_tree_of_few_points_is_found_among_dense_ones)
   }
 }
 
+BOOST_AUTO_TEST_CASE(dense_points_keep_their_tree)
+{
+  Cloud points = pole(0);
+  // its arm touches the pole of few points
+  for (const Point& p : Jitter(0.001)(cylinder(4000, 0.03, 0.9)))
+    points.emplace_back(p.z(), p.x(), 1.5 + p.y());
+  const std::size_t number_of_dense = points.size();
+  for (const Point& p : Jitter(0.001)(cylinder(500, 0.1, 3)))
+    points.push_back(p + Vector(0.9, 0.13, 0));
+  Labels trees;
+  const pcs::Segmentation_report report = segment(points, trees);
+  const auto first = trees.begin() + static_cast<std::ptrdiff_t>(number_of_dense);
+  BOOST_TEST_REQUIRE(report.trees.size() == 2u);
+  BOOST_TEST(std::size_t(std::count(trees.begin(), first, 1u)) == number_of_dense);
+  BOOST_TEST(std::count(first, trees.end(), 0u) > 450);
+}
+
 BOOST_AUTO_TEST_CASE(an_outlier_far_below_hides_no_tree)
 {
   Stand stand = three_trees();
