@@ -1156,6 +1156,19 @@ BOOST_AUTO_TEST_CASE(changes_are_named)
   const Space space = make_space({a, b});
   const auto changes = space.changes(0, 1);
   BOOST_TEST(changes.size() == 5u);
+  Space in_world_axes;
+  in_world_axes.add_skeleton(a);
+  in_world_axes.add_skeleton(b);
+  in_world_axes.build(np::orientation(pcs::shape_space::Orientation::world_axes));
+  const auto same = in_world_axes.changes(0, 1);
+  BOOST_TEST_REQUIRE(same.size() == changes.size());
+  for (std::size_t i = 0; i < same.size(); ++i) {
+    BOOST_TEST(same[i].is_turned == changes[i].is_turned);
+    BOOST_TEST(std::abs(same[i].angle - changes[i].angle) < 1e-9);
+  }
+  for (const std::size_t t : {0u, 1u})
+    BOOST_TEST(in_world_axes.distance(in_world_axes.embed(t == 0 ? a : b), in_world_axes.tree(t)) <
+               2 * space.distance(space.embed(t == 0 ? a : b), space.tree(t)) + 1e-3);
   for (const Branch_change& c : changes) {
     const std::size_t in_a = space.tip_of_branch(0, c.branch),
                       in_b = space.tip_of_branch(1, c.branch);

@@ -116,6 +116,25 @@ BOOST_AUTO_TEST_CASE(a_result_depends_on_the_motions_only_and_not_on_the_way)
   }
 }
 
+BOOST_AUTO_TEST_CASE(the_centroid_counts_every_place_once)
+{
+  for (const int samples : both_resolutions) {
+    Bar_session s(samples);
+    const std::vector<std::size_t> middle = middle_of(s.points);
+    std::vector<std::size_t> named = middle;
+    named.insert(named.end(), 50, middle.front());
+    const std::size_t handle = s.session.add_handle(named);
+    const Vec3 c = s.session.centroid(handle);
+    Vec3 mean = Vec3::Zero();
+    for (const std::size_t i : middle)
+      mean += s.points[i] / double(middle.size());
+    BOOST_TEST((c - mean).norm() < 1e-12);
+    s.session.deform();
+    s.session.accept();
+    BOOST_TEST((s.session.centroid(handle) - c).norm() < 1e-9);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(rotation_translation_and_scale_combine)
 {
   Bar_session s(150);

@@ -211,7 +211,9 @@ BOOST_AUTO_TEST_CASE(the_ends_of_a_path_with_a_turn_are_the_inputs)
   again.add(b, scans[1]);
   auto kept = pcs::IO::read_correspondences(path);
   std::filesystem::remove(path);
-  again.build_from(kept);
+  const pcs::Orl_report report = again.build_from(kept);
+  BOOST_TEST(std::abs(report.turn - space.build(turns).turn) < 1e-12);
+  BOOST_TEST(std::isnan(report.unexplained_share)); // the file does not tell
   std::vector<Point> one, two;
   space.points(space.geodesic(0, 1, 0.7), one);
   again.points(again.geodesic(0, 1, 0.7), two);
@@ -237,6 +239,26 @@ BOOST_AUTO_TEST_CASE(turns_do_not_depend_on_the_number_of_threads)
       BOOST_TEST(space.build(turns).turn == turn);
       BOOST_TEST(space.distance(0, 1) == expected.distance(0, 1));
     });
+}
+
+BOOST_AUTO_TEST_CASE(looking_for_turns_can_be_stopped)
+{
+  const Tree a = random_tree(31),
+             b = moved(grown(random_branches(31), 0.1, 5), about(Vec3::UnitZ(), 2), {10, 20, 30});
+  const auto count = [&](int stop, auto alignment) {
+    Space space;
+    space.add_skeleton(a);
+    space.add_skeleton(b);
+    int calls = 0;
+    const auto report =
+        space.build(np::alignment(alignment).callback([&](double) { return ++calls != stop; }));
+    BOOST_TEST((report.status == pcs::Status::cancelled) == (stop > 0));
+    return calls;
+  };
+  const int as_given = count(0, Alignment::as_given), all = count(0, Alignment::turns);
+  BOOST_TEST(all > as_given + 10); // starts, looks, and the matchings of the best
+  for (const int stop : {as_given, as_given + 4, as_given + 8})
+    BOOST_TEST(count(stop, Alignment::turns) == stop);
 }
 
 BOOST_AUTO_TEST_CASE(bad_verticals_and_more_trees_are_refused)

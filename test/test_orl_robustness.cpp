@@ -3,7 +3,9 @@
 // Trees and scans of odd shapes: long, wide, flat, without radii, in one place.
 
 #include <pcs/orl_geodesic.h>
+#include <pcs/shape_space/Rooted_tree.h>
 #include <support/archetypes.h>
+#include <support/drawn.h>
 #include <support/exceptions.h>
 #include <support/graph_archetypes.h>
 #include <support/orl_spaces.h>
@@ -489,6 +491,70 @@ BOOST_AUTO_TEST_CASE(all_points_of_a_large_scan_on_one_branch)
   const auto report = morph(a, tube_points(a, 200000, 1), b, tube_points(b, 10000, 2));
   BOOST_TEST(report.number_of_points[0] == 200000u);
   BOOST_TEST(report.worst_marginal_violation < 1e-9);
+}
+
+BOOST_AUTO_TEST_CASE(points_that_one_scan_lacks_have_no_partners_far_away)
+{
+  const Tree tree = path(2, 0); // 5 high, of which the second scan sees the lowest twentieth
+  const std::vector<Point> scan = tube_points(tree, 20000, 1);
+  std::vector<Point> low;
+  for (const Point& p : tube_points(tree, 20000, 2))
+    if (p.z() < 0.25)
+      low.push_back(p);
+  pcs::Orl_shape_space<Kernel> space;
+  space.add(tree, scan);
+  space.add(tree, low);
+  const auto report = space.build();
+  BOOST_TEST(report.number_of_windows > 2u);
+  BOOST_TEST(report.number_of_single_points > 15000u);
+  double farthest = 0;
+  std::vector<double> distance(report.number_of_point_pairs, 0);
+  space.for_each_point(space.tree(0),
+                       [&](std::size_t i, std::size_t first, std::size_t second, double) {
+                         if (first != pcs::npos && second != pcs::npos)
+                           distance[i] = std::abs(scan[first].z() - low[second].z());
+                       });
+  for (const double d : distance)
+    farthest = std::max(farthest, d);
+  BOOST_TEST(farthest < 0.6); // a window of 2,000 points is half as high
+}
+
+BOOST_AUTO_TEST_CASE(bases_on_axes_are_found_among_twenty_thousand_children)
+{
+  constexpr std::size_t number = 20000, number_on_axes = 100;
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  pcs::shape_space::Rooted_tree star;
+  star.extent = 4;
+  const auto add = [&](const Vec3& point, std::size_t parent) {
+    star.points.push_back(point);
+    star.radii.push_back(0.001);
+    star.parents.push_back(parent);
+    star.sources.push_back(star.points.size() - 1);
+  };
+  add(Vec3::Zero(), pcs::npos);
+  for (std::size_t k = 0; k < number; ++k)
+    add((1 + 0.1 * double(k % 7)) *
+            pcs_test::drawn<Vec3>([&] { return normal(random); }).normalized(),
+        0);
+  for (std::size_t k = 0; k < number_on_axes; ++k)
+    add(0.3 * star.points[1 + 13 * k], 0);
+  const pcs::shape_space::Rooted_tree found = pcs::shape_space::with_nodes_at_bases(star);
+  BOOST_TEST(found.size() == 1 + number + 2 * number_on_axes);
+  std::size_t number_on_their_axis = 0;
+  for (std::size_t v = 0; v < found.size(); ++v)
+    if (found.sources[v] != pcs::npos && found.sources[v] > number) { // at the new node of the axis
+      const std::size_t base = found.parents[v];
+      number_on_their_axis +=
+          found.sources[base] == pcs::npos && found.points[base] == found.points[v];
+      const std::size_t axis = 1 + 13 * (found.sources[v] - number - 1);
+      BOOST_TEST(std::count_if(found.parents.begin(), found.parents.end(), [&](std::size_t p) {
+                   return p == base;
+                 }) == 2);
+      const auto end = std::find(found.sources.begin(), found.sources.end(), axis);
+      BOOST_TEST(found.parents[std::size_t(end - found.sources.begin())] == base);
+    }
+  BOOST_TEST(number_on_their_axis == number_on_axes);
 }
 
 BOOST_AUTO_TEST_CASE(trees_without_radii)

@@ -26,6 +26,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -197,7 +198,10 @@ public:
   /*!
     \brief the same with correspondences that were computed before, for the same trees with the same points, or none.
 
-    Reads `orientation`, `virtual_direction` and `do_use_unit_weights`.
+    Reads `orientation`, `virtual_direction` and `do_use_unit_weights`, `matching_weights` for trees that are embedded later, and
+    `up_direction` for the sign of the turn.
+    \return a report in which `matching_energy` and `unexplained_share` are not numbers, and `is_grown_at_tips` is `false`: the
+    correspondences do not tell
     \throws pcs::Invalid_input when the correspondences do not fit the trees
   */
   template <class NamedParameters = parameters::Default_named_parameters>
@@ -205,16 +209,20 @@ public:
                         const NamedParameters& np = NamedParameters())
   {
     check_inputs("build_from");
+    const shape_space::Family_options options =
+        shape_space::read_options(np, m_inputs.size(), "pcs::Orl_shape_space::build_from()");
     Orl_report report = new_report();
+    report.matching_energy = report.unexplained_share = std::numeric_limits<double>::quiet_NaN();
     pcs::internal::Stopwatch watch;
     shape_space::Embedded_pair built;
     shape_space::read_form(np, built);
     Engine::embed_stored(correspondences, inputs(), "pcs::Orl_shape_space::build_from()", built);
+    report.turn = shape_space::angle_about(options.standing.up, built.turn);
     report.seconds.topology = watch.lap();
     const bool has_points = !m_inputs[0].points.empty() || !m_inputs[1].points.empty();
     finish(built,
            has_points ? correspondences.pairs : std::vector<shape_space::Point_pair>(),
-           shape_space::Matching_weights(),
+           options.weights,
            report);
     report.seconds.instances = watch.lap();
     return report;

@@ -116,19 +116,20 @@ public:
     return m_solver.constrain(m_bounded, std::move(constraints), stiffness);
   }
 
-  /// Runs the passes of this level. `guess`: in, of this level's nodes, or empty; out, of the finer one's.
+  /// Runs the passes of this level, less of them if `progress` asks to stop. `guess`: in, of this level's nodes, or empty; out, of the finer one's.
   /// A pass may gain as much less than one over `finest_size` nodes as it costs less: what it leaves has to be done there.
   void improve(const std::vector<Similarity>& transforms,
                Elastic_options options,
                std::size_t finest_size,
                bool needs_link_offsets,
+               pcs::internal::Progress& progress,
                Deviation_guess& guess)
   {
     options.maximal_number_of_passes = number_of_coarse_passes;
     options.tolerance *= coarse_share_of_tolerance * static_cast<double>(m_network.size()) /
                          static_cast<double>(finest_size);
-    pcs::internal::Progress uninterrupted;
-    const Elastic_result result = m_solver.solve(transforms, options, uninterrupted, guess);
+    pcs::internal::Progress only_stops([&](double) { return progress(0); });
+    const Elastic_result result = m_solver.solve(transforms, options, only_stops, guess);
     guess.is_far_from_field =
         result.is_far_from_field || result.energy < sure_advantage * result.first_pass_energy;
     if (needs_link_offsets)

@@ -82,6 +82,7 @@ public:
                            options,
                            m_size_of_passes,
                            m_has_offsets && l == m_first,
+                           progress,
                            guess);
       else
         m_level[l].carry(guess);

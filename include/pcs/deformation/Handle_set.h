@@ -123,12 +123,16 @@ public:
     }
     const std::size_t handle = size();
     std::vector<char> is_reached(body.number_of_components(), 0);
-    Vec3 sum = Vec3::Zero();
+    Vec3 sum = Vec3::Zero(); // every site once
+    std::size_t number = 0;
     for (const auto i : indices) {
       const std::size_t site = body.site_of_input[i];
+      if (m_handle_of_site[site] == static_cast<Node_constraint>(handle))
+        continue;
       m_handle_of_site[site] = static_cast<Node_constraint>(handle);
       is_reached[body.component_of_site[site]] = 1;
       sum += body.rest_of_site(site);
+      ++number;
     }
     m_transforms.emplace_back();
     m_weight.push_back(weight);
@@ -137,7 +141,7 @@ public:
     for (std::size_t c = 0; c < is_reached.size(); ++c)
       if (is_reached[c])
         m_components_of_handle.back().push_back(static_cast<std::uint32_t>(c));
-    m_centroid.push_back(body.frame.to_world(sum / static_cast<double>(indices.size())));
+    m_centroid.push_back(body.frame.to_world(sum / static_cast<double>(number)));
     return handle;
   }
 
@@ -196,11 +200,11 @@ public:
   {
     std::vector<Vec3> sum(size(), Vec3::Zero());
     std::vector<double> count(size(), 0);
-    for (std::size_t place = 0; place < body.number_of_points(); ++place) {
-      const Node_constraint h = m_handle_of_site[body.site_of_place[place]];
+    for (std::size_t site = 0; site < m_handle_of_site.size(); ++site) {
+      const Node_constraint h = m_handle_of_site[site];
       if (h < 0)
         continue;
-      sum[static_cast<std::size_t>(h)] += body.upsampling.rest(place);
+      sum[static_cast<std::size_t>(h)] += body.rest_of_site(site);
       count[static_cast<std::size_t>(h)] += 1;
     }
     for (std::size_t h = 0; h < size(); ++h)

@@ -175,7 +175,8 @@ void Sampled_body<ConcurrencyTag>::sample(std::vector<Vec3> sites,
   if (is_sampled) {
     Sample_regions regions = grow_regions(sites, graph, site_of_sample);
     network.surface = sample_graph(sites, graph, site_of_sample, regions, weight_unit);
-    progress(0.8);
+    if (!progress(0.8))
+      return;
     const bool is_text = options.sample_search == Sample_search::breadth_first_hops;
     links = is_text ? link_by_hops<ConcurrencyTag>(sites,
                                                    graph,
@@ -206,6 +207,8 @@ void Sampled_body<ConcurrencyTag>::sample(std::vector<Vec3> sites,
   for (std::size_t s = 0; s < network.size(); ++s)
     component[s] = component_of_site[site_of_sample[s]];
   set_areas<ConcurrencyTag>(component, network);
+  if (!progress(0.9))
+    return;
   if (options.do_preserve_volume && network.size() <= largest_linked_network)
     network.links = interior_links<ConcurrencyTag>(network, component);
   if (is_sampled)

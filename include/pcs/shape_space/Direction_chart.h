@@ -115,9 +115,7 @@ public:
   }
 
   /// How far branches of an order follow the slant of what they grow from, in [0, 1].
-  double following(std::size_t order) const { return m_following[order]; }
   /// Whether branches of an order stand about their parents as if they were rigid.
-  bool is_rigid(std::size_t order) const { return m_is_rigid[order] != 0; }
   /// What the second number of an edge is worth: the first is an angle of the edge itself. [-]
   double reach(std::size_t b, std::size_t e) const
   {

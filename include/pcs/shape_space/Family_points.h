@@ -38,7 +38,6 @@ public:
   using Partner = Orl_space_data::Partner;
 
   std::size_t size() const { return m_source.size(); }
-  const std::vector<Family_source>& sources() const { return m_source; }
   const std::vector<std::size_t>& first() const { return m_first; }
   bool has_normals() const { return m_has_normals; }
 

@@ -40,7 +40,7 @@ struct Matching_weights
   double carried = 0.1; ///< of the parents' turn in that of their children [-]
   bool is_carried = true; ///< whether turns of parents are carried to their children
   bool is_published =
-      false; ///< no turns, position in units of the parent's length, all else 1: the text's energy
+      false; ///< the text's energy: no turns, `single` is 1, positions in units of the parent's length
   double fork_ratio = default_fork_ratio;       ///< see `Branch_paths`
   double trunk_fork_ratio = default_fork_ratio; ///< the same for the trunk, if it is less
   std::size_t number_of_paths = 6; ///< candidates for the main path of a branch; 1: the longest

@@ -20,6 +20,7 @@
 #include <limits>
 #include <numeric>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pcs {
@@ -133,6 +134,57 @@ inline std::vector<std::size_t> levels_of_branches(const Rooted_tree& tree)
 /// A node this close to the axis of an edge, as a share of the radius there, begins a branch on that axis.
 constexpr double on_axis = 1e-3;
 
+namespace internal {
+
+/*!
+  For each child of `p`, that whose edge runs through it, the longest one first of equals, or `none`. Children are looked at by
+  the x coordinates of their directions: O(n log n) for `n` of them in all directions.
+*/
+inline std::vector<std::size_t>
+axes_through(const Rooted_tree& tree, std::size_t p, const std::vector<std::size_t>& children)
+{
+  const std::size_t n = children.size();
+  std::vector<std::size_t> result(n, none);
+  const double shortest = shortest_edge * tree.extent;
+  std::vector<Vec3> edge(n);
+  std::vector<double> length(n);
+  std::vector<std::pair<double, std::size_t>> by_x; // of its direction, and the child
+  double thickest = tree.radii[p];
+  for (std::size_t i = 0; i < n; ++i) {
+    edge[i] = tree.points[children[i]] - tree.points[p];
+    length[i] = edge[i].norm();
+    thickest = std::max(thickest, tree.radii[children[i]]);
+    if (length[i] > shortest)
+      by_x.emplace_back(edge[i].x() / length[i], i);
+  }
+  std::sort(by_x.begin(), by_x.end());
+  std::vector<std::size_t> near;
+  for (const auto& [x, i] : by_x) {
+    // unit vectors are no farther apart than this, where one end is as near to the other edge
+    const double apart = 1e-9 + 1.5 * std::max(on_axis * thickest, shortest) / length[i];
+    near.clear();
+    for (auto other =
+             std::lower_bound(by_x.begin(), by_x.end(), std::make_pair(x - apart, std::size_t(0)));
+         other != by_x.end() && other->first <= x + apart;
+         ++other)
+      near.push_back(other->second);
+    std::sort(near.begin(), near.end());
+    double longest = length[i] * (1 + shortest_edge);
+    for (const std::size_t j : near) {
+      const double t = edge[i].dot(edge[j]) / std::max(edge[j].squaredNorm(), 1e-300);
+      const double radius = (1 - t) * tree.radii[p] + t * tree.radii[children[j]];
+      if (j != i && length[j] > longest && t > 0 &&
+          (edge[i] - t * edge[j]).norm() <= std::max(on_axis * radius, shortest)) {
+        result[i] = j;
+        longest = length[j];
+      }
+    }
+  }
+  return result;
+}
+
+} // namespace internal
+
 /*!
   Where the first node of a branch lies on the axis of its parent, between two nodes of that, the axis gets a node there.
   Without it the branch would seem to begin at the node before, and to run along its parent.
@@ -162,22 +214,7 @@ inline Rooted_tree with_nodes_at_bases(const Rooted_tree& all)
   };
   for (std::size_t p = 0; p < n; ++p) {
     std::vector<std::vector<Base>> bases(children[p].size());
-    std::vector<std::size_t> axis_of(children[p].size(), none);
-    for (std::size_t i = 0; i < children[p].size(); ++i) {
-      const Vec3 v = all.points[children[p][i]] - all.points[p];
-      double longest = v.norm() * (1 + shortest_edge);
-      for (std::size_t j = 0; j < children[p].size() && v.norm() > shortest_edge * all.extent;
-           ++j) {
-        const Vec3 w = all.points[children[p][j]] - all.points[p];
-        const double t = v.dot(w) / std::max(w.squaredNorm(), 1e-300);
-        const double radius = (1 - t) * all.radii[p] + t * all.radii[children[p][j]];
-        if (j != i && w.norm() > longest && t > 0 &&
-            (v - t * w).norm() <= std::max(on_axis * radius, shortest_edge * all.extent)) {
-          axis_of[i] = j;
-          longest = w.norm();
-        }
-      }
-    }
+    const std::vector<std::size_t> axis_of = internal::axes_through(all, p, children[p]);
     for (std::size_t i = 0; i < children[p].size(); ++i)
       if (axis_of[i] != none) {
         std::size_t axis = axis_of[i];

@@ -48,15 +48,19 @@ public:
         begin_round();
       const std::size_t step = round > 0 ? batch : 1;
       for (std::size_t first = 0; first < order.size(); first += step) {
-        if (!progress(done / total))
-          return false;
         const std::size_t n = std::min(step, order.size() - first);
         std::vector<std::shared_ptr<const Matched_branch>> trunks(n);
-        if (!m_branches.empty())
-          pcs::internal::for_each_index<ConcurrencyTag>(
-              n,
-              [&](std::size_t k) { trunks[k] = match(order[first + k], round > 0); },
-              1);
+        for (std::size_t begin = 0; begin < n; begin += at_once) {
+          if (!progress((done + static_cast<double>(begin)) / total))
+            return false;
+          if (!m_branches.empty())
+            pcs::internal::for_each_index<ConcurrencyTag>(
+                std::min(at_once, n - begin),
+                [&](std::size_t k) {
+                  trunks[begin + k] = match(order[first + begin + k], round > 0);
+                },
+                1);
+        }
         for (std::size_t k = 0; k < n; ++k)
           add_tree(order[first + k], trunks[k].get(), round == 0);
         done += static_cast<double>(n);
@@ -161,7 +165,8 @@ private:
     return result;
   }
 
-  static constexpr std::size_t batch = 16; // trees that are matched between calls of the callback
+  static constexpr std::size_t batch = 16;  // trees that are matched to the same middle tree ...
+  static constexpr std::size_t at_once = 4; // ... between calls of the callback
 
   /// Pairs of trunks that are looked into: with all that two trees are given, most of the time would go there.
   static constexpr std::size_t number_of_trunk_trials = 4;

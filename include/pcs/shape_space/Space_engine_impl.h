@@ -231,7 +231,7 @@ std::vector<Branch_change> Space_engine<ConcurrencyTag>::find_changes(const Tree
                                                                       const Orl_coordinates& b,
                                                                       const Change_limits& limits)
 {
-  return shape_space::find_changes(family.layout, a, b, limits);
+  return shape_space::find_changes(family.layout, a, b, family.orientation, limits);
 }
 
 template <class ConcurrencyTag>

@@ -7,6 +7,10 @@
 
 #include <pcs/shape_space/Rooted_tree.h>
 
+#include <Eigen/Geometry>
+
+#include <cmath>
+
 namespace pcs {
 namespace shape_space {
 
@@ -22,6 +26,13 @@ struct Standing
   Alignment alignment = Alignment::as_given;
   Vec3 up = Vec3::UnitZ(); ///< the vertical, of unit length
 };
+
+/// Of a turn about `axis`, of unit length: in [-pi, pi]. [rad]
+inline double angle_about(const Vec3& axis, const Eigen::Quaterniond& turn)
+{
+  const double angle = 2 * std::atan2(turn.vec().dot(axis), turn.w());
+  return std::remainder(angle, 2 * static_cast<double>(EIGEN_PI));
+}
 
 } // namespace shape_space
 } // namespace pcs

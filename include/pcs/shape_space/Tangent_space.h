@@ -31,7 +31,6 @@ public:
   {
   }
 
-  const Orl_coordinates& base() const { return m_base; }
   Eigen::Index dimension() const
   {
     return static_cast<Eigen::Index>(5 * m_layout->number_of_edges() +

@@ -34,8 +34,9 @@ struct Transport_options
   bool is_squared =
       true; ///< cost is the squared distance, as a 2-Wasserstein distance wants; the text's is not
   std::size_t number_of_neighbors = 16; ///< candidates of each point in the other tree
-  std::size_t largest_window = 1000;    ///< points of a tree that are transported together
-  std::size_t least_window = 24;        ///< edges are joined until both trees have as many points
+  std::size_t largest_window =
+      1000; ///< points of a tree that are transported together, at most twice as many
+  std::size_t least_window = 24; ///< edges are joined until both trees have as many points
   Sinkhorn_options sinkhorn;
 };
 

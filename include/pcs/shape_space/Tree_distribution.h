@@ -62,9 +62,6 @@ public:
       estimate_shrinkage();
   }
 
-  double shrinkage() const { return m_shrinkage; }
-  const Direction_chart& chart() const { return m_chart; }
-
   /// The tree number `index` of a family: the same for the same seed, whatever else is drawn.
   Orl_coordinates draw(std::uint64_t seed, std::uint64_t index, const Sampling_options& o) const
   {

@@ -92,7 +92,7 @@ private:
   struct Cell
   {
     Vec3 low, high;
-    double radius, least_radius;
+    double radius;
     std::size_t left = none, right = none, begin, end;
   };
 

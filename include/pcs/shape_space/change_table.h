@@ -8,6 +8,7 @@
 #include <pcs/shape_space/Orl_coordinates.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -41,10 +42,14 @@ struct Branch_change
 inline std::vector<Branch_change> find_changes(const Orl_layout& layout,
                                                const Orl_coordinates& before,
                                                const Orl_coordinates& after,
+                                               Orientation kind,
                                                const Change_limits& limits)
 {
   std::vector<Branch_change> result;
   std::vector<std::size_t> order(layout.branches.size(), 0);
+  std::array<Orl_geometry, 2> geometry;
+  build_geometry(layout, before, kind, geometry[0]);
+  build_geometry(layout, after, kind, geometry[1]);
   for (std::size_t b = 0; b < layout.branches.size(); ++b) {
     const Orl_layout::Branch& branch = layout.branches[b];
     Branch_change c;
@@ -74,8 +79,12 @@ inline std::vector<Branch_change> find_changes(const Orl_layout& layout,
       c.is_thicker = c.radius[1] - c.radius[0] > limits.radius * thicker;
       c.is_thinner = c.radius[0] - c.radius[1] > limits.radius * thicker;
       const std::size_t e = branch.first_edge;
-      const Vec3 a = before.orientation[e] * Vec3::UnitZ(),
-                 z = after.orientation[e] * Vec3::UnitZ();
+      const auto direction = [&](const Orl_geometry& g) { // seen from the parent
+        const Vec3 z = g.frame[e] * Vec3::UnitZ();
+        const std::size_t p = branch.reference_edge;
+        return p == none ? z : Vec3(g.frame[p].conjugate() * z);
+      };
+      const Vec3 a = direction(geometry[0]), z = direction(geometry[1]);
       c.angle = std::atan2(a.cross(z).norm(), a.dot(z));
       c.is_turned = c.angle > limits.angle;
     }

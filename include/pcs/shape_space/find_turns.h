@@ -6,6 +6,7 @@
 #define PCS_SHAPE_SPACE_FIND_TURNS_H
 
 #include <pcs/internal/parallel.h>
+#include <pcs/internal/progress.h>
 #include <pcs/shape_space/Matching_energy.h>
 #include <pcs/shape_space/Standing.h>
 
@@ -75,24 +76,34 @@ settle_turn(const Matching_energy& energy, const Vec3& axis, double angle, int p
   Angles about the vertical by which branches fit, the most promising first. [rad]
 
   From 24 angles each turn goes on to where the branches at the trunks stand, seen without what hangs on them. Turns of less
-  than a step are none: what trees that stand alike differ by is left to their branches.
+  than a step are none: what trees that stand alike differ by is left to their branches. Nothing is found if
+  `progress` asks to stop.
 */
 template <class ConcurrencyTag>
-std::vector<double> find_turns(const Matching_energy& energy, const Vec3& up, std::size_t most)
+std::vector<double> find_turns(const Matching_energy& energy,
+                               const Vec3& up,
+                               std::size_t most,
+                               pcs::internal::Progress& progress)
 {
   using internal::Turned_trees;
-  constexpr std::size_t number_of_starts = 24;
+  constexpr std::size_t number_of_starts = 24, batch = 4;
   constexpr double pi = static_cast<double>(EIGEN_PI), step = 2 * pi / number_of_starts;
   constexpr int first_passes = 3, last_passes = 20;
   const Vec3 axis = energy.frame().transpose() * up;
   std::vector<Turned_trees> turned(number_of_starts);
-  pcs::internal::for_each_index<ConcurrencyTag>(
-      number_of_starts,
-      [&](std::size_t k) {
-        turned[k] =
-            internal::settle_turn(energy, axis, step * static_cast<double>(k), first_passes);
-      },
-      1);
+  static_assert(number_of_starts % batch == 0);
+  for (std::size_t first = 0; first < number_of_starts; first += batch) {
+    if (!progress(0))
+      return {};
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        batch,
+        [&](std::size_t i) {
+          const std::size_t k = first + i;
+          turned[k] =
+              internal::settle_turn(energy, axis, step * static_cast<double>(k), first_passes);
+        },
+        1);
+  }
   std::stable_sort(turned.begin(), turned.end(), [](const Turned_trees& a, const Turned_trees& b) {
     return a.cost < b.cost;
   });
@@ -108,6 +119,8 @@ std::vector<double> find_turns(const Matching_energy& energy, const Vec3& up, st
     };
     if (result.size() == most || !is_new(t.angle))
       continue;
+    if (!progress(0))
+      return {};
     const double angle = internal::settle_turn(energy, axis, t.angle, last_passes).angle;
     if (is_new(angle))
       result.push_back(angle);

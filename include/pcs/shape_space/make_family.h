@@ -36,6 +36,18 @@ inline void find_growth_direction(Tree_family& family)
   family.up = sum.norm() > 0 ? Vec3(sum.normalized()) : Vec3(Vec3::UnitZ());
 }
 
+/// The same tree, with every orientation in the frame of the edge that it refers to.
+inline void measure_in_frames(const Orl_layout& layout, Orientation kind, Orl_coordinates& x)
+{
+  if (kind != Orientation::world_axes)
+    return;
+  Orl_geometry geometry;
+  build_geometry(layout, x, kind, geometry);
+  for (std::size_t e = 0; e < layout.number_of_edges(); ++e)
+    if (const std::size_t p = layout.parent_edge[e]; p != none)
+      x.orientation[e] = relative(Orientation::gauge_fixed, geometry.frame[p], geometry.frame[e]);
+}
+
 } // namespace internal
 
 /// Two trees as a family; `first_point` is left to the caller.
@@ -75,6 +87,7 @@ inline Tree_family make_family(const Embedded_pair& pair,
           family.reference.radius[e] = pair.x[t].radius[e];
         }
       }
+  internal::measure_in_frames(family.layout, family.orientation, family.reference);
   internal::find_growth_direction(family);
   return family;
 }

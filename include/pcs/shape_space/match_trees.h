@@ -158,10 +158,12 @@ private:
   std::vector<double> promising_turns(Matching& matching) const
   {
     std::vector<double> angles =
-        find_turns<ConcurrencyTag>(matching.energy(), m_standing.up, number_of_looks);
+        find_turns<ConcurrencyTag>(matching.energy(), m_standing.up, number_of_looks, m_progress);
     angles.insert(angles.begin(), 0);
     std::vector<double> cost;
     for (const double angle : angles) {
+      if (!m_progress(0))
+        return {};
       matching.set_turn(angle, m_standing.up);
       cost.push_back(matching.look());
     }

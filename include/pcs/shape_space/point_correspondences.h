@@ -191,8 +191,13 @@ private:
         std::ceil(static_cast<double>(most) / static_cast<double>(options.largest_window));
     double mass = 0, last_t = 0;
     for (const Place& p : places) {
-      if (p.t != last_t && mass >= 2 * static_cast<double>(windows.size()) / parts &&
-          !windows.back().point[0].empty() && !windows.back().point[1].empty())
+      const Window& open = windows.back();
+      const std::size_t n = open.point[0].size(), m = open.point[1].size();
+      // where one tree has no points, those of the other get no partners far away
+      const bool is_full = std::max(n, m) >= 2 * options.largest_window;
+      const bool is_share =
+          mass >= 2 * static_cast<double>(windows.size()) / parts && std::min(n, m) > 0;
+      if (p.t != last_t && (is_full || is_share))
         windows.emplace_back();
       windows.back().point[p.tree].push_back({p.point, static_cast<std::uint32_t>(e)});
       mass += share[p.tree];
@@ -201,6 +206,11 @@ private:
     Window& last = windows.back();
     if (windows.size() > 1 && (last.point[0].empty() || last.point[1].empty())) {
       Window& before = windows[windows.size() - 2];
+      const auto number = [&](std::size_t t) {
+        return before.point[t].size() + last.point[t].size();
+      };
+      if (std::max(number(0), number(1)) > 2 * options.largest_window)
+        return windows;
       for (std::size_t t = 0; t < 2; ++t)
         before.point[t].insert(before.point[t].end(), last.point[t].begin(), last.point[t].end());
       windows.pop_back();
