@@ -273,7 +273,7 @@ void run_single(const Skeleton_options& options)
     file = std::make_unique<Report_file>(options.report);
   const nlohmann::ordered_json json = run_one(options.inputs.front(), options);
   if (file)
-    file->commit(json.dump(2) + "\n");
+    file->commit(json);
   if (!options.is_quiet)
     std::cout << "branches " << json["branches"] << ", nodes " << json["nodes"] << ", height "
               << json["height"] << ", diameter at breast height "

@@ -142,12 +142,12 @@ std::string matches_text(const Space& space, const Tree_file& one, const Tree_fi
 }
 
 /// What was not found in this run is left out.
-std::string report_text(const Space& space,
-                        const pcs::Orl_report& r,
-                        const std::vector<Tree_file>& files,
-                        const Options& o,
-                        bool is_stored,
-                        const std::vector<double>& turns)
+nlohmann::ordered_json report_json(const Space& space,
+                                   const pcs::Orl_report& r,
+                                   const std::vector<Tree_file>& files,
+                                   const Options& o,
+                                   bool is_stored,
+                                   const std::vector<double>& turns)
 {
   using pcs::shape_space::Orl_metric;
   const pcs::Orl_tree a = space.tree(0), b = space.tree(1);
@@ -194,7 +194,7 @@ std::string report_text(const Space& space,
                      {"transport", r.seconds.transport},
                      {"instances", r.seconds.instances},
                      {"correspondences", r.seconds.total()}};
-  return json.dump(2) + "\n";
+  return json;
 }
 
 /// All files first: to find skeletons takes time.
@@ -294,7 +294,7 @@ void run(const Options& o)
     matches.write([&] { return matches_text(space, files[0], files[1]); });
   changes.write([&] { return changes_text(space, files); });
   distances.write([&] { return distances_text(space); });
-  report_file.write([&] { return report_text(space, report, files, o, was_stored, turns); });
+  report_file.write([&] { return report_json(space, report, files, o, was_stored, turns); });
   if (!o.is_quiet && o.load.empty())
     std::cout << report << '\n';
 }

@@ -97,6 +97,7 @@ nlohmann::ordered_json to_json(const Options& options, const pcs::Segmentation_r
     nlohmann::ordered_json row = {{"tree", t},
                                   {"foot", tree.foot},
                                   {"radius", tree.radius},
+                                  {"height", tree.height},
                                   {"points", tree.number_of_points}};
     if (!options.folder.empty() && tree.number_of_points >= options.least_points)
       row["file"] = file_of_tree(options, t);
@@ -107,6 +108,7 @@ nlohmann::ordered_json to_json(const Options& options, const pcs::Segmentation_r
           {"points", r.number_of_points},
           {"unassigned_points", r.number_of_unassigned_points},
           {"trees", trees},
+          {"warnings", pcs::warnings(r)},
           {"seconds", r.seconds}};
 }
 
@@ -191,7 +193,9 @@ void run(const Options& options)
   }
   const nlohmann::ordered_json json = to_json(options, report);
   if (report_file)
-    report_file->commit(json.dump(2) + "\n");
+    report_file->commit(json);
+  for (const std::string& warning : pcs::warnings(report))
+    std::cerr << "segment_trees: warning: " << options.input << ": " << warning << '\n';
   if (!options.is_quiet)
     std::cout << "trees " << report.trees.size() << ", points of none "
               << report.number_of_unassigned_points << " of " << report.number_of_points

@@ -146,7 +146,7 @@ void run(Scan_options& options)
   if (!options.swc.empty())
     pcs::IO::write_swc(options.swc, tree);
   if (report_file)
-    report_file->commit(json.dump(2) + '\n');
+    report_file->commit(json);
   if (!options.is_quiet)
     std::cout << json["nodes"] << " nodes, " << json["branches"] << " branches, length "
               << json["length"] << ", volume " << json["volume"] << " (without doubled bases "

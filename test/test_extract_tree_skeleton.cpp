@@ -36,6 +36,7 @@ using pcs_test::Small_scan;
 using pcs_test::Tree;
 using Kernel = pcs_test::Tree_kernel;
 using Point = pcs_test::Tree_point;
+using Vector = pcs_test::Tree_vector;
 
 double length_of(const Tree& tree)
 {
@@ -247,6 +248,95 @@ BOOST_AUTO_TEST_CASE(leaves_are_found_where_there_are_any)
   const auto insisted = pcs::extract_tree_skeleton(s.scan.points, bare, always);
   BOOST_CHECK_GT(insisted.number_of_leaf_points, 0u);
   BOOST_CHECK_LT(insisted.number_of_leaf_points, s.scan.points.size() / 5);
+}
+
+BOOST_AUTO_TEST_CASE(residuals_are_those_of_the_surface_that_is_written)
+{
+  // leaves, so that radii are bounded after the fit
+  pcs::Virtual_scanner scanner;
+  scanner.angular_step = 0.15 * CGAL_PI / 180;
+  scanner.leaves_per_length = 20;
+  pcs::Virtual_scan<Kernel> scan;
+  pcs::scan_tree(small_scan().truth, scan, scanner, pcs::parameters::random_seed(6));
+  std::map<Point, std::size_t> branch;
+  std::map<Point, double> residual;
+  Tree tree;
+  const auto report = pcs::extract_tree_skeleton(
+      scan.points,
+      tree,
+      pcs::parameters::point_branch_map(boost::make_assoc_property_map(branch))
+          .point_residual_map(boost::make_assoc_property_map(residual)));
+  struct Edge
+  {
+    Point from, to;
+    double from_radius, to_radius;
+  };
+  std::vector<std::vector<Edge>> edges_of(report.number_of_branches);
+  for (const auto e : boost::make_iterator_range(edges(tree))) {
+    const auto &a = tree[source(e, tree)], &b = tree[target(e, tree)];
+    edges_of[b.branch].push_back(
+        {a.point, b.point, a.branch == b.branch ? a.radius : b.radius, b.radius});
+  }
+  std::size_t number = 0, number_equal = 0;
+  std::vector<double> deviations;
+  for (const Point& p : scan.points) {
+    if (branch.at(p) == pcs::npos)
+      continue;
+    double nearest = std::numeric_limits<double>::infinity(), expected = 0;
+    for (const Edge& e : edges_of[branch.at(p)]) {
+      const Vector d = e.to - e.from;
+      const double t =
+          std::min(1.0, std::max(0.0, ((p - e.from) * d) / std::max(1e-30, d.squared_length())));
+      const double away = std::sqrt(((p - e.from) - t * d).squared_length());
+      if (away < nearest) {
+        nearest = away;
+        expected = away - (1 - t) * e.from_radius - t * e.to_radius;
+      }
+    }
+    ++number;
+    number_equal += std::abs(residual.at(p) - expected) < 1e-6;
+    deviations.push_back(std::abs(expected));
+  }
+  BOOST_TEST(number > 4000u);
+  BOOST_TEST(number_equal > number * 98 / 100); // others have a nearer edge farther on
+  std::nth_element(deviations.begin(), deviations.begin() + long(number / 2), deviations.end());
+  BOOST_CHECK_CLOSE(report.residual, deviations[number / 2], 2.0);
+}
+
+BOOST_AUTO_TEST_CASE(a_scan_without_noise_has_right_radii)
+{
+  pcs::Tree_habit habit = pcs::fruit_habit();
+  habit.flattest_section = 1;
+  pcs::Virtual_scanner scanner;
+  scanner.angular_step = 0.1 * CGAL_PI / 180;
+  scanner.range_noise = scanner.registration_error = scanner.bark_depth = scanner.beam_width = 0;
+  scanner.outlier_share = 0;
+  Tree truth, tree;
+  pcs::grow_tree(truth, habit, pcs::parameters::random_seed(1));
+  pcs::Virtual_scan<Kernel> scan;
+  pcs::scan_tree(truth, scan, scanner, pcs::parameters::random_seed(1));
+  pcs::extract_tree_skeleton(scan.points, tree);
+  // radii of 5 to 10 mm: nine in ten were within 90 % where points were believed to have no noise
+  std::vector<double> errors;
+  for (const auto v : boost::make_iterator_range(vertices(truth))) {
+    const double radius = truth[v].radius;
+    if (radius < 0.005 || radius > 0.01 || scan.hits[v] == 0)
+      continue;
+    double nearest = 1e-4, error = -1; // of nodes within a centimetre
+    for (const auto w : boost::make_iterator_range(vertices(tree))) {
+      const double d = CGAL::squared_distance(tree[w].point, truth[v].point);
+      if (d < nearest) {
+        nearest = d;
+        error = std::abs(tree[w].radius - radius) / radius;
+      }
+    }
+    if (error >= 0)
+      errors.push_back(error);
+  }
+  std::sort(errors.begin(), errors.end());
+  BOOST_TEST_REQUIRE(errors.size() > 500u);
+  BOOST_TEST(errors[errors.size() / 2] < 0.02);
+  BOOST_TEST(errors[errors.size() * 9 / 10] < 0.4);
 }
 
 BOOST_AUTO_TEST_CASE(what_strays_from_wood_is_no_branch_and_no_leaf)

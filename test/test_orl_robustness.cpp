@@ -539,7 +539,7 @@ BOOST_AUTO_TEST_CASE(bases_on_axes_are_found_among_twenty_thousand_children)
         0);
   for (std::size_t k = 0; k < number_on_axes; ++k)
     add(0.3 * star.points[1 + 13 * k], 0);
-  const pcs::shape_space::Rooted_tree found = pcs::shape_space::with_nodes_at_bases(star);
+  const pcs::shape_space::Rooted_tree found = pcs::shape_space::internal::with_nodes_at_bases(star);
   BOOST_TEST(found.size() == 1 + number + 2 * number_on_axes);
   std::size_t number_on_their_axis = 0;
   for (std::size_t v = 0; v < found.size(); ++v)

@@ -124,6 +124,20 @@ BOOST_AUTO_TEST_CASE(duplicates_change_nothing)
 }
 
 // The same scan with other digits, or fired twice: no point has a new neighbour at the distance of the others.
+BOOST_AUTO_TEST_CASE(points_at_random_on_a_line_are_no_copies)
+{
+  for (const std::size_t n : {200u, 500u, 2000u})
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+      std::mt19937 random(seed);
+      std::uniform_real_distribution<double> place(0, 1);
+      std::vector<Point> points;
+      for (std::size_t i = 0; i < n; ++i)
+        points.emplace_back(0, 0, place(random));
+      Tree tree;
+      BOOST_TEST(pcs::extract_tree_skeleton(points, tree).number_of_duplicates < n / 50);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(copies_of_points_change_little)
 {
   const Cloud points = pcs_test::small_scan().scan.points;

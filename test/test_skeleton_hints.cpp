@@ -5,6 +5,7 @@
 #include <pcs/extract_tree_skeleton.h>
 #include <pcs/generators/scan_tree.h>
 #include <pcs/generators/tree_fixtures.h>
+#include <support/exceptions.h>
 #include <support/tree_clouds.h>
 
 #include <boost/graph/adjacency_list.hpp>
@@ -16,6 +17,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <random>
 #include <type_traits>
 #include <vector>
 
@@ -113,7 +115,39 @@ BOOST_AUTO_TEST_CASE(a_given_skeleton_is_measured_where_it_is)
   Tree found, again;
   pcs::extract_tree_skeleton(points, found);
   pcs::extract_tree_skeleton(points, again, pcs::parameters::given_skeleton(found));
+  BOOST_TEST_REQUIRE(num_vertices(again) == num_vertices(found));
   BOOST_CHECK_CLOSE(again[num_vertices(again) / 4].radius, 0.1, 2.0);
+}
+
+BOOST_AUTO_TEST_CASE(a_given_skeleton_measures_neither_ground_nor_noise)
+{
+  // the own skeleton of a tree, with ground around it
+  const auto& scan = pcs_test::small_scan().scan;
+  Cloud points = scan.points;
+  const std::size_t number_of_tree = points.size();
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> side(-2, 2);
+  std::normal_distribution<double> height(0, 0.003);
+  for (int i = 0; i < 20000; ++i)
+    points.emplace_back(side(random), side(random), height(random));
+  Tree found, again;
+  std::map<Point, std::size_t> branch;
+  const auto alone = pcs::extract_tree_skeleton(points, found);
+  const auto report =
+      pcs::extract_tree_skeleton(points,
+                                 again,
+                                 pcs::parameters::given_skeleton(found).point_branch_map(
+                                     boost::make_assoc_property_map(branch)));
+  BOOST_TEST(alone.number_of_ground_points > 15000u);
+  BOOST_TEST(report.number_of_ground_points == alone.number_of_ground_points);
+  std::size_t number_on_ground = 0;
+  for (std::size_t i = number_of_tree; i < points.size(); ++i)
+    number_on_ground += branch.at(points[i]) != pcs::npos;
+  BOOST_TEST(number_on_ground < 200u);
+  BOOST_CHECK_CLOSE(report.noise, alone.noise, 20.0);
+  BOOST_CHECK_CLOSE(report.total.volume, alone.total.volume, 5.0);
+  BOOST_CHECK_CLOSE(report.diameter_at_breast_height, alone.diameter_at_breast_height, 2.0);
+  BOOST_TEST(report.residual < 1.5 * report.noise);
 }
 
 BOOST_AUTO_TEST_CASE(given_branches_without_points_taper)
@@ -182,6 +216,10 @@ BOOST_AUTO_TEST_CASE(hints_that_make_no_sense_are_refused)
   BOOST_CHECK_THROW(pcs::extract_tree_skeleton(points, tree, given_skeleton(broken)),
                     pcs::Invalid_input);
   // they belong to another scan
+  const std::vector<Point> elsewhere{Point(448576, 5411234, 312)};
+  BOOST_CHECK_EXCEPTION(pcs::extract_tree_skeleton(points, tree, scanner_positions(elsewhere)),
+                        pcs::Invalid_input,
+                        pcs_test::message_has("other coordinates"));
   BOOST_CHECK_THROW(pcs::extract_tree_skeleton(points, tree, root_position(Point(0, 0, -3))),
                     pcs::Invalid_input);
   broken[1].point = Point(0, 0, 1e101);
@@ -193,6 +231,21 @@ BOOST_AUTO_TEST_CASE(hints_that_make_no_sense_are_refused)
       moved[v].point = Point(50 * scale, 0, scale * double(v));
     BOOST_CHECK_THROW(pcs::extract_tree_skeleton(points, tree, given_skeleton(moved)),
                       pcs::Invalid_input);
+  }
+  for (const auto& spoil : std::vector<std::function<void(pcs::skeleton::Slice_rules&)>>{
+           [](auto& r) { r.height = 0; },
+           [&](auto& r) { r.height = bad; },
+           [](auto& r) { r.highest_count = 5; },
+           [](auto& r) { r.lowest_count = 5; },
+           [](auto& r) { r.largest_radius = -1; },
+           [](auto& r) { r.upright = 1.1; },
+           [](auto& r) { r.tilts = -1; },
+           [](auto& r) { r.support_cosine = 2; }}) {
+    pcs::skeleton::Slice_rules rules;
+    spoil(rules);
+    BOOST_CHECK_EXCEPTION(pcs::extract_tree_skeleton(points, tree, slice_rules(rules)),
+                          pcs::Invalid_input,
+                          pcs_test::message_has("slice_rules"));
   }
   BOOST_TEST(num_vertices(tree) == 0u);
   // a little below the lowest points is no mistake

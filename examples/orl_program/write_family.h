@@ -57,7 +57,7 @@ inline void write_modes(const Space& space, const std::vector<Tree_file>& files,
   json["left_out_error_of_mean"] = modes.left_out_error(0);
   for (std::size_t h = 0; h < space.number_of_trees(); ++h)
     json["outlier_scores"].push_back(space.outlier_score(modes, space.tree(h)));
-  report.commit(json.dump(2) + "\n");
+  report.commit(json);
 }
 
 inline void write_samples(const Space& space, const std::vector<Tree_file>& files, const Options& o)

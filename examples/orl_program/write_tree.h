@@ -41,21 +41,19 @@ inline void copy_properties(const Space& space,
     if (!is_common)
       continue;
     std::vector<std::vector<double>> values;
-    for (const Tree_file& file : files)
+    pcs::IO::Scalar_type type = files[0].points.property_type(name);
+    for (const Tree_file& file : files) {
       values.push_back(file.points.property_as_double(name));
-    std::visit(
-        [&](const auto& like) {
-          using T = typename std::decay_t<decltype(like)>::value_type;
-          std::vector<Mixed_value<T>> mixed(out.number_of_points(), Mixed_value<T>(is_color(name)));
-          space.for_each_source(tree, [&](std::size_t i, std::size_t h, std::size_t k, double w) {
-            mixed[i].add(values[h][k], w);
-          });
-          std::vector<T> own(mixed.size());
-          for (std::size_t i = 0; i < own.size(); ++i)
-            own[i] = mixed[i].get();
-          out.add_property(name, std::move(own));
-        },
-        files[0].points.property_values(name));
+      type = wider_type(type, file.points.property_type(name));
+    }
+    std::vector<Mixed_value> mixed(out.number_of_points(), Mixed_value(type, name));
+    space.for_each_source(tree, [&](std::size_t i, std::size_t h, std::size_t k, double w) {
+      mixed[i].add(values[h][k], w);
+    });
+    std::vector<double> own;
+    for (const Mixed_value& value : mixed)
+      own.push_back(value.get());
+    add_property(name, type, own, out);
   }
 }
 

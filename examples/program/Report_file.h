@@ -7,6 +7,8 @@
 
 #include <pcs/core/errors.h>
 
+#include <nlohmann/json.hpp>
+
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -47,6 +49,12 @@ public:
   Report_file& operator=(const Report_file&) = delete;
 
   ~Report_file() { remove_temporary(); }
+
+  /// Names of files need not be UTF-8: what is not is replaced.
+  void commit(const nlohmann::ordered_json& json)
+  {
+    commit(json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  }
 
   void commit(const std::string& text)
   {

@@ -59,7 +59,7 @@ struct Run_report
   double seconds_read = 0, seconds_write = 0, seconds_total = 0;
 };
 
-inline std::string to_json(const Run_report& run, const Options& options)
+inline nlohmann::ordered_json to_json(const Run_report& run, const Options& options)
 {
   const pcs::Deformation_report& r = run.deformation;
   nlohmann::ordered_json json;
@@ -99,8 +99,7 @@ inline std::string to_json(const Run_report& run, const Options& options)
                      {"total", run.seconds_total}};
   json["peak_memory_MB"] = peak_memory();
   json["warnings"] = run.warnings;
-  // names of files need not be UTF-8
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return json;
 }
 
 inline void print_summary(std::ostream& out, const Run_report& run, const Options& options)

@@ -91,7 +91,9 @@ inline void declare(CLI::App& app, Skeleton_options& options)
   app.add_option("--swc", options.swc, "the skeleton");
   app.add_option("--mesh", options.mesh, "the closed surface, PLY or OBJ");
   app.add_option("--leaves", options.leaves, "leaves made up on fine branches, PLY or OBJ");
-  app.add_option("--cylinders", options.cylinders, "one row per piece of branch, CSV");
+  app.add_option("--cylinders",
+                 options.cylinders,
+                 "one row per piece of branch, CSV; branches count from 1 there");
   app.add_option("--edges", options.edges, "the skeleton as vertices and edges, PLY");
   app.add_option("--points", options.points, "the scan with the branch of every point");
   app.add_option("--report", options.report, "counts, sizes and seconds, JSON");
@@ -112,7 +114,7 @@ inline void declare(CLI::App& app, Skeleton_options& options)
   app.add_option("--wood", options.wood, "property that tells wood (1) from leaves (0)");
   app.add_option("--skeleton",
                  options.given,
-                 "SWC: measure along this skeleton instead of looking for branches")
+                 "SWC: measure along this skeleton; its positions stay")
       ->excludes("--root");
   app.add_option("--breast-height", options.breast_height, "height of the diameter in the report")
       ->capture_default_str();

@@ -109,7 +109,7 @@ public:
       \np{beam_width} angle of the scanner's beam; 0: radii are left as they are. Read with `scanner_positions` [rad]
         \nptype floating point, `>= 0`
         \npdefault `default_beam_width`
-      \np{given_skeleton} a skeleton that is measured instead of looking for one: its positions stay, radii, sections and the
+      \np{given_skeleton} a skeleton that is measured: its positions stay, radii, sections and the
           branches of points come from the scan
         \nptype model of `VertexListGraph` and `IncidenceGraph` of Boost, a tree with edges from parent to child
             (`std::cref()` of one saves the copy)

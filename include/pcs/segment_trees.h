@@ -21,10 +21,12 @@
 
 #include <CGAL/property_map.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <functional>
 #include <iterator>
+#include <sstream>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -40,6 +42,7 @@ struct Segmented_tree
       foot{}; ///< where the axis of its thickest stem begins, in the coordinates of the input
   double radius = 0; ///< of that stem, the largest up to half the breast height above the foot [L]
   std::size_t number_of_points = 0; ///< [count]
+  double height = 0;                ///< of its highest point above the foot [L]
 };
 
 //! \ingroup PkgPcsSkeletonRef
@@ -52,8 +55,27 @@ struct Segmentation_report
   std::size_t number_of_unassigned_points =
       0;                             ///< ground, walls, outliers, and what no tree reaches [count]
   std::vector<Segmented_tree> trees; ///< the thick ones first
+  double breast_height = 0;          ///< as it was given [L]
   double seconds = 0;                ///< wall time [s]
 };
+
+//! \ingroup PkgPcsSkeletonRef
+//! what makes a segmentation doubtful, a sentence each; empty for most
+inline std::vector<std::string> warnings(const Segmentation_report& r)
+{
+  constexpr double tallest =
+      100; // by the breast height; the tallest of all trees is 116 m high [-]
+  double height = 0;
+  for (const Segmented_tree& tree : r.trees)
+    height = std::max(height, tree.height);
+  if (!(r.breast_height > 0 && height > tallest * r.breast_height))
+    return {};
+  std::ostringstream sentence;
+  sentence.precision(3);
+  sentence << "a tree is " << height / r.breast_height
+           << " times as high as breast height, which may be in another unit than the scan";
+  return {sentence.str()};
+}
 
 /*!
   \ingroup PkgPcsSkeletonRef
@@ -140,18 +162,24 @@ Segmentation_report segment_trees(PointRange& points,
     internal::Progress progress(
         internal::choose(np, CGAL::internal_np::callback, std::function<bool(double)>()));
     report.number_of_points = input.size();
+    report.breast_height = hints.breast_height;
     skeleton::Forest forest;
     if (!skeleton::find_trees<ConcurrencyTag>(input, hints, progress, forest)) {
       report.status = Status::cancelled;
       return report;
     }
     for (const skeleton::Standing_tree& tree : forest.trees)
-      report.trees.push_back({{tree.foot.x(), tree.foot.y(), tree.foot.z()}, tree.radius, 0});
+      report.trees.push_back({{tree.foot.x(), tree.foot.y(), tree.foot.z()}, tree.radius});
     std::size_t i = 0;
     for (auto it = std::begin(points); it != std::end(points); ++it, ++i) {
       const skeleton::Index tree = forest.tree_of_input[i];
-      ++(tree == skeleton::none ? report.number_of_unassigned_points
-                                : report.trees[tree].number_of_points);
+      if (tree == skeleton::none)
+        ++report.number_of_unassigned_points;
+      else {
+        Segmented_tree& found = report.trees[tree];
+        ++found.number_of_points;
+        found.height = std::max(found.height, hints.up.dot(input[i] - forest.trees[tree].foot));
+      }
       put(point_tree_map,
           *it,
           static_cast<Map_value<PointTreeMap>>(tree == skeleton::none ? npos : std::size_t(tree)));

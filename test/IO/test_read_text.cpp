@@ -48,6 +48,36 @@ BOOST_AUTO_TEST_CASE(a_header_names_the_columns)
   BOOST_TEST(read("a.csv", "x y z\n").number_of_points() == 0u);
 }
 
+BOOST_AUTO_TEST_CASE(a_comment_before_the_first_row_may_name_the_columns)
+{
+  for (const char* text : {"//X Y Z wood\n1 2 3 1\n",
+                           "# some scan\n# x y z wood\n1 2 3 1\n",
+                           "//X,Y,Z,wood\n1,2,3,1\n",
+                           "# X Y Z wood\n1;2;3;1\n",
+                           "1\n//X Y Z wood\n1 2 3 1\n"}) {
+    const Point_table table = read("a.txt", text);
+    BOOST_TEST((table.points() == std::vector<Point_3>{Point_3(1, 2, 3)}));
+    BOOST_TEST((table.property_names() == std::vector<std::string>{"wood"}));
+  }
+  for (const char* text : {"# X Y Z wood\n# another\n1 2 3 1\n", // the last one decides
+                           "# X Y Z\n1 2 3 1\n",
+                           "# X Y Z 7\n1 2 3 1\n",
+                           "# a b c d\n1 2 3 1\n",
+                           "# x y z z\n1 2 3 1\n",
+                           "1 2 3 1\n# x y z wood\n",
+                           "#\n1 2 3 1\n"})
+    BOOST_TEST((read("a.txt", text).property_names() == std::vector<std::string>{"column_4"}));
+  const Point_table moved = read("a.txt", "# wood X Y Z\n1 2 3 4\n");
+  BOOST_TEST((moved.points() == std::vector<Point_3>{Point_3(2, 3, 4)}));
+}
+
+BOOST_AUTO_TEST_CASE(the_first_column_may_have_no_name)
+{
+  const Point_table table = read("a.csv", ",x,y,z\n0,1,2,3\n1,4,5,6\n");
+  BOOST_TEST((table.points()[1] == Point_3(4, 5, 6)));
+  BOOST_TEST((table.property<double>("column_1") == std::vector<double>{0, 1}));
+}
+
 BOOST_AUTO_TEST_CASE(malformed_headers_are_refused)
 {
   refuses("a.csv", "x,y,label\n1,2,3\n", "line 1: expected numbers, or the names");

@@ -169,6 +169,38 @@ BOOST_AUTO_TEST_CASE(values_that_are_no_numbers_have_no_part_in_the_points_betwe
   }
 }
 
+BOOST_AUTO_TEST_CASE(properties_have_a_type_that_holds_the_values_of_both)
+{
+  using Table = pcs::IO::Point_table;
+  const auto with_values = [&](const std::string& name, auto intensity, auto time, auto label) {
+    Table table = pcs::IO::read_points(path(name + ".ply"));
+    const std::size_t n = table.number_of_points();
+    table.add_property("intensity", std::vector<decltype(intensity)>(n, intensity));
+    table.add_property("time", std::vector<decltype(time)>(n, time));
+    table.add_property("label", std::vector<decltype(label)>(n, label));
+    pcs::IO::write_points(path(name + "_values.ply"), table);
+  };
+  with_values("a", std::uint8_t(200), 0.f, std::int8_t(-3));
+  with_values("b", std::uint16_t(1000), 1234567890.123, std::uint8_t(200));
+  succeeds("--tree a_values.ply --skeleton a.swc --tree b_values.ply --skeleton b.swc --lambda "
+           "0,1 --output out");
+  using Type = pcs::IO::Scalar_type;
+  for (const bool is_second : {false, true}) {
+    const Table points =
+        pcs::IO::read_points(path(is_second ? "out/lambda_1.000.ply" : "out/lambda_0.000.ply"));
+    BOOST_TEST((points.property_type("intensity") == Type::uint16));
+    BOOST_TEST((points.property_type("time") == Type::float64));
+    BOOST_TEST((points.property_type("label") == Type::int16));
+    const auto has = [&](const std::string& name, double value) {
+      const std::vector<double> values = points.property_as_double(name);
+      return std::count(values.begin(), values.end(), value);
+    };
+    BOOST_TEST(has("intensity", is_second ? 1000 : 200) >= 2000);
+    BOOST_TEST(has("time", is_second ? 1234567890.123 : 0) >= 2000);
+    BOOST_TEST(has("label", is_second ? 200 : -3) >= 2000);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(skeletons_alone_give_skeletons_alone)
 {
   write("a.txtskl", txtskl);

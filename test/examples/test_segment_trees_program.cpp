@@ -15,9 +15,11 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <examples/Program_run.h>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -81,6 +83,39 @@ BOOST_AUTO_TEST_CASE(files_labels_and_report_agree)
   BOOST_TEST(json["points"] == tree.size());
   BOOST_TEST(json["unassigned_points"] == tree.size() - assigned);
   BOOST_TEST(double(assigned) > 0.98 * double(tree.size()));
+}
+
+BOOST_AUTO_TEST_CASE(trees_have_heights_and_a_wrong_unit_is_noticed)
+{
+  BOOST_TEST_REQUIRE(run("--input stand.ply --report report.json --quiet") == 0, err);
+  BOOST_TEST(err.empty(), err);
+  const auto json = nlohmann::json::parse(content("report.json"));
+  const auto points = pcs::IO::read_points(path("stand.ply")).points();
+  double highest = 0;
+  for (const auto& p : points)
+    highest = std::max(highest, CGAL::to_double(p.z()));
+  for (const auto& tree : json["trees"])
+    BOOST_TEST(std::abs(tree["height"].get<double>() - highest) < 0.1);
+  BOOST_TEST(json["warnings"].empty());
+  std::vector<Kernel::Point_3> in_millimetres;
+  for (const auto& p : points)
+    in_millimetres.emplace_back(1000 * p.x(), 1000 * p.y(), 1000 * p.z());
+  pcs::IO::write_points(path("millimetres.ply"), in_millimetres);
+  if (run("--input millimetres.ply --report report.json") == 0)
+    BOOST_TEST(err.find("another unit") != std::string::npos, err);
+  else
+    BOOST_TEST(err.find("no stem") != std::string::npos, err);
+}
+
+BOOST_AUTO_TEST_CASE(names_of_files_need_not_be_utf_8)
+{
+  std::filesystem::copy_file(path("stand.ply"),
+                             path("B\xfc"
+                                  "che.ply"));
+  BOOST_TEST_REQUIRE(run("--input B\xfc"
+                         "che.ply --report report.json") == 0,
+                     err);
+  BOOST_TEST(nlohmann::json::parse(content("report.json"))["trees"].size() == 2u);
 }
 
 BOOST_AUTO_TEST_CASE(small_trees_get_no_file)

@@ -216,6 +216,47 @@ BOOST_AUTO_TEST_CASE(shortest_paths_are_those_of_boost)
   }));
 }
 
+BOOST_AUTO_TEST_CASE(gaps_are_closed_by_the_shortest_links)
+{
+  // few large parts, and many small ones: in the first case only points that have others about search
+  for (const auto& [number, size] : {std::make_pair(4, 600), std::make_pair(30, 25)}) {
+    const Sheets s(number, size, 20);
+    for (const double gap : {30.0, 60.0}) {
+      pcs::skeleton::Link_rule rule;
+      rule.gap = gap;
+      const Links links = pcs::skeleton::neighbor_links<Any_tag>(s.scan, s.is_used, rule);
+      const auto parts = pcs::skeleton::connected_parts<Any_tag>(s.is_used, links);
+      // Kruskal's tree of the parts over all pairs of points
+      std::vector<std::pair<double, Link>> pairs;
+      const double widest = gap * s.scan.spacing;
+      for (Index i = 0; i < s.scan.size(); ++i)
+        for (Index j = i + 1; j < s.scan.size(); ++j)
+          if (s.is_used[i] && s.is_used[j] && parts.part[i] != parts.part[j])
+            if (const double d = (s.scan.points[i] - s.scan.points[j]).norm(); d < widest)
+              pairs.push_back({d, {i, j}});
+      std::sort(pairs.begin(), pairs.end());
+      pcs::skeleton::Point_sets sets(s.scan.size());
+      double expected = 0, found = 0;
+      std::size_t number_expected = 0;
+      for (const auto& [d, link] : pairs)
+        if (const Index a = parts.part[link.first], b = parts.part[link.second];
+            sets.find(a) != sets.find(b)) {
+          sets.unite(a, b);
+          expected += d;
+          ++number_expected;
+        }
+      const Links gaps = links_across_gaps(s.scan, s.is_used, rule, parts);
+      for (const Link& l : gaps)
+        found += (s.scan.points[l.first] - s.scan.points[l.second]).norm();
+      BOOST_TEST_CONTEXT(number << " parts, gap " << gap)
+      {
+        BOOST_TEST(gaps.size() == number_expected);
+        BOOST_TEST(std::abs(found - expected) <= 1e-9 * (1 + expected));
+      }
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(copies_of_a_point_are_one_place)
 {
   std::mt19937 random(3);

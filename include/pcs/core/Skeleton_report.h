@@ -94,6 +94,7 @@ inline std::vector<std::string> warnings(const Skeleton_report& r)
   // volume by the cube of the height or of the length of the trunk: trees up to 0.003, a post of ten diameters 0.008, spheres
   // that are taken for many thin branches 0.02 and more [-]
   constexpr double most_wood = 0.015;
+  constexpr double many = 0.5; // leaves, of the points that are neither ground nor walls [-]
   constexpr double tallest =
       100; // by the breast height; the tallest of all trees is 116 m high [-]
   std::vector<std::string> sentences;
@@ -109,6 +110,11 @@ inline std::vector<std::string> warnings(const Skeleton_report& r)
     sentences.push_back(std::to_string(r.number_of_wall_points) +
                         " points lie on walls or other flat faces, or beside them, and are left "
                         "out; more of such things may be among the branches");
+  if (const double tree = double(r.number_of_points) - double(r.number_of_ground_points) -
+                          double(r.number_of_wall_points);
+      double(r.number_of_leaf_points) > many * tree)
+    sentences.push_back("most of the points are taken for leaves, which hide wood: radii and "
+                        "volume may differ much between scans of the same tree");
   if (r.grid_step > 0) {
     std::ostringstream size;
     size.precision(3);

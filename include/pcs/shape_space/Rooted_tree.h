@@ -134,8 +134,6 @@ inline std::vector<std::size_t> levels_of_branches(const Rooted_tree& tree)
 /// A node this close to the axis of an edge, as a share of the radius there, begins a branch on that axis.
 constexpr double on_axis = 1e-3;
 
-namespace internal {
-
 /*!
   For each child of `p`, that whose edge runs through it, the longest one first of equals, or `none`. Children are looked at by
   the x coordinates of their directions: O(n log n) for `n` of them in all directions.
@@ -183,8 +181,6 @@ axes_through(const Rooted_tree& tree, std::size_t p, const std::vector<std::size
   return result;
 }
 
-} // namespace internal
-
 /*!
   Where the first node of a branch lies on the axis of its parent, between two nodes of that, the axis gets a node there.
   Without it the branch would seem to begin at the node before, and to run along its parent.
@@ -214,7 +210,7 @@ inline Rooted_tree with_nodes_at_bases(const Rooted_tree& all)
   };
   for (std::size_t p = 0; p < n; ++p) {
     std::vector<std::vector<Base>> bases(children[p].size());
-    const std::vector<std::size_t> axis_of = internal::axes_through(all, p, children[p]);
+    const std::vector<std::size_t> axis_of = axes_through(all, p, children[p]);
     for (std::size_t i = 0; i < children[p].size(); ++i)
       if (axis_of[i] != none) {
         std::size_t axis = axis_of[i];

@@ -36,16 +36,18 @@ inline void find_growth_direction(Tree_family& family)
   family.up = sum.norm() > 0 ? Vec3(sum.normalized()) : Vec3(Vec3::UnitZ());
 }
 
-/// The same tree, with every orientation in the frame of the edge that it refers to.
-inline void measure_in_frames(const Orl_layout& layout, Orientation kind, Orl_coordinates& x)
+/// The same tree, of which orientations were in frames or in world axes, in the other ones: those of `kind`.
+inline void measure_as(Orientation kind, const Orl_layout& layout, Orl_coordinates& x)
 {
-  if (kind != Orientation::world_axes)
-    return;
   Orl_geometry geometry;
-  build_geometry(layout, x, kind, geometry);
+  build_geometry(layout,
+                 x,
+                 kind == Orientation::world_axes ? Orientation::gauge_fixed
+                                                 : Orientation::world_axes,
+                 geometry);
   for (std::size_t e = 0; e < layout.number_of_edges(); ++e)
     if (const std::size_t p = layout.parent_edge[e]; p != none)
-      x.orientation[e] = relative(Orientation::gauge_fixed, geometry.frame[p], geometry.frame[e]);
+      x.orientation[e] = relative(kind, geometry.frame[p], geometry.frame[e]);
 }
 
 } // namespace internal
@@ -87,7 +89,8 @@ inline Tree_family make_family(const Embedded_pair& pair,
           family.reference.radius[e] = pair.x[t].radius[e];
         }
       }
-  internal::measure_in_frames(family.layout, family.orientation, family.reference);
+  if (family.orientation == Orientation::world_axes)
+    internal::measure_as(Orientation::gauge_fixed, family.layout, family.reference);
   internal::find_growth_direction(family);
   return family;
 }
@@ -179,12 +182,15 @@ Orl_coordinates embed_tree(const Tree_family& family, const Rooted_tree& tree, d
                           Quaternion::Identity(),
                           x);
   internal::set_own_orientations(family.layout, family.orientation, x);
+  Orl_coordinates reference = family.reference;
+  if (family.orientation == Orientation::world_axes) // it is measured in frames
+    internal::measure_as(Orientation::world_axes, family.layout, reference);
   for (std::size_t b = 0; b < branches.size(); ++b)
     if (!branches[b].has(0)) {
-      x.x.attachment[b] = family.reference.attachment[b];
+      x.x.attachment[b] = reference.attachment[b];
       const std::size_t first = family.layout.branches[b].first_edge;
       for (std::size_t e = first; e < first + branches[b].number_of_edges; ++e)
-        x.x.orientation[e] = family.reference.orientation[e];
+        x.x.orientation[e] = reference.orientation[e];
     }
   return std::move(x.x);
 }

@@ -63,8 +63,8 @@ public:
   explicit Section_line(const std::vector<Section>& all = {})
   {
     for (const Section& s : all) {
-      const double step = m_sections.empty() ? 1 : (m_sections.back().center - s.center).norm();
-      if (!(step > 1e-9 * (1 + s.radius)))
+      const double step = m_sections.empty() ? 0 : (m_sections.back().center - s.center).norm();
+      if (!m_sections.empty() && !(step > 1e-9 * s.radius))
         continue;
       m_at.push_back(m_sections.empty() ? 0 : m_at.back() + step);
       m_sections.push_back(s);

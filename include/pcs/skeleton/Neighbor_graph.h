@@ -7,6 +7,7 @@
 
 #include <pcs/internal/Huge_page_allocator.h>
 #include <pcs/internal/parallel.h>
+#include <pcs/skeleton/Point_cells.h>
 #include <pcs/skeleton/Scan.h>
 
 #include <boost/graph/compressed_sparse_row_graph.hpp>
@@ -16,6 +17,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -226,7 +228,7 @@ Point_parts connected_parts(const std::vector<std::uint8_t>& is_used, const Link
 
 /*!
   The shortest links that join the parts of the points of `is_used`, in Boruvka's rounds, up to the widest gap of the rule. The
-  largest part never searches: the others find it.
+  largest part never searches: the others find it. Where much lies outside of it, only points that have others about search.
 */
 inline Links links_across_gaps(const Scan& scan,
                                const std::vector<std::uint8_t>& is_used,
@@ -244,6 +246,7 @@ inline Links links_across_gaps(const Scan& scan,
   };
   std::vector<Index> label = parts.part, size;
   std::vector<Best> best;
+  std::optional<Point_cells> cells;
   while (widest > 0) {
     size.assign(n, 0);
     for (Index i = 0; i < n; ++i)
@@ -252,8 +255,16 @@ inline Links links_across_gaps(const Scan& scan,
     const Index largest =
         static_cast<Index>(std::max_element(size.begin(), size.end()) - size.begin());
     best.assign(n, {widest * widest, {none, none}});
+    std::size_t number_of_others = 0; // points outside of the largest part
+    for (Index i = 0; i < n; ++i)
+      number_of_others += is_used[i] && label[i] != largest;
+    if (number_of_others == 0)
+      break;
+    if (number_of_others > n / 8 && !cells) // else it would cost more than it saves
+      cells.emplace(scan.points, is_used, widest);
+    const std::vector<Index> around = cells ? cells->common_label(label) : std::vector<Index>();
     for (Index i = 0; i < n; ++i) {
-      if (!is_used[i] || label[i] == largest)
+      if (!is_used[i] || label[i] == largest || (cells && around[cells->cell_of(i)] == label[i]))
         continue;
       Best& b = best[label[i]];
       const auto found =

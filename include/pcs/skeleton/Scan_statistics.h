@@ -23,6 +23,9 @@ namespace skeleton {
 class Scan_statistics
 {
 public:
+  /// Points are not believed to lie nearer to surfaces than `least_noise` [L].
+  explicit Scan_statistics(double least_noise) : m_least_noise(least_noise) {}
+
   void add_deviations(const std::vector<double>& values)
   {
     const std::size_t room = capacity - std::min(capacity, m_deviations.size());
@@ -42,7 +45,8 @@ public:
     if (m_deviations.size() >= enough_deviations && m_deviations.size() != m_learned_deviations) {
       m_learned_deviations = m_deviations.size();
       std::vector<double> copy = m_deviations;
-      set.noise = 1.4826 * median(copy); // standard deviation from the median of |e|
+      // standard deviation from the median of |e|
+      set.noise = std::max(m_least_noise, 1.4826 * median(copy));
     }
     if (m_densities.size() >= enough_densities &&
         (m_densities.size() != m_learned_densities || set.noise != m_learned_noise)) {
@@ -78,6 +82,7 @@ private:
   static constexpr double field_growth = 1.5; ///< of the samples, until the field is fitted again
   static constexpr double thick_radius =
       6; ///< in noise: here the radius, hence the density, has no bias
+  double m_least_noise;
   std::vector<double> m_deviations;
   std::vector<Density_sample> m_densities;
   // what the last lesson was from

@@ -33,7 +33,7 @@ struct Session_hints
   Vec3 up = Vec3::UnitZ();
   std::optional<Vec3> root; ///< in the coordinates of the input, as the next two
   std::vector<Vec3> scanners;
-  std::optional<Given_skeleton> given; ///< measured, instead of looking for branches
+  std::optional<Given_skeleton> given; ///< measured; its positions stay
   double beam_width = 0;               ///< of the scanners [rad]
   bool do_mark_ground = true;
   Leaf_removal leaf_removal = Leaf_removal::where_found; ///< by the method `chains`

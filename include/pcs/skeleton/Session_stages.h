@@ -61,6 +61,12 @@ public:
     m_options.breast_height /= unit;
     std::vector<Vec3>().swap(m_input);
     m_used.start(m_is_wood);
+    if (m_options.given) { // it stands where the tree stands, and tells where there may be one
+      m_may_be_used = m_used.flags();
+      m_options.method = Skeleton_method::chains;
+      if (!m_options.root)
+        m_options.root = m_options.given->points.front();
+    }
     for (Vec3& s : m_options.scanners)
       s = m_scan.frame.to_local(s);
     m_report.seconds.neighbors = watch.lap();
@@ -75,10 +81,6 @@ public:
     if (m_stage >= 2)
       return true;
     pcs::internal::Stopwatch watch;
-    if (m_options.given) {
-      m_stage = 2;
-      return progress(0.6);
-    }
     if (m_options.do_mark_ground && !m_are_walls_out) { // when stopped below, they are
       if (is_one_sheet(m_scan, m_used.flags(), m_options.ground.sheet)) {
         m_used.leave_out_all();
@@ -133,7 +135,12 @@ public:
       const std::vector<Surface_frame> frames = principal_curvatures<ConcurrencyTag>(m_scan);
       if (!progress(0.7))
         return false;
-      m_sections = detect_sections(m_scan, m_used.flags(), frames, m_options.slices);
+      bool is_running = true;
+      m_sections = detect_sections(m_scan, m_used.flags(), frames, m_options.slices, [&](double f) {
+        return is_running = progress(0.7 + 0.2 * f);
+      });
+      if (!is_running)
+        return false;
       m_report.seconds.axes = watch.lap();
       m_stage = 3;
       return progress(0.9);
@@ -156,9 +163,8 @@ public:
     if (!m_has_leaves)
       m_used.return_leaves();
     fuse_axes<ConcurrencyTag>(m_scan.spacing, m_options.fusion, m_axes);
-    const double unit = m_scan.frame.unit;
-    m_report.noise = unit * m_axes.noise;
-    m_report.density = m_axes.density / (unit * unit);
+    m_report.noise = m_scan.frame.unit * m_axes.noise;
+    m_report.density = m_axes.density / (m_scan.frame.unit * m_scan.frame.unit);
     m_report.seconds.axes = watch.lap();
     m_stage = 3;
     return progress(0.9);
@@ -171,9 +177,7 @@ public:
     if (m_stage >= 4)
       return true;
     pcs::internal::Stopwatch watch;
-    if (m_options.given) {
-      m_tree = measure_given(m_scan, m_used.flags(), *m_options.given, m_options.given_rules);
-    } else if (m_options.method == Skeleton_method::sections && !m_root.empty()) {
+    if (m_options.method == Skeleton_method::sections && !m_root.empty()) {
       m_tree = section_skeleton(m_scan, m_used.flags(), m_sections, m_root, m_options.section_tree);
       correct_widening();
       count();
@@ -181,7 +185,7 @@ public:
       m_stage = 4;
       return progress(0.97);
     }
-    if (!m_axes.axes.empty()) { // none with a given skeleton
+    if (!m_axes.axes.empty()) {
       Index root = join_axes();
       while (m_regroupings + 1 < m_options.joints.rounds) {
         if (!progress(0.9 + 0.05 * (m_regroupings + 1) / m_options.joints.rounds))
@@ -212,9 +216,16 @@ public:
                 m_options.foot,
                 m_tree);
       follow_bounds(m_scan, fitted, m_axes.noise, m_options.following, m_tree);
-      m_report.number_of_other_stems =
-          count_other_stems(m_axes, m_joints, root, m_tree, m_options.stems);
+      if (!m_options.given) // which is one tree
+        m_report.number_of_other_stems =
+            count_other_stems(m_axes, m_joints, root, m_tree, m_options.stems);
     }
+    if (m_options.given)
+      m_tree = measure_given(m_scan,
+                             m_used.is_empty() ? m_may_be_used : m_used.flags(),
+                             *m_options.given,
+                             m_tree,
+                             m_options.given_rules);
     m_report.seconds.joints = watch.lap();
     if (!progress(0.97))
       return false;
@@ -244,7 +255,7 @@ public:
   /// The unit vector across its branch from the axis to an input point; null on the axis. It has a node.
   Vec3 normal_of_input(std::size_t i) const
   {
-    const Vec3 across = offset_of_point(m_scan, m_axes, m_tree, m_scan.point_of_input[i]);
+    const Vec3 across = offset_of_point(m_scan, m_tree, m_successors, m_scan.point_of_input[i]);
     const double length = across.norm();
     return length > 0 ? m_scan.frame.direction_to_input(across / length) : Vec3(Vec3::Zero());
   }
@@ -252,7 +263,8 @@ public:
   /// Distance of an input point from the surface of its branch; negative inside. It has a node.
   double residual_of_input(std::size_t i) const
   {
-    return m_scan.frame.unit * residual_of_point(m_scan, m_axes, m_tree, m_scan.point_of_input[i]);
+    return m_scan.frame.unit *
+           residual_of_point(m_scan, m_tree, m_successors, m_scan.point_of_input[i]);
   }
 
   /// Whether an input point is left out as a leaf, by the caller or because it was found to be one.
@@ -402,7 +414,8 @@ protected: // benchmark/training looks at what leaves are told by
       r.number_of_unexplained_points += !is_covered;
       r.number_of_unreached_points += is_covered && !has_node;
     }
-    r.residual = unit * median_residual(m_scan, m_axes, m_tree);
+    m_successors = successors(m_tree);
+    r.residual = unit * median_residual(m_scan, m_tree, m_successors);
     report_sizes(m_tree, unit, m_options.up, m_options.breast_height, r);
     if (!m_tree.nodes.empty())
       r.height = std::max(
@@ -411,7 +424,8 @@ protected: // benchmark/training looks at what leaves are told by
   }
 
   std::vector<Vec3> m_input;
-  std::vector<std::uint8_t> m_is_wood; ///< of the input
+  std::vector<std::uint8_t> m_is_wood;     ///< of the input
+  std::vector<std::uint8_t> m_may_be_used; ///< for a given skeleton: points before any are left out
   Session_options m_options;
   bool m_are_walls_out = false, m_has_leaves = false;
   int m_stage = 0, m_leaf_rounds = 0, m_regroupings = 0;
@@ -427,6 +441,7 @@ protected: // benchmark/training looks at what leaves are told by
   std::vector<Found_section> m_sections;
   std::vector<Joint> m_joints;
   Branch_tree m_tree;
+  std::vector<Index> m_successors; ///< of its nodes
 };
 
 } // namespace skeleton

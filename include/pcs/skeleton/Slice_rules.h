@@ -18,6 +18,9 @@ enum class Section_fit {
   by_arc   ///< an ellipse where nearly the whole turn is seen, else a circle
 };
 
+/// A conic has five degrees of freedom [count].
+constexpr std::size_t fewest_points_of_section = 6;
+
 /// The rules of section 3.7 of the dissertation; each may be replaced by ours.
 struct Slice_rules
 {

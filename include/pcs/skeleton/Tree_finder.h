@@ -5,7 +5,9 @@
 #ifndef PCS_SKELETON_TREE_FINDER_H
 #define PCS_SKELETON_TREE_FINDER_H
 
+#include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
+#include <pcs/neighborhood/Nearest_neighbors.h>
 #include <pcs/skeleton/Axis.h>
 #include <pcs/skeleton/Axis_set.h>
 #include <pcs/skeleton/Forest_rules.h>
@@ -350,19 +352,43 @@ private:
     return_feet();
   }
 
-  /// The part of the stems that was left out with the ground. On a slope it reaches above their feet.
+  /// The part of the stems that was left out with the ground, to the nearest one in radii. On a slope it reaches above their feet.
   void return_feet()
   {
-    for (Index i = 0; i < m_scan.size(); ++i) {
-      if (m_is_used[i] || !m_is_solid[i])
-        continue;
-      for (const Found_stem& stem : m_stems) {
-        const Vec3 d = m_scan.points[i] - stem.foot;
-        if (d.z() <= m_rules.base_radii * stem.radius && d.z() >= -m_rules.foot * m_breast_height &&
-            std::hypot(d.x(), d.y()) <= m_rules.base_radii * stem.radius + m_scan.spacing)
-          m_tree_of_point[i] = stem.tree;
-      }
+    if (m_stems.empty())
+      return;
+    const auto reach = [&](const Found_stem& stem) {
+      return m_rules.base_radii * stem.radius + m_scan.spacing;
+    };
+    std::vector<Vec3> feet;
+    double widest = 0;
+    for (const Found_stem& stem : m_stems) {
+      feet.emplace_back(stem.foot.x(), stem.foot.y(), 0);
+      widest = std::max(widest, reach(stem));
     }
+    const neighborhood::Nearest_neighbors search(feet);
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        m_scan.size(),
+        [&](std::size_t i) {
+          if (m_is_used[i] || !m_is_solid[i])
+            return;
+          const Vec3& p = m_scan.points[i];
+          std::vector<Index> near;
+          search.within(Vec3(p.x(), p.y(), 0), widest, near);
+          double best = 1; // share of the reach of a stem
+          for (const Index s : near) {
+            const Found_stem& stem = m_stems[s];
+            const Vec3 d = p - stem.foot;
+            const double share = std::hypot(d.x(), d.y()) / reach(stem);
+            const bool is_level = d.z() <= m_rules.base_radii * stem.radius &&
+                                  d.z() >= -m_rules.foot * m_breast_height;
+            if (is_level && (share < best || (share == best && stem.tree < m_tree_of_point[i]))) {
+              best = share;
+              m_tree_of_point[i] = stem.tree;
+            }
+          }
+        },
+        4096);
   }
 
   const Scan& m_scan;

@@ -9,6 +9,7 @@
 #include <pcs/skeleton/Branch_tree.h>
 #include <pcs/skeleton/Scan.h>
 #include <pcs/skeleton/limit_pipes.h>
+#include <pcs/skeleton/nearest_edge.h>
 
 #include <algorithm>
 #include <cmath>
@@ -58,20 +59,6 @@ struct Section_support
   }
 };
 
-namespace internal {
-
-/// The next node of the same branch; `none` at its tip.
-inline std::vector<Index> successors(const Branch_tree& tree)
-{
-  std::vector<Index> next(tree.nodes.size(), none);
-  for (const Branch& b : tree.branches)
-    for (std::size_t k = 0; k + 1 < b.nodes.size(); ++k)
-      next[b.nodes[k]] = b.nodes[k + 1];
-  return next;
-}
-
-} // namespace internal
-
 /// Counts the points on the surface of each node and inside of it. O(points).
 template <class ConcurrencyTag>
 Section_support support_of_sections(const Scan& scan,
@@ -79,7 +66,7 @@ Section_support support_of_sections(const Scan& scan,
                                     double noise,
                                     const Support_rules& rules)
 {
-  const std::vector<Index> next = internal::successors(tree);
+  const std::vector<Index> next = successors(tree);
   std::vector<std::uint8_t> is_inside(scan.size(), 0);
   pcs::internal::for_each_index<ConcurrencyTag>(
       scan.size(),
@@ -87,26 +74,10 @@ Section_support support_of_sections(const Scan& scan,
         const Index v = tree.node_of_point[i];
         if (v == none)
           return;
-        // the edge is the one before the node or one of the two behind it
-        double best = std::numeric_limits<double>::infinity(), radius = 0;
-        const auto offer = [&](Index a, Index b) {
-          if (a == none || b == none)
-            return;
-          const Branch_node &from = tree.nodes[a], &to = tree.nodes[b];
-          const Vec3 along = to.point - from.point, q = scan.points[i] - from.point;
-          const double length2 = along.squaredNorm();
-          const double t = length2 > 0 ? std::min(1.0, std::max(0.0, q.dot(along) / length2)) : 0;
-          const double d = (q - t * along).squaredNorm();
-          if (d < best) {
-            best = d;
-            radius = (1 - t) * from.radius + t * to.radius;
-          }
-        };
-        offer(tree.is_base(v) ? none : tree.nodes[v].parent, v);
-        offer(v, next[v]);
-        offer(next[v], next[v] == none ? none : next[next[v]]);
+        const auto [squared_distance, offset, radius] =
+            nearest_edge(tree, next, v, scan.points[i], Base_edge::left_out);
         const double depth = std::max(rules.depth_noise * noise, rules.depth * radius);
-        is_inside[i] = std::sqrt(best) < radius - depth;
+        is_inside[i] = std::sqrt(squared_distance) < radius - depth;
       },
       4096);
   Section_support support(tree);

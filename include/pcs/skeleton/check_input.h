@@ -68,6 +68,9 @@ inline void check_number_of_points(const std::vector<Vec3>& input, const std::st
                       std::to_string(lowest_number_of_scan_points));
 }
 
+/// Scanners that are farther away, in diagonals of the box of the points, stand in other coordinates [-].
+constexpr double farthest_scanner = 500;
+
 /// A given skeleton has a length.
 inline void check_given(const Given_skeleton& given, const std::string& function)
 {
@@ -84,7 +87,7 @@ inline void check_given(const Given_skeleton& given, const std::string& function
 
 /*!
   Throws `Invalid_input`, whose text begins with `function`, if there are too few points, or if the root or all of the given
-  skeleton is farther away from them than they are wide. O(n).
+  skeleton is farther away from them than they are wide, or a scanner far beyond that. O(n).
 */
 inline void
 check_input(const std::vector<Vec3>& input, const Session_hints& hints, const std::string& function)
@@ -103,6 +106,11 @@ check_input(const std::vector<Vec3>& input, const Session_hints& hints, const st
                           " away from the points, which lie in a box with a diagonal of " +
                           pcs::internal::to_text(diagonal));
   };
+  for (const Vec3& p : hints.scanners)
+    if (!(distance(p) <= internal::farthest_scanner * diagonal))
+      throw Invalid_input(function + ": a scanner is " + pcs::internal::to_text(distance(p)) +
+                          " away from the points, which lie in a box with a diagonal of " +
+                          pcs::internal::to_text(diagonal) + ": are these other coordinates?");
   if (hints.root)
     check(distance(*hints.root), "root_position");
   if (hints.given) {

@@ -41,11 +41,16 @@ public:
   {
   }
 
-  std::vector<Found_section> operator()()
+  /// Fewer sections if `progress`, asked between points, is `false`.
+  template <class Callback>
+  std::vector<Found_section> operator()(const Callback& progress)
   {
+    constexpr Index batch = 256;
     std::vector<Found_section> sections;
     std::vector<std::uint8_t> is_done(m_scan.size(), 0);
     for (Index i = 0; i < m_scan.size(); ++i) {
+      if (i % batch == 0 && !progress(double(i) / double(m_scan.size())))
+        break;
       if (is_done[i] || !m_is_used[i])
         continue;
       const Surface_frame& f = m_frames[i];
@@ -155,13 +160,16 @@ private:
 
 } // namespace internal
 
-/// The sections of all points that no earlier one speaks for. The order of the points decides, not the threads.
-inline std::vector<Found_section> detect_sections(const Scan& scan,
-                                                  const std::vector<std::uint8_t>& is_used,
-                                                  const std::vector<Surface_frame>& frames,
-                                                  const Slice_rules& rules)
+/// The sections of all points that no earlier one speaks for. The order of the points decides, not the threads. They are
+/// incomplete once `progress(share)` is `false`.
+template <class Callback>
+std::vector<Found_section> detect_sections(const Scan& scan,
+                                           const std::vector<std::uint8_t>& is_used,
+                                           const std::vector<Surface_frame>& frames,
+                                           const Slice_rules& rules,
+                                           const Callback& progress)
 {
-  return internal::Section_detector(scan, is_used, frames, rules)();
+  return internal::Section_detector(scan, is_used, frames, rules)(progress);
 }
 
 } // namespace skeleton

@@ -81,7 +81,7 @@ find_branch_exit(const Section_line& line, const Section_line* below, const Surf
   const double last = line.length();
   if (e.start > high + 0.6 * (last - high))
     e.start = high + 0.6 * (last - high);
-  e.is_there = last - e.start > 1e-6 * (1 + last) || high == 0;
+  e.is_there = last - e.start > 1e-6 * (e.radius + last) || high == 0;
   if (!e.is_there)
     e.start = -1;
   return e;

@@ -34,8 +34,9 @@ struct Axis_rules
   double later_links = 0.7; ///< links of later passes are this much shorter [-]
   //! replaces `Chain_rules::protrusion` in later passes, in spacings [-]
   double later_protrusion = 3;
-  double first_noise = 0.3;      ///< noise before anything is known, in spacings [-]
-  int most_cuts = 4;             ///< how often what is left of a chain is tried again
+  double first_noise = 0.3;  ///< noise before anything is known, in spacings [-]
+  double least_noise = 0.08; ///< of points without any, in spacings: polygons are no smoother [-]
+  int most_cuts = 4;         ///< how often what is left of a chain is tried again
   std::size_t shortest_rest = 4; ///< layers that such a rest needs [count]
   Pair_rules pairs;
   std::size_t largest_wave = 64; ///< chains that are fitted side by side [count]
@@ -312,7 +313,7 @@ Axis_set fit_axes(const Scan& scan,
   set.axis_of_point.assign(n, none);
   set.segment_of_point.assign(n, none);
   set.noise = rules.first_noise * scan.spacing;
-  Scan_statistics statistics;
+  Scan_statistics statistics(rules.least_noise * scan.spacing);
   const auto share = [&](double from, double to) {
     return [&progress, from, to](double f) { return progress(from + (to - from) * f); };
   };

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Radii along a skeleton that is given: the points of each edge, a circle through them, and the nodes' radii from these.
+// Radii along a skeleton that is given: those of the branches that were found there; elsewhere from the points of each edge.
 
 #ifndef PCS_SKELETON_MEASURE_GIVEN_H
 #define PCS_SKELETON_MEASURE_GIVEN_H
@@ -10,6 +10,7 @@
 #include <pcs/skeleton/Scan.h>
 #include <pcs/skeleton/circle_fit.h>
 #include <pcs/skeleton/group_branches.h>
+#include <pcs/skeleton/nearest_edge.h>
 
 #include <Eigen/Geometry>
 
@@ -38,6 +39,7 @@ struct Given_rules
   std::size_t lowest_count = 3; ///< points of an edge that tell its radius
   double thicker = 1.5; ///< a circle this many times thicker than the last one below is no section
   double slack = 1.5;   ///< most that points without a circle change a radius, as a factor
+  double aligned = 0.7; ///< least cosine between an edge and a branch that is found along it
 };
 
 namespace internal {
@@ -48,8 +50,9 @@ public:
   Given_measurement(const Scan& scan,
                     const std::vector<std::uint8_t>& is_used,
                     const Given_skeleton& given,
+                    const Branch_tree& found,
                     const Given_rules& rules)
-    : m_scan(scan), m_is_used(is_used), m_parent(given.parent), m_rules(rules)
+    : m_scan(scan), m_is_used(is_used), m_found(found), m_parent(given.parent), m_rules(rules)
   {
     for (const Vec3& p : given.points)
       m_nodes.push_back(scan.frame.to_local(p));
@@ -61,6 +64,7 @@ public:
     m_radius.assign(n, 0);
     m_error.assign(n, 0);
     m_is_measured.assign(n, 0);
+    take_found();
     assign_to_nearest();
     measure();
     assign_to_surfaces();
@@ -107,6 +111,51 @@ private:
     const double l2 = d.squaredNorm();
     const double t = l2 > 0 ? std::min(1.0, std::max(0.0, d.dot(p - a) / l2)) : 0;
     return (p - a - t * d).norm();
+  }
+
+  /// The nearest place on branches that were found and run along the edge to each node, inside of them or a spacing away.
+  void take_found()
+  {
+    m_found_radius.assign(m_nodes.size(), 0);
+    m_found_node.assign(m_nodes.size(), none);
+    const std::vector<Index> next = successors(m_found);
+    std::vector<Vec3> samples, direction;
+    std::vector<Index> node;
+    for (Index u = 0; u < m_found.nodes.size(); ++u) {
+      if (next[u] == none)
+        continue;
+      const Vec3 &a = m_found.nodes[u].point, d = m_found.nodes[next[u]].point - a;
+      if (!(d.norm() > 0))
+        continue;
+      constexpr double most = 1000;
+      const double steps = std::min(most, 1 + std::ceil(d.norm() / m_scan.spacing));
+      for (double k = 0; k <= steps; ++k) {
+        samples.push_back(a + k / steps * d);
+        direction.push_back(d.normalized());
+        node.push_back(2 * k <= steps ? u : next[u]);
+      }
+    }
+    if (samples.empty())
+      return;
+    const neighborhood::Nearest_neighbors search(samples);
+    for (Index v = 0; v < m_nodes.size(); ++v) {
+      if (m_parent[v] == none)
+        continue;
+      const Vec3 d = m_nodes[v] - m_nodes[m_parent[v]];
+      const double least = m_rules.aligned * d.norm();
+      const auto near =
+          search.nearest_if(m_nodes[v], std::numeric_limits<double>::max(), [&](Index s) {
+            return std::abs(direction[s].dot(d)) > least;
+          });
+      if (!std::isfinite(near.squared_distance))
+        continue;
+      const Place_on_edge place =
+          nearest_edge(m_found, next, node[near.index], m_nodes[v], Base_edge::left_out);
+      if (std::sqrt(place.squared_distance) <= std::max(place.radius, m_scan.spacing)) {
+        m_found_radius[v] = place.radius;
+        m_found_node[v] = node[near.index];
+      }
+    }
   }
 
   /// First guess: the edge whose axis is nearest.
@@ -176,6 +225,13 @@ private:
     for (Index v = 0; v < n; ++v) {
       m_radius[v] = m_error[v] = 0;
       m_is_measured[v] = 0;
+      if (m_found_radius[v] > 0) {
+        const Branch_node& node = m_found.nodes[m_found_node[v]];
+        m_radius[v] = m_found_radius[v];
+        m_error[v] = node.radius_error;
+        m_is_measured[v] = node.is_measured;
+        continue;
+      }
       if (m_parent[v] == none || points[v].size() < m_rules.lowest_count)
         continue;
       const Vec3 &a = m_nodes[m_parent[v]], d = m_nodes[v] - a;
@@ -206,6 +262,8 @@ private:
     }
   }
 
+  bool is_known(std::size_t v) const { return m_is_measured[v] || m_found_radius[v] > 0; }
+
   /// Longest way from the middle of each edge to a tip.
   std::vector<double> ways_to_tips() const
   {
@@ -228,13 +286,13 @@ private:
     for (std::size_t v = m_nodes.size(); v-- > 1;)
       if (m_parent[v] != none) {
         double& r = radius[m_parent[v]];
-        r = std::max(r, m_is_measured[v] ? m_radius[v] : radius[v]);
+        r = std::max(r, is_known(v) ? m_radius[v] : radius[v]);
       }
     return radius;
   }
 
   /*!
-    Radii at the nodes from those of the edges. Where no circle is found, branches taper with the way to their tips from the last
+    Radii at the nodes from those of the edges. Where neither a branch nor a circle is found, branches taper with the way to their tips from the last
     circle below, but for one farther out; few points, which may be those of other branches, make them thicker by `slack` at most.
   */
   void fill_gaps(std::vector<Branch_node>& nodes) const
@@ -250,11 +308,11 @@ private:
       const double below = p == none ? 0 : radius_below[p];
       const bool is_circle =
           m_is_measured[v] && (!(below > 0) || m_radius[v] <= m_rules.thicker * below);
-      if (is_circle) {
+      if (is_circle || m_found_radius[v] > 0) {
         node.radius = radius_below[v] = m_radius[v];
         way_below[v] = way[v];
         node.radius_error = m_error[v];
-        node.is_measured = true;
+        node.is_measured = m_is_measured[v];
         continue;
       }
       radius_below[v] = below;
@@ -276,22 +334,27 @@ private:
 
   const Scan& m_scan;
   const std::vector<std::uint8_t>& m_is_used;
+  const Branch_tree& m_found;
   std::vector<Vec3> m_nodes;
   std::vector<Index> m_parent, m_edge_of_point;
   Given_rules m_rules;
   std::vector<double> m_radius, m_error;
+  std::vector<double> m_found_radius; ///< 0: nothing is found there
+  std::vector<Index> m_found_node;
   std::vector<std::uint8_t> m_is_measured;
 };
 
 } // namespace internal
 
-/// Branches and radii along a skeleton whose positions stay. O(n log n) for edges that are about as long as thick.
+/// Branches and radii along a skeleton whose positions stay; `found` is what was found in the same points, or empty. O(n log n)
+/// for edges that are about as long as thick.
 inline Branch_tree measure_given(const Scan& scan,
                                  const std::vector<std::uint8_t>& is_used,
                                  const Given_skeleton& given,
+                                 const Branch_tree& found,
                                  const Given_rules& rules)
 {
-  return internal::Given_measurement(scan, is_used, given, rules)();
+  return internal::Given_measurement(scan, is_used, given, found, rules)();
 }
 
 } // namespace skeleton

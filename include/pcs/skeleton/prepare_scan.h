@@ -32,8 +32,8 @@ constexpr double outlier_factor = 3;
 constexpr double outlier_global_factor = 2, outlier_far_factor = 20;
 
 /// Where the usual distances to one neighbour and to the next differ by this factor, those nearer are copies of the point; on
-/// surfaces the factor is 1.6 at most, on lines of random points 2.4 [-].
-constexpr double copy_factor = 2.5;
+/// surfaces the factor is 1.6 at most, on lines of random points 2.4; the less points the more by chance [-].
+constexpr double copy_factor = 2.5, copy_chance = 15;
 /// Copies of copies, at most [count].
 constexpr int copy_rounds = 3;
 
@@ -140,13 +140,14 @@ inline double reach_of_copies(const Scan& scan)
 {
   constexpr std::size_t fewest = 200, enough = 20000;
   const std::size_t n = scan.size(), step = 1 + n / enough;
+  const double factor = copy_factor + copy_chance / std::sqrt(double(std::min(n, enough)));
   double before = 0;
   for (std::size_t k = 0; k < neighbors_per_point && n >= fewest; ++k) {
     std::vector<double> distances;
     for (std::size_t i = 0; i < n; i += step)
       distances.push_back((scan.points[i] - scan.points[scan.neighbors[i][k]]).norm());
     const double usual = median(distances);
-    if (k > 0 && usual > copy_factor * before)
+    if (k > 0 && usual > factor * before)
       return std::sqrt(before * usual);
     before = usual;
   }

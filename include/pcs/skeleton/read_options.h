@@ -73,6 +73,25 @@ void read_given_skeleton(const NamedParameters& np, Session_hints& hints)
   }
 }
 
+/// Of the method `sections`.
+inline void check_slices(const Slice_rules& rules, const std::string& function)
+{
+  const auto check = [&](bool is_right, const char* what) {
+    if (!is_right)
+      throw Invalid_input(function + ": slice_rules: " + what);
+  };
+  const auto is_positive = [](double x) { return x > 0 && std::isfinite(x); };
+  check(is_positive(rules.height) && is_positive(rules.largest_radius),
+        "`height` and `largest_radius` must be positive and finite");
+  check(rules.lowest_count >= fewest_points_of_section &&
+            (rules.highest_count == 0 || rules.highest_count >= fewest_points_of_section),
+        "a section is fitted to 6 points at least: `lowest_count`, and `highest_count` if not 0");
+  check(rules.upright >= 0 && rules.upright <= 1 && rules.tilts >= 0,
+        "`upright` must be in [0, 1], `tilts` not negative");
+  check(rules.support_radius >= 0 && rules.support_cosine >= 0 && rules.support_cosine <= 1,
+        "`support_radius` must not be negative, `support_cosine` in [0, 1]");
+}
+
 /// By evidence, unless the caller says yes or no, or which points are wood.
 template <class NamedParameters>
 void read_leaf_removal(const NamedParameters& np, Session_hints& hints)
@@ -131,6 +150,7 @@ Session_hints read_options(const NamedParameters& np, const std::string& functio
   internal::read_given_skeleton(np, hints);
   hints.method = choose(np, pcs::internal_np::skeleton_method, Skeleton_method::chains);
   hints.slices = choose(np, pcs::internal_np::slice_rules, Slice_rules());
+  internal::check_slices(hints.slices, function);
   hints.do_mark_ground = choose(np, pcs::internal_np::do_remove_ground, true);
   internal::read_leaf_removal(np, hints);
   hints.breast_height = read_breast_height(np, function);

@@ -61,6 +61,7 @@ inline void regroup_axes(const Branch_tree& tree, Axis_set& set)
         number = static_cast<Index>(axes.size());
         axes.push_back(std::move(set.axes[axis]));
         axes.back().number_of_points = 0;
+        axes.back().parent = none; // it counted the old axes
       }
       axis = number;
     }

@@ -5,12 +5,10 @@
 #ifndef PCS_SKELETON_RESIDUAL_OF_POINT_H
 #define PCS_SKELETON_RESIDUAL_OF_POINT_H
 
-#include <pcs/skeleton/Axis.h>
-#include <pcs/skeleton/Axis_set.h>
 #include <pcs/skeleton/Branch_tree.h>
 #include <pcs/skeleton/Scan.h>
+#include <pcs/skeleton/nearest_edge.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -18,47 +16,35 @@
 namespace pcs {
 namespace skeleton {
 
-/// The vector from the axis of its branch to point `p`, which has a node. `axes` is empty if the tree was not made of axes.
+/// The vector from the axis of its branch to point `p`, which has a node. `next` are the `successors()`.
 inline Vec3
-offset_of_point(const Scan& scan, const Axis_set& axes, const Branch_tree& tree, Index p)
+offset_of_point(const Scan& scan, const Branch_tree& tree, const std::vector<Index>& next, Index p)
 {
-  const Vec3& point = scan.points[p];
-  if (!axes.axes.empty()) {
-    const Axis& axis = axes.axes[axes.axis_of_point[p]].axis;
-    return point - point_at(axis, nearest_place(axis, axes.segment_of_point[p], point));
-  }
-  const Branch_node& node = tree.nodes[tree.node_of_point[p]];
-  const Vec3& base = node.parent == none ? node.point : tree.nodes[node.parent].point;
-  const Vec3 along = node.point - base;
-  const double length2 = along.squaredNorm();
-  const double t = length2 > 0 ? (point - base).dot(along) / length2 : 0;
-  return point - base - std::min(1.0, std::max(0.0, t)) * along;
+  return nearest_edge(tree, next, tree.node_of_point[p], scan.points[p], Base_edge::cylinder)
+      .offset;
 }
 
-/// Distance of point `p`, which has a node, from the surface of its branch; negative inside [L].
-inline double
-residual_of_point(const Scan& scan, const Axis_set& axes, const Branch_tree& tree, Index p)
+/// Distance of point `p`, which has a node, from the surface of its branch, as cones between nodes; negative inside [L].
+inline double residual_of_point(const Scan& scan,
+                                const Branch_tree& tree,
+                                const std::vector<Index>& next,
+                                Index p)
 {
-  if (!axes.axes.empty())
-    return axes.height_above(p, scan.points[p]);
-  const Index v = tree.node_of_point[p];
-  const Branch_node& node = tree.nodes[v];
-  const Branch_node& below = tree.nodes[node.parent == none ? v : node.parent];
-  const Vec3 d = node.point - below.point, q = scan.points[p] - below.point;
-  const double t =
-      d.squaredNorm() > 0 ? std::min(1.0, std::max(0.0, q.dot(d) / d.squaredNorm())) : 1;
-  return (q - t * d).norm() - (1 - t) * below.radius - t * node.radius;
+  const Place_on_edge place =
+      nearest_edge(tree, next, tree.node_of_point[p], scan.points[p], Base_edge::cylinder);
+  return std::sqrt(place.squared_distance) - place.radius;
 }
 
 /// The median distance of the points from the surface, of some ten thousand spread over all [L].
-inline double median_residual(const Scan& scan, const Axis_set& axes, const Branch_tree& tree)
+inline double
+median_residual(const Scan& scan, const Branch_tree& tree, const std::vector<Index>& next)
 {
   std::vector<double> distances;
   constexpr std::size_t enough = 20000;
   const std::size_t n = tree.node_of_point.size(), step = 1 + n / enough;
   for (std::size_t i = 0; i < n; i += step)
     if (tree.node_of_point[i] != none)
-      distances.push_back(std::abs(residual_of_point(scan, axes, tree, static_cast<Index>(i))));
+      distances.push_back(std::abs(residual_of_point(scan, tree, next, static_cast<Index>(i))));
   return median(distances);
 }
 

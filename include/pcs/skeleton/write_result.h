@@ -60,6 +60,33 @@ void write_ready_made(const Branch_tree& found, const Scan_frame& frame, Graph& 
   tree = result; // swap() of Boost 1.74 forgets the bundle
 }
 
+namespace internal {
+
+template <class Graph, class = void>
+struct Has_clear : std::false_type
+{
+};
+template <class Graph>
+struct Has_clear<Graph, std::void_t<decltype(std::declval<Graph&>().clear())>> : std::true_type
+{
+};
+
+/// Removes all vertices. Where the graph cannot do so at once, one after the other: in vectors each takes O(size).
+template <class Graph>
+void clear_graph(Graph& graph)
+{
+  if constexpr (Has_clear<Graph>::value)
+    graph.clear();
+  else
+    while (num_vertices(graph) > 0) {
+      const auto v = *vertices(graph).first;
+      clear_vertex(v, graph);
+      remove_vertex(v, graph);
+    }
+}
+
+} // namespace internal
+
 /// Replaces any other graph; positions and radii go through the maps among the named parameters.
 template <class NamedParameters, class Graph>
 void write_graph(const Branch_tree& found,
@@ -77,11 +104,7 @@ void write_graph(const Branch_tree& found,
                 "z(), and `node_radius_map` floating point numbers");
   if constexpr (are_maps_ok) {
     using FT = std::decay_t<decltype(std::declval<const P&>().x())>;
-    while (num_vertices(tree) > 0) {
-      const auto v = *vertices(tree).first;
-      clear_vertex(v, tree);
-      remove_vertex(v, tree);
-    }
+    internal::clear_graph(tree);
     std::vector<typename boost::graph_traits<Graph>::vertex_descriptor> vertex;
     vertex.reserve(found.nodes.size());
     for (std::size_t k = 0; k < found.nodes.size(); ++k)

@@ -9,6 +9,7 @@
 #include <pcs/IO/internal/Input_file.h>
 #include <pcs/IO/internal/numbers.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -21,9 +22,10 @@ namespace internal {
 
 /*
   The first line that is neither blank nor a comment decides on the separator and the number of
-  columns. It may be a header line with names, among them x, y and z; without one, the first three
-  columns are x, y and z and the others are called column_4, column_5, ...: whether six columns
-  hold normals or colours cannot be known. A single integer on the first line is the number of
+  columns. It may be a header line with names, among them x, y and z, of which the first may be
+  empty, as tables of pandas have it; so may the comment before it, as CloudCompare writes it.
+  Without one, the first three columns are x, y and z and the others are called column_4,
+  column_5, ...: whether six columns hold normals or colours cannot be known. A single integer on the first line is the number of
   points of a PTS file.
 */
 class Text_reader : public Format_reader
@@ -39,10 +41,13 @@ public:
       m_file.fail_at_line("expected a line with a point or the names of the columns");
     if (m_words.size() == 1)
       read_count();
-    if (is_header())
+    if (is_header()) {
       use_header();
-    else
+      if (m_has_row)
+        next_row();
+    } else if (!use_comment())
       use_default_names();
+    m_comment.clear();
   }
 
   void read_rows(Row_block& block, std::size_t max_rows) override
@@ -79,8 +84,13 @@ private:
       if (m_file.line_number() == 1 && line.substr(0, 3) == "\xEF\xBB\xBF") // byte order mark
         line.remove_prefix(3);
       line = trim(line);
-      if (line.empty() || is_comment(line))
+      if (line.empty())
         continue;
+      if (is_comment(line)) {
+        if (m_separator == '\0')
+          m_comment = line;
+        continue;
+      }
       if (m_separator == '\0')
         choose_separator(line);
       split(line);
@@ -153,8 +163,8 @@ private:
 
   bool is_header() const
   {
-    for (const std::string_view word : m_words)
-      if (is_number(word) || word.empty())
+    for (std::size_t i = 0; i < m_words.size(); ++i)
+      if (is_number(m_words[i]) || (m_words[i].empty() && (i > 0 || m_words.size() == 1)))
         return false;
     return !has_decimal_comma() && m_words[0].find(',') == std::string_view::npos;
   }
@@ -164,7 +174,7 @@ private:
     for (std::string_view word : m_words) {
       if (word.size() > 2 && word.front() == '"' && word.back() == '"')
         word = word.substr(1, word.size() - 2);
-      std::string name(word);
+      std::string name(word.empty() ? "column_1" : word);
       if (name == "X" || name == "Y" || name == "Z")
         name[0] = static_cast<char>(name[0] - 'X' + 'x');
       add_property(name, Scalar_type::float64);
@@ -176,8 +186,34 @@ private:
       if (!m_schema.has(name))
         m_file.fail_at_line("expected numbers, or the names of the columns with x, y and z; '" +
                             std::string(name) + "' is missing");
-    if (m_has_row)
-      next_row();
+  }
+
+  //! takes the names from the last comment before the first row, if it has one for each column; else nothing changes
+  bool use_comment()
+  {
+    std::string_view names = m_comment;
+    names.remove_prefix(std::min(names.size(), names.find_first_not_of("#/ \t")));
+    const std::vector<std::string_view> row = m_words;
+    const char separator = m_separator;
+    bool is_used = false;
+    if (!names.empty()) {
+      choose_separator(names);
+      split(names);
+      const auto has = [&](char c) {
+        return std::any_of(m_words.begin(), m_words.end(), [&](std::string_view word) {
+          return word.size() == 1 && (word[0] == c || word[0] == c - 'a' + 'A');
+        });
+      };
+      std::vector<std::string_view> sorted = m_words;
+      std::sort(sorted.begin(), sorted.end());
+      is_used = m_words.size() == row.size() && is_header() && has('x') && has('y') && has('z') &&
+                std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
+      if (is_used)
+        use_header();
+    }
+    m_words = row;
+    m_separator = separator;
+    return is_used;
   }
 
   void use_default_names()
@@ -216,6 +252,7 @@ private:
   }
 
   Input_file m_file;
+  std::string m_comment;                 // the last one before the first row
   char m_separator = '\0';               // ' ' stands for any number of blanks and tabs
   std::vector<std::string_view> m_words; // of the current line
   bool m_has_row = false;                // there is a line that was not handed out yet

@@ -115,9 +115,6 @@ public:
     close(high, Eigen::Vector3d(post.x, post.y, post.height), p);
   }
 
-  //! moves the triangles out; the labels stay
-  std::vector<Triangle> take_triangles() { return std::move(triangles); }
-
   //! the node of a wooden triangle that is nearest to a point along the axis, or the label of another
   int label(std::uint32_t triangle, const Eigen::Vector3d& point) const
   {

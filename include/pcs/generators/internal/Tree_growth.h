@@ -175,9 +175,7 @@ private:
     bool do_renew = true;
     for (double at = 0;;) {
       const double radius = radius_at(bud, at);
-      if (m_nodes.size() == largest_number_of_nodes)
-        throw Invalid_input("pcs::grow_tree(): the tree would have more than " +
-                            std::to_string(largest_number_of_nodes) + " nodes");
+      check_number(static_cast<double>(m_nodes.size()));
       normal = transported(normal, direction);
       places.push_back({m_nodes.size(), direction, normal, at, radius});
       m_nodes.push_back({point, normal, radius, parent, branch});
@@ -263,6 +261,7 @@ private:
     const std::size_t i = row(bud);
     Random_stream random(bud.seed, 4);
     double azimuth = random.uniform(0, 2 * pi);
+    check_number(bud.length / m_habit.spacing[i]);
     const double from = m_habit.bare[i] * bud.length;
     std::size_t place = 0;
     for (double at = from; at < bud.length; at += m_habit.spacing[i] * random.uniform(0.5, 1.5)) {
@@ -308,8 +307,18 @@ private:
     }
     // a branch that ends inside its parent is none
     if (bud.radius >= m_habit.smallest_branch && bud.length > 1.5 * place.radius &&
-        bud.length >= 2 * m_habit.smallest_step)
+        bud.length >= 2 * m_habit.smallest_step) {
+      check_number(static_cast<double>(m_buds.size()));
       m_buds.push_back(bud);
+    }
+  }
+
+  /// Of nodes, or of branches that are on their way.
+  static void check_number(double number)
+  {
+    if (!(number < static_cast<double>(largest_number_of_nodes)))
+      throw Invalid_input("pcs::grow_tree(): the tree would have more than " +
+                          std::to_string(largest_number_of_nodes) + " nodes");
   }
 
   void add_stubs(const Bud& trunk, std::size_t branch, const std::vector<Place>& places)
