@@ -366,6 +366,8 @@ BOOST_AUTO_TEST_CASE(combinations_are_between_and_directions_are_free)
   const pcs::Orl_tree beyond = space.combination({2, -1, 0.5, 0});
   for (const double l : beyond.coordinates().length)
     BOOST_TEST(l >= 0);
+  for (const double r : space.combination({9, -8, 0, 0}).coordinates().radius)
+    BOOST_TEST(r > 0);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -105,7 +105,8 @@ public:
     \brief the combination of the added trees with given weights.
 
     The weighted Frechet mean: for two trees the tree on their geodesic, for weights `>= 0` a tree between the inputs.
-    Weights below 0 lead beyond the inputs; lengths and radii stop at 0.
+    Weights below 0 lead beyond the inputs; lengths stop at 0, radii at a hundredth of the least one
+    among the inputs.
     \param weights one per tree; their sum is made 1 and must be positive
   */
   Orl_tree combination(const std::vector<double>& weights) const

@@ -61,8 +61,8 @@ inline Vec3 l1_mean_place(const std::vector<Vec3>& p, const std::vector<double>&
 
 /*!
   The mean of trees with weights, coordinate by coordinate. `least_sum` wants weights `>= 0`; of an interval of medians
-  it takes the middle. With `least_squares` weights may be negative as long as their sum is positive: lengths and radii
-  stay at least 0.
+  it takes the middle. With `least_squares` weights may be negative as long as their sum is positive: lengths stay at
+  least 0, radii a hundredth of the least one.
 */
 template <class ConcurrencyTag>
 Orl_coordinates mean_tree(const Orl_layout& layout,
@@ -83,6 +83,10 @@ Orl_coordinates mean_tree(const Orl_layout& layout,
       sum += weights[i] * values[i];
     return sum / total;
   };
+  const auto mean_radius = [&](const std::vector<double>& values) {
+    constexpr double least_share = 0.01;
+    return std::max(least_share * *std::min_element(values.begin(), values.end()), mean_of(values));
+  };
   Orl_coordinates x;
   x.orientation.resize(n);
   x.length.resize(n);
@@ -99,7 +103,7 @@ Orl_coordinates mean_tree(const Orl_layout& layout,
         x.length[e] = std::max(0.0, mean_of(values));
         for (std::size_t i = 0; i < trees.size(); ++i)
           values[i] = trees[i]->radius[e];
-        x.radius[e] = std::max(0.0, mean_of(values));
+        x.radius[e] = mean_radius(values);
         for (std::size_t i = 0; i < trees.size(); ++i)
           q[i] = trees[i]->orientation[e];
         x.orientation[e] = is_sum ? l1_mean_rotation(q, weights) : l2_mean_rotation(q, weights);
@@ -109,7 +113,7 @@ Orl_coordinates mean_tree(const Orl_layout& layout,
     std::vector<double> values(trees.size());
     for (std::size_t i = 0; i < trees.size(); ++i)
       values[i] = trees[i]->base_radius[b];
-    x.base_radius[b] = std::max(0.0, mean_of(values));
+    x.base_radius[b] = mean_radius(values);
     for (std::size_t i = 0; i < trees.size(); ++i)
       values[i] = trees[i]->attachment[b];
     const std::size_t p = layout.branches[b].parent;
