@@ -83,9 +83,15 @@ Orl_coordinates mean_tree(const Orl_layout& layout,
       sum += weights[i] * values[i];
     return sum / total;
   };
-  const auto mean_radius = [&](const std::vector<double>& values) {
+  const bool is_within = *std::min_element(weights.begin(), weights.end()) >= 0;
+  // of an edge or branch that is there; beyond the trees it keeps a share of the least radius that it has in one
+  const auto mean_radius = [&](const std::vector<double>& values, bool is_there) {
     constexpr double least_share = 0.01;
-    return std::max(least_share * *std::min_element(values.begin(), values.end()), mean_of(values));
+    double least = 0;
+    for (const double r : values)
+      if (!is_within && is_there && r > 0 && (!(least > 0) || least_share * r < least))
+        least = least_share * r;
+    return std::max(least, mean_of(values));
   };
   Orl_coordinates x;
   x.orientation.resize(n);
@@ -103,7 +109,7 @@ Orl_coordinates mean_tree(const Orl_layout& layout,
         x.length[e] = std::max(0.0, mean_of(values));
         for (std::size_t i = 0; i < trees.size(); ++i)
           values[i] = trees[i]->radius[e];
-        x.radius[e] = mean_radius(values);
+        x.radius[e] = mean_radius(values, x.length[e] > 0);
         for (std::size_t i = 0; i < trees.size(); ++i)
           q[i] = trees[i]->orientation[e];
         x.orientation[e] = is_sum ? l1_mean_rotation(q, weights) : l2_mean_rotation(q, weights);
@@ -113,7 +119,8 @@ Orl_coordinates mean_tree(const Orl_layout& layout,
     std::vector<double> values(trees.size());
     for (std::size_t i = 0; i < trees.size(); ++i)
       values[i] = trees[i]->base_radius[b];
-    x.base_radius[b] = mean_radius(values);
+    const std::size_t first = layout.branches[b].first_edge;
+    x.base_radius[b] = mean_radius(values, x.length[first] > 0);
     for (std::size_t i = 0; i < trees.size(); ++i)
       values[i] = trees[i]->attachment[b];
     const std::size_t p = layout.branches[b].parent;

@@ -52,6 +52,7 @@ bool find_stand(const std::vector<Vec3>& input,
     return progress(1);
   Session_options options(hints);
   options.leaf_removal = Leaf_removal::never;
+  options.do_trace_paths = false;
   Session_stages<ConcurrencyTag> session(thinned.points, {}, options);
   if (!session.find_paths(progress))
     return false;

@@ -36,6 +36,8 @@ struct Session_options : Session_hints
   Session_options() = default;
   explicit Session_options(Session_hints hints) : Session_hints(std::move(hints)) {}
 
+  bool do_trace_paths = true; ///< else `find_paths()` ends with the points that may be trees
+
   Section_tree_rules section_tree; ///< of the method `sections`
   Axis_rules axes;
   Fuse_rules fusion;

@@ -92,7 +92,10 @@ public:
     m_are_walls_out = true;
     Links links = links_of_used();
     Linked_parts linked;
-    const auto link = [&] { link_parts(links, false, linked); };
+    const auto link = [&] {
+      if (m_options.do_trace_paths)
+        link_parts(links, false, linked);
+    };
     // most scans have no ground, and what is found meanwhile stays
     std::vector<std::uint8_t> is_above = m_used.flags();
     std::size_t ground = 0;
@@ -109,12 +112,12 @@ public:
       m_used.leave_out_others(std::move(is_above));
       links = links_of_used();
     }
-    // faces that are not there were looked for already
-    const bool may_have_faces = m_wall_removal.has_faces() || ground > 0;
+    const bool may_have_faces = m_wall_removal.has_faces() || ground > 0; // else known already
     const auto find_links = [&] { return links_of_used(); };
     if ((may_have_faces && m_wall_removal.leave_out_rest(find_links, links)) || ground > 0)
       link();
-    trace_paths(links, linked);
+    if (m_options.do_trace_paths)
+      trace_paths(links, linked);
     m_report.seconds.paths = watch.lap();
     m_stage = 2;
     return progress(0.6);
@@ -127,7 +130,7 @@ public:
     if (m_stage >= 3)
       return true;
     pcs::internal::Stopwatch watch;
-    if (m_root.empty()) { // nothing is a tree, or it is known
+    if (m_root.empty()) { // nothing is a tree
       m_stage = 3;
       return progress(0.9);
     }
@@ -135,11 +138,10 @@ public:
       const std::vector<Surface_frame> frames = principal_curvatures<ConcurrencyTag>(m_scan);
       if (!progress(0.7))
         return false;
-      bool is_running = true;
       m_sections = detect_sections(m_scan, m_used.flags(), frames, m_options.slices, [&](double f) {
-        return is_running = progress(0.7 + 0.2 * f);
+        return progress(0.7 + 0.2 * f);
       });
-      if (!is_running)
+      if (progress.is_cancelled())
         return false;
       m_report.seconds.axes = watch.lap();
       m_stage = 3;
@@ -202,11 +204,9 @@ public:
           support_of_sections<ConcurrencyTag>(m_scan, m_tree, m_axes.noise, m_options.support);
       if (m_has_leaves && m_leaf_rounds > 0) // what is left of leaves makes twigs thick
         m_options.support.pipes.slack = m_options.leaves.pipe_slack;
-      std::vector<double> fitted(m_tree.nodes.size());
-      std::transform(m_tree.nodes.begin(),
-                     m_tree.nodes.end(),
-                     fitted.begin(),
-                     [](const Branch_node& node) { return node.radius; });
+      std::vector<double> fitted;
+      for (const Branch_node& node : m_tree.nodes)
+        fitted.push_back(node.radius);
       bound_radii(m_scan, support, m_axes.density, m_options.support, m_tree);
       mend_foot(m_scan,
                 m_used.flags(),
