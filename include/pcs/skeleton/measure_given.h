@@ -33,12 +33,15 @@ struct Given_rules
              4;    ///< points farther than this are no points of an edge, in radii and spacings
   int sectors = 5; ///< of 12, that a circle must see
   double deviation = 0.25; ///< largest deviation of a circle, in radii
-  double widening = 1.5;   ///< largest radius of a circle, in median distances from the edge
+  double widening =
+      1.5; ///< largest radius of a circle, or of a branch that is found, in median distances from the edge
   double inside =
       1.3; ///< nodes of a branch this near to its base, in radii of the parent, lie in the parent
   std::size_t lowest_count = 3; ///< points of an edge that tell its radius
   double thicker = 1.5; ///< a circle this many times thicker than the last one below is no section
   double slack = 1.5;   ///< most that points without a circle change a radius, as a factor
+  double found_thicker =
+      1.3; ///< most that a branch that is found may be thicker than the points of the edge say
   double aligned = 0.7; ///< least cosine between an edge and a branch that is found along it
 };
 
@@ -64,13 +67,17 @@ public:
     m_radius.assign(n, 0);
     m_error.assign(n, 0);
     m_is_measured.assign(n, 0);
-    take_found();
-    assign_to_nearest();
-    measure();
-    assign_to_surfaces();
-    measure();
-    std::vector<Branch_node> nodes(n);
-    fill_gaps(nodes);
+    m_found_radius.assign(n, 0);
+    m_found_node.assign(n, none);
+    std::vector<Branch_node> nodes = measured();
+    if (!m_found.nodes.empty()) {
+      const std::vector<Branch_node> alone = std::move(nodes);
+      take_found();
+      nodes = measured();
+      for (std::size_t v = 0; v < n; ++v) // what is found in a sparse scan may be far too thick
+        if (nodes[v].radius > m_rules.found_thicker * alone[v].radius)
+          nodes[v] = alone[v];
+    }
     Branch_grouper group(std::move(nodes), m_scan.spacing);
     Branch_tree tree = group();
     leave_parents(tree);
@@ -82,6 +89,17 @@ public:
   }
 
 private:
+  std::vector<Branch_node> measured()
+  {
+    assign_to_nearest();
+    measure();
+    assign_to_surfaces();
+    measure();
+    std::vector<Branch_node> nodes(m_nodes.size());
+    fill_gaps(nodes);
+    return nodes;
+  }
+
   /// The base of a branch lies in its parent, whose points are no measure of it: its radius is that of the first node outside.
   void leave_parents(Branch_tree& tree) const
   {
@@ -113,16 +131,15 @@ private:
     return (p - a - t * d).norm();
   }
 
-  /// The nearest place on branches that were found and run along the edge to each node, inside of them or a spacing away.
+  /// The nearest measured place on branches that were found and run along the edge to each node, inside of them or a spacing
+  /// away.
   void take_found()
   {
-    m_found_radius.assign(m_nodes.size(), 0);
-    m_found_node.assign(m_nodes.size(), none);
     const std::vector<Index> next = successors(m_found);
     std::vector<Vec3> samples, direction;
     std::vector<Index> node;
     for (Index u = 0; u < m_found.nodes.size(); ++u) {
-      if (next[u] == none)
+      if (next[u] == none || !m_found.nodes[u].is_measured)
         continue;
       const Vec3 &a = m_found.nodes[u].point, d = m_found.nodes[next[u]].point - a;
       if (!(d.norm() > 0))
@@ -225,15 +242,18 @@ private:
     for (Index v = 0; v < n; ++v) {
       m_radius[v] = m_error[v] = 0;
       m_is_measured[v] = 0;
-      if (m_found_radius[v] > 0) {
-        const Branch_node& node = m_found.nodes[m_found_node[v]];
+      if (m_parent[v] == none)
+        continue;
+      const auto use_found = [&] {
         m_radius[v] = m_found_radius[v];
-        m_error[v] = node.radius_error;
-        m_is_measured[v] = node.is_measured;
+        m_error[v] = m_found.nodes[m_found_node[v]].radius_error;
+        m_is_measured[v] = 1;
+      };
+      if (points[v].size() < m_rules.lowest_count) {
+        if (m_found_radius[v] > 0)
+          use_found();
         continue;
       }
-      if (m_parent[v] == none || points[v].size() < m_rules.lowest_count)
-        continue;
       const Vec3 &a = m_nodes[m_parent[v]], d = m_nodes[v] - a;
       std::vector<double> distances;
       for (const Index i : points[v])
@@ -245,6 +265,10 @@ private:
         deviation += std::abs(x - m_radius[v]) / count;
       m_error[v] = std::max(deviation, 1e-3 * m_scan.spacing) / std::sqrt(count);
       m_radius[v] = std::max(m_radius[v], 0.05 * m_scan.spacing);
+      if (m_found_radius[v] > 0 && m_found_radius[v] <= m_rules.widening * m_radius[v]) {
+        use_found();
+        continue;
+      }
       if (!(d.norm() > 0))
         continue;
       const Vec3 along = d.normalized(), e1 = along.unitOrthogonal(), e2 = along.cross(e1);
@@ -261,8 +285,6 @@ private:
       m_is_measured[v] = 1;
     }
   }
-
-  bool is_known(std::size_t v) const { return m_is_measured[v] || m_found_radius[v] > 0; }
 
   /// Longest way from the middle of each edge to a tip.
   std::vector<double> ways_to_tips() const
@@ -286,7 +308,7 @@ private:
     for (std::size_t v = m_nodes.size(); v-- > 1;)
       if (m_parent[v] != none) {
         double& r = radius[m_parent[v]];
-        r = std::max(r, is_known(v) ? m_radius[v] : radius[v]);
+        r = std::max(r, m_is_measured[v] ? m_radius[v] : radius[v]);
       }
     return radius;
   }
@@ -308,11 +330,11 @@ private:
       const double below = p == none ? 0 : radius_below[p];
       const bool is_circle =
           m_is_measured[v] && (!(below > 0) || m_radius[v] <= m_rules.thicker * below);
-      if (is_circle || m_found_radius[v] > 0) {
+      if (is_circle) {
         node.radius = radius_below[v] = m_radius[v];
         way_below[v] = way[v];
         node.radius_error = m_error[v];
-        node.is_measured = m_is_measured[v];
+        node.is_measured = true;
         continue;
       }
       radius_below[v] = below;
