@@ -366,15 +366,29 @@ BOOST_AUTO_TEST_CASE(combinations_are_between_and_directions_are_free)
   const pcs::Orl_tree beyond = space.combination({2, -1, 0.5, 0});
   for (const double l : beyond.coordinates().length)
     BOOST_TEST(l >= 0);
-  const pcs::Orl_tree far_beyond = space.combination({9, -8, 0, 0});
-  const auto& x = far_beyond.coordinates();
+}
+
+BOOST_AUTO_TEST_CASE(radii_stay_positive_beyond_the_inputs)
+{
+  const std::vector<Branch> thick = random_branches(5, 3, 2);
+  std::vector<Branch> thin = thick;
+  for (Branch& b : thin)
+    for (double& r : b.radii)
+      r *= 0.2;
+  const std::vector<char> all(thick.size(), 1);
+  const Turns still(thick.size(), Eigen::Matrix3d::Identity());
+  std::vector<std::size_t> tip;
+  const Space space =
+      make_space({make_tree(thick, still, all, tip), make_tree(thin, still, all, tip)});
+  const pcs::Orl_tree beyond = space.combination({-1, 2});
+  const auto& x = beyond.coordinates();
   std::size_t number_there = 0;
   for (std::size_t e = 0; e < x.length.size(); ++e)
     if (x.length[e] > 0) {
       ++number_there;
       BOOST_TEST(x.radius[e] > 0);
     }
-  BOOST_TEST(number_there > 0u);
+  BOOST_TEST(number_there > 10u);
 }
 
 BOOST_AUTO_TEST_SUITE_END()
