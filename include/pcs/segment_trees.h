@@ -10,6 +10,7 @@
 #include <pcs/core/Status.h>
 #include <pcs/core/Tree_skeleton.h>
 #include <pcs/core/errors.h>
+#include <pcs/core/unit_of_height.h>
 #include <pcs/internal/Stopwatch.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
@@ -26,7 +27,6 @@
 #include <cstddef>
 #include <functional>
 #include <iterator>
-#include <sstream>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -63,18 +63,12 @@ struct Segmentation_report
 //! what makes a segmentation doubtful, a sentence each; empty for most
 inline std::vector<std::string> warnings(const Segmentation_report& r)
 {
-  constexpr double tallest =
-      100; // by the breast height; the tallest of all trees is 116 m high [-]
   double height = 0;
   for (const Segmented_tree& tree : r.trees)
     height = std::max(height, tree.height);
-  if (!(r.breast_height > 0 && height > tallest * r.breast_height))
-    return {};
-  std::ostringstream sentence;
-  sentence.precision(3);
-  sentence << "a tree is " << height / r.breast_height
-           << " times as high as breast height, which may be in another unit than the scan";
-  return {sentence.str()};
+  std::vector<std::string> sentences;
+  internal::warn_of_unit("a tree", height, r.breast_height, sentences);
+  return sentences;
 }
 
 /*!

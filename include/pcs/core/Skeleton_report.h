@@ -6,6 +6,7 @@
 #define PCS_CORE_SKELETON_REPORT_H
 
 #include <pcs/core/Status.h>
+#include <pcs/core/unit_of_height.h>
 
 #include <algorithm>
 #include <cmath>
@@ -95,8 +96,6 @@ inline std::vector<std::string> warnings(const Skeleton_report& r)
   // that are taken for many thin branches 0.02 and more [-]
   constexpr double most_wood = 0.015;
   constexpr double many = 0.5; // leaves, of the points that are neither ground nor walls [-]
-  constexpr double tallest =
-      100; // by the breast height; the tallest of all trees is 116 m high [-]
   std::vector<std::string> sentences;
   if (r.number_of_other_stems > 0)
     sentences.push_back("more than one tree: " + std::to_string(r.number_of_other_stems) +
@@ -129,13 +128,7 @@ inline std::vector<std::string> warnings(const Skeleton_report& r)
   if (r.status == Status::converged &&
       r.residual > std::max(largest_residual * r.noise, exact * r.spacing))
     sentences.push_back("half of the points lie far from the surfaces found; this may be no tree");
-  if (r.breast_height > 0 && r.height > tallest * r.breast_height) {
-    std::ostringstream sentence;
-    sentence.precision(3);
-    sentence << "the tree is " << r.height / r.breast_height
-             << " times as high as breast height, which may be in another unit than the scan";
-    sentences.push_back(sentence.str());
-  }
+  internal::warn_of_unit("the tree", r.height, r.breast_height, sentences);
   if (!r.by_order.empty() && r.by_order.front().length > 0) {
     const auto& trunk = r.by_order.front();
     const double diameter = 2 * std::sqrt(trunk.volume / (3.14159265358979323846 * trunk.length));

@@ -249,15 +249,16 @@ inline Links links_across_gaps(const Scan& scan,
   std::optional<Point_cells> cells;
   while (widest > 0) {
     size.assign(n, 0);
+    std::size_t number_of_others = 0; // points outside of the largest part
     for (Index i = 0; i < n; ++i)
-      if (is_used[i])
+      if (is_used[i]) {
         ++size[label[i] = sets.find(parts.part[i])];
+        ++number_of_others;
+      }
     const Index largest =
         static_cast<Index>(std::max_element(size.begin(), size.end()) - size.begin());
     best.assign(n, {widest * widest, {none, none}});
-    std::size_t number_of_others = 0; // points outside of the largest part
-    for (Index i = 0; i < n; ++i)
-      number_of_others += is_used[i] && label[i] != largest;
+    number_of_others -= size[largest];
     if (number_of_others == 0)
       break;
     if (number_of_others > n / 8 && !cells) // else it would cost more than it saves

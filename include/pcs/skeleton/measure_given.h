@@ -314,8 +314,9 @@ private:
   }
 
   /*!
-    Radii at the nodes from those of the edges. Where neither a branch nor a circle is found, branches taper with the way to their tips from the last
-    circle below, but for one farther out; few points, which may be those of other branches, make them thicker by `slack` at most.
+    Radii at the nodes from those of the edges. Where neither a branch nor a circle is found, branches taper with the way to their
+    tips from the last section below, but for one farther out; few points, which may be those of other branches, make them thicker
+    by `slack` at most.
   */
   void fill_gaps(std::vector<Branch_node>& nodes) const
   {

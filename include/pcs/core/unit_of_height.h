@@ -1,0 +1,35 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Whether a tree is so high that its coordinates must be in another unit than the breast height.
+
+#ifndef PCS_CORE_UNIT_OF_HEIGHT_H
+#define PCS_CORE_UNIT_OF_HEIGHT_H
+
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace pcs {
+namespace internal {
+
+/// Appends a sentence that begins with `subject` where `height` cannot be that of a tree. Both in one unit, or so it should be.
+inline void warn_of_unit(const std::string& subject,
+                         double height,
+                         double breast_height,
+                         std::vector<std::string>& sentences)
+{
+  constexpr double tallest =
+      100; // by the breast height; the tallest of all trees is 116 m high [-]
+  if (!(breast_height > 0 && height > tallest * breast_height))
+    return;
+  std::ostringstream sentence;
+  sentence.precision(3);
+  sentence << subject << " is " << height / breast_height
+           << " times as high as breast height, which may be in another unit than the scan";
+  sentences.push_back(sentence.str());
+}
+
+} // namespace internal
+} // namespace pcs
+
+#endif // PCS_CORE_UNIT_OF_HEIGHT_H
