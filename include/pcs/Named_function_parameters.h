@@ -35,6 +35,8 @@
   PCS_OWN(up_direction)                                                                            \
   PCS_OWN(root_position)                                                                           \
   PCS_OWN(breast_height)                                                                           \
+  PCS_OWN(do_register_stations)                                                                    \
+  PCS_OWN(station_map)                                                                             \
   PCS_OWN(do_remove_ground)                                                                        \
   PCS_OWN(wood_map)                                                                                \
   PCS_OWN(do_remove_leaves)                                                                        \

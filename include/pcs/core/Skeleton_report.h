@@ -8,6 +8,8 @@
 #include <pcs/core/Status.h>
 #include <pcs/core/unit_of_height.h>
 
+#include <Eigen/Core>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -25,6 +27,20 @@ struct Wood
   std::size_t number_of_branches = 0; ///< [count]; 0 in classes of size, which cut branches
   double length = 0;                  ///< along the axes [L]
   double volume = 0;                  ///< of the frusta between the nodes [L^3]
+};
+
+//! \ingroup PkgPcsSkeletonRef
+//! a station of the scanner, and how its points were moved so that all stations see the same branches
+struct Scan_station
+{
+  long long label = 0;              ///< by `station_map`; else the number of the station, from 0
+  std::size_t number_of_points = 0; ///< of the station [count]
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero(); ///< of the middle of its points [L]
+  double turn = 0;                                 ///< about that [rad]
+  //! where it stood; meaningful if its beams were found [L]
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  //! between columns and between rows of its beams; 0: they were not looked for [rad]
+  double azimuth_step = 0, elevation_step = 0;
 };
 
 //! \ingroup PkgPcsSkeletonRef
@@ -51,6 +67,8 @@ struct Skeleton_report
   std::size_t number_of_other_stems = 0;
   //! the points lie in rows that are far from each other, and were all kept, as leaves look like wood there
   bool is_in_rows = false;
+  //! stations whose points were moved; empty if none were told apart
+  std::vector<Scan_station> stations;
   std::size_t number_of_nodes = 0;    ///< [count]
   std::size_t number_of_branches = 0; ///< [count]
 

@@ -35,6 +35,8 @@ struct Session_hints
   std::vector<Vec3> scanners;
   std::optional<Given_skeleton> given; ///< measured; its positions stay
   double beam_width = 0;               ///< of the scanners [rad]
+  bool do_register_stations = false;   ///< those of `stations`, or those that are found
+  std::vector<long long> stations;     ///< of the points; empty: not known
   bool do_mark_ground = true;
   Leaf_removal leaf_removal = Leaf_removal::where_found; ///< by the method `chains`
   double breast_height = 1.3;                            ///< [L]

@@ -5,6 +5,8 @@
 #ifndef PCS_SKELETON_SESSION_OPTIONS_H
 #define PCS_SKELETON_SESSION_OPTIONS_H
 
+#include <pcs/skeleton/Alignment_rules.h>
+#include <pcs/skeleton/Beam_grid_rules.h>
 #include <pcs/skeleton/Session_hints.h>
 #include <pcs/skeleton/bound_radii.h>
 #include <pcs/skeleton/correct_beam.h>
@@ -38,6 +40,8 @@ struct Session_options : Session_hints
 
   bool do_trace_paths = true; ///< else `find_paths()` ends with the points that may be trees
 
+  Beam_grid_rules beam_grids;
+  Alignment_rules alignment; ///< of stations
   Section_tree_rules section_tree; ///< of the method `sections`
   Axis_rules axes;
   Fuse_rules fusion;

@@ -16,6 +16,7 @@
 #include <pcs/skeleton/cut_layers.h>
 #include <pcs/skeleton/group_branches.h>
 #include <pcs/skeleton/prepare_scan.h>
+#include <pcs/skeleton/register_stations.h>
 #include <pcs/skeleton/regroup_axes.h>
 #include <pcs/skeleton/report_sizes.h>
 #include <pcs/skeleton/residual_of_point.h>
@@ -53,7 +54,7 @@ public:
     if (m_stage >= 1)
       return true;
     pcs::internal::Stopwatch watch;
-    if (!progress(0))
+    if (!progress(0) || !register_stations(progress))
       return false;
     prepare_scan<ConcurrencyTag>(m_input, m_options.up, m_scan);
     const double unit = m_scan.frame.unit;
@@ -271,6 +272,20 @@ public:
   bool is_leaf_of_input(std::size_t i) const { return m_used.is_leaf(m_scan.point_of_input[i]); }
 
 protected: // benchmark/training looks at what leaves are told by
+  /// Moves the input, once.
+  bool register_stations(pcs::internal::Progress& progress)
+  {
+    if (!m_options.do_register_stations)
+      return true;
+    constexpr double share = 0.2; // of all work
+    progress.stage(0, share);
+    m_options.do_register_stations = !Station_registration<ConcurrencyTag, Session_stages>(
+                                          m_is_wood, m_options, m_input, m_report)
+                                          .run(progress);
+    progress.stage(0, 1);
+    return !m_options.do_register_stations;
+  }
+
   Links links_of_used() const
   {
     return neighbor_links<ConcurrencyTag>(m_scan, m_used.flags(), m_options.axes.links);

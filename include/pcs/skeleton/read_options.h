@@ -151,6 +151,7 @@ Session_hints read_options(const NamedParameters& np, const std::string& functio
   hints.method = choose(np, pcs::internal_np::skeleton_method, Skeleton_method::chains);
   hints.slices = choose(np, pcs::internal_np::slice_rules, Slice_rules());
   internal::check_slices(hints.slices, function);
+  hints.do_register_stations = choose(np, pcs::internal_np::do_register_stations, true);
   hints.do_mark_ground = choose(np, pcs::internal_np::do_remove_ground, true);
   internal::read_leaf_removal(np, hints);
   hints.breast_height = read_breast_height(np, function);

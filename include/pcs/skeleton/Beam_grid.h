@@ -1,0 +1,60 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The grid of directions in which a scanner measures.
+
+#ifndef PCS_SKELETON_BEAM_GRID_H
+#define PCS_SKELETON_BEAM_GRID_H
+
+#include <pcs/skeleton/Scan.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pcs {
+namespace skeleton {
+
+constexpr double two_pi = 2 * static_cast<double>(EIGEN_PI);
+
+/// A column and a row of a grid, as real numbers [steps].
+using Grid_place = Eigen::Vector2d;
+
+/// From the nearest whole number, in [-1/2, 1/2].
+inline double beyond_whole(double x)
+{
+  return x - std::nearbyint(x);
+}
+
+/*!
+  A scanner on a station turns by equal steps about its own vertical, and its beam rises by equal steps. Errors of ranges move
+  points along their beams, so that columns and rows stay whole numbers, whatever the noise.
+*/
+struct Beam_grid
+{
+  Vec3 position = Vec3::Zero(); ///< of the station, with the error of its registration [L]
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity(); ///< by rows: to the tree, to the left, its own vertical
+  Grid_place rate = Grid_place::Ones();               ///< of columns and rows [1/rad]
+  Grid_place phase = Grid_place::Zero();              ///< added to them [steps]
+  double tolerance = 0; ///< points of the station are this near to whole numbers [steps]
+
+  Grid_place place_of_direction(const Vec3& q) const
+  {
+    return Grid_place(rate[0] * std::atan2(q.y(), q.x()),
+                      rate[1] * std::atan2(q.z(), std::hypot(q.x(), q.y()))) +
+           phase;
+  }
+  Grid_place place(const Vec3& p) const { return place_of_direction(axes * (p - position)); }
+
+  /// The larger distance of column and row from whole numbers, in [0, 1/2] [steps].
+  double misfit(const Vec3& p) const
+  {
+    const Grid_place at = place(p);
+    return std::max(std::abs(beyond_whole(at[0])), std::abs(beyond_whole(at[1])));
+  }
+};
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_BEAM_GRID_H

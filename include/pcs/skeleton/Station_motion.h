@@ -1,0 +1,31 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// By how much the points of a station are moved.
+
+#ifndef PCS_SKELETON_STATION_MOTION_H
+#define PCS_SKELETON_STATION_MOTION_H
+
+#include <pcs/skeleton/Scan.h>
+
+#include <Eigen/Geometry>
+
+namespace pcs {
+namespace skeleton {
+
+/// A small rigid motion about the origin.
+struct Station_motion
+{
+  Vec3 shift = Vec3::Zero(); ///< [L]
+  Vec3 turn = Vec3::Zero();  ///< about this axis, by its length [rad]
+
+  Vec3 operator()(const Vec3& p) const
+  {
+    const double angle = turn.norm();
+    return angle > 0 ? Vec3(Eigen::AngleAxisd(angle, turn / angle) * p + shift) : Vec3(p + shift);
+  }
+};
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_STATION_MOTION_H

@@ -1,0 +1,292 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// How stations must move so that all see the same branches.
+
+#ifndef PCS_SKELETON_ALIGN_STATIONS_H
+#define PCS_SKELETON_ALIGN_STATIONS_H
+
+#include <pcs/internal/parallel.h>
+#include <pcs/skeleton/Alignment_rules.h>
+#include <pcs/skeleton/Axis.h>
+#include <pcs/skeleton/Axis_set.h>
+#include <pcs/skeleton/Index_groups.h>
+#include <pcs/skeleton/Scan.h>
+#include <pcs/skeleton/Station_motion.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+namespace internal {
+
+/*!
+  Gauss-Newton over the stations' motions. A point's distance from the surface of its branch comes from the motion of its station, and
+  from what is wrong with its piece of the branch: radius, place across, and an oval section. These five unknowns of every
+  piece are eliminated; what is left tells the motions apart, since each station sees another side.
+*/
+template <class ConcurrencyTag>
+class Station_alignment
+{
+public:
+  /// `station` has one entry for each point of the scan, `none` where nothing is known.
+  Station_alignment(const Scan& scan,
+                    const Axis_set& axes,
+                    const std::vector<Index>& station,
+                    std::size_t number_of_stations,
+                    const Alignment_rules& rules)
+    : m_scan(scan),
+      m_axes(axes),
+      m_station(station),
+      m_rules(rules),
+      m_motions(number_of_stations)
+  {
+    cut_pieces();
+  }
+
+  std::vector<Station_motion> run()
+  {
+    for (int round = 0; round < m_rules.rounds && !m_pieces.empty(); ++round)
+      if (!improve())
+        return std::vector<Station_motion>(m_motions.size());
+    keep_middle();
+    return m_motions;
+  }
+
+private:
+  static constexpr int freedom = 6; ///< of a motion: shift and turn
+  static constexpr int local = 5;   ///< radius, place across, oval
+  using Motion = Eigen::Matrix<double, freedom, 1>;
+  using Local = Eigen::Matrix<double, local, 1>;
+
+  struct Piece
+  {
+    Index axis = 0;
+    double radius = 0;
+    std::vector<Index> points;
+    Vec3 e1 = Vec3::Zero(), e2 = Vec3::Zero(); ///< across
+    Local wrong = Local::Zero();
+  };
+
+  void cut_pieces()
+  {
+    const Index_groups points(m_axes.axes.size(), m_axes.axis_of_point);
+    for (Index a = 0; a < m_axes.axes.size(); ++a) {
+      const Axis& axis = m_axes.axes[a].axis;
+      std::vector<std::pair<double, Index>> sorted;
+      for (const Index i : points[a]) {
+        const Axis_place place =
+            nearest_place(axis, m_axes.segment_of_point[i], m_scan.points[i]);
+        const bool is_inside = place.share >= 0 && place.share <= 1;
+        if (m_station[i] != none && is_inside &&
+            radius_at(axis, place) >= m_rules.thickness * m_axes.noise)
+          sorted.emplace_back(double(place.segment) + place.share, i);
+      }
+      std::sort(sorted.begin(), sorted.end());
+      for (std::size_t begin = 0; begin < sorted.size();) {
+        std::size_t end = begin;
+        while (end < sorted.size() && (end - begin < m_rules.enough ||
+                                       sorted[end].first - sorted[begin].first < 2))
+          ++end;
+        if (end - begin >= m_rules.fewest)
+          add_piece(a, sorted, begin, end);
+        begin = end;
+      }
+    }
+  }
+
+  void add_piece(Index a,
+                 const std::vector<std::pair<double, Index>>& sorted,
+                 std::size_t begin,
+                 std::size_t end)
+  {
+    Piece piece;
+    piece.axis = a;
+    const Axis& axis = m_axes.axes[a].axis;
+    const double middle = sorted[(begin + end) / 2].first;
+    const std::size_t s = std::min(axis.size() - 2, static_cast<std::size_t>(middle));
+    const Vec3 along = axis[s + 1].point - axis[s].point;
+    if (!(along.squaredNorm() > 0))
+      return;
+    piece.radius = axis[s].radius;
+    piece.e1 = along.unitOrthogonal();
+    piece.e2 = along.normalized().cross(piece.e1);
+    for (std::size_t k = begin; k < end; ++k)
+      piece.points.push_back(sorted[k].second);
+    m_pieces.push_back(std::move(piece));
+  }
+
+  /// How far a point is from the surface, and how that changes with the motion of its station and with the piece.
+  struct Sight
+  {
+    double height;
+    Motion motion;
+    Local wrong;
+  };
+  Sight sight(const Piece& piece, Index i) const
+  {
+    const Axis& axis = m_axes.axes[piece.axis].axis;
+    const Vec3 p = m_motions[m_station[i]](m_scan.points[i]);
+    const Axis_place place = nearest_place(axis, m_axes.segment_of_point[i], p);
+    const Vec3 across = p - point_at(axis, place);
+    const double distance = across.norm();
+    const Vec3 normal = distance > 0 ? Vec3(across / distance) : piece.e1;
+    const double x = normal.dot(piece.e1), y = normal.dot(piece.e2);
+    Sight s;
+    s.height = distance - radius_at(axis, place);
+    s.motion << normal, p.cross(normal);
+    s.wrong << 1, x, y, x * x - y * y, 2 * x * y;
+    return s;
+  }
+
+  double weight(const Sight& s, const Local& wrong) const
+  {
+    const double x = (s.height - s.wrong.dot(wrong)) / (m_rules.largest_error * m_axes.noise);
+    return x * x < 1 ? (1 - x * x) * (1 - x * x) / (m_axes.noise * m_axes.noise) : 0;
+  }
+
+  /// The expected size of what is wrong with a piece, as inverse squares.
+  Local precision(const Piece& piece) const
+  {
+    const double fit = std::hypot(m_rules.fit * m_axes.noise, m_rules.relative_fit * piece.radius);
+    const double oval = m_rules.oval * piece.radius;
+    Local result;
+    result << 1 / (fit * fit), 1 / (fit * fit), 1 / (fit * fit), 1 / (oval * oval),
+        1 / (oval * oval);
+    return result;
+  }
+
+  /// Adds what one piece says of the motions, whatever is wrong with it, which is found as well.
+  void add(Piece& piece, Eigen::MatrixXd& matrix, Eigen::VectorXd& right) const
+  {
+    std::vector<Index> stations; // of the piece
+    for (const Index i : piece.points)
+      if (std::find(stations.begin(), stations.end(), m_station[i]) == stations.end())
+        stations.push_back(m_station[i]);
+    const Eigen::Index size = freedom * static_cast<Eigen::Index>(stations.size());
+    Eigen::MatrixXd motions = Eigen::MatrixXd::Zero(size, size);
+    Eigen::MatrixXd mixed = Eigen::MatrixXd::Zero(size, local);
+    Eigen::Matrix<double, local, local> own = precision(piece).asDiagonal();
+    Eigen::VectorXd motion_right = Eigen::VectorXd::Zero(size);
+    Local own_right = Local::Zero();
+    for (const Index i : piece.points) {
+      const Sight s = sight(piece, i);
+      const double w = weight(s, piece.wrong);
+      const Eigen::Index at =
+          freedom * (std::find(stations.begin(), stations.end(), m_station[i]) - stations.begin());
+      motions.block<freedom, freedom>(at, at) += w * s.motion * s.motion.transpose();
+      mixed.block<freedom, local>(at, 0) += w * s.motion * s.wrong.transpose();
+      own += w * s.wrong * s.wrong.transpose();
+      motion_right.segment<freedom>(at) += w * s.height * s.motion;
+      own_right += w * s.height * s.wrong;
+    }
+    const Eigen::LDLT<Eigen::Matrix<double, local, local>> solver(own);
+    piece.wrong = solver.solve(own_right); // of the motions so far
+    motions -= mixed * solver.solve(mixed.transpose());
+    motion_right -= mixed * piece.wrong;
+    for (std::size_t a = 0; a < stations.size(); ++a) {
+      const Eigen::Index ra = freedom * static_cast<Eigen::Index>(stations[a]);
+      const Eigen::Index la = freedom * static_cast<Eigen::Index>(a);
+      right.segment<freedom>(ra) += motion_right.segment<freedom>(la);
+      for (std::size_t b = 0; b < stations.size(); ++b)
+        matrix.block<freedom, freedom>(ra, freedom * static_cast<Eigen::Index>(stations[b])) +=
+            motions.block<freedom, freedom>(la, freedom * static_cast<Eigen::Index>(b));
+    }
+  }
+
+  /// One step. `false`: it leads nowhere.
+  bool improve()
+  {
+    const Eigen::Index size = freedom * static_cast<Eigen::Index>(m_motions.size());
+    constexpr std::size_t number_of_blocks = 16; // whatever the number of threads
+    const std::size_t block = (m_pieces.size() + number_of_blocks - 1) / number_of_blocks;
+    std::vector<Eigen::MatrixXd> matrices(number_of_blocks, Eigen::MatrixXd::Zero(size, size));
+    std::vector<Eigen::VectorXd> rights(number_of_blocks, Eigen::VectorXd::Zero(size));
+    pcs::internal::for_each_block<ConcurrencyTag>(
+        m_pieces.size(), block, [&](std::size_t begin, std::size_t end) {
+          for (std::size_t k = begin; k < end; ++k)
+            add(m_pieces[k], matrices[begin / block], rights[begin / block]);
+        });
+    // a motion moves points away from the surface, and is small
+    const double usual = m_rules.motion * m_axes.noise;
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(size, size) / (usual * usual);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(size);
+    for (std::size_t s = 0; s < m_motions.size(); ++s)
+      right.segment<freedom>(freedom * static_cast<Eigen::Index>(s))
+          << m_motions[s].shift / (usual * usual),
+          m_motions[s].turn / (usual * usual);
+    for (std::size_t b = 0; b < number_of_blocks; ++b) {
+      matrix += matrices[b];
+      right += rights[b];
+    }
+    const Eigen::VectorXd step = -matrix.ldlt().solve(right);
+    if (!step.allFinite())
+      return false;
+    for (std::size_t s = 0; s < m_motions.size(); ++s) {
+      const Eigen::Index at = freedom * static_cast<Eigen::Index>(s);
+      m_motions[s].shift += step.segment<3>(at);
+      m_motions[s].turn += step.segment<3>(at + 3);
+    }
+    return true;
+  }
+
+  /// All points together stay where they are: nothing tells where that is.
+  void keep_middle()
+  {
+    std::vector<double> count(m_motions.size(), 0);
+    double total = 0;
+    for (const Index s : m_station)
+      if (s != none) {
+        count[s] += 1;
+        total += 1;
+      }
+    Vec3 shift = Vec3::Zero(), turn = Vec3::Zero();
+    for (std::size_t s = 0; s < m_motions.size() && total > 0; ++s) {
+      shift += count[s] / total * m_motions[s].shift;
+      turn += count[s] / total * m_motions[s].turn;
+    }
+    for (Station_motion& motion : m_motions) {
+      motion.shift -= shift;
+      motion.turn -= turn;
+    }
+  }
+
+  const Scan& m_scan;
+  const Axis_set& m_axes;
+  const std::vector<Index>& m_station;
+  const Alignment_rules& m_rules;
+  std::vector<Station_motion> m_motions;
+  std::vector<Piece> m_pieces;
+};
+
+} // namespace internal
+
+/// The motions that bring the points of all stations onto the same branches, in coordinates of the scan. Points that are on no axis
+/// do not take part. O(points rounds).
+template <class ConcurrencyTag>
+std::vector<Station_motion> align_stations(const Scan& scan,
+                                           const Axis_set& axes,
+                                           const std::vector<Index>& station_of_point,
+                                           std::size_t number_of_stations,
+                                           const Alignment_rules& rules)
+{
+  return internal::Station_alignment<ConcurrencyTag>(scan,
+                                                     axes,
+                                                     station_of_point,
+                                                     number_of_stations,
+                                                     rules)
+      .run();
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_ALIGN_STATIONS_H
