@@ -35,6 +35,7 @@
 #include <nlohmann/json.hpp>
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -66,6 +67,21 @@ pcs::skeleton::Leaf_removal leaf_removal(const Skeleton_options& options, bool i
   if (is_labelled || options.do_keep_leaves)
     return Leaf_removal::never;
   return options.do_remove_leaves ? Leaf_removal::always : Leaf_removal::where_found;
+}
+
+/// Which station has measured a point; -1: not known.
+std::vector<long long> stations_of(const pcs::IO::Point_table& table, const std::string& wanted)
+{
+  if (!wanted.empty() && !table.has_property(wanted))
+    throw pcs::Invalid_input("the scan has no property '" + wanted + "'");
+  for (const std::string& name : {wanted, std::string("station"), std::string("point_source_id")})
+    if (!name.empty() && table.has_property(name)) {
+      std::vector<long long> stations;
+      for (const double x : table.property_as_double(name))
+        stations.push_back(x >= 0 && x < 1e15 ? std::llround(x) : -1);
+      return stations;
+    }
+  return std::vector<long long>(table.number_of_points(), -1);
 }
 
 struct Labels
@@ -125,6 +141,8 @@ pcs::Skeleton_report extract(const std::string& input,
   const auto leaf = boost::make_iterator_property_map(labels.leaf.begin(), identity);
   const auto is_wood = boost::make_function_property_map<std::size_t, bool>(
       [&](std::size_t i) { return wood[i] > 0.5; });
+  const std::vector<long long> stations = stations_of(table, options.stations);
+  const auto station = boost::make_iterator_property_map(stations.begin(), identity);
   Progress_line line(!options.is_quiet);
   const std::function<bool(double)> callback = [&](double f) {
     line.show("skeleton", f);
@@ -142,6 +160,8 @@ pcs::Skeleton_report extract(const std::string& input,
                       .slice_rules(slices)
                       .up_direction(up_direction<Kernel>(options.up))
                       .breast_height(options.breast_height)
+                      .do_register_stations(!options.do_keep_stations)
+                      .station_map(station)
                       .do_remove_ground(!options.do_keep_ground)
                       .wood_map(is_wood)
                       .do_remove_leaves(leaf_removal(options, is_labelled))

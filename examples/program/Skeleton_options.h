@@ -25,13 +25,15 @@ struct Skeleton_options
 {
   std::vector<std::string> inputs, also;
   std::string swc, mesh, leaves, cylinders, edges, points, report, folder;
-  std::string up = "z", method = "chains", fit, wood, given; // no fit: the default of the library
+  std::string up = "z", method = "chains", fit, wood, stations,
+              given; // no fit: the default of the library
   std::vector<double> root, scanners;
   double beam_milliradians = -1; // < 0: the default of the library
   double tolerance = -1;         // < 0: the default of the library
   double breast_height = 1.3;
-  bool do_keep_ground = false, do_remove_leaves = false, do_keep_leaves = false,
-       do_separate = false, do_use_all = false, do_fit_all = false, is_quiet = false;
+  bool do_keep_stations = false, do_keep_ground = false, do_remove_leaves = false,
+       do_keep_leaves = false, do_separate = false, do_use_all = false, do_fit_all = false,
+       is_quiet = false;
 
   bool has_mesh() const
   {
@@ -45,6 +47,7 @@ inline nlohmann::ordered_json to_json(const Skeleton_options& o)
   nlohmann::ordered_json json = {{"up", o.up},
                                  {"method", o.method},
                                  {"wood", o.wood},
+                                 {"stations", o.do_keep_stations ? "keep" : o.stations},
                                  {"keep_ground", o.do_keep_ground},
                                  {"leaves",
                                   o.do_keep_leaves     ? "keep"
@@ -66,7 +69,8 @@ inline nlohmann::ordered_json to_json(const Skeleton_options& o)
 inline const char* skeleton_help()
 {
   return R"(Scans: PLY, LAS, OFF, or text (xyz, txt, csv, asc, pts, pwn). A property `wood` (1: wood,
-0: leaf) is used if there is one. Lengths of all results are in the unit of the scan, positions
+0: leaf) is used if there is one, and `station` or `point_source_id`, the station that has measured a
+point: errors of their registration are taken out. Lengths of all results are in the unit of the scan, positions
 in its coordinates.
 
 SWC rows: id, type, x, y, z, radius, parent (-1 for the root); type is 5 + the order of the branch.
@@ -112,6 +116,15 @@ inline void declare(CLI::App& app, Skeleton_options& options)
       ->check(CLI::NonNegativeNumber)
       ->needs("--scanner");
   app.add_option("--wood", options.wood, "property that tells wood (1) from leaves (0)");
+  app.add_option(
+      "--stations",
+      options.stations,
+      "property that tells which station has measured a point; else stations are found by "
+      "the grids of their beams");
+  app.add_flag("--keep-stations",
+               options.do_keep_stations,
+               "do not move stations so that all see the same branches")
+      ->excludes("--stations");
   app.add_option("--skeleton",
                  options.given,
                  "SWC: measure along this skeleton; its positions stay")

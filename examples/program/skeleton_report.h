@@ -35,6 +35,19 @@ inline nlohmann::ordered_json to_json(const pcs::Wood& wood)
   return {{"branches", wood.number_of_branches}, {"length", wood.length}, {"volume", wood.volume}};
 }
 
+inline nlohmann::ordered_json to_json(const pcs::Scan_station& s)
+{
+  nlohmann::ordered_json json = {{"label", s.label},
+                                 {"points", s.number_of_points},
+                                 {"shift", {s.shift.x(), s.shift.y(), s.shift.z()}},
+                                 {"turn", s.turn}};
+  if (s.azimuth_step > 0) { // found
+    json["position"] = {s.position.x(), s.position.y(), s.position.z()};
+    json["steps"] = {s.azimuth_step, s.elevation_step};
+  }
+  return json;
+}
+
 /// All figures; lengths in the unit of the input.
 inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skeleton_report& r)
 {
@@ -58,6 +71,9 @@ inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skele
   json["branches_out_of_reach"] = r.number_of_unreached_branches;
   json["other_stems"] = r.number_of_other_stems;
   json["in_rows"] = r.is_in_rows;
+  json["stations"] = nlohmann::ordered_json::array();
+  for (const pcs::Scan_station& s : r.stations)
+    json["stations"].push_back(to_json(s));
   json["warnings"] = nlohmann::ordered_json::array();
   for (const std::string& sentence : pcs::warnings(r))
     json["warnings"].push_back(in_options(sentence));

@@ -103,6 +103,17 @@ public:
       \np{root_position} a place near the foot of the trunk [L]
         \nptype a point with `x()`, `y()`, `z()`
         \npdefault none: the lower end of the thickest part near the lower end of the cloud
+      \np{do_register_stations} whether stations of the scanner are moved, by millimetres, so that all see the same branches:
+          errors of registration make branches too thick or too thin by as much. The stations are those of `station_map`, or
+          those whose regular beams are found: a scanner turns by equal steps, which its points show until they are thinned or
+          rounded to less than a tenth of their distance. Of one station, or where none are found, nothing is moved. The
+          result lies in the middle of the stations; `Skeleton_report::stations` has what was moved
+        \nptype `bool`
+        \npdefault `true`
+      \np{station_map} which station has measured a point; negative: not known. If less than two are told apart, stations are
+          looked for
+        \nptype model of `ReadablePropertyMap`, key: element of `points`, value: an integer type
+        \npdefault none
       \np{scanner_positions} where the scanners stood; with `beam_width` they tell how much a beam widens thin branches
         \nptype range of points with `x()`, `y()`, `z()`
         \npdefault none
@@ -186,6 +197,7 @@ public:
       std::vector<skeleton::Vec3> input = read_points();
       skeleton::check_input(input, hints, function);
       std::vector<std::uint8_t> is_wood = read_wood();
+      hints.stations = read_stations();
       m_session = std::make_unique<Session>(std::move(input), std::move(is_wood), std::move(hints));
     }
   }
@@ -315,6 +327,25 @@ private:
                             std::to_string(lowest_number_of_scan_points));
     }
     return is_wood;
+  }
+
+  std::vector<long long> read_stations() const
+  {
+    std::vector<long long> stations;
+    if constexpr (internal::is_given_v<NamedParameters, internal_np::station_map_t>) {
+      const auto map = CGAL::parameters::get_parameter(m_np, internal_np::station_map);
+      using Map = std::decay_t<decltype(map)>;
+      constexpr bool is_map_ok =
+          is_readable_map_v<Map, typename Types::Element, pcs::Map_value<Map>> &&
+          std::is_integral_v<pcs::Map_value<Map>>;
+      static_assert(is_map_ok,
+                    "pcs::extract_tree_skeleton(): named parameter `station_map` must be readable, "
+                    "accept an element of `points` as key, and store an integer type");
+      if constexpr (is_map_ok)
+        for (auto it = std::begin(*m_points); it != std::end(*m_points); ++it)
+          stations.push_back(static_cast<long long>(get(map, *it)));
+    }
+    return stations;
   }
 
   /// Calls `f(i)` for every input point that a branch explains, side by side where the tag allows it.

@@ -13,14 +13,19 @@ namespace skeleton {
 /// Which points tell where stations are, and what else their distances from the axes may come from.
 struct Alignment_rules
 {
-  double thickness = 3;      ///< smallest radius, in noise [-]
-  std::size_t fewest = 40;   ///< points of a piece of a branch [count]
-  std::size_t enough = 60;   ///< the same of two edges, unless more are needed [count]
-  double fit = 3;            ///< error of a radius or place that was fitted, in noise ... [-]
-  double relative_fit = 0.2; ///< ... and in radii [-]
-  double oval = 0.03;        ///< half difference of the half axes of a section, in radii [-]
+  double thickness = 3;         ///< smallest radius, in noise [-]
+  std::size_t fewest = 16;      ///< points of a piece of a branch [count]
+  std::size_t enough = 24;      ///< the same of two edges, unless more are needed [count]
+  double longest = 16;          ///< half of the length of a piece, in radii [-]
+  double fit = 3;               ///< error of a radius or place that was fitted, in noise ... [-]
+  double relative_fit = 0.2;    ///< ... and in radii [-]
+  double oval = 0.03;           ///< half difference of the half axes of a section, in radii [-]
   double largest_error = 4.685; ///< of a point, in noise (Tukey's constant) [-]
-  double motion = 5;            ///< usual size, in noise [-]
+  double motion = 1;            ///< usual size, in noise [-]
+  double agreement =
+      0.4; ///< error of motions, by their size, above which more points are looked at ...
+  double least = 0.25;           ///< ... unless the motions are as small as this, in noise [-]
+  std::size_t fewest_pieces = 8; ///< of every second axis that tell the error [count]
   int rounds = 6;
 };
 

@@ -33,24 +33,30 @@ inline double beyond_whole(double x)
 struct Beam_grid
 {
   Vec3 position = Vec3::Zero(); ///< of the station, with the error of its registration [L]
-  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity(); ///< by rows: to the tree, to the left, its own vertical
-  Grid_place rate = Grid_place::Ones();               ///< of columns and rows [1/rad]
-  Grid_place phase = Grid_place::Zero();              ///< added to them [steps]
+  Eigen::Matrix3d axes =
+      Eigen::Matrix3d::Identity();       ///< by rows: to the tree, to the left, its own vertical
+  Grid_place rate = Grid_place::Ones();  ///< of columns and rows [1/rad]
+  Grid_place phase = Grid_place::Zero(); ///< added to them [steps]
   double tolerance = 0; ///< points of the station are this near to whole numbers [steps]
 
   Grid_place place_of_direction(const Vec3& q) const
   {
     return Grid_place(rate[0] * std::atan2(q.y(), q.x()),
-                      rate[1] * std::atan2(q.z(), std::hypot(q.x(), q.y()))) +
+                      rate[1] * std::atan2(q.z(), std::sqrt(q.x() * q.x() + q.y() * q.y()))) +
            phase;
   }
   Grid_place place(const Vec3& p) const { return place_of_direction(axes * (p - position)); }
 
-  /// The larger distance of column and row from whole numbers, in [0, 1/2] [steps].
-  double misfit(const Vec3& p) const
+  /// The larger distance of column and row from whole numbers, in [0, 1/2]; at least `most` where it is more than that [steps].
+  double misfit(const Vec3& p, double most = 0.5) const
   {
-    const Grid_place at = place(p);
-    return std::max(std::abs(beyond_whole(at[0])), std::abs(beyond_whole(at[1])));
+    const Vec3 q = axes * (p - position);
+    const double column = std::abs(beyond_whole(rate[0] * std::atan2(q.y(), q.x()) + phase[0]));
+    if (column > most) // most points of other stations
+      return column;
+    const double level = std::sqrt(q.x() * q.x() + q.y() * q.y());
+    const double row = std::abs(beyond_whole(rate[1] * std::atan2(q.z(), level) + phase[1]));
+    return std::max(column, row);
   }
 };
 

@@ -17,6 +17,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -358,6 +359,13 @@ inline Neighbor_graph graph_of(std::size_t n, const Links& links, const Links& g
                         internal::Edge_iterator::end(gaps),
                         static_cast<Index>(n));
 }
+
+/// All points in one graph: where parts are apart, the gaps between them are closed.
+struct Linked_parts
+{
+  Links gaps;
+  std::unique_ptr<Neighbor_graph> graph;
+};
 
 } // namespace skeleton
 } // namespace pcs

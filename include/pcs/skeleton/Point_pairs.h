@@ -36,22 +36,27 @@ public:
   /// Median distance of points to the nearest of those around them in the order [L].
   double spacing() const { return m_spacing; }
 
-  /// Up to `most` pairs whose distances are in [`low`, `high`]; the same ones on each call. O(most).
+  /// Up to `most` pairs whose distances are in [`low`, `high`], evenly; the same ones on each call. O(most).
   std::vector<Point_pair> draw(double low, double high, std::size_t most) const
   {
-    constexpr std::size_t tries = 12; // for each
+    constexpr std::size_t tries = 16; // for each
     std::vector<Point_pair> pairs;
-    const std::size_t n = m_points.size();
-    const double x = high / m_spacing, around = 4 * x * x; // surfaces have so many points within `high`
+    const std::size_t n = m_points.size(), step = 1 + n / most;
+    const double x = high / m_spacing,
+                 around = 4 * x * x; // surfaces have so many points within `high`
     const std::size_t reach = static_cast<std::size_t>(std::min(double(n), around));
-    for (std::size_t k = 0; k < tries * most && pairs.size() < most; ++k) {
-      const std::size_t i = scattered(2 * k, n), j = i + 1 + scattered(2 * k + 1, reach);
-      if (j >= n)
-        continue;
-      const double distance = (m_points[j] - m_points[i]).norm();
-      if (low <= distance && distance <= high)
-        pairs.push_back({0.5 * (m_points[i] + m_points[j]), m_points[j] - m_points[i]});
-    }
+    for (std::size_t round = 0; round * n < most * step && pairs.size() < most; ++round)
+      for (std::size_t i = round % step; i < n && pairs.size() < most; i += step)
+        for (std::size_t k = 0; k < tries; ++k) {
+          const std::size_t j = i + 1 + scattered((round * n + i) * tries + k, reach);
+          if (j >= n)
+            continue;
+          const double distance = (m_points[j] - m_points[i]).norm();
+          if (distance < low || distance > high)
+            continue;
+          pairs.push_back({0.5 * (m_points[i] + m_points[j]), m_points[j] - m_points[i]});
+          break;
+        }
     return pairs;
   }
 

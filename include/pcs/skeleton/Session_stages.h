@@ -54,7 +54,7 @@ public:
     if (m_stage >= 1)
       return true;
     pcs::internal::Stopwatch watch;
-    if (!progress(0) || !register_stations(progress))
+    if (!progress(0) || !m_registration.run(m_is_wood, m_options, m_input, m_report, progress))
       return false;
     prepare_scan<ConcurrencyTag>(m_input, m_options.up, m_scan);
     const double unit = m_scan.frame.unit;
@@ -272,31 +272,10 @@ public:
   bool is_leaf_of_input(std::size_t i) const { return m_used.is_leaf(m_scan.point_of_input[i]); }
 
 protected: // benchmark/training looks at what leaves are told by
-  /// Moves the input, once.
-  bool register_stations(pcs::internal::Progress& progress)
-  {
-    if (!m_options.do_register_stations)
-      return true;
-    constexpr double share = 0.2; // of all work
-    progress.stage(0, share);
-    m_options.do_register_stations = !Station_registration<ConcurrencyTag, Session_stages>(
-                                          m_is_wood, m_options, m_input, m_report)
-                                          .run(progress);
-    progress.stage(0, 1);
-    return !m_options.do_register_stations;
-  }
-
   Links links_of_used() const
   {
     return neighbor_links<ConcurrencyTag>(m_scan, m_used.flags(), m_options.axes.links);
   }
-
-  /// All points in one graph: where parts are apart, the gaps between them are closed.
-  struct Linked_parts
-  {
-    Links gaps;
-    std::unique_ptr<Neighbor_graph> graph;
-  };
 
   /// The points that the tree stands on.
   std::vector<Index> points_of_root(const Links& links, const Point_parts& parts) const
@@ -446,6 +425,7 @@ protected: // benchmark/training looks at what leaves are told by
   int m_stage = 0, m_leaf_rounds = 0, m_regroupings = 0;
   Skeleton_report m_report;
   Scan m_scan;
+  Station_registration<ConcurrencyTag, Session_stages> m_registration;
   Used_points<ConcurrencyTag> m_used{m_scan, m_report};
   Wall_removal<ConcurrencyTag> m_wall_removal{m_scan, m_options.walls, m_used, m_report};
   std::vector<Index> m_root;

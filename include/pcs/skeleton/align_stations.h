@@ -26,12 +26,20 @@
 namespace pcs {
 namespace skeleton {
 
+/// Motions in coordinates of the scan.
+struct Aligned_stations
+{
+  std::vector<Station_motion> motions;
+  double size = 0, error = 0; ///< root mean square; turns at a typical distance [L]
+};
+
 namespace internal {
 
 /*!
-  Gauss-Newton over the stations' motions. A point's distance from the surface of its branch comes from the motion of its station, and
-  from what is wrong with its piece of the branch: radius, place across, and an oval section. These five unknowns of every
-  piece are eliminated; what is left tells the motions apart, since each station sees another side.
+  Gauss-Newton over the stations' motions. A point's distance from a straight piece of a branch comes from the motion of its station, and
+  from the shape of the piece: a bent axis, a radius that changes along it, an oval section. These ten unknowns of every piece are
+  eliminated; what is left tells the motions apart, since each station sees another side. Only where the pieces are is taken
+  from the axes that were fitted: their bends follow the points, and with them the motions that are looked for.
 */
 template <class ConcurrencyTag>
 class Station_alignment
@@ -43,36 +51,73 @@ public:
                     const std::vector<Index>& station,
                     std::size_t number_of_stations,
                     const Alignment_rules& rules)
-    : m_scan(scan),
-      m_axes(axes),
-      m_station(station),
-      m_rules(rules),
-      m_motions(number_of_stations)
+    : m_scan(scan), m_axes(axes), m_station(station), m_rules(rules), m_count(number_of_stations, 0)
   {
+    for (const Index s : station)
+      if (s != none)
+        m_count[s] += 1;
     cut_pieces();
   }
 
-  std::vector<Station_motion> run()
+  /*!
+    The motions by all axes. Every second axis and the others, each alone, tell how much less the points say than if nothing but noise
+    moved them: with that trust, what they cannot tell stays near the usual size of motions.
+  */
+  Aligned_stations run()
   {
-    for (int round = 0; round < m_rules.rounds && !m_pieces.empty(); ++round)
-      if (!improve())
-        return std::vector<Station_motion>(m_motions.size());
-    keep_middle();
-    return m_motions;
+    Aligned_stations result;
+    result.motions.resize(m_count.size());
+    if (m_pieces.empty() || m_count.size() < 2)
+      return result;
+    const Answer even = motions_by([](Index a) { return a % 2 == 0; });
+    const std::size_t number_of_even = m_used.size();
+    const Answer odd = motions_by([](Index a) { return a % 2 == 1; });
+    const std::size_t fewest = std::min(number_of_even, m_used.size());
+    const Eigen::VectorXd apart = even.motions - odd.motions;
+    const Eigen::MatrixXd expected = inverse(even.matrix) + inverse(odd.matrix);
+    const double surprise =
+        apart.dot(expected.ldlt().solve(apart)) / double(apart.size() - freedom);
+    if (!std::isfinite(surprise))
+      return result;
+    m_trust = 1 / std::max(1.0, surprise);
+    const Answer all = motions_by([](Index) { return true; });
+    for (std::size_t s = 0; s < m_count.size(); ++s) {
+      const Eigen::Index at = freedom * static_cast<Eigen::Index>(s);
+      result.motions[s] = {all.motions.template segment<3>(at),
+                           all.motions.template segment<3>(at + 3)};
+    }
+    // turns count at a typical distance
+    const double mean = 1 / double(m_count.size());
+    result.size = std::sqrt(mean * all.motions.squaredNorm());
+    result.error = fewest < m_rules.fewest_pieces ? result.size // not known
+                                                  : std::sqrt(mean * 0.25 * apart.squaredNorm());
+    return result;
   }
 
 private:
   static constexpr int freedom = 6; ///< of a motion: shift and turn
-  static constexpr int local = 5;   ///< radius, place across, oval
+  static constexpr int local = 10;  ///< radius (2), place across (3 each), oval (2)
   using Motion = Eigen::Matrix<double, freedom, 1>;
   using Local = Eigen::Matrix<double, local, 1>;
+
+  struct Answer
+  {
+    Eigen::VectorXd motions; ///< shift and turn of every station
+    Eigen::MatrixXd matrix;  ///< of their normal equations
+  };
+
+  static Eigen::MatrixXd inverse(const Eigen::MatrixXd& matrix)
+  {
+    return matrix.ldlt().solve(Eigen::MatrixXd::Identity(matrix.rows(), matrix.cols()));
+  }
 
   struct Piece
   {
     Index axis = 0;
-    double radius = 0;
+    Vec3 middle = Vec3::Zero(), along = Vec3::UnitZ(); ///< a straight line
+    Vec3 e1 = Vec3::Zero(), e2 = Vec3::Zero();         ///< across
+    double half_length = 0, radius = 0;
     std::vector<Index> points;
-    Vec3 e1 = Vec3::Zero(), e2 = Vec3::Zero(); ///< across
     Local wrong = Local::Zero();
   };
 
@@ -83,8 +128,7 @@ private:
       const Axis& axis = m_axes.axes[a].axis;
       std::vector<std::pair<double, Index>> sorted;
       for (const Index i : points[a]) {
-        const Axis_place place =
-            nearest_place(axis, m_axes.segment_of_point[i], m_scan.points[i]);
+        const Axis_place place = nearest_place(axis, m_axes.segment_of_point[i], m_scan.points[i]);
         const bool is_inside = place.share >= 0 && place.share <= 1;
         if (m_station[i] != none && is_inside &&
             radius_at(axis, place) >= m_rules.thickness * m_axes.noise)
@@ -93,8 +137,8 @@ private:
       std::sort(sorted.begin(), sorted.end());
       for (std::size_t begin = 0; begin < sorted.size();) {
         std::size_t end = begin;
-        while (end < sorted.size() && (end - begin < m_rules.enough ||
-                                       sorted[end].first - sorted[begin].first < 2))
+        while (end < sorted.size() &&
+               (end - begin < m_rules.enough || sorted[end].first - sorted[begin].first < 2))
           ++end;
         if (end - begin >= m_rules.fewest)
           add_piece(a, sorted, begin, end);
@@ -103,22 +147,31 @@ private:
     }
   }
 
-  void add_piece(Index a,
+  static Vec3 point_along(const Axis& axis, double at)
+  {
+    const std::size_t s = std::min(axis.size() - 2, static_cast<std::size_t>(at));
+    return point_at(axis, {static_cast<Index>(s), at - double(s), 0});
+  }
+
+  void add_piece(Index number,
                  const std::vector<std::pair<double, Index>>& sorted,
                  std::size_t begin,
                  std::size_t end)
   {
     Piece piece;
-    piece.axis = a;
-    const Axis& axis = m_axes.axes[a].axis;
-    const double middle = sorted[(begin + end) / 2].first;
-    const std::size_t s = std::min(axis.size() - 2, static_cast<std::size_t>(middle));
-    const Vec3 along = axis[s + 1].point - axis[s].point;
-    if (!(along.squaredNorm() > 0))
-      return;
+    piece.axis = number;
+    const Axis& axis = m_axes.axes[number].axis;
+    const double first = sorted[begin].first, last = sorted[end - 1].first;
+    const Vec3 a = point_along(axis, first), b = point_along(axis, last);
+    const std::size_t s = std::min(axis.size() - 1, static_cast<std::size_t>(0.5 * (first + last)));
     piece.radius = axis[s].radius;
-    piece.e1 = along.unitOrthogonal();
-    piece.e2 = along.normalized().cross(piece.e1);
+    piece.half_length = 0.5 * (b - a).norm();
+    if (!(piece.half_length > 0) || piece.half_length > m_rules.longest * piece.radius)
+      return;
+    piece.middle = 0.5 * (a + b);
+    piece.along = (b - a).normalized();
+    piece.e1 = piece.along.unitOrthogonal();
+    piece.e2 = piece.along.cross(piece.e1);
     for (std::size_t k = begin; k < end; ++k)
       piece.points.push_back(sorted[k].second);
     m_pieces.push_back(std::move(piece));
@@ -133,17 +186,17 @@ private:
   };
   Sight sight(const Piece& piece, Index i) const
   {
-    const Axis& axis = m_axes.axes[piece.axis].axis;
-    const Vec3 p = m_motions[m_station[i]](m_scan.points[i]);
-    const Axis_place place = nearest_place(axis, m_axes.segment_of_point[i], p);
-    const Vec3 across = p - point_at(axis, place);
+    const Vec3 p = m_motions[m_station[i]](m_scan.points[i]), from = p - piece.middle;
+    const double at = from.dot(piece.along), share = at / piece.half_length;
+    const Vec3 across = from - at * piece.along;
     const double distance = across.norm();
     const Vec3 normal = distance > 0 ? Vec3(across / distance) : piece.e1;
-    const double x = normal.dot(piece.e1), y = normal.dot(piece.e2);
+    const double x = normal.dot(piece.e1), y = normal.dot(piece.e2), square = share * share;
     Sight s;
-    s.height = distance - radius_at(axis, place);
+    s.height = distance - piece.radius;
     s.motion << normal, p.cross(normal);
-    s.wrong << 1, x, y, x * x - y * y, 2 * x * y;
+    s.wrong << 1, share, x, y, share * x, share * y, square * x, square * y, x * x - y * y,
+        2 * x * y;
     return s;
   }
 
@@ -159,8 +212,8 @@ private:
     const double fit = std::hypot(m_rules.fit * m_axes.noise, m_rules.relative_fit * piece.radius);
     const double oval = m_rules.oval * piece.radius;
     Local result;
-    result << 1 / (fit * fit), 1 / (fit * fit), 1 / (fit * fit), 1 / (oval * oval),
-        1 / (oval * oval);
+    result.setConstant(1 / (fit * fit));
+    result.tail<2>().setConstant(1 / (oval * oval));
     return result;
   }
 
@@ -202,20 +255,44 @@ private:
     }
   }
 
-  /// One step. `false`: it leads nowhere.
-  bool improve()
+  /// The motions by those axes for which `is_used`.
+  template <class IsUsed>
+  Answer motions_by(const IsUsed& is_used)
+  {
+    m_motions.assign(m_count.size(), Station_motion());
+    m_used.clear();
+    for (std::size_t k = 0; k < m_pieces.size(); ++k)
+      if (is_used(m_pieces[k].axis)) {
+        m_pieces[k].wrong.setZero();
+        m_used.push_back(k);
+      }
+    Answer answer;
+    for (int round = 0; round < m_rules.rounds; ++round)
+      answer.matrix = improve();
+    keep_middle();
+    answer.motions.resize(answer.matrix.rows());
+    for (std::size_t s = 0; s < m_motions.size(); ++s)
+      answer.motions.template segment<freedom>(freedom * static_cast<Eigen::Index>(s))
+          << m_motions[s].shift,
+          m_motions[s].turn;
+    return answer;
+  }
+
+  /// One step. Returns the matrix of its normal equations.
+  Eigen::MatrixXd improve()
   {
     const Eigen::Index size = freedom * static_cast<Eigen::Index>(m_motions.size());
     constexpr std::size_t number_of_blocks = 16; // whatever the number of threads
-    const std::size_t block = (m_pieces.size() + number_of_blocks - 1) / number_of_blocks;
+    const std::size_t block = m_used.size() / number_of_blocks + 1;
     std::vector<Eigen::MatrixXd> matrices(number_of_blocks, Eigen::MatrixXd::Zero(size, size));
     std::vector<Eigen::VectorXd> rights(number_of_blocks, Eigen::VectorXd::Zero(size));
     pcs::internal::for_each_block<ConcurrencyTag>(
-        m_pieces.size(), block, [&](std::size_t begin, std::size_t end) {
+        m_used.size(),
+        block,
+        [&](std::size_t begin, std::size_t end) {
           for (std::size_t k = begin; k < end; ++k)
-            add(m_pieces[k], matrices[begin / block], rights[begin / block]);
+            add(m_pieces[m_used[k]], matrices[begin / block], rights[begin / block]);
         });
-    // a motion moves points away from the surface, and is small
     const double usual = m_rules.motion * m_axes.noise;
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(size, size) / (usual * usual);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(size);
@@ -224,34 +301,28 @@ private:
           << m_motions[s].shift / (usual * usual),
           m_motions[s].turn / (usual * usual);
     for (std::size_t b = 0; b < number_of_blocks; ++b) {
-      matrix += matrices[b];
-      right += rights[b];
+      matrix += m_trust * matrices[b];
+      right += m_trust * rights[b];
     }
     const Eigen::VectorXd step = -matrix.ldlt().solve(right);
-    if (!step.allFinite())
-      return false;
     for (std::size_t s = 0; s < m_motions.size(); ++s) {
       const Eigen::Index at = freedom * static_cast<Eigen::Index>(s);
       m_motions[s].shift += step.segment<3>(at);
       m_motions[s].turn += step.segment<3>(at + 3);
     }
-    return true;
+    return matrix;
   }
 
   /// All points together stay where they are: nothing tells where that is.
   void keep_middle()
   {
-    std::vector<double> count(m_motions.size(), 0);
     double total = 0;
-    for (const Index s : m_station)
-      if (s != none) {
-        count[s] += 1;
-        total += 1;
-      }
+    for (const double count : m_count)
+      total += count;
     Vec3 shift = Vec3::Zero(), turn = Vec3::Zero();
     for (std::size_t s = 0; s < m_motions.size() && total > 0; ++s) {
-      shift += count[s] / total * m_motions[s].shift;
-      turn += count[s] / total * m_motions[s].turn;
+      shift += m_count[s] / total * m_motions[s].shift;
+      turn += m_count[s] / total * m_motions[s].turn;
     }
     for (Station_motion& motion : m_motions) {
       motion.shift -= shift;
@@ -263,8 +334,11 @@ private:
   const Axis_set& m_axes;
   const std::vector<Index>& m_station;
   const Alignment_rules& m_rules;
+  double m_trust = 1;          ///< in points
+  std::vector<double> m_count; ///< points of each station
   std::vector<Station_motion> m_motions;
   std::vector<Piece> m_pieces;
+  std::vector<std::size_t> m_used; ///< of the pieces
 };
 
 } // namespace internal
@@ -272,11 +346,11 @@ private:
 /// The motions that bring the points of all stations onto the same branches, in coordinates of the scan. Points that are on no axis
 /// do not take part. O(points rounds).
 template <class ConcurrencyTag>
-std::vector<Station_motion> align_stations(const Scan& scan,
-                                           const Axis_set& axes,
-                                           const std::vector<Index>& station_of_point,
-                                           std::size_t number_of_stations,
-                                           const Alignment_rules& rules)
+Aligned_stations align_stations(const Scan& scan,
+                                const Axis_set& axes,
+                                const std::vector<Index>& station_of_point,
+                                std::size_t number_of_stations,
+                                const Alignment_rules& rules)
 {
   return internal::Station_alignment<ConcurrencyTag>(scan,
                                                      axes,

@@ -16,6 +16,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -63,9 +64,8 @@ private:
 
   bool run(double shortest, Beam_grid& grid) const
   {
-    const std::vector<Point_pair> near =
-        m_source.draw(2 * shortest, 4 * shortest, m_rules.pairs);
-    if (near.size() < m_rules.pairs / 4)
+    const Coordinates near(m_source.draw(2 * shortest, 4 * shortest, m_rules.pairs));
+    if (near.size() < m_rules.fewest_pairs)
       return false;
     for (const Guess& guess : directions(near, shortest)) {
       Beam_grid found;
@@ -86,45 +86,67 @@ private:
     return Vec2(range * std::cos(angle), range * std::sin(angle));
   }
 
-  /// Spectra of the columns that stations at these places have.
-  void columns(const std::vector<Point_pair>& pairs,
-               const std::vector<Vec2>& places,
-               Step_spectra& spectra) const
+  /// The same pairs by coordinates, for wide instructions.
+  struct Coordinates
   {
-    spectra.compute<ConcurrencyTag>(places.size(), pairs.size(), [&](std::size_t h) {
-      const Vec2 from = places[h];
-      return [&pairs, from, range = from.norm()](std::size_t k) {
-        const Vec3& step = pairs[k].step;
-        const Vec2 to = pairs[k].middle.head<2>() - from;
-        return range * (to.x() * step.y() - to.y() * step.x()) / to.squaredNorm();
-      };
-    });
+    std::array<std::vector<float>, 3> middle, step;
+    explicit Coordinates(const std::vector<Point_pair>& pairs)
+    {
+      for (const Point_pair& pair : pairs)
+        for (std::size_t a = 0; a < 3; ++a) {
+          middle[a].push_back(static_cast<float>(pair.middle[static_cast<Eigen::Index>(a)]));
+          step[a].push_back(static_cast<float>(pair.step[static_cast<Eigen::Index>(a)]));
+        }
+    }
+    std::size_t size() const { return middle[0].size(); }
+  };
+
+  /// Spectra of the columns that stations at these places have.
+  void
+  columns(const Coordinates& pairs, const std::vector<Vec2>& places, Step_spectra& spectra) const
+  {
+    const float *mx = pairs.middle[0].data(), *my = pairs.middle[1].data();
+    const float *sx = pairs.step[0].data(), *sy = pairs.step[1].data();
+    spectra.compute<ConcurrencyTag>(places.size(),
+                                    pairs.size(),
+                                    [&, mx, my, sx, sy](std::size_t h) {
+                                      const float x0 = static_cast<float>(places[h].x()),
+                                                  y0 = static_cast<float>(places[h].y());
+                                      const float range = static_cast<float>(places[h].norm());
+                                      return [=](std::size_t k) {
+                                        const float x = mx[k] - x0, y = my[k] - y0;
+                                        return range * (x * sy[k] - y * sx[k]) / (x * x + y * y);
+                                      };
+                                    });
   }
 
   /// Spectra of the rows that stations at these heights above one place have.
-  void rows(const std::vector<Point_pair>& pairs,
+  void rows(const Coordinates& pairs,
             const Vec2& place,
             const std::vector<double>& heights,
             Step_spectra& spectra) const
   {
-    spectra.compute<ConcurrencyTag>(heights.size(), pairs.size(), [&](std::size_t h) {
-      const Vec3 from(place.x(), place.y(), heights[h]);
-      return [&pairs, from, range = place.norm()](std::size_t k) {
-        const Vec3 to = pairs[k].middle - from;
-        const Vec3& step = pairs[k].step;
-        const double level = to.head<2>().norm();
-        const double away = to.head<2>().dot(step.head<2>()) / level;
-        return range * (level * step.z() - to.z() * away) / to.squaredNorm();
+    const float *mx = pairs.middle[0].data(), *my = pairs.middle[1].data();
+    const float *sx = pairs.step[0].data(), *sy = pairs.step[1].data();
+    const float *mz = pairs.middle[2].data(), *sz = pairs.step[2].data();
+    const float x0 = static_cast<float>(place.x()), y0 = static_cast<float>(place.y());
+    const float range = static_cast<float>(place.norm());
+    spectra.compute<ConcurrencyTag>(heights.size(), pairs.size(), [=, &heights](std::size_t h) {
+      const float z0 = static_cast<float>(heights[h]);
+      return [=](std::size_t k) {
+        const float x = mx[k] - x0, y = my[k] - y0, z = mz[k] - z0, level2 = x * x + y * y;
+        const float away = (x * sx[k] + y * sy[k]) / std::sqrt(level2);
+        return range * (std::sqrt(level2) * sz[k] - z * away) / (level2 + z * z);
       };
     });
   }
 
   /// Where near pairs show columns. They tell little of how far away the station is.
-  std::vector<Guess> directions(const std::vector<Point_pair>& near, double shortest) const
+  std::vector<Guess> directions(const Coordinates& near, double shortest) const
   {
     const std::size_t around = static_cast<std::size_t>(std::ceil(two_pi / m_rules.spacing));
     std::vector<Vec2> places;
-    for (std::size_t k = 0; k < m_ranges.size(); k += 2)
+    for (std::size_t k = 0; k < m_ranges.size(); k += 3)
       for (std::size_t a = 0; a < around; ++a)
         places.push_back(place_at(m_ranges[k], two_pi * double(a) / double(around)));
     Step_spectra spectra(shortest, widening * shortest, 1.05, 3, 4 * shortest);
@@ -134,7 +156,7 @@ private:
       return std::min(a, around - a) <= 2;
     };
     std::vector<Guess> guesses;
-    for (const Step_peak& peak : spectra.outstanding(m_rules.evidence, m_rules.guesses, are_alike)) {
+    for (const Step_peak& peak : spectra.outstanding(m_rules.hint, m_rules.guesses, are_alike)) {
       const Vec2& p = places[peak.hypothesis];
       guesses.push_back({std::atan2(p.y(), p.x()), peak.step});
     }
@@ -142,16 +164,13 @@ private:
   }
 
   /// Farther pairs tell the distance, and then the height.
-  bool place(const Guess& guess,
-             const std::vector<Point_pair>& near,
-             Beam_grid& grid,
-             double& step) const
+  bool place(const Guess& guess, const Coordinates& near, Beam_grid& grid, double& step) const
   {
     constexpr double fine = 1.01, reach = 10; // of steps that are tried; lengths of pairs [steps]
     constexpr std::size_t beside = 6;
     const double shortest = guess.step / 1.1, longest = guess.step * 1.1;
-    const std::vector<Point_pair> far =
-        m_source.draw(0.5 * reach * guess.step, reach * guess.step, 2 * m_rules.pairs);
+    const Coordinates far(
+        m_source.draw(0.5 * reach * guess.step, reach * guess.step, 2 * m_rules.pairs));
     const double least = m_rules.evidence * std::sqrt(0.75 / double(far.size() + 1));
     std::vector<Vec2> places;
     for (const double r : m_ranges)
@@ -215,7 +234,7 @@ std::vector<Beam_grid> find_beam_grids(std::vector<Vec3> points, const Beam_grid
     grids.push_back(grid);
     std::vector<std::uint8_t> is_taken(points.size());
     pcs::internal::for_each_index<ConcurrencyTag>(points.size(), [&](std::size_t i) {
-      is_taken[i] = grid.misfit(points[i]) <= grid.tolerance;
+      is_taken[i] = grid.misfit(points[i], grid.tolerance) <= grid.tolerance;
     });
     std::size_t kept = 0;
     for (std::size_t i = 0; i < points.size(); ++i)

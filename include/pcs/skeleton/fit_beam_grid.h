@@ -44,17 +44,16 @@ public:
   /// `step` is a distance between beams [L].
   bool run(double step)
   {
-    const double least = m_rules.significance / std::sqrt(2.0 * double(m_rules.pairs));
     Grid_place usual = Grid_place::Zero();
     for (double low = 5 * step; low < m_rules.far; low *= 1.7) {
       const std::vector<Point_pair> pairs = m_source.draw(low, 2 * low, m_rules.pairs);
-      if (pairs.size() < m_rules.pairs / 4)
+      if (pairs.size() < m_rules.fewest_pairs)
         return false;
       constexpr int rounds = 4;
       Grid_place cosine;
       for (int round = 0; round < rounds; ++round)
         cosine = climb(pairs, usual);
-      if (cosine.minCoeff() < least)
+      if (cosine.minCoeff() < m_rules.significance / std::sqrt(2.0 * double(pairs.size())))
         return false;
       usual = cosine;
     }
@@ -86,8 +85,8 @@ private:
       at = g.place_of_direction(q);
       const double level2 = q.head<2>().squaredNorm(), level = std::sqrt(level2);
       const Vec3 c = g.rate[0] / level2 * Vec3(-q.y(), q.x(), 0);
-      const Vec3 r = g.rate[1] / q.squaredNorm() *
-                     Vec3(-q.z() * q.x() / level, -q.z() * q.y() / level, level);
+      const Vec3 r =
+          g.rate[1] / q.squaredNorm() * Vec3(-q.z() * q.x() / level, -q.z() * q.y() / level, level);
       const Vec3 cq = q.cross(c), rq = q.cross(r);
       column << -range * c, cq.x(), cq.y(), at[0] - g.phase[0], 0;
       row << -range * r, rq.x(), rq.y(), 0, at[1] - g.phase[1];
@@ -118,10 +117,13 @@ private:
     const std::size_t block = 512;
     std::vector<Sums> partial((pairs.size() + block - 1) / block);
     pcs::internal::for_each_block<ConcurrencyTag>(
-        pairs.size(), block, [&](std::size_t begin, std::size_t end) {
+        pairs.size(),
+        block,
+        [&](std::size_t begin, std::size_t end) {
           Sums& sums = partial[begin / block];
           for (std::size_t k = begin; k < end; ++k) {
-            const Sighting a(m_grid, m_range, pairs[k].first()), b(m_grid, m_range, pairs[k].second());
+            const Sighting a(m_grid, m_range, pairs[k].first()),
+                b(m_grid, m_range, pairs[k].second());
             const Step c = b.column - a.column, r = b.row - a.row;
             const Grid_place angle = two_pi * (b.at - a.at);
             sums.columns += c * c.transpose();
@@ -208,7 +210,7 @@ private:
       for (const int factor : {3, 2}) {
         double sine = 0, cosine = 0, count = 0;
         for_each_sample([&](const Vec3& p) {
-          if (m_grid.misfit(p) > reach)
+          if (m_grid.misfit(p, reach) > reach)
             return;
           const double angle = two_pi * m_grid.place(p)[e] / factor;
           sine += std::sin(angle);
@@ -231,8 +233,8 @@ private:
     const double count = double(misfits.size());
     double best = 0, share = 0;
     for (double width = 0.01; width < 0.25; width *= 1.25) {
-      const double inside = double(std::count_if(
-          misfits.begin(), misfits.end(), [&](double x) { return x <= width; }));
+      const double inside = double(
+          std::count_if(misfits.begin(), misfits.end(), [&](double x) { return x <= width; }));
       const double chance = 4 * width * width * count, more = inside - chance;
       const double evidence = more / std::sqrt(inside + chance + 1);
       if (evidence > best) {

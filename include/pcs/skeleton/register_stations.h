@@ -35,50 +35,89 @@ template <class ConcurrencyTag, class Stages>
 class Station_registration
 {
 public:
-  /// `input` is moved; `is_wood` is empty or has one entry per point. The report gets the stations.
-  Station_registration(const std::vector<std::uint8_t>& is_wood,
-                       const Session_options& options,
-                       std::vector<Vec3>& input,
-                       Skeleton_report& report)
-    : m_is_wood(is_wood), m_options(options), m_input(input), m_report(report)
+  /*!
+    Once, and if the options say so. `input` is moved; `is_wood` is empty or has one entry per point; the report gets the stations.
+    `false`: `progress` stopped it, and nothing is moved.
+  */
+  bool run(const std::vector<std::uint8_t>& is_wood,
+           Session_options& options,
+           std::vector<Vec3>& input,
+           Skeleton_report& report,
+           pcs::internal::Progress& progress)
   {
-  }
-
-  /// `false`: `progress` stopped it, and nothing is moved.
-  bool run(pcs::internal::Progress& progress)
-  {
-    m_frame = frame_of_scan<ConcurrencyTag>(m_input, m_options.up);
-    m_distinct = internal::distinct_places<ConcurrencyTag>(m_input, m_frame);
-    if (!progress(0))
-      return false;
-    if (m_options.stations.empty())
-      find_stations();
-    else
-      read_stations();
-    if (m_labels.size() < 2)
-      return progress(1);
-    Stages draft(chosen_places(), chosen_wood(), draft_options());
-    if (!draft.fit_axes(progress))
-      return false;
-    move_input(draft);
-    return progress(1);
+    if (!options.do_register_stations)
+      return true;
+    constexpr double share = 0.2; // of all work
+    progress.stage(0, share);
+    const bool is_done = find_and_move(is_wood, options, input, report, progress);
+    progress.stage(0, 1);
+    options.do_register_stations = !is_done;
+    *this = Station_registration(); // it is large
+    return is_done;
   }
 
 private:
-  /// More points do not tell more of the motions.
-  static constexpr std::size_t enough = 100000;
-
-  void find_stations()
+  bool find_and_move(const std::vector<std::uint8_t>& is_wood,
+                     const Session_options& options,
+                     std::vector<Vec3>& input,
+                     Skeleton_report& report,
+                     pcs::internal::Progress& progress)
   {
-    m_grids = find_beam_grids<ConcurrencyTag>(m_distinct.places, m_options.beam_grids);
+    m_frame = frame_of_scan<ConcurrencyTag>(input, options.up);
+    m_distinct = internal::distinct_places<ConcurrencyTag>(input, m_frame);
+    if (!progress(0))
+      return false;
+    read_stations(options.stations);
+    if (m_labels.size() < 2)
+      find_stations(options.beam_grids);
+    if (m_labels.size() < 2)
+      return progress(1);
+    // some points are enough on thick branches, and more are needed on thin ones
+    for (m_stride = 1 + m_distinct.places.size() / enough;; m_stride = (m_stride + 3) / 4) {
+      Stages draft(chosen_places(), chosen_wood(is_wood), draft_options(options));
+      if (!draft.fit_axes(progress))
+        return false;
+      const Aligned_stations aligned = align(draft, options.alignment);
+      const Alignment_rules& rules = options.alignment;
+      const bool is_sure = aligned.error < rules.agreement * aligned.size ||
+                           aligned.size < rules.least * draft.axes().noise;
+      if (is_sure || m_stride == 1 || m_distinct.places.size() / m_stride > 2 * enough) {
+        if (aligned.error < aligned.size)
+          report.stations = move(aligned.motions, draft.scan().frame, input);
+        break;
+      }
+    }
+    return progress(1);
+  }
+
+  /// Points of the first draft, at most.
+  static constexpr std::size_t enough = 40000;
+
+  /// Some places, with those around them.
+  std::vector<Vec3> some_places() const
+  {
+    constexpr std::size_t most = 200000, block = 2000;
+    const std::size_t n = m_distinct.places.size(), every = 1 + n / most;
+    std::vector<Vec3> places;
+    for (std::size_t k = 0; k < n; ++k)
+      if (k / block % every == 0)
+        places.push_back(m_distinct.places[k]);
+    return places;
+  }
+
+  void find_stations(const Beam_grid_rules& rules)
+  {
+    m_labels.clear();
+    m_grids = find_beam_grids<ConcurrencyTag>(some_places(), rules);
     m_station.assign(m_distinct.places.size(), none);
     if (m_grids.size() < 2)
       return;
     pcs::internal::for_each_index<ConcurrencyTag>(m_station.size(), [&](std::size_t k) {
-      double least = m_options.beam_grids.loosest;
+      double least = rules.loosest;
       for (std::size_t s = 0; s < m_grids.size(); ++s) {
         const Beam_grid& grid = m_grids[s];
-        const double misfit = grid.misfit(m_distinct.places[k]) / grid.tolerance;
+        const double misfit =
+            grid.misfit(m_distinct.places[k], least * grid.tolerance) / grid.tolerance;
         if (misfit < least) {
           least = misfit;
           m_station[k] = static_cast<Index>(s);
@@ -89,44 +128,46 @@ private:
       m_labels.push_back(static_cast<long long>(s));
   }
 
-  void read_stations()
+  void read_stations(const std::vector<long long>& of_input)
   {
+    if (of_input.empty())
+      return;
     std::map<long long, Index> number;
     for (const Index i : m_distinct.chosen)
-      if (m_options.stations[i] >= 0)
-        number.emplace(m_options.stations[i], 0);
+      if (of_input[i] >= 0)
+        number.emplace(of_input[i], 0);
     for (auto& entry : number) {
       entry.second = static_cast<Index>(m_labels.size());
       m_labels.push_back(entry.first);
     }
     for (const Index i : m_distinct.chosen)
-      m_station.push_back(m_options.stations[i] >= 0 ? number.at(m_options.stations[i]) : none);
+      m_station.push_back(of_input[i] >= 0 ? number.at(of_input[i]) : none);
   }
-
-  std::size_t stride() const { return 1 + m_distinct.places.size() / enough; }
 
   std::vector<Vec3> chosen_places() const
   {
     std::vector<Vec3> places;
-    for (std::size_t k = 0; k < m_distinct.places.size(); k += stride())
+    for (std::size_t k = 0; k < m_distinct.places.size(); k += m_stride)
       places.push_back(m_distinct.places[k]);
     return places;
   }
 
-  std::vector<std::uint8_t> chosen_wood() const
+  std::vector<std::uint8_t> chosen_wood(const std::vector<std::uint8_t>& is_wood_of_input) const
   {
     std::vector<std::uint8_t> is_wood;
-    for (std::size_t k = 0; k < m_distinct.places.size() && !m_is_wood.empty(); k += stride())
-      is_wood.push_back(m_is_wood[m_distinct.chosen[k]]);
+    for (std::size_t k = 0; k < m_distinct.places.size() && !is_wood_of_input.empty();
+         k += m_stride)
+      is_wood.push_back(is_wood_of_input[m_distinct.chosen[k]]);
     return is_wood;
   }
 
-  Session_options draft_options() const
+  Session_options draft_options(Session_options options) const
   {
-    Session_options options = m_options;
     options.do_register_stations = false;
     options.stations.clear();
     options.method = Skeleton_method::chains;
+    options.axes.passes = 1; // finds thick wood, in leaves as well
+    options.leaf_removal = Leaf_removal::never;
     options.given.reset();
     options.up = Vec3::UnitZ();
     options.scanners.clear();
@@ -136,34 +177,36 @@ private:
     return options;
   }
 
-  /// Moves the points by what the axes of the draft tell.
-  void move_input(const Stages& draft)
+  /// The motions of all stations by the axes of the draft, in its coordinates.
+  Aligned_stations align(const Stages& draft, const Alignment_rules& rules) const
   {
     const Scan& scan = draft.scan();
-    if (draft.axes().axes.empty())
-      return;
     std::vector<Index> station(scan.size(), none);
-    for (std::size_t k = 0; k * stride() < m_station.size(); ++k)
-      station[scan.point_of_input[k]] = m_station[k * stride()];
-    const std::vector<Station_motion> motions = align_stations<ConcurrencyTag>(
-        scan, draft.axes(), station, m_labels.size(), m_options.alignment);
+    for (std::size_t k = 0; k * m_stride < m_station.size(); ++k)
+      station[scan.point_of_input[k]] = m_station[k * m_stride];
+    return align_stations<ConcurrencyTag>(scan, draft.axes(), station, m_labels.size(), rules);
+  }
+
+  std::vector<Scan_station> move(const std::vector<Station_motion>& motions,
+                                 const Scan_frame& draft_frame,
+                                 std::vector<Vec3>& input) const
+  {
     const auto moved = [&](const Vec3& p, const Station_motion& motion) {
-      const Vec3 local = scan.frame.to_local(m_frame.to_local(p));
-      return m_frame.to_input(scan.frame.to_input(motion(local)));
+      const Vec3 local = draft_frame.to_local(m_frame.to_local(p));
+      return m_frame.to_input(draft_frame.to_input(motion(local)));
     };
     std::vector<Scan_station> stations(m_labels.size());
-    std::vector<Vec3> middle(m_labels.size(), Vec3::Zero());
-    for (std::size_t i = 0; i < m_input.size(); ++i) {
-      const Index s = m_station[m_distinct.of_point[i]];
-      if (s == none)
-        continue;
-      ++stations[s].number_of_points;
-      middle[s] += m_input[i];
-    }
+    std::vector<Vec3> middle(m_labels.size(), Vec3::Zero()); // in the frame
+    for (std::size_t k = 0; k < m_station.size(); ++k)
+      if (m_station[k] != none) {
+        ++stations[m_station[k]].number_of_points;
+        middle[m_station[k]] += m_distinct.places[k];
+      }
     for (std::size_t s = 0; s < stations.size(); ++s) {
       Scan_station& station = stations[s];
       station.label = m_labels[s];
-      const Vec3 center = middle[s] / double(std::max<std::size_t>(1, station.number_of_points));
+      const double count = double(std::max<std::size_t>(1, station.number_of_points));
+      const Vec3 center = m_frame.to_input(middle[s] / count);
       station.shift = moved(center, motions[s]) - center;
       station.turn = motions[s].turn.norm();
       if (!m_grids.empty()) {
@@ -172,22 +215,19 @@ private:
         station.elevation_step = 1 / m_grids[s].rate[1];
       }
     }
-    pcs::internal::for_each_index<ConcurrencyTag>(m_input.size(), [&](std::size_t i) {
+    pcs::internal::for_each_index<ConcurrencyTag>(input.size(), [&](std::size_t i) {
       const Index s = m_station[m_distinct.of_point[i]];
       if (s != none)
-        m_input[i] = moved(m_input[i], motions[s]);
+        input[i] = moved(input[i], motions[s]);
     });
-    m_report.stations = std::move(stations);
+    return stations;
   }
 
-  const std::vector<std::uint8_t>& m_is_wood;
-  const Session_options& m_options;
-  std::vector<Vec3>& m_input;
-  Skeleton_report& m_report;
+  std::size_t m_stride = 1;
   Scan_frame m_frame;
   internal::Distinct_places m_distinct;
-  std::vector<Beam_grid> m_grids;   ///< empty where the caller knows the stations
-  std::vector<Index> m_station;     ///< of each place, or `none`
+  std::vector<Beam_grid> m_grids;  ///< empty where the caller knows the stations
+  std::vector<Index> m_station;    ///< of each place, or `none`
   std::vector<long long> m_labels; ///< of the stations
 };
 

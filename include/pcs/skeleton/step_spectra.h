@@ -49,23 +49,29 @@ public:
   }
 
   /*!
-    `lengths_of(hypothesis)(pair)` is a length [L]; those beyond the reach do not count. O(hypotheses (pairs + steps)).
+    `lengths_of(hypothesis)(pair)` is a length, a `float` [L]; those beyond the reach do not count. O(hypotheses (pairs + steps)).
   */
   template <class ConcurrencyTag, class LengthsOf>
-  void compute(std::size_t number_of_hypotheses, std::size_t number_of_pairs, const LengthsOf& lengths_of)
+  void compute(std::size_t number_of_hypotheses,
+               std::size_t number_of_pairs,
+               const LengthsOf& lengths_of)
   {
     m_number_of_pairs = number_of_pairs;
     m_contrast.assign(number_of_hypotheses * size(), 0);
-    const double scale = double(bins) / m_reach;
+    const float scale = static_cast<float>(double(bins) / m_reach);
     pcs::internal::for_each_index<ConcurrencyTag>(
         number_of_hypotheses,
         [&](std::size_t h) {
           const auto length_of = lengths_of(h);
-          std::array<float, bins> histogram{};
-          for (std::size_t k = 0; k < number_of_pairs; ++k) {
-            const double bin = scale * std::abs(length_of(k));
-            if (bin < double(bins))
-              histogram[static_cast<std::size_t>(bin)] += 1;
+          std::array<float, bins + 1> histogram{}; // the last one: beyond the reach
+          std::array<int, 1024> bin;               // of some pairs at a time, for wide instructions
+          for (std::size_t begin = 0; begin < number_of_pairs; begin += bin.size()) {
+            const std::size_t count = std::min(bin.size(), number_of_pairs - begin);
+            for (std::size_t k = 0; k < count; ++k)
+              bin[k] = static_cast<int>(
+                  std::min(scale * std::abs(length_of(begin + k)), static_cast<float>(bins)));
+            for (std::size_t k = 0; k < count; ++k)
+              histogram[static_cast<std::size_t>(bin[k])] += 1;
           }
           std::vector<float> mean(m_steps.size());
           for (std::size_t s = 0; s < m_steps.size(); ++s) {
