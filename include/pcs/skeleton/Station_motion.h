@@ -18,11 +18,13 @@ struct Station_motion
   Vec3 shift = Vec3::Zero(); ///< [L]
   Vec3 turn = Vec3::Zero();  ///< about this axis, by its length [rad]
 
-  Vec3 operator()(const Vec3& p) const
+  Eigen::Matrix3d rotation() const
   {
     const double angle = turn.norm();
-    return angle > 0 ? Vec3(Eigen::AngleAxisd(angle, turn / angle) * p + shift) : Vec3(p + shift);
+    return angle > 0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix()
+                     : Eigen::Matrix3d::Identity().eval();
   }
+  Vec3 operator()(const Vec3& p) const { return rotation() * p + shift; }
 };
 
 } // namespace skeleton

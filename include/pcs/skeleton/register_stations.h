@@ -16,6 +16,8 @@
 #include <pcs/skeleton/frame_of_scan.h>
 #include <pcs/skeleton/prepare_scan.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -57,6 +59,8 @@ public:
   }
 
 private:
+  using Move = Eigen::Isometry3d; ///< in the frame
+
   bool find_and_move(const std::vector<std::uint8_t>& is_wood,
                      const Session_options& options,
                      std::vector<Vec3>& input,
@@ -72,22 +76,48 @@ private:
       find_stations(options.beam_grids);
     if (m_labels.size() < 2)
       return progress(1);
+    m_moves.assign(m_labels.size(), Move::Identity());
+    bool is_moved = false;
+    double size = 0; // in noise
+    // motions that are large blur the draft that tells them
+    for (int pass = 0; pass < options.alignment.passes; ++pass) {
+      if (!improve(is_wood, options, progress, size))
+        return false;
+      is_moved = is_moved || size > 0;
+      if (size <= options.alignment.much)
+        break;
+    }
+    if (!is_moved)
+      return progress(1);
+    report.stations = stations();
+    move(input);
+    return progress(1);
+  }
+
+  /// Drafts the tree and moves the places. `size` is that of the motions, in noise; 0 if they are no better than none. `false` if
+  /// stopped.
+  bool improve(const std::vector<std::uint8_t>& is_wood,
+               const Session_options& options,
+               pcs::internal::Progress& progress,
+               double& size)
+  {
+    const Alignment_rules& rules = options.alignment;
     // some points are enough on thick branches, and more are needed on thin ones
     for (m_stride = 1 + m_distinct.places.size() / enough;; m_stride = (m_stride + 3) / 4) {
       Stages draft(chosen_places(), chosen_wood(is_wood), draft_options(options));
       if (!draft.fit_axes(progress))
         return false;
-      const Aligned_stations aligned = align(draft, options.alignment);
-      const Alignment_rules& rules = options.alignment;
-      const bool is_sure = aligned.error < rules.agreement * aligned.size ||
-                           aligned.size < rules.least * draft.axes().noise;
-      if (is_sure || m_stride == 1 || m_distinct.places.size() / m_stride > 2 * enough) {
-        if (aligned.error < aligned.size)
-          report.stations = move(aligned.motions, draft.scan().frame, input);
-        break;
-      }
+      const Aligned_stations aligned = align(draft, rules);
+      const double noise = draft.axes().noise;
+      const bool is_sure =
+          aligned.error < rules.agreement * aligned.size || aligned.size < rules.least * noise;
+      if (!is_sure && m_stride > 1 && m_distinct.places.size() / m_stride <= 2 * enough)
+        continue;
+      size = aligned.error < aligned.size && noise > 0 ? aligned.size / noise : 0;
+      if (size > 0)
+        add(aligned.motions, draft.scan().frame);
+      return true;
     }
-    return progress(1);
   }
 
   /// Points of the first draft, at most.
@@ -187,16 +217,28 @@ private:
     return align_stations<ConcurrencyTag>(scan, draft.axes(), station, m_labels.size(), rules);
   }
 
-  std::vector<Scan_station> move(const std::vector<Station_motion>& motions,
-                                 const Scan_frame& draft_frame,
-                                 std::vector<Vec3>& input) const
+  /// Adds motions in the frame of a draft, and moves the places.
+  void add(const std::vector<Station_motion>& motions, const Scan_frame& draft)
   {
-    const auto moved = [&](const Vec3& p, const Station_motion& motion) {
-      const Vec3 local = draft_frame.to_local(m_frame.to_local(p));
-      return m_frame.to_input(draft_frame.to_input(motion(local)));
-    };
+    std::vector<Move> steps;
+    for (std::size_t s = 0; s < motions.size(); ++s) {
+      const Station_motion& motion = motions[s];
+      Move step = Move::Identity();
+      step.linear() = draft.axes.transpose() * motion.rotation() * draft.axes;
+      step.translation() = draft.to_input(motion(draft.to_local(Vec3::Zero())));
+      m_moves[s] = step * m_moves[s];
+      steps.push_back(step);
+    }
+    pcs::internal::for_each_index<ConcurrencyTag>(m_station.size(), [&](std::size_t k) {
+      if (m_station[k] != none)
+        m_distinct.places[k] = steps[m_station[k]] * m_distinct.places[k];
+    });
+  }
+
+  std::vector<Scan_station> stations() const
+  {
     std::vector<Scan_station> stations(m_labels.size());
-    std::vector<Vec3> middle(m_labels.size(), Vec3::Zero()); // in the frame
+    std::vector<Vec3> middle(m_labels.size(), Vec3::Zero()); // of what is moved
     for (std::size_t k = 0; k < m_station.size(); ++k)
       if (m_station[k] != none) {
         ++stations[m_station[k]].number_of_points;
@@ -205,22 +247,26 @@ private:
     for (std::size_t s = 0; s < stations.size(); ++s) {
       Scan_station& station = stations[s];
       station.label = m_labels[s];
-      const double count = double(std::max<std::size_t>(1, station.number_of_points));
-      const Vec3 center = m_frame.to_input(middle[s] / count);
-      station.shift = moved(center, motions[s]) - center;
-      station.turn = motions[s].turn.norm();
+      const Vec3 after = middle[s] / double(std::max<std::size_t>(1, station.number_of_points));
+      const Vec3 before = m_moves[s].inverse() * after;
+      station.shift = m_frame.unit * m_frame.direction_to_input(after - before);
+      station.turn = Eigen::AngleAxisd(m_moves[s].linear()).angle();
       if (!m_grids.empty()) {
         station.position = m_frame.to_input(m_grids[s].position);
         station.azimuth_step = 1 / m_grids[s].rate[0];
         station.elevation_step = 1 / m_grids[s].rate[1];
       }
     }
+    return stations;
+  }
+
+  void move(std::vector<Vec3>& input) const
+  {
     pcs::internal::for_each_index<ConcurrencyTag>(input.size(), [&](std::size_t i) {
       const Index s = m_station[m_distinct.of_point[i]];
       if (s != none)
-        input[i] = moved(input[i], motions[s]);
+        input[i] = m_frame.to_input(m_moves[s] * m_frame.to_local(input[i]));
     });
-    return stations;
   }
 
   std::size_t m_stride = 1;
@@ -229,6 +275,7 @@ private:
   std::vector<Beam_grid> m_grids;  ///< empty where the caller knows the stations
   std::vector<Index> m_station;    ///< of each place, or `none`
   std::vector<long long> m_labels; ///< of the stations
+  std::vector<Move> m_moves;       ///< of the stations
 };
 
 } // namespace skeleton
