@@ -159,7 +159,7 @@ public:
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: `std::size_t`
         \npdefault none
       \np{point_residual_map} written by `extract()`: distance from the surface of the branch, negative inside, 0 for points
-          without a branch [L]
+          without a branch; where stations are moved, of the moved point [L]
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: floating point
         \npdefault none
       \np{point_is_dense_map} written by `extract()`: whether the point lies where the section of its branch was measured

@@ -19,15 +19,15 @@ struct Alignment_rules
   double longest = 16;          ///< half of the length of a piece, in radii [-]
   double fit = 3;               ///< error of a radius or place that was fitted, in noise ... [-]
   double relative_fit = 0.2;    ///< ... and in radii [-]
-  double oval = 0.05;           ///< half difference of the half axes of a section, in radii [-]
+  double oval = 0.04;           ///< half difference of the half axes of a section, in radii [-]
   double largest_error = 4.685; ///< of a point, in noise (Tukey's constant) [-]
-  double motion = 0.75;         ///< usual size, in noise [-]
+  double motion = 1;            ///< usual size, in noise [-]
   //! error of motions, by their size, above which more points are looked at ...
   double agreement = 0.4;
   double least = 0.25;           ///< ... unless the motions are as small as this, in noise [-]
   std::size_t fewest_pieces = 8; ///< of every second axis that tell the error [count]
-  double much =
-      1.5;        ///< motions that are looked for once more when they are taken out, in noise [-]
+  //! motions that are looked for once more when they are taken out, in noise [-]
+  double much = 1.5;
   int passes = 3; ///< of these, at most
   int rounds = 6; ///< of each
 };

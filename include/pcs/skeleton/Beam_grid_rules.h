@@ -30,8 +30,7 @@ struct Beam_grid_rules
   std::size_t guesses = 6;        ///< that are followed [count]
   std::size_t fewest = 1000;      ///< points that can tell [count]
   std::size_t most = 40;          ///< stations [count]
-  double loosest =
-      2; ///< points are this near to whole numbers to have a station, in tolerances [-]
+  double loosest = 0.2;           ///< points of a station are this near to whole numbers [steps]
 };
 
 } // namespace skeleton

@@ -67,7 +67,7 @@ public:
   {
     Aligned_stations result;
     result.motions.resize(m_count.size());
-    if (m_pieces.empty() || m_count.size() < 2)
+    if (m_pieces.empty() || m_count.size() < 2 || !(m_axes.noise > 0))
       return result;
     const Answer even = motions_by([](Index a) { return a % 2 == 0; });
     const std::size_t number_of_even = m_used.size();

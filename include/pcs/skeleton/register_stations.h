@@ -145,9 +145,7 @@ private:
     pcs::internal::for_each_index<ConcurrencyTag>(m_station.size(), [&](std::size_t k) {
       double least = rules.loosest;
       for (std::size_t s = 0; s < m_grids.size(); ++s) {
-        const Beam_grid& grid = m_grids[s];
-        const double misfit =
-            grid.misfit(m_distinct.places[k], least * grid.tolerance) / grid.tolerance;
+        const double misfit = m_grids[s].misfit(m_distinct.places[k], least);
         if (misfit < least) {
           least = misfit;
           m_station[k] = static_cast<Index>(s);
