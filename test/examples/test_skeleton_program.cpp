@@ -320,6 +320,8 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
   refuses("--input tree.xyz --swc old.swc --root nan 0 0", "root_position");
   refuses("--input tree.xyz --swc old.swc --scanner 1 2 3 4", "three coordinates");
   refuses("--input tree.xyz --swc old.swc --wood bark", "no property 'bark'");
+  refuses("--input tree.xyz --swc old.swc --stations place", "no property 'place'");
+  refuses("--input tree.xyz --swc old.swc --stations x --keep-stations", "--stations");
   refuses("--input tree.xyz --swc old.swc --skeleton forest.swc", "forest.swc");
   refuses("--input tree.xyz --swc old.swc --skeleton dot.swc", "lie at one place");
   refuses("--input tree.xyz --swc old.swc --skeleton far.swc", "away from the points");

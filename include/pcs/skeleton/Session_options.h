@@ -41,7 +41,7 @@ struct Session_options : Session_hints
   bool do_trace_paths = true; ///< else `find_paths()` ends with the points that may be trees
 
   Beam_grid_rules beam_grids;
-  Alignment_rules alignment; ///< of stations
+  Alignment_rules alignment;       ///< of stations
   Section_tree_rules section_tree; ///< of the method `sections`
   Axis_rules axes;
   Fuse_rules fusion;
