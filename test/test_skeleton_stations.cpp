@@ -241,6 +241,17 @@ BOOST_AUTO_TEST_CASE(labels_without_meaning_move_nothing)
   pcs_test::check_is_a_tree(after);
 }
 
+BOOST_AUTO_TEST_CASE(labels_of_a_thousand_values_are_no_stations)
+{
+  std::vector<Element> points = shifted_scan(0);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i].second = static_cast<int>(i % 1000);
+  Tree tree;
+  const auto report = extract(points, tree, pcs::parameters::station_map(Station_map()));
+  BOOST_REQUIRE_EQUAL(report.stations.size(), 4u); // those of the beams
+  BOOST_CHECK_GT(report.stations[0].azimuth_step, 0);
+}
+
 BOOST_AUTO_TEST_CASE(all_threads_give_the_same_bits)
 {
   const std::vector<Element> points = shifted_scan(0);

@@ -110,7 +110,7 @@ public:
           result lies in the middle of the stations; `Skeleton_report::stations` has what was moved
         \nptype `bool`
         \npdefault `true`
-      \np{station_map} which station has measured a point; negative: not known. If less than two are told apart, stations are
+      \np{station_map} which station has measured a point; negative: not known. If less than two are told apart, or more than 100, stations are
           looked for
         \nptype model of `ReadablePropertyMap`, key: element of `points`, value: an integer type
         \npdefault none

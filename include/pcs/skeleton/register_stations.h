@@ -120,6 +120,8 @@ private:
     }
   }
 
+  /// Labels with more values tell something else; the work grows with the cube of their number [count].
+  static constexpr std::size_t most_stations = 100;
   /// Points of the first draft, at most.
   static constexpr std::size_t enough = 40000;
 
@@ -164,6 +166,8 @@ private:
     for (const Index i : m_distinct.chosen)
       if (of_input[i] >= 0)
         number.emplace(of_input[i], 0);
+    if (number.size() > most_stations)
+      return; // these are no stations
     for (auto& entry : number) {
       entry.second = static_cast<Index>(m_labels.size());
       m_labels.push_back(entry.first);
