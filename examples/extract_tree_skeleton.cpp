@@ -69,7 +69,7 @@ pcs::skeleton::Leaf_removal leaf_removal(const Skeleton_options& options, bool i
   return options.do_remove_leaves ? Leaf_removal::always : Leaf_removal::where_found;
 }
 
-/// Which station has measured a point; -1: not known.
+/// Which station has measured a point; -1: not known. Empty: nothing is known.
 std::vector<long long> stations_of(const pcs::IO::Point_table& table, const std::string& wanted)
 {
   if (!wanted.empty() && !table.has_property(wanted))
@@ -81,9 +81,10 @@ std::vector<long long> stations_of(const pcs::IO::Point_table& table, const std:
         stations.push_back(x >= 0 && x < 1e15 ? std::llround(x) : -1);
       return stations;
     }
-  return std::vector<long long>(table.number_of_points(), -1);
+  return {};
 }
 
+/// Of the points.
 struct Labels
 {
   std::vector<std::size_t> branch;
@@ -91,20 +92,27 @@ struct Labels
   std::vector<std::uint8_t> dense, leaf;
 };
 
+/// Labels only if somebody wants them.
 template <class Range, class NamedParameters>
-pcs::Skeleton_report extract_with_scanners(const Range& indices,
-                                           const Skeleton_options& options,
-                                           Tree& tree,
-                                           const NamedParameters& np)
+pcs::Skeleton_report extract_with_labels(const Range& indices,
+                                         const Skeleton_options& options,
+                                         Tree& tree,
+                                         Labels& labels,
+                                         const NamedParameters& np)
 {
-  if (options.scanners.empty())
+  if (options.points.empty())
     return pcs::extract_tree_skeleton(indices, tree, np);
-  std::vector<Kernel::Point_3> scanners;
-  for (std::size_t k = 0; k + 2 < options.scanners.size(); k += 3)
-    scanners.emplace_back(options.scanners[k], options.scanners[k + 1], options.scanners[k + 2]);
-  const double beam =
-      options.beam_milliradians < 0 ? pcs::default_beam_width : options.beam_milliradians / 1000;
-  return pcs::extract_tree_skeleton(indices, tree, np.scanner_positions(scanners).beam_width(beam));
+  const auto identity = boost::typed_identity_property_map<std::size_t>();
+  const auto map = [&](auto& values) {
+    values.resize(indices.size());
+    return boost::make_iterator_property_map(values.begin(), identity);
+  };
+  return pcs::extract_tree_skeleton(indices,
+                                    tree,
+                                    np.point_is_leaf_map(map(labels.leaf))
+                                        .point_branch_map(map(labels.branch))
+                                        .point_residual_map(map(labels.residual))
+                                        .point_is_dense_map(map(labels.dense)));
 }
 
 pcs::Skeleton_report extract(const std::string& input,
@@ -114,11 +122,7 @@ pcs::Skeleton_report extract(const std::string& input,
                              Labels& labels)
 {
   const std::size_t n = table.number_of_points();
-  labels.branch.assign(n, pcs::npos);
-  labels.residual.assign(n, 0);
-  labels.dense.assign(n, 0);
-  labels.leaf.assign(n, 0);
-  std::vector<double> wood(n, 1);
+  std::vector<double> wood; // empty: all may be
   bool is_labelled = false;
   const std::string name = options.wood.empty() ? "wood" : options.wood;
   if (table.has_property(name)) {
@@ -135,14 +139,14 @@ pcs::Skeleton_report extract(const std::string& input,
                                                   boost::counting_iterator<std::size_t>(n));
   const auto identity = boost::typed_identity_property_map<std::size_t>();
   const auto points = boost::make_iterator_property_map(table.points().begin(), identity);
-  const auto branches = boost::make_iterator_property_map(labels.branch.begin(), identity);
-  const auto residuals = boost::make_iterator_property_map(labels.residual.begin(), identity);
-  const auto dense = boost::make_iterator_property_map(labels.dense.begin(), identity);
-  const auto leaf = boost::make_iterator_property_map(labels.leaf.begin(), identity);
   const auto is_wood = boost::make_function_property_map<std::size_t, bool>(
-      [&](std::size_t i) { return wood[i] > 0.5; });
+      [&](std::size_t i) { return wood.empty() || wood[i] > 0.5; });
   const std::vector<long long> stations = stations_of(table, options.stations);
-  const auto station = boost::make_iterator_property_map(stations.begin(), identity);
+  const auto station = boost::make_function_property_map<std::size_t, long long>(
+      [&](std::size_t i) { return stations.empty() ? -1 : stations[i]; });
+  std::vector<Kernel::Point_3> scanners;
+  for (std::size_t k = 0; k + 2 < options.scanners.size(); k += 3)
+    scanners.emplace_back(options.scanners[k], options.scanners[k + 1], options.scanners[k + 2]);
   Progress_line line(!options.is_quiet);
   const std::function<bool(double)> callback = [&](double f) {
     line.show("skeleton", f);
@@ -165,20 +169,19 @@ pcs::Skeleton_report extract(const std::string& input,
                       .do_remove_ground(!options.do_keep_ground)
                       .wood_map(is_wood)
                       .do_remove_leaves(leaf_removal(options, is_labelled))
-                      .point_is_leaf_map(leaf)
-                      .point_branch_map(branches)
-                      .point_residual_map(residuals)
-                      .point_is_dense_map(dense)
+                      .scanner_positions(scanners)
+                      .beam_width(options.beam_milliradians < 0 ? pcs::default_beam_width
+                                                                : options.beam_milliradians / 1000)
                       .callback(callback);
   if (!options.given.empty()) {
     Tree given;
     pcs::IO::read_swc<Kernel>(options.given, given);
-    return extract_with_scanners(indices, options, tree, np.given_skeleton(std::cref(given)));
+    return extract_with_labels(indices, options, tree, labels, np.given_skeleton(std::cref(given)));
   }
   if (options.root.empty())
-    return extract_with_scanners(indices, options, tree, np);
+    return extract_with_labels(indices, options, tree, labels, np);
   const Kernel::Point_3 root(options.root[0], options.root[1], options.root[2]);
-  return extract_with_scanners(indices, options, tree, np.root_position(root));
+  return extract_with_labels(indices, options, tree, labels, np.root_position(root));
 }
 
 nlohmann::ordered_json

@@ -329,6 +329,7 @@ private:
     return is_wood;
   }
 
+  /// Empty if nothing is known.
   std::vector<long long> read_stations() const
   {
     std::vector<long long> stations;
@@ -341,9 +342,17 @@ private:
       static_assert(is_map_ok,
                     "pcs::extract_tree_skeleton(): named parameter `station_map` must be readable, "
                     "accept an element of `points` as key, and store an integer type");
-      if constexpr (is_map_ok)
-        for (auto it = std::begin(*m_points); it != std::end(*m_points); ++it)
-          stations.push_back(static_cast<long long>(get(map, *it)));
+      if constexpr (is_map_ok) {
+        const auto begin = std::begin(*m_points), end = std::end(*m_points);
+        std::size_t i = 0;
+        for (auto it = begin; it != end; ++it, ++i) {
+          const long long label = static_cast<long long>(get(map, *it));
+          if (label >= 0 && stations.empty())
+            stations.assign(static_cast<std::size_t>(end - begin), -1);
+          if (label >= 0)
+            stations[i] = label;
+        }
+      }
     }
     return stations;
   }

@@ -6,8 +6,10 @@
 #define PCS_LINEAR_ALGEBRA_BANDED_CHOLESKY_H
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace pcs {
@@ -31,24 +33,22 @@ public:
   double& operator()(std::size_t i, std::size_t j) { return m_columns[j * width + (i - j)]; }
   double operator()(std::size_t i, std::size_t j) const { return m_columns[j * width + (i - j)]; }
 
-  /// Replaces the matrix by its factor. `false` if it is not positive definite.
+  /// Replaces the matrix by its factors, L D L^T: columns of L, and inverses of D in place of their ones. `false` if it is not
+  /// positive definite.
   bool factorize()
   {
     for (std::size_t j = 0; j < m_size; ++j) {
       double* column = &m_columns[j * width];
       if (!(column[0] > 0 && std::isfinite(column[0])))
         return false;
-      column[0] = std::sqrt(column[0]);
       const double inverse = 1 / column[0];
+      std::array<double, width> scaled;
       for (std::size_t i = 1; i < width; ++i)
-        column[i] *= inverse;
-      // its share of the columns behind it; loops of fixed lengths over neighbouring numbers
-      for (std::size_t k = 1; k < width; ++k) {
-        double* other = column + k * width;
-        const double factor = column[k];
-        for (std::size_t i = 0; i < width - k; ++i)
-          other[i] -= factor * column[k + i];
-      }
+        scaled[i] = column[i] * inverse;
+      take_out(scaled, column, std::make_index_sequence<Bandwidth>());
+      for (std::size_t i = 1; i < width; ++i)
+        column[i] = scaled[i];
+      column[0] = inverse;
     }
     return true;
   }
@@ -56,20 +56,20 @@ public:
   /// Solves in place, after `factorize()`.
   void solve(std::vector<double>& x) const
   {
+    x.resize(m_size + Bandwidth, 0.0); // the columns are as long as if the matrix went on
     for (std::size_t j = 0; j < m_size; ++j) {
       const double* column = &m_columns[j * width];
-      x[j] /= column[0];
-      const std::size_t count = std::min(width, m_size - j);
-      for (std::size_t i = 1; i < count; ++i)
+      for (std::size_t i = 1; i < width; ++i)
         x[j + i] -= column[i] * x[j];
     }
     for (std::size_t j = m_size; j-- > 0;) {
       const double* column = &m_columns[j * width];
-      const std::size_t count = std::min(width, m_size - j);
-      for (std::size_t i = 1; i < count; ++i)
-        x[j] -= column[i] * x[j + i];
-      x[j] /= column[0];
+      double sum = 0;
+      for (std::size_t i = width - 1; i > 0; --i) // what is known last comes last
+        sum += column[i] * x[j + i];
+      x[j] = column[0] * x[j] - sum;
     }
+    x.resize(m_size);
   }
 
   /*!
@@ -86,23 +86,39 @@ public:
     };
     for (std::size_t i = m_size; i-- > 0;) {
       const std::size_t end = std::min(m_size, i + width);
-      const double pivot = 1 / (*this)(i, i);
       for (std::size_t j = end; j-- > i + 1;) {
         double sum = 0;
         for (std::size_t k = i + 1; k < end; ++k)
           sum += (*this)(k, i) * at(k, j);
-        at(i, j) = -pivot * sum;
+        at(i, j) = -sum;
       }
       double sum = 0;
       for (std::size_t k = i + 1; k < end; ++k)
         sum += (*this)(k, i) * at(i, k);
-      diagonal[i] = at(i, i) = pivot * (pivot - sum);
+      diagonal[i] = at(i, i) = (*this)(i, i) - sum;
     }
     return diagonal;
   }
 
 private:
   static constexpr std::size_t width = Bandwidth + 1;
+
+  /// The share of a column of the columns behind it; each loop has a length known to the compiler.
+  template <std::size_t... K>
+  static void
+  take_out(const std::array<double, width>& scaled, double* column, std::index_sequence<K...>)
+  {
+    (take_out_of<K + 1>(scaled, column), ...);
+  }
+  template <std::size_t K>
+  static void take_out_of(const std::array<double, width>& scaled, double* column)
+  {
+    double* other = column + K * width;
+    const double factor = scaled[K];
+    for (std::size_t i = 0; i < width - K; ++i)
+      other[i] -= factor * column[K + i];
+  }
+
   std::size_t m_size = 0;
   std::vector<double> m_columns; // each from its diagonal downwards; behind the last ones, zeros
 };

@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_POINT_PAIRS_H
 #define PCS_SKELETON_POINT_PAIRS_H
 
+#include <pcs/internal/parallel.h>
 #include <pcs/skeleton/Scan.h>
 
 #include <algorithm>
@@ -37,30 +38,47 @@ public:
   double spacing() const { return m_spacing; }
 
   /// Up to `most` pairs whose distances are in [`low`, `high`], evenly; the same ones on each call. O(most).
+  template <class ConcurrencyTag>
   std::vector<Point_pair> draw(double low, double high, std::size_t most) const
   {
-    constexpr std::size_t tries = 16; // for each
     std::vector<Point_pair> pairs;
     const std::size_t n = m_points.size(), step = 1 + n / most;
     const double x = high / m_spacing,
                  around = 4 * x * x; // surfaces have so many points within `high`
     const std::size_t reach = static_cast<std::size_t>(std::min(double(n), around));
-    for (std::size_t round = 0; round * n < most * step && pairs.size() < most; ++round)
-      for (std::size_t i = round % step; i < n && pairs.size() < most; i += step)
-        for (std::size_t k = 0; k < tries; ++k) {
-          const std::size_t j = i + 1 + scattered((round * n + i) * tries + k, reach);
-          if (j >= n)
-            continue;
-          const double distance = (m_points[j] - m_points[i]).norm();
-          if (distance < low || distance > high)
-            continue;
-          pairs.push_back({0.5 * (m_points[i] + m_points[j]), m_points[j] - m_points[i]});
-          break;
+    std::vector<std::size_t> partners;
+    for (std::size_t round = 0; round * n < most * step && pairs.size() < most; ++round) {
+      const std::size_t first = round % step;
+      partners.resize(first < n ? 1 + (n - 1 - first) / step : 0);
+      pcs::internal::for_each_index<ConcurrencyTag>(partners.size(), [&](std::size_t k) {
+        partners[k] = partner(first + k * step, round * n, reach, low, high);
+      });
+      for (std::size_t k = 0; k < partners.size() && pairs.size() < most; ++k)
+        if (partners[k] < n) {
+          const Vec3 &a = m_points[first + k * step], &b = m_points[partners[k]];
+          pairs.push_back({0.5 * (a + b), b - a});
         }
+    }
     return pairs;
   }
 
 private:
+  /// A point at such a distance from point `i`; the number of points where some tries find none.
+  std::size_t
+  partner(std::size_t i, std::size_t seed, std::size_t reach, double low, double high) const
+  {
+    constexpr std::size_t tries = 16;
+    for (std::size_t k = 0; k < tries; ++k) {
+      const std::size_t j = i + 1 + scattered((seed + i) * tries + k, reach);
+      if (j >= m_points.size())
+        continue;
+      const double distance = (m_points[j] - m_points[i]).norm();
+      if (distance >= low && distance <= high)
+        return j;
+    }
+    return m_points.size();
+  }
+
   /// A number in [0, n) that depends on `i` alone.
   static std::size_t scattered(std::size_t i, std::size_t n)
   {

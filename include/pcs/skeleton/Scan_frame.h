@@ -30,10 +30,12 @@ struct Scan_frame
   Vec3 direction_to_input(const Vec3& d) const { return axes.transpose() * d; }
 
   /// The local coordinates on the grid.
-  Vec3 to_grid(const Vec3& p) const
+  Vec3 to_grid(const Vec3& p) const { return rounded(to_local(p)); }
+  /// Local coordinates, on the grid.
+  static Vec3 rounded(const Vec3& local)
   {
     constexpr double cells = 1 << 24; // per unit: far below the noise of scans, far above rounding
-    const Vec3 q = cells * to_local(p);
+    const Vec3 q = cells * local;
     return Vec3(std::round(q.x()), std::round(q.y()), std::round(q.z())) / cells;
   }
 };

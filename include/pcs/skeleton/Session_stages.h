@@ -40,6 +40,8 @@ template <class ConcurrencyTag>
 class Session_stages
 {
 public:
+  using Concurrency_tag = ConcurrencyTag;
+
   /// `input` is finite, with at least two different points; `is_wood` is empty or has one entry per point.
   Session_stages(std::vector<Vec3> input,
                  std::vector<std::uint8_t> is_wood,
@@ -54,13 +56,16 @@ public:
     if (m_stage >= 1)
       return true;
     pcs::internal::Stopwatch watch;
-    if (!progress(0) || !m_registration.run(m_is_wood, m_options, m_input, m_report, progress))
+    if (!progress(0))
       return false;
-    prepare_scan<ConcurrencyTag>(m_input, m_options.up, m_scan);
+    if (m_scan.points.empty())
+      take_points<ConcurrencyTag>(std::move(m_input), m_options.up, m_scan);
+    if (!register_stations<Session_stages>(m_is_wood, m_options, m_scan, m_report, progress))
+      return false;
+    measure_points<ConcurrencyTag>(m_scan);
     const double unit = m_scan.frame.unit;
     m_options.up = Vec3::UnitZ(); // from here on, all is in coordinates of the scan
     m_options.breast_height /= unit;
-    std::vector<Vec3>().swap(m_input);
     m_used.start(m_is_wood);
     if (m_options.given) { // it stands where the tree stands, and tells where there may be one
       m_may_be_used = m_used.flags();
@@ -425,7 +430,6 @@ protected: // benchmark/training looks at what leaves are told by
   int m_stage = 0, m_leaf_rounds = 0, m_regroupings = 0;
   Skeleton_report m_report;
   Scan m_scan;
-  Station_registration<ConcurrencyTag, Session_stages> m_registration;
   Used_points<ConcurrencyTag> m_used{m_scan, m_report};
   Wall_removal<ConcurrencyTag> m_wall_removal{m_scan, m_options.walls, m_used, m_report};
   std::vector<Index> m_root;

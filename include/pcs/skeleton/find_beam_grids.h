@@ -64,7 +64,8 @@ private:
 
   bool run(double shortest, Beam_grid& grid) const
   {
-    const Coordinates near(m_source.draw(2 * shortest, 4 * shortest, m_rules.pairs));
+    const Coordinates near(
+        m_source.template draw<ConcurrencyTag>(2 * shortest, 4 * shortest, m_rules.pairs));
     if (near.size() < m_rules.fewest_pairs)
       return false;
     for (const Guess& guess : directions(near, shortest)) {
@@ -169,8 +170,9 @@ private:
     constexpr double fine = 1.01, reach = 10; // of steps that are tried; lengths of pairs [steps]
     constexpr std::size_t beside = 6;
     const double shortest = guess.step / 1.1, longest = guess.step * 1.1;
-    const Coordinates far(
-        m_source.draw(0.5 * reach * guess.step, reach * guess.step, 2 * m_rules.pairs));
+    const Coordinates far(m_source.template draw<ConcurrencyTag>(0.5 * reach * guess.step,
+                                                                 reach * guess.step,
+                                                                 2 * m_rules.pairs));
     const double least = m_rules.evidence * std::sqrt(0.75 / double(far.size() + 1));
     std::vector<Vec2> places;
     for (const double r : m_ranges)

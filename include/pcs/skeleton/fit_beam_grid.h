@@ -46,13 +46,16 @@ public:
   {
     Grid_place usual = Grid_place::Zero();
     for (double low = 5 * step; low < m_rules.far; low *= 1.7) {
-      const std::vector<Point_pair> pairs = m_source.draw(low, 2 * low, m_rules.pairs);
+      const std::vector<Point_pair> pairs =
+          m_source.template draw<ConcurrencyTag>(low, 2 * low, m_rules.pairs);
       if (pairs.size() < m_rules.fewest_pairs)
         return false;
       constexpr int rounds = 4;
+      constexpr double near = 0.003; // of the top [steps]
       Grid_place cosine;
-      for (int round = 0; round < rounds; ++round)
-        cosine = climb(pairs, usual);
+      double change = 1;
+      for (int round = 0; round < rounds && change > near; ++round)
+        cosine = climb(pairs, usual, change);
       if (cosine.minCoeff() < m_rules.significance / std::sqrt(2.0 * double(pairs.size())))
         return false;
       usual = cosine;
@@ -104,43 +107,54 @@ private:
     m_grid.rate[1] *= std::exp(x[6]);
   }
 
-  /// One step of Newton's method for the sum of the cosines of columns and rows between points of pairs, of which only some
-  /// are of the station. Returns the mean cosines before it.
-  Grid_place climb(const std::vector<Point_pair>& pairs, const Grid_place& usual)
+  /// `add(k, sums)` for each `k` below `count`, in fixed blocks.
+  template <class Sums, class Add>
+  static Sums sum_up(std::size_t count, const Add& add)
   {
-    struct Sums
-    {
-      Matrix columns = Matrix::Zero(), rows = Matrix::Zero();
-      Step column = Step::Zero(), row = Step::Zero();
-      Grid_place cosine = Grid_place::Zero();
-    };
-    const std::size_t block = 512;
-    std::vector<Sums> partial((pairs.size() + block - 1) / block);
-    pcs::internal::for_each_block<ConcurrencyTag>(
-        pairs.size(),
-        block,
-        [&](std::size_t begin, std::size_t end) {
-          Sums& sums = partial[begin / block];
-          for (std::size_t k = begin; k < end; ++k) {
-            const Sighting a(m_grid, m_range, pairs[k].first()),
-                b(m_grid, m_range, pairs[k].second());
-            const Step c = b.column - a.column, r = b.row - a.row;
-            const Grid_place angle = two_pi * (b.at - a.at);
-            sums.columns += c * c.transpose();
-            sums.rows += r * r.transpose();
-            sums.column += std::sin(angle[0]) / two_pi * c;
-            sums.row += std::sin(angle[1]) / two_pi * r;
-            sums.cosine += Grid_place(std::cos(angle[0]), std::cos(angle[1]));
-          }
-        });
+    constexpr std::size_t block = 512;
+    std::vector<Sums> partial((count + block - 1) / block);
+    pcs::internal::for_each_block<ConcurrencyTag>(count,
+                                                  block,
+                                                  [&](std::size_t begin, std::size_t end) {
+                                                    for (std::size_t k = begin; k < end; ++k)
+                                                      add(k, partial[begin / block]);
+                                                  });
     Sums all;
-    for (const Sums& sums : partial) {
-      all.columns += sums.columns;
-      all.rows += sums.rows;
-      all.column += sums.column;
-      all.row += sums.row;
-      all.cosine += sums.cosine;
+    for (const Sums& sums : partial)
+      all += sums;
+    return all;
+  }
+
+  struct Pair_sums
+  {
+    Matrix columns = Matrix::Zero(), rows = Matrix::Zero();
+    Step column = Step::Zero(), row = Step::Zero();
+    Grid_place cosine = Grid_place::Zero();
+
+    void operator+=(const Pair_sums& other)
+    {
+      columns += other.columns;
+      rows += other.rows;
+      column += other.column;
+      row += other.row;
+      cosine += other.cosine;
     }
+  };
+
+  /// One step of Newton's method for the sum of the cosines of columns and rows between points of pairs, of which only some
+  /// are of the station. Returns the mean cosines before it; `change` is how far it moves pairs, root mean square [steps].
+  Grid_place climb(const std::vector<Point_pair>& pairs, const Grid_place& usual, double& change)
+  {
+    Pair_sums all = sum_up<Pair_sums>(pairs.size(), [&](std::size_t k, Pair_sums& sums) {
+      const Sighting a(m_grid, m_range, pairs[k].first()), b(m_grid, m_range, pairs[k].second());
+      const Step c = b.column - a.column, r = b.row - a.row;
+      const Grid_place angle = two_pi * (b.at - a.at);
+      sums.columns += c * c.transpose();
+      sums.rows += r * r.transpose();
+      sums.column += std::sin(angle[0]) / two_pi * c;
+      sums.row += std::sin(angle[1]) / two_pi * r;
+      sums.cosine += Grid_place(std::cos(angle[0]), std::cos(angle[1]));
+    });
     all.cosine /= double(pairs.size());
     // the curvature at the top; on the slope it would be too small
     const Grid_place curvature = all.cosine.cwiseMax(0.7 * usual).cwiseMax(m_rules.least_contrast);
@@ -151,51 +165,79 @@ private:
     const double place = m_rules.spacing * m_rules.spacing, tilt = m_rules.tilt * m_rules.tilt;
     for (Eigen::Index k = 0; k < size; ++k)
       m(k, k) += variance / (k == 3 || k == 4 ? tilt : place);
-    move(-m.ldlt().solve(slope));
+    const Step x = -m.ldlt().solve(slope);
+    change = std::sqrt(x.dot((all.columns + all.rows) * x) / double(pairs.size()));
+    move(x);
     return all.cosine;
   }
 
   /// Points that are looked at one by one, evenly.
-  template <class F>
-  void for_each_sample(const F& f) const
+  std::size_t number_of_samples() const { return std::min(m_points.size(), m_rules.samples); }
+  const Vec3& sample(std::size_t k) const
   {
-    const std::size_t n = m_points.size(), count = std::min(n, m_rules.samples);
-    for (std::size_t k = 0; k < count; ++k)
-      f(m_points[k * n / count]);
+    return m_points[k * m_points.size() / number_of_samples()];
   }
+
+  /// Of angles.
+  struct Phase_sums
+  {
+    Grid_place sine = Grid_place::Zero(), cosine = Grid_place::Zero();
+    double count = 0;
+
+    void add(const Grid_place& angle)
+    {
+      sine += Grid_place(std::sin(angle[0]), std::sin(angle[1]));
+      cosine += Grid_place(std::cos(angle[0]), std::cos(angle[1]));
+      count += 1;
+    }
+    void operator+=(const Phase_sums& other)
+    {
+      sine += other.sine;
+      cosine += other.cosine;
+      count += other.count;
+    }
+  };
 
   void find_phases()
   {
-    Grid_place sine = Grid_place::Zero(), cosine = Grid_place::Zero();
     m_grid.phase.setZero();
-    for_each_sample([&](const Vec3& p) {
-      const Grid_place angle = two_pi * m_grid.place(p);
-      sine += Grid_place(std::sin(angle[0]), std::sin(angle[1]));
-      cosine += Grid_place(std::cos(angle[0]), std::cos(angle[1]));
-    });
+    const Phase_sums all =
+        sum_up<Phase_sums>(number_of_samples(), [&](std::size_t k, Phase_sums& sums) {
+          sums.add(two_pi * m_grid.place(sample(k)));
+        });
     for (int e = 0; e < 2; ++e)
-      m_grid.phase[e] = -std::atan2(sine[e], cosine[e]) / two_pi;
+      m_grid.phase[e] = -std::atan2(all.sine[e], all.cosine[e]) / two_pi;
   }
+
+  struct Point_sums
+  {
+    Long_matrix matrix = Long_matrix::Zero();
+    Long_step slope = Long_step::Zero();
+
+    void operator+=(const Point_sums& other)
+    {
+      matrix += other.matrix;
+      slope += other.slope;
+    }
+  };
 
   /// Least squares of the points within `reach` of whole numbers.
   void settle(double reach)
   {
-    Long_matrix m = Long_matrix::Zero();
-    Long_step slope = Long_step::Zero();
-    for_each_sample([&](const Vec3& p) {
-      const Sighting s(m_grid, m_range, p);
-      const double x = beyond_whole(s.at[0]), y = beyond_whole(s.at[1]);
-      if (std::max(std::abs(x), std::abs(y)) > reach)
+    Point_sums all = sum_up<Point_sums>(number_of_samples(), [&](std::size_t k, Point_sums& sums) {
+      const Vec3& p = sample(k);
+      if (m_grid.misfit(p, reach) > reach)
         return;
+      const Sighting s(m_grid, m_range, p);
       Long_step column, row;
       column << s.column, 1, 0;
       row << s.row, 0, 1;
-      m += column * column.transpose() + row * row.transpose();
-      slope += x * column + y * row;
+      sums.matrix += column * column.transpose() + row * row.transpose();
+      sums.slope += beyond_whole(s.at[0]) * column + beyond_whole(s.at[1]) * row;
     });
     constexpr double ridge = 1e-9;
-    m.diagonal() = (1 + ridge) * m.diagonal().array() + ridge;
-    const Long_step x = -m.ldlt().solve(slope);
+    all.matrix.diagonal() = (1 + ridge) * all.matrix.diagonal().array() + ridge;
+    const Long_step x = -all.matrix.ldlt().solve(all.slope);
     if (!x.allFinite())
       return;
     move(x.head<size>());
@@ -206,30 +248,30 @@ private:
   void use_longest_steps()
   {
     constexpr double reach = 0.1, sure = 0.8;
-    for (int e = 0; e < 2; ++e)
-      for (const int factor : {3, 2}) {
-        double sine = 0, cosine = 0, count = 0;
-        for_each_sample([&](const Vec3& p) {
-          if (m_grid.misfit(p, reach) > reach)
-            return;
-          const double angle = two_pi * m_grid.place(p)[e] / factor;
-          sine += std::sin(angle);
-          cosine += std::cos(angle);
-          count += 1;
-        });
+    for (const int factor : {3, 2}) {
+      const Phase_sums all =
+          sum_up<Phase_sums>(number_of_samples(), [&](std::size_t k, Phase_sums& sums) {
+            if (m_grid.misfit(sample(k), reach) <= reach)
+              sums.add(two_pi / factor * m_grid.place(sample(k)));
+          });
+      for (int e = 0; e < 2; ++e) {
         // what is within reach by chance has any angle
-        if (std::hypot(sine, cosine) < sure * count)
+        if (std::hypot(all.sine[e], all.cosine[e]) < sure * all.count)
           continue;
         m_grid.rate[e] /= factor;
-        m_grid.phase[e] = m_grid.phase[e] / factor - std::atan2(sine, cosine) / two_pi;
+        m_grid.phase[e] =
+            m_grid.phase[e] / factor - std::atan2(all.sine[e], all.cosine[e]) / two_pi;
       }
+    }
   }
 
   /// As wide as tells most from points that are there by chance. Returns the share of those that are not.
   double find_tolerance()
   {
-    std::vector<double> misfits;
-    for_each_sample([&](const Vec3& p) { misfits.push_back(m_grid.misfit(p)); });
+    std::vector<double> misfits(number_of_samples());
+    pcs::internal::for_each_index<ConcurrencyTag>(misfits.size(), [&](std::size_t k) {
+      misfits[k] = m_grid.misfit(sample(k));
+    });
     const double count = double(misfits.size());
     double best = 0, share = 0;
     for (double width = 0.01; width < 0.25; width *= 1.25) {

@@ -85,25 +85,6 @@ Distinct_places distinct_places(const std::vector<Vec3>& points, const Scan_fram
   return result;
 }
 
-/// Neither the frame nor the order of what is left depends on duplicates.
-template <class ConcurrencyTag>
-void merge_duplicates(const std::vector<Vec3>& input, const Vec3& up, Scan& scan)
-{
-  scan.frame = frame_of_scan<ConcurrencyTag>(input, up);
-  Distinct_places found = distinct_places<ConcurrencyTag>(input, scan.frame);
-  scan.point_of_input = std::move(found.of_point);
-  if (found.places.size() < input.size()) {
-    std::vector<Vec3> once(found.chosen.size());
-    for (std::size_t k = 0; k < once.size(); ++k)
-      once[k] = input[found.chosen[k]];
-    scan.frame = frame_of_scan<ConcurrencyTag>(once, up);
-    found = distinct_places<ConcurrencyTag>(once, scan.frame);
-    for (Index& i : scan.point_of_input)
-      i = found.of_point[i];
-  }
-  scan.points = std::move(found.places);
-}
-
 template <class ConcurrencyTag>
 void find_neighbors(Scan& scan)
 {
@@ -213,15 +194,42 @@ void mark_outliers(const std::vector<std::uint8_t>& is_part, Scan& scan)
 
 } // namespace internal
 
-/// Prepares an empty scan; `input` is finite and not empty, `up` a unit vector. O(n log n).
+/// Gives an empty scan the points of `input`, each place once; that is finite and not empty, `up` a unit vector. Neither the frame
+/// nor the order depends on duplicates. O(n log n).
 template <class ConcurrencyTag>
-void prepare_scan(const std::vector<Vec3>& input, const Vec3& up, Scan& scan)
+void take_points(std::vector<Vec3> input, const Vec3& up, Scan& scan)
 {
-  internal::merge_duplicates<ConcurrencyTag>(input, up, scan);
+  scan.frame = frame_of_scan<ConcurrencyTag>(input, up);
+  internal::Distinct_places found = internal::distinct_places<ConcurrencyTag>(input, scan.frame);
+  scan.point_of_input = std::move(found.of_point);
+  if (found.places.size() < input.size()) {
+    std::vector<Vec3> once(found.chosen.size());
+    for (std::size_t k = 0; k < once.size(); ++k)
+      once[k] = input[found.chosen[k]];
+    scan.frame = frame_of_scan<ConcurrencyTag>(once, up);
+    found = internal::distinct_places<ConcurrencyTag>(once, scan.frame);
+    for (Index& i : scan.point_of_input)
+      i = found.of_point[i];
+  }
+  scan.points = std::move(found.places);
+}
+
+/// Gives a scan that has its points all the rest. O(n log n).
+template <class ConcurrencyTag>
+void measure_points(Scan& scan)
+{
   internal::find_neighbors<ConcurrencyTag>(scan);
   for (int round = 0; round < copy_rounds && internal::merge_copies(scan); ++round)
     internal::find_neighbors<ConcurrencyTag>(scan);
   internal::mark_outliers<ConcurrencyTag>(std::vector<std::uint8_t>(scan.size(), 1), scan);
+}
+
+/// Both.
+template <class ConcurrencyTag>
+void prepare_scan(const std::vector<Vec3>& input, const Vec3& up, Scan& scan)
+{
+  take_points<ConcurrencyTag>(input, up, scan);
+  measure_points<ConcurrencyTag>(scan);
 }
 
 /// Measures the spacing of those points alone, and tells which of them are outliers: the ground may have another density.
