@@ -343,8 +343,8 @@ BOOST_AUTO_TEST_CASE(a_scan_without_noise_has_right_radii)
 BOOST_AUTO_TEST_CASE(what_strays_from_wood_is_no_branch_and_no_leaf)
 {
   const Small_scan& s = small_scan();
-  double away = 0, away_with_stray = 0;
-  for (const unsigned seed : {8u, 9u, 10u}) {
+  double away = 0, away_with_stray = 0, length = 0, length_with_stray = 0;
+  for (const unsigned seed : {8u, 9u, 10u, 11u, 12u}) {
     pcs::Virtual_scanner scanner;
     scanner.angular_step = 0.2 * CGAL_PI / 180;
     scanner.range_noise = 0.004;
@@ -365,7 +365,8 @@ BOOST_AUTO_TEST_CASE(what_strays_from_wood_is_no_branch_and_no_leaf)
     away += astray(tree, s.truth);
     away_with_stray += astray(with_stray, s.truth);
     BOOST_CHECK_CLOSE(found.height, kept.height, 2.0);
-    BOOST_CHECK_GT(length_of(tree), 0.9 * length_of(with_stray));
+    length += length_of(tree);
+    length_with_stray += length_of(with_stray);
     // there are no leaves: its points are used, but may belong to no branch
     BOOST_CHECK_EQUAL(found.number_of_leaf_points, 0u);
     BOOST_CHECK_EQUAL(found.number_of_outliers, kept.number_of_outliers);
@@ -378,7 +379,8 @@ BOOST_AUTO_TEST_CASE(what_strays_from_wood_is_no_branch_and_no_leaf)
                       found.number_of_unexplained_points + found.number_of_unreached_points +
                           found.number_of_outliers);
   }
-  BOOST_CHECK_LT(away, 0.8 * away_with_stray);
+  BOOST_CHECK_LT(away, 0.85 * away_with_stray);
+  BOOST_CHECK_GT(length, 0.9 * length_with_stray);
 }
 
 BOOST_AUTO_TEST_CASE(trees_in_rows_keep_their_wood)

@@ -13,10 +13,10 @@ namespace skeleton {
 /// Which points tell where stations are, and what else their distances from the axes may come from.
 struct Alignment_rules
 {
-  double thickness = 3;         ///< smallest radius, in noise [-]
-  std::size_t fewest = 16;      ///< points of a piece of a branch [count]
-  std::size_t enough = 24;      ///< the same of two edges, unless more are needed [count]
-  double longest = 16;          ///< half of the length of a piece, in radii [-]
+  double thickness = 3; ///< smallest radius, in noise [-]
+  std::size_t fewest =
+      10; ///< points of a piece of a branch, which are halved as long as both have them [count]
+  double longest = 32;          ///< half of the length of a piece, in radii [-]
   double fit = 3;               ///< error of a radius or place that was fitted, in noise ... [-]
   double relative_fit = 0.2;    ///< ... and in radii [-]
   double oval = 0.04;           ///< half difference of the half axes of a section, in radii [-]

@@ -125,45 +125,58 @@ private:
     const Index_groups points(m_axes.axes.size(), m_axes.axis_of_point);
     for (Index a = 0; a < m_axes.axes.size(); ++a) {
       const Axis& axis = m_axes.axes[a].axis;
-      std::vector<std::pair<double, Index>> sorted;
+      std::vector<std::pair<Index, Index>> sorted; // segment, point
       for (const Index i : points[a]) {
         const Axis_place place = nearest_place(axis, m_axes.segment_of_point[i], m_scan.points[i]);
         const bool is_inside = place.share >= 0 && place.share <= 1;
         if (m_station[i] != none && is_inside &&
             radius_at(axis, place) >= m_rules.thickness * m_axes.noise)
-          sorted.emplace_back(double(place.segment) + place.share, i);
+          sorted.emplace_back(place.segment, i);
       }
       std::sort(sorted.begin(), sorted.end());
-      for (std::size_t begin = 0; begin < sorted.size();) {
-        std::size_t end = begin;
-        while (end < sorted.size() &&
-               (end - begin < m_rules.enough || sorted[end].first - sorted[begin].first < 2))
-          ++end;
-        if (end - begin >= m_rules.fewest)
-          add_piece(a, sorted, begin, end);
-        begin = end;
-      }
+      std::vector<std::size_t> first(axis.size(), 0); // of the points of each segment
+      for (const auto& entry : sorted)
+        ++first[entry.first + 1];
+      for (std::size_t s = 1; s < first.size(); ++s)
+        first[s] += first[s - 1];
+      cut(a, sorted, first, 0, axis.size() - 1);
     }
   }
 
-  static Vec3 point_along(const Axis& axis, double at)
+  /// Halves the points of segments [`begin`, `end`) as long as both halves have enough: one point more or less changes few pieces.
+  void cut(Index axis,
+           const std::vector<std::pair<Index, Index>>& sorted,
+           const std::vector<std::size_t>& first,
+           std::size_t begin,
+           std::size_t end)
   {
-    const std::size_t s = std::min(axis.size() - 2, static_cast<std::size_t>(at));
-    return point_at(axis, {static_cast<Index>(s), at - double(s), 0});
+    constexpr std::size_t shortest = 2; // segments
+    std::size_t middle = 0, fewer = 0;  // points of the half that has less
+    for (std::size_t k = begin + shortest; k + shortest <= end; ++k) {
+      const std::size_t less = std::min(first[k] - first[begin], first[end] - first[k]);
+      if (less > fewer) {
+        middle = k;
+        fewer = less;
+      }
+    }
+    if (fewer >= m_rules.fewest) {
+      cut(axis, sorted, first, begin, middle);
+      cut(axis, sorted, first, middle, end);
+    } else if (first[end] - first[begin] >= m_rules.fewest)
+      add_piece(axis, sorted, first, begin, end);
   }
 
   void add_piece(Index number,
-                 const std::vector<std::pair<double, Index>>& sorted,
+                 const std::vector<std::pair<Index, Index>>& sorted,
+                 const std::vector<std::size_t>& first,
                  std::size_t begin,
                  std::size_t end)
   {
     Piece piece;
     piece.axis = number;
     const Axis& axis = m_axes.axes[number].axis;
-    const double first = sorted[begin].first, last = sorted[end - 1].first;
-    const Vec3 a = point_along(axis, first), b = point_along(axis, last);
-    const std::size_t s = std::min(axis.size() - 1, static_cast<std::size_t>(0.5 * (first + last)));
-    piece.radius = axis[s].radius;
+    const Vec3 a = axis[begin].point, b = axis[end].point;
+    piece.radius = axis[(begin + end) / 2].radius;
     piece.half_length = 0.5 * (b - a).norm();
     if (!(piece.half_length > 0) || piece.half_length > m_rules.longest * piece.radius)
       return;
@@ -171,7 +184,7 @@ private:
     piece.along = (b - a).normalized();
     piece.e1 = piece.along.unitOrthogonal();
     piece.e2 = piece.along.cross(piece.e1);
-    for (std::size_t k = begin; k < end; ++k)
+    for (std::size_t k = first[begin]; k < first[end]; ++k)
       piece.points.push_back(sorted[k].second);
     m_pieces.push_back(std::move(piece));
   }

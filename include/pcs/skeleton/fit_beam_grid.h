@@ -52,7 +52,7 @@ public:
         return false;
       constexpr int rounds = 4;
       constexpr double near = 0.003; // of the top [steps]
-      Grid_place cosine;
+      Grid_place cosine = Grid_place::Zero();
       double change = 1;
       for (int round = 0; round < rounds && change > near; ++round)
         cosine = climb(pairs, usual, change);
