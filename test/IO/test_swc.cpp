@@ -13,6 +13,7 @@
 #include <boost/property_map/property_map.hpp>
 #include <boost/test/unit_test.hpp>
 
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <string>
@@ -72,6 +73,33 @@ BOOST_AUTO_TEST_CASE(a_tree_comes_back_bit_by_bit)
     BOOST_TEST(pcs::parent_node<Kernel>(v, copy) == pcs::parent_node<Kernel>(v, tree));
   }
   BOOST_TEST(number_of_files() == 1u);
+}
+
+BOOST_AUTO_TEST_CASE(types_tell_branches_where_they_are_orders)
+{
+  // node, parent, type: node 2 continues the trunk, though 3 is thicker; parents stand behind their children
+  const auto branches = [&](const std::string& types) {
+    const char* const rows[] = {"3 ", "2 ", "1 ", "4 "};
+    const char* const places[] = {" 1 0 1 0.3 1\n",
+                                  " 0 0 2 0.1 1\n",
+                                  " 0 0 0 0.4 -1\n",
+                                  " 2 0 1 0.2 3\n"};
+    std::string content;
+    for (std::size_t i = 0; i < 4; ++i)
+      content += rows[i] + types.substr(2 * i, 2) + places[i];
+    Tree tree;
+    pcs::IO::read_swc<Kernel>(file("a.swc", content), tree);
+    const auto& found = tree[boost::graph_bundle].branches;
+    return std::array<bool, 3>{tree[1].branch == tree[2].branch, // the trunk goes to node 2
+                               tree[0].branch == tree[2].branch,
+                               found[tree[3].branch].order > found[tree[0].branch].order};
+  };
+  using Answer = std::array<bool, 3>;
+  BOOST_TEST((branches("6 5 5 6 ") == Answer{true, false, false}));
+  BOOST_TEST((branches("6 5 5 7 ") == Answer{true, false, true}));
+  // no orders: the thickest child continues
+  for (const char* const types : {"5 5 5 5 ", "0 0 0 0 ", "7 5 5 7 ", "6 5 6 6 ", "3 3 1 3 "})
+    BOOST_TEST((branches(types) == Answer{false, true, false}));
 }
 
 BOOST_AUTO_TEST_CASE(ids_are_those_of_the_file)

@@ -21,13 +21,38 @@
 namespace pcs {
 namespace IO {
 
+namespace internal {
+
+//! the child of each node that has its type, or `npos`; empty unless types are 5 plus the order of a branch
+inline std::vector<std::size_t> same_type_behind(const std::vector<std::int64_t>& types,
+                                                 const std::vector<std::size_t>& parents)
+{
+  constexpr std::int64_t of_trunk = 5;
+  std::vector<std::size_t> next(types.size(), npos);
+  for (std::size_t i = 0; i < types.size(); ++i) {
+    const std::size_t p = parents[i];
+    if (types[i] < of_trunk || (p == npos && types[i] != of_trunk) ||
+        (p != npos && types[i] != types[p] && types[i] - 1 != types[p]))
+      return {};
+    if (p == npos || types[i] != types[p])
+      continue;
+    if (next[p] != npos)
+      return {};
+    next[p] = i;
+  }
+  return next;
+}
+
+} // namespace internal
+
 /*!
   \ingroup PkgPcsIORef
   \brief reads a tree skeleton from an SWC file: lines `id type x y z radius parent`.
 
   Lines that are blank or begin with `#` are skipped; parents may stand behind their children. Nodes
-  are numbered in the order of the file. The format knows no branches, so these come from
-  `assign_branches()`, and no sections, so all are circles.
+  are numbered in the order of the file. The format knows no branches. Where its types are 5 plus an order, as
+  `write_swc()` writes them, they tell the branches; else these come from `assign_branches()`. It knows no sections, so all
+  are circles.
 
   \tparam Kernel a kernel of CGAL
   \param path name of the file
@@ -46,6 +71,7 @@ void read_swc(const std::string& path, Tree_skeleton<Kernel>& tree, std::vector<
   internal::Input_file file(path);
   std::vector<internal::Tree_row> rows;
   std::vector<Tree_node<Kernel>> nodes;
+  std::vector<std::int64_t> types;
   std::string_view line;
   while (file.read_line(line)) {
     if (file.line_number() == 1 && line.substr(0, 3) == "\xEF\xBB\xBF") // byte order mark
@@ -62,7 +88,7 @@ void read_swc(const std::string& path, Tree_skeleton<Kernel>& tree, std::vector<
     if (n != words.size())
       file.fail_at_line("expected the 7 columns id, type, x, y, z, radius, parent, found " +
                         std::to_string(n));
-    internal::required_number<std::int64_t>(file, words[1], "type");
+    types.push_back(internal::required_number<std::int64_t>(file, words[1], "type"));
     const auto x = internal::required_number<double>(file, words[2], "x");
     const auto y = internal::required_number<double>(file, words[3], "y");
     const auto z = internal::required_number<double>(file, words[4], "z");
@@ -85,7 +111,11 @@ void read_swc(const std::string& path, Tree_skeleton<Kernel>& tree, std::vector<
       add_edge(links.parents()[i], i, result);
   }
   result[boost::graph_bundle].root = links.root();
-  assign_branches<Kernel>(result);
+  const std::vector<std::size_t> next = internal::same_type_behind(types, links.parents());
+  if (next.empty())
+    assign_branches<Kernel>(result);
+  else
+    pcs::internal::assign_branches<Kernel>(result, [&](std::size_t v) { return next[v]; });
   tree = result;
   ids.clear();
   for (const internal::Tree_row& row : rows)

@@ -54,6 +54,34 @@ std::vector<double> lengths_to_tips(const Tree_skeleton<Kernel>& tree)
   return length;
 }
 
+//! as below; `child(v)` continues the branch of node `v`, or is `npos`
+template <class Kernel, class Child>
+void assign_branches(Tree_skeleton<Kernel>& tree, const Child& child)
+{
+  std::vector<Tree_branch>& branches = tree[boost::graph_bundle].branches;
+  branches.clear();
+  if (num_vertices(tree) == 0)
+    return;
+  struct Base
+  {
+    std::size_t node, parent_branch;
+  };
+  std::vector<Base> bases = {{tree[boost::graph_bundle].root, npos}};
+  for (std::size_t next = 0; next < bases.size(); ++next) {
+    const auto [base, parent] = bases[next];
+    const std::size_t branch = branches.size();
+    branches.push_back({parent, parent == npos ? 0 : branches[parent].order + 1, branch});
+    for (std::size_t v = base; v != npos;) {
+      tree[v].branch = branch;
+      const std::size_t main = child(v);
+      for (const auto e : boost::make_iterator_range(out_edges(v, tree)))
+        if (target(e, tree) != main)
+          bases.push_back({target(e, tree), branch});
+      v = main;
+    }
+  }
+}
+
 } // namespace internal
 
 /*!
@@ -75,35 +103,17 @@ template <class Kernel>
 void assign_branches(Tree_skeleton<Kernel>& tree)
 {
   const std::vector<double> length = internal::lengths_to_tips<Kernel>(tree);
-  std::vector<Tree_branch>& branches = tree[boost::graph_bundle].branches;
-  branches.clear();
-  if (num_vertices(tree) == 0)
-    return;
-  struct Base
-  {
-    std::size_t node, parent_branch;
-  };
-  std::vector<Base> bases = {{tree[boost::graph_bundle].root, npos}};
-  for (std::size_t next = 0; next < bases.size(); ++next) {
-    const auto [base, parent] = bases[next];
-    const std::size_t branch = branches.size();
-    branches.push_back({parent, parent == npos ? 0 : branches[parent].order + 1, branch});
-    for (std::size_t v = base; v != npos;) {
-      tree[v].branch = branch;
-      std::size_t main = npos;
-      for (const auto e : boost::make_iterator_range(out_edges(v, tree))) {
-        const std::size_t w = target(e, tree);
-        if (main == npos || tree[w].radius > tree[main].radius ||
-            (tree[w].radius == tree[main].radius &&
-             (length[w] > length[main] || (length[w] == length[main] && w < main))))
-          main = w;
-      }
-      for (const auto e : boost::make_iterator_range(out_edges(v, tree)))
-        if (target(e, tree) != main)
-          bases.push_back({target(e, tree), branch});
-      v = main;
+  internal::assign_branches<Kernel>(tree, [&](std::size_t v) {
+    std::size_t main = npos;
+    for (const auto e : boost::make_iterator_range(out_edges(v, tree))) {
+      const std::size_t w = target(e, tree);
+      if (main == npos || tree[w].radius > tree[main].radius ||
+          (tree[w].radius == tree[main].radius &&
+           (length[w] > length[main] || (length[w] == length[main] && w < main))))
+        main = w;
     }
-  }
+    return main;
+  });
 }
 
 } // namespace pcs
