@@ -49,8 +49,10 @@ struct Chain_rules
   double noise_share = 0.2;   ///< r^2 is reduced by this many noise^2: noise inflates thin branches
   double thick = 4;           ///< branches of at least this radius are followed beyond their tips
   double filled = 0.08; ///< thick axes end where more than this share of the points lies inside ...
-  double bush = 0.2;    ///< with such a share, a section tells nothing about surfaces [-]
-  double typical = 0.5; ///< ... nor with less than this share of the usual density
+  //! ... from a smaller radius on, if they widen beyond that place by this factor [-]
+  double thick_widening = 2, widening = 1.1;
+  double bush = 0.2;         ///< with such a share, a section tells nothing about surfaces [-]
+  double typical = 0.5;      ///< ... nor with less than this share of the usual density
   double filled_depth = 0.1; ///< ... deeper than this many radii ...
   double filled_noise = 4;   ///< ... and than this many times the noise
   double deep = 0.3;         ///< flutes of a stem are less deep than this many radii

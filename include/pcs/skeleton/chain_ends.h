@@ -93,7 +93,8 @@ struct Filling
 /*!
   Wood is hollow to a scanner: where a thick axis that was hollow gets points inside, it runs around a fork, and ends. One
   that never was hollow is an irregular stem, or seen badly, and stays; so does one that is hollow again farther on, with
-  more points than before, because it only passed buttresses or a whorl.
+  more points than before, because it only passed buttresses or a whorl. Wood does not widen: an axis that does so beyond
+such a place need not be as thick.
 */
 inline void cut_filled(const Chain_view& view, Axis_fit& fit)
 {
@@ -109,11 +110,16 @@ inline void cut_filled(const Chain_view& view, Axis_fit& fit)
   std::vector<double> highest = balance; // from each node on
   for (std::size_t k = n; k-- > 0;)
     highest[k] = std::max(highest[k], highest[k + 1]);
+  std::vector<double> thickest(n); // from each node on
+  for (std::size_t k = n; k-- > 0;)
+    thickest[k] = std::max(axis[k].radius, k + 1 < n ? thickest[k + 1] : 0);
   double least = 1; // share inside of the best stretch so far
   for (std::size_t k = window; k + window < n; ++k) {
     least = std::min(least, filling.share(k - window, k));
     const bool is_mostly_beyond = highest[k] - balance[k] > std::max(0.0, balance[k]);
-    if (axis[k].radius >= view.rules.thick * view.scan.spacing && least < 0.5 * view.rules.filled &&
+    const bool does_widen = thickest[k] > view.rules.widening * axis[k].radius;
+    const double thick = does_widen ? view.rules.thick_widening : view.rules.thick;
+    if (axis[k].radius >= thick * view.scan.spacing && least < 0.5 * view.rules.filled &&
         filling.is_filled(k, k + window, view.rules.filled) && !is_mostly_beyond) {
       axis.resize(k + 1);
       fit.project();
