@@ -77,6 +77,7 @@ public:
 private:
   void place_own_points(const Chain_start& start, Axis_fit& fit) const;
   void start_at_circles(Axis_fit& fit) const;
+  Radius_prior counted_prior(double counted, double found) const;
   void set_priors(const std::vector<double>& visible, Axis_fit& fit) const;
   bool run(Axis_fit& fit, double widening) const;
   std::vector<Index> gather(Axis_fit& fit) const;
@@ -171,17 +172,24 @@ inline void Chain_fit::start_at_circles(Axis_fit& fit) const
   fit.project();
 }
 
+/// A radius by counting points. It is wrong by a factor, up or down, so that what is found tells by how much; but much fewer
+/// points than expected are no chance: an axis that runs between several twigs must not look certain of its radius.
+inline Radius_prior Chain_fit::counted_prior(double counted, double found) const
+{
+  const double most = m_rules.prior_ratio * counted;
+  const double size = found > most ? std::max(counted, most / found * most) : found;
+  return {counted, m_rules.prior_share * size + m_rules.prior_offset * m_scan.spacing, 0};
+}
+
 inline void Chain_fit::set_priors(const std::vector<double>& visible, Axis_fit& fit) const
 {
   std::vector<Radius_prior> priors(fit.axis().size());
   if (m_set.density > 0) {
     const Section_counts counts = section_counts(m_view, fit, visible);
     for (std::size_t k = 0; k < priors.size(); ++k)
-      if (counts.visible_length[k] > m_rules.visible * counts.length[k]) {
-        priors[k].radius = counts.radius(k, m_set.density_at(fit.axis(), k));
-        priors[k].deviation =
-            m_rules.prior_share * priors[k].radius + m_rules.prior_offset * m_scan.spacing;
-      }
+      if (counts.visible_length[k] > m_rules.visible * counts.length[k])
+        priors[k] =
+            counted_prior(counts.radius(k, m_set.density_at(fit.axis(), k)), fit.axis()[k].radius);
   }
   const Section_sides sides(m_view, fit);
   add_width_priors(m_view, fit.axis(), sides, priors);

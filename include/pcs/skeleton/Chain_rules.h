@@ -31,8 +31,9 @@ struct Chain_rules
   double circle_noise = 2.5;      ///< smallest radius of such a circle in noise
   double expected_share =
       0.25; ///< circles with fewer points than this share of the expected straddle several twigs
-  double prior_share = 0.5;   ///< standard deviation of the radius by counting, in radii ...
-  double prior_offset = 0.15; ///< ... and spacings
+  //! standard deviation of the radius by counting, in radii that are found, and in spacings
+  double prior_share = 0.5, prior_offset = 0.2;
+  double prior_ratio = 2.5; ///< found radii so much larger than counted ones are not believed
   //! deviation of the middle of the points of a thin branch from its place: this many times the usual one ...
   double facing_share = 5;
   double facing_noise = 0.5; ///< ... and this much noise
