@@ -77,6 +77,7 @@ public:
 private:
   void place_own_points(const Chain_start& start, Axis_fit& fit) const;
   void start_at_circles(Axis_fit& fit) const;
+  double hidden_factor(const std::vector<double>& counted, const Axis& axis) const;
   Radius_prior counted_prior(double counted, double found) const;
   void set_priors(const std::vector<double>& visible, Axis_fit& fit) const;
   bool run(Axis_fit& fit, double widening) const;
@@ -181,15 +182,34 @@ inline Radius_prior Chain_fit::counted_prior(double counted, double found) const
   return {counted, m_rules.prior_share * size + m_rules.prior_offset * m_scan.spacing, 0};
 }
 
+/// By how many times what hides an axis from the scanner lowers its counts, all along it; never less than 1. Few nodes are
+/// not believed.
+inline double Chain_fit::hidden_factor(const std::vector<double>& counted, const Axis& axis) const
+{
+  std::vector<double> ratios;
+  for (std::size_t k = 0; k < axis.size(); ++k)
+    if (counted[k] > 0)
+      ratios.push_back(std::log(axis[k].radius / counted[k]));
+  if (ratios.empty())
+    return 1;
+  const double size = double(ratios.size());
+  const double level = median(ratios) * size / (size + m_rules.hidden_nodes);
+  return std::min(m_rules.most_hidden, std::max(1.0, std::exp(level)));
+}
+
 inline void Chain_fit::set_priors(const std::vector<double>& visible, Axis_fit& fit) const
 {
   std::vector<Radius_prior> priors(fit.axis().size());
   if (m_set.density > 0) {
     const Section_counts counts = section_counts(m_view, fit, visible);
+    std::vector<double> counted(priors.size(), -1); // negative: hidden
     for (std::size_t k = 0; k < priors.size(); ++k)
       if (counts.visible_length[k] > m_rules.visible * counts.length[k])
-        priors[k] =
-            counted_prior(counts.radius(k, m_set.density_at(fit.axis(), k)), fit.axis()[k].radius);
+        counted[k] = counts.radius(k, m_set.density_at(fit.axis(), k));
+    const double factor = hidden_factor(counted, fit.axis());
+    for (std::size_t k = 0; k < priors.size(); ++k)
+      if (counted[k] >= 0)
+        priors[k] = counted_prior(factor * counted[k], fit.axis()[k].radius);
   }
   const Section_sides sides(m_view, fit);
   add_width_priors(m_view, fit.axis(), sides, priors);
