@@ -40,6 +40,7 @@ struct Axis_rules
   std::size_t shortest_rest = 4; ///< layers that such a rest needs [count]
   Pair_rules pairs;
   std::size_t largest_wave = 64; ///< chains that are fitted side by side [count]
+  double most_lost = 0.05; ///< share of its points that a chain may lose to others of its wave [-]
 };
 
 namespace internal {
@@ -59,6 +60,16 @@ protrusion_of(const Scan& scan, const Axis_set& set, const Axis& axis, double re
     best = std::max(best, place.distance - (1 + share) * radius_at(other, place));
   }
   return best;
+}
+
+/// Share of the points of a candidate that others have covered since it was fitted.
+inline double lost_share(const Candidate& candidate, const Axis_set& set)
+{
+  const std::size_t lost = static_cast<std::size_t>(
+      std::count_if(candidate.points.begin(), candidate.points.end(), [&](Index i) {
+        return set.is_covered(i);
+      }));
+  return candidate.points.empty() ? 0 : double(lost) / double(candidate.points.size());
 }
 
 /// Accepts candidates one after the other; each sees what the ones before it have covered.
@@ -193,7 +204,8 @@ private:
 };
 
 /*!
-  Fits the chains of one tree of layers, in waves whose members do not see each other. Where a chain leads through layers
+  Fits the chains of one tree of layers, in waves whose members do not see each other: one that finds much of what others have
+  found is fitted again in the next wave. Where a chain leads through layers
   that are explained already, as a second arc of a trunk does, only its stretches between them are fitted, each by itself:
   what is left over beside an axis that is there is not one branch.
   Whether it does learn about the surface: what the first pass has left over is not typical.
@@ -231,6 +243,10 @@ bool fit_chains(const Scan& scan,
         1);
     for (std::size_t k = 0; k < places.size(); ++k) {
       const std::size_t place = places[k];
+      if (lost_share(candidates[k], set) > rules.most_lost) {
+        queue.add({queue[place]}, queue.cuts(place));
+        continue;
+      }
       const Index parent = queue.parent_axis(place);
       if (accept(scan, rules.chains, candidates[k], parent, set, statistics))
         queue.set_axis(place, static_cast<Index>(set.axes.size() - 1));
