@@ -77,6 +77,7 @@ public:
 private:
   void place_own_points(const Chain_start& start, Axis_fit& fit) const;
   void start_at_circles(Axis_fit& fit) const;
+  bool is_blurred(double radius) const;
   double hidden_factor(const std::vector<double>& counted, const Axis& axis) const;
   Radius_prior counted_prior(double counted, double found) const;
   void set_priors(const std::vector<double>& visible, Axis_fit& fit) const;
@@ -182,13 +183,19 @@ inline Radius_prior Chain_fit::counted_prior(double counted, double found) const
   return {counted, m_rules.prior_share * size + m_rules.prior_offset * m_scan.spacing, 0};
 }
 
-/// By how many times what hides an axis from the scanner lowers its counts, all along it; never less than 1. Few nodes are
-/// not believed.
+/// Whether noise hides the curvature of a section, so that its radius may be anything.
+inline bool Chain_fit::is_blurred(double radius) const
+{
+  return radius < m_rules.blurred * m_set.noise;
+}
+
+/// By how many times what hides an axis from the scanner lowers its counts, all along it, as its blurred sections tell; never
+/// less than 1. Few nodes are not believed.
 inline double Chain_fit::hidden_factor(const std::vector<double>& counted, const Axis& axis) const
 {
   std::vector<double> ratios;
   for (std::size_t k = 0; k < axis.size(); ++k)
-    if (counted[k] > 0)
+    if (counted[k] > 0 && is_blurred(axis[k].radius))
       ratios.push_back(std::log(axis[k].radius / counted[k]));
   if (ratios.empty())
     return 1;
@@ -208,8 +215,10 @@ inline void Chain_fit::set_priors(const std::vector<double>& visible, Axis_fit& 
         counted[k] = counts.radius(k, m_set.density_at(fit.axis(), k));
     const double factor = hidden_factor(counted, fit.axis());
     for (std::size_t k = 0; k < priors.size(); ++k)
-      if (counted[k] >= 0)
-        priors[k] = counted_prior(factor * counted[k], fit.axis()[k].radius);
+      if (counted[k] >= 0) {
+        const double radius = fit.axis()[k].radius;
+        priors[k] = counted_prior((is_blurred(radius) ? factor : 1) * counted[k], radius);
+      }
   }
   const Section_sides sides(m_view, fit);
   add_width_priors(m_view, fit.axis(), sides, priors);

@@ -34,7 +34,8 @@ struct Chain_rules
   //! standard deviation of the radius by counting, in radii that are found, and in spacings
   double prior_share = 0.5, prior_offset = 0.2;
   double prior_ratio = 2.5; ///< found radii so much larger than counted ones are not believed
-  //! counts of a whole axis are low by at most this factor where something hides it, ...
+  double blurred = 4; ///< noise hides the curvature of sections thinner than this much of it [-]
+  //! their counts along a whole axis are low by at most this factor where something hides it, ...
   double most_hidden = 2;
   double hidden_nodes = 20; ///< ... half of which is believed of this many nodes [count]
   //! deviation of the middle of the points of a thin branch from its place: this many times the usual one ...
