@@ -39,14 +39,20 @@ public:
     m_densities.insert(m_densities.end(), samples.begin(), samples.end());
   }
 
+  /// What `deviations` alone say of the noise; 0: they are too few [L].
+  double noise_of(std::vector<double> deviations) const
+  {
+    // standard deviation from the median of |e|
+    return deviations.size() >= enough_deviations
+               ? std::max(m_least_noise, 1.4826 * median(deviations))
+               : 0;
+  }
   /// Updates noise and density where there is enough to go by.
   void learn(Axis_set& set)
   {
     if (m_deviations.size() >= enough_deviations && m_deviations.size() != m_learned_deviations) {
       m_learned_deviations = m_deviations.size();
-      std::vector<double> copy = m_deviations;
-      // standard deviation from the median of |e|
-      set.noise = std::max(m_least_noise, 1.4826 * median(copy));
+      set.noise = noise_of(m_deviations);
     }
     if (m_densities.size() >= enough_densities &&
         (m_densities.size() != m_learned_densities || set.noise != m_learned_noise)) {
@@ -77,7 +83,7 @@ private:
     set.facing_field.learn(thick.size() >= enough_facing ? thick : m_densities);
   }
 
-  static constexpr std::size_t capacity = 40000, enough_deviations = 200, enough_densities = 8,
+  static constexpr std::size_t capacity = 40000, enough_deviations = 100, enough_densities = 8,
                                enough_thick = 600, enough_facing = 100;
   static constexpr double field_growth = 1.5; ///< of the samples, until the field is fitted again
   static constexpr double thick_radius =

@@ -34,7 +34,9 @@ struct Axis_rules
   double later_links = 0.7; ///< links of later passes are this much shorter [-]
   //! replaces `Chain_rules::protrusion` in later passes, in spacings [-]
   double later_protrusion = 3;
-  double first_noise = 0.3;  ///< noise before anything is known, in spacings [-]
+  double first_noise = 0.3; ///< noise before anything is known, in spacings [-]
+  double first_guess =
+      0.7; ///< with less than this share of it, the first chain is fitted again [-]
   double least_noise = 0.08; ///< of points without any, in spacings: polygons are no smoother [-]
   int most_cuts = 4;         ///< how often what is left of a chain is tried again
   std::size_t shortest_rest = 4; ///< layers that such a rest needs [count]
@@ -234,13 +236,24 @@ bool fit_chains(const Scan& scan,
       else
         queue.add(std::move(open), queue.cuts(k));
     }
-    candidates.assign(places.size(), Candidate());
-    pcs::internal::for_each_index<ConcurrencyTag>(
-        places.size(),
-        [&](std::size_t k) {
-          candidates[k] = Chain_fit(scan, set, rules.chains)(tree, queue[places[k]]);
-        },
-        1);
+    const auto fit = [&] {
+      candidates.assign(places.size(), Candidate());
+      pcs::internal::for_each_index<ConcurrencyTag>(
+          places.size(),
+          [&](std::size_t k) {
+            candidates[k] = Chain_fit(scan, set, rules.chains)(tree, queue[places[k]]);
+          },
+          1);
+    };
+    fit();
+    // the trunk tells the noise, which may be far from the guess that it was fitted with
+    if (begin == 0 && does_learn && !candidates.empty()) {
+      const double noise = statistics.noise_of(candidates.front().deviations);
+      if (noise > 0 && noise < rules.first_guess * set.noise) {
+        set.noise = noise;
+        fit();
+      }
+    }
     for (std::size_t k = 0; k < places.size(); ++k) {
       const std::size_t place = places[k];
       if (lost_share(candidates[k], set) > rules.most_lost) {
