@@ -4,6 +4,7 @@
 
 #include <pcs/skeleton/fuse_axes.h>
 #include <pcs/skeleton/prune_stubs.h>
+#include <pcs/skeleton/split_unreached.h>
 #include <support/axes.h>
 
 #include <CGAL/tags.h>
@@ -69,6 +70,36 @@ BOOST_AUTO_TEST_CASE(a_piece_that_was_found_from_its_tip_is_turned_round)
   BOOST_TEST(set.axes[0].direction < 1);
   BOOST_TEST(set.segment_of_point[0] == 9u);
   BOOST_TEST(set.segment_of_point[9] == 0u);
+}
+
+BOOST_AUTO_TEST_CASE(what_was_fused_by_its_bases_comes_apart_where_nothing_reaches_it)
+{
+  const Axis_set before = set_of({straight({0, 0, 0.5}, {0, 0, 0.2}, 0.01),
+                                  straight({0, 0, 0.52}, {0, 0, 1.5}, 0.01),
+                                  straight({1, 0, 0}, {1, 0, 1}, 0.01)});
+  Axis_set set = before;
+  BOOST_TEST(fuse(set) == 1u);
+  BOOST_TEST_REQUIRE(set.axes.size() == 2u);
+  BOOST_TEST(set.axes[0].meeting == 11u);
+  std::vector<Joint> joints(2);
+  joints[0].parent = 1;
+  BOOST_TEST(split_unreached(joints, 1, set) == 0u); // something reaches it
+  BOOST_TEST(split_unreached({Joint(), Joint()}, 0, set) == 0u);
+  BOOST_TEST(split_unreached({Joint(), Joint()}, 1, set) == 1u);
+  BOOST_TEST_REQUIRE(set.axes.size() == 3u);
+  for (const std::size_t a : {0u, 2u}) {
+    const Fitted_axis& old = before.axes[a == 0 ? 0 : 1];
+    BOOST_TEST_REQUIRE(set.axes[a].axis.size() == old.axis.size());
+    for (std::size_t k = 0; k < old.axis.size(); ++k)
+      BOOST_TEST(set.axes[a].axis[k].point == old.axis[k].point);
+    BOOST_TEST(set.axes[a].number_of_points == old.number_of_points);
+    BOOST_TEST(set.axes[a].meeting == 0u);
+  }
+  for (std::size_t i = 0; i < before.axis_of_point.size(); ++i) {
+    const Index a = before.axis_of_point[i];
+    BOOST_TEST(set.axis_of_point[i] == (a == 0 ? 0u : a == 1 ? 2u : 1u));
+    BOOST_TEST(set.segment_of_point[i] == before.segment_of_point[i]);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(pieces_that_bend_or_miss_stay_apart)

@@ -92,7 +92,6 @@ public:
     m_segments = std::move(segments);
     m_places.resize(m_points.size());
     m_stride = 1;
-    m_moves.clear();
   }
   /// Every so many points only take part in the next steps, with as much weight as all; 1 finds the places of all again.
   void use_every(std::size_t stride)
@@ -158,7 +157,6 @@ private:
   std::vector<Axis_place> m_places;
   std::vector<Radius_prior> m_priors;
   std::vector<Center_prior> m_center_priors;
-  std::vector<Vec3> m_moves; ///< of the nodes in the last step; empty: there was none
   std::size_t m_stride = 1;
   double m_largest_change = 0;
   Matrix m_matrix; // its factor after a step
@@ -300,16 +298,14 @@ inline void Axis_fit::add_center_priors()
   }
 }
 
-/// A node that swings back goes only half of the way, and nodes at the ends stay as far from their neighbours as they were:
-/// across a short segment of a thick axis steps overshoot, and every swing would carry its end farther out.
+/// Nodes at the ends stay as far from their neighbours as they were: across a short segment of a thick axis steps overshoot, and
+/// every swing to the other side would carry the end farther out.
 inline void Axis_fit::apply_step()
 {
   m_largest_change = 0;
   const std::size_t n = m_axis.size();
   const double first = n > 1 ? (m_axis[0].point - m_axis[1].point).norm() : 0;
   const double last = n > 1 ? (m_axis[n - 1].point - m_axis[n - 2].point).norm() : 0;
-  const bool is_later = m_moves.size() == n;
-  m_moves.resize(n);
   for (std::size_t k = 0; k < n; ++k) {
     Axis_node& node = m_axis[k];
     Vec3 move(m_step[4 * k], m_step[4 * k + 1], m_step[4 * k + 2]);
@@ -317,9 +313,6 @@ inline void Axis_fit::apply_step()
     const double longest = 0.5 * node.radius + m_model.noise, length = move.norm();
     if (length > longest)
       move *= longest / length;
-    if (is_later && move.dot(m_moves[k]) < -0.5 * m_moves[k].squaredNorm())
-      move *= 0.5;
-    m_moves[k] = move;
     node.point += move;
     const double change = std::min(longest, std::max(-longest, m_step[4 * k + 3]));
     const double radius = std::max(m_model.lowest_radius, node.radius + change);

@@ -24,6 +24,7 @@ struct Fitted_axis
   Index parent = none; ///< axis that the paths to the root lead to
   std::size_t number_of_points = 0;
   double direction = 1; ///< how sure its base is one: 0 if its pieces point to both sides alike [-]
+  std::size_t meeting = 0; ///< node where two pieces that point away from each other meet; 0: none
 };
 
 struct Axis_set

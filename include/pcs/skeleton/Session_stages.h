@@ -21,14 +21,13 @@
 #include <pcs/skeleton/report_sizes.h>
 #include <pcs/skeleton/residual_of_point.h>
 #include <pcs/skeleton/root_axis.h>
+#include <pcs/skeleton/split_unreached.h>
 #include <pcs/skeleton/wood_by_axes.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <utility>
 #include <vector>
 
@@ -203,6 +202,8 @@ public:
         ++m_regroupings; // stopped from here on, the work goes on with these axes
         root = join_axes();
       }
+      if (split_unreached(m_joints, root, m_axes) > 0)
+        root = join_axes();
       if (!progress(0.95))
         return false;
       prune_stubs(m_scan.spacing, m_options.stubs, m_tree);

@@ -267,13 +267,21 @@ std::size_t fuse_axes(double spacing, const Fuse_rules& rules, Axis_set& set)
     Fitted_axis row;
     row.parent = set.axes[entries.front() / 2].parent;
     row.direction = total > 0 ? std::abs(2 * forward / total - 1) : 1;
+    bool is_reversed = false; // the piece before
     for (const Index e : entries) {
       Fitted_axis& piece = set.axes[e / 2];
       part[e / 2] = {static_cast<Index>(fused.size()),
                      static_cast<Index>(row.axis.size()),
                      e % 2 == 1};
-      if (e % 2 == 1)
+      if (e % 2 == 1) {
         std::reverse(piece.axis.begin(), piece.axis.end());
+        piece.meeting = piece.meeting > 0 ? piece.axis.size() - piece.meeting : 0;
+      }
+      if (piece.meeting > 0)
+        row.meeting = row.axis.size() + piece.meeting;
+      else if (is_reversed && e % 2 == 0)
+        row.meeting = row.axis.size();
+      is_reversed = e % 2 == 1;
       row.axis.insert(row.axis.end(), piece.axis.begin(), piece.axis.end());
       row.number_of_points += piece.number_of_points;
     }
