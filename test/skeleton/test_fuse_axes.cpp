@@ -13,6 +13,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace test_fuse_axes {
@@ -76,16 +77,22 @@ BOOST_AUTO_TEST_CASE(what_was_fused_by_its_bases_comes_apart_where_nothing_reach
 {
   const Axis_set before = set_of({straight({0, 0, 0.5}, {0, 0, 0.2}, 0.01),
                                   straight({0, 0, 0.52}, {0, 0, 1.5}, 0.01),
-                                  straight({1, 0, 0}, {1, 0, 1}, 0.01)});
+                                  straight({-0.5, 0.03, 0.51}, {0.5, 0.03, 0.51}, 0.01)});
+  Scan scan;
+  for (std::size_t i = 0; i < before.axis_of_point.size(); ++i)
+    scan.points.push_back(
+        before.axes[before.axis_of_point[i]].axis[before.segment_of_point[i]].point);
+  scan.search = std::make_unique<pcs::neighborhood::Nearest_neighbors>(scan.points);
   Axis_set set = before;
   BOOST_TEST(fuse(set) == 1u);
   BOOST_TEST_REQUIRE(set.axes.size() == 2u);
   BOOST_TEST(set.axes[0].meeting == 11u);
   std::vector<Joint> joints(2);
   joints[0].parent = 1;
-  BOOST_TEST(split_unreached(joints, 1, set) == 0u); // something reaches it
-  BOOST_TEST(split_unreached({Joint(), Joint()}, 0, set) == 0u);
-  BOOST_TEST(split_unreached({Joint(), Joint()}, 1, set) == 1u);
+  BOOST_TEST(split_unreached(scan, 0.1, joints, 1, set) == 0u); // something reaches it
+  BOOST_TEST(split_unreached(scan, 0.1, {Joint(), Joint()}, 0, set) == 0u);
+  BOOST_TEST(split_unreached(scan, 0.02, {Joint(), Joint()}, 1, set) == 0u); // too far away
+  BOOST_TEST(split_unreached(scan, 0.1, {Joint(), Joint()}, 1, set) == 1u);
   BOOST_TEST_REQUIRE(set.axes.size() == 3u);
   for (const std::size_t a : {0u, 2u}) {
     const Fitted_axis& old = before.axes[a == 0 ? 0 : 1];

@@ -202,7 +202,8 @@ public:
         ++m_regroupings; // stopped from here on, the work goes on with these axes
         root = join_axes();
       }
-      if (split_unreached(m_joints, root, m_axes) > 0)
+      const double reach = m_options.joints.reach * m_scan.spacing;
+      if (split_unreached(m_scan, reach, m_joints, root, m_axes) > 0)
         root = join_axes();
       if (!progress(0.95))
         return false;

@@ -7,6 +7,7 @@
 
 #include <pcs/skeleton/Axis_set.h>
 #include <pcs/skeleton/Joint.h>
+#include <pcs/skeleton/Scan.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -17,17 +18,29 @@ namespace skeleton {
 
 /*!
   Two bases side by side may be a branch that another one crosses, or two branches that leave it on opposite sides. Where
-  the branch that they would make is out of reach, they were the latter: both become axes of their own, which begin where they
-  met. `joints` are those of the axes, `root` the one that stands on the root. Returns how many axes there are more. O(axes + points).
+  the branch that they would make is out of reach, but something that is not lies within `reach` of the place where they met,
+  they were the latter: both become axes of their own, which begin there. `joints` are those of the axes, `root` the one that stands
+  on the root. Returns how many axes there are more. O(axes log points + points).
 */
-inline std::size_t split_unreached(const std::vector<Joint>& joints, Index root, Axis_set& set)
+inline std::size_t split_unreached(const Scan& scan,
+                                   double reach,
+                                   const std::vector<Joint>& joints,
+                                   Index root,
+                                   Axis_set& set)
 {
   const std::size_t n = set.axes.size();
   std::vector<Index> other(n, none),
       meeting(n, 0); // the new axis of the second part, its first node
+  const auto is_reached = [&](Index a) { return a == root || joints[a].parent != none; };
   for (Index a = 0; a < n; ++a) {
     const std::size_t m = set.axes[a].meeting, size = set.axes[a].axis.size();
-    if (a == root || joints[a].parent != none || m < 2 || m + 2 > size)
+    if (is_reached(a) || m < 2 || m + 2 > size)
+      continue;
+    const auto near = scan.search->nearest_if(set.axes[a].axis[m].point, reach, [&](Index i) {
+      const Index b = set.axis_of_point[i];
+      return b != none && is_reached(b);
+    });
+    if (!(near.squared_distance < reach * reach))
       continue;
     Fitted_axis second = set.axes[a];
     Fitted_axis& first = set.axes[a];
