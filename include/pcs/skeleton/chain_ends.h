@@ -94,7 +94,7 @@ struct Filling
   Wood is hollow to a scanner: where a thick axis that was hollow gets points inside, it runs around a fork, and ends. One
   that never was hollow is an irregular stem, or seen badly, and stays; so does one that is hollow again farther on, with
   more points than before, because it only passed buttresses or a whorl. Wood does not widen: an axis that does so beyond
-such a place need not be as thick.
+  such a place need not be as thick.
 */
 inline void cut_filled(const Chain_view& view, Axis_fit& fit)
 {
