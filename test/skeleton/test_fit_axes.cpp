@@ -74,9 +74,114 @@ private:
   }
 };
 
+/// Tubes whose layers are known.
+class Layered_tubes
+{
+public:
+  /// Adds an arc of a tube from angle `a0` to `a1`, with its layers above `below`. Returns the last of those.
+  Index add(Index below, const Vec3& base, const Vec3& step, double r, double a0, double a1)
+  {
+    const double length = step.norm(), thickness = layer_thickness * spacing;
+    const Vec3 along = step / length, e1 = along.unitOrthogonal(), e2 = along.cross(e1);
+    for (int layer = 0; layer < int(length / thickness); ++layer) {
+      m_tree.parent.push_back(below);
+      below = static_cast<Index>(m_tree.parent.size() - 1);
+      for (double z = thickness * layer + spacing / 2; z < thickness * (layer + 1); z += spacing)
+        for (double a = a0; a < a1; a += spacing / r) {
+          const double rough =
+              r + m_noise * std::sin(37.0 * double(m_points.size())) * std::sqrt(2.0);
+          m_points.push_back(base + z * along + rough * (std::cos(a) * e1 + std::sin(a) * e2));
+          m_tree.node_of_point.push_back(below);
+        }
+    }
+    return below;
+  }
+  /// The scan of what was added, whose layers are then `tree`.
+  void finish(Scan& scan, Layer_tree& tree)
+  {
+    prepare_scan<CGAL::Sequential_tag>(m_points, Vec3::UnitZ(), scan);
+    tree = std::move(m_tree);
+    std::vector<Index> node(scan.size()); // the scan has its own order
+    for (std::size_t i = 0; i < m_points.size(); ++i)
+      node[scan.point_of_input[i]] = tree.node_of_point[i];
+    tree.node_of_point = std::move(node);
+    tree.next_in_ring.assign(tree.size(), none);
+    internal::collect_nodes<CGAL::Sequential_tag>(scan, tree);
+  }
+  /// Standard deviation of the distances from the axes of what is added from now on [L].
+  void set_noise(double noise) { m_noise = noise; }
+
+private:
+  std::vector<Vec3> m_points;
+  Layer_tree m_tree;
+  double m_noise = 0;
+};
+
+Axis_set axes_of(const Scan& scan, const Layer_tree& tree, const Axis_rules& rules = Axis_rules())
+{
+  return fit_axes<CGAL::Sequential_tag>(scan, tree, rules, [](double) { return true; });
+}
+
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(fit_axes_to_chains)
+
+// Paths run along two sides of a limb, each into a twig of its own; both chains are fitted without seeing each other.
+BOOST_AUTO_TEST_CASE(two_chains_of_one_wave_do_not_keep_the_same_wood)
+{
+  Layered_tubes tubes;
+  const Index foot = tubes.add(none, Vec3::Zero(), Vec3(0, 0, 1), radius, 0, 2 * pi);
+  tubes.add(foot, Vec3(0, 0, 1), Vec3(0, 0, 1), radius, 0, 2 * pi);
+  constexpr double limb = 0.4, twig = 0.5;
+  const Vec3 seat(1.1 * radius, 0, 1), fork(1.1 * radius + limb, 0, 1);
+  const Index left = tubes.add(foot, seat, Vec3(limb, 0, 0), 0.04, 0, pi);
+  const Index right = tubes.add(foot, seat, Vec3(limb, 0, 0), 0.04, pi, 2 * pi);
+  tubes.add(left, fork + Vec3(0, 0.03, 0), twig * Vec3(0.8, 0.6, 0), 0.02, 0, 2 * pi);
+  tubes.add(right, fork - Vec3(0, 0.03, 0), 0.95 * twig * Vec3(0.8, -0.6, 0), 0.02, 0, 2 * pi);
+  Scan scan;
+  Layer_tree tree;
+  tubes.finish(scan, tree);
+  const Axis_set set = axes_of(scan, tree);
+  double length = 0;
+  for (std::size_t a = 1; a < set.axes.size(); ++a)
+    length += length_of(set.axes[a].axis) * scan.frame.unit;
+  BOOST_TEST(set.axes.size() == 3u);
+  BOOST_TEST(std::abs(length - (limb + 1.95 * twig)) < 0.1);
+  Axis_rules keeping;
+  keeping.most_lost = 1;
+  double kept = 0;
+  const Axis_set doubled = axes_of(scan, tree, keeping);
+  for (std::size_t a = 1; a < doubled.axes.size(); ++a)
+    kept += length_of(doubled.axes[a].axis) * scan.frame.unit;
+  BOOST_TEST_MESSAGE("length " << length << " of " << limb + 1.95 * twig << ", kept " << kept);
+  BOOST_TEST(kept > length + 0.5 * limb);
+}
+
+// Before anything is known, noise is taken for 0.3 spacings.
+BOOST_AUTO_TEST_CASE(the_first_axis_is_fitted_with_the_noise_that_it_shows)
+{
+  constexpr double thin = 0.9 * spacing;
+  Layered_tubes tubes;
+  tubes.set_noise(0.05 * spacing);
+  tubes.add(none, Vec3::Zero(), Vec3(0, 0, 2), thin, 0, 1.2 * pi);
+  Scan scan;
+  Layer_tree tree;
+  tubes.finish(scan, tree);
+  const auto error = [&](double first_guess) {
+    Axis_rules rules;
+    rules.first_guess = first_guess;
+    const Axis_set set = axes_of(scan, tree, rules);
+    BOOST_REQUIRE(!set.axes.empty());
+    const Axis& axis = set.axes.front().axis;
+    double sum = 0;
+    for (const Axis_node& node : axis)
+      sum += std::abs(node.radius * scan.frame.unit / thin - 1);
+    BOOST_TEST_MESSAGE("noise " << set.noise / scan.spacing << " spacings, error "
+                                << sum / double(axis.size()));
+    return sum / double(axis.size());
+  };
+  BOOST_TEST(error(0.7) < 0.5 * error(0));
+}
 
 BOOST_AUTO_TEST_CASE(limbs_on_an_arc_of_a_trunk_are_no_second_trunk)
 {

@@ -12,6 +12,7 @@
 #include <pcs/skeleton/chain_start.h>
 #include <pcs/skeleton/chains.h>
 #include <pcs/skeleton/circle_fit.h>
+#include <pcs/skeleton/expect_sections.h>
 #include <pcs/skeleton/section_counts.h>
 #include <pcs/skeleton/section_sides.h>
 
@@ -77,10 +78,6 @@ public:
 private:
   void place_own_points(const Chain_start& start, Axis_fit& fit) const;
   void start_at_circles(Axis_fit& fit) const;
-  bool is_blurred(double radius) const;
-  double hidden_factor(const std::vector<double>& counted, const Axis& axis) const;
-  Radius_prior counted_prior(double counted, double found) const;
-  void set_priors(const std::vector<double>& visible, Axis_fit& fit) const;
   bool run(Axis_fit& fit, double widening) const;
   std::vector<Index> gather(Axis_fit& fit) const;
   Axis tail_with_piece(const Axis& axis, std::size_t first) const;
@@ -174,58 +171,6 @@ inline void Chain_fit::start_at_circles(Axis_fit& fit) const
   fit.project();
 }
 
-/// A radius by counting points. It is wrong by a factor, up or down, so that what is found tells by how much; but much fewer
-/// points than expected are no chance: an axis that runs between several twigs must not look certain of its radius.
-inline Radius_prior Chain_fit::counted_prior(double counted, double found) const
-{
-  const double most = m_rules.prior_ratio * counted;
-  const double size = found > most ? std::max(counted, most / found * most) : found;
-  return {counted, m_rules.prior_share * size + m_rules.prior_offset * m_scan.spacing, 0};
-}
-
-/// Whether noise hides the curvature of a section, so that its radius may be anything.
-inline bool Chain_fit::is_blurred(double radius) const
-{
-  return radius < m_rules.blurred * m_set.noise;
-}
-
-/// By how many times what hides an axis from the scanner lowers its counts, all along it, as its blurred sections tell; never
-/// less than 1. Few nodes are not believed.
-inline double Chain_fit::hidden_factor(const std::vector<double>& counted, const Axis& axis) const
-{
-  std::vector<double> ratios;
-  for (std::size_t k = 0; k < axis.size(); ++k)
-    if (counted[k] > 0 && is_blurred(axis[k].radius))
-      ratios.push_back(std::log(axis[k].radius / counted[k]));
-  if (ratios.empty())
-    return 1;
-  const double size = double(ratios.size());
-  const double level = median(ratios) * size / (size + m_rules.hidden_nodes);
-  return std::min(m_rules.most_hidden, std::max(1.0, std::exp(level)));
-}
-
-inline void Chain_fit::set_priors(const std::vector<double>& visible, Axis_fit& fit) const
-{
-  std::vector<Radius_prior> priors(fit.axis().size());
-  if (m_set.density > 0) {
-    const Section_counts counts = section_counts(m_view, fit, visible);
-    std::vector<double> counted(priors.size(), -1); // negative: hidden
-    for (std::size_t k = 0; k < priors.size(); ++k)
-      if (counts.visible_length[k] > m_rules.visible * counts.length[k])
-        counted[k] = counts.radius(k, m_set.density_at(fit.axis(), k));
-    const double factor = hidden_factor(counted, fit.axis());
-    for (std::size_t k = 0; k < priors.size(); ++k)
-      if (counted[k] >= 0) {
-        const double radius = fit.axis()[k].radius;
-        priors[k] = counted_prior((is_blurred(radius) ? factor : 1) * counted[k], radius);
-      }
-  }
-  const Section_sides sides(m_view, fit);
-  add_width_priors(m_view, fit.axis(), sides, priors);
-  fit.set_priors(std::move(priors));
-  fit.set_priors(center_priors(m_view, fit.axis(), sides));
-}
-
 inline bool Chain_fit::run(Axis_fit& fit, double widening) const
 {
   const std::vector<double> visible = visible_shares(m_view, fit);
@@ -244,7 +189,7 @@ inline bool Chain_fit::run(Axis_fit& fit, double widening) const
     if (is_full && left == 0)
       break;
     if (k % 2 == 0)
-      set_priors(visible, fit);
+      expect_sections(m_view, visible, fit);
     const double share = k < ramp ? double(ramp - 1 - k) / double(ramp) : 0;
     if (!fit.iterate(1 + (widening - 1) * share))
       return false;

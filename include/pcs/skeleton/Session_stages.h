@@ -406,15 +406,7 @@ protected: // benchmark/training looks at what leaves are told by
     r.number_of_nodes = m_tree.nodes.size();
     r.number_of_branches = m_tree.branches.size();
     r.number_of_unreached_branches = m_tree.number_of_unreached_axes;
-    for (std::size_t i = 0; i < m_scan.size(); ++i) {
-      if (!m_used.flags()[i])
-        continue;
-      const bool has_node = !m_tree.node_of_point.empty() && m_tree.node_of_point[i] != none;
-      const bool is_covered =
-          has_node || (!m_axes.axis_of_point.empty() && m_axes.is_covered(static_cast<Index>(i)));
-      r.number_of_unexplained_points += !is_covered;
-      r.number_of_unreached_points += is_covered && !has_node;
-    }
+    count_unexplained(m_used.flags(), m_axes, m_tree, r);
     m_successors = successors(m_tree);
     r.residual = unit * median_residual(m_scan, m_tree, m_successors);
     report_sizes(m_tree, unit, m_options.up, m_options.breast_height, r);

@@ -1,15 +1,18 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The sizes of a tree: height, diameter at breast height, length and volume by order and by size.
+// What the report says of a tree: height, diameter at breast height, length and volume by order and by size, and its points.
 
 #ifndef PCS_SKELETON_REPORT_SIZES_H
 #define PCS_SKELETON_REPORT_SIZES_H
 
 #include <pcs/core/Skeleton_report.h>
+#include <pcs/skeleton/Axis_set.h>
 #include <pcs/skeleton/Branch_tree.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 namespace pcs {
 namespace skeleton {
@@ -67,6 +70,23 @@ inline void report_sizes(const Branch_tree& tree,
   }
   if (r.diameter_at_breast_height == 0) // the trunk was lost below, among buttresses for example
     r.diameter_at_breast_height = thickest;
+}
+
+/// Counts the points that no axis explains, and those of axes that are not part of the tree. O(points).
+inline void count_unexplained(const std::vector<std::uint8_t>& is_used,
+                              const Axis_set& set,
+                              const Branch_tree& tree,
+                              Skeleton_report& r)
+{
+  for (std::size_t i = 0; i < is_used.size(); ++i) {
+    if (!is_used[i])
+      continue;
+    const bool has_node = !tree.node_of_point.empty() && tree.node_of_point[i] != none;
+    const bool is_covered =
+        has_node || (!set.axis_of_point.empty() && set.is_covered(static_cast<Index>(i)));
+    r.number_of_unexplained_points += !is_covered;
+    r.number_of_unreached_points += is_covered && !has_node;
+  }
 }
 
 } // namespace skeleton
