@@ -82,7 +82,8 @@ struct Skeleton_report
 
   double height =
       0; ///< from the root to the highest node or leaf that was found, along the up direction [L]
-  //! of the trunk; where it ends below, of the thickest branch there; 0: nothing is that high [L]
+  //! of the trunk, by a line through its radii from 1.1 to 1.5 m, say: bark and noise change single ones; where it ends below,
+  //! of the thickest branch there; 0: nothing is that high [L]
   double diameter_at_breast_height = 0;
   double breast_height = 0; ///< of that diameter, above the root [L]
   Wood total;
