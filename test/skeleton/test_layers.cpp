@@ -61,7 +61,12 @@ struct Linked_scan
     is_used.assign(scan.size(), 1);
     links = pcs::skeleton::neighbor_links<CGAL::Sequential_tag>(scan, is_used, {});
     parts = pcs::skeleton::connected_parts<CGAL::Sequential_tag>(is_used, links);
-    root = pcs::skeleton::find_root(scan, is_used, links, parts, Vec3::UnitZ(), {});
+    root = pcs::skeleton::find_root<CGAL::Sequential_tag>(scan,
+                                                          is_used,
+                                                          links,
+                                                          parts,
+                                                          Vec3::UnitZ(),
+                                                          {});
   }
   pcs::skeleton::Layer_tree layers() const
   {

@@ -83,6 +83,7 @@ public:
   {
     const Axis_segment& segment = m_segment_at(s);
     const double t = segment.share(m_p), d = segment.squared_distance(t, m_p);
+    m_last_share = t;
     if (!(d < m_squared_distance))
       return false;
     m_squared_distance = d;
@@ -91,7 +92,7 @@ public:
     return true;
   }
 
-  /// Goes on from `s` until some segments in a row are not nearer.
+  /// Goes on from `s` until some segments in a row are not nearer, or one that is not leads away from the point.
   template <bool IsForward>
   void walk(std::size_t s)
   {
@@ -99,6 +100,8 @@ public:
     for (int misses = 0; misses < most_misses && (IsForward ? s < m_last : s > 0);) {
       s = IsForward ? s + 1 : s - 1;
       misses = offer(s) ? 0 : misses + 1;
+      if (misses > 0 && (IsForward ? m_last_share < 0 : m_last_share > 1))
+        break;
     }
   }
 
@@ -117,6 +120,7 @@ private:
   const SegmentAt& m_segment_at;
   const Vec3& m_p;
   double m_squared_distance = std::numeric_limits<double>::infinity(), m_share = 0;
+  double m_last_share = 0; ///< of the segment that was offered last
 };
 
 } // namespace internal

@@ -10,6 +10,7 @@
 #include <pcs/skeleton/Scan.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -93,11 +94,13 @@ public:
     m_places.resize(m_points.size());
     m_stride = 1;
   }
-  /// Every so many points only take part in the next steps, with as much weight as all; 1 finds the places of all again.
+  /// Every so many points only take part in the next steps, with as much weight as all. Finds the places of those that did
+  /// not before.
   void use_every(std::size_t stride)
   {
+    const bool are_known = m_stride == 1 || stride == m_stride;
     m_stride = stride;
-    if (stride == 1)
+    if (!are_known)
       project();
   }
   std::size_t stride() const { return m_stride; }
@@ -141,6 +144,15 @@ private:
   static constexpr std::size_t bandwidth = 8;
   using Matrix = linear_algebra::Banded_cholesky<bandwidth>;
 
+  /// What the points of a segment add to the system of its two nodes.
+  struct Segment_sums
+  {
+    //! lower halves, by rows, of the blocks of the first node, of the second and the first, and of the second
+    std::array<std::array<double, 10>, 3> products;
+    std::array<std::array<double, 4>, 2> slope;
+    std::array<double, 2> weight;
+  };
+
   void assemble(double widening);
   void hold_along_axis();
   void add_points(double widening);
@@ -161,6 +173,7 @@ private:
   double m_largest_change = 0;
   Matrix m_matrix; // its factor after a step
   std::vector<double> m_gradient, m_step;
+  std::vector<Segment_sums> m_sums;
   std::vector<double> m_information; // of the points on each radius alone
 };
 
@@ -197,40 +210,67 @@ inline void Axis_fit::hold_along_axis()
 
 inline void Axis_fit::add_points(double widening)
 {
+  m_sums.assign(m_axis.size(), Segment_sums{});
+  const double narrowing = 1 / (tukey_constant * widening);
   for (std::size_t i = 0; i < m_points.size(); i += m_stride) {
     const Axis_place& place = m_places[i];
     if (place.share < 0 || place.share > 1)
       continue; // before the base or beyond the tip
-    const std::size_t s = place.segment;
     const double t = place.share;
     const double radius = radius_at(m_axis, place);
-    const double sigma = m_model.deviation(radius);
-    const double e = place.distance - radius, x = e / (tukey_constant * widening * sigma);
+    const double precision = 1 / m_model.deviation(radius);
+    const double e = place.distance - radius, x = narrowing * e * precision;
     if (x * x >= 1 || !(place.distance > 0))
       continue;
-    const double w = double(m_stride) * (1 - x * x) * (1 - x * x) / (sigma * sigma);
-    const Vec3 n = (m_points[i] - point_at(m_axis, place)) / place.distance;
-    // e(c, r) = |p - c| - r with c, r linear between the nodes, so its derivatives are -(1 - t) d and -t d
-    const double d[4] = {n.x(), n.y(), n.z(), 1};
+    const double weight = (1 - x * x) * precision, w = double(m_stride) * weight * weight;
+    const double inverse = 1 / place.distance;
+    const Vec3 n = inverse * (m_points[i] - point_at(m_axis, place));
     // Second order: the surface is curved, and a point outside holds the axis across n, too. Without this, steps of thin
     // axes swing between two sides of their points for ever.
-    const double hold = std::max(0.0, e / place.distance);
-    const double w00 = w * (1 - t) * (1 - t), w10 = w * t * (1 - t), w11 = w * t * t;
-    for (std::size_t a = 0; a < 4; ++a) {
-      m_gradient[4 * s + a] += w * (1 - t) * d[a] * e;
-      m_gradient[4 * s + 4 + a] += w * t * d[a] * e;
-      for (std::size_t b = 0; b < 4; ++b) {
-        const bool is_place = a < 3 && b < 3;
-        const double dd = (is_place ? 1 - hold : 1) * d[a] * d[b] + (is_place && a == b ? hold : 0);
-        m_matrix(4 * s + 4 + b, 4 * s + a) += w10 * dd;
-        if (b < a)
-          continue;
-        m_matrix(4 * s + b, 4 * s + a) += w00 * dd;
-        m_matrix(4 * s + 4 + b, 4 * s + 4 + a) += w11 * dd;
-      }
+    const double hold = std::max(0.0, e * inverse), pull = 1 - hold;
+    // e(c, r) = |p - c| - r with c, r linear between the nodes, so its derivatives are -(1 - t) d and -t d, d = (n, 1)
+    const double products[10] = {pull * n.x() * n.x() + hold,
+                                 pull * n.y() * n.x(),
+                                 pull * n.y() * n.y() + hold,
+                                 pull * n.z() * n.x(),
+                                 pull * n.z() * n.y(),
+                                 pull * n.z() * n.z() + hold,
+                                 n.x(),
+                                 n.y(),
+                                 n.z(),
+                                 1};
+    const double slope[4] = {n.x() * e, n.y() * e, n.z() * e, e};
+    const double w0 = w * (1 - t), w1 = w * t;
+    const double w00 = w0 * (1 - t), w10 = w0 * t, w11 = w1 * t;
+    Segment_sums& sums = m_sums[place.segment];
+    for (std::size_t k = 0; k < 10; ++k) {
+      sums.products[0][k] += w00 * products[k];
+      sums.products[1][k] += w10 * products[k];
+      sums.products[2][k] += w11 * products[k];
     }
-    m_information[s] += w * (1 - t);
-    m_information[s + 1] += w * t;
+    for (std::size_t k = 0; k < 4; ++k) {
+      sums.slope[0][k] += w0 * slope[k];
+      sums.slope[1][k] += w1 * slope[k];
+    }
+    sums.weight[0] += w0;
+    sums.weight[1] += w1;
+  }
+  for (std::size_t s = 0; s + 1 < m_axis.size(); ++s) {
+    const Segment_sums& sums = m_sums[s];
+    const std::size_t first = 4 * s, second = first + 4;
+    for (std::size_t a = 0, k = 0; a < 4; ++a) {
+      for (std::size_t b = 0; b <= a; ++b, ++k) {
+        m_matrix(first + a, first + b) += sums.products[0][k];
+        m_matrix(second + a, second + b) += sums.products[2][k];
+        m_matrix(second + a, first + b) += sums.products[1][k];
+        if (b < a)
+          m_matrix(second + b, first + a) += sums.products[1][k];
+      }
+      m_gradient[first + a] += sums.slope[0][a];
+      m_gradient[second + a] += sums.slope[1][a];
+    }
+    m_information[s] += sums.weight[0];
+    m_information[s + 1] += sums.weight[1];
   }
 }
 

@@ -6,6 +6,7 @@
 #define PCS_SKELETON_BEAM_GRID_H
 
 #include <pcs/skeleton/Scan.h>
+#include <pcs/skeleton/quick_angle.h>
 
 #include <Eigen/Core>
 
@@ -23,7 +24,7 @@ using Grid_place = Eigen::Vector2d;
 /// From the nearest whole number, in [-1/2, 1/2].
 inline double beyond_whole(double x)
 {
-  return x - std::nearbyint(x);
+  return x - quick_round(x);
 }
 
 /*!
@@ -41,8 +42,8 @@ struct Beam_grid
 
   Grid_place place_of_direction(const Vec3& q) const
   {
-    return Grid_place(rate[0] * std::atan2(q.y(), q.x()),
-                      rate[1] * std::atan2(q.z(), std::sqrt(q.x() * q.x() + q.y() * q.y()))) +
+    const double level = std::sqrt(q.x() * q.x() + q.y() * q.y());
+    return Grid_place(rate[0] * quick_angle(q.y(), q.x()), rate[1] * quick_angle(q.z(), level)) +
            phase;
   }
   Grid_place place(const Vec3& p) const { return place_of_direction(axes * (p - position)); }
@@ -51,11 +52,11 @@ struct Beam_grid
   double misfit(const Vec3& p, double most = 0.5) const
   {
     const Vec3 q = axes * (p - position);
-    const double column = std::abs(beyond_whole(rate[0] * std::atan2(q.y(), q.x()) + phase[0]));
+    const double column = std::abs(beyond_whole(rate[0] * quick_angle(q.y(), q.x()) + phase[0]));
     if (column > most) // most points of other stations
       return column;
     const double level = std::sqrt(q.x() * q.x() + q.y() * q.y());
-    const double row = std::abs(beyond_whole(rate[1] * std::atan2(q.z(), level) + phase[1]));
+    const double row = std::abs(beyond_whole(rate[1] * quick_angle(q.z(), level) + phase[1]));
     return std::max(column, row);
   }
 };

@@ -174,8 +174,11 @@ inline void Chain_fit::start_at_circles(Axis_fit& fit) const
 inline bool Chain_fit::run(Axis_fit& fit, double widening) const
 {
   const std::vector<double> visible = visible_shares(m_view, fit);
-  fit.use_every(
-      std::max<std::size_t>(1, fit.points().size() / (m_rules.enough * fit.axis().size())));
+  const auto use = [&](std::size_t points_per_node) {
+    fit.use_every(
+        std::max<std::size_t>(1, fit.points().size() / (points_per_node * fit.axis().size())));
+  };
+  use(m_rules.enough);
   const int ramp = widening > 1 ? m_rules.narrowing : 0, least = std::max(ramp, m_rules.fewest);
   const int full = ramp > 0 ? 0 : m_rules.full_iterations; // the first fits are not the last ones
   bool is_full = false;
@@ -184,7 +187,7 @@ inline bool Chain_fit::run(Axis_fit& fit, double widening) const
         (left == 0 || (k >= least && fit.largest_change() < m_rules.settled * m_set.noise))) {
       is_full = true;
       left = full;
-      fit.use_every(1);
+      use(m_rules.full_enough);
     }
     if (is_full && left == 0)
       break;
@@ -194,6 +197,7 @@ inline bool Chain_fit::run(Axis_fit& fit, double widening) const
     if (!fit.iterate(1 + (widening - 1) * share))
       return false;
   }
+  fit.use_every(1);
   return true;
 }
 

@@ -70,11 +70,12 @@ struct Chain_rules
   double extension_offset = 4;          ///< ... and spacings
   double extension_share = 0.3;         ///< share of the expected points that a prolongation needs
   std::size_t lowest_count = 2;         ///< points of an axis
-  int narrowing = 12;                   ///< iterations in which wide weights become narrow
+  int narrowing = 5;                    ///< iterations in which wide weights become narrow
   int fewest = 3, most_iterations = 40; ///< of a fit, ...
   double settled = 0.3;    ///< ... which ends when nothing moves by more than this much noise [-]
-  int full_iterations = 2; ///< the last of them, to all points, unless weights were wide
-  std::size_t enough = 16; ///< points per node that the others use [count]
+  int full_iterations = 2; ///< the last of them, to many points, unless weights were wide
+  std::size_t enough = 16,
+              full_enough = 256; ///< points per node that the others and those use [count]
 };
 
 /// An axis that is not yet accepted.

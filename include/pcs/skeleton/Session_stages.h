@@ -288,7 +288,12 @@ protected: // benchmark/training looks at what leaves are told by
   std::vector<Index> points_of_root(const Links& links, const Point_parts& parts) const
   {
     if (!m_options.root)
-      return find_root(m_scan, m_used.flags(), links, parts, m_options.up, m_options.roots);
+      return find_root<ConcurrencyTag>(m_scan,
+                                       m_used.flags(),
+                                       links,
+                                       parts,
+                                       m_options.up,
+                                       m_options.roots);
     return {m_scan.search
                 ->nearest_if(m_scan.frame.to_local(*m_options.root),
                              std::numeric_limits<double>::max(),
@@ -301,11 +306,16 @@ protected: // benchmark/training looks at what leaves are told by
   {
     linked.graph.reset(); // large
     const Point_parts parts = connected_parts<ConcurrencyTag>(m_used.flags(), links);
-    if (!is_root_known)
-      m_root = points_of_root(links, parts);
-    linked.gaps = links_across_gaps(m_scan, m_used.flags(), m_options.axes.links, parts);
-    // made where it stays: such graphs are copied, not moved
-    linked.graph.reset(new Neighbor_graph(graph_of(m_scan.size(), links, linked.gaps)));
+    pcs::internal::invoke_both<ConcurrencyTag>(
+        [&] {
+          if (!is_root_known)
+            m_root = points_of_root(links, parts);
+        },
+        [&] {
+          linked.gaps = links_across_gaps(m_scan, m_used.flags(), m_options.axes.links, parts);
+          // made where it stays: such graphs are copied, not moved
+          linked.graph.reset(new Neighbor_graph(graph_of(m_scan.size(), links, linked.gaps)));
+        });
   }
 
   /// Paths from the root, and their layers. Appends those that close gaps to `links`.

@@ -163,6 +163,7 @@ inline Index busiest_stem(const Scan& scan,
 }
 
 /// Looks for the stem at the lower end of the large connected parts.
+template <class ConcurrencyTag>
 class Stem_search
 {
 public:
@@ -225,7 +226,7 @@ private:
       is_low[i] =
           part != none && m_low_of[part] <= floating && m_height[i] <= m_low_of[part] + slab;
     }
-    const Point_parts low_parts = connected_parts<CGAL::Sequential_tag>(is_low, m_links);
+    const Point_parts low_parts = connected_parts<ConcurrencyTag>(is_low, m_links);
     Index first = none;
     double best = -1;
     for (Index s = 0; s < n; ++s)
@@ -270,14 +271,15 @@ private:
   first. Of a stem that lies on its side, or of a flat cloud, one end. `links` are those between neighbours, without closed
   gaps, `parts` what hangs together by them. Never empty if a point is used.
 */
-inline std::vector<Index> find_root(const Scan& scan,
-                                    const std::vector<std::uint8_t>& is_used,
-                                    const Links& links,
-                                    const Point_parts& parts,
-                                    const Vec3& up,
-                                    const Root_rules& rules)
+template <class ConcurrencyTag>
+std::vector<Index> find_root(const Scan& scan,
+                             const std::vector<std::uint8_t>& is_used,
+                             const Links& links,
+                             const Point_parts& parts,
+                             const Vec3& up,
+                             const Root_rules& rules)
 {
-  const internal::Stem_search search(scan, is_used, links, parts, up, rules);
+  const internal::Stem_search<ConcurrencyTag> search(scan, is_used, links, parts, up, rules);
   internal::Stem stem = search();
   // all around a thick stem, or the layers above would be tilted; of a lying one the end
   const double spread = stem.is_lying ? stem.shape.width : stem.spread();

@@ -165,6 +165,25 @@ private:
               const Axis_place& place,
               double reach,
               double limit) const;
+  /// No place on a segment costs less: what is far away, or has another direction, costs something in any case.
+  double least_cost(const internal::Axis_end& end, const Axis& axis, Index segment) const
+  {
+    const Axis_node &a = axis[segment], &b = axis[segment + 1];
+    const double length = (b.point - a.point).norm();
+    const double distance =
+        std::max(0.0, 0.5 * ((a.point - end.point).norm() + (b.point - end.point).norm() - length));
+    const double gap = std::max(0.0, distance - std::max(a.radius, b.radius));
+    return gap_cost(gap) + m_rules.tie * distance / m_spacing +
+           angle_cost(end, internal::tangent(axis, segment));
+  }
+  double gap_cost(double gap) const
+  {
+    return m_rules.gap * gap / m_spacing * std::max(1.0, gap / (m_rules.steep_gap * m_spacing));
+  }
+  double angle_cost(const internal::Axis_end& end, const Vec3& tangent) const
+  {
+    return m_rules.angle * (1 - std::max(tangent.dot(end.inward), m_rules.lowest_cosine));
+  }
   double radius_ratio(double r, double to) const
   {
     const double thinnest = m_rules.thinnest * m_spacing;
@@ -195,11 +214,10 @@ inline double Axis_joiner::cost(const internal::Axis_end& end,
   const double back = -v.dot(end.inward); // > 0: the parent lies behind the base
   const double lateral = (v + back * end.inward).norm();
   const double missed = std::max(0.0, lateral - m_rules.lateral_tolerance * radius);
-  const double cosine = internal::tangent(axis, place.segment).dot(end.inward);
-  double sum = m_rules.gap * gap / u * std::max(1.0, gap / (m_rules.steep_gap * u));
+  double sum = gap_cost(gap);
   sum += m_rules.overlap * std::max(0.0, -back - radius) / u;
   sum += m_rules.tie * (lateral + distance) / u;
-  sum += m_rules.angle * (1 - std::max(cosine, m_rules.lowest_cosine));
+  sum += angle_cost(end, internal::tangent(axis, place.segment));
   if (!(sum < limit)) // logarithms take most of the time
     return std::numeric_limits<double>::infinity();
   const double share = radius_ratio(end.radius, radius) / m_rules.free_share;
@@ -217,30 +235,44 @@ inline Joint Axis_joiner::best_place(const internal::Axis_end& end,
   const Axis& axis = m_set.axes[b].axis;
   Joint best;
   best.parent = b;
-  Index previous = none;
-  for (const Index node : nodes)
-    for (const Index s : {node > 0 ? node - 1 : node, node}) {
-      if (s + 1 >= axis.size() || s == previous)
-        continue;
-      previous = s;
-      for (int k = 0; k <= parts; ++k) {
-        Axis_place place;
-        place.segment = s;
-        place.share = double(k) / parts;
-        const double c = cost(end, b, place, reach, best.cost);
-        if (c < best.cost) {
-          best.cost = c;
-          best.place = place;
-        }
+  const auto try_segment = [&](Index s) {
+    if (!(least_cost(end, axis, s) < best.cost))
+      return;
+    for (int k = 0; k <= parts; ++k) {
+      Axis_place place;
+      place.segment = s;
+      place.share = double(k) / parts;
+      const double c = cost(end, b, place, reach, best.cost);
+      if (c < best.cost) {
+        best.cost = c;
+        best.place = place;
       }
     }
+  };
+  const auto try_node = [&](Index node, Index& previous) {
+    for (const Index s : {node > 0 ? node - 1 : node, node})
+      if (s + 1 < axis.size() && s != previous) {
+        previous = s;
+        try_segment(s);
+      }
+  };
+  // what is near leaves little to try of the others
+  const Index nearest = *std::min_element(nodes.begin(), nodes.end(), [&](Index x, Index y) {
+    return (axis[x].point - end.point).squaredNorm() < (axis[y].point - end.point).squaredNorm();
+  });
+  Index previous = none;
+  try_node(nearest, previous);
+  previous = none;
+  for (const Index node : nodes)
+    if (node != nearest)
+      try_node(node, previous);
   return best;
 }
 
 inline std::vector<Axis_joiner::Node> Axis_joiner::nodes_near(const Vec3& place, double reach) const
 {
   const double slack = 8 * m_spacing; // the nearest place lies between nodes
-  std::vector<Node> near;
+  std::vector<std::uint64_t> keys;    // of nodes, which are sorted faster
   std::vector<Index> found;
   for (const Level& level : m_levels) {
     found.clear();
@@ -249,10 +281,14 @@ inline std::vector<Axis_joiner::Node> Axis_joiner::nodes_near(const Vec3& place,
       const auto [axis, number] = level.nodes[i];
       const double gap = (level.points[i] - place).norm() - m_set.axes[axis].axis[number].radius;
       if (gap < reach + slack)
-        near.push_back(level.nodes[i]);
+        keys.push_back(std::uint64_t(axis) << 32 | number);
     }
   }
-  std::sort(near.begin(), near.end());
+  std::sort(keys.begin(), keys.end());
+  std::vector<Node> near;
+  near.reserve(keys.size());
+  for (const std::uint64_t key : keys)
+    near.emplace_back(static_cast<Index>(key >> 32), static_cast<Index>(key & 0xffffffff));
   return near;
 }
 

@@ -12,6 +12,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -35,9 +36,6 @@ struct Section_sides
   {
     const Axis& axis = fit.axis();
     const std::size_t n = axis.size();
-    std::vector<double> own(n, 0);
-    std::vector<Vec3> offsets(n, Vec3::Zero()), normals(n, Vec3::Zero());
-    std::vector<Eigen::Matrix3d> moments(n, Eigen::Matrix3d::Zero());
     // moments cost most, so only windows with an axis that `add_width_priors()` asks about have them
     std::vector<char> is_thin(n, false);
     for (std::size_t k = 0; k < n; ++k)
@@ -45,35 +43,30 @@ struct Section_sides
         std::fill(is_thin.begin() + std::ptrdiff_t(k >= 2 ? k - 2 : 0),
                   is_thin.begin() + std::ptrdiff_t(std::min(n, k + 3)),
                   true);
+    std::vector<Sums> own(n, Sums{});
     for (std::size_t i = 0; i < fit.places().size(); i += fit.stride()) {
       const Axis_place& p = fit.places()[i];
       const double r = radius_at(axis, p);
       const double limit = tukey_constant * std::max(view.set.noise, 0.04 * r);
       if (p.share < 0 || p.share > 1 || std::abs(p.distance - r) > limit || !(p.distance > 0))
         continue;
-      const Vec3 d = fit.points()[i] - point_at(axis, p);
-      const std::size_t nodes[2] = {p.segment, std::size_t(p.segment) + 1};
-      const double shares[2] = {1 - p.share, p.share};
-      for (std::size_t m = 0; m < 2; ++m) {
-        own[nodes[m]] += shares[m];
-        offsets[nodes[m]] += shares[m] * d;
-        normals[nodes[m]] += shares[m] / p.distance * d;
-        if (is_thin[nodes[m]])
-          moments[nodes[m]] += shares[m] * d * d.transpose();
-      }
+      const Vec3 d = fit.points()[i] - point_at(axis, p), outward = d / p.distance;
+      own[p.segment].add(1 - p.share, d, outward, is_thin[p.segment]);
+      own[p.segment + 1].add(p.share, d, outward, is_thin[p.segment + 1]);
     }
     for (std::size_t k = 0; k < n; ++k) {
-      for (std::size_t i = k >= 2 ? k - 2 : 0; i < std::min(n, k + 3); ++i) {
-        count[k] += own[i];
-        offset[k] += offsets[i];
-        normal[k] += normals[i];
-        moment[k] += moments[i];
-      }
-      if (count[k] > 0) {
-        offset[k] /= count[k];
-        normal[k] /= count[k];
-        moment[k] /= count[k];
-      }
+      Sums sums{};
+      for (std::size_t i = k >= 2 ? k - 2 : 0; i < std::min(n, k + 3); ++i)
+        for (std::size_t m = 0; m < sums.values.size(); ++m)
+          sums.values[m] += own[i].values[m];
+      const std::array<double, 13>& v = sums.values;
+      if (!(v[0] > 0))
+        continue;
+      count[k] = v[0];
+      offset[k] = Vec3(v[1], v[2], v[3]) / v[0];
+      normal[k] = Vec3(v[4], v[5], v[6]) / v[0];
+      moment[k] << v[7], v[8], v[9], v[8], v[10], v[11], v[9], v[11], v[12];
+      moment[k] /= v[0];
     }
   }
 
@@ -85,6 +78,30 @@ struct Section_sides
     const double mean = offset[k].dot(across);
     return std::sqrt(std::max(0.0, across.dot(moment[k] * across) - mean * mean));
   }
+
+private:
+  /// Of weights, offsets, normals, and products of the offsets, the upper half.
+  struct Sums
+  {
+    std::array<double, 13> values;
+
+    void add(double w, const Vec3& d, const Vec3& n, bool has_products)
+    {
+      const double first[7] = {1, d.x(), d.y(), d.z(), n.x(), n.y(), n.z()};
+      for (std::size_t m = 0; m < 7; ++m)
+        values[m] += w * first[m];
+      if (!has_products)
+        return;
+      const double products[6] = {d.x() * d.x(),
+                                  d.x() * d.y(),
+                                  d.x() * d.z(),
+                                  d.y() * d.y(),
+                                  d.y() * d.z(),
+                                  d.z() * d.z()};
+      for (std::size_t m = 0; m < 6; ++m)
+        values[7 + m] += w * products[m];
+    }
+  };
 };
 
 /*!

@@ -47,7 +47,7 @@ void write_ready_made(const Branch_tree& found, const Scan_frame& frame, Graph& 
     if (from.parent != none)
       add_edge(from.parent, v, result);
   }
-  Tree_bundle& bundle = result[boost::graph_bundle];
+  Tree_bundle bundle;
   bundle.root = 0;
   for (std::size_t b = 0; b < found.branches.size(); ++b) {
     Tree_branch branch;
@@ -57,7 +57,8 @@ void write_ready_made(const Branch_tree& found, const Scan_frame& frame, Graph& 
     branch.id = b;
     bundle.branches.push_back(branch);
   }
-  tree = result; // swap() of Boost 1.74 forgets the bundle
+  tree.swap(result);
+  tree[boost::graph_bundle] = bundle; // swap() of Boost 1.74 forgets it
 }
 
 namespace internal {
