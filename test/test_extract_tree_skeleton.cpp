@@ -342,14 +342,16 @@ BOOST_AUTO_TEST_CASE(a_scan_without_noise_has_right_radii)
 
 BOOST_AUTO_TEST_CASE(what_strays_from_wood_is_no_branch_and_no_leaf)
 {
-  const Small_scan& s = small_scan();
   double away = 0, away_with_stray = 0, length = 0, length_with_stray = 0;
-  for (const unsigned seed : {8u, 9u, 10u, 11u, 12u}) {
+  // of one tree it may be more, by chance
+  for (const unsigned seed : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u}) {
+    Tree truth;
+    pcs::grow_tree(truth, pcs::fruit_habit(), pcs::parameters::random_seed(seed));
     pcs::Virtual_scanner scanner;
     scanner.angular_step = 0.2 * CGAL_PI / 180;
     scanner.range_noise = 0.004;
     pcs::Virtual_scan<Kernel> scan;
-    pcs::scan_tree(s.truth, scan, scanner, pcs::parameters::random_seed(seed));
+    pcs::scan_tree(truth, scan, scanner, pcs::parameters::random_seed(seed));
     std::map<Point, bool> leaf;
     std::map<Point, std::size_t> branch;
     Tree tree, with_stray;
@@ -362,8 +364,11 @@ BOOST_AUTO_TEST_CASE(what_strays_from_wood_is_no_branch_and_no_leaf)
                                                  with_stray,
                                                  pcs::parameters::do_remove_leaves(false));
     check_is_a_tree(tree);
-    away += astray(tree, s.truth);
-    away_with_stray += astray(with_stray, s.truth);
+    const double left = astray(tree, truth), all = astray(with_stray, truth);
+    BOOST_TEST_MESSAGE("seed " << seed << ": " << left << " of " << length_of(tree) << ", with all "
+                               << all << " of " << length_of(with_stray));
+    away += left;
+    away_with_stray += all;
     BOOST_CHECK_CLOSE(found.height, kept.height, 2.0);
     length += length_of(tree);
     length_with_stray += length_of(with_stray);
@@ -381,7 +386,7 @@ BOOST_AUTO_TEST_CASE(what_strays_from_wood_is_no_branch_and_no_leaf)
   }
   BOOST_TEST_MESSAGE("astray " << away << " of " << length << ", with all " << away_with_stray
                                << " of " << length_with_stray);
-  BOOST_CHECK_LT(away, 0.95 * away_with_stray);
+  BOOST_CHECK_LT(away, 0.9 * away_with_stray);
   BOOST_CHECK_GT(length, 0.9 * length_with_stray);
 }
 
