@@ -7,6 +7,7 @@
 #include <pcs/skeleton/find_beam_grids.h>
 #include <pcs/skeleton/frame_of_scan.h>
 #include <pcs/skeleton/prepare_scan.h>
+#include <pcs/skeleton/quick_angle.h>
 #include <support/tree_clouds.h>
 
 #include <CGAL/number_utils.h>
@@ -86,6 +87,21 @@ constexpr double degree = CGAL_PI / 180;
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(beam_grids_of_scans)
+
+BOOST_AUTO_TEST_CASE(quick_angles_are_those_of_the_c_library)
+{
+  double worst = 0;
+  for (const double size : {1e-200, 1e-3, 1.0, 1e200})
+    for (int k = -2000; k <= 2000; ++k) {
+      const double angle = 3.14159265358979323846 * k / 2000;
+      const double y = size * std::sin(angle), x = size * std::cos(angle);
+      worst = std::max(worst, std::abs(pcs::skeleton::quick_angle(y, x) - std::atan2(y, x)));
+    }
+  BOOST_TEST(worst < 1e-11);
+  BOOST_TEST(pcs::skeleton::quick_angle(0, 0) == 0);
+  for (const double x : {0.0, 0.5, 1.5, -0.5, -2.5, 3.49, -7.51, 1e9 + 0.25, -1e12 - 0.75})
+    BOOST_TEST(pcs::skeleton::quick_round(x) == std::nearbyint(x));
+}
 
 BOOST_AUTO_TEST_CASE(stations_are_found_where_they_stood)
 {
