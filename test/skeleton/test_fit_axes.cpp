@@ -24,6 +24,18 @@ namespace {
 constexpr double pi = 3.14159265358979323846, spacing = 0.01, radius = 0.1;
 constexpr Index number_of_layers = 60, layers_between_limbs = 12;
 
+/// The scan of points whose nodes `tree` tells in their order; it has all the rest then.
+void scan_of(const std::vector<Vec3>& points, Scan& scan, Layer_tree& tree)
+{
+  prepare_scan<CGAL::Sequential_tag>(points, Vec3::UnitZ(), scan);
+  std::vector<Index> node(scan.size()); // the scan has its own order
+  for (std::size_t i = 0; i < points.size(); ++i)
+    node[scan.point_of_input[i]] = tree.node_of_point[i];
+  tree.node_of_point = std::move(node);
+  tree.next_in_ring.assign(tree.size(), none);
+  internal::collect_nodes<CGAL::Sequential_tag>(scan, tree);
+}
+
 /// A trunk in layers of two arcs each, as paths on both sides of it give them, with limbs that leave the smaller arc.
 struct Two_arcs
 {
@@ -45,13 +57,7 @@ struct Two_arcs
       if (layer % layers_between_limbs == layers_between_limbs - 1)
         add_limb(points, thickness * (layer + 0.5), (layer / layers_between_limbs) % 2 ? 4.6 : 5.8);
     }
-    prepare_scan<CGAL::Sequential_tag>(points, Vec3::UnitZ(), scan);
-    std::vector<Index> node(scan.size()); // the scan has its own order
-    for (std::size_t i = 0; i < points.size(); ++i)
-      node[scan.point_of_input[i]] = tree.node_of_point[i];
-    tree.node_of_point = std::move(node);
-    tree.next_in_ring.assign(tree.size(), none);
-    internal::collect_nodes<CGAL::Sequential_tag>(scan, tree);
+    scan_of(points, scan, tree);
   }
 
 private:
@@ -99,14 +105,8 @@ public:
   /// The scan of what was added, whose layers are then `tree`.
   void finish(Scan& scan, Layer_tree& tree)
   {
-    prepare_scan<CGAL::Sequential_tag>(m_points, Vec3::UnitZ(), scan);
     tree = std::move(m_tree);
-    std::vector<Index> node(scan.size()); // the scan has its own order
-    for (std::size_t i = 0; i < m_points.size(); ++i)
-      node[scan.point_of_input[i]] = tree.node_of_point[i];
-    tree.node_of_point = std::move(node);
-    tree.next_in_ring.assign(tree.size(), none);
-    internal::collect_nodes<CGAL::Sequential_tag>(scan, tree);
+    scan_of(m_points, scan, tree);
   }
   /// Standard deviation of the distances from the axes of what is added from now on [L].
   void set_noise(double noise) { m_noise = noise; }
