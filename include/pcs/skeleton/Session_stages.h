@@ -287,15 +287,11 @@ protected: // benchmark/training looks at what leaves are told by
   /// The points that the tree stands on.
   std::vector<Index> points_of_root(const Links& links, const Point_parts& parts) const
   {
-    if (!m_options.root)
-      return find_root<ConcurrencyTag>(m_scan,
-                                       m_used.flags(),
-                                       links,
-                                       parts,
-                                       m_options.up,
-                                       m_options.roots);
+    const Session_options& o = m_options;
+    if (!o.root)
+      return find_root<ConcurrencyTag>(m_scan, m_used.flags(), links, parts, o.up, o.roots);
     return {m_scan.search
-                ->nearest_if(m_scan.frame.to_local(*m_options.root),
+                ->nearest_if(m_scan.frame.to_local(*o.root),
                              std::numeric_limits<double>::max(),
                              [&](Index i) { return m_used.flags()[i] != 0; })
                 .index};
