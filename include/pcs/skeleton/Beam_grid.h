@@ -24,7 +24,7 @@ using Grid_place = Eigen::Vector2d;
 /// From the nearest whole number, in [-1/2, 1/2].
 inline double beyond_whole(double x)
 {
-  return x - quick_round(x);
+  return x - std::nearbyint(x);
 }
 
 /*!

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Angles of many vectors, a third of the time of the C library's.
+// Angles of many vectors, faster than by the C library.
 
 #ifndef PCS_SKELETON_QUICK_ANGLE_H
 #define PCS_SKELETON_QUICK_ANGLE_H
@@ -31,13 +31,6 @@ inline double quick_angle(double y, double x)
   const double quadrant = b > a ? 2 * quarter - octant : octant;
   const double half = x < 0 ? 4 * quarter - quadrant : quadrant;
   return y < 0 ? -half : half;
-}
-
-/// The nearest whole number, for less than 2^51 in size; of two, the even one. A call to the C library less.
-inline double quick_round(double x)
-{
-  constexpr double shift = 6755399441055744.0; // 1.5 * 2^52: what is added to it has no fraction
-  return (x + shift) - shift;
 }
 
 } // namespace skeleton
