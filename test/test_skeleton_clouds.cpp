@@ -691,12 +691,12 @@ BOOST_AUTO_TEST_CASE(thick_stems_are_no_walls)
       }
 }
 
-// Where chance puts a ring of leaves that looks hollow, one in five is.
+// Where chance puts a ring of leaves that looks hollow, one in five is: of 100 other seeds 17.
 BOOST_AUTO_TEST_CASE(a_bush_of_leaves_is_mostly_not_wood)
 {
   constexpr double radius = 0.06, height = 4, crown = 0.9;
   int bounded = 0;
-  for (unsigned seed = 11; seed < 21; ++seed) {
+  for (unsigned seed = 11; seed < 31; ++seed) {
     Cloud points = Jitter(0.003)(cylinder(4000, radius, height));
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> share(-crown, crown);
@@ -714,7 +714,7 @@ BOOST_AUTO_TEST_CASE(a_bush_of_leaves_is_mostly_not_wood)
       is_bounded = is_bounded && tree[v].radius < 1.6 * radius;
     bounded += is_bounded ? 1 : 0;
   }
-  BOOST_CHECK_GE(bounded, 7);
+  BOOST_CHECK_GE(bounded, 13);
 }
 
 BOOST_AUTO_TEST_CASE(leaves_may_be_named)

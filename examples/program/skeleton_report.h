@@ -78,6 +78,7 @@ inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skele
   for (const std::string& sentence : pcs::warnings(r))
     json["warnings"].push_back(in_options(sentence));
   json["height"] = r.height;
+  json["reach"] = r.reach;
   json["breast_height"] = r.breast_height;
   json["diameter_at_breast_height"] = nullptr;
   if (r.diameter_at_breast_height > 0) // else nothing is that high

@@ -116,6 +116,62 @@ BOOST_AUTO_TEST_CASE(an_axis_between_twigs_is_not_sure_of_its_radius)
   }
 }
 
+// Line from the radius of the lower third to half of it, for what is thicker; the more points, the less it says.
+BOOST_AUTO_TEST_CASE(axes_are_expected_to_taper_until_points_can_be_counted)
+{
+  for (const double share : {0.005, 1.0}) {
+    Cylinder cylinder(thick, share);
+    cylinder.set.density = 0;
+    Axis& axis = cylinder.fit.axis();
+    for (std::size_t k = 20; k < 30; ++k)
+      axis[k].radius = 0.1 * thick; // thinner than the line: nothing is known
+    const std::vector<double> visible(axis.size(), 1);
+    for (const double whole :
+         {length, 2 * length}) { // all that the paths follow, or its lower half
+      const std::vector<Radius_prior> priors =
+          taper_priors(cylinder.view(), visible, cylinder.fit, whole);
+      for (std::size_t k = 0; k < axis.size(); ++k) {
+        const double place = double(k) / double(number_of_nodes - 1) * length / whole;
+        if (place <= 1.0 / 3 || (k >= 20 && k < 30)) {
+          BOOST_TEST(priors[k].deviation == 0);
+          continue;
+        }
+        BOOST_TEST(std::abs(priors[k].radius - thick * (1 - 0.5 * place)) < 1e-9);
+        const double few = 0.25 * thick;
+        if (share < 1)
+          BOOST_TEST(std::abs(priors[k].deviation - few) < 1e-9);
+        else if (k > 32 && k < 38)
+          BOOST_TEST(priors[k].deviation > 20 * few);
+      }
+    }
+  }
+  Cylinder cylinder(4.1 * spacing, 0.005);
+  cylinder.set.density = 0;
+  const std::vector<double> visible(number_of_nodes, 1);
+  for (const Radius_prior& p : taper_priors(cylinder.view(), visible, cylinder.fit, length))
+    BOOST_TEST(p.deviation == 0); // it is thick
+}
+
+BOOST_AUTO_TEST_CASE(sections_are_drawn_to_a_taper_by_a_length_and_without_a_density_only)
+{
+  for (const bool has_length : {true, false})
+    for (const double density : {0.0, 1e5}) {
+      Cylinder cylinder(thick, 0.02);
+      cylinder.set.density = density;
+      const std::vector<double> visible(number_of_nodes, 1);
+      expect_sections(cylinder.view(), visible, has_length ? length : 0, cylinder.fit);
+      const double before = cylinder.fit.axis()[38].radius;
+      BOOST_REQUIRE(cylinder.fit.iterate(1));
+      const double change = cylinder.fit.axis()[38].radius - before;
+      if (density > 0)
+        BOOST_TEST(change < -0.03 * thick); // counts are low
+      else if (has_length)
+        BOOST_TEST(change < -0.001 * thick);
+      else
+        BOOST_TEST(change > -0.001 * thick);
+    }
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 } // namespace test_expect_sections

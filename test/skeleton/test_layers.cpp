@@ -100,17 +100,39 @@ BOOST_AUTO_TEST_CASE(the_root_is_what_most_points_stand_on)
 
 BOOST_AUTO_TEST_CASE(a_twig_that_hangs_below_the_foot_is_no_root)
 {
+  for (const double depth : {0.3, 0.7}) { // below the foot
+    std::mt19937 random(4);
+    std::vector<Vec3> points;
+    add_stem(Vec3(0, 0, 0), 0.1, 4, 0.015, random, points);
+    for (int k = 0; k < 200; ++k) // a branch to one side at the top of the stem
+      points.push_back(Vec3(0.1 + 0.005 * k, 0, 3.95));
+    for (int k = 0; k < 800; ++k) // and a twig that hangs down from it
+      points.push_back(Vec3(1.1, 0.0002 * (k % 20), 3.95 - (3.95 + depth) / 800 * k));
+    const Linked_scan s(points);
+    BOOST_TEST(s.root.size() > 20u);
+    BOOST_TEST(std::all_of(s.root.begin(), s.root.end(), [&](Index i) {
+      return std::hypot(s.place(i).x(), s.place(i).y()) < 0.12 && s.place(i).z() < 0.1;
+    }));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(low_branches_of_a_thin_stem_are_no_root)
+{
   std::mt19937 random(4);
   std::vector<Vec3> points;
-  add_stem(Vec3(0, 0, 0), 0.1, 4, 0.015, random, points);
-  for (int k = 0; k < 200; ++k) // a branch to one side at the top of the stem
-    points.push_back(Vec3(0.1 + 0.005 * k, 0, 3.95));
-  for (int k = 0; k < 800; ++k) // and a twig that hangs down from it, to 30 cm below the foot
-    points.push_back(Vec3(1.1, 0.0002 * (k % 20), 3.95 - 0.0053125 * k));
+  for (int k = 0; k < 800; ++k) // the stem
+    points.push_back(Vec3(0, 0.0002 * (k % 20), 0.005 * k));
+  for (int k = 0; k < 700;
+       ++k) // a branch with most of the wood, which comes down from the tip, ...
+    points.push_back(Vec3(0.9 / 700 * k, 0.0002 * (k % 20), 4 - 0.005 * k));
+  add_stem(Vec3(0.2, 0, 2.9), 0.05, 0.6, 0.01, random, points);
+  for (int k = 0; k < 4; ++k) // ... to a broom that is as wide as a trunk
+    add_stem(Vec3(0.9 + 0.05 * k, 0, 0.5), 0.004, 0.3, 0.005, random, points);
+  for (int k = 0; k < 60; ++k)
+    points.push_back(Vec3(0.9 + 0.0025 * k, 0, 0.5));
   const Linked_scan s(points);
-  BOOST_TEST(s.root.size() > 20u);
   BOOST_TEST(std::all_of(s.root.begin(), s.root.end(), [&](Index i) {
-    return std::hypot(s.place(i).x(), s.place(i).y()) < 0.12 && s.place(i).z() < 0.1;
+    return std::hypot(s.place(i).x(), s.place(i).y()) < 0.02 && s.place(i).z() < 0.1;
   }));
 }
 

@@ -82,6 +82,48 @@ BOOST_AUTO_TEST_CASE(branches_of_the_trunk_do_not_count)
   BOOST_TEST(diameter_of(trunk_to(Vec3(0, 0, 1), 10, 0.1, 0.1)) == 0);
 }
 
+BOOST_AUTO_TEST_CASE(reach_is_the_way_to_the_farthest_node)
+{
+  for (const Vec3& tip : {Vec3(0, 0, 4), Vec3(3, 0, 0), Vec3(0, 2, -1)}) {
+    pcs::Skeleton_report report;
+    report_sizes(trunk_to(tip, 7, 0.1, 0.1), 10, Vec3::UnitZ(), 1.3, report);
+    BOOST_TEST(std::abs(report.reach - 10 * tip.norm()) < 1e-9);
+  }
+}
+
+// A trunk that winds over a ball is long for its diameter, and so is what fills the ball.
+BOOST_AUTO_TEST_CASE(wood_that_fills_the_space_is_doubted_and_no_tree)
+{
+  pcs::Skeleton_report report;
+  report.status = pcs::Status::converged;
+  report.noise = report.residual = 0.001;
+  report.spacing = 0.01;
+  report.height = report.reach = 2;
+  report.by_order.resize(1);
+  report.by_order[0].length = 13;
+  report.by_order[0].volume = report.total.volume = 0.35; // a diameter of 0.19
+  BOOST_TEST(pcs::warnings(report).size() == 1u);
+  report.height = report.reach = report.by_order[0].length = 13;
+  BOOST_TEST(pcs::warnings(report).empty());
+  report.height = 1; // it lies on the ground
+  BOOST_TEST(pcs::warnings(report).empty());
+}
+
+BOOST_AUTO_TEST_CASE(points_as_far_apart_as_the_trunk_is_thick_are_doubted)
+{
+  pcs::Skeleton_report report;
+  report.status = pcs::Status::converged;
+  report.height = report.reach = 4;
+  report.by_order.resize(1);
+  report.by_order[0].length = 4;
+  report.by_order[0].volume = report.total.volume = 4 * 3.14159265358979323846 * 0.05 * 0.05;
+  report.noise = report.residual = 0.001;
+  report.spacing = 0.03;
+  BOOST_TEST(pcs::warnings(report).empty());
+  report.spacing = 0.05;
+  BOOST_TEST(pcs::warnings(report).size() == 1u);
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 } // namespace test_report_sizes

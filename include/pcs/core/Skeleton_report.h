@@ -82,6 +82,7 @@ struct Skeleton_report
 
   double height =
       0; ///< from the root to the highest node or leaf that was found, along the up direction [L]
+  double reach = 0; ///< from the root to the farthest node [L]
   //! of the trunk, by a line through its radii from 1.1 to 1.5 m, say: bark and noise change single ones; where it ends below,
   //! of the thickest branch there; 0: nothing is that high [L]
   double diameter_at_breast_height = 0;
@@ -111,9 +112,11 @@ inline std::vector<std::string> warnings(const Skeleton_report& r)
   // diameter of the trunk per length: trees 0.01 to 0.1, spheres more than 0.2 [-]
   constexpr double thickest_trunk = 0.2;
   constexpr double thinnest_trunk = 0.002; // by the height [-]
-  // volume by the cube of the height or of the length of the trunk: trees up to 0.003, a post of ten diameters 0.008, spheres
-  // that are taken for many thin branches 0.02 and more [-]
+  // volume by the cube of the reach: trees up to 0.003, a post of ten diameters 0.008, spheres that are taken for many thin
+  // branches 0.03 and more [-]
   constexpr double most_wood = 0.015;
+  // by the diameter of the trunk: beyond, volumes are up to several times too large; real scans up to 0.2 [-]
+  constexpr double widest_spacing = 1.0 / 3;
   constexpr double many = 0.5; // leaves, of the points that are neither ground nor walls [-]
   std::vector<std::string> sentences;
   if (r.number_of_other_stems > 0)
@@ -156,8 +159,11 @@ inline std::vector<std::string> warnings(const Skeleton_report& r)
                           "it, or wood was taken for leaves (do_remove_leaves(false))");
     if (diameter > thickest_trunk * trunk.length)
       sentences.push_back("the trunk is shorter than five of its diameters; this may be no tree");
-    else if (r.total.volume > most_wood * std::pow(std::max(r.height, trunk.length), 3))
-      sentences.push_back("there is more wood than a tree of this height has; this may be no tree");
+    else if (r.total.volume > most_wood * std::pow(r.reach, 3))
+      sentences.push_back("there is more wood than a tree of this size has; this may be no tree");
+    if (r.spacing > widest_spacing * diameter)
+      sentences.push_back("the points are farther apart than a third of the diameter of the trunk; "
+                          "radii and volume are rough guesses");
   }
   return sentences;
 }

@@ -52,7 +52,7 @@ public:
     Axis_fit fit(resample(start.axis, m_spacing), Fit_model::of(m_scan.spacing, m_set.noise));
     place_own_points(start, fit);
     start_at_circles(fit);
-    if (!run(fit, first_widening))
+    if (!run(fit, first_widening, chain.length))
       return candidate;
     cut_filled(m_view, fit);
     if (!is_first)
@@ -60,12 +60,12 @@ public:
     const Vec3 base = fit.axis().front().point, tip = fit.axis().back().point;
     prolong(m_view, true, fit.axis());
     std::vector<Index> points = gather(fit);
-    if (points.size() < m_rules.lowest_count || !run(fit, 1))
+    if (points.size() < m_rules.lowest_count || !run(fit, 1, chain.length))
       return candidate;
     trim(m_view, base, tip, fit);
     if (follow(fit)) {
       points = gather(fit);
-      if (!run(fit, 1))
+      if (!run(fit, 1, chain.length))
         return candidate;
     }
     cut_filled(m_view, fit);
@@ -78,7 +78,7 @@ public:
 private:
   void place_own_points(const Chain_start& start, Axis_fit& fit) const;
   void start_at_circles(Axis_fit& fit) const;
-  bool run(Axis_fit& fit, double widening) const;
+  bool run(Axis_fit& fit, double widening, double length) const;
   std::vector<Index> gather(Axis_fit& fit) const;
   Axis tail_with_piece(const Axis& axis, std::size_t first) const;
   Axis piece_ahead(const Axis& axis, std::size_t first, double skip) const;
@@ -171,7 +171,8 @@ inline void Chain_fit::start_at_circles(Axis_fit& fit) const
   fit.project();
 }
 
-inline bool Chain_fit::run(Axis_fit& fit, double widening) const
+/// `length`: over which the axis is expected to taper; 0: it is a piece [L].
+inline bool Chain_fit::run(Axis_fit& fit, double widening, double length) const
 {
   const std::vector<double> visible = visible_shares(m_view, fit);
   const auto use = [&](std::size_t points_per_node) {
@@ -192,7 +193,7 @@ inline bool Chain_fit::run(Axis_fit& fit, double widening) const
     if (is_full && left == 0)
       break;
     if (k % 2 == 0)
-      expect_sections(m_view, visible, fit);
+      expect_sections(m_view, visible, length, fit);
     const double share = k < ramp ? double(ramp - 1 - k) / double(ramp) : 0;
     if (!fit.iterate(1 + (widening - 1) * share))
       return false;
@@ -277,7 +278,7 @@ inline Axis Chain_fit::tail_with_piece(const Axis& axis, std::size_t first) cons
   const Vec3 base = fit.axis().front().point, tip = fit.axis().back().point;
   prolong(m_view, false, fit.axis());
   const double wanted = (fit.axis().back().point - tip).norm();
-  if (gather(fit).size() < m_rules.lowest_count || !run(fit, 1.5))
+  if (gather(fit).size() < m_rules.lowest_count || !run(fit, 1.5, 0))
     return {};
   trim(m_view, base, tip, fit);
   const Axis& longer = fit.axis();
@@ -298,7 +299,7 @@ inline Axis Chain_fit::piece_ahead(const Axis& axis, std::size_t first, double s
   end.point = base.point + length * along;
   const Vec3 middle = 0.5 * (base.point + end.point);
   Axis_fit fit({base, end}, Fit_model::of(m_scan.spacing, m_set.noise));
-  if (gather(fit).size() < m_rules.lowest_count || !run(fit, 1))
+  if (gather(fit).size() < m_rules.lowest_count || !run(fit, 1, 0))
     return {};
   trim(m_view, middle, middle, fit);
   const Axis& piece = fit.axis();

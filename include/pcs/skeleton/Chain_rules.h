@@ -38,6 +38,10 @@ struct Chain_rules
   //! their counts along a whole axis are low by at most this factor where something hides it, ...
   double most_hidden = 2;
   double hidden_nodes = 20; ///< ... half of which is believed of this many nodes [count]
+  //! while no density is known, axes taper from their radius within this share of the length to such a share of it ...
+  double taper_from = 1.0 / 3, taper_to = 0.5;
+  double taper_share = 0.25; ///< ... with a deviation of so much of it [-]
+  double taper_count = 24;   ///< ... and more where more points than this tell otherwise [count]
   //! deviation of the middle of the points of a thin branch from its place: this many times the usual one ...
   double facing_share = 5;
   double facing_noise = 0.5; ///< ... and this much noise

@@ -79,11 +79,52 @@ counted_priors(const Chain_view& view, const std::vector<double>& visible, const
   return priors;
 }
 
-/// Tells `fit` what to expect of its sections as they are. `visible`: share of each that may have points [-].
-inline void
-expect_sections(const Chain_view& view, const std::vector<double>& visible, Axis_fit& fit)
+/*!
+  What is expected as long as nothing can be counted: a branch tapers. Where it is thicker than a line from what it is near its
+  base to a share of that at its tip, and has few points, curvature alone must not tell; it may be the way around several
+  twigs. Thick axes have enough points. `length`: from the base to the tip of all that the paths follow, of which the axis may
+  be a part [L]. O(nodes + points).
+*/
+inline std::vector<Radius_prior> taper_priors(const Chain_view& view,
+                                              const std::vector<double>& visible,
+                                              const Axis_fit& fit,
+                                              double length)
+{
+  const Chain_rules& rules = view.rules;
+  const Axis& axis = fit.axis();
+  std::vector<Radius_prior> priors(axis.size());
+  std::vector<double> place(axis.size(), 0), radii; // lengths to the base; near it
+  for (std::size_t k = 1; k < axis.size(); ++k)
+    place[k] = place[k - 1] + (axis[k].point - axis[k - 1].point).norm();
+  for (std::size_t k = 0; k < axis.size() && place[k] <= rules.taper_from * place.back(); ++k)
+    radii.push_back(axis[k].radius);
+  const double base = median(radii);
+  length = std::max(length, place.back());
+  if (!(length > 0) || base >= rules.thick * view.scan.spacing)
+    return priors;
+  const Section_counts counts = section_counts(view, fit, visible);
+  for (std::size_t k = 0; k < axis.size(); ++k) {
+    const double radius = base * (1 - (1 - rules.taper_to) * place[k] / length);
+    if (place[k] > rules.taper_from * length && axis[k].radius > radius)
+      priors[k] = {radius,
+                   rules.taper_share * base * std::max(1.0, counts.count[k] / rules.taper_count),
+                   0};
+  }
+  return priors;
+}
+
+/*!
+  Tells `fit` what to expect of its sections as they are. `visible`: share of each that may have points [-]; `length`: as for
+  `taper_priors()`, 0 for a piece that need not taper [L].
+*/
+inline void expect_sections(const Chain_view& view,
+                            const std::vector<double>& visible,
+                            double length,
+                            Axis_fit& fit)
 {
   std::vector<Radius_prior> priors = counted_priors(view, visible, fit);
+  if (!(view.set.density > 0) && length > 0)
+    priors = taper_priors(view, visible, fit, length);
   const Section_sides sides(view, fit);
   add_width_priors(view, fit.axis(), sides, priors);
   fit.set_priors(std::move(priors));

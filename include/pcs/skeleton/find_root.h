@@ -32,8 +32,10 @@ struct Root_rules
   double slab = 0.03; ///< height in which it is looked for, relative to the extent upwards [-]
   double slab_spacings = 8; ///< ... at least this many spacings
   double thin = 0.003;      ///< stems of less spread, relative to the extent, may be hanging twigs:
-  double wide_slab = 0.1;   ///< ... it is looked for in this share then, and taken if it is
-  double thicker = 3;       ///< ... another stem with this many times the spread [-]
+  //! ... it is looked for in the first share then, or in the second, and taken if it is ...
+  double wide_slab = 0.1, widest_slab = 0.2;
+  double thicker =
+      3; ///< ... another stem with this many times the spread, in the second one with a round foot [-]
   double band = 0.4;   ///< height of the points that are the root, in half widths of the stem [-]
   double rival = 0.03; ///< share of the lowest points of a stem that makes another one a rival [-]
   double smallest_component =
@@ -202,10 +204,14 @@ public:
   Stem operator()() const
   {
     Stem stem = within(m_rules.slab);
-    if (stem.spread() < m_rules.thin * (m_high - m_low)) {
-      Stem other = within(m_rules.wide_slab);
-      if (other.spread() > m_rules.thicker * stem.spread() &&
-          !std::binary_search(other.points.begin(), other.points.end(), stem.points.front()))
+    if (stem.spread() >= m_rules.thin * (m_high - m_low))
+      return stem;
+    for (const double share : {m_rules.wide_slab, m_rules.widest_slab}) {
+      Stem other = within(share);
+      const bool is_another =
+          other.spread() > m_rules.thicker * stem.spread() &&
+          !std::binary_search(other.points.begin(), other.points.end(), stem.points.front());
+      if (is_another && (share == m_rules.wide_slab || has_round_foot(other)))
         return other;
     }
     return stem;
@@ -213,6 +219,23 @@ public:
 
 private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+  /// Whether the lowest points of a stem are a ring.
+  bool has_round_foot(const Stem& stem) const
+  {
+    double low = infinity;
+    for (const Index i : stem.points)
+      low = std::min(low, m_height[i]);
+    const double slab =
+        std::max(m_rules.slab * (m_high - m_low), m_rules.slab_spacings * m_scan.spacing);
+    Stem foot = stem;
+    foot.points.erase(std::remove_if(foot.points.begin(),
+                                     foot.points.end(),
+                                     [&](Index i) { return m_height[i] > low + slab; }),
+                      foot.points.end());
+    foot.shape = Slab_shape(m_scan, foot.points, m_up);
+    return foot.ring_radius(m_scan, m_up, m_rules) > 0;
+  }
 
   /// `share` is that of the extent upwards.
   Stem within(double share) const

@@ -104,6 +104,7 @@ inline void report_sizes(const Branch_tree& tree,
   for (Index v = 0; v < tree.nodes.size(); ++v) {
     const Branch_node& node = tree.nodes[v];
     r.height = std::max(r.height, unit * (up.dot(node.point) - ground));
+    r.reach = std::max(r.reach, unit * (node.point - tree.nodes[0].point).norm());
     if (tree.is_base(v))
       continue;
     const Branch_node& below = tree.nodes[node.parent];
