@@ -109,6 +109,8 @@ inline std::vector<std::string> warnings(const Skeleton_report& r)
   constexpr double largest_residual = 1.5;
   constexpr double exact =
       0.1; // of the spacing: below, points are on the surface, whatever the noise [-]
+  constexpr double oval =
+      0.02; // of the diameter of the trunk: as much as ovals and bark alone leave [-]
   // diameter of the trunk per length: trees 0.01 to 0.1, spheres more than 0.2 [-]
   constexpr double thickest_trunk = 0.2;
   constexpr double thinnest_trunk = 0.002; // by the height [-]
@@ -147,13 +149,14 @@ inline std::vector<std::string> warnings(const Skeleton_report& r)
     sentences.push_back(
         "the points lie in rows that are far from each other; leaves cannot be told "
         "from wood there, and are kept (do_remove_leaves(true))");
-  if (r.status == Status::converged &&
-      r.residual > std::max(largest_residual * r.noise, exact * r.spacing))
-    sentences.push_back("half of the points lie far from the surfaces found; this may be no tree");
   internal::warn_of_unit("the tree", r.height, r.breast_height, sentences);
   if (!r.by_order.empty() && r.by_order.front().length > 0) {
     const auto& trunk = r.by_order.front();
     const double diameter = 2 * std::sqrt(trunk.volume / (3.14159265358979323846 * trunk.length));
+    if (r.status == Status::converged &&
+        r.residual > std::max({largest_residual * r.noise, exact * r.spacing, oval * diameter}))
+      sentences.push_back(
+          "half of the points lie far from the surfaces found; this may be no tree");
     if (diameter < thinnest_trunk * r.height)
       sentences.push_back("the trunk is too thin for the height; the scan may show too little of "
                           "it, or wood was taken for leaves (do_remove_leaves(false))");

@@ -6,6 +6,7 @@
 #define PCS_SKELETON_CHAIN_FIT_H
 
 #include <pcs/skeleton/Axis_fit.h>
+#include <pcs/skeleton/Axis_oval.h>
 #include <pcs/skeleton/Axis_set.h>
 #include <pcs/skeleton/Chain_rules.h>
 #include <pcs/skeleton/chain_ends.h>
@@ -71,6 +72,7 @@ public:
     cut_filled(m_view, fit);
     if (!is_first)
       cut_thin_base(m_view, fit);
+    round_ovals(fit);
     judge(fit, points, candidate);
     return candidate;
   }
@@ -83,6 +85,7 @@ private:
   Axis tail_with_piece(const Axis& axis, std::size_t first) const;
   Axis piece_ahead(const Axis& axis, std::size_t first, double skip) const;
   bool follow(Axis_fit& fit) const;
+  void round_ovals(Axis_fit& fit) const;
   void judge(Axis_fit& fit, const std::vector<Index>& points, Candidate& candidate) const;
 
   Chain_view m_view;
@@ -353,6 +356,40 @@ inline bool Chain_fit::follow(Axis_fit& fit) const
   if (!is_longer)
     axis = whole;
   return is_longer;
+}
+
+/*!
+  Where a thick axis is seen from one side, its oval moves the centers and changes the radii of sections: a circle through half of
+  an ellipse is off by as much as half axes differ. The oval is found, and the axis fitted to points without it.
+*/
+inline void Chain_fit::round_ovals(Axis_fit& fit) const
+{
+  const Oval_rules& rules = m_rules.ovals;
+  std::vector<double> radii, facing;
+  for (const Axis_node& node : fit.axis())
+    radii.push_back(node.radius);
+  if (median(radii) < std::max(rules.thickness * m_set.noise, rules.spacings * m_scan.spacing))
+    return;
+  const Section_sides sides(m_view, fit);
+  for (std::size_t k = 0; k < radii.size(); ++k)
+    if (sides.count[k] > 0)
+      facing.push_back(sides.normal[k].norm());
+  if (facing.empty() || median(facing) < rules.one_sided)
+    return;
+  Axis_oval oval(fit.axis());
+  const std::vector<Vec3> points = fit.points();
+  for (int round = 0; round < rules.rounds; ++round) {
+    oval.improve(fit, m_set.noise, rules);
+    std::vector<Index> segments;
+    for (const Axis_place& p : fit.places())
+      segments.push_back(p.segment);
+    fit.set_points(oval.rounded(points, fit), std::move(segments));
+    fit.project();
+    if (!run(fit, 1, 0)) {
+      fit.use_every(1);
+      return;
+    }
+  }
 }
 
 inline void

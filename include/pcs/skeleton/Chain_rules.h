@@ -6,6 +6,7 @@
 #define PCS_SKELETON_CHAIN_RULES_H
 
 #include <pcs/skeleton/Axis.h>
+#include <pcs/skeleton/Axis_oval.h>
 #include <pcs/skeleton/Axis_set.h>
 #include <pcs/skeleton/Scan.h>
 
@@ -80,6 +81,7 @@ struct Chain_rules
   int full_iterations = 2; ///< the last of them, to many points, unless weights were wide
   std::size_t enough = 16,
               full_enough = 256; ///< points per node that the others and those use [count]
+  Oval_rules ovals;
 };
 
 /// An axis that is not yet accepted.
