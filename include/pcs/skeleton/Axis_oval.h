@@ -32,7 +32,8 @@ struct Oval_rules
   double stretch = 2;       ///< sections share a place and a radius over this many radii, ...
   std::size_t count = 30;   ///< ... or more, until they have so many points
   std::size_t fewest = 6;   ///< points that tell anything of an oval
-  int rounds = 3;           ///< of estimates, each with a fit after it
+  int rounds = 3;           ///< of estimates, each with a fit after it, ...
+  double settled = 0.002;   ///< ... until they change by less than this [-]
 };
 
 /*!

@@ -379,7 +379,10 @@ inline void Chain_fit::round_ovals(Axis_fit& fit) const
   Axis_oval oval(fit.axis());
   const std::vector<Vec3> points = fit.points();
   for (int round = 0; round < rules.rounds; ++round) {
+    const Eigen::Vector2d before = oval.coefficients();
     oval.improve(fit, m_set.noise, rules);
+    if ((oval.coefficients() - before).norm() < rules.settled)
+      return;
     std::vector<Index> segments;
     for (const Axis_place& p : fit.places())
       segments.push_back(p.segment);
