@@ -691,7 +691,7 @@ BOOST_AUTO_TEST_CASE(thick_stems_are_no_walls)
       }
 }
 
-// Where chance puts a ring of leaves that looks hollow, one in five is: of 100 other seeds 17.
+// Where chance puts a ring of leaves that looks hollow, one in five is: of 100 other seeds 16.
 BOOST_AUTO_TEST_CASE(a_bush_of_leaves_is_mostly_not_wood)
 {
   constexpr double radius = 0.06, height = 4, crown = 0.9;
