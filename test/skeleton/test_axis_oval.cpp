@@ -139,6 +139,15 @@ BOOST_AUTO_TEST_CASE(few_points_and_narrow_arcs_tell_nothing)
   }
 }
 
+// Many rounds do not add up what is hardly known.
+BOOST_AUTO_TEST_CASE(what_is_usual_counts_in_every_round)
+{
+  const Oval_pipe pipe(Vec2(0, 0), 0.3 * pi, false, 300);
+  Axis_oval oval(pipe.axis);
+  pipe.fit(oval, 30);
+  BOOST_TEST(oval.coefficients().norm() < 0.04, oval.coefficients().transpose());
+}
+
 BOOST_AUTO_TEST_CASE(ovals_are_bounded_and_stay_as_they_are_if_they_are_right)
 {
   const Oval_pipe pipe(Vec2(0.05, 0), 2 * pi, false);
