@@ -220,14 +220,19 @@ public:
 private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
+  /// `share` is that of the extent upwards.
+  double height_of_slab(double share) const
+  {
+    return std::max(share * (m_high - m_low), m_rules.slab_spacings * m_scan.spacing);
+  }
+
   /// Whether the lowest points of a stem are a ring.
   bool has_round_foot(const Stem& stem) const
   {
     double low = infinity;
     for (const Index i : stem.points)
       low = std::min(low, m_height[i]);
-    const double slab =
-        std::max(m_rules.slab * (m_high - m_low), m_rules.slab_spacings * m_scan.spacing);
+    const double slab = height_of_slab(m_rules.slab);
     Stem foot = stem;
     foot.points.erase(std::remove_if(foot.points.begin(),
                                      foot.points.end(),
@@ -241,7 +246,7 @@ private:
   Stem within(double share) const
   {
     const Index n = static_cast<Index>(m_scan.size());
-    const double slab = std::max(share * (m_high - m_low), m_rules.slab_spacings * m_scan.spacing);
+    const double slab = height_of_slab(share);
     const double floating = m_low + m_rules.floating * (m_high - m_low);
     std::vector<std::uint8_t> is_low(n, 0);
     for (Index i = 0; i < n; ++i) {
