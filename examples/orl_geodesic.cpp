@@ -174,6 +174,7 @@ nlohmann::ordered_json report_json(const Space& space,
     json["number_of_failed_windows"] = r.number_of_failed_windows;
     json["marginal_violation"] = {{"worst", r.worst_marginal_violation},
                                   {"mean", r.mean_marginal_violation}};
+    json["mean_remaining_mass"] = r.mean_remaining_mass;
   }
   json["number_of_edges"] = r.number_of_edges;
   if (o.load.empty()) {

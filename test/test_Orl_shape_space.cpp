@@ -1027,6 +1027,13 @@ BOOST_AUTO_TEST_CASE(broken_trees_are_refused_with_a_reason)
   BOOST_CHECK_EXCEPTION(space.build(np::matching_weights(weights)),
                         pcs::Invalid_input,
                         message_has("far"));
+  for (const double reach : {0., -1., std::numeric_limits<double>::quiet_NaN()}) {
+    Transport_options transport;
+    transport.reach = reach;
+    BOOST_CHECK_EXCEPTION(space.build(np::transport_options(transport)),
+                          pcs::Invalid_input,
+                          message_has("reach"));
+  }
 }
 
 BOOST_AUTO_TEST_CASE(trees_of_other_spaces_and_spaces_that_were_moved_are_refused)

@@ -10,6 +10,7 @@
 #include <pcs/internal/Random_stream.h>
 #include <pcs/internal/Stopwatch.h>
 #include <pcs/shape_space/Tree_distribution.h>
+#include <pcs/shape_space/find_modes.h>
 #include <support/trees_of_parameters.h>
 
 #include <CGAL/Simple_cartesian.h>

@@ -34,15 +34,22 @@ Transport_problem random_problem(std::mt19937& random, std::size_t n, std::size_
   return problem;
 }
 
-/// Successive shortest paths by Bellman and Ford, in doubles.
-double least_cost(const Transport_problem& problem)
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+struct Carried
+{
+  double cost = 0, mass = 0;
+};
+
+/// Successive shortest paths by Bellman and Ford, in doubles, while one is shorter than `limit`.
+Carried least_cost(const Transport_problem& problem, double limit = infinite)
 {
   const std::size_t n = problem.supplies.size(), m = problem.demands.size();
   std::vector<double> supply = problem.supplies, demand = problem.demands;
   std::vector<double> flow(problem.arcs.size(), 0);
-  double cost = 0;
+  Carried result;
   for (;;) {
-    std::vector<double> distance(n + m, std::numeric_limits<double>::infinity());
+    std::vector<double> distance(n + m, infinite);
     std::vector<std::size_t> arc(n + m, none);
     for (std::size_t i = 0; i < n; ++i)
       if (supply[i] > 1e-14)
@@ -67,8 +74,8 @@ double least_cost(const Transport_problem& problem)
     for (std::size_t j = 0; j < m; ++j)
       if (demand[j] > 1e-14 && (end == none || distance[n + j] < distance[n + end]))
         end = j;
-    if (end == none || std::isinf(distance[n + end]))
-      return cost;
+    if (end == none || !(distance[n + end] < limit))
+      return result;
     double step = demand[end];
     std::size_t v = n + end;
     while (arc[v] != none) {
@@ -83,7 +90,8 @@ double least_cost(const Transport_problem& problem)
     step = std::min(step, supply[v]);
     supply[v] -= step;
     demand[end] -= step;
-    cost += step * distance[n + end];
+    result.cost += step * distance[n + end];
+    result.mass += step;
     for (v = n + end; arc[v] != none;) {
       const auto& a = problem.arcs[arc[v]];
       const bool is_forward = v >= n;
@@ -102,6 +110,13 @@ std::vector<Vec3> cylinder(std::mt19937& random, std::size_t n)
     points.push_back(Vec3(std::cos(angle), std::sin(angle), 6 * uniform(random)));
   }
   return points;
+}
+
+Transport_options all_is_carried()
+{
+  Transport_options options;
+  options.reach = infinite;
+  return options;
 }
 
 /// Mean distance to the nearest neighbour.
@@ -131,7 +146,7 @@ BOOST_AUTO_TEST_CASE(it_costs_as_little_as_another_solver_says)
     BOOST_TEST(plan.is_complete);
     BOOST_TEST(plan.violation <= 1e-9);
     BOOST_TEST(plan.flows.size() <= n + m - 1);
-    BOOST_TEST(std::abs(plan.cost - least_cost(problem)) <= 1e-9);
+    BOOST_TEST(std::abs(plan.cost - least_cost(problem).cost) <= 1e-9);
   }
 }
 
@@ -174,8 +189,9 @@ BOOST_AUTO_TEST_CASE(skewed_densities_are_carried_with_area_weights)
   for (Vec3& p : two) // four times as dense at one end
     p.z() = 6 * (std::sqrt(1 + 15 * p.z() / 6) - 1) / 3;
   Transport_problem problem;
-  const Transport_plan plan = match_places(Places(one), Places(two), Transport_options(), problem);
+  const Transport_plan plan = match_places(Places(one), Places(two), all_is_carried(), problem);
   BOOST_TEST(plan.is_complete);
+  BOOST_TEST(plan.remaining == 0);
   BOOST_TEST(plan.violation <= 1e-9);
   std::vector<char> has_partner(one.size() + two.size(), 0);
   const auto arcs = main_arcs(problem, plan);
@@ -193,7 +209,7 @@ BOOST_AUTO_TEST_CASE(points_beside_the_surface_do_not_draw_it_to_themselves)
   for (std::size_t k = 0; k < number_of_outliers; ++k)
     one.emplace_back(k % 2 == 0 ? 4 : -4, 0, static_cast<double>(k)); // four radii from the axis
   Transport_problem problem;
-  const Transport_plan plan = match_places(Places(one), Places(two), Transport_options(), problem);
+  const Transport_plan plan = match_places(Places(one), Places(two), all_is_carried(), problem);
   BOOST_TEST(plan.is_complete);
   std::vector<std::size_t> partners(one.size(), 0);
   for (const std::uint32_t k : main_arcs(problem, plan))
@@ -202,48 +218,6 @@ BOOST_AUTO_TEST_CASE(points_beside_the_surface_do_not_draw_it_to_themselves)
     BOOST_TEST(partners[i] >= 1u);
     BOOST_TEST(partners[i] <= 2u); // 10 to 16 where they stand for all that is near
   }
-}
-
-BOOST_AUTO_TEST_CASE(a_gap_of_one_scan_does_not_shift_what_is_around_it)
-{
-  std::mt19937 random(6);
-  const std::vector<Vec3> one = cylinder(random, 1200);
-  std::vector<Vec3> two = cylinder(random, 1200);
-  two.erase(std::remove_if(two.begin(), two.end(), [](const Vec3& p) { return p.x() > 0.5; }),
-            two.end());
-  const auto mean_distance = [&](Point_weights weights) { // on the side without gap
-    Transport_options options;
-    options.weights = weights;
-    Transport_problem problem;
-    const Transport_plan plan = match_places(Places(one), Places(two), options, problem);
-    BOOST_TEST(plan.is_complete);
-    BOOST_TEST(plan.violation <= 1e-9);
-    double sum = 0, mass = 0;
-    for (const auto& flow : plan.flows) {
-      const auto& arc = problem.arcs[flow.arc];
-      if (one[arc.source].x() < 0) {
-        sum += flow.mass * std::sqrt(arc.cost);
-        mass += flow.mass;
-      }
-    }
-    return sum / mass;
-  };
-  const double spacing = mean_spacing(one);
-  BOOST_TEST_MESSAGE("a gap: " << mean_distance(Point_weights::area) / spacing << ", "
-                               << mean_distance(Point_weights::equal) / spacing << " spacings");
-  BOOST_TEST(mean_distance(Point_weights::area) < 2 * spacing);
-  BOOST_TEST(mean_distance(Point_weights::equal) > 2.5 * spacing); // as the text has it
-}
-
-BOOST_AUTO_TEST_CASE(where_most_points_are_the_same_the_others_keep_their_weights)
-{
-  std::vector<double> areas(10, 2), squared(10, 0);
-  squared[8] = 0.28; // below (1.5 / 4)^2 * 2
-  squared[9] = 1.125;
-  pcs::shape_space::internal::lower_lonely(areas, squared);
-  BOOST_TEST(areas[0] == 2);
-  BOOST_TEST(areas[8] == 2);
-  BOOST_TEST(areas[9] == 2 * 0.28125 / 1.125);
 }
 
 BOOST_AUTO_TEST_CASE(points_in_one_place_cost_no_more_pivots_than_one)
@@ -272,12 +246,15 @@ BOOST_AUTO_TEST_CASE(points_in_one_place_cost_no_more_pivots_than_one)
 BOOST_AUTO_TEST_CASE(points_in_one_place_share_its_partners)
 {
   std::mt19937 random(8);
-  for (const Point_weights kind : {Point_weights::area, Point_weights::equal}) {
+  for (const auto& [kind, reach] : {std::make_pair(Point_weights::area, 3.),
+                                    std::make_pair(Point_weights::area, infinite),
+                                    std::make_pair(Point_weights::equal, infinite)}) {
     std::vector<Vec3> one = cylinder(random, 300), two = cylinder(random, 400);
     one.insert(one.end(), 200, Vec3(1, 0, 3));
     two.insert(two.end(), 50, Vec3(1, 0, 3.01));
     Transport_options options;
     options.weights = kind;
+    options.reach = reach;
     const Point_matches found = match_points(one, two, options);
     BOOST_TEST(found.is_complete);
     BOOST_TEST(found.violation <= 1e-9);
@@ -327,6 +304,115 @@ BOOST_AUTO_TEST_CASE(regularised_transport_approaches_the_exact_cost_from_above)
     last = plan.cost;
   }
   BOOST_TEST(last < 1.1 * exact);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(partial_transport)
+
+BOOST_AUTO_TEST_CASE(it_costs_as_little_as_another_solver_says)
+{
+  std::mt19937 random(11);
+  for (int repetition = 0; repetition < 50; ++repetition) {
+    const std::size_t n = 2 + random() % 12, m = 2 + random() % 12;
+    const Transport_problem problem = random_problem(random, n, m, 0.5);
+    const double price = 0.02 + 0.01 * (repetition % 20);
+    const Transport_plan plan = solve_partially(problem, price, Transport_options());
+    const Carried other = least_cost(problem, 2 * price);
+    BOOST_TEST(plan.is_complete);
+    BOOST_TEST(plan.violation <= 1e-9);
+    BOOST_TEST(plan.flows.size() <= n + m - 1);
+    BOOST_TEST(std::abs(plan.cost - other.cost) <= 1e-9);
+    BOOST_TEST(std::abs(plan.remaining - (1 - other.mass)) <= 1e-9);
+    for (const auto& f : plan.flows)
+      BOOST_TEST(problem.arcs[f.arc].cost < 2 * price);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(regularised_it_is_nearly_the_same)
+{
+  std::mt19937 random(12);
+  const std::vector<Vec3> one = cylinder(random, 150), two = cylinder(random, 200);
+  Transport_options options;
+  Transport_problem problem;
+  const Transport_plan exact = match_places(Places(one), Places(two), options, problem);
+  options.method = Point_transport::sinkhorn;
+  options.sinkhorn.regularization = 0.005;
+  options.sinkhorn.iterations = 5000;
+  const Transport_plan regularised = match_places(Places(one), Places(two), options, problem);
+  BOOST_TEST(exact.remaining > 0.01);
+  BOOST_TEST(exact.remaining < 0.3);
+  BOOST_TEST(regularised.violation < 1e-3);
+  std::size_t number_alike = 0;
+  const auto arcs = main_arcs(problem, exact), others = main_arcs(problem, regularised);
+  for (const std::uint32_t k : arcs)
+    number_alike += std::binary_search(others.begin(), others.end(), k) ? 1 : 0;
+  BOOST_TEST_MESSAGE(number_alike << " of " << arcs.size() << " partners alike");
+  BOOST_TEST(static_cast<double>(number_alike) > 0.8 * static_cast<double>(arcs.size()));
+}
+
+BOOST_AUTO_TEST_CASE(a_gap_of_one_scan_does_not_shift_what_is_around_it)
+{
+  std::mt19937 random(6);
+  const std::vector<Vec3> one = cylinder(random, 1200);
+  std::vector<Vec3> two = cylinder(random, 1200);
+  two.erase(std::remove_if(two.begin(), two.end(), [](const Vec3& p) { return p.x() > 0.5; }),
+            two.end());
+  const double spacing = mean_spacing(one);
+  const auto mean_distance = [&](const Transport_options& options) { // on the side without gap
+    Transport_problem problem;
+    const Transport_plan plan = match_places(Places(one), Places(two), options, problem);
+    BOOST_TEST(plan.is_complete);
+    BOOST_TEST(plan.violation <= 1e-9);
+    if (std::isfinite(options.reach)) {
+      BOOST_TEST(plan.remaining > 0.15); // a third of the circle
+      BOOST_TEST(plan.remaining < 0.4);
+    }
+    double sum = 0, number = 0;
+    for (const std::uint32_t k : main_arcs(problem, plan))
+      if (one[problem.arcs[k].source].x() < 0) {
+        sum += std::sqrt(problem.arcs[k].cost);
+        number += 1;
+      }
+    return sum / (number * spacing);
+  };
+  const double partial = mean_distance(Transport_options()), full = mean_distance(all_is_carried());
+  BOOST_TEST_MESSAGE("a gap: " << partial << ", all carried " << full << " spacings");
+  BOOST_TEST(partial < 1.3);
+  BOOST_TEST(full > 2);
+}
+
+BOOST_AUTO_TEST_CASE(opposite_of_a_gap_the_nearest_point_is_the_partner)
+{
+  std::mt19937 random(13);
+  const std::vector<Vec3> one = cylinder(random, 600);
+  std::vector<Vec3> two = cylinder(random, 600);
+  two.erase(std::remove_if(two.begin(), two.end(), [](const Vec3& p) { return p.z() > 3; }),
+            two.end());
+  const Point_matches found = match_points(one, two, Transport_options());
+  BOOST_TEST(found.is_complete);
+  BOOST_TEST(found.pairs.size() <= one.size() + two.size() - 1);
+  const pcs::neighborhood::Nearest_neighbors search(two);
+  std::vector<pcs::neighborhood::Nearest_neighbors::Neighbor> nearest;
+  std::size_t number_far = 0;
+  for (const auto& [i, j] : found.pairs)
+    if (one[i].z() > 4) {
+      search(one[i], 1, nearest);
+      BOOST_TEST(j == nearest[0].index);
+      ++number_far;
+    }
+  BOOST_TEST(number_far > 150u);
+}
+
+BOOST_AUTO_TEST_CASE(the_usual_distance_has_the_spacing_as_a_limit)
+{
+  const std::vector<double> areas(10, 2);
+  std::vector<double> squared(10, 0); // most points are the same
+  squared[8] = 0.28;
+  squared[9] = 1.125;
+  BOOST_TEST(pcs::shape_space::internal::usual_distance(squared, areas) == std::sqrt(2. / 16));
+  std::fill(squared.begin() + 3, squared.end(), 9);
+  BOOST_TEST(pcs::shape_space::internal::usual_distance(squared, areas) == 3);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -24,6 +24,7 @@ struct Transport_summary
   std::size_t number_of_failures = 0; ///< windows whose method did not come to its end
   double worst_violation = 0;         ///< of the marginals of a window, whose mass is 1 [-]
   double mean_violation = 0;          ///< over windows
+  double mean_remaining = 0;          ///< mass without counterpart within reach, over windows [-]
 };
 
 } // namespace shape_space

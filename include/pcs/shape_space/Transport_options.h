@@ -23,7 +23,7 @@ enum class Point_transport {
 };
 
 enum class Point_weights {
-  area, ///< a point stands for the surface around it, for less of it far from the other tree
+  area, ///< a point stands for the surface around it
   equal ///< all points alike, as in the text
 };
 
@@ -33,6 +33,9 @@ struct Transport_options
   Point_weights weights = Point_weights::area;
   bool is_squared =
       true; ///< cost is the squared distance, as a 2-Wasserstein distance wants; the text's is not
+  /// Mass goes at most that many times the median distance between nearest points of the two trees. What finds no room within it, as
+  /// opposite of a gap of the other scan, shifts nothing: its partner is the nearest point. Infinite: all is carried, as in the text.
+  double reach = 3;
   std::size_t number_of_neighbors = 16; ///< candidates of each point in the other tree
   std::size_t largest_window =
       1000; ///< points of a tree that are transported together, at most twice as many

@@ -107,6 +107,9 @@ public:
     return x;
   }
 
+  /// Weight of the covariance where branches vary by themselves. [-]
+  double shrinkage() const { return m_shrinkage; }
+
 private:
   /// Four coordinates per edge, then two per branch: one block for each branch.
   Eigen::Index first(std::size_t b) const

@@ -28,6 +28,7 @@ inline void describe(const Transport_summary& summary, Orl_report& report)
   report.number_of_windows = summary.number_of_windows;
   report.number_of_failed_windows = summary.number_of_failures;
   report.worst_marginal_violation = summary.worst_violation;
+  report.mean_remaining_mass = summary.mean_remaining;
   report.mean_marginal_violation = summary.mean_violation;
 }
 

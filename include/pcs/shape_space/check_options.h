@@ -40,6 +40,7 @@ inline void check_options(const Matching_weights& w,
   check(a.number_of_neighbors >= 3, "`number_of_neighbors` of the assignment must be >= 3");
   check(t.number_of_neighbors > 0 && t.largest_window > 0,
         "`number_of_neighbors` and `largest_window` of the transport must be at least 1");
+  check(t.reach > 0, "`reach` must be > 0");
   check(t.sinkhorn.regularization > 0 && t.sinkhorn.regularization <= 1,
         "`regularization` must be in (0, 1]");
   check(t.sinkhorn.iterations > 0, "`iterations` must be > 0");

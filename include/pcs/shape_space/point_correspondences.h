@@ -57,8 +57,7 @@ public:
     find_sections();
     const std::vector<Window> windows = make_windows(options);
     std::vector<std::vector<Point_pair>> pairs(windows.size());
-    std::vector<double> violation(windows.size(), 0);
-    std::vector<char> is_complete(windows.size(), 1);
+    std::vector<Figures> figures(windows.size());
     constexpr std::size_t batch = 256;
     for (std::size_t begin = 0; begin < windows.size(); begin += batch) {
       if (is_stopped(static_cast<double>(begin) / static_cast<double>(windows.size())))
@@ -67,7 +66,7 @@ public:
           std::min(batch, windows.size() - begin),
           [&](std::size_t k) {
             const std::size_t w = begin + k;
-            is_complete[w] = match_window(windows[w], options, pairs[w], violation[w]);
+            figures[w] = match_window(windows[w], options, pairs[w]);
           },
           1);
     }
@@ -77,12 +76,15 @@ public:
       if (windows[w].point[0].empty() || windows[w].point[1].empty())
         continue;
       ++summary.number_of_windows;
-      summary.number_of_failures += is_complete[w] ? 0 : 1;
-      summary.worst_violation = std::max(summary.worst_violation, violation[w]);
-      summary.mean_violation += violation[w];
+      summary.number_of_failures += figures[w].is_complete ? 0 : 1;
+      summary.worst_violation = std::max(summary.worst_violation, figures[w].violation);
+      summary.mean_violation += figures[w].violation;
+      summary.mean_remaining += figures[w].remaining;
     }
-    if (summary.number_of_windows > 0)
+    if (summary.number_of_windows > 0) {
       summary.mean_violation /= static_cast<double>(summary.number_of_windows);
+      summary.mean_remaining /= static_cast<double>(summary.number_of_windows);
+    }
     std::stable_sort(all.begin(), all.end(), [](const Point_pair& a, const Point_pair& b) {
       return a.edge < b.edge;
     });
@@ -97,6 +99,11 @@ private:
   struct Window
   {
     std::array<std::vector<Placed>, 2> point;
+  };
+  struct Figures
+  {
+    double violation = 0, remaining = 0;
+    bool is_complete = true;
   };
 
   /// Of all edges where radii are not known, or say nothing.
@@ -218,10 +225,9 @@ private:
     return windows;
   }
 
-  bool match_window(const Window& window,
-                    const Transport_options& options,
-                    std::vector<Point_pair>& pairs,
-                    double& violation) const
+  Figures match_window(const Window& window,
+                       const Transport_options& options,
+                       std::vector<Point_pair>& pairs) const
   {
     for (std::size_t t = 0; t < 2; ++t)
       if (window.point[1 - t].empty()) {
@@ -230,7 +236,7 @@ private:
           pair.point[t] = p.point;
           pairs.push_back(pair);
         }
-        return true;
+        return {};
       }
     // tree 1 is laid on tree 2: turned, stretched along and across, and moved, edge by edge; blades also within their sections
     std::vector<Vec3> one, two;
@@ -254,21 +260,10 @@ private:
     for (const Placed& p : window.point[1])
       two.push_back(m_points[1][p.point]);
     const Point_matches found = match_points(one, two, options);
-    std::vector<char> is_paired(one.size() + two.size(), 0);
-    for (const auto& [i, j] : found.pairs) {
-      const Placed &p = window.point[0][i], &q = window.point[1][j];
-      pairs.push_back({p.edge, {p.point, q.point}});
-      is_paired[i] = is_paired[one.size() + j] = 1;
-    }
-    for (std::size_t v = 0; v < is_paired.size(); ++v) // only where the transport failed
-      if (!is_paired[v]) {
-        const bool is_one = v < one.size();
-        pairs.push_back({is_one ? window.point[0][v].edge : window.point[1][v - one.size()].edge,
-                         {is_one ? window.point[0][v].point : no_point,
-                          is_one ? no_point : window.point[1][v - one.size()].point}});
-      }
-    violation = found.violation;
-    return found.is_complete;
+    for (const auto& [i, j] : found.pairs)
+      pairs.push_back(
+          {window.point[0][i].edge, {window.point[0][i].point, window.point[1][j].point}});
+    return {found.violation, found.remaining, found.is_complete};
   }
 
   const Orl_layout& m_layout;

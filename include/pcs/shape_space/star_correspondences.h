@@ -83,7 +83,7 @@ find_partners(const Tree_family& family,
         return family.has[t][b] != 0;
       });
   std::vector<std::vector<std::uint32_t>> partner(n);
-  double violation = 0;
+  double violation = 0, remaining = 0;
   for (std::size_t t = 0; t < n; ++t) {
     both[1] = geometry[t];
     places[1] = points[t];
@@ -108,9 +108,12 @@ find_partners(const Tree_family& family,
     summary.number_of_failures += own.number_of_failures;
     summary.worst_violation = std::max(summary.worst_violation, own.worst_violation);
     violation += own.mean_violation * static_cast<double>(own.number_of_windows);
+    remaining += own.mean_remaining * static_cast<double>(own.number_of_windows);
   }
-  if (summary.number_of_windows > 0)
+  if (summary.number_of_windows > 0) {
     summary.mean_violation = violation / static_cast<double>(summary.number_of_windows);
+    summary.mean_remaining = remaining / static_cast<double>(summary.number_of_windows);
+  }
   std::vector<Orl_space_data::Partner> result;
   for (std::size_t k = 0; k < sources.size(); ++k)
     for (std::size_t t = 0; t < n; ++t)
