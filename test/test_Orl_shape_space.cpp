@@ -257,6 +257,31 @@ BOOST_AUTO_TEST_CASE(the_ends_of_the_path_are_the_inputs)
   }
 }
 
+BOOST_AUTO_TEST_CASE(the_report_tells_what_had_no_room_in_the_other_scan)
+{
+  const Tree tree = random_tree(3);
+  const std::vector<Point> scan = tube_points(tree, 6000, 5);
+  std::vector<Point> side; // what is seen from one side
+  for (const Point& p : tube_points(tree, 6000, 6))
+    if (p.x() > 0)
+      side.push_back(p);
+  const auto remaining = [&](const std::vector<Point>& other, double reach) {
+    Space space;
+    space.add(tree, scan);
+    space.add(tree, other);
+    Transport_options transport;
+    transport.reach = reach;
+    const auto report = space.build(np::transport_options(transport));
+    BOOST_TEST(report.worst_marginal_violation < 1e-9);
+    BOOST_TEST(report.number_of_failed_windows == 0u);
+    return report.mean_remaining_mass;
+  };
+  BOOST_TEST(remaining(scan, 3) < 1e-12);
+  BOOST_TEST(remaining(side, 3) > 0.05);
+  BOOST_TEST(remaining(side, 3) < 0.9);
+  BOOST_TEST(remaining(side, std::numeric_limits<double>::infinity()) == 0);
+}
+
 BOOST_AUTO_TEST_CASE(at_the_origin_the_ends_are_exact_to_the_last_digits)
 {
   const Tree a = random_tree(63), b = random_tree(64); // 10 units high

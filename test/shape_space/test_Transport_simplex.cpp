@@ -382,6 +382,37 @@ BOOST_AUTO_TEST_CASE(a_gap_of_one_scan_does_not_shift_what_is_around_it)
   BOOST_TEST(full > 2);
 }
 
+BOOST_AUTO_TEST_CASE(nothing_goes_beyond_the_reach)
+{
+  std::mt19937 random(14);
+  const std::vector<Vec3> one = cylinder(random, 500), two = cylinder(random, 400);
+  std::vector<double> nearest; // both ways
+  for (const auto& [from, to] : {std::make_pair(&one, &two), std::make_pair(&two, &one)}) {
+    const pcs::neighborhood::Nearest_neighbors search(*to);
+    std::vector<pcs::neighborhood::Nearest_neighbors::Neighbor> found;
+    for (const Vec3& p : *from) {
+      search(p, 1, found);
+      nearest.push_back(std::sqrt(found[0].squared_distance));
+    }
+  }
+  std::sort(nearest.begin(), nearest.end());
+  for (const bool is_squared : {true, false})
+    for (const double reach : {1.5, 4.}) {
+      Transport_options options;
+      options.is_squared = is_squared;
+      options.reach = reach;
+      Transport_problem problem;
+      const Transport_plan plan = match_places(Places(one), Places(two), options, problem);
+      double farthest = 0;
+      for (const auto& flow : plan.flows) {
+        const auto& arc = problem.arcs[flow.arc];
+        farthest = std::max(farthest, (one[arc.source] - two[arc.target]).norm());
+      }
+      BOOST_TEST(farthest <= reach * nearest[nearest.size() / 2]);
+      BOOST_TEST(farthest >= 0.8 * reach * nearest[nearest.size() / 2]);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(opposite_of_a_gap_the_nearest_point_is_the_partner)
 {
   std::mt19937 random(13);
