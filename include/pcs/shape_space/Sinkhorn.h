@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -18,14 +19,12 @@ namespace pcs {
 namespace shape_space {
 
 /*!
-  Alternating projections (M. Cuturi, 2013) with potentials; epsilon is halved from the largest cost down. Of the plan,
-  the entries that are largest in their row or column are kept, so that every source and target has a partner; `violation`
-  is that of the plan before. With arcs that cannot carry the marginals, the violation stays large: it is reported.
+  Alternating projections (M. Cuturi, 2013) with potentials; epsilon is halved from the largest cost down. All arcs have a
+  flow. With arcs that cannot carry the marginals, the violation stays large: it is reported.
 */
 inline Transport_plan sinkhorn(const Transport_problem& problem, const Sinkhorn_options& options)
 {
   const std::size_t n = problem.supplies.size(), m = problem.demands.size();
-  const std::size_t number = problem.arcs.size();
   double largest = 0;
   for (const Transport_problem::Arc& a : problem.arcs)
     largest = std::max(largest, a.cost);
@@ -86,21 +85,12 @@ inline Transport_plan sinkhorn(const Transport_problem& problem, const Sinkhorn_
   plan.violation = violation();
   plan.is_complete = plan.violation < options.tolerance;
   plan.is_unmet.assign(n + m, 0);
-  std::vector<std::size_t> best(n + m, none);
-  std::vector<double> mass(number);
-  for (std::size_t k = 0; k < number; ++k) {
+  for (std::size_t k = 0; k < problem.arcs.size(); ++k) {
     const Transport_problem::Arc& a = problem.arcs[k];
-    mass[k] = std::exp(logarithm(a));
-    plan.cost += mass[k] * a.cost;
-    for (const std::size_t i : {std::size_t(a.source), n + a.target})
-      if (best[i] == none || mass[k] > mass[best[i]])
-        best[i] = k;
+    const double mass = std::exp(logarithm(a));
+    plan.cost += mass * a.cost;
+    plan.flows.push_back({static_cast<std::uint32_t>(k), mass});
   }
-  std::sort(best.begin(), best.end());
-  best.erase(std::unique(best.begin(), best.end()), best.end());
-  for (const std::size_t k : best)
-    if (k != none)
-      plan.flows.push_back({static_cast<std::uint32_t>(k), mass[k]});
   return plan;
 }
 

@@ -94,6 +94,51 @@ inline double usual_distance(const std::vector<double>& squared, const std::vect
   return std::sqrt(std::max(upper_median(squared), least * least * upper_median(areas)));
 }
 
+/// No point of the one is farther than that from one of the other.
+inline double extent(const std::vector<Vec3>& one, const std::vector<Vec3>& two)
+{
+  Vec3 low = one[0], high = one[0];
+  for (const std::vector<Vec3>* points : {&one, &two})
+    for (const Vec3& p : *points) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+  return (high - low).norm();
+}
+
+/// Places that keep mass, sources first: all, or if it may stay sources that have a target within reach that keeps mass, too. Had
+/// there been an arc between these, it would have carried.
+inline std::vector<std::size_t> places_that_lack_arcs(const std::vector<Vec3>& one,
+                                                      const std::vector<Vec3>& two,
+                                                      const Transport_plan& plan,
+                                                      bool is_partial,
+                                                      double reach)
+{
+  const std::size_t n = one.size();
+  std::vector<std::size_t> unmet;
+  std::vector<Vec3> targets;
+  for (std::size_t v = 0; v < plan.is_unmet.size(); ++v)
+    if (plan.is_unmet[v]) {
+      unmet.push_back(v);
+      if (v >= n)
+        targets.push_back(two[v - n]);
+    }
+  if (!is_partial)
+    return unmet;
+  std::vector<std::size_t> result;
+  if (targets.empty())
+    return result;
+  const neighborhood::Nearest_neighbors search(targets);
+  std::vector<neighborhood::Nearest_neighbors::Neighbor> found;
+  for (const std::size_t v : unmet)
+    if (v < n) {
+      search(one[v], 1, found);
+      if (found[0].squared_distance < reach * reach)
+        result.push_back(v);
+    }
+  return result;
+}
+
 } // namespace internal
 
 /// The arcs that carry most of what leaves a source or reaches a target, and where nothing does the cheapest: every point keeps
@@ -127,9 +172,8 @@ inline std::vector<std::uint32_t> main_arcs(const Transport_problem& problem,
   return arcs;
 }
 
-/// Transport between two sets of places where points are. Candidates are nearest neighbours both ways. With a finite reach what
-/// goes no farther is carried, and the rest stays; else more neighbours are taken for places whose mass these cannot carry, until
-/// all is carried.
+/// Transport between two sets of places where points are. What goes no farther than the reach is carried, and the rest stays.
+/// Candidates are nearest neighbours both ways; for places that keep mass although they could reach more, more are taken.
 inline Transport_plan match_places(const Places& places_1,
                                    const Places& places_2,
                                    const Transport_options& options,
@@ -138,24 +182,21 @@ inline Transport_plan match_places(const Places& places_1,
   const std::vector<Vec3>&one = places_1.positions(), &two = places_2.positions();
   const neighborhood::Nearest_neighbors search_1(one), search_2(two);
   const std::size_t n = one.size(), m = two.size();
-  std::vector<double> squared(n + m); // distances to the nearest of the other tree
-  problem.supplies.clear();
+  problem = Transport_problem();
   std::vector<std::size_t> wanted(n + m, options.number_of_neighbors);
+  std::vector<double> nearest(n + m); // squared distances to the other side
   std::vector<std::pair<std::uint32_t, std::uint32_t>> arcs;
   std::vector<neighborhood::Nearest_neighbors::Neighbor> found;
+  double reach = 0;
   for (;;) {
     arcs.clear();
-    for (std::size_t i = 0; i < n; ++i) {
-      search_2(one[i], wanted[i], found);
-      squared[i] = found[0].squared_distance;
+    for (std::size_t v = 0; v < n + m; ++v) {
+      const bool is_first = v < n;
+      (is_first ? search_2 : search_1)(is_first ? one[v] : two[v - n], wanted[v], found);
+      nearest[v] = found.front().squared_distance;
       for (const auto& f : found)
-        arcs.emplace_back(static_cast<std::uint32_t>(i), f.index);
-    }
-    for (std::size_t j = 0; j < m; ++j) {
-      search_1(two[j], wanted[n + j], found);
-      squared[n + j] = found[0].squared_distance;
-      for (const auto& f : found)
-        arcs.emplace_back(f.index, static_cast<std::uint32_t>(j));
+        arcs.emplace_back(is_first ? static_cast<std::uint32_t>(v) : f.index,
+                          is_first ? f.index : static_cast<std::uint32_t>(v - n));
     }
     std::sort(arcs.begin(), arcs.end());
     arcs.erase(std::unique(arcs.begin(), arcs.end()), arcs.end());
@@ -169,18 +210,18 @@ inline Transport_plan match_places(const Places& places_1,
       problem.supplies = internal::weights_of(places_1, areas, options.weights);
       problem.demands = internal::weights_of(places_2, areas_2, options.weights);
       areas.insert(areas.end(), areas_2.begin(), areas_2.end());
-      const double reach = options.reach * internal::usual_distance(squared, areas);
-      if (std::isfinite(reach))
-        return solve_partially(problem,
-                               0.5 * (options.is_squared ? reach * reach : reach),
-                               options);
+      reach = options.reach * internal::usual_distance(nearest, areas);
     }
-    Transport_plan plan = solve_transport(problem, options);
+    const bool is_partial = reach < internal::extent(one, two);
+    const Transport_plan plan =
+        is_partial
+            ? solve_partially(problem, 0.5 * (options.is_squared ? reach * reach : reach), options)
+            : solve_transport(problem, options);
     if (options.method == Point_transport::sinkhorn)
       return plan;
     bool can_grow = false;
-    for (std::size_t v = 0; v < n + m; ++v)
-      if (plan.is_unmet[v] && wanted[v] < (v < n ? m : n)) {
+    for (const std::size_t v : internal::places_that_lack_arcs(one, two, plan, is_partial, reach))
+      if (wanted[v] < (v < n ? m : n)) {
         wanted[v] *= 4;
         can_grow = true;
       }

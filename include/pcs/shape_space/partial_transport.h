@@ -66,11 +66,14 @@ solve_partially(const Transport_problem& problem, double price, const Transport_
   plan.is_unmet.assign(n + m, 0);
   plan.remaining = 1;
   for (const Transport_plan::Flow& f : found.flows)
-    if (f.arc < original.size()) {
+    if (const Transport_problem::Arc& a = extended.arcs[f.arc]; f.arc < original.size()) {
       plan.flows.push_back({original[f.arc], 2 * f.mass});
-      plan.cost += 2 * f.mass * extended.arcs[f.arc].cost;
+      plan.cost += 2 * f.mass * a.cost;
       plan.remaining -= 2 * f.mass;
-    }
+    } else if (a.target == rest_target && a.source != rest_source)
+      plan.is_unmet[a.source] = 1;
+    else if (a.source == rest_source && a.target != rest_target)
+      plan.is_unmet[n + a.target] = 1;
   plan.remaining = std::max(0.0, plan.remaining);
   return plan;
 }
