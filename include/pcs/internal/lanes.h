@@ -20,6 +20,7 @@ namespace internal {
 #if (defined(__GNUC__) || defined(__clang__)) && !defined(PCS_NO_VECTOR_EXTENSIONS)
 
 // Both compilers split a vector that the machine does not have; the operations, and so the bits, stay the same.
+using Double2 = double __attribute__((vector_size(16))); // of every machine
 using Double4 = double __attribute__((vector_size(32)));
 using Double8 = double __attribute__((vector_size(64)));
 /// Eight that may lie anywhere.
@@ -100,6 +101,7 @@ struct Array_lanes
     return *this = *this + b;
   }
 };
+using Double2 = Array_lanes<double, 2>;
 using Double4 = Array_lanes<double, 4>;
 using Double8 = Array_lanes<double, 8>;
 

@@ -5,6 +5,7 @@
 #ifndef PCS_SHAPE_SPACE_ELASTIC_CURVES_H
 #define PCS_SHAPE_SPACE_ELASTIC_CURVES_H
 
+#include <pcs/internal/lanes.h>
 #include <pcs/shape_space/Branch_paths.h>
 
 #include <Eigen/Core>
@@ -106,10 +107,10 @@ public:
     : m_size(number_of_samples),
       m_steepest(static_cast<std::size_t>(largest_step)),
       m_slopes(make_slopes(largest_step)),
-      m_turned(static_cast<Eigen::Index>(number_of_samples), 3),
-      m_dots(number_of_samples * number_of_samples),
-      m_best(number_of_samples * number_of_samples),
-      m_step(number_of_samples * number_of_samples),
+      m_stride(margin + (number_of_samples + lanes - 1) / lanes * lanes),
+      m_turned(Eigen::MatrixX3d::Zero(static_cast<Eigen::Index>(m_stride - margin), 3)),
+      m_dots(number_of_samples * m_stride, 0),
+      m_best(number_of_samples * m_stride, -std::numeric_limits<double>::infinity()),
       m_gamma(number_of_samples)
   {
     for (const Slope& s : m_slopes) {
@@ -132,20 +133,17 @@ public:
   operator()(const Sampled_curve& one, const Sampled_curve& two, const Eigen::Matrix3d& rotation)
   {
     const std::size_t n = m_size;
-    m_turned.noalias() = two.tangents.transpose() * rotation.transpose();
-    Eigen::Map<Eigen::MatrixXd> dots(m_dots.data(),
-                                     static_cast<Eigen::Index>(n),
-                                     static_cast<Eigen::Index>(n));
-    for (Eigen::Index i = 0; i < dots.cols(); ++i) // column i: all places of curve 2
-      dots.col(i) = m_turned.col(0) * one.tangents(0, i) + m_turned.col(1) * one.tangents(1, i) +
-                    m_turned.col(2) * one.tangents(2, i);
+    m_turned.topRows(static_cast<Eigen::Index>(n)).noalias() =
+        two.tangents.transpose() * rotation.transpose();
+    for (std::size_t i = 0; i < n; ++i)
+      find_dots(i, one.tangents.col(static_cast<Eigen::Index>(i)));
     std::fill(m_best.begin(), m_best.end(), -std::numeric_limits<double>::infinity());
-    m_best[0] = 0;
+    m_best[margin] = 0;
     for (std::size_t i = 1; i < n; ++i)
       for (std::size_t k = 0; k < m_slopes.size(); ++k)
         if (m_slopes[k].a <= i)
           take_step(i, k);
-    return std::max(0.0, m_best.back() / static_cast<double>(n - 1));
+    return std::max(0.0, m_best[(n - 1) * m_stride + margin + n - 1] / static_cast<double>(n - 1));
   }
 
   /// After a match: where the places of curve 1 are on curve 2, both as shares of the length, increasing from 0 to 1.
@@ -155,7 +153,7 @@ public:
     std::size_t i = n - 1, j = n - 1;
     m_gamma[i] = static_cast<double>(j);
     while (i > 0) {
-      const Slope s = m_slopes[m_step[i * n + j]];
+      const Slope s = step_to(i, j);
       for (std::size_t x = 1; x <= s.a; ++x)
         m_gamma[i - x] = static_cast<double>(j) - static_cast<double>(x * s.b) / s.a;
       i -= s.a;
@@ -178,7 +176,7 @@ private:
     const std::size_t last = std::min(m_steepest * i, n - 1 - (rest + m_steepest - 1) / m_steepest);
     if (first > last)
       return;
-    const Span span{i, first, last - first + 1};
+    const Span span{i, first / lanes * lanes, last + 1};
     switch (a) {
     case 1:
       return take_step<1>(span, k);
@@ -191,46 +189,93 @@ private:
     }
   }
 
-  /// Cells of a row.
+  /// Cells of a row: a multiple of the lanes, and an end.
   struct Span
   {
-    std::size_t row, first, size;
+    std::size_t row, begin, end;
   };
+
+  /// Row `i` of the products of tangents.
+  void find_dots(std::size_t i, const Vec3& tangent)
+  {
+    const auto size = static_cast<std::size_t>(m_turned.rows());
+    const double *const x = m_turned.data(), *const y = x + size, *const z = y + size;
+    double* const to = m_dots.data() + i * m_stride + margin;
+    for (std::size_t j = 0; j < size; j += lanes) {
+      Lanes a, b, c;
+      pcs::internal::load(x + j, a);
+      pcs::internal::load(y + j, b);
+      pcs::internal::load(z + j, c);
+      pcs::internal::store(a * tangent.x() + b * tangent.y() + c * tangent.z(), to + j);
+    }
+  }
 
   /// The step passes at most `Most` rows, for up to 3 exactly so many: what it gains stays in registers then.
   template <std::size_t Most>
   void take_step(const Span& span, std::size_t k)
   {
-    const std::size_t n = m_size, b = m_slopes[k].b, a = Most > 3 ? m_slopes[k].a : Most;
+    const std::size_t b = m_slopes[k].b, a = Most > 3 ? m_slopes[k].a : Most;
     std::array<const double*, Most> row;
     std::array<double, Most> w0, w1;
     for (std::size_t x = 0; x < a; ++x) {
-      row[x] = m_dots.data() + (span.row - a + x) * n + x * b / a + span.first - b;
+      row[x] = m_dots.data() + (span.row - a + x) * m_stride + margin + x * b / a - b;
       w0[x] = m_weights[k][x][0];
       w1[x] = m_weights[k][x][1];
     }
-    const double* const from = m_best.data() + (span.row - a) * n + span.first - b;
-    double* const to = m_best.data() + span.row * n + span.first;
-    std::uint8_t* const step = m_step.data() + span.row * n + span.first;
-    const auto id = static_cast<std::uint8_t>(k);
-    for (std::size_t j = 0; j < span.size; ++j) {
-      double gain = w0[0] * row[0][j]; // the first place of a step is a node of the grid
-      for (std::size_t x = 1; x < a; ++x)
-        gain += w0[x] * row[x][j] + w1[x] * row[x][j + 1];
-      const double value = from[j] + gain;
-      const bool is_better = value > to[j] + least_gain;
-      to[j] = is_better ? value : to[j];
-      step[j] = is_better ? id : step[j];
+    const double* const from = m_best.data() + (span.row - a) * m_stride + margin - b;
+    double* const to = m_best.data() + span.row * m_stride + margin;
+    for (std::size_t j = span.begin; j < span.end; j += lanes) {
+      Lanes value, gain, next, best;
+      pcs::internal::load(row[0] + j, gain); // the first place of a step is a node of the grid
+      gain = gain * w0[0];
+      for (std::size_t x = 1; x < a; ++x) {
+        pcs::internal::load(row[x] + j, value);
+        pcs::internal::load(row[x] + j + 1, next);
+        gain += value * w0[x] + next * w1[x];
+      }
+      pcs::internal::load(from + j, value);
+      value = value + gain;
+      pcs::internal::load(to + j, best);
+      pcs::internal::select_less(best + least_gain, value, value, best, best);
+      pcs::internal::store(best, to + j);
     }
   }
 
+  /// The step that the value of a cell comes from, found as it was.
+  Slope step_to(std::size_t i, std::size_t j) const
+  {
+    double best = -std::numeric_limits<double>::infinity();
+    Slope result = m_slopes[0];
+    for (std::size_t k = 0; k < m_slopes.size(); ++k) {
+      const std::size_t a = m_slopes[k].a, b = m_slopes[k].b;
+      if (a > i || b > j)
+        continue;
+      const double* const row = m_dots.data() + (i - a) * m_stride + margin + j - b;
+      double gain = m_weights[k][0][0] * row[0];
+      for (std::size_t x = 1; x < a; ++x) {
+        const double* const at = row + x * m_stride + x * b / a;
+        gain += m_weights[k][x][0] * at[0] + m_weights[k][x][1] * at[1];
+      }
+      const double value = m_best[(i - a) * m_stride + margin + j - b] + gain;
+      if (value > best + least_gain) {
+        best = value;
+        result = m_slopes[k];
+      }
+    }
+    return result;
+  }
+
+  static constexpr std::size_t lanes = 2;
+  static constexpr std::size_t margin = 6; // left of each row: steps that begin there gain nothing
+  using Lanes = pcs::internal::Double2;
+
   std::size_t m_size, m_steepest;
   Slopes m_slopes;
-  Eigen::Matrix<double, Eigen::Dynamic, 3> m_turned; // tangents of curve 2
+  std::size_t m_stride;      // of rows
+  Eigen::MatrixX3d m_turned; // tangents of curve 2
   std::vector<std::vector<std::array<double, 2>>>
       m_weights; // per slope and row of it: of a cell and the next one
   std::vector<double> m_dots, m_best;
-  std::vector<std::uint8_t> m_step;
   std::vector<double> m_gamma;
 };
 
