@@ -344,7 +344,9 @@ BOOST_AUTO_TEST_CASE(regularised_it_is_nearly_the_same)
   BOOST_TEST(exact.remaining < 0.3);
   BOOST_TEST(regularised.violation < 1e-3);
   std::size_t number_alike = 0;
-  const auto arcs = main_arcs(problem, exact), others = main_arcs(problem, regularised);
+  const auto arcs = main_arcs(problem, exact);
+  auto others = main_arcs(problem, regularised);
+  std::sort(others.begin(), others.end());
   for (const std::uint32_t k : arcs)
     number_alike += std::binary_search(others.begin(), others.end(), k) ? 1 : 0;
   BOOST_TEST_MESSAGE(number_alike << " of " << arcs.size() << " partners alike");
@@ -380,6 +382,31 @@ BOOST_AUTO_TEST_CASE(a_gap_of_one_scan_does_not_shift_what_is_around_it)
   BOOST_TEST_MESSAGE("a gap: " << partial << ", all carried " << full << " spacings");
   BOOST_TEST(partial < 1.3);
   BOOST_TEST(full > 2);
+}
+
+BOOST_AUTO_TEST_CASE(the_partner_with_most_mass_comes_first)
+{
+  std::mt19937 random(17);
+  const std::vector<Vec3> one = cylinder(random, 200), two = cylinder(random, 500);
+  Transport_problem problem;
+  const Transport_plan plan = match_places(Places(one), Places(two), Transport_options(), problem);
+  std::vector<double> mass(problem.arcs.size(), 0), most(one.size(), 0);
+  for (const auto& flow : plan.flows) {
+    mass[flow.arc] = flow.mass;
+    double& m = most[problem.arcs[flow.arc].source];
+    m = std::max(m, flow.mass);
+  }
+  std::size_t last = none, number_of_others = 0;
+  for (const std::uint32_t k : main_arcs(problem, plan)) {
+    const std::size_t source = problem.arcs[k].source;
+    BOOST_TEST((last == none || source >= last));
+    if (source != last)
+      BOOST_TEST(mass[k] == most[source]);
+    else
+      ++number_of_others;
+    last = source;
+  }
+  BOOST_TEST(number_of_others > 100u);
 }
 
 BOOST_AUTO_TEST_CASE(nothing_goes_beyond_the_reach)

@@ -47,7 +47,8 @@ struct Orl_correspondences
   std::array<double, 4> turn =
       {1, 0, 0, 0}; ///< quaternion w, x, y, z of the turn after which tree 2 stands like tree 1
   std::vector<Branch> branches; ///< parents first
-  std::vector<Pair> pairs;      ///< by edge
+  std::vector<Pair>
+      pairs; ///< by edge; of the partners of a point of tree 1, the main one comes first
 };
 
 } // namespace pcs

@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -142,7 +143,7 @@ inline std::vector<std::size_t> places_that_lack_arcs(const std::vector<Vec3>& o
 } // namespace internal
 
 /// The arcs that carry most of what leaves a source or reaches a target, and where nothing does the cheapest: every point keeps
-/// a partner, and few have two.
+/// a partner, and few have two. By sources; of each, the one that carries most comes first.
 inline std::vector<std::uint32_t> main_arcs(const Transport_problem& problem,
                                             const Transport_plan& plan)
 {
@@ -167,7 +168,13 @@ inline std::vector<std::uint32_t> main_arcs(const Transport_problem& problem,
   for (const Choice& c : best)
     if (c.arc != none)
       arcs.push_back(static_cast<std::uint32_t>(c.arc));
-  std::sort(arcs.begin(), arcs.end());
+  const auto rank = [&](std::uint32_t k) {
+    const std::uint32_t source = problem.arcs[k].source;
+    return std::make_tuple(source, best[source].arc != k, k);
+  };
+  std::sort(arcs.begin(), arcs.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return rank(a) < rank(b);
+  });
   arcs.erase(std::unique(arcs.begin(), arcs.end()), arcs.end());
   return arcs;
 }
