@@ -35,7 +35,7 @@ struct Transport_options
       true; ///< cost is the squared distance, as a 2-Wasserstein distance wants; the text's is not
   /// Mass goes at most that many times the median distance between nearest points of the two trees. What finds no room within it, as
   /// opposite of a gap of the other scan, shifts nothing: its partner is the nearest point. Infinite: all is carried, as in the text.
-  double reach = 3;
+  double reach = 2;
   std::size_t number_of_neighbors = 16; ///< candidates of each point in the other tree
   std::size_t largest_window =
       1000; ///< points of a tree that are transported together, at most twice as many
