@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -107,37 +108,30 @@ inline double extent(const std::vector<Vec3>& one, const std::vector<Vec3>& two)
   return (high - low).norm();
 }
 
-/// Places that keep mass, sources first: all, or if it may stay sources that have a target within reach that keeps mass, too. Had
-/// there been an arc between these, it would have carried.
-inline std::vector<std::size_t> places_that_lack_arcs(const std::vector<Vec3>& one,
-                                                      const std::vector<Vec3>& two,
-                                                      const Transport_plan& plan,
-                                                      bool is_partial,
-                                                      double reach)
+/// Sources that keep mass although a target within `reach` does, too. Had there been an arc between these, it would have carried.
+inline std::vector<std::size_t> sources_that_lack_arcs(const std::vector<Vec3>& one,
+                                                       const std::vector<Vec3>& two,
+                                                       const Transport_plan& plan,
+                                                       double reach)
 {
-  const std::size_t n = one.size();
-  std::vector<std::size_t> unmet;
+  std::vector<std::size_t> sources;
   std::vector<Vec3> targets;
-  for (std::size_t v = 0; v < plan.is_unmet.size(); ++v)
-    if (plan.is_unmet[v]) {
-      unmet.push_back(v);
-      if (v >= n)
-        targets.push_back(two[v - n]);
-    }
-  if (!is_partial)
-    return unmet;
-  std::vector<std::size_t> result;
+  for (std::size_t i = 0; i < one.size(); ++i)
+    if (plan.is_unmet[i])
+      sources.push_back(i);
+  for (std::size_t j = 0; j < two.size(); ++j)
+    if (plan.is_unmet[one.size() + j])
+      targets.push_back(two[j]);
   if (targets.empty())
-    return result;
+    return {};
   const neighborhood::Nearest_neighbors search(targets);
   std::vector<neighborhood::Nearest_neighbors::Neighbor> found;
-  for (const std::size_t v : unmet)
-    if (v < n) {
-      search(one[v], 1, found);
-      if (found[0].squared_distance < reach * reach)
-        result.push_back(v);
-    }
-  return result;
+  const auto is_far = [&](std::size_t i) {
+    search(one[i], 1, found);
+    return found[0].squared_distance >= reach * reach;
+  };
+  sources.erase(std::remove_if(sources.begin(), sources.end(), is_far), sources.end());
+  return sources;
 }
 
 } // namespace internal
@@ -180,7 +174,7 @@ inline std::vector<std::uint32_t> main_arcs(const Transport_problem& problem,
 }
 
 /// Transport between two sets of places where points are. What goes no farther than the reach is carried, and the rest stays.
-/// Candidates are nearest neighbours both ways; for places that keep mass although they could reach more, more are taken.
+/// Candidates are nearest neighbours both ways; for sources that keep mass although they could reach more, more are taken.
 inline Transport_plan match_places(const Places& places_1,
                                    const Places& places_2,
                                    const Transport_options& options,
@@ -190,7 +184,7 @@ inline Transport_plan match_places(const Places& places_1,
   const neighborhood::Nearest_neighbors search_1(one), search_2(two);
   const std::size_t n = one.size(), m = two.size();
   problem = Transport_problem();
-  std::vector<std::size_t> wanted(n + m, options.number_of_neighbors);
+  std::vector<std::size_t> wanted(n + m, options.number_of_neighbors); // candidates of each
   std::vector<double> nearest(n + m); // squared distances to the other side
   std::vector<std::pair<std::uint32_t, std::uint32_t>> arcs;
   std::vector<neighborhood::Nearest_neighbors::Neighbor> found;
@@ -218,18 +212,19 @@ inline Transport_plan match_places(const Places& places_1,
       problem.demands = internal::weights_of(places_2, areas_2, options.weights);
       areas.insert(areas.end(), areas_2.begin(), areas_2.end());
       reach = options.reach * internal::usual_distance(nearest, areas);
+      if (!(reach < internal::extent(one, two)))
+        reach = std::numeric_limits<double>::infinity();
     }
-    const bool is_partial = reach < internal::extent(one, two);
     const Transport_plan plan =
-        is_partial
+        std::isfinite(reach)
             ? solve_partially(problem, 0.5 * (options.is_squared ? reach * reach : reach), options)
             : solve_transport(problem, options);
     if (options.method == Point_transport::sinkhorn)
       return plan;
     bool can_grow = false;
-    for (const std::size_t v : internal::places_that_lack_arcs(one, two, plan, is_partial, reach))
-      if (wanted[v] < (v < n ? m : n)) {
-        wanted[v] *= 4;
+    for (const std::size_t i : internal::sources_that_lack_arcs(one, two, plan, reach))
+      if (wanted[i] < m) {
+        wanted[i] *= 4;
         can_grow = true;
       }
     if (!can_grow)
