@@ -3,10 +3,15 @@
 // Elastic matching of curves whose correspondence is known.
 
 #include <pcs/shape_space/elastic_curves.h>
+#include <support/drawn.h>
 
 #include <boost/test/unit_test.hpp>
 
+#include <Eigen/Geometry>
+
 #include <cmath>
+#include <limits>
+#include <random>
 
 namespace test_elastic_curves {
 
@@ -34,9 +39,96 @@ double energy(Elastic_matcher& matcher, const Sampled_curve& a, const Sampled_cu
          2 * std::sqrt(a.length * b.length) * matcher(a, b, Eigen::Matrix3d::Identity());
 }
 
+/// A curve whose tangents turn at random, in space.
+Sampled_curve random_curve(std::mt19937& random, std::size_t n)
+{
+  std::normal_distribution<double> normal;
+  const auto drawn = [&] { return pcs_test::drawn<Vec3>([&] { return normal(random); }); };
+  Sampled_curve curve;
+  curve.tangents.resize(3, static_cast<Eigen::Index>(n));
+  Vec3 t = drawn();
+  for (Eigen::Index i = 0; i < curve.tangents.cols(); ++i) {
+    t = (t.normalized() + 0.3 * drawn()).normalized();
+    curve.tangents.col(i) = t;
+  }
+  return curve;
+}
+
+/// Agreement of the tangents at node `i` of curve 1 and at `place`, in nodes, of curve 2.
+double agreement(const Sampled_curve& one, const Eigen::Matrix3Xd& two, std::size_t i, double place)
+{
+  const auto j = std::min(two.cols() - 2, static_cast<Eigen::Index>(place));
+  const double f = place - static_cast<double>(j);
+  return one.tangents.col(static_cast<Eigen::Index>(i))
+      .dot((1 - f) * two.col(j) + f * two.col(j + 1));
+}
+
+/// The largest M of paths through the grid, cell by cell.
+double largest_agreement(const Sampled_curve& one, const Eigen::Matrix3Xd& two, int largest_step)
+{
+  const auto n = static_cast<std::size_t>(two.cols());
+  std::vector<std::vector<double>> best(
+      n,
+      std::vector<double>(n, -std::numeric_limits<double>::infinity()));
+  best[0][0] = 0;
+  for (std::size_t i = 1; i < n; ++i)
+    for (std::size_t j = 1; j < n; ++j)
+      for (const Slope& s : make_slopes(largest_step))
+        if (s.a <= i && s.b <= j) {
+          const double slope = static_cast<double>(s.b) / s.a;
+          double value = best[i - s.a][j - s.b];
+          for (std::size_t x = 0; x < s.a; ++x)
+            value += std::sqrt(slope) *
+                     agreement(one,
+                               two,
+                               i - s.a + x,
+                               static_cast<double>(j - s.b) + slope * static_cast<double>(x));
+          best[i][j] = std::max(best[i][j], value);
+        }
+  return std::max(0.0, best[n - 1][n - 1] / static_cast<double>(n - 1));
+}
+
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(elastic_curves)
+
+BOOST_AUTO_TEST_CASE(no_path_through_the_grid_agrees_better)
+{
+  std::mt19937 random(1);
+  for (const std::size_t n : {std::size_t(9), std::size_t(24), std::size_t(25)})
+    for (const int largest_step : {3, 6})
+      for (int repetition = 0; repetition < 5; ++repetition) {
+        const Sampled_curve one = random_curve(random, n), two = random_curve(random, n);
+        const Eigen::Matrix3d r =
+            Eigen::AngleAxisd(repetition, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+        Elastic_matcher matcher(n, largest_step);
+        const double found = matcher(one, two, r);
+        const Eigen::Matrix3Xd turned = r * two.tangents;
+        BOOST_TEST(std::abs(found - largest_agreement(one, turned, largest_step)) < 1e-8);
+        // and it is what the correspondence gives
+        const std::vector<double> gamma = matcher.gamma();
+        const double steps = static_cast<double>(n - 1);
+        double along = 0;
+        for (std::size_t i = 0; i + 1 < n; ++i)
+          along += std::sqrt((gamma[i + 1] - gamma[i]) * steps) *
+                   agreement(one, turned, i, gamma[i] * steps) / steps;
+        if (found > 0)
+          BOOST_TEST(std::abs(found - along) < 1e-8);
+      }
+}
+
+BOOST_AUTO_TEST_CASE(along_straight_pieces_the_plain_correspondence_is_kept)
+{
+  for (int k = 0; k < 20; ++k) {
+    const auto straight = [&](double) { return 0.1 + 0.3 * k; };
+    const auto a = make_curve(25, 4, straight), b = make_curve(25, 1, straight);
+    Elastic_matcher matcher(25, 3);
+    matcher(a, b, Eigen::AngleAxisd(0.07 * k, Vec3::UnitZ()).toRotationMatrix());
+    const std::vector<double> gamma = matcher.gamma();
+    for (std::size_t i = 0; i < gamma.size(); ++i)
+      BOOST_TEST(std::abs(gamma[i] - static_cast<double>(i) / 24) < 1e-12);
+  }
+}
 
 BOOST_AUTO_TEST_CASE(straight_curves_cost_what_their_lengths_say)
 {
