@@ -137,7 +137,8 @@ public:
         \npdefault changed energy; `is_published` gives the text's
       \np{assignment_options} of points to branches
         \nptype `shape_space::Assignment_options`
-      \np{transport_options} of the correspondence of points: exact or by Sinkhorn's algorithm, and sizes
+      \np{transport_options} of the correspondence of points: exact or by Sinkhorn's algorithm, how far mass
+        is carried, and sizes
         \nptype `shape_space::Transport_options`
       \np{alignment} whether the second of two trees may stand turned about the vertical
         \nptype `shape_space::Alignment`

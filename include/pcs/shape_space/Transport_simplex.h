@@ -39,9 +39,9 @@ struct Transport_plan
   double cost = 0;         ///< sum of mass times cost
   double violation =
       0; ///< sum over sources and targets of the mass that differs from what was asked for
-  double remaining = 0;             ///< mass that stays where it is, of 1: of a partial transport
-  std::vector<char> is_unmet;       ///< per source, then per target: mass that no arc takes
-  bool is_complete = false;         ///< nothing unmet, and the method came to its end
+  double remaining = 0;       ///< mass that stays where it is, of 1: of a partial transport
+  std::vector<char> is_unmet; ///< per source, then per target: mass that no arc takes
+  bool is_complete = false;   ///< nothing unmet but what may stay, and the method came to its end
   std::size_t number_of_pivots = 0; ///< of the network simplex
 };
 
