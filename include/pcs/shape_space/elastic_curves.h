@@ -236,7 +236,7 @@ private:
       pcs::internal::load(from + j, value);
       value = value + gain;
       pcs::internal::load(to + j, best);
-      pcs::internal::select_less(best + least_gain, value, value, best, best);
+      pcs::internal::select_less(best, value, value, best, best);
       pcs::internal::store(best, to + j);
     }
   }
