@@ -15,7 +15,7 @@
 #include "program/read_edit.h"
 #include "program/run_program.h"
 #include "program/run_session.h"
-#include <pcs/IO/Point_table.h>
+#include <pcs/IO/points/Point_table.h>
 #include <pcs/IO/read_points.h>
 #include <pcs/IO/write_points.h>
 #include <pcs/core/Similarity.h>

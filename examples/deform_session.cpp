@@ -59,7 +59,7 @@ int main()
   std::size_t passes = 0;
   for (int frame = 1; frame <= 30; ++frame) {
     session.set_rotation(handle, Kernel::Vector_3(1, 0, 0), frame * CGAL_PI / 180);
-    passes += session.deform(pcs::Start::warm).number_of_iterations;
+    passes += session.deform(pcs::Solver_start::warm).number_of_iterations;
   }
   session.deform();
   //! [drag]

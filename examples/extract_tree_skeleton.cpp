@@ -10,8 +10,8 @@
 #include "program/run_program.h"
 #include "program/skeleton_report.h"
 #include "program/up_direction.h"
-#include <pcs/IO/Point_table.h>
 #include <pcs/IO/internal/Output_file.h>
+#include <pcs/IO/points/Point_table.h>
 #include <pcs/IO/read_points.h>
 #include <pcs/IO/read_swc.h>
 #include <pcs/IO/write_cylinders.h>
@@ -51,9 +51,9 @@ namespace program {
 using Kernel = CGAL::Simple_cartesian<double>;
 using Tree = pcs::Tree_skeleton<Kernel>;
 
-pcs::skeleton::Section_fit section_fit(const std::string& name)
+pcs::Section_fit section_fit(const std::string& name)
 {
-  using pcs::skeleton::Section_fit;
+  using pcs::Section_fit;
   if (name == "ellipse")
     return Section_fit::ellipse;
   if (name == "circle")
@@ -61,9 +61,9 @@ pcs::skeleton::Section_fit section_fit(const std::string& name)
   return name == "by_arc" ? Section_fit::by_arc : Section_fit::conic;
 }
 
-pcs::skeleton::Leaf_removal leaf_removal(const Skeleton_options& options, bool is_labelled)
+pcs::Leaf_removal leaf_removal(const Skeleton_options& options, bool is_labelled)
 {
-  using pcs::skeleton::Leaf_removal;
+  using pcs::Leaf_removal;
   if (is_labelled || options.do_keep_leaves)
     return Leaf_removal::never;
   return options.do_remove_leaves ? Leaf_removal::always : Leaf_removal::where_found;
@@ -152,16 +152,16 @@ pcs::Skeleton_report extract(const std::string& input,
     line.show("skeleton", f);
     return true;
   };
-  pcs::skeleton::Slice_rules slices;
+  pcs::Slice_options slices;
   slices.fit = section_fit(options.fit);
   slices.do_mark_support = !options.do_fit_all;
   if (options.do_use_all)
     slices.highest_count = 0;
-  const auto method = options.method == "chains" ? pcs::skeleton::Skeleton_method::chains
-                                                 : pcs::skeleton::Skeleton_method::sections;
+  const auto method =
+      options.method == "chains" ? pcs::Skeleton_method::chains : pcs::Skeleton_method::sections;
   const auto np = pcs::parameters::point_map(points)
                       .skeleton_method(method)
-                      .slice_rules(slices)
+                      .slice_options(slices)
                       .up_direction(up_direction<Kernel>(options.up))
                       .breast_height(options.breast_height)
                       .do_register_stations(!options.do_keep_stations)

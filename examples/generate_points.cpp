@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSL-1.0
 // Writes a closed surface with bumps as a point file of any size, without holding it in memory.
 
-#include <pcs/IO/Point_schema.h>
-#include <pcs/IO/Point_table.h>
 #include <pcs/IO/Point_writer.h>
-#include <pcs/IO/Write_options.h>
+#include <pcs/IO/points/Point_schema.h>
+#include <pcs/IO/points/Point_table.h>
+#include <pcs/IO/points/Write_options.h>
 
 #include <algorithm>
 #include <charconv>

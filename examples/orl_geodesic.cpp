@@ -54,9 +54,9 @@ bool is_stored(const Options& o)
          (!o.correspondences.empty() && std::filesystem::exists(o.correspondences, error));
 }
 
-pcs::shape_space::Matching_weights weights_of(const Options& o)
+pcs::Matching_weights weights_of(const Options& o)
 {
-  pcs::shape_space::Matching_weights weights;
+  pcs::Matching_weights weights;
   weights.is_published = o.is_published;
   return weights;
 }
@@ -90,9 +90,10 @@ build(Space& space, const Options& o, const std::optional<pcs::Orl_correspondenc
   Transport_options transport;
   if (o.transport == "sinkhorn")
     transport.method = Point_transport::sinkhorn;
-  const Orientation orientation = o.orientation == "world-axes"    ? Orientation::world_axes
-                                  : o.orientation == "transported" ? Orientation::transported
-                                                                   : Orientation::gauge_fixed;
+  const Orl_orientation orientation = o.orientation == "world-axes" ? Orl_orientation::world_axes
+                                      : o.orientation == "transported"
+                                          ? Orl_orientation::transported
+                                          : Orl_orientation::gauge_fixed;
   const std::function<bool(double)> callback = [&](double f) {
     line.show("correspondences", f);
     return true;
@@ -106,12 +107,12 @@ build(Space& space, const Options& o, const std::optional<pcs::Orl_correspondenc
     }
   // of more trees, each stands as it was given
   const bool may_turn = o.align == "turns" && o.number_of_trees() == 2;
-  pcs::Orl_report report =
-      space.build(form.matching_weights(weights_of(o))
-                      .transport_options(transport)
-                      .alignment(may_turn ? Alignment::turns : Alignment::as_given)
-                      .up_direction(program::up_direction<Kernel>(o.up))
-                      .callback(callback));
+  pcs::Orl_report report = space.build(
+      form.matching_weights(weights_of(o))
+          .transport_options(transport)
+          .alignment(may_turn ? Orl_alignment::rotate_about_up : Orl_alignment::as_given)
+          .up_direction(program::up_direction<Kernel>(o.up))
+          .callback(callback));
   if (!o.correspondences.empty()) {
     pcs::Orl_correspondences found = space.correspondences();
     found.note = method(o);
@@ -121,14 +122,14 @@ build(Space& space, const Options& o, const std::optional<pcs::Orl_correspondenc
 }
 
 /// Trees that grew at their tips have branches that go on where those of the other tree end.
-pcs::shape_space::Birth_order birth_order(const Space& space, const Options& o)
+pcs::Branch_emergence branch_emergence(const Space& space, const Options& o)
 {
-  using pcs::shape_space::Birth_order;
+  using pcs::Branch_emergence;
   bool is_in_order = o.do_order_births;
   if (!is_in_order && !o.do_join_births && o.load.empty() && o.number_of_trees() == 2)
     for (const auto& branch : space.correspondences().branches)
       is_in_order = is_in_order || branch.is_continued[0] || branch.is_continued[1];
-  return is_in_order ? Birth_order::in_order : Birth_order::together;
+  return is_in_order ? Branch_emergence::sequential : Branch_emergence::simultaneous;
 }
 
 std::string matches_text(const Space& space, const Tree_file& one, const Tree_file& two)
@@ -149,7 +150,7 @@ nlohmann::ordered_json report_json(const Space& space,
                                    bool is_stored,
                                    const std::vector<double>& turns)
 {
-  using pcs::shape_space::Orl_metric;
+  using pcs::Orl_metric;
   const pcs::Orl_tree a = space.tree(0), b = space.tree(1);
   nlohmann::ordered_json json;
   json["status"] = pcs::to_string(r.status);
@@ -174,7 +175,7 @@ nlohmann::ordered_json report_json(const Space& space,
     json["number_of_failed_windows"] = r.number_of_failed_windows;
     json["marginal_violation"] = {{"worst", r.worst_marginal_violation},
                                   {"mean", r.mean_marginal_violation}};
-    json["mean_remaining_mass"] = r.mean_remaining_mass;
+    json["mean_remaining_mass"] = r.untransported_mass_share;
   }
   json["number_of_edges"] = r.number_of_edges;
   if (o.load.empty()) {
@@ -286,7 +287,7 @@ void run(const Options& o)
   if (o.has_places()) {
     const auto path = np::maximal_turn(o.maximal_turn * CGAL_PI / 180)
                           .do_limit_radii(o.do_limit_radii)
-                          .birth_order(birth_order(space, o));
+                          .branch_emergence(branch_emergence(space, o));
     for (const double lambda : o.lambda)
       write_tree(space, space.geodesic(0, 1, lambda, path), files, o, name_of(lambda));
   }

@@ -8,7 +8,7 @@
 #include "program/check_output.h"
 #include "program/run_program.h"
 #include "program/up_direction.h"
-#include <pcs/IO/Point_table.h>
+#include <pcs/IO/points/Point_table.h>
 #include <pcs/IO/read_points.h>
 #include <pcs/IO/write_points.h>
 #include <pcs/core/errors.h>

@@ -7,7 +7,7 @@
 #include "program/Scan_options.h"
 #include "program/check_output.h"
 #include "program/run_program.h"
-#include <pcs/IO/Point_table.h>
+#include <pcs/IO/points/Point_table.h>
 #include <pcs/IO/read_swc.h>
 #include <pcs/IO/read_tree_csv.h>
 #include <pcs/IO/write_points.h>

@@ -151,7 +151,7 @@ BOOST_AUTO_TEST_CASE(the_path_has_constant_speed_whatever_the_signs_of_quaternio
 BOOST_AUTO_TEST_CASE(branches_born_in_order_make_a_shortest_path_of_constant_speed)
 {
   const Small_space space;
-  const auto in_order = np::birth_order(Birth_order::in_order);
+  const auto in_order = np::branch_emergence(Branch_emergence::sequential);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(0, 1);
   const double d = space.distance(Space::Handle(0), Space::Handle(1));
@@ -184,7 +184,7 @@ BOOST_AUTO_TEST_CASE(wood_that_is_born_in_order_stays_and_branches_wait_for_thei
     return pcs_test::make_tree<Kernel>(r);
   };
   Matching_weights weights;
-  weights.growth = Growth::at_tips;
+  weights.growth = Branch_growth::at_tips;
   Space space;
   space.add_skeleton(rows(false));
   space.add_skeleton(rows(true));
@@ -194,7 +194,8 @@ BOOST_AUTO_TEST_CASE(wood_that_is_born_in_order_stays_and_branches_wait_for_thei
   for (int k = 1; k < 40; ++k) {
     const double lambda = k / 40.;
     pcs::Tree_skeleton<Kernel> tree;
-    space.skeleton(space.geodesic(0, 1, lambda, np::birth_order(Birth_order::in_order)), tree);
+    space.skeleton(space.geodesic(0, 1, lambda, np::branch_emergence(Branch_emergence::sequential)),
+                   tree);
     double length = 0, top = 0, side = 0, twig = 0;
     for (const auto e : boost::make_iterator_range(edges(tree)))
       length +=
@@ -274,7 +275,7 @@ BOOST_AUTO_TEST_CASE(the_report_tells_what_had_no_room_in_the_other_scan)
     const auto report = space.build(np::transport_options(transport));
     BOOST_TEST(report.worst_marginal_violation < 1e-9);
     BOOST_TEST(report.number_of_failed_windows == 0u);
-    return report.mean_remaining_mass;
+    return report.untransported_mass_share;
   };
   BOOST_TEST(remaining(scan, 3) < 1e-12);
   BOOST_TEST(remaining(side, 3) > 0.05);
@@ -406,7 +407,7 @@ BOOST_AUTO_TEST_CASE(a_tree_turned_as_a_whole_is_as_far_away_as_it_was_turned)
   Space world;
   world.add_skeleton(a);
   world.add_skeleton(b);
-  world.build(np::do_use_unit_weights(true).orientation(Orientation::world_axes));
+  world.build(np::do_use_unit_weights(true).orientation(Orl_orientation::world_axes));
   BOOST_TEST(world.distance(0, 1) > 10 * angle);
 }
 
@@ -480,7 +481,7 @@ BOOST_AUTO_TEST_CASE(noise_of_an_axis_does_not_turn_what_is_behind_it)
     }
     return tree;
   };
-  const auto mean_tilt = [&](Orientation orientation) {
+  const auto mean_tilt = [&](Orl_orientation orientation) {
     double result = 0;
     for (unsigned seed = 0; seed < 10; ++seed) {
       Space space;
@@ -495,10 +496,10 @@ BOOST_AUTO_TEST_CASE(noise_of_an_axis_does_not_turn_what_is_behind_it)
     }
     return result;
   };
-  BOOST_TEST(mean_tilt(Orientation::gauge_fixed) <
+  BOOST_TEST(mean_tilt(Orl_orientation::gauge_fixed) <
              0.15); // 0.10; 0.54 if each edge referred to the one before
   // control: there it does
-  BOOST_TEST(mean_tilt(Orientation::transported) > 0.4);
+  BOOST_TEST(mean_tilt(Orl_orientation::transported) > 0.4);
 }
 
 BOOST_AUTO_TEST_CASE(beyond_the_ends_lengths_and_radii_stay_positive)
@@ -577,7 +578,7 @@ BOOST_AUTO_TEST_CASE(growth_at_tips_is_believed_where_it_explains_clearly_more)
 {
   int number_of_close_calls = 0;
   for (unsigned seed = 1; seed <= 8; ++seed) {
-    const auto share = [&](Growth growth, bool& is_at_tips) {
+    const auto share = [&](Branch_growth growth, bool& is_at_tips) {
       Matching_weights weights;
       weights.growth = growth;
       Space space;
@@ -588,11 +589,11 @@ BOOST_AUTO_TEST_CASE(growth_at_tips_is_believed_where_it_explains_clearly_more)
       return report.unexplained_share;
     };
     bool is_at_tips = true;
-    const double along = share(Growth::along_branches, is_at_tips);
+    const double along = share(Branch_growth::along_branches, is_at_tips);
     BOOST_TEST(!is_at_tips);
-    const double tips = share(Growth::at_tips, is_at_tips);
+    const double tips = share(Branch_growth::at_tips, is_at_tips);
     BOOST_TEST(is_at_tips);
-    const double any = share(Growth::any, is_at_tips);
+    const double any = share(Branch_growth::any, is_at_tips);
     BOOST_TEST(is_at_tips == (tips < 2. / 3 * along));
     BOOST_TEST(any == (is_at_tips ? tips : along));
     number_of_close_calls += tips < along && !is_at_tips ? 1 : 0;

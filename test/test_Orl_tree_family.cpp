@@ -6,12 +6,12 @@
 #include <pcs/IO/read_txtskl.h>
 #include <pcs/IO/write_shape_space.h>
 #include <pcs/Orl_shape_space.h>
-#include <pcs/shape_space/Tangent_space.h>
-#include <pcs/shape_space/find_modes.h>
-#include <pcs/shape_space/keep_in_range.h>
-#include <pcs/shape_space/limit_pipes.h>
-#include <pcs/shape_space/mean_rotation.h>
-#include <pcs/shape_space/mean_tree.h>
+#include <pcs/shape_space/embedding/mean_rotation.h>
+#include <pcs/shape_space/path/apply_pipe_model.h>
+#include <pcs/shape_space/statistics/Tangent_space.h>
+#include <pcs/shape_space/statistics/find_modes.h>
+#include <pcs/shape_space/statistics/mean_tree.h>
+#include <pcs/shape_space/statistics/project_to_range.h>
 #include <support/archetypes.h>
 #include <support/drawn.h>
 #include <support/exceptions.h>
@@ -166,7 +166,7 @@ BOOST_AUTO_TEST_CASE(the_axioms_hold_on_the_shared_topology)
     std::vector<double> w(space.number_of_trees());
     for (double& x : w)
       x = std::abs(normal(random));
-    return space.combination(w);
+    return space.weighted_mean(w);
   };
   for (int i = 0; i < 200; ++i) {
     const pcs::Orl_tree x = draw(), y = draw(), z = draw();
@@ -205,7 +205,7 @@ BOOST_AUTO_TEST_CASE(the_order_of_the_trees_does_not_matter)
       for (std::size_t b = 0; b < a; ++b)
         BOOST_TEST(std::abs(permuted.distance(a, b) - space.distance(order[a], order[b])) <
                    1e-6 * space.distance(order[a], order[b]));
-    for (const Tree_mean kind : {Tree_mean::least_sum, Tree_mean::least_squares}) {
+    for (const Tree_mean kind : {Tree_mean::median, Tree_mean::frechet}) {
       const pcs::Orl_tree m = space.mean(np::tree_mean(kind)),
                           p = permuted.mean(np::tree_mean(kind));
       // roots of both are in the axes of their first tree, which is at the same place here
@@ -275,7 +275,7 @@ BOOST_AUTO_TEST_CASE(no_tree_near_the_mean_is_better)
   std::normal_distribution<double> normal;
   for (const bool is_squared : {false, true}) {
     const Orl_coordinates mean =
-        space.mean(np::tree_mean(is_squared ? Tree_mean::least_squares : Tree_mean::least_sum))
+        space.mean(np::tree_mean(is_squared ? Tree_mean::frechet : Tree_mean::median))
             .coordinates();
     const double least = sum_of_distances(space, mean, is_squared);
     std::size_t number_better = 0;
@@ -302,12 +302,12 @@ BOOST_AUTO_TEST_CASE(the_mean_of_two_is_a_midpoint)
 {
   const Space space = make_space(relatives(2, 9));
   const double whole = space.distance(0, 1);
-  for (const Tree_mean kind : {Tree_mean::least_sum, Tree_mean::least_squares}) {
+  for (const Tree_mean kind : {Tree_mean::median, Tree_mean::frechet}) {
     const pcs::Orl_tree mean = space.mean(np::tree_mean(kind));
     BOOST_TEST(std::abs(space.distance(mean, space.tree(0)) - whole / 2) < 1e-9 * whole);
     BOOST_TEST(std::abs(space.distance(mean, space.tree(1)) - whole / 2) < 1e-9 * whole);
   }
-  const pcs::Orl_tree part = space.combination({3, 1});
+  const pcs::Orl_tree part = space.weighted_mean({3, 1});
   BOOST_TEST(space.distance(part, space.geodesic(0, 1, 0.25)) < 1e-9 * whole);
 }
 
@@ -355,15 +355,17 @@ BOOST_AUTO_TEST_CASE(combinations_are_between_and_directions_are_free)
   for (std::size_t h = 0; h < 4; ++h) {
     std::vector<double> w(4, 0);
     w[h] = 2;
-    BOOST_TEST(space.distance(space.combination(w), space.tree(h)) < 1e-9);
+    BOOST_TEST(space.distance(space.weighted_mean(w), space.tree(h)) < 1e-9);
   }
-  const pcs::Orl_tree half = space.combination({1, 1, 0, 0});
+  const pcs::Orl_tree half = space.weighted_mean({1, 1, 0, 0});
   BOOST_TEST(space.distance(half, space.geodesic(0, 1, 0.5)) < 1e-9 * space.distance(0, 1));
-  const pcs::Orl_tree moved = space.displaced(space.tree(0), space.tree(0), space.tree(1), 1);
+  const pcs::Orl_tree moved =
+      space.parallel_displacement(space.tree(0), space.tree(0), space.tree(1), 1);
   BOOST_TEST(space.distance(moved, space.tree(1)) < 1e-9 * space.distance(0, 1));
-  const pcs::Orl_tree same = space.displaced(space.tree(2), space.tree(0), space.tree(1), 0);
+  const pcs::Orl_tree same =
+      space.parallel_displacement(space.tree(2), space.tree(0), space.tree(1), 0);
   BOOST_TEST(space.distance(same, space.tree(2)) < 1e-9);
-  const pcs::Orl_tree beyond = space.combination({2, -1, 0.5, 0});
+  const pcs::Orl_tree beyond = space.weighted_mean({2, -1, 0.5, 0});
   for (const double l : beyond.coordinates().length)
     BOOST_TEST(l >= 0);
 }
@@ -380,7 +382,7 @@ BOOST_AUTO_TEST_CASE(radii_stay_positive_beyond_the_inputs)
   std::vector<std::size_t> tip;
   const Space space =
       make_space({make_tree(thick, still, all, tip), make_tree(thin, still, all, tip)});
-  const pcs::Orl_tree beyond = space.combination({-1, 2});
+  const pcs::Orl_tree beyond = space.weighted_mean({-1, 2});
   const auto& x = beyond.coordinates();
   std::size_t number_there = 0;
   for (std::size_t e = 0; e < x.length.size(); ++e)
@@ -402,8 +404,9 @@ BOOST_AUTO_TEST_CASE(equal_trees_are_no_outliers)
     for (std::size_t k = 0; k < n; ++k)
       space.add_skeleton(orl_test::random_tree(8, 3, 2));
     space.build();
-    for (const Mode_measure measure : {Mode_measure::branches, Mode_measure::metric}) {
-      const auto modes = space.modes(9, np::mode_measure(measure));
+    for (const Mode_inner_product measure :
+         {Mode_inner_product::branches, Mode_inner_product::metric}) {
+      const auto modes = space.modes(9, np::mode_inner_product(measure));
       BOOST_TEST(modes.size() == 0u);
       for (std::size_t h = 0; h < n; ++h)
         BOOST_TEST(space.outlier_score(modes, space.tree(h)) == 0);
@@ -434,8 +437,9 @@ BOOST_AUTO_TEST_CASE(all_modes_give_the_inputs_back)
     }
     BOOST_TEST(last < 1e-9 * size);
   }
-  for (const Mode_measure measure : {Mode_measure::branches, Mode_measure::metric}) {
-    const auto all = space.modes(100, np::mode_measure(measure));
+  for (const Mode_inner_product measure :
+       {Mode_inner_product::branches, Mode_inner_product::metric}) {
+    const auto all = space.modes(100, np::mode_inner_product(measure));
     BOOST_TEST(all.size() == 5u);
     const Eigen::MatrixXd products = all.scores.transpose() * all.scores / 5;
     BOOST_TEST((products - Eigen::MatrixXd::Identity(5, 5)).norm() < 1e-9); // uncorrelated
@@ -445,7 +449,7 @@ BOOST_AUTO_TEST_CASE(all_modes_give_the_inputs_back)
     const pcs::Orl_tree tree = space.tree(3);
     BOOST_TEST(space.distance(space.reconstruct(all, tree, 5), tree) <
                1e-9 * total_length(tree.coordinates()));
-    if (measure == Mode_measure::metric)
+    if (measure == Mode_inner_product::metric)
       BOOST_TEST(
           (all.directions.transpose() * all.directions - Eigen::MatrixXd::Identity(5, 5)).norm() <
           1e-9);
@@ -473,7 +477,7 @@ BOOST_AUTO_TEST_CASE(trees_that_only_lack_branches_have_modes)
   const Space space = make_space({with(4), with(2), with(4), with(2)});
   const auto modes = space.modes(3);
   BOOST_TEST_REQUIRE(modes.size() == 1u);
-  BOOST_TEST((modes.features.measure == Mode_measure::metric));
+  BOOST_TEST((modes.features.measure == Mode_inner_product::metric));
   BOOST_TEST(modes.scores(0, 0) * modes.scores(1, 0) < 0);
   BOOST_TEST(std::abs(modes.scores(0, 0) - modes.scores(2, 0)) < 1e-9);
   for (std::size_t h = 0; h < 4; ++h)
@@ -507,17 +511,17 @@ BOOST_AUTO_TEST_CASE(trees_far_out_on_a_mode_are_trees)
       check(space.tree(modes, scores));
     }
   for (const double step : {-100., -3., 4., 100.})
-    check(space.displaced(space.mean(np::tree_mean(Tree_mean::least_squares)),
-                          space.tree(0),
-                          space.tree(1),
-                          step));
+    check(space.parallel_displacement(space.mean(np::tree_mean(Tree_mean::frechet)),
+                                      space.tree(0),
+                                      space.tree(1),
+                                      step));
 }
 
 BOOST_AUTO_TEST_CASE(two_known_modes_are_found)
 {
   // trees at random places of a plane through a mean
   const Family base(5);
-  const Orl_coordinates mean = base.mean(np::tree_mean(Tree_mean::least_squares)).coordinates();
+  const Orl_coordinates mean = base.mean(np::tree_mean(Tree_mean::frechet)).coordinates();
   const Tangent_space tangent(base.layout(), mean, base.weights());
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
@@ -535,9 +539,13 @@ BOOST_AUTO_TEST_CASE(two_known_modes_are_found)
     pointers.push_back(&x);
   using Tag = CGAL::Parallel_if_available_tag;
   const Orl_coordinates middle =
-      mean_tree<Tag>(base.layout(), pointers, std::vector<double>(20, 1), Tree_mean::least_squares);
-  const auto modes =
-      find_modes<Tag>(base.layout(), pointers, base.weights(), Orientation::gauge_fixed, middle, 2);
+      mean_tree<Tag>(base.layout(), pointers, std::vector<double>(20, 1), Tree_mean::frechet);
+  const auto modes = find_modes<Tag>(base.layout(),
+                                     pointers,
+                                     base.weights(),
+                                     Orl_orientation::gauge_fixed,
+                                     middle,
+                                     2);
   BOOST_REQUIRE(modes.size() == 2u);
   BOOST_TEST(modes.share(2) > 0.98);
   Eigen::MatrixXd found = modes.directions;
@@ -607,7 +615,7 @@ BOOST_AUTO_TEST_CASE(parameters_of_grown_trees_are_found)
     BOOST_TEST(age > 0.95, age);
     BOOST_TEST(other > 0.95, other);
     // the metric takes branches that are lost for the second parameter
-    const auto plain = space.modes(2, np::mode_measure(Mode_measure::metric));
+    const auto plain = space.modes(2, np::mode_inner_product(Mode_inner_product::metric));
     BOOST_TEST(correlation(plain.scores, family.known.col(1)) < other);
   }
 }
@@ -630,11 +638,11 @@ BOOST_AUTO_TEST_CASE(left_out_trees_are_nearer_with_more_modes)
   const auto rest = find_modes<CGAL::Sequential_tag>(space.layout(),
                                                      pointers,
                                                      space.weights(),
-                                                     Orientation::gauge_fixed,
+                                                     Orl_orientation::gauge_fixed,
                                                      modes.mean,
                                                      2);
   const double d =
-      project_on_modes(space.layout(), space.weights(), Orientation::gauge_fixed, rest, x[0])
+      project_on_modes(space.layout(), space.weights(), Orl_orientation::gauge_fixed, rest, x[0])
           .distance;
   BOOST_TEST(std::abs(d - modes.left_out[0][2]) < 1e-4 * d); // covariances are iterated
 }
@@ -683,7 +691,7 @@ BOOST_AUTO_TEST_CASE(new_trees_are_different_and_within_the_inputs)
 {
   const Family space(8);
   const auto distribution = space.distribution();
-  std::vector<Tree_figures> inputs;
+  std::vector<Tree_descriptors> inputs;
   for (std::size_t h = 0; h < 8; ++h)
     inputs.push_back(space.figures(space.tree(h)));
   std::set<double> lengths;
@@ -691,20 +699,20 @@ BOOST_AUTO_TEST_CASE(new_trees_are_different_and_within_the_inputs)
   for (std::uint64_t i = 0; i < 30; ++i) {
     pcs::Sample_report report;
     const pcs::Orl_tree tree = space.sample(distribution, 11, i, np::default_values(), &report);
-    number_inside += report.excess == 0;
-    BOOST_TEST(report.excess < 0.1); // orders of few branches have narrow ranges
-    const Tree_figures f = space.figures(tree);
-    BOOST_TEST(excess(f, inputs) == report.excess);
-    // whatever `excess()` says
-    for (const auto& get : {+[](const Tree_figures& x) { return x.length; },
-                            +[](const Tree_figures& x) { return x.height; },
-                            +[](const Tree_figures& x) { return x.crown_width; },
-                            +[](const Tree_figures& x) { return x.mean_angle[1]; },
-                            +[](const Tree_figures& x) {
+    number_inside += report.range_violation == 0;
+    BOOST_TEST(report.range_violation < 0.1); // orders of few branches have narrow ranges
+    const Tree_descriptors f = space.figures(tree);
+    BOOST_TEST(range_violation(f, inputs) == report.range_violation);
+    // whatever `range_violation()` says
+    for (const auto& get : {+[](const Tree_descriptors& x) { return x.length; },
+                            +[](const Tree_descriptors& x) { return x.height; },
+                            +[](const Tree_descriptors& x) { return x.crown_width; },
+                            +[](const Tree_descriptors& x) { return x.mean_angle[1]; },
+                            +[](const Tree_descriptors& x) {
                               return static_cast<double>(x.total_number_of_branches());
                             }}) {
       double low = 1e300, high = 0;
-      for (const Tree_figures& input : inputs) {
+      for (const Tree_descriptors& input : inputs) {
         low = std::min(low, get(input));
         high = std::max(high, get(input));
       }
@@ -734,19 +742,19 @@ BOOST_AUTO_TEST_CASE(new_trees_of_a_few_are_within_them_by_order)
   for (const unsigned seed : {14u, 15u, 16u}) {
     const Space space = make_space(relatives(3, seed, 0.3, 0.3, 4));
     const auto distribution = space.distribution();
-    std::vector<Tree_figures> inputs;
+    std::vector<Tree_descriptors> inputs;
     for (std::size_t h = 0; h < 3; ++h)
       inputs.push_back(space.figures(space.tree(h)));
     std::size_t number_inside = 0;
     for (std::uint64_t i = 0; i < 12; ++i) {
       pcs::Sample_report report;
-      const Tree_figures f =
+      const Tree_descriptors f =
           space.figures(space.sample(distribution, 1, i, np::default_values(), &report));
       BOOST_TEST(report.number_of_trials <= 100u);
       bool is_inside = true;
       for (std::size_t k = 1; k < f.mean_angle.size(); ++k) {
         double count[2] = {1e300, 0}, angle[2] = {1e300, 0};
-        for (const Tree_figures& input : inputs)
+        for (const Tree_descriptors& input : inputs)
           if (k < input.mean_angle.size()) {
             const auto n = static_cast<double>(input.number_of_branches[k]);
             count[0] = std::min(count[0], n);
@@ -758,7 +766,7 @@ BOOST_AUTO_TEST_CASE(new_trees_of_a_few_are_within_them_by_order)
         is_inside = is_inside && n >= count[0] && n <= count[1] &&
                     f.mean_angle[k] > angle[0] - 1e-3 && f.mean_angle[k] < angle[1] + 1e-3;
       }
-      number_inside += is_inside && report.excess == 0;
+      number_inside += is_inside && report.range_violation == 0;
     }
     BOOST_TEST(number_inside >= 11u);
   }
@@ -817,7 +825,7 @@ BOOST_AUTO_TEST_CASE(branches_keep_their_slant)
   }
   const Space space = make_space(trees);
   const auto distribution = space.distribution();
-  Sampling_options free;
+  Tree_sampling_options free;
   free.do_keep_in_range = false;
   double spread = 0;
   for (std::uint64_t i = 0; i < 20; ++i) {
@@ -851,7 +859,7 @@ BOOST_AUTO_TEST_CASE(moments_of_new_trees_are_those_of_the_inputs)
 {
   const Space space = make_space(relatives(12, 21, 0.15, 0)); // all branches everywhere
   const auto distribution = space.distribution();
-  Sampling_options free;
+  Tree_sampling_options free;
   free.do_keep_in_range = false;
   free.truncation = 6;
   const auto figures = [&](std::size_t e, const Orl_coordinates& x) {
@@ -900,7 +908,7 @@ BOOST_AUTO_TEST_CASE(limits_hold_when_asked_for)
     const double f = t - static_cast<double>(k);
     return (1 - f) * at(k) + f * at(k + 1);
   };
-  Sampling_options options;
+  Tree_sampling_options options;
   options.do_limit_radii = true;
   options.do_keep_in_range = false;
   for (std::uint64_t i = 0; i < 10; ++i) {
@@ -959,8 +967,7 @@ BOOST_AUTO_TEST_CASE(points_follow_their_branches_in_one_order)
   }
   // the mean has part of all scans, each as much as is asked for
   const std::vector<double> weights{1, 2, 3, 2};
-  const pcs::Orl_tree mean =
-      space.mean(np::tree_weights(weights).tree_mean(Tree_mean::least_squares));
+  const pcs::Orl_tree mean = space.mean(np::tree_weights(weights).tree_mean(Tree_mean::frechet));
   std::vector<double> total(mean.number_of_points(), 0);
   std::vector<std::array<double, 4>> share(total.size(), {0, 0, 0, 0});
   space.for_each_source(mean, [&](std::size_t i, std::size_t h, std::size_t, double w) {
@@ -1044,15 +1051,16 @@ BOOST_AUTO_TEST_CASE(new_trees_of_a_real_group_are_within_it)
       space.add_skeleton(tree);
     }
     space.build();
-    std::vector<Tree_figures> inputs;
+    std::vector<Tree_descriptors> inputs;
     for (std::size_t h = 0; h < files.size(); ++h)
       inputs.push_back(space.figures(space.tree(h)));
-    const Tree_figures mean = space.figures(space.mean());
+    const Tree_descriptors mean = space.figures(space.mean());
     BOOST_TEST(mean.length > 0.5 * inputs[0].length);
     const auto distribution = space.distribution();
     std::size_t number_inside = 0;
     for (std::uint64_t i = 0; i < 12; ++i)
-      number_inside += excess(space.figures(space.sample(distribution, 1, i)), inputs) == 0;
+      number_inside +=
+          range_violation(space.figures(space.sample(distribution, 1, i)), inputs) == 0;
     BOOST_TEST(number_inside >= 11u, group << " " << number_inside);
   }
 }
@@ -1182,7 +1190,7 @@ BOOST_AUTO_TEST_CASE(changes_are_named)
   Space in_world_axes;
   in_world_axes.add_skeleton(a);
   in_world_axes.add_skeleton(b);
-  in_world_axes.build(np::orientation(pcs::shape_space::Orientation::world_axes));
+  in_world_axes.build(np::orientation(pcs::Orl_orientation::world_axes));
   const auto same = in_world_axes.changes(0, 1);
   BOOST_TEST_REQUIRE(same.size() == changes.size());
   for (std::size_t i = 0; i < same.size(); ++i) {
@@ -1417,11 +1425,11 @@ BOOST_AUTO_TEST_CASE(wrong_values_are_named)
   space.build();
   const double nan = std::numeric_limits<double>::quiet_NaN();
   BOOST_CHECK_EXCEPTION(space.tree(3), pcs::Invalid_input, message_has("no tree 3"));
-  BOOST_CHECK_EXCEPTION(space.combination({1, 1}),
+  BOOST_CHECK_EXCEPTION(space.weighted_mean({1, 1}),
                         pcs::Invalid_input,
                         message_has("2 weights for 3"));
-  BOOST_CHECK_THROW(space.combination({1, nan, 1}), pcs::Invalid_input);
-  BOOST_CHECK_THROW(space.combination({1, -1, 0}), pcs::Invalid_input);
+  BOOST_CHECK_THROW(space.weighted_mean({1, nan, 1}), pcs::Invalid_input);
+  BOOST_CHECK_THROW(space.weighted_mean({1, -1, 0}), pcs::Invalid_input);
   BOOST_CHECK_THROW(space.mean(np::tree_weights(std::vector<double>{1, -1, 3})),
                     pcs::Invalid_input);
   BOOST_CHECK_THROW(space.growth({0}, {0}), pcs::Invalid_input);
@@ -1435,7 +1443,7 @@ BOOST_AUTO_TEST_CASE(wrong_values_are_named)
   const auto modes = space.modes(2);
   BOOST_CHECK_THROW(space.tree(modes, {1, 2, 3}), pcs::Invalid_input);
   BOOST_CHECK_THROW(space.tree(modes, {nan}), pcs::Invalid_input);
-  Sampling_options options;
+  Tree_sampling_options options;
   options.truncation = 0;
   BOOST_CHECK_THROW(space.sample(1, np::sampling_options(options)), pcs::Invalid_input);
   const Family other(4);

@@ -637,7 +637,7 @@ BOOST_AUTO_TEST_CASE(any_sequence_of_calls_ends_like_a_fresh_session)
         is_solved = true;
         is_at_rest = handles.empty();
         if (random() % 2)
-          session.deform(pcs::Start::warm);
+          session.deform(pcs::Solver_start::warm);
         session.deform();
         Points expected = rest;
         Session fresh(expected, parameters(samples));

@@ -89,7 +89,7 @@ BOOST_AUTO_TEST_CASE(frames_allocate_nothing)
       session.set_rotation(handle, pcs_test::Vec3(1, 0, 1), .1 * frame);
       session.set_scale(handle, 1 + .02 * frame);
       session.set_translation(drawn, pcs_test::Vec3(.01 * frame, 0, 0));
-      session.deform(frame % 3 == 2 ? pcs::Start::warm : pcs::Start::cold);
+      session.deform(frame % 3 == 2 ? pcs::Solver_start::warm : pcs::Solver_start::cold);
       if (frame >= 3 && pcs_test::number_of_allocations != before)
         ++frames_with_allocations;
     }

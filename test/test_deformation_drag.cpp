@@ -11,7 +11,7 @@ namespace test_deformation_drag {
 
 namespace {
 
-using pcs::Start;
+using pcs::Solver_start;
 using pcs_test::Points;
 using pcs_test::Vec3;
 
@@ -54,8 +54,8 @@ BOOST_AUTO_TEST_CASE(warm_frames_follow_the_handle_with_fewer_passes)
   for (const int samples : both_resolutions) {
     Any_drag warm(samples), cold(samples);
     for (int frame = 1; frame <= 45; ++frame) {
-      const auto a = warm.turn_to(2 * frame * degree, Start::warm);
-      const auto b = cold.turn_to(2 * frame * degree, Start::cold);
+      const auto a = warm.turn_to(2 * frame * degree, Solver_start::warm);
+      const auto b = cold.turn_to(2 * frame * degree, Solver_start::cold);
       BOOST_TEST((a.status == pcs::Status::converged));
       BOOST_TEST(a.energy < 1.2 * b.energy);
       BOOST_TEST(a.initial_energy < b.initial_energy * (1 + 1e-9));
@@ -77,10 +77,10 @@ BOOST_AUTO_TEST_CASE(more_warm_frames_at_rest_go_on_to_the_least_energy)
   const double least = session.deform().energy;
 
   Any_drag s(150);
-  double energy = s.turn_to(80 * degree, Start::cold).energy;
+  double energy = s.turn_to(80 * degree, Solver_start::cold).energy;
   BOOST_TEST(energy > 1.002 * least);
   for (int frame = 0; frame < 100; ++frame) {
-    const double next = s.turn_to(80 * degree, Start::warm).energy;
+    const double next = s.turn_to(80 * degree, Solver_start::warm).energy;
     BOOST_TEST(next <= energy * (1 + 1e-9));
     energy = next;
   }
@@ -92,27 +92,27 @@ BOOST_AUTO_TEST_CASE(a_large_step_new_handles_and_a_restored_snapshot_begin_cold
 {
   for (const int samples : both_resolutions) {
     Any_drag s(samples), fresh(samples);
-    s.turn_to(1 * degree, Start::warm);
-    s.turn_to(120 * degree, Start::warm);
-    fresh.turn_to(120 * degree, Start::cold);
+    s.turn_to(1 * degree, Solver_start::warm);
+    s.turn_to(120 * degree, Solver_start::warm);
+    fresh.turn_to(120 * degree, Solver_start::cold);
     BOOST_TEST((s.points == fresh.points));
 
     const auto snapshot = s.session.snapshot();
-    s.turn_to(118 * degree, Start::warm);
+    s.turn_to(118 * degree, Solver_start::warm);
     s.session.restore(snapshot);
-    s.turn_to(119 * degree, Start::warm);
-    fresh.turn_to(119 * degree, Start::cold);
+    s.turn_to(119 * degree, Solver_start::warm);
+    fresh.turn_to(119 * degree, Solver_start::cold);
     BOOST_TEST((s.points == fresh.points));
 
     s.session.add_handle(std::vector<int>{300});
     fresh.session.add_handle(std::vector<int>{300});
-    s.turn_to(118 * degree, Start::warm);
-    fresh.turn_to(118 * degree, Start::cold);
+    s.turn_to(118 * degree, Solver_start::warm);
+    fresh.turn_to(118 * degree, Solver_start::cold);
     BOOST_TEST((s.points == fresh.points));
 
     s.session.reset();
-    s.turn_to(5 * degree, Start::warm);
-    fresh.turn_to(5 * degree, Start::cold);
+    s.turn_to(5 * degree, Solver_start::warm);
+    fresh.turn_to(5 * degree, Solver_start::cold);
     BOOST_TEST((s.points == fresh.points));
   }
 }
@@ -123,8 +123,8 @@ BOOST_AUTO_TEST_CASE(every_number_of_threads_gives_the_same_bits)
     Any_drag parallel(samples);
     Drag<CGAL::Sequential_tag> sequential(samples);
     for (int frame = 1; frame <= 10; ++frame) {
-      parallel.turn_to(3 * frame * degree, Start::warm);
-      sequential.turn_to(3 * frame * degree, Start::warm);
+      parallel.turn_to(3 * frame * degree, Solver_start::warm);
+      sequential.turn_to(3 * frame * degree, Solver_start::warm);
       BOOST_TEST((parallel.points == sequential.points));
     }
   }

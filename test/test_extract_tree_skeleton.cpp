@@ -440,8 +440,7 @@ BOOST_AUTO_TEST_CASE(points_that_the_caller_calls_wood_are_no_leaves)
                         .number_of_leaf_points,
                     leaves);
   // unless the caller wants more leaves to be found among it
-  const auto np =
-      pcs::parameters::wood_map(map).do_remove_leaves(pcs::skeleton::Leaf_removal::where_found);
+  const auto np = pcs::parameters::wood_map(map).do_remove_leaves(pcs::Leaf_removal::where_found);
   BOOST_CHECK_GT(pcs::extract_tree_skeleton(scan.points, tree, np).number_of_leaf_points,
                  2 * leaves);
 }

@@ -21,13 +21,13 @@
 namespace test_orl_alignment {
 
 using namespace orl_test;
-using pcs::shape_space::Alignment;
+using pcs::Orl_alignment;
 namespace np = pcs::parameters;
 using pcs_test::message_has;
 
 namespace {
 
-const auto turns = np::alignment(Alignment::turns);
+const auto turns = np::alignment(Orl_alignment::rotate_about_up);
 
 Eigen::Matrix3d about(const Vec3& axis, double angle)
 {
@@ -111,8 +111,9 @@ BOOST_FIXTURE_TEST_CASE(a_tree_that_was_turned_is_itself, Nodes)
         Space space;
         space.add_skeleton(a);
         space.add_skeleton(b);
-        const auto report = space.build(
-            np::alignment(Alignment::turns).up_direction(Kernel::Vector_3(up.x(), up.y(), up.z())));
+        const auto report =
+            space.build(np::alignment(Orl_alignment::rotate_about_up)
+                            .up_direction(Kernel::Vector_3(up.x(), up.y(), up.z())));
         BOOST_TEST_CONTEXT("seed " << seed << ", " << degrees << " degrees about " << axis)
         {
           BOOST_TEST(std::abs(report.turn + angle) < 1e-6);
@@ -255,10 +256,11 @@ BOOST_AUTO_TEST_CASE(looking_for_turns_can_be_stopped)
     BOOST_TEST((report.status == pcs::Status::cancelled) == (stop > 0));
     return calls;
   };
-  const int as_given = count(0, Alignment::as_given), all = count(0, Alignment::turns);
+  const int as_given = count(0, Orl_alignment::as_given),
+            all = count(0, Orl_alignment::rotate_about_up);
   BOOST_TEST(all > as_given + 10); // starts, looks, and the matchings of the best
   for (const int stop : {as_given, as_given + 4, as_given + 8})
-    BOOST_TEST(count(stop, Alignment::turns) == stop);
+    BOOST_TEST(count(stop, Orl_alignment::rotate_about_up) == stop);
 }
 
 BOOST_AUTO_TEST_CASE(bad_verticals_and_more_trees_are_refused)
@@ -268,9 +270,10 @@ BOOST_AUTO_TEST_CASE(bad_verticals_and_more_trees_are_refused)
   space.add_skeleton(random_tree(2, 2, 2));
   const double bad = std::numeric_limits<double>::quiet_NaN();
   for (const Kernel::Vector_3& up : {Kernel::Vector_3(0, 0, 0), Kernel::Vector_3(0, bad, 1)})
-    BOOST_CHECK_EXCEPTION(space.build(np::alignment(Alignment::turns).up_direction(up)),
-                          pcs::Invalid_input,
-                          message_has("up_direction"));
+    BOOST_CHECK_EXCEPTION(
+        space.build(np::alignment(Orl_alignment::rotate_about_up).up_direction(up)),
+        pcs::Invalid_input,
+        message_has("up_direction"));
   space.add_skeleton(random_tree(3, 2, 2));
   BOOST_CHECK_EXCEPTION(space.build(turns), pcs::Invalid_input, message_has("two trees"));
   space.build();

@@ -26,7 +26,7 @@ BOOST_AUTO_TEST_CASE(trees_and_points_are_written_without_allocation)
   std::vector<Point> points;
   points.reserve(space.geodesic(0, 1, 0.5).number_of_points()); // the ends have fewer
   space.geodesic(0, 1, 1.5, tree);                              // beyond the ends, too
-  const auto in_order = pcs::parameters::birth_order(pcs::shape_space::Birth_order::in_order);
+  const auto in_order = pcs::parameters::branch_emergence(pcs::Branch_emergence::sequential);
   space.geodesic(0, 1, 0.5, tree, in_order);
   space.points(tree, points);
   const long before = pcs_test::number_of_allocations;

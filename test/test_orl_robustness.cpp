@@ -3,7 +3,7 @@
 // Trees and scans of odd shapes: long, wide, flat, without radii, in one place.
 
 #include <pcs/orl_geodesic.h>
-#include <pcs/shape_space/Rooted_tree.h>
+#include <pcs/shape_space/model/Rooted_tree.h>
 #include <support/archetypes.h>
 #include <support/drawn.h>
 #include <support/exceptions.h>
@@ -203,7 +203,7 @@ using pcs::shape_space::Orl_geometry;
 Orl_geometry in_space(const Space& space, const Orl_coordinates& x)
 {
   Orl_geometry result;
-  build_geometry(space.layout(), x, pcs::shape_space::Orientation::gauge_fixed, result);
+  build_geometry(space.layout(), x, pcs::Orl_orientation::gauge_fixed, result);
   return result;
 }
 

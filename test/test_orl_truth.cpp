@@ -20,7 +20,7 @@ BOOST_AUTO_TEST_CASE(points_of_a_younger_tree_find_their_branch)
 {
   Tree tree;
   pcs::grow_tree(tree, pcs::fruit_habit(), pcs::parameters::random_seed(11));
-  pcs::shape_space::Matching_weights published;
+  pcs::Matching_weights published;
   published.is_published = true;
   for (const double age : {0.9, 0.7}) {
     const auto own = measure_ages(tree, age, 11, 4, pcs::parameters::default_values());
@@ -40,14 +40,14 @@ BOOST_AUTO_TEST_CASE(branches_that_grew_at_their_tips_keep_their_beginning)
   // at half the age most of the wood of the old tree is not there yet
   Tree tree;
   pcs::grow_tree(tree, pcs::fruit_habit(), pcs::parameters::random_seed(21));
-  const auto measure = [&](pcs::shape_space::Growth growth) {
-    pcs::shape_space::Matching_weights weights;
+  const auto measure = [&](pcs::Branch_growth growth) {
+    pcs::Matching_weights weights;
     weights.growth = growth;
     return measure_ages(tree, 0.5, 21, 4, pcs::parameters::matching_weights(weights));
   };
-  using pcs::shape_space::Growth;
-  const auto any = measure(Growth::any), tips = measure(Growth::at_tips),
-             along = measure(Growth::along_branches);
+  using pcs::Branch_growth;
+  const auto any = measure(Branch_growth::any), tips = measure(Branch_growth::at_tips),
+             along = measure(Branch_growth::along_branches);
   BOOST_TEST_MESSAGE("right branch " << any.right_branch << ", stretched " << along.right_branch
                                      << "; same wood " << any.same_wood << ", stretched "
                                      << along.same_wood);
@@ -85,7 +85,7 @@ BOOST_AUTO_TEST_CASE(the_trunk_of_a_growing_tree_goes_on_as_the_trunk)
     space.add_skeleton(young);
     space.add_skeleton(is_turned ? turned : tree);
     const auto report = space.build(pcs::parameters::alignment(
-        is_turned ? pcs::shape_space::Alignment::turns : pcs::shape_space::Alignment::as_given));
+        is_turned ? pcs::Orl_alignment::rotate_about_up : pcs::Orl_alignment::as_given));
     BOOST_TEST(report.is_grown_at_tips);
     BOOST_TEST(std::abs(report.turn + (is_turned ? 2 : 0)) < 1e-6); // wood does not turn
     std::size_t before = space.matches()[0].tip[0];

@@ -154,8 +154,8 @@ std::string run(unsigned seed)
   const auto identity = boost::typed_identity_property_map<std::size_t>();
   std::vector<std::size_t> branch(points.size(), 0);
   std::vector<double> residual(points.size(), 0);
-  const auto method = round.one_in(3) ? pcs::skeleton::Skeleton_method::sections
-                                      : pcs::skeleton::Skeleton_method::chains;
+  const auto method =
+      round.one_in(3) ? pcs::Skeleton_method::sections : pcs::Skeleton_method::chains;
   const auto np =
       pcs::parameters::point_map(boost::make_iterator_property_map(points.begin(), identity))
           .point_branch_map(boost::make_iterator_property_map(branch.begin(), identity))

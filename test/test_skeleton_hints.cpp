@@ -258,7 +258,7 @@ BOOST_AUTO_TEST_CASE(hints_that_make_no_sense_are_refused)
     BOOST_CHECK_THROW(pcs::extract_tree_skeleton(points, tree, given_skeleton(moved)),
                       pcs::Invalid_input);
   }
-  for (const auto& spoil : std::vector<std::function<void(pcs::skeleton::Slice_rules&)>>{
+  for (const auto& spoil : std::vector<std::function<void(pcs::Slice_options&)>>{
            [](auto& r) { r.height = 0; },
            [&](auto& r) { r.height = bad; },
            [](auto& r) { r.highest_count = 5; },
@@ -267,9 +267,9 @@ BOOST_AUTO_TEST_CASE(hints_that_make_no_sense_are_refused)
            [](auto& r) { r.upright = 1.1; },
            [](auto& r) { r.tilts = -1; },
            [](auto& r) { r.support_cosine = 2; }}) {
-    pcs::skeleton::Slice_rules rules;
+    pcs::Slice_options rules;
     spoil(rules);
-    BOOST_CHECK_EXCEPTION(pcs::extract_tree_skeleton(points, tree, slice_rules(rules)),
+    BOOST_CHECK_EXCEPTION(pcs::extract_tree_skeleton(points, tree, slice_options(rules)),
                           pcs::Invalid_input,
                           pcs_test::message_has("slice_rules"));
   }
@@ -310,7 +310,7 @@ BOOST_AUTO_TEST_CASE(stopping_anywhere_leaves_nothing_half_done)
   };
   using namespace pcs::parameters;
   check(breast_height(1.3));
-  check(skeleton_method(pcs::skeleton::Skeleton_method::sections));
+  check(skeleton_method(pcs::Skeleton_method::sections));
   check(given_skeleton(given));
 }
 

@@ -157,7 +157,7 @@ Measured measure(const Row& row, const std::string& folder, int repetitions)
       for (int step = 1; step <= number_of_frames; ++step) {
         session.set_rotation(handle, axis, pi / 3 + step * pi / 180);
         const pcs_bench::Timer frame_timer;
-        session.deform(pcs::Start::warm);
+        session.deform(pcs::Solver_start::warm);
         drag.add(frame_timer.seconds());
       }
       session.remove_handle(handle);

@@ -21,11 +21,11 @@ int main(int argc, char** argv)
   app.add_option("--first-seed", first_seed, "of the trees")->capture_default_str();
   app.add_option("--coarser", coarser, "steps of the scanner, times the usual ones")
       ->capture_default_str();
-  pcs::shape_space::Matching_weights weights;
-  const std::map<std::string, pcs::shape_space::Growth> growths = {
-      {"any", pcs::shape_space::Growth::any},
-      {"along_branches", pcs::shape_space::Growth::along_branches},
-      {"at_tips", pcs::shape_space::Growth::at_tips}};
+  pcs::Matching_weights weights;
+  const std::map<std::string, pcs::Branch_growth> growths = {
+      {"any", pcs::Branch_growth::any},
+      {"along_branches", pcs::Branch_growth::along_branches},
+      {"at_tips", pcs::Branch_growth::at_tips}};
   app.add_option("--growth", weights.growth, "how branches become longer")
       ->transform(CLI::CheckedTransformer(growths));
   CLI11_PARSE(app, argc, argv);

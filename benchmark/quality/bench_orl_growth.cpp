@@ -51,7 +51,7 @@ int main(int argc, char** argv)
           pcs::Orl_shape_space<orl_bench::Kernel> space;
           space.add_skeleton(a);
           space.add_skeleton(b);
-          pcs::shape_space::Matching_weights weights;
+          pcs::Matching_weights weights;
           weights.is_published = published == 1;
           space.build(np::matching_weights(weights));
           double right = 0;

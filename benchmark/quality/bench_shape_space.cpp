@@ -9,8 +9,8 @@
 #include <pcs/generators/grow_tree.h>
 #include <pcs/internal/Random_stream.h>
 #include <pcs/internal/Stopwatch.h>
-#include <pcs/shape_space/Tree_distribution.h>
-#include <pcs/shape_space/find_modes.h>
+#include <pcs/shape_space/statistics/Tree_distribution.h>
+#include <pcs/shape_space/statistics/find_modes.h>
 #include <support/trees_of_parameters.h>
 
 #include <CGAL/Simple_cartesian.h>
@@ -49,7 +49,7 @@ void write(const Space& space,
   pcs::IO::write_swc((std::filesystem::path(folder) / (name + ".swc")).string(), skeleton);
 }
 
-void print(const char* name, const Tree_figures& f)
+void print(const char* name, const Tree_descriptors& f)
 {
   std::printf("%-8s length %9.2f height %8.3f width %8.3f branches %4zu angles",
               name,
@@ -76,7 +76,7 @@ void run_group(const std::vector<std::string>& files, const std::string& folder)
               files.size(),
               space.layout().branches.size(),
               watch.lap());
-  std::vector<Tree_figures> inputs;
+  std::vector<Tree_descriptors> inputs;
   for (std::size_t h = 0; h < files.size(); ++h) {
     inputs.push_back(space.figures(space.tree(h)));
     print("input", inputs.back());
@@ -84,7 +84,7 @@ void run_group(const std::vector<std::string>& files, const std::string& folder)
   }
   watch.lap();
   const pcs::Orl_tree mean = space.mean();
-  const pcs::Orl_tree square = space.mean(np::tree_mean(Tree_mean::least_squares));
+  const pcs::Orl_tree square = space.mean(np::tree_mean(Tree_mean::frechet));
   std::printf("both means in %.3f s\n", watch.lap());
   print("L1 mean", space.figures(mean));
   print("L2 mean", space.figures(square));
@@ -110,9 +110,9 @@ void run_group(const std::vector<std::string>& files, const std::string& folder)
   std::size_t number_inside = 0, number_alike = 0;
   for (std::uint64_t i = 0; i < 12; ++i) {
     const pcs::Orl_tree tree = space.sample(distribution, 1, i);
-    const Tree_figures f = space.figures(tree);
-    number_inside += excess(f, inputs, false) == 0;
-    number_alike += excess(f, inputs) == 0;
+    const Tree_descriptors f = space.figures(tree);
+    number_inside += range_violation(f, inputs, false) == 0;
+    number_alike += range_violation(f, inputs) == 0;
     print("new", f);
     write(space, tree, folder, "sample_" + std::to_string(i));
   }
@@ -143,7 +143,7 @@ void run_left_out(const std::vector<std::string>& files)
     for (std::size_t k = 0; k < error.size(); ++k)
       error[k] += project_on_modes(space.layout(),
                                    space.weights(),
-                                   Orientation::gauge_fixed,
+                                   Orl_orientation::gauge_fixed,
                                    modes,
                                    placed.coordinates(),
                                    k)
@@ -176,8 +176,9 @@ void run_parameters(std::size_t n, std::uint64_t seed)
                   name.c_str(),
                   second == Second_parameter::tropism ? "tropism" : "crown angle");
       pcs::internal::Stopwatch watch;
-      for (const Mode_measure measure : {Mode_measure::branches, Mode_measure::metric}) {
-        const auto modes = space.modes(2, np::mode_measure(measure));
+      for (const Mode_inner_product measure :
+           {Mode_inner_product::branches, Mode_inner_product::metric}) {
+        const auto modes = space.modes(2, np::mode_inner_product(measure));
         std::printf(" %.3f | %.3f |",
                     correlation(modes.scores, family.known.col(0)),
                     correlation(modes.scores, family.known.col(1)));

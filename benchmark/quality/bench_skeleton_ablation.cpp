@@ -9,7 +9,7 @@
 #include <pcs/generators/scan_tree.h>
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Session_stages.h>
-#include <pcs/skeleton/write_result.h>
+#include <pcs/skeleton/result/write_result.h>
 
 #include <CGAL/Simple_cartesian.h>
 
@@ -29,9 +29,9 @@ namespace {
 
 using Kernel = CGAL::Simple_cartesian<double>;
 using Tree = pcs::Tree_skeleton<Kernel>;
-using pcs::skeleton::Section_fit;
+using pcs::Section_fit;
+using pcs::Skeleton_method;
 using pcs::skeleton::Session_options;
-using pcs::skeleton::Skeleton_method;
 using pcs::skeleton::Vec3;
 
 struct Variant
@@ -89,7 +89,7 @@ std::vector<Variant> variants()
     o.axes.chains.width_count = std::numeric_limits<double>::infinity();
   });
   add("ours, radii not bounded", Session_options(), [](auto& o) {
-    pcs::skeleton::Support_rules& r = o.support;
+    pcs::skeleton::Support_options& r = o.support;
     r.filled = r.branch_filled = r.thicker = std::numeric_limits<double>::infinity();
     r.fewest = r.expected = r.pipes.slack = 0;
     r.slack = std::numeric_limits<double>::infinity();

@@ -6,9 +6,9 @@
 #define PCS_BENCHMARK_QUALITY_REFERENCE_FIELD_H
 
 #include <pcs/core/rotations.h>
-#include <pcs/deformation/Elastic_network.h>
-#include <pcs/deformation/Harmonic_system.h>
-#include <pcs/deformation/rotation_field.h>
+#include <pcs/deformation/model/Elastic_network.h>
+#include <pcs/deformation/model/Harmonic_system.h>
+#include <pcs/deformation/solver/rotation_field.h>
 #include <pcs/linear_algebra/Sparse_cholesky.h>
 #include <pcs/linear_algebra/graph_laplacian.h>
 #include <pcs/neighborhood/Proximity_graph.h>

@@ -6,7 +6,7 @@
 #define PCS_BENCHMARK_SUPPORT_GROWN_TREES_H
 
 #include <pcs/core/Tree_skeleton.h>
-#include <pcs/shape_space/Branch_paths.h>
+#include <pcs/shape_space/model/Branch_paths.h>
 #include <support/drawn.h>
 
 #include <CGAL/Simple_cartesian.h>

@@ -47,9 +47,9 @@ public:
   }
 
   template <class Features>
-  void add(unsigned scan, double weight, bool is_wood, double likeness, const Features& features)
+  void add(unsigned scan, double weight, bool is_wood, double wood_score, const Features& features)
   {
-    std::vector<float> row{float(scan), float(weight), float(is_wood), float(likeness)};
+    std::vector<float> row{float(scan), float(weight), float(is_wood), float(wood_score)};
     for (const double f : features)
       row.push_back(float(f));
     m_out.write(reinterpret_cast<const char*>(row.data()),
@@ -146,12 +146,12 @@ private:
   /// Some of the points that are not of thick wood, which is certain.
   void add_points(std::size_t number_of_points)
   {
-    const Leaf_rules& rules = m_options.leaves;
+    const Leaf_options& rules = m_options.leaves;
     const std::vector<std::uint8_t>& is_used = m_used.flags();
     const std::vector<std::uint8_t> is_thick =
         points_on_hollow_sections<Tag>(m_scan, m_axes, rules.hollow);
     std::vector<Surroundings> surroundings(m_scan.size());
-    std::vector<float> likeness(m_scan.size());
+    std::vector<float> wood_score(m_scan.size());
     points_on_lines<Tag>(
         m_scan,
         is_used,
@@ -159,9 +159,9 @@ private:
         rules.lines,
         [&](std::size_t i, const pcs::skeleton::internal::Line_search& search, float score) {
           surroundings[i] = search.surroundings(score);
-          likeness[i] = static_cast<float>(wood_likeness(surroundings[i]));
+          wood_score[i] = static_cast<float>(wood_probability(surroundings[i]));
         });
-    const std::vector<float> score = scores_of_surroundings(is_used, is_thick, likeness);
+    const std::vector<float> score = scores_of_surroundings(is_used, is_thick, wood_score);
     const std::vector<Path_context> path =
         path_contexts(m_scan, m_paths, score, rules.paths.reach * m_scan.spacing);
 
@@ -183,9 +183,9 @@ private:
       m_evidence.surroundings.add(m_seed,
                                   1,
                                   is_wood,
-                                  double(likeness[i]),
+                                  double(wood_score[i]),
                                   surroundings[i].features());
-      m_evidence.paths.add(m_seed, 1, is_wood, wood_likeness(e), e.features());
+      m_evidence.paths.add(m_seed, 1, is_wood, wood_probability(e), e.features());
     }
   }
 
@@ -196,7 +196,7 @@ private:
                                                                       m_axes,
                                                                       m_used.flags(),
                                                                       m_paths,
-                                                                      m_likeness,
+                                                                      m_wood_score,
                                                                       m_options.breast_height);
     const Index_groups points_of_axis(evidence.size(), m_axes.axis_of_point);
     for (std::size_t a = 0; a < evidence.size(); ++a) {
@@ -209,7 +209,7 @@ private:
         m_evidence.axes.add(m_seed,
                             evidence[a].length,
                             5 * wood >= count,
-                            wood_likeness(evidence[a]),
+                            wood_probability(evidence[a]),
                             evidence[a].features());
     }
   }

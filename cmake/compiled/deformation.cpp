@@ -3,7 +3,7 @@
 // Compiled once: what of the deformation of point sets depends on no type of the caller.
 
 #include <pcs/deformation/Session_impl.h>
-#include <pcs/deformation/blend_block_impl.h>
+#include <pcs/deformation/upsampling/blend_block_impl.h>
 #include <pcs/internal/parallel.h>
 
 namespace pcs {

@@ -3,19 +3,19 @@
 // Compiled once: what of tree skeletons depends on no type of the caller.
 
 #include <pcs/internal/parallel.h>
-#include <pcs/skeleton/Forest_impl.h>
 #include <pcs/skeleton/Session_impl.h>
+#include <pcs/skeleton/forest/Stand_impl.h>
 
 template class pcs::skeleton::Session<CGAL::Sequential_tag>;
 template bool
 pcs::skeleton::find_trees<CGAL::Sequential_tag>(const std::vector<pcs::skeleton::Vec3>&,
                                                 const pcs::skeleton::Session_hints&,
                                                 pcs::internal::Progress&,
-                                                pcs::skeleton::Forest&);
+                                                pcs::skeleton::Stand&);
 #ifdef CGAL_LINKED_WITH_TBB
 template class pcs::skeleton::Session<CGAL::Parallel_tag>;
 template bool pcs::skeleton::find_trees<CGAL::Parallel_tag>(const std::vector<pcs::skeleton::Vec3>&,
                                                             const pcs::skeleton::Session_hints&,
                                                             pcs::internal::Progress&,
-                                                            pcs::skeleton::Forest&);
+                                                            pcs::skeleton::Stand&);
 #endif

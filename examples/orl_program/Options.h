@@ -41,7 +41,7 @@ struct Options
   // families
   bool do_mean = false, do_growth = false, do_mesh = false;
   bool is_monotone = false, may_leave_range = false;
-  std::string mean_kind = "l1", mode_measure = "branches", load, save, changes, distances;
+  std::string mean_kind = "l1", mode_inner_product = "branches", load, save, changes, distances;
   std::size_t number_of_modes = 0, number_of_samples = 0, number_of_frames = 11;
   std::int64_t seed = 1; // signed, so that CLI11 does not take -1 for a large number
   std::vector<double> weights, times;
@@ -107,7 +107,7 @@ inline void declare_family(CLI::App& app, Options& o)
       ->group(group);
   app.add_option(
          "--mode-measure",
-         o.mode_measure,
+         o.mode_inner_product,
          "what modes explain: how branches differ where trees have them, or the metric, for "
          "trees that differ by which branches they have")
       ->check(CLI::IsMember({"branches", "metric"}))

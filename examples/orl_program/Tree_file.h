@@ -6,14 +6,14 @@
 #define PCS_EXAMPLES_ORL_PROGRAM_TREE_FILE_H
 
 #include "../program/up_direction.h"
-#include <pcs/IO/Point_table.h>
+#include <pcs/IO/points/Point_table.h>
 #include <pcs/IO/read_points.h>
 #include <pcs/IO/read_swc.h>
 #include <pcs/IO/read_tree_csv.h>
 #include <pcs/IO/read_txtskl.h>
 #include <pcs/core/Tree_skeleton.h>
 #include <pcs/core/errors.h>
-#include <pcs/shape_space/extend_axes.h>
+#include <pcs/shape_space/input/extend_axes.h>
 
 #if __has_include(<pcs/extract_tree_skeleton.h>)
 #include <pcs/extract_tree_skeleton.h>

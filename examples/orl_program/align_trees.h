@@ -43,7 +43,7 @@ inline void turn_tree(Tree_file& tree, const std::string& up, double angle)
 /// Turns each tree to stand like the one before; by which angles. [rad]
 inline std::vector<double> align_trees(std::vector<Tree_file>& trees,
                                        const std::string& up,
-                                       const pcs::shape_space::Matching_weights& weights)
+                                       const pcs::Matching_weights& weights)
 {
   std::vector<double> turns(trees.size(), 0);
   for (std::size_t i = 1; i < trees.size(); ++i) {
@@ -52,7 +52,7 @@ inline std::vector<double> align_trees(std::vector<Tree_file>& trees,
     space.add_skeleton(trees[i].skeleton);
     turns[i] = space
                    .build(pcs::parameters::matching_weights(weights)
-                              .alignment(pcs::shape_space::Alignment::turns)
+                              .alignment(pcs::Orl_alignment::rotate_about_up)
                               .up_direction(program::up_direction<Kernel>(up)))
                    .turn;
     if (turns[i] != 0)

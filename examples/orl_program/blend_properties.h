@@ -5,8 +5,8 @@
 #ifndef PCS_EXAMPLES_ORL_PROGRAM_BLEND_PROPERTIES_H
 #define PCS_EXAMPLES_ORL_PROGRAM_BLEND_PROPERTIES_H
 
-#include <pcs/IO/Point_table.h>
-#include <pcs/IO/Scalar_type.h>
+#include <pcs/IO/points/Point_table.h>
+#include <pcs/IO/points/Scalar_type.h>
 #include <pcs/Orl_shape_space.h>
 
 #include <algorithm>

@@ -27,15 +27,15 @@ inline void write_modes(const Space& space, const std::vector<Tree_file>& files,
   program::Report_file report((std::filesystem::path(o.output) / "modes.json").string());
   const pcs::shape_space::Modes_of_variation modes = space.modes(
       o.number_of_modes,
-      np::mode_measure(o.mode_measure == "metric" ? pcs::shape_space::Mode_measure::metric
-                                                  : pcs::shape_space::Mode_measure::branches));
+      np::mode_inner_product(o.mode_inner_product == "metric" ? pcs::Mode_inner_product::metric
+                                                              : pcs::Mode_inner_product::branches));
   if (modes.size() < o.number_of_modes && !o.is_quiet)
     std::cerr << "orl_geodesic: warning: these " << space.number_of_trees()
               << " trees have no more than " << modes.size() << " mode(s)\n";
   nlohmann::ordered_json json;
   json["number_of_modes"] = modes.size();
   json["measure"] =
-      modes.features.measure == pcs::shape_space::Mode_measure::metric ? "metric" : "branches";
+      modes.features.measure == pcs::Mode_inner_product::metric ? "metric" : "branches";
   for (std::size_t k = 0; k < modes.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
     nlohmann::ordered_json mode;
@@ -63,7 +63,7 @@ inline void write_modes(const Space& space, const std::vector<Tree_file>& files,
 inline void write_samples(const Space& space, const std::vector<Tree_file>& files, const Options& o)
 {
   program::Progress_line line(!o.is_quiet);
-  pcs::shape_space::Sampling_options options;
+  pcs::Tree_sampling_options options;
   options.do_keep_in_range = !o.may_leave_range;
   options.do_limit_radii = o.do_limit_radii;
   options.pipe_exponent = o.pipe_exponent;
@@ -146,16 +146,16 @@ inline std::string distances_text(const Space& space)
 /// Everything but the files that have a path of their own.
 inline void write_family(const Space& space, const std::vector<Tree_file>& files, const Options& o)
 {
-  using pcs::shape_space::Tree_mean;
+  using pcs::Tree_mean;
   if (o.do_mean)
-    write_tree(space,
-               space.mean(np::tree_mean(o.mean_kind == "l1" ? Tree_mean::least_sum
-                                                            : Tree_mean::least_squares)),
-               files,
-               o,
-               "mean");
+    write_tree(
+        space,
+        space.mean(np::tree_mean(o.mean_kind == "l1" ? Tree_mean::median : Tree_mean::frechet)),
+        files,
+        o,
+        "mean");
   if (!o.weights.empty())
-    write_tree(space, space.combination(o.weights), files, o, "combination");
+    write_tree(space, space.weighted_mean(o.weights), files, o, "combination");
   if (o.number_of_modes > 0)
     write_modes(space, files, o);
   if (o.number_of_samples > 0)

@@ -5,7 +5,7 @@
 #ifndef PCS_EXAMPLES_PROGRAM_EDIT_H
 #define PCS_EXAMPLES_PROGRAM_EDIT_H
 
-#include <pcs/IO/Point_table.h>
+#include <pcs/IO/points/Point_table.h>
 #include <pcs/core/Similarity.h>
 
 #include <Eigen/Core>

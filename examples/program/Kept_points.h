@@ -7,7 +7,7 @@
 
 #include "program/Normals.h"
 #include "program/apply_edit.h"
-#include <pcs/IO/Point_table.h>
+#include <pcs/IO/points/Point_table.h>
 
 #include <algorithm>
 #include <cstddef>

@@ -5,8 +5,8 @@
 #ifndef PCS_EXAMPLES_PROGRAM_NORMALS_H
 #define PCS_EXAMPLES_PROGRAM_NORMALS_H
 
-#include <pcs/IO/Point_table.h>
-#include <pcs/IO/Scalar_type.h>
+#include <pcs/IO/points/Point_table.h>
+#include <pcs/IO/points/Scalar_type.h>
 
 #include <cmath>
 #include <cstddef>

@@ -16,8 +16,8 @@
 #include "program/default_edit.h"
 #include "program/run_session.h"
 #include <pcs/IO/Point_reader.h>
-#include <pcs/IO/Point_table.h>
 #include <pcs/IO/Point_writer.h>
+#include <pcs/IO/points/Point_table.h>
 #include <pcs/IO/write_points.h>
 #include <pcs/core/Similarity.h>
 #include <pcs/core/errors.h>

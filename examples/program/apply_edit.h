@@ -6,7 +6,7 @@
 #define PCS_EXAMPLES_PROGRAM_APPLY_EDIT_H
 
 #include "program/Edit.h"
-#include <pcs/IO/Point_table.h>
+#include <pcs/IO/points/Point_table.h>
 #include <pcs/core/Similarity.h>
 #include <pcs/core/errors.h>
 

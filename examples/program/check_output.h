@@ -5,9 +5,9 @@
 #ifndef PCS_EXAMPLES_PROGRAM_CHECK_OUTPUT_H
 #define PCS_EXAMPLES_PROGRAM_CHECK_OUTPUT_H
 
-#include <pcs/IO/Point_schema.h>
 #include <pcs/IO/Point_writer.h>
-#include <pcs/IO/Write_options.h>
+#include <pcs/IO/points/Point_schema.h>
+#include <pcs/IO/points/Write_options.h>
 
 #include <filesystem>
 #include <string>

@@ -10,7 +10,7 @@
 #include "program/Options.h"
 #include "program/Progress_line.h"
 #include "program/apply_edit.h"
-#include <pcs/IO/Point_table.h>
+#include <pcs/IO/points/Point_table.h>
 #include <pcs/Point_set_deformation.h>
 #include <pcs/core/Similarity.h>
 #include <pcs/core/errors.h>

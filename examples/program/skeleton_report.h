@@ -30,7 +30,7 @@ inline std::string in_options(std::string sentence)
   return sentence;
 }
 
-inline nlohmann::ordered_json to_json(const pcs::Wood& wood)
+inline nlohmann::ordered_json to_json(const pcs::Branch_totals& wood)
 {
   return {{"branches", wood.number_of_branches}, {"length", wood.length}, {"volume", wood.volume}};
 }
@@ -63,7 +63,7 @@ inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skele
                     {"unexplained", r.number_of_unexplained_points},
                     {"out_of_reach", r.number_of_unreached_points}};
   json["spacing"] = r.spacing;
-  json["grid_step"] = r.grid_step;
+  json["voxel_size"] = r.voxel_size;
   json["noise"] = r.noise;
   json["residual"] = r.residual;
   json["nodes"] = r.number_of_nodes;
@@ -85,7 +85,7 @@ inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skele
     json["diameter_at_breast_height"] = r.diameter_at_breast_height;
   json["total"] = to_json(r.total);
   json["by_order"] = nlohmann::ordered_json::array();
-  for (const pcs::Wood& wood : r.by_order)
+  for (const pcs::Branch_totals& wood : r.by_order)
     json["by_order"].push_back(to_json(wood));
   json["by_size"] = nlohmann::ordered_json::array();
   for (std::size_t k = 0; k < r.by_size.size(); ++k) {

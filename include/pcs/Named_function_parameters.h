@@ -47,7 +47,7 @@
   PCS_OWN(node_point_map)                                                                          \
   PCS_OWN(node_radius_map)                                                                         \
   PCS_OWN(skeleton_method)                                                                         \
-  PCS_OWN(slice_rules)                                                                             \
+  PCS_OWN(slice_options)                                                                           \
   PCS_OWN(scanner_positions)                                                                       \
   PCS_OWN(beam_width)                                                                              \
   PCS_OWN(given_skeleton)                                                                          \
@@ -66,12 +66,12 @@
   PCS_OWN(do_use_unit_weights)                                                                     \
   PCS_OWN(maximal_turn)                                                                            \
   PCS_OWN(do_limit_radii)                                                                          \
-  PCS_OWN(birth_order)                                                                             \
+  PCS_OWN(branch_emergence)                                                                        \
   PCS_OWN(point_path)                                                                              \
   PCS_OWN(metric)                                                                                  \
   PCS_OWN(tree_mean)                                                                               \
   PCS_OWN(tree_weights)                                                                            \
-  PCS_OWN(mode_measure)                                                                            \
+  PCS_OWN(mode_inner_product)                                                                      \
   PCS_OWN(number_of_rounds)                                                                        \
   PCS_OWN(points_of)                                                                               \
   PCS_OWN(sampling_options)                                                                        \

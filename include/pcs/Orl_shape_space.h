@@ -9,17 +9,18 @@
 #include <pcs/Orl_tree.h>
 #include <pcs/Orl_tree_paths.h>
 #include <pcs/core/Orl_correspondences.h>
+#include <pcs/core/Orl_options.h>
 #include <pcs/core/Orl_report.h>
 #include <pcs/core/Orl_space_data.h>
 #include <pcs/core/Tree_skeleton.h>
 #include <pcs/core/errors.h>
 #include <pcs/internal/Stopwatch.h>
 #include <pcs/internal/progress.h>
-#include <pcs/shape_space/Embedded_pair.h>
-#include <pcs/shape_space/Family_options.h>
 #include <pcs/shape_space/Space_engine.h>
-#include <pcs/shape_space/read_options.h>
-#include <pcs/shape_space/tree_input.h>
+#include <pcs/shape_space/input/read_options.h>
+#include <pcs/shape_space/input/tree_input.h>
+#include <pcs/shape_space/model/Build_options.h>
+#include <pcs/shape_space/pair/Embedded_pair.h>
 
 #include <CGAL/Simple_cartesian.h>
 
@@ -133,24 +134,24 @@ public:
 
     \npbegin
       \np{matching_weights} of the energy of matching branches
-        \nptype `shape_space::Matching_weights`
+        \nptype `Matching_weights`
         \npdefault changed energy; `is_published` gives the text's
       \np{assignment_options} of points to branches
-        \nptype `shape_space::Assignment_options`
+        \nptype `Point_assignment_options`
       \np{transport_options} of the correspondence of points: exact or by Sinkhorn's algorithm, how far mass
         is carried, and sizes
-        \nptype `shape_space::Transport_options`
+        \nptype `Transport_options`
       \np{alignment} whether the second of two trees may stand turned about the vertical
-        \nptype `shape_space::Alignment`
+        \nptype `Orl_alignment`
         \npdefault `as_given`: both stand in the same axes; with `turns` the branches tell, and the report has the turn
       \np{up_direction} the vertical
         \nptype a vector with `x()`, `y()`, `z()`, finite and not null
         \npdefault `(0, 0, 1)`
       \np{orientation} how orientations are measured
-        \nptype `shape_space::Orientation`
+        \nptype `Orl_orientation`
         \npdefault `gauge_fixed`; `world_axes` is the text's
       \np{virtual_direction} where branches without partner point
-        \nptype `shape_space::Virtual_direction`
+        \nptype `Virtual_direction`
         \npdefault `of_partner`; `along_parent` is the text's
       \np{do_use_unit_weights} whether all weights of the metric are 1, as in the text
         \nptype `bool`
@@ -177,7 +178,7 @@ public:
     using namespace shape_space;
     if (m_is_restored)
       throw Invalid_input("pcs::Orl_shape_space::build(): the space was restored, it is built");
-    const Family_options options =
+    const Build_options options =
         read_options(np, m_inputs.size(), "pcs::Orl_shape_space::build()");
     pcs::internal::Progress progress(
         pcs::internal::choose(np, CGAL::internal_np::callback, std::function<bool(double)>()));
@@ -210,7 +211,7 @@ public:
                         const NamedParameters& np = NamedParameters())
   {
     check_inputs("build_from");
-    const shape_space::Family_options options =
+    const shape_space::Build_options options =
         shape_space::read_options(np, m_inputs.size(), "pcs::Orl_shape_space::build_from()");
     Orl_report report = new_report();
     report.matching_energy = report.unexplained_share = std::numeric_limits<double>::quiet_NaN();
@@ -335,7 +336,7 @@ private:
 
   void finish(shape_space::Embedded_pair& built,
               std::vector<shape_space::Point_pair> pairs,
-              const shape_space::Matching_weights& weights,
+              const Matching_weights& weights,
               Orl_report& report)
   {
     this->m_family = Engine::finish_pair(inputs(), std::move(pairs), weights, built, report);
@@ -349,7 +350,7 @@ private:
 
   template <class NamedParameters>
   Orl_report build_many(const NamedParameters& np,
-                        const shape_space::Family_options& options,
+                        const shape_space::Build_options& options,
                         pcs::internal::Progress& progress)
   {
     Orl_report report = new_report();

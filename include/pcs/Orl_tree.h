@@ -6,9 +6,9 @@
 #define PCS_ORL_TREE_H
 
 #include <pcs/core/Tree_skeleton.h>
-#include <pcs/shape_space/Births.h>
-#include <pcs/shape_space/Near_end.h>
-#include <pcs/shape_space/Orl_coordinates.h>
+#include <pcs/shape_space/model/Orl_coordinates.h>
+#include <pcs/shape_space/path/Extrapolation_limits.h>
+#include <pcs/shape_space/path/Sequential_births.h>
 
 #include <array>
 #include <cstddef>
@@ -43,8 +43,8 @@ private:
   friend class Orl_tree_family;
   shape_space::Orl_coordinates m_x;
   shape_space::Orl_geometry m_geometry;
-  shape_space::Near_end_buffers m_buffers;
-  shape_space::Births_buffers m_births;
+  shape_space::Extrapolation_buffers m_buffers;
+  shape_space::Sequential_births_buffers m_births;
   std::vector<std::size_t> m_offset;
   double m_lambda = 0;
   std::vector<double> m_share; // of scans in the points, for more than two trees; empty: all alike

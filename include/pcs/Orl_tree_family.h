@@ -8,14 +8,13 @@
 #include <pcs/Named_function_parameters.h>
 #include <pcs/Orl_tree.h>
 #include <pcs/Orl_tree_set.h>
+#include <pcs/core/Orl_options.h>
 #include <pcs/core/errors.h>
 #include <pcs/internal/Random_stream.h>
-#include <pcs/shape_space/Modes_of_variation.h>
-#include <pcs/shape_space/Sampling_options.h>
 #include <pcs/shape_space/Space_engine.h>
-#include <pcs/shape_space/Tree_mean.h>
-#include <pcs/shape_space/check_sampling.h>
-#include <pcs/shape_space/growth_path.h>
+#include <pcs/shape_space/input/check_sampling.h>
+#include <pcs/shape_space/path/Growth_spline.h>
+#include <pcs/shape_space/statistics/Modes_of_variation.h>
 
 #include <algorithm>
 #include <cmath>
@@ -33,7 +32,7 @@ namespace pcs {
 struct Orl_distribution
 {
   std::shared_ptr<const shape_space::Tree_distribution> distribution; ///< null: of no space
-  std::vector<shape_space::Tree_figures> figures;                     ///< of the inputs
+  std::vector<shape_space::Tree_descriptors> figures;                 ///< of the inputs
 };
 
 //! \ingroup PkgPcsShapeSpaceRef
@@ -41,7 +40,7 @@ struct Orl_distribution
 struct Sample_report
 {
   std::size_t number_of_trials = 0; ///< [count]
-  double excess = 0; ///< how far its figures are beyond the inputs, 0 if they are not [-]
+  double range_violation = 0; ///< how far its figures are beyond the inputs, 0 if they are not [-]
 };
 
 /*!
@@ -75,21 +74,20 @@ public:
 
     \npbegin
       \np{tree_mean} what is least
-        \nptype `shape_space::Tree_mean`
-        \npdefault `least_sum`
+        \nptype `Tree_mean`
+        \npdefault `median`
       \np{tree_weights} of the trees, `>= 0`, not all 0
         \nptype `std::vector<double>` of `number_of_trees()` elements
         \npdefault all 1
     \npend
     \par Complexity
-    \f$O(n e)\f$ for `n` trees and `e` edges, and \f$O(n^2 e)\f$ angles for `least_sum` up to 128 trees.
+    \f$O(n e)\f$ for `n` trees and `e` edges, and \f$O(n^2 e)\f$ angles for `median` up to 128 trees.
   */
   template <class NamedParameters = parameters::Default_named_parameters>
   Orl_tree mean(const NamedParameters& np = NamedParameters()) const
   {
     check_family("mean");
-    const auto kind =
-        pcs::internal::choose(np, pcs::internal_np::tree_mean, shape_space::Tree_mean::least_sum);
+    const auto kind = pcs::internal::choose(np, pcs::internal_np::tree_mean, Tree_mean::median);
     const std::vector<double> weights =
         pcs::internal::choose(np,
                               pcs::internal_np::tree_weights,
@@ -109,7 +107,7 @@ public:
     among the inputs.
     \param weights one per tree; their sum is made 1 and must be positive
   */
-  Orl_tree combination(const std::vector<double>& weights) const
+  Orl_tree weighted_mean(const std::vector<double>& weights) const
   {
     check_family("combination");
     shape_space::check_tree_weights(weights,
@@ -119,20 +117,21 @@ public:
     double total = 0;
     for (const double w : weights)
       total += w;
-    return make(mean_of(weights, shape_space::Tree_mean::least_squares),
+    return make(mean_of(weights, Tree_mean::frechet),
                 number_of_trees() == 2 ? weights[1] / total : 0,
                 weights);
   }
 
   //! `t`, changed by `step` times what leads from `a` to `b`: any tree, any direction [-]. Lengths end at 0, those of the trunk
   //! and radii of what is there at a hundredth of what they are in `t`.
-  Orl_tree displaced(const Orl_tree& t, const Orl_tree& a, const Orl_tree& b, double step) const
+  Orl_tree
+  parallel_displacement(const Orl_tree& t, const Orl_tree& a, const Orl_tree& b, double step) const
   {
     for (const Orl_tree* x : {&t, &a, &b})
       check_tree(*x, "displaced");
     if (!std::isfinite(step))
       throw Invalid_input("pcs::Orl_shape_space::displaced(): `step` is not finite");
-    return make(Engine::displaced(m_family, t.m_x, a.m_x, b.m_x, step), -1, t.m_share);
+    return make(Engine::parallel_displacement(m_family, t.m_x, a.m_x, b.m_x, step), -1, t.m_share);
   }
 
   /*!
@@ -147,7 +146,7 @@ public:
     \param np
     \npbegin
       \np{mode_measure} what modes explain
-        \nptype `shape_space::Mode_measure`
+        \nptype `Mode_inner_product`
         \npdefault `branches`
     \npend
     \par Complexity
@@ -162,8 +161,8 @@ public:
     return Engine::find_modes(m_family,
                               most,
                               pcs::internal::choose(np,
-                                                    pcs::internal_np::mode_measure,
-                                                    shape_space::Mode_measure::branches));
+                                                    pcs::internal_np::mode_inner_product,
+                                                    Mode_inner_product::branches));
   }
 
   //! the tree with given scores, in standard deviations of the modes; missing scores are 0. However large scores are, the
@@ -222,7 +221,7 @@ public:
   /*!
     \brief draws a new tree like the added ones.
 
-    See `shape_space::Tree_distribution` for the model and `shape_space::Sampling_options` for what can be asked of the
+    See `shape_space::Tree_distribution` for the model and `Tree_sampling_options` for what can be asked of the
     trees. Lengths and radii are positive. Trees of one family have the same topology and the same order of points.
 
     \param from what `distribution()` returned
@@ -230,7 +229,7 @@ public:
     \param index of the tree in its family: a tree does not depend on which others are drawn
     \npbegin
       \np{sampling_options} limits and shares
-        \nptype `shape_space::Sampling_options`
+        \nptype `Tree_sampling_options`
     \npend
     \param report if not null, how the tree was found
   */
@@ -244,7 +243,7 @@ public:
     check_family("sample");
     using namespace shape_space;
     const auto o =
-        pcs::internal::choose(np, pcs::internal_np::sampling_options, Sampling_options());
+        pcs::internal::choose(np, pcs::internal_np::sampling_options, Tree_sampling_options());
     check_sampling(o, "pcs::Orl_shape_space::sample()");
     if (!from.distribution || from.figures.size() != number_of_trees())
       throw Invalid_input("pcs::Orl_shape_space::sample(): the distribution is of another space");
@@ -252,7 +251,7 @@ public:
     Sample_report done;
     const std::size_t trials = o.do_keep_in_range ? o.number_of_trials : 1;
     double least = 0;
-    Sampling_options nearer = o;
+    Tree_sampling_options nearer = o;
     const std::vector<double> share = draw_shares(seed, index);
     for (std::size_t k = 0; k < trials; ++k) {
       // the second half of the trials comes nearer and nearer to the middle tree, and is stretched to the inputs
@@ -270,17 +269,17 @@ public:
                                 share);
       double beyond = 0, whole = 0; // of all figures, and of those of the tree as a whole
       if (o.do_keep_in_range) {
-        const Tree_figures f = figures(candidate);
-        beyond = Engine::excess(f, from.figures, true);
-        whole = Engine::excess(f, from.figures, false);
+        const Tree_descriptors f = figures(candidate);
+        beyond = Engine::range_violation(f, from.figures, true);
+        whole = Engine::range_violation(f, from.figures, false);
       }
-      if (k == 0 || whole < least || (whole == least && beyond < done.excess)) {
+      if (k == 0 || whole < least || (whole == least && beyond < done.range_violation)) {
         best = std::move(candidate);
-        done.excess = beyond;
+        done.range_violation = beyond;
         least = whole;
       }
       done.number_of_trials = k + 1;
-      if (done.excess == 0)
+      if (done.range_violation == 0)
         break;
     }
     if (report)
@@ -307,9 +306,9 @@ public:
     \npend
   */
   template <class NamedParameters = parameters::Default_named_parameters>
-  shape_space::Growth_path growth(const std::vector<Handle>& trees,
-                                  const std::vector<double>& times,
-                                  const NamedParameters& np = NamedParameters()) const
+  shape_space::Growth_spline growth(const std::vector<Handle>& trees,
+                                    const std::vector<double>& times,
+                                    const NamedParameters& np = NamedParameters()) const
   {
     check_family("growth");
     const auto fail = [](const std::string& what) {
@@ -327,16 +326,17 @@ public:
       x.push_back(m_family.x[trees[i]]);
       has.push_back(m_family.has[trees[i]]);
     }
-    return shape_space::Growth_path(m_family.layout,
-                                    times,
-                                    std::move(x),
-                                    has,
-                                    pcs::internal::choose(np, pcs::internal_np::is_monotone, false),
-                                    trees);
+    return shape_space::Growth_spline(
+        m_family.layout,
+        times,
+        std::move(x),
+        has,
+        pcs::internal::choose(np, pcs::internal_np::is_monotone, false),
+        trees);
   }
 
   //! the tree of a path at a time; before its begin and after its end that of the begin and the end
-  Orl_tree tree(const shape_space::Growth_path& path, double time) const
+  Orl_tree tree(const shape_space::Growth_spline& path, double time) const
   {
     check_family("tree");
     if (path.times().empty() || !std::isfinite(time))
@@ -361,7 +361,7 @@ protected:
 
 private:
   /// Those of the scans before and after a time.
-  std::vector<double> shares_at(const shape_space::Growth_path& path, double time) const
+  std::vector<double> shares_at(const shape_space::Growth_spline& path, double time) const
   {
     std::vector<double> result(number_of_trees(), 0);
     const auto [k, f] = path.place(time);
@@ -389,8 +389,7 @@ private:
                           "(): the modes are of another space");
   }
 
-  shape_space::Orl_coordinates mean_of(const std::vector<double>& weights,
-                                       shape_space::Tree_mean kind) const
+  shape_space::Orl_coordinates mean_of(const std::vector<double>& weights, Tree_mean kind) const
   {
     return Engine::mean_tree(m_family, weights, kind);
   }

@@ -9,17 +9,18 @@
 #include <pcs/Orl_tree.h>
 #include <pcs/Orl_tree_family.h>
 #include <pcs/concepts.h>
+#include <pcs/core/Orl_options.h>
 #include <pcs/core/Tree_skeleton.h>
 #include <pcs/core/errors.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/text.h>
-#include <pcs/shape_space/Births.h>
-#include <pcs/shape_space/Embedded_pair.h>
-#include <pcs/shape_space/Family_points.h>
-#include <pcs/shape_space/Point_instances.h>
 #include <pcs/shape_space/Space_engine.h>
-#include <pcs/shape_space/tree_input.h>
-#include <pcs/shape_space/write_skeleton.h>
+#include <pcs/shape_space/family/Family_points.h>
+#include <pcs/shape_space/input/tree_input.h>
+#include <pcs/shape_space/input/write_skeleton.h>
+#include <pcs/shape_space/pair/Embedded_pair.h>
+#include <pcs/shape_space/path/Sequential_births.h>
+#include <pcs/shape_space/points/Point_instances.h>
 
 #include <CGAL/property_map.h>
 
@@ -65,8 +66,8 @@ public:
         \nptype `bool`
         \npdefault `false`: real trees break that rule
       \np{birth_order} how branches that only one of the trees has come into being
-        \nptype `shape_space::Birth_order`
-        \npdefault `together`: coordinates are linear. `in_order` for trees that grow at their tips: it predicts the tree
+        \nptype `Branch_emergence`
+        \npdefault `simultaneous`: coordinates are linear. `sequential` for trees that grow at their tips: it predicts the tree
         between better, and is as short in `Orl_metric::sum`, with constant speed there
     \npend
     \throws pcs::Invalid_input when `lambda` is not finite, or so large that coordinates are not, or a handle is wrong
@@ -162,7 +163,7 @@ public:
         \nptype model of `WritablePropertyMap`, value: `Kernel::Vector_3`
         \npdefault none
       \np{point_path} how the points of a pair are joined
-        \nptype `shape_space::Point_path`
+        \nptype `Point_path`
         \npdefault `cylindrical`; `virtual_edges` is the text's
     \npend
     \return the number of points
@@ -222,16 +223,15 @@ public:
                      ConcurrencyTag());
       return n;
     }
-    m_built.instances.write(this->m_family.layout,
-                            t.m_x,
-                            t.m_geometry,
-                            t.m_lambda,
-                            pcs::internal::choose(np,
-                                                  pcs::internal_np::point_path,
-                                                  shape_space::Point_path::cylindrical),
-                            t.m_offset,
-                            put_point,
-                            ConcurrencyTag());
+    m_built.instances.write(
+        this->m_family.layout,
+        t.m_x,
+        t.m_geometry,
+        t.m_lambda,
+        pcs::internal::choose(np, pcs::internal_np::point_path, Point_path::cylindrical),
+        t.m_offset,
+        put_point,
+        ConcurrencyTag());
     return n;
   }
 
@@ -334,8 +334,8 @@ protected:
                                                  0.25 * static_cast<double>(EIGEN_PI));
     options.do_limit_radii = pcs::internal::choose(np, pcs::internal_np::do_limit_radii, false);
     options.births = pcs::internal::choose(np,
-                                           pcs::internal_np::birth_order,
-                                           shape_space::Birth_order::together);
+                                           pcs::internal_np::branch_emergence,
+                                           Branch_emergence::simultaneous);
     if (!std::isfinite(t))
       throw Invalid_input("pcs::Orl_shape_space::geodesic(): `lambda` is not finite");
     if (!(options.maximal_turn >= 0))

@@ -7,14 +7,15 @@
 
 #include <pcs/Named_function_parameters.h>
 #include <pcs/Orl_tree.h>
+#include <pcs/core/Orl_options.h>
 #include <pcs/core/errors.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/text.h>
-#include <pcs/shape_space/Orl_coordinates.h>
 #include <pcs/shape_space/Space_engine.h>
-#include <pcs/shape_space/Tree_family.h>
-#include <pcs/shape_space/change_table.h>
-#include <pcs/shape_space/tree_figures.h>
+#include <pcs/shape_space/family/Tree_family.h>
+#include <pcs/shape_space/measures/Tree_descriptors.h>
+#include <pcs/shape_space/measures/change_table.h>
+#include <pcs/shape_space/model/Orl_coordinates.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -67,7 +68,7 @@ public:
 
     \npbegin
       \np{metric} sum of differences as in (4.7), root of their squares, or edges as vectors
-        \nptype `shape_space::Orl_metric`
+        \nptype `Orl_metric`
         \npdefault `sum`
     \npend
   */
@@ -114,7 +115,7 @@ public:
 
     \npbegin
       \np{change_limits} when a difference counts
-        \nptype `shape_space::Change_limits`
+        \nptype `Change_limits`
     \npend
   */
   template <class NamedParameters = parameters::Default_named_parameters>
@@ -123,8 +124,7 @@ public:
   {
     check_handle(a, "changes");
     check_handle(b, "changes");
-    const auto limits =
-        pcs::internal::choose(np, pcs::internal_np::change_limits, shape_space::Change_limits());
+    const auto limits = pcs::internal::choose(np, pcs::internal_np::change_limits, Change_limits());
     for (const double x : {limits.length, limits.radius, limits.angle})
       if (!(x >= 0))
         throw Invalid_input("pcs::Orl_shape_space::changes(): a limit is " +
@@ -133,7 +133,7 @@ public:
   }
 
   //! length, height, width, branches and angles of a tree; height is measured along `growth_direction()`
-  shape_space::Tree_figures figures(const Orl_tree& t) const
+  shape_space::Tree_descriptors figures(const Orl_tree& t) const
   {
     check_tree(t, "figures");
     return Engine::measure(m_family, t.m_x, t.m_geometry);
@@ -222,11 +222,10 @@ private:
                      const shape_space::Orl_coordinates& b,
                      const NamedParameters& np) const
   {
-    return Engine::distance(
-        m_family,
-        a,
-        b,
-        pcs::internal::choose(np, pcs::internal_np::metric, shape_space::Orl_metric::sum));
+    return Engine::distance(m_family,
+                            a,
+                            b,
+                            pcs::internal::choose(np, pcs::internal_np::metric, Orl_metric::sum));
   }
 };
 

@@ -6,12 +6,13 @@
 #define PCS_POINT_SET_DEFORMATION_H
 
 #include <pcs/Named_function_parameters.h>
+#include <pcs/core/Deformation_options.h>
 #include <pcs/core/Deformation_report.h>
 #include <pcs/core/Similarity.h>
 #include <pcs/core/errors.h>
-#include <pcs/deformation/Point_access.h>
 #include <pcs/deformation/Session.h>
-#include <pcs/deformation/read_options.h>
+#include <pcs/deformation/access/Point_access.h>
+#include <pcs/deformation/access/read_options.h>
 #include <pcs/internal/lanes.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
@@ -300,13 +301,13 @@ public:
 
     If the report says `cancelled` or `numerical_failure`, nothing was written.
 
-    \param start `Start::cold`: the result depends on the rest shape and the motions only, not on what was done before.
-    `Start::warm`: for the frames of a drag. The passes go on from the last result, so that one to three are enough; the
+    \param start `Solver_start::cold`: the result depends on the rest shape and the motions only, not on what was done before.
+    `Solver_start::warm`: for the frames of a drag. The passes go on from the last result, so that one to three are enough; the
     energy was at most a tenth above that of cold starts, and a quarter of it where these end early. A large step, new
     handles, a snapshot that was restored, and full resolution of more than 20,000 points with interior springs begin
     cold in any case.
   */
-  Deformation_report deform(Start start = Start::cold)
+  Deformation_report deform(Solver_start start = Solver_start::cold)
   {
     const char* function = "pcs::Point_set_deformation::deform()";
     require_session(function);

@@ -12,10 +12,10 @@
 #include <pcs/core/errors.h>
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Session.h>
-#include <pcs/skeleton/caller_types.h>
-#include <pcs/skeleton/check_input.h>
-#include <pcs/skeleton/read_options.h>
-#include <pcs/skeleton/write_result.h>
+#include <pcs/skeleton/input/caller_types.h>
+#include <pcs/skeleton/input/check_input.h>
+#include <pcs/skeleton/input/read_options.h>
+#include <pcs/skeleton/result/write_result.h>
 
 #include <CGAL/property_map.h>
 
@@ -129,10 +129,10 @@ public:
         \nptype model of `ReadablePropertyMap`, key: vertex descriptor, value: a point type
         \npdefault the bundled property of `Tree_skeleton`; needed for other graphs
       \np{skeleton_method} how branches are found
-        \nptype `skeleton::Skeleton_method`: `chains`, or `sections` for the dissertation's own way
+        \nptype `Skeleton_method`: `chains`, or `sections` for the dissertation's own way
         \npdefault `chains`
       \np{slice_rules} the steps of the method `sections`: how slices are cut, fitted, tilted, and which points they spare
-        \nptype `skeleton::Slice_rules`
+        \nptype `Slice_options`
         \npdefault the dissertation's, with which nothing is replaced
       \np{do_remove_ground} whether ground around the foot is looked for and left out, and flat faces, such as walls and
           roofs, with what stands within one cell (a twelfth of the root mean square radius of the scan) beside them
@@ -147,14 +147,14 @@ public:
       \np{do_remove_leaves} whether points of leaves are looked for and left out. After the first fit, points of hollow
           sections are wood, and such whose surroundings and paths to the root are those of twigs; the rest is leaves. Wood is
           fitted again, twice, each time without the axes that look like leaves and what no axis explains. `true`: always;
-          `false`: never; `skeleton::Leaf_removal::where_found`: if 2.5 % of the points are not explained by the first fit,
+          `false`: never; `Leaf_removal::where_found`: if 2.5 % of the points are not explained by the first fit,
           5 % are thick wood, and of the others 3.5 % lie in flat patches, or 16 % of all points lie deep among such that are
           neither thick wood nor lines, unless the points lie in rows (`Skeleton_report::is_in_rows`). If only the third is
           missing, there are no leaves, and one more fit goes without what strays from the wood: axes that do not look like
           it, and points that no axis explains and that do not, either, away from the trunk; all are used again after it. For the
           method `chains`
-        \nptype `bool` or `skeleton::Leaf_removal`
-        \npdefault `skeleton::Leaf_removal::where_found`; with `wood_map` `false`
+        \nptype `bool` or `Leaf_removal`
+        \npdefault `Leaf_removal::where_found`; with `wood_map` `false`
       \np{point_branch_map} written by `extract()`: the branch of a point, an index in the result, or `npos`
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: `std::size_t`
         \npdefault none

@@ -9,7 +9,7 @@
 #include <pcs/core/Tree_skeleton.h>
 #include <pcs/core/errors.h>
 #include <pcs/internal/text.h>
-#include <pcs/skeleton/Surface_builder.h>
+#include <pcs/skeleton/surface/Surface_builder.h>
 
 #include <CGAL/number_utils.h>
 
@@ -116,7 +116,7 @@ Branch_surface_report make_branch_surface(const Tree_skeleton<Kernel>& tree,
       branch.sections.push_back(s);
     }
   }
-  skeleton::Surface_rules rules;
+  skeleton::Surface_options rules;
   rules.do_join = internal::choose(np, internal_np::do_join, true);
   rules.tolerance = static_cast<double>(
       internal::choose(np, internal_np::tolerance, default_surface_tolerance * thickest));

@@ -14,11 +14,11 @@
 #include <pcs/internal/Stopwatch.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
-#include <pcs/skeleton/Forest.h>
-#include <pcs/skeleton/Session_hints.h>
-#include <pcs/skeleton/caller_types.h>
-#include <pcs/skeleton/check_input.h>
-#include <pcs/skeleton/read_options.h>
+#include <pcs/skeleton/forest/Stand.h>
+#include <pcs/skeleton/input/Session_hints.h>
+#include <pcs/skeleton/input/caller_types.h>
+#include <pcs/skeleton/input/check_input.h>
+#include <pcs/skeleton/input/read_options.h>
 
 #include <CGAL/property_map.h>
 
@@ -157,12 +157,12 @@ Segmentation_report segment_trees(PointRange& points,
         internal::choose(np, CGAL::internal_np::callback, std::function<bool(double)>()));
     report.number_of_points = input.size();
     report.breast_height = hints.breast_height;
-    skeleton::Forest forest;
+    skeleton::Stand forest;
     if (!skeleton::find_trees<ConcurrencyTag>(input, hints, progress, forest)) {
       report.status = Status::cancelled;
       return report;
     }
-    for (const skeleton::Standing_tree& tree : forest.trees)
+    for (const skeleton::Detected_tree& tree : forest.trees)
       report.trees.push_back({{tree.foot.x(), tree.foot.y(), tree.foot.z()}, tree.radius});
     std::size_t i = 0;
     for (auto it = std::begin(points); it != std::end(points); ++it, ++i) {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // Tests of IO/Point_table.h.
 
-#include <pcs/IO/Point_table.h>
+#include <pcs/IO/points/Point_table.h>
 #include <pcs/core/errors.h>
 
 #include <boost/test/unit_test.hpp>

@@ -5,7 +5,7 @@
 #ifndef PCS_TEST_EXAMPLES_PROGRAM_RUN_H
 #define PCS_TEST_EXAMPLES_PROGRAM_RUN_H
 
-#include <pcs/IO/Point_table.h>
+#include <pcs/IO/points/Point_table.h>
 #include <pcs/IO/read_points.h>
 #include <pcs/IO/write_points.h>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // The program segment_trees: files of trees, labels and report agree, and bad input is refused.
 
-#include <pcs/IO/Point_table.h>
+#include <pcs/IO/points/Point_table.h>
 #include <pcs/IO/read_points.h>
 #include <pcs/IO/write_points.h>
 #include <pcs/generators/grow_tree.h>

@@ -5,9 +5,9 @@
 #define PCS_NO_VECTOR_EXTENSIONS
 #define PCS_NO_RUNTIME_DISPATCH
 
-#include <pcs/deformation/blend_block.h>
-#include <pcs/deformation/fit_rotations.h>
-#include <pcs/deformation/measure_edges.h>
+#include <pcs/deformation/solver/fit_rotations.h>
+#include <pcs/deformation/solver/measure_edges.h>
+#include <pcs/deformation/upsampling/blend_block.h>
 #include <pcs/internal/lanes.h>
 #include <pcs/linear_algebra/Sparse_cholesky.h>
 #include <support/point_clouds.h>

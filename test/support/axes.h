@@ -5,9 +5,9 @@
 #ifndef PCS_TEST_SUPPORT_AXES_H
 #define PCS_TEST_SUPPORT_AXES_H
 
-#include <pcs/skeleton/Axis.h>
-#include <pcs/skeleton/Axis_set.h>
-#include <pcs/skeleton/Branch_tree.h>
+#include <pcs/skeleton/model/Axis.h>
+#include <pcs/skeleton/model/Axis_set.h>
+#include <pcs/skeleton/model/Branch_tree.h>
 
 #include <cstddef>
 #include <vector>

@@ -10,8 +10,8 @@
 #include <pcs/IO/read_txtskl.h>
 #include <pcs/Orl_shape_space.h>
 #include <pcs/neighborhood/Nearest_neighbors.h>
-#include <pcs/shape_space/best_turn.h>
-#include <pcs/shape_space/extend_axes.h>
+#include <pcs/shape_space/input/extend_axes.h>
+#include <pcs/shape_space/matching/align_vectors.h>
 #include <support/orl_trees.h>
 
 #include <array>
@@ -244,7 +244,7 @@ inline Pose improve_pose(Pose pose,
     for (const auto& [p, q] : pairs)
       covariance += (q - to) * (p - from).transpose();
     if (up.isZero())
-      pose.rotation = pcs::shape_space::best_turn(covariance, pcs::Quaternion(pose.rotation))
+      pose.rotation = pcs::shape_space::align_vectors(covariance, pcs::Quaternion(pose.rotation))
                           .toRotationMatrix();
     else {
       const Eigen::Matrix3d skew = covariance.transpose() - covariance;
@@ -339,16 +339,15 @@ inline Prediction predict(const Series& series)
   space.add(series.first.tree, series.first.scan);
   space.add(series.last.tree, series.last.scan);
   const pcs::Orl_report report =
-      space.build(pcs::parameters::alignment(pcs::shape_space::Alignment::turns)
+      space.build(pcs::parameters::alignment(pcs::Alignment::rotate_about_up)
                       .up_direction(Kernel::Vector_3(series.up.x(), series.up.y(), series.up.z())));
   std::vector<Point> points, in_order;
   space.points(space.geodesic(0, 1, series.lambda), points);
-  space.points(
-      space.geodesic(0,
-                     1,
-                     series.lambda,
-                     pcs::parameters::birth_order(pcs::shape_space::Birth_order::in_order)),
-      in_order);
+  space.points(space.geodesic(0,
+                              1,
+                              series.lambda,
+                              pcs::parameters::branch_emergence(pcs::Branch_emergence::sequential)),
+               in_order);
   Vec3 low = seen[0], high = seen[0];
   for (const Vec3& p : seen) {
     low = low.cwiseMin(p);

@@ -5,8 +5,8 @@
 #ifndef PCS_TEST_SUPPORT_NETWORKS_H
 #define PCS_TEST_SUPPORT_NETWORKS_H
 
-#include <pcs/deformation/Elastic_network.h>
-#include <pcs/deformation/Harmonic_system.h>
+#include <pcs/deformation/model/Elastic_network.h>
+#include <pcs/deformation/model/Harmonic_system.h>
 #include <pcs/neighborhood/Proximity_graph.h>
 #include <pcs/neighborhood/spatial_order.h>
 #include <support/point_clouds.h>

@@ -5,15 +5,15 @@
 #ifndef PCS_IO_POINT_READER_H
 #define PCS_IO_POINT_READER_H
 
-#include <pcs/IO/Point_schema.h>
-#include <pcs/IO/Point_table.h>
 #include <pcs/IO/internal/Format_reader.h>
-#include <pcs/IO/internal/Las_reader.h>
 #include <pcs/IO/internal/Off_reader.h>
-#include <pcs/IO/internal/Ply_reader.h>
 #include <pcs/IO/internal/Row_block.h>
 #include <pcs/IO/internal/Text_reader.h>
 #include <pcs/IO/internal/file_format.h>
+#include <pcs/IO/internal/las/Las_reader.h>
+#include <pcs/IO/internal/ply/Ply_reader.h>
+#include <pcs/IO/points/Point_schema.h>
+#include <pcs/IO/points/Point_table.h>
 #include <pcs/core/errors.h>
 
 #include <algorithm>

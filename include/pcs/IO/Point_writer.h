@@ -5,16 +5,16 @@
 #ifndef PCS_IO_POINT_WRITER_H
 #define PCS_IO_POINT_WRITER_H
 
-#include <pcs/IO/Point_schema.h>
-#include <pcs/IO/Point_table.h>
-#include <pcs/IO/Write_options.h>
 #include <pcs/IO/internal/Format_reader.h>
 #include <pcs/IO/internal/Format_writer.h>
-#include <pcs/IO/internal/Las_writer.h>
 #include <pcs/IO/internal/Off_writer.h>
-#include <pcs/IO/internal/Ply_writer.h>
 #include <pcs/IO/internal/Text_writer.h>
 #include <pcs/IO/internal/file_format.h>
+#include <pcs/IO/internal/las/Las_writer.h>
+#include <pcs/IO/internal/ply/Ply_writer.h>
+#include <pcs/IO/points/Point_schema.h>
+#include <pcs/IO/points/Point_table.h>
+#include <pcs/IO/points/Write_options.h>
 #include <pcs/core/errors.h>
 
 #include <cstddef>

@@ -6,7 +6,7 @@
 #define PCS_IO_READ_POINTS_H
 
 #include <pcs/IO/Point_reader.h>
-#include <pcs/IO/Point_table.h>
+#include <pcs/IO/points/Point_table.h>
 #include <pcs/core/errors.h>
 
 #include <CGAL/Kernel_traits.h>

@@ -5,11 +5,11 @@
 #ifndef PCS_IO_WRITE_POINTS_H
 #define PCS_IO_WRITE_POINTS_H
 
-#include <pcs/IO/Point_table.h>
 #include <pcs/IO/Point_writer.h>
-#include <pcs/IO/Write_options.h>
 #include <pcs/IO/internal/file_format.h>
-#include <pcs/IO/internal/las_metadata.h>
+#include <pcs/IO/internal/las/las_metadata.h>
+#include <pcs/IO/points/Point_table.h>
+#include <pcs/IO/points/Write_options.h>
 
 #include <CGAL/number_utils.h>
 

@@ -44,7 +44,7 @@ struct Orl_report
   std::size_t number_of_failed_windows = 0; ///< transports that could not be completed [count]
   double worst_marginal_violation = 0;      ///< mass of a window, of 1, that went elsewhere [-]
   double mean_marginal_violation = 0;       ///< the same, mean over windows [-]
-  double mean_remaining_mass =
+  double untransported_mass_share =
       0; ///< mass of a window, of 1, without counterpart within reach, mean over windows [-]
 
   //! wall-clock time of each stage [s]
@@ -70,7 +70,7 @@ inline std::ostream& operator<<(std::ostream& out, const Orl_report& r)
         << r.number_of_edges << " edges; " << r.number_of_point_pairs << " points, ";
   out << r.number_of_windows << " windows (" << r.number_of_failed_windows
       << " failed), marginal violation " << r.worst_marginal_violation << ", without counterpart "
-      << r.mean_remaining_mass << "; seconds: matching " << r.seconds.matching << ", topology "
+      << r.untransported_mass_share << "; seconds: matching " << r.seconds.matching << ", topology "
       << r.seconds.topology << ", assignment " << r.seconds.assignment << ", transport "
       << r.seconds.transport << ", instances " << r.seconds.instances;
   return out;

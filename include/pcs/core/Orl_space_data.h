@@ -56,7 +56,7 @@ struct Orl_space_data
     double root = 1;
   };
 
-  int orientation = 0; ///< as in `shape_space::Orientation`
+  int orientation = 0; ///< as in `Orl_orientation`
   std::array<double, 3> origin = {0, 0, 0};
   std::vector<Branch> branches;
   //! edges whose frame is not carried on from the one before on their branch, but from an earlier one: behind folds
@@ -64,7 +64,7 @@ struct Orl_space_data
   std::vector<Tree> trees;
   Tree reference;
   Weights weights;
-  std::array<double, 14> matching = {}; ///< `shape_space::Matching_weights`
+  std::array<double, 14> matching = {}; ///< `Matching_weights`
   std::vector<Orl_correspondences::Pair> pairs;
   bool has_normals = false;
   std::vector<Point> points;

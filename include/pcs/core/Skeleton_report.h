@@ -22,7 +22,7 @@ namespace pcs {
 
 //! \ingroup PkgPcsSkeletonRef
 //! sums over a part of a tree
-struct Wood
+struct Branch_totals
 {
   std::size_t number_of_branches = 0; ///< [count]; 0 in classes of size, which cut branches
   double length = 0;                  ///< along the axes [L]
@@ -74,7 +74,7 @@ struct Skeleton_report
 
   double spacing = 0; ///< median distance to the nearest neighbour [L]
   //! size of the voxels whose centers the points are, and which was taken out of the radii; 0: they are not [L]
-  double grid_step = 0;
+  double voxel_size = 0;
   double noise = 0; ///< standard deviation of the points from the surface [L]
   //! median distance of the points from the surface of their branches; several times `noise`: something is wrong [L]
   double residual = 0;
@@ -87,11 +87,11 @@ struct Skeleton_report
   //! of the thickest branch there; 0: nothing is that high [L]
   double diameter_at_breast_height = 0;
   double breast_height = 0; ///< of that diameter, above the root [L]
-  Wood total;
-  std::vector<Wood> by_order; ///< trunk first
+  Branch_totals total;
+  std::vector<Branch_totals> by_order; ///< trunk first
   //! upper bounds of the radius in the classes of `by_size`, the last class has none
   std::vector<double> size_bounds;
-  std::vector<Wood> by_size; ///< thinnest class first
+  std::vector<Branch_totals> by_size; ///< thinnest class first
 
   //! wall-clock time of each stage [s]
   struct Seconds
@@ -138,10 +138,10 @@ inline std::vector<std::string> warnings(const Skeleton_report& r)
       double(r.number_of_leaf_points) > many * tree)
     sentences.push_back("most of the points are taken for leaves, which hide wood: radii and "
                         "volume may differ much between scans of the same tree");
-  if (r.grid_step > 0) {
+  if (r.voxel_size > 0) {
     std::ostringstream size;
     size.precision(3);
-    size << r.grid_step;
+    size << r.voxel_size;
     sentences.push_back("the points lie on a grid of step " + size.str() +
                         "; branches that are not several times as thick are rough guesses");
   }

@@ -5,15 +5,16 @@
 #ifndef PCS_DEFORMATION_SESSION_H
 #define PCS_DEFORMATION_SESSION_H
 
+#include <pcs/core/Deformation_options.h>
 #include <pcs/core/Deformation_report.h>
 #include <pcs/core/Similarity.h>
-#include <pcs/deformation/Elastic_options.h>
-#include <pcs/deformation/Outlier_maps.h>
-#include <pcs/deformation/Place_writer.h>
-#include <pcs/deformation/Sampled_body.h>
-#include <pcs/deformation/Site_constraints.h>
-#include <pcs/deformation/Upsampling.h>
-#include <pcs/deformation/affine_maps.h>
+#include <pcs/deformation/body/Sampled_body.h>
+#include <pcs/deformation/handles/Site_constraints.h>
+#include <pcs/deformation/model/Affine_map.h>
+#include <pcs/deformation/model/Elastic_options.h>
+#include <pcs/deformation/upsampling/Moved_point_writer.h>
+#include <pcs/deformation/upsampling/Outlier_maps.h>
+#include <pcs/deformation/upsampling/Upsampling.h>
 #include <pcs/internal/Stopwatch.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
@@ -93,7 +94,7 @@ public:
 
   /// Solves for the present transformations. The points are not written: see `write()`.
   Deformation_report
-  solve(const Elastic_options& options, Start start, pcs::internal::Progress& progress);
+  solve(const Elastic_options& options, Solver_start start, pcs::internal::Progress& progress);
 
   /// Whether the present shape was solved with the present handles, or is the rest shape.
   bool has_shape_of_handles() const;
@@ -111,7 +112,7 @@ public:
   void reset();
 
   /*!
-    Writes every point that the deformation may move to `output`, an `Output` of `Place_writer`, side by side: not
+    Writes every point that the deformation may move to `output`, an `Output` of `Moved_point_writer`, side by side: not
     points outside the region of interest, nor those that no handle reaches, nor those of handles that have not moved.
     Positions are in the caller's coordinates; the gradient is set if `HasGradients`: the linear part of the map of the
     point.
@@ -121,12 +122,12 @@ public:
   {
     pcs::internal::Stopwatch watch;
     const Writing<ConcurrencyTag> w = start_writing();
-    const Place_writer<ConcurrencyTag, Output> writer(w.body,
-                                                      w.sites,
-                                                      w.outlier_maps,
-                                                      w.transforms,
-                                                      w.is_written,
-                                                      output);
+    const Moved_point_writer<ConcurrencyTag, Output> writer(w.body,
+                                                            w.sites,
+                                                            w.outlier_maps,
+                                                            w.transforms,
+                                                            w.is_written,
+                                                            output);
     if (w.body.is_sampled)
       w.body.upsampling.template apply<ConcurrencyTag, HasGradients>(
           w.maps,

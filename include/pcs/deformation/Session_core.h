@@ -5,24 +5,25 @@
 #ifndef PCS_DEFORMATION_SESSION_CORE_H
 #define PCS_DEFORMATION_SESSION_CORE_H
 
+#include <pcs/core/Deformation_options.h>
 #include <pcs/core/Deformation_report.h>
 #include <pcs/core/Similarity.h>
-#include <pcs/deformation/Coarse_levels.h>
-#include <pcs/deformation/Elastic_solver.h>
-#include <pcs/deformation/Handle_fades.h>
-#include <pcs/deformation/Handle_set.h>
-#include <pcs/deformation/Outlier_maps.h>
-#include <pcs/deformation/Point_carrier.h>
-#include <pcs/deformation/Sampled_body.h>
-#include <pcs/deformation/Sampled_body_impl.h>
 #include <pcs/deformation/Session.h>
-#include <pcs/deformation/Site_constraints.h>
-#include <pcs/deformation/Written_handles.h>
-#include <pcs/deformation/affine_maps.h>
-#include <pcs/deformation/handle_boundary.h>
-#include <pcs/deformation/hold_free_components.h>
-#include <pcs/deformation/read_maps.h>
-#include <pcs/deformation/straighten_borders.h>
+#include <pcs/deformation/body/Sampled_body.h>
+#include <pcs/deformation/body/Sampled_body_impl.h>
+#include <pcs/deformation/handles/Dirty_handles.h>
+#include <pcs/deformation/handles/Handle_set.h>
+#include <pcs/deformation/handles/Site_constraints.h>
+#include <pcs/deformation/handles/add_boundary_nodes.h>
+#include <pcs/deformation/handles/anchor_free_components.h>
+#include <pcs/deformation/handles/straighten_borders.h>
+#include <pcs/deformation/model/Affine_map.h>
+#include <pcs/deformation/multigrid/Coarse_levels.h>
+#include <pcs/deformation/solver/Elastic_solver.h>
+#include <pcs/deformation/upsampling/Handle_fades.h>
+#include <pcs/deformation/upsampling/Outlier_maps.h>
+#include <pcs/deformation/upsampling/Point_carrier.h>
+#include <pcs/deformation/upsampling/read_maps.h>
 #include <pcs/internal/Stopwatch.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
@@ -115,7 +116,7 @@ public:
     m_stiffness = stiffness;
     Node_constraints of_samples =
         constraints; // exact handles without a sample get nodes on their border below
-    hold_free_components(
+    anchor_free_components(
         [&](std::size_t s) { return m_body.component_of_site[m_body.site_of_sample[s]]; },
         m_body.sample_of_site,
         [&](std::size_t site) { return m_handles.exact_handle(site); },
@@ -149,7 +150,7 @@ public:
 
   /// Solves for the present transformations. The points are not written: see `write()`.
   Deformation_report
-  solve(const Elastic_options& options, Start start, pcs::internal::Progress& progress)
+  solve(const Elastic_options& options, Solver_start start, pcs::internal::Progress& progress)
   {
     const bool is_first = !m_was_reported;
     m_was_reported = true;
@@ -174,7 +175,8 @@ public:
     std::vector<Similarity>& transforms = m_next_transforms;
     m_handles.local_transforms(m_body.frame, transforms);
     Elastic_result result;
-    const bool is_warm = start == Start::warm && m_has_solution && !m_coarse.has_link_offsets();
+    const bool is_warm =
+        start == Solver_start::warm && m_has_solution && !m_coarse.has_link_offsets();
     if (!is_warm || !m_solver.solve_further(transforms,
                                             options,
                                             progress,
@@ -394,7 +396,7 @@ private:
   {
     const auto handle_of_site = [&](std::size_t site) { return m_handles.exact_handle(site); };
     const auto position = [&](std::size_t site) { return m_body.rest_of_site(site); };
-    return with_boundary_nodes(
+    return add_boundary_nodes(
         Boundary_input<decltype(handle_of_site), decltype(position)>{m_body.network,
                                                                      m_body.weight_unit,
                                                                      border,
@@ -419,7 +421,7 @@ private:
   std::uint64_t m_setting_of_shape = 0;       ///< when the shape was solved
   std::uint64_t m_setting_of_sites = 0;       ///< when what becomes of every site was found
   bool m_is_at_rest = true;
-  Written_handles m_written_handles;
+  Dirty_handles m_written_handles;
   std::vector<int> m_are_finite;
   std::unique_ptr<Point_carrier> m_carrier;
   std::vector<Affine_map> m_maps, m_next_maps;

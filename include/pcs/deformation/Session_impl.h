@@ -5,6 +5,7 @@
 #ifndef PCS_DEFORMATION_SESSION_IMPL_H
 #define PCS_DEFORMATION_SESSION_IMPL_H
 
+#include <pcs/core/Deformation_options.h>
 #include <pcs/deformation/Session.h>
 #include <pcs/deformation/Session_core.h>
 
@@ -97,7 +98,7 @@ bool Session<ConcurrencyTag>::constrain(double stiffness)
 
 template <class ConcurrencyTag>
 Deformation_report Session<ConcurrencyTag>::solve(const Elastic_options& options,
-                                                  Start start,
+                                                  Solver_start start,
                                                   pcs::internal::Progress& progress)
 {
   return m_core->solve(options, start, progress);

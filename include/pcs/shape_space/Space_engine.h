@@ -6,23 +6,22 @@
 #define PCS_SHAPE_SPACE_SPACE_ENGINE_H
 
 #include <pcs/core/Orl_correspondences.h>
+#include <pcs/core/Orl_options.h>
 #include <pcs/core/Orl_report.h>
 #include <pcs/core/Orl_space_data.h>
 #include <pcs/internal/progress.h>
-#include <pcs/shape_space/Births.h>
-#include <pcs/shape_space/Embedded_pair.h>
-#include <pcs/shape_space/Family_options.h>
-#include <pcs/shape_space/Family_points.h>
-#include <pcs/shape_space/Modes_of_variation.h>
-#include <pcs/shape_space/Near_end.h>
-#include <pcs/shape_space/Orl_coordinates.h>
-#include <pcs/shape_space/Point_pair.h>
-#include <pcs/shape_space/Sampling_options.h>
-#include <pcs/shape_space/Tree_family.h>
-#include <pcs/shape_space/Tree_mean.h>
-#include <pcs/shape_space/change_table.h>
-#include <pcs/shape_space/tree_figures.h>
-#include <pcs/shape_space/tree_input.h>
+#include <pcs/shape_space/family/Family_points.h>
+#include <pcs/shape_space/family/Tree_family.h>
+#include <pcs/shape_space/input/tree_input.h>
+#include <pcs/shape_space/measures/Tree_descriptors.h>
+#include <pcs/shape_space/measures/change_table.h>
+#include <pcs/shape_space/model/Build_options.h>
+#include <pcs/shape_space/model/Orl_coordinates.h>
+#include <pcs/shape_space/model/Point_pair.h>
+#include <pcs/shape_space/pair/Embedded_pair.h>
+#include <pcs/shape_space/path/Extrapolation_limits.h>
+#include <pcs/shape_space/path/Sequential_births.h>
+#include <pcs/shape_space/statistics/Modes_of_variation.h>
 
 #include <array>
 #include <cstddef>
@@ -41,7 +40,7 @@ struct Path_options
 {
   double maximal_turn = 0; ///< beyond the ends [rad]
   bool do_limit_radii = false;
-  Birth_order births = Birth_order::together;
+  Branch_emergence births = Branch_emergence::simultaneous;
 };
 
 /*!
@@ -56,7 +55,7 @@ struct Space_engine
   // two trees
   /// See `find_correspondences()`.
   static bool find_correspondences(const Inputs& inputs,
-                                   const Family_options& options,
+                                   const Build_options& options,
                                    pcs::internal::Progress& progress,
                                    Embedded_pair& built,
                                    std::vector<Point_pair>& pairs,
@@ -76,7 +75,7 @@ struct Space_engine
 
   // more trees
   static bool build_family(const std::vector<Tree_input>& inputs,
-                           const Family_options& options,
+                           const Build_options& options,
                            Virtual_direction direction,
                            bool has_unit_weights,
                            pcs::internal::Progress& progress,
@@ -112,8 +111,8 @@ struct Space_engine
                       const Orl_coordinates& b,
                       double t,
                       const Path_options& options,
-                      Near_end_buffers& near_end,
-                      Births_buffers& births,
+                      Extrapolation_buffers& near_end,
+                      Sequential_births_buffers& births,
                       Orl_coordinates& x,
                       Orl_geometry& geometry);
   static double distance(const Tree_family& family,
@@ -124,22 +123,22 @@ struct Space_engine
                                                  const Orl_coordinates& a,
                                                  const Orl_coordinates& b,
                                                  const Change_limits& limits);
-  static Tree_figures
+  static Tree_descriptors
   measure(const Tree_family& family, const Orl_coordinates& x, const Orl_geometry& geometry);
   /// The place of the nearest tree on the geodesic of two trees, in [0, 1].
   static double share_of_second(const Tree_family& family, const Orl_coordinates& x);
   /// `t`, moved by `step` times what leads from `a` to `b`.
-  static Orl_coordinates displaced(const Tree_family& family,
-                                   const Orl_coordinates& t,
-                                   const Orl_coordinates& a,
-                                   const Orl_coordinates& b,
-                                   double step);
+  static Orl_coordinates parallel_displacement(const Tree_family& family,
+                                               const Orl_coordinates& t,
+                                               const Orl_coordinates& a,
+                                               const Orl_coordinates& b,
+                                               double step);
 
   // statistics
   static Orl_coordinates
   mean_tree(const Tree_family& family, const std::vector<double>& weights, Tree_mean kind);
   static Modes_of_variation
-  find_modes(const Tree_family& family, std::size_t most, Mode_measure measure);
+  find_modes(const Tree_family& family, std::size_t most, Mode_inner_product measure);
   static Orl_coordinates tree_of_modes(const Tree_family& family,
                                        const Modes_of_variation& modes,
                                        const std::vector<double>& scores);
@@ -152,13 +151,14 @@ struct Space_engine
   /// A tree in the range of `figures`; `is_late`: lengths are limited, too.
   static Orl_coordinates draw(const Tree_family& family,
                               const Tree_distribution& distribution,
-                              const std::vector<Tree_figures>& figures,
+                              const std::vector<Tree_descriptors>& figures,
                               std::uint64_t seed,
                               std::uint64_t index,
-                              const Sampling_options& options,
+                              const Tree_sampling_options& options,
                               bool is_late);
-  static double
-  excess(const Tree_figures& figures, const std::vector<Tree_figures>& range, bool is_of_all);
+  static double range_violation(const Tree_descriptors& figures,
+                                const std::vector<Tree_descriptors>& range,
+                                bool is_of_all);
 };
 
 } // namespace shape_space

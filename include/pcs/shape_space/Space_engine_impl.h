@@ -5,21 +5,22 @@
 #ifndef PCS_SHAPE_SPACE_SPACE_ENGINE_IMPL_H
 #define PCS_SHAPE_SPACE_SPACE_ENGINE_IMPL_H
 
-#include <pcs/shape_space/Family_points_impl.h>
-#include <pcs/shape_space/Point_instances_impl.h>
+#include <pcs/core/Orl_options.h>
 #include <pcs/shape_space/Space_engine.h>
-#include <pcs/shape_space/Tangent_space.h>
-#include <pcs/shape_space/Tree_distribution.h>
-#include <pcs/shape_space/build_family.h>
-#include <pcs/shape_space/build_pair.h>
-#include <pcs/shape_space/embed_pair.h>
-#include <pcs/shape_space/find_modes.h>
-#include <pcs/shape_space/keep_in_range.h>
-#include <pcs/shape_space/limit_pipes.h>
-#include <pcs/shape_space/make_family.h>
-#include <pcs/shape_space/mean_tree.h>
-#include <pcs/shape_space/stored_family.h>
-#include <pcs/shape_space/stored_topology.h>
+#include <pcs/shape_space/family/Family_points_impl.h>
+#include <pcs/shape_space/family/build_family.h>
+#include <pcs/shape_space/family/make_family.h>
+#include <pcs/shape_space/family/serialize_family.h>
+#include <pcs/shape_space/pair/build_pair.h>
+#include <pcs/shape_space/pair/embed_pair.h>
+#include <pcs/shape_space/pair/serialize_topology.h>
+#include <pcs/shape_space/path/apply_pipe_model.h>
+#include <pcs/shape_space/points/Point_instances_impl.h>
+#include <pcs/shape_space/statistics/Tangent_space.h>
+#include <pcs/shape_space/statistics/Tree_distribution.h>
+#include <pcs/shape_space/statistics/find_modes.h>
+#include <pcs/shape_space/statistics/mean_tree.h>
+#include <pcs/shape_space/statistics/project_to_range.h>
 
 #include <algorithm>
 #include <array>
@@ -47,7 +48,7 @@ inline std::vector<const Orl_coordinates*> pointers(const std::vector<Orl_coordi
 
 template <class ConcurrencyTag>
 bool Space_engine<ConcurrencyTag>::find_correspondences(const Inputs& inputs,
-                                                        const Family_options& options,
+                                                        const Build_options& options,
                                                         pcs::internal::Progress& progress,
                                                         Embedded_pair& built,
                                                         std::vector<Point_pair>& pairs,
@@ -107,7 +108,7 @@ Orl_correspondences Space_engine<ConcurrencyTag>::store_topology(const Embedded_
 
 template <class ConcurrencyTag>
 bool Space_engine<ConcurrencyTag>::build_family(const std::vector<Tree_input>& inputs,
-                                                const Family_options& options,
+                                                const Build_options& options,
                                                 Virtual_direction direction,
                                                 bool has_unit_weights,
                                                 pcs::internal::Progress& progress,
@@ -198,19 +199,20 @@ void Space_engine<ConcurrencyTag>::tree_at(const Tree_family& family,
                                            const Orl_coordinates& b,
                                            double t,
                                            const Path_options& options,
-                                           Near_end_buffers& near_end,
-                                           Births_buffers& births,
+                                           Extrapolation_buffers& near_end,
+                                           Sequential_births_buffers& births,
                                            Orl_coordinates& x,
                                            Orl_geometry& geometry)
 {
   coordinates_at(family.layout, a, b, t, options.maximal_turn, x);
-  if (options.births == Birth_order::in_order && t > 0 && t < 1)
-    Births(family.layout, births)(a, b, t, x);
+  if (options.births == Branch_emergence::sequential && t > 0 && t < 1)
+    Sequential_births(family.layout, births)(a, b, t, x);
   if (t < 0 || t > 1)
-    Near_end(family.layout, family.orientation, family.up, options.maximal_turn, near_end)(
-        t < 0 ? a : b,
-        t < 0 ? b : a,
-        x);
+    Extrapolation_limits(family.layout,
+                         family.orientation,
+                         family.up,
+                         options.maximal_turn,
+                         near_end)(t < 0 ? a : b, t < 0 ? b : a, x);
   if (options.do_limit_radii)
     limit_radii(family.layout, x);
   build_geometry(family, x, geometry);
@@ -235,9 +237,9 @@ std::vector<Branch_change> Space_engine<ConcurrencyTag>::find_changes(const Tree
 }
 
 template <class ConcurrencyTag>
-Tree_figures Space_engine<ConcurrencyTag>::measure(const Tree_family& family,
-                                                   const Orl_coordinates& x,
-                                                   const Orl_geometry& geometry)
+Tree_descriptors Space_engine<ConcurrencyTag>::measure(const Tree_family& family,
+                                                       const Orl_coordinates& x,
+                                                       const Orl_geometry& geometry)
 {
   return shape_space::measure(family.layout, x, geometry, family.up);
 }
@@ -253,11 +255,11 @@ double Space_engine<ConcurrencyTag>::share_of_second(const Tree_family& family,
 }
 
 template <class ConcurrencyTag>
-Orl_coordinates Space_engine<ConcurrencyTag>::displaced(const Tree_family& family,
-                                                        const Orl_coordinates& t,
-                                                        const Orl_coordinates& a,
-                                                        const Orl_coordinates& b,
-                                                        double step)
+Orl_coordinates Space_engine<ConcurrencyTag>::parallel_displacement(const Tree_family& family,
+                                                                    const Orl_coordinates& t,
+                                                                    const Orl_coordinates& a,
+                                                                    const Orl_coordinates& b,
+                                                                    double step)
 {
   // turns are carried over in the frames of the edges themselves
   const Tangent_space from(family.layout, a, family.weights), at(family.layout, t, family.weights);
@@ -280,14 +282,14 @@ Orl_coordinates Space_engine<ConcurrencyTag>::mean_tree(const Tree_family& famil
 template <class ConcurrencyTag>
 Modes_of_variation Space_engine<ConcurrencyTag>::find_modes(const Tree_family& family,
                                                             std::size_t most,
-                                                            Mode_measure measure)
+                                                            Mode_inner_product measure)
 {
   const std::vector<double> ones(family.x.size(), 1);
   return shape_space::find_modes<ConcurrencyTag>(family.layout,
                                                  internal::pointers(family.x),
                                                  family.weights,
                                                  family.orientation,
-                                                 mean_tree(family, ones, Tree_mean::least_squares),
+                                                 mean_tree(family, ones, Tree_mean::frechet),
                                                  most,
                                                  measure);
 }
@@ -336,10 +338,10 @@ Space_engine<ConcurrencyTag>::distribution(const Tree_family& family)
 template <class ConcurrencyTag>
 Orl_coordinates Space_engine<ConcurrencyTag>::draw(const Tree_family& family,
                                                    const Tree_distribution& distribution,
-                                                   const std::vector<Tree_figures>& figures,
+                                                   const std::vector<Tree_descriptors>& figures,
                                                    std::uint64_t seed,
                                                    std::uint64_t index,
-                                                   const Sampling_options& options,
+                                                   const Tree_sampling_options& options,
                                                    bool is_late)
 {
   Orl_coordinates x = distribution.draw(seed, index, options);
@@ -348,18 +350,18 @@ Orl_coordinates Space_engine<ConcurrencyTag>::draw(const Tree_family& family,
   if (options.do_keep_in_range && is_late)
     limit_lengths(family.layout, family.orientation, family.up, figures, x);
   if (options.pipe_exponent > 0)
-    limit_pipes(family.layout, options.pipe_exponent, x);
+    apply_pipe_model(family.layout, options.pipe_exponent, x);
   if (options.do_limit_radii)
     limit_radii(family.layout, x);
   return x;
 }
 
 template <class ConcurrencyTag>
-double Space_engine<ConcurrencyTag>::excess(const Tree_figures& figures,
-                                            const std::vector<Tree_figures>& range,
-                                            bool is_of_all)
+double Space_engine<ConcurrencyTag>::range_violation(const Tree_descriptors& figures,
+                                                     const std::vector<Tree_descriptors>& range,
+                                                     bool is_of_all)
 {
-  return shape_space::excess(figures, range, is_of_all);
+  return shape_space::range_violation(figures, range, is_of_all);
 }
 
 } // namespace shape_space

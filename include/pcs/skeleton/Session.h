@@ -7,12 +7,12 @@
 
 #include <pcs/core/Skeleton_report.h>
 #include <pcs/internal/progress.h>
-#include <pcs/skeleton/Axis_set.h>
-#include <pcs/skeleton/Branch_tree.h>
-#include <pcs/skeleton/Joint.h>
-#include <pcs/skeleton/Layer_tree.h>
-#include <pcs/skeleton/Scan.h>
-#include <pcs/skeleton/Session_hints.h>
+#include <pcs/skeleton/input/Session_hints.h>
+#include <pcs/skeleton/model/Axis_set.h>
+#include <pcs/skeleton/model/Branch_tree.h>
+#include <pcs/skeleton/model/Joint.h>
+#include <pcs/skeleton/model/Layer_tree.h>
+#include <pcs/skeleton/model/Scan.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -5,24 +5,25 @@
 #ifndef PCS_SKELETON_SESSION_STAGES_H
 #define PCS_SKELETON_SESSION_STAGES_H
 
+#include <pcs/core/Skeleton_options.h>
 #include <pcs/core/Skeleton_report.h>
 #include <pcs/internal/Stopwatch.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
-#include <pcs/skeleton/Branch_tree.h>
 #include <pcs/skeleton/Session_options.h>
-#include <pcs/skeleton/Used_points.h>
-#include <pcs/skeleton/Wall_removal.h>
-#include <pcs/skeleton/cut_layers.h>
-#include <pcs/skeleton/group_branches.h>
-#include <pcs/skeleton/prepare_scan.h>
-#include <pcs/skeleton/register_stations.h>
-#include <pcs/skeleton/regroup_axes.h>
-#include <pcs/skeleton/report_sizes.h>
-#include <pcs/skeleton/residual_of_point.h>
-#include <pcs/skeleton/root_axis.h>
-#include <pcs/skeleton/split_unreached.h>
-#include <pcs/skeleton/wood_by_axes.h>
+#include <pcs/skeleton/branching/group_branches.h>
+#include <pcs/skeleton/branching/regroup_axes.h>
+#include <pcs/skeleton/branching/root_axis.h>
+#include <pcs/skeleton/branching/split_unreachable_axes.h>
+#include <pcs/skeleton/clutter/Wall_removal.h>
+#include <pcs/skeleton/layers/cut_layers.h>
+#include <pcs/skeleton/leaves/wood_score_of_axes.h>
+#include <pcs/skeleton/model/Branch_tree.h>
+#include <pcs/skeleton/registration/register_stations.h>
+#include <pcs/skeleton/result/report_sizes.h>
+#include <pcs/skeleton/result/residual_of_point.h>
+#include <pcs/skeleton/scan/Point_labels.h>
+#include <pcs/skeleton/scan/prepare_scan.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -87,7 +88,7 @@ public:
       return true;
     pcs::internal::Stopwatch watch;
     if (m_options.do_mark_ground && !m_are_walls_out) { // when stopped below, they are
-      if (is_one_sheet(m_scan, m_used.flags(), m_options.ground.sheet)) {
+      if (is_single_sheet(m_scan, m_used.flags(), m_options.ground.sheet)) {
         m_used.leave_out_all();
         m_stage = 2;
         return progress(0.6);
@@ -166,9 +167,9 @@ public:
       ++m_leaf_rounds; // stopped from here on, the work goes on with the wood
     }
     if (m_leaf_rounds > 0)
-      m_used.reclaim_leaves(m_options.axes.chains, m_axes);
+      m_used.reassign_leaves(m_options.axes.chains, m_axes);
     if (!m_has_leaves)
-      m_used.return_leaves();
+      m_used.undo_leaf_removal();
     fuse_axes<ConcurrencyTag>(m_scan.spacing, m_options.fusion, m_axes);
     m_report.noise = m_scan.frame.unit * m_axes.noise;
     m_report.density = m_axes.density / (m_scan.frame.unit * m_scan.frame.unit);
@@ -203,7 +204,7 @@ public:
         root = join_axes();
       }
       const double reach = m_options.joints.reach * m_scan.spacing;
-      if (split_unreached(m_scan, reach, m_joints, root, m_axes) > 0)
+      if (split_unreachable_axes(m_scan, reach, m_joints, root, m_axes) > 0)
         root = join_axes();
       if (!progress(0.95))
         return false;
@@ -216,14 +217,14 @@ public:
       for (const Branch_node& node : m_tree.nodes)
         fitted.push_back(node.radius);
       bound_radii(m_scan, support, m_axes.density, m_options.support, m_tree);
-      mend_foot(m_scan,
-                m_used.flags(),
-                support,
-                m_axes.density,
-                m_options.support,
-                m_options.foot,
-                m_tree);
-      follow_bounds(m_scan, fitted, m_axes.noise, m_options.following, m_tree);
+      rebuild_trunk_base(m_scan,
+                         m_used.flags(),
+                         support,
+                         m_axes.density,
+                         m_options.support,
+                         m_options.foot,
+                         m_tree);
+      recenter_bounded_nodes(m_scan, fitted, m_axes.noise, m_options.following, m_tree);
       if (!m_options.given) // which is one tree
         m_report.number_of_other_stems =
             count_other_stems(m_axes, m_joints, root, m_tree, m_options.stems);
@@ -238,7 +239,7 @@ public:
     if (!progress(0.97))
       return false;
     correct_widening();
-    estimate_sections<ConcurrencyTag>(m_scan, m_axes.noise, m_options.sections, m_tree);
+    fit_section_ellipses<ConcurrencyTag>(m_scan, m_axes.noise, m_options.sections, m_tree);
     count();
     m_report.seconds.sections = watch.lap();
     m_stage = 4;
@@ -321,23 +322,23 @@ protected: // benchmark/training looks at what leaves are told by
     linked.graph.reset();
     links.insert(links.end(), linked.gaps.begin(), linked.gaps.end());
     m_layers = layer_tree<ConcurrencyTag>(m_scan, links, m_paths);
-    merge_rings<ConcurrencyTag>(m_scan, m_options.rings, m_layers);
+    merge_ring_arcs<ConcurrencyTag>(m_scan, m_options.rings, m_layers);
   }
 
   /// The wood among all points, before any of them are left out; empty if nothing is known of it.
   std::vector<std::uint8_t> wood_of_all()
   {
     const bool is_sure = m_options.leaf_removal == Leaf_removal::always;
-    Found_wood found = wood_by_points<ConcurrencyTag>(m_scan,
-                                                      m_axes,
-                                                      m_used.flags(),
-                                                      m_paths,
-                                                      is_sure,
-                                                      m_options.leaves);
+    Found_wood found = classify_wood_points<ConcurrencyTag>(m_scan,
+                                                            m_axes,
+                                                            m_used.flags(),
+                                                            m_paths,
+                                                            is_sure,
+                                                            m_options.leaves);
     m_report.is_in_rows = found.is_in_rows;
-    m_likeness = std::move(found.likeness);
+    m_wood_score = std::move(found.wood_score);
     m_has_leaves = !found.is_wood.empty();
-    if (m_has_leaves || m_likeness.empty())
+    if (m_has_leaves || m_wood_score.empty())
       return std::move(found.is_wood);
     std::vector<std::uint8_t> result = wood_of_axes();
     for (const Index i : m_root)
@@ -354,13 +355,13 @@ protected: // benchmark/training looks at what leaves are told by
   /// The points of axes of wood; without leaves, all but what strays from the wood.
   std::vector<std::uint8_t> wood_of_axes() const
   {
-    const Leaf_rules& rules = m_options.leaves;
-    return wood_by_axes<ConcurrencyTag>(
+    const Leaf_options& rules = m_options.leaves;
+    return wood_of_scored_axes<ConcurrencyTag>(
         m_scan,
         m_axes,
         m_used.flags(),
         m_paths,
-        m_likeness,
+        m_wood_score,
         m_options.breast_height,
         m_has_leaves ? rules.axis_likeness : rules.bare_axis_likeness,
         m_has_leaves ? std::numeric_limits<double>::infinity() : rules.bare_point_likeness);
@@ -398,10 +399,10 @@ protected: // benchmark/training looks at what leaves are told by
   /// Takes out of the radii what beams and voxels add to them.
   void correct_widening()
   {
-    correct_beam(m_options.scanners, m_options.beam_width, m_options.beam, m_tree);
-    const double step = grid_step(m_scan, m_options.grid);
-    correct_grid(step, m_options.grid, m_tree);
-    m_report.grid_step = m_scan.frame.unit * step;
+    correct_beam_divergence(m_options.scanners, m_options.beam_width, m_options.beam, m_tree);
+    const double step = voxel_size(m_scan, m_options.grid);
+    correct_voxel_size(step, m_options.grid, m_tree);
+    m_report.voxel_size = m_scan.frame.unit * step;
   }
 
   void count()
@@ -430,11 +431,11 @@ protected: // benchmark/training looks at what leaves are told by
   int m_stage = 0, m_leaf_rounds = 0, m_regroupings = 0;
   Skeleton_report m_report;
   Scan m_scan;
-  Used_points<ConcurrencyTag> m_used{m_scan, m_report};
+  Point_labels<ConcurrencyTag> m_used{m_scan, m_report};
   Wall_removal<ConcurrencyTag> m_wall_removal{m_scan, m_options.walls, m_used, m_report};
   std::vector<Index> m_root;
   Shortest_paths m_paths;
-  std::vector<float> m_likeness; ///< of wood, where leaves are left out
+  std::vector<float> m_wood_score; ///< of wood, where leaves are left out
   Layer_tree m_layers;
   Axis_set m_axes;
   std::vector<Found_section> m_sections;

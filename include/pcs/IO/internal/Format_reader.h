@@ -5,9 +5,9 @@
 #ifndef PCS_IO_INTERNAL_FORMAT_READER_H
 #define PCS_IO_INTERNAL_FORMAT_READER_H
 
-#include <pcs/IO/Point_schema.h>
 #include <pcs/IO/internal/Input_file.h>
 #include <pcs/IO/internal/Row_block.h>
+#include <pcs/IO/points/Point_schema.h>
 #include <pcs/core/errors.h>
 
 #include <cstddef>

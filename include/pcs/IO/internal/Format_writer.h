@@ -5,10 +5,10 @@
 #ifndef PCS_IO_INTERNAL_FORMAT_WRITER_H
 #define PCS_IO_INTERNAL_FORMAT_WRITER_H
 
-#include <pcs/IO/Point_table.h>
 #include <pcs/IO/internal/Output_file.h>
 #include <pcs/IO/internal/Row_block.h>
 #include <pcs/IO/internal/numbers.h>
+#include <pcs/IO/points/Point_table.h>
 
 #include <algorithm>
 #include <cstddef>

@@ -5,8 +5,8 @@
 #ifndef PCS_IO_INTERNAL_OFF_WRITER_H
 #define PCS_IO_INTERNAL_OFF_WRITER_H
 
-#include <pcs/IO/Write_options.h>
 #include <pcs/IO/internal/Format_writer.h>
+#include <pcs/IO/points/Write_options.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -5,9 +5,9 @@
 #ifndef PCS_IO_INTERNAL_ROW_BLOCK_H
 #define PCS_IO_INTERNAL_ROW_BLOCK_H
 
-#include <pcs/IO/Point_table.h>
-#include <pcs/IO/Scalar_type.h>
 #include <pcs/IO/internal/numbers.h>
+#include <pcs/IO/points/Point_table.h>
+#include <pcs/IO/points/Scalar_type.h>
 #include <pcs/core/errors.h>
 
 #include <array>

@@ -5,10 +5,10 @@
 #ifndef PCS_IO_INTERNAL_TEXT_WRITER_H
 #define PCS_IO_INTERNAL_TEXT_WRITER_H
 
-#include <pcs/IO/Write_options.h>
 #include <pcs/IO/internal/Format_writer.h>
 #include <pcs/IO/internal/file_format.h>
 #include <pcs/IO/internal/numbers.h>
+#include <pcs/IO/points/Write_options.h>
 
 #include <cstddef>
 #include <cstdint>

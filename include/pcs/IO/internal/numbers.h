@@ -5,7 +5,7 @@
 #ifndef PCS_IO_INTERNAL_NUMBERS_H
 #define PCS_IO_INTERNAL_NUMBERS_H
 
-#include <pcs/IO/Scalar_type.h>
+#include <pcs/IO/points/Scalar_type.h>
 
 #include <array>
 #include <charconv>

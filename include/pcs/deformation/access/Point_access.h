@@ -1,0 +1,365 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The caller's points, normals, vectors and tensors, read and written through property maps.
+
+#ifndef PCS_DEFORMATION_ACCESS_POINT_ACCESS_H
+#define PCS_DEFORMATION_ACCESS_POINT_ACCESS_H
+
+#include <pcs/Named_function_parameters.h>
+#include <pcs/concepts.h>
+#include <pcs/core/Similarity.h>
+#include <pcs/core/errors.h>
+#include <pcs/deformation/access/stream_block.h>
+#include <pcs/deformation/model/Affine_map.h>
+#include <pcs/internal/lanes.h>
+#include <pcs/internal/parallel.h>
+
+#include <CGAL/property_map.h>
+
+#include <boost/property_map/property_map.hpp>
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+namespace internal {
+
+struct No_map
+{
+};
+
+} // namespace internal
+
+/*!
+  What a range of points and a chain of named parameters stand for. Checks the concepts of both; where `is_ok` is false,
+  a message was given, and nothing else should be instantiated.
+*/
+template <class PointRange, class NamedParameters>
+class Point_access
+{
+  using Element = pcs::Element_reference<PointRange>;
+  using Value = std::decay_t<Element>;
+  template <class Tag, class Fallback>
+  using Given_map =
+      std::decay_t<decltype(pcs::internal::choose(std::declval<const NamedParameters&>(),
+                                                  std::declval<Tag>(),
+                                                  std::declval<Fallback>()))>;
+
+public:
+  using Point_map = Given_map<CGAL::internal_np::point_t, CGAL::Identity_property_map<Value>>;
+  using Normal_map = Given_map<CGAL::internal_np::normal_t, internal::No_map>;
+  using Vector_map = Given_map<pcs::internal_np::vector_map_t, internal::No_map>;
+  using Tensor_map = Given_map<pcs::internal_np::tensor_map_t, internal::No_map>;
+
+  static constexpr bool has_normals = !std::is_same_v<Normal_map, internal::No_map>;
+  static constexpr bool has_vectors = !std::is_same_v<Vector_map, internal::No_map>;
+  static constexpr bool has_tensors = !std::is_same_v<Tensor_map, internal::No_map>;
+  static constexpr bool has_gradients = has_vectors || has_tensors;
+
+  using Point = Map_value<Point_map>;
+  using Normal = std::conditional_t<has_normals, Map_value<Normal_map>, Point>;
+
+private:
+  static constexpr bool is_range_ok = is_random_access_range_v<PointRange>;
+  static_assert(is_range_ok,
+                "pcs::Point_set_deformation: the points must be a random access range, for example "
+                "a std::vector");
+  static constexpr bool is_point_ok = is_point_or_vector_v<Point>;
+  static_assert(is_point_ok,
+                "pcs::Point_set_deformation: `point_map` must be a property map that stores points "
+                "with x(), y(), "
+                "z() and a constructor from three coordinates, like Kernel::Point_3");
+  static constexpr bool is_point_map_ok = is_read_write_map_v<Point_map, Element, Point>;
+  static_assert(!is_point_ok || is_point_map_ok,
+                "pcs::Point_set_deformation: named parameter `point_map` must be readable and "
+                "writable and accept "
+                "an element of `points` as key");
+  static constexpr bool is_normal_map_ok =
+      !has_normals ||
+      (is_point_or_vector_v<Normal> && is_read_write_map_v<Normal_map, Element, Normal>);
+  static_assert(is_normal_map_ok,
+                "pcs::Point_set_deformation: named parameter `normal_map` must be readable and "
+                "writable, accept an "
+                "element of `points` as key, and store vectors like Kernel::Vector_3");
+  static constexpr bool is_vector_map_ok =
+      !has_vectors || (is_point_or_vector_v<Map_value<Vector_map>> &&
+                       is_read_write_map_v<Vector_map, Element, Map_value<Vector_map>>);
+  static_assert(is_vector_map_ok,
+                "pcs::Point_set_deformation: named parameter `vector_map` must be readable and "
+                "writable, accept an element of `points` as key, and store vectors like "
+                "Kernel::Vector_3");
+  static constexpr bool is_tensor_map_ok =
+      !has_tensors || (is_matrix_3_v<Map_value<Tensor_map>> &&
+                       is_read_write_map_v<Tensor_map, Element, Map_value<Tensor_map>>);
+  static_assert(
+      is_tensor_map_ok,
+      "pcs::Point_set_deformation: named parameter `tensor_map` must be readable and "
+      "writable, accept an element of `points` as key, and store 3 x 3 matrices of Eigen");
+
+public:
+  static constexpr bool is_ok = is_vector_map_ok && is_tensor_map_ok && is_range_ok &&
+                                is_point_ok && is_point_map_ok && is_normal_map_ok;
+
+  /// Whether all that is written are coordinates in memory.
+  static constexpr bool is_memory = [] {
+    if constexpr (!is_ok || has_gradients || !pcs::internal::has_streaming_stores)
+      return false;
+    else if constexpr (!has_size_of_triple<Point>() || !has_size_of_triple<Normal>())
+      return false;
+    else if constexpr (has_normals)
+      return is_memory_map<Point_map, Element>() && is_memory_map<Normal_map, Element>();
+    else
+      return is_memory_map<Point_map, Element>();
+  }();
+
+  /// Keeps a reference to `points`, and copies of the maps.
+  Point_access(PointRange& points, const NamedParameters& np) : m_points(&points)
+  {
+    if constexpr (pcs::internal::is_given_v<NamedParameters, CGAL::internal_np::point_t>)
+      m_point_map = std::make_unique<Point_map>(
+          CGAL::parameters::get_parameter(np, CGAL::internal_np::point_map));
+    else
+      m_point_map = std::make_unique<Point_map>();
+    if constexpr (has_normals)
+      m_normal_map = std::make_unique<Normal_map>(
+          CGAL::parameters::get_parameter(np, CGAL::internal_np::normal_map));
+    if constexpr (has_vectors)
+      m_vector_map = std::make_unique<Vector_map>(
+          CGAL::parameters::get_parameter(np, pcs::internal_np::vector_map));
+    if constexpr (has_tensors)
+      m_tensor_map = std::make_unique<Tensor_map>(
+          CGAL::parameters::get_parameter(np, pcs::internal_np::tensor_map));
+  }
+
+  std::size_t size() const
+  {
+    return static_cast<std::size_t>(std::distance(std::begin(*m_points), std::end(*m_points)));
+  }
+
+  Vec3 point(std::size_t i) const
+  {
+    return with_element(i, [this](auto&& key) {
+      return pcs::internal::to_eigen(get(*m_point_map, key));
+    });
+  }
+
+  /// Null without normals.
+  Vec3 normal(std::size_t i) const
+  {
+    if constexpr (has_normals)
+      return with_element(i, [this](auto&& key) {
+        return pcs::internal::to_eigen(get(*m_normal_map, key));
+      });
+    else
+      return Vec3::Zero();
+  }
+
+  /// All points. Throws `Invalid_input`, whose text begins with `function`, if one is not finite.
+  template <class ConcurrencyTag>
+  std::vector<Vec3> points(const char* function) const
+  {
+    std::vector<Vec3> points(size());
+    pcs::internal::for_each_index<ConcurrencyTag>(points.size(),
+                                                  [&](std::size_t i) { points[i] = point(i); });
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (!points[i].allFinite())
+        throw Invalid_input(std::string(function) + ": point " + std::to_string(i) +
+                            " is not finite");
+    return points;
+  }
+
+  /// Throws like `points()` if a normal, vector or tensor is not finite.
+  void check_attributes(const char* function) const
+  {
+    const auto is_finite = [&](std::size_t i) {
+      bool result = true;
+      if constexpr (has_normals)
+        result = normal(i).allFinite();
+      if constexpr (has_vectors)
+        result = result && pcs::internal::to_eigen(attribute(*m_vector_map, i)).allFinite();
+      if constexpr (has_tensors)
+        result = result && attribute(*m_tensor_map, i).allFinite();
+      return result;
+    };
+    if constexpr (has_normals || has_gradients)
+      for (std::size_t i = 0, n = size(); i < n; ++i)
+        if (!is_finite(i))
+          throw Invalid_input(std::string(function) + ": the normal, vector or tensor of point " +
+                              std::to_string(i) + " is not finite");
+  }
+
+  /// The present vectors and tensors become those of the rest shape.
+  void keep_rest_attributes()
+  {
+    m_rest_vectors.resize(has_vectors ? size() : 0);
+    m_rest_tensors.resize(has_tensors ? size() : 0);
+    for (std::size_t i = 0; i < m_rest_vectors.size(); ++i)
+      if constexpr (has_vectors)
+        m_rest_vectors[i] = pcs::internal::to_eigen(attribute(*m_vector_map, i));
+    for (std::size_t i = 0; i < m_rest_tensors.size(); ++i)
+      if constexpr (has_tensors)
+        m_rest_tensors[i] = attribute(*m_tensor_map, i).template cast<double>();
+  }
+
+  /// Asks for the memory that `write()` will touch.
+  PCS_ALWAYS_INLINE void prefetch(std::size_t i) const
+  {
+    with_element(i, [this](auto&& key) PCS_LAMBDA_INLINE {
+      prefetch_value(*m_point_map, key);
+      if constexpr (has_normals)
+        prefetch_value(*m_normal_map, key);
+    });
+  }
+
+  /// Vectors and tensors are those of rest under the deformation gradient.
+  PCS_ALWAYS_INLINE void write(std::size_t i,
+                               const Vec3& p,
+                               [[maybe_unused]] const Vec3& normal,
+                               [[maybe_unused]] const Eigen::Matrix3d& gradient)
+  {
+    with_element(i, [&](auto&& key) PCS_LAMBDA_INLINE {
+      put(*m_point_map, key, make<Point>(p));
+      if constexpr (has_normals)
+        put(*m_normal_map, key, make<Normal>(normal));
+      if constexpr (has_vectors)
+        put(*m_vector_map, key, make<Map_value<Vector_map>>(gradient * m_rest_vectors[i]));
+      if constexpr (has_tensors) {
+        using Tensor = Map_value<Tensor_map>;
+        const Eigen::Matrix3d tensor = gradient * m_rest_tensors[i] * gradient.transpose();
+        put(*m_tensor_map, key, Tensor(tensor.template cast<typename Tensor::Scalar>()));
+      }
+    });
+  }
+
+  /// Whether `stream()` is worth a try.
+  bool can_stream() const
+  {
+    if constexpr (is_memory)
+      return size() * (sizeof(Point) + (has_normals ? sizeof(Normal) : 0)) >= smallest_stream &&
+             is_triple<Point>() && is_triple<Normal>() && find_rows(0).point;
+    else
+      return false;
+  }
+
+  /// The same as `write()` for the elements of a block from `first` on, past the caches, if their coordinates lie one
+  /// after the other in memory; otherwise writes nothing and returns `false`.
+  PCS_ALWAYS_INLINE bool stream([[maybe_unused]] std::size_t first,
+                                [[maybe_unused]] const Lane_vectors& positions,
+                                [[maybe_unused]] const Lane_vectors& normals) const
+  {
+    if constexpr (!is_memory)
+      return false;
+    else {
+      const Rows to = find_rows(first);
+      if (!to.point)
+        return false;
+      if (to.normal && !to.are_pairs)
+        stream_block(to.normal, normals);
+      if (to.are_pairs)
+        stream_block(to.point, positions, normals);
+      else
+        stream_block(to.point, positions);
+      return true;
+    }
+  }
+
+  /// A point or vector of the caller's type.
+  template <class Triple>
+  static PCS_ALWAYS_INLINE Triple make(const Vec3& v)
+  {
+    using FT = std::decay_t<decltype(std::declval<const Triple&>().x())>;
+    return Triple(static_cast<FT>(v.x()), static_cast<FT>(v.y()), static_cast<FT>(v.z()));
+  }
+
+private:
+  PCS_ALWAYS_INLINE auto iterator(std::size_t i) const
+  {
+    using Iterator = decltype(std::begin(*m_points));
+    return std::begin(*m_points) +
+           static_cast<typename std::iterator_traits<Iterator>::difference_type>(i);
+  }
+
+  /// Calls `f` with element `i`, which may live in its iterator.
+  template <class F>
+  PCS_ALWAYS_INLINE decltype(auto) with_element(std::size_t i, const F& f) const
+  {
+    const auto it = iterator(i);
+    return f(*it);
+  }
+
+  template <class Map>
+  auto attribute(const Map& map, std::size_t i) const
+  {
+    return with_element(i, [&](auto&& key) -> Map_value<Map> { return get(map, key); });
+  }
+
+  /// Where the coordinates of a block lie one after the other; null if they do not.
+  struct Rows
+  {
+    double *point = nullptr, *normal = nullptr;
+    bool are_pairs = false; ///< of a point and its normal
+  };
+
+  PCS_ALWAYS_INLINE Rows find_rows(std::size_t first) const
+  {
+    const auto element = iterator(first);
+    if constexpr (has_normals) {
+      double* const pairs = run(*m_point_map, element, 6);
+      if (is_streamable(pairs) && run(*m_normal_map, element, 6) == pairs + 3)
+        return {pairs, pairs + 3, true};
+      double* const point = run(*m_point_map, element, 3);
+      double* const normal = run(*m_normal_map, element, 3);
+      if (is_streamable(point) && is_streamable(normal))
+        return {point, normal, false};
+    } else {
+      double* const point = run(*m_point_map, element, 3);
+      if (is_streamable(point))
+        return {point, nullptr, false};
+    }
+    return {};
+  }
+
+  /// Where the values of the block that begins at `first` lie, if they are `stride` doubles apart; else null.
+  template <class Map, class Iterator>
+  static PCS_ALWAYS_INLINE double* run(const Map& map, const Iterator& first, std::size_t stride)
+  {
+    using Difference = typename std::iterator_traits<Iterator>::difference_type;
+    return find_run(
+        [&](std::size_t l) PCS_LAMBDA_INLINE -> const Map_value<Map>& {
+          return get(map, *(first + static_cast<Difference>(l)));
+        },
+        stride);
+  }
+
+  template <class Map, class Key>
+  static PCS_ALWAYS_INLINE void prefetch_value(const Map& map, Key&& key)
+  {
+    if constexpr (std::is_lvalue_reference_v<decltype(get(map, key))>)
+      pcs::internal::prefetch(std::addressof(get(map, key)), 1);
+  }
+
+  PointRange* m_points;
+  // maps need be neither assignable nor default constructible
+  std::unique_ptr<Point_map> m_point_map;
+  std::unique_ptr<Normal_map> m_normal_map;
+  std::unique_ptr<Vector_map> m_vector_map;
+  std::unique_ptr<Tensor_map> m_tensor_map;
+  std::vector<Vec3> m_rest_vectors;
+  std::vector<Eigen::Matrix3d> m_rest_tensors;
+};
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_ACCESS_POINT_ACCESS_H

@@ -1,0 +1,117 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Writes the vectors of a block past the caches, where they are to lie one after the other.
+
+#ifndef PCS_DEFORMATION_ACCESS_STREAM_BLOCK_H
+#define PCS_DEFORMATION_ACCESS_STREAM_BLOCK_H
+
+#include <pcs/concepts.h>
+#include <pcs/deformation/upsampling/blend_block.h>
+#include <pcs/internal/lanes.h>
+#include <pcs/internal/streaming_stores.h>
+
+#include <boost/property_map/property_map.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <type_traits>
+#include <utility>
+
+namespace pcs {
+namespace deformation {
+
+/// Bytes that must be written at least: what fits into a last level of cache is better left there.
+constexpr std::size_t smallest_stream = std::size_t(32) << 20;
+
+/// Whether a `Triple` may be written as three doubles; `is_triple()` tells whether it is just its coordinates in order.
+template <class Triple>
+constexpr bool has_size_of_triple()
+{
+  return std::is_trivially_copyable_v<Triple> && sizeof(Triple) == 3 * sizeof(double) &&
+         std::is_same_v<std::decay_t<decltype(std::declval<const Triple&>().x())>, double>;
+}
+
+template <class Triple>
+bool is_triple()
+{
+  const Triple probe(1.0, 2.0, 3.0);
+  double value[3];
+  std::memcpy(value, &probe, sizeof(value));
+  return value[0] == 1 && value[1] == 2 && value[2] == 3;
+}
+
+/// Whether `get()` of the map returns the memory that `put()` writes, and this does not lie in the key: elements of the
+/// range may live no longer than an iterator looks at them.
+template <class Map, class ElementReference>
+constexpr bool is_memory_map()
+{
+  using Value = Map_value<Map>;
+  using Returned = decltype(get(std::declval<const Map&>(), std::declval<ElementReference>()));
+  return std::is_convertible_v<typename boost::property_traits<Map>::category,
+                               boost::lvalue_property_map_tag> &&
+         std::is_lvalue_reference_v<Returned> && std::is_same_v<std::decay_t<Returned>, Value> &&
+         (std::is_lvalue_reference_v<ElementReference> ||
+          sizeof(std::decay_t<ElementReference>) < sizeof(Value));
+}
+
+/// Where `value(0)` lies, if `value(l)` lies `l * stride` doubles behind it for all points of a block; otherwise null.
+template <class Value>
+PCS_ALWAYS_INLINE double* find_run(const Value& value, std::size_t stride)
+{
+  const auto address = [&](std::size_t l) PCS_LAMBDA_INLINE {
+    return reinterpret_cast<std::uintptr_t>(std::addressof(value(l)));
+  };
+  const std::uintptr_t begin = address(0);
+  bool is_run = true;
+  pcs::internal::unroll<lanes>([&](auto l) PCS_LAMBDA_INLINE {
+    is_run = is_run && address(l) == begin + l * stride * sizeof(double);
+  });
+  return is_run ? reinterpret_cast<double*>(begin) : nullptr;
+}
+
+PCS_ALWAYS_INLINE bool is_streamable(const double* to)
+{
+  return to && reinterpret_cast<std::uintptr_t>(to) % pcs::internal::stream_alignment == 0;
+}
+
+/// Eight vectors.
+PCS_ALWAYS_INLINE void stream_block(double* to, const Lane_vectors& v)
+{
+  pcs::internal::unroll<lanes / 2>([&](auto pair) PCS_LAMBDA_INLINE {
+    using namespace pcs::internal;
+    constexpr std::size_t l = 2 * decltype(pair)::value;
+    const Double_pair x = load_pair(v.value[0] + l);
+    const Double_pair y = load_pair(v.value[1] + l);
+    const Double_pair z = load_pair(v.value[2] + l);
+    double* const at = to + 3 * l;
+    stream(first_of(x, y), at);
+    stream(across(z, x), at + 2);
+    stream(second_of(y, z), at + 4);
+  });
+}
+
+/// Eight pairs of vectors.
+PCS_ALWAYS_INLINE void stream_block(double* to, const Lane_vectors& u, const Lane_vectors& v)
+{
+  pcs::internal::unroll<lanes / 2>([&](auto pair) PCS_LAMBDA_INLINE {
+    using namespace pcs::internal;
+    constexpr std::size_t l = 2 * decltype(pair)::value;
+    const Double_pair a = load_pair(u.value[0] + l), b = load_pair(u.value[1] + l);
+    const Double_pair c = load_pair(u.value[2] + l), d = load_pair(v.value[0] + l);
+    const Double_pair e = load_pair(v.value[1] + l), f = load_pair(v.value[2] + l);
+    double* const at = to + 6 * l;
+    stream(first_of(a, b), at);
+    stream(first_of(c, d), at + 2);
+    stream(first_of(e, f), at + 4);
+    stream(second_of(a, b), at + 6);
+    stream(second_of(c, d), at + 8);
+    stream(second_of(e, f), at + 10);
+  });
+}
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_ACCESS_STREAM_BLOCK_H

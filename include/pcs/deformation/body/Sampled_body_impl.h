@@ -1,0 +1,228 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Definitions of Sampled_body.h: builds everything from the points.
+
+#ifndef PCS_DEFORMATION_BODY_SAMPLED_BODY_IMPL_H
+#define PCS_DEFORMATION_BODY_SAMPLED_BODY_IMPL_H
+
+#include <pcs/core/Deformation_options.h>
+#include <pcs/core/errors.h>
+#include <pcs/deformation/body/Sample_links.h>
+#include <pcs/deformation/body/Sample_regions.h>
+#include <pcs/deformation/body/Sampled_body.h>
+#include <pcs/deformation/body/coherent_order.h>
+#include <pcs/deformation/body/interior_links.h>
+#include <pcs/deformation/body/octree_samples.h>
+#include <pcs/deformation/body/voronoi_graph.h>
+#include <pcs/internal/Stopwatch.h>
+#include <pcs/internal/parallel.h>
+#include <pcs/internal/progress.h>
+#include <pcs/internal/text.h>
+#include <pcs/neighborhood/Proximity_graph.h>
+#include <pcs/neighborhood/detach_outliers.h>
+#include <pcs/neighborhood/drop_short_cuts.h>
+#include <pcs/neighborhood/spatial_order.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+template <class ConcurrencyTag>
+bool Sampled_body<ConcurrencyTag>::build(std::vector<Vec3> points,
+                                         const Sampling_options& sampling,
+                                         Deformation_report::Seconds& seconds,
+                                         pcs::internal::Progress& progress)
+{
+  options = sampling;
+  pcs::internal::Stopwatch watch;
+  to_local(points);
+  std::vector<Vec3> sites;
+  order_points(points, sites);
+  points = std::vector<Vec3>();
+  if (!progress(0.2))
+    return false;
+  neighborhood::Proximity_graph graph =
+      neighborhood::nearest_neighbor_graph<ConcurrencyTag>(sites, options.number_of_neighbors);
+  number_of_short_cuts = neighborhood::drop_short_cuts<ConcurrencyTag>(sites, graph);
+  outliers = neighborhood::detach_outliers<ConcurrencyTag>(sites, graph);
+  find_components(graph);
+  seconds.neighbors = watch.lap();
+  if (!progress(0.6))
+    return false;
+  sample(std::move(sites), std::move(graph), progress);
+  seconds.sampling = watch.lap();
+  return progress(1.0);
+}
+
+template <class ConcurrencyTag>
+Vec3 Sampled_body<ConcurrencyTag>::median_point(const std::vector<Vec3>& points)
+{
+  Vec3 median;
+  std::vector<double> values(points.size());
+  for (int c = 0; c < 3; ++c) {
+    for (std::size_t i = 0; i < points.size(); ++i)
+      values[i] = points[i][c];
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    median[c] = *middle;
+  }
+  return median;
+}
+
+template <class ConcurrencyTag>
+void Sampled_body<ConcurrencyTag>::to_local(std::vector<Vec3>& points)
+{
+  Vec3 low = points.front(), high = low;
+  for (const Vec3& p : points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const double extent = (0.5 * high - 0.5 * low).norm() * 2;
+  if (!(extent > 0))
+    throw Invalid_input("pcs deformation: all " + std::to_string(points.size()) +
+                        " points lie at one place; there is nothing to deform");
+  // Squares and their products must stay representable.
+  if (!(extent > 1e-100 && extent < 1e100))
+    throw Invalid_input("pcs deformation: the points extend over " +
+                        pcs::internal::to_text(extent) +
+                        "; extents must lie between 1e-100 and 1e100");
+  frame.origin = median_point(points);
+  frame.unit = std::exp2(std::floor(std::log2(extent)));
+  pcs::internal::for_each_index<ConcurrencyTag>(points.size(), [&](std::size_t i) {
+    points[i] = frame.to_local(points[i]);
+  });
+}
+
+template <class ConcurrencyTag>
+void Sampled_body<ConcurrencyTag>::order_points(const std::vector<Vec3>& points,
+                                                std::vector<Vec3>& sites)
+{
+  const std::size_t n = points.size();
+  input_of_place = neighborhood::spatial_order<ConcurrencyTag>(points);
+  site_of_input.resize(n);
+  sites.reserve(n);
+  for (const std::uint32_t i : input_of_place) {
+    if (sites.empty() || sites.back() != points[i])
+      sites.push_back(points[i]);
+    site_of_input[i] = static_cast<std::uint32_t>(sites.size() - 1);
+  }
+  is_in_callers_order = is_coherent_order(points, input_of_place);
+  if (is_in_callers_order)
+    std::iota(input_of_place.begin(), input_of_place.end(), 0u);
+  site_of_place.resize(n);
+  for (std::size_t place = 0; place < n; ++place)
+    site_of_place[place] = site_of_input[input_of_place[place]];
+  if (sites.size() == n && !is_in_callers_order)
+    return;
+  place_of_site.resize(sites.size());
+  for (std::size_t place = n; place-- > 0;)
+    place_of_site[site_of_place[place]] = static_cast<std::uint32_t>(place);
+}
+
+template <class ConcurrencyTag>
+void Sampled_body<ConcurrencyTag>::find_components(const neighborhood::Proximity_graph& graph)
+{
+  std::size_t count = 0;
+  component_of_site = neighborhood::connected_components(graph, count);
+  component_size.assign(count, 0);
+  for (const auto site : site_of_place)
+    ++component_size[component_of_site[site]];
+}
+
+template <class ConcurrencyTag>
+void Sampled_body<ConcurrencyTag>::choose_samples(const std::vector<Vec3>& sites)
+{
+  if (outliers.empty() || options.number_of_samples >= sites.size()) {
+    site_of_sample = octree_samples(sites, options.number_of_samples);
+    return;
+  }
+  std::vector<Vec3> others;
+  std::vector<std::uint32_t> site_of_other;
+  auto next = outliers.begin();
+  for (std::size_t site = 0; site < sites.size(); ++site)
+    if (next != outliers.end() && next->point == site)
+      ++next;
+    else {
+      others.push_back(sites[site]);
+      site_of_other.push_back(static_cast<std::uint32_t>(site));
+    }
+  // Without the outliers, the octree is another one.
+  const auto order = neighborhood::spatial_order<ConcurrencyTag>(others);
+  std::vector<Vec3> ordered(others.size());
+  for (std::size_t i = 0; i < order.size(); ++i)
+    ordered[i] = others[order[i]];
+  site_of_sample = octree_samples(ordered, options.number_of_samples);
+  for (auto& s : site_of_sample)
+    s = site_of_other[order[s]];
+  std::sort(site_of_sample.begin(), site_of_sample.end());
+}
+
+template <class ConcurrencyTag>
+void Sampled_body<ConcurrencyTag>::sample(std::vector<Vec3> sites,
+                                          neighborhood::Proximity_graph graph,
+                                          pcs::internal::Progress& progress)
+{
+  choose_samples(sites);
+  is_sampled = site_of_sample.size() < sites.size();
+  Sample_links links;
+  if (is_sampled) {
+    Sample_regions regions = grow_regions(sites, graph, site_of_sample);
+    network.surface = sample_graph(sites, graph, site_of_sample, regions, weight_unit);
+    if (!progress(0.8))
+      return;
+    const bool is_text = options.sample_search == Sample_search::breadth_first_hops;
+    links = is_text ? link_by_hops<ConcurrencyTag>(sites,
+                                                   graph,
+                                                   site_of_sample,
+                                                   options.number_of_sample_neighbors,
+                                                   options.sample_weights)
+                    : link_by_regions<ConcurrencyTag>(sites,
+                                                      site_of_sample,
+                                                      regions,
+                                                      network.surface,
+                                                      options.number_of_sample_neighbors,
+                                                      options.sample_weights);
+    sample_of_site = std::move(regions.sample_of_point);
+    has_fragments =
+        std::find(sample_of_site.begin(), sample_of_site.end(), no_sample) != sample_of_site.end();
+    site_graph = std::move(graph);
+    border_finder = Border_finder(site_graph);
+  } else {
+    static_cast<neighborhood::Proximity_graph&>(network.surface) = std::move(graph);
+    sample_of_site = site_of_sample;
+    set_edge_weights<ConcurrencyTag>(sites, network.surface);
+    network.surface = voronoi_graph<ConcurrencyTag>(sites, network.surface);
+  }
+  network.rest.resize(site_of_sample.size());
+  for (std::size_t s = 0; s < site_of_sample.size(); ++s)
+    network.rest[s] = sites[site_of_sample[s]];
+  std::vector<std::uint32_t> component(network.size());
+  for (std::size_t s = 0; s < network.size(); ++s)
+    component[s] = component_of_site[site_of_sample[s]];
+  set_areas<ConcurrencyTag>(component, network);
+  if (!progress(0.9))
+    return;
+  if (options.do_preserve_volume && network.size() <= largest_linked_network)
+    network.links = interior_links<ConcurrencyTag>(network, component);
+  if (is_sampled)
+    rank_nodes(network);
+  upsampling = Upsampling(
+      number_of_points(),
+      [&](std::size_t place) { return sites[site_of_place[place]]; },
+      [&](std::size_t place) { return site_of_place[place]; },
+      network.rest,
+      links);
+}
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_BODY_SAMPLED_BODY_IMPL_H

@@ -1,0 +1,121 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The Voronoi cell of one point in the plane, cut out by its neighbours one after the other.
+
+#ifndef PCS_DEFORMATION_BODY_VORONOI_CELL_H
+#define PCS_DEFORMATION_BODY_VORONOI_CELL_H
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+using Vec2 = Eigen::Vector2d;
+
+/*!
+  The Voronoi cell of the origin. It starts as a square, and is cut by the bisectors to its neighbours, near ones
+  first for speed. Sides that are left of the square are *open*: no neighbour lies there.
+*/
+class Voronoi_cell
+{
+public:
+  /// Starts over with a square of this half side. [L]
+  void reset(double half_side)
+  {
+    m_corners = {{{half_side, -half_side}, open},
+                 {{half_side, half_side}, open},
+                 {{-half_side, half_side}, open},
+                 {{-half_side, -half_side}, open}};
+    update_radius();
+  }
+
+  /// Distance of the farthest corner. [L]
+  double radius() const { return m_radius; }
+  /// No point farther than this cuts the cell. [L]
+  double reach() const { return 2 * m_radius; }
+
+  /// Cuts by the bisector to `p`, which is not the origin. O(corners).
+  void cut(const Vec2& p, std::uint32_t neighbor)
+  {
+    const double half = 0.5 * p.squaredNorm();
+    const std::size_t n = m_corners.size();
+    m_side.resize(n);
+    bool is_cut = false;
+    for (std::size_t k = 0; k < n; ++k) {
+      m_side[k] = p.dot(m_corners[k].point) - half;
+      is_cut = is_cut || m_side[k] > touching * half; // a bisector through a corner cuts nothing
+    }
+    if (!is_cut)
+      return;
+    m_next.clear();
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::size_t l = k + 1 < n ? k + 1 : 0;
+      if (!(m_side[k] > 0))
+        m_next.push_back(m_corners[k]);
+      if ((m_side[k] > 0) == (m_side[l] > 0))
+        continue;
+      const double t = m_side[k] / (m_side[k] - m_side[l]);
+      // What begins here: the bisector where the old outline is left, else the rest of the old side.
+      m_next.push_back({m_corners[k].point + t * (m_corners[l].point - m_corners[k].point),
+                        m_side[k] > 0 ? m_corners[k].neighbor : neighbor});
+    }
+    m_corners.swap(m_next);
+    update_radius();
+  }
+
+  /*!
+    Calls `use(neighbor, p, length)` for every side: the neighbour across it at `p = position(neighbor)`, and its
+    length [L]. Beside an open side, it ends where it meets the segment to `p`, as at the border of a sheet.
+  */
+  template <class Position, class Use>
+  void for_each_side(const Position& position, const Use& use) const
+  {
+    const std::size_t n = m_corners.size();
+    for (std::size_t k = 0; k < n; ++k) {
+      const Corner& corner = m_corners[k];
+      if (corner.neighbor == open)
+        continue;
+      const Corner& before = m_corners[k > 0 ? k - 1 : n - 1];
+      const Corner& after = m_corners[k + 1 < n ? k + 1 : 0];
+      const Vec2 p = position(corner.neighbor);
+      const Vec2 along = Vec2(-p.y(), p.x()).normalized();
+      const double begin = before.neighbor == open ? 0 : along.dot(corner.point);
+      const double end = after.neighbor == open ? 0 : along.dot(after.point);
+      if (end > begin)
+        use(corner.neighbor, p, end - begin);
+    }
+  }
+
+private:
+  static constexpr std::uint32_t open = ~std::uint32_t(0);
+  static constexpr double touching =
+      1e-9; ///< share of the distance within which rounding may decide
+  struct Corner
+  {
+    Vec2 point;
+    std::uint32_t neighbor; ///< across the side that begins here, counterclockwise
+  };
+
+  void update_radius()
+  {
+    double squared = 0;
+    for (const Corner& c : m_corners)
+      squared = std::max(squared, c.point.squaredNorm());
+    m_radius = std::sqrt(squared);
+  }
+
+  std::vector<Corner> m_corners, m_next;
+  std::vector<double> m_side;
+  double m_radius = 0;
+};
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_BODY_VORONOI_CELL_H

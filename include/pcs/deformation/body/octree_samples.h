@@ -1,0 +1,118 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Chooses samples from the leaves of an octree that is refined where most points are.
+
+#ifndef PCS_DEFORMATION_BODY_OCTREE_SAMPLES_H
+#define PCS_DEFORMATION_BODY_OCTREE_SAMPLES_H
+
+#include <pcs/neighborhood/spatial_order.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <queue>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+/// On grids several points are equally near to a centroid; rounding must not choose among them.
+constexpr double by_far = 1 - 1e-6;
+
+namespace internal {
+
+/// Consecutive points of one octree cell.
+struct Octree_range
+{
+  std::size_t begin, end;
+  std::size_t size() const { return end - begin; }
+};
+
+/// The non-empty children of a cell, read off the spatial order; halves where the order has no octants.
+inline std::vector<Octree_range> split_range(const std::vector<Eigen::Vector3d>& points,
+                                             const Octree_range& range)
+{
+  std::vector<Octree_range> children;
+  if (range.size() > neighborhood::octree_leaf_size) {
+    const auto at = [&](std::size_t i) -> const Eigen::Vector3d& { return points[i]; };
+    const neighborhood::Octree_cell cell(range.begin, range.end, at);
+    std::size_t begin = range.begin;
+    for (std::size_t i = begin + 1; i <= range.end; ++i)
+      if (i == range.end || cell.octant(points[i]) != cell.octant(points[begin])) {
+        children.push_back({begin, i});
+        begin = i;
+      }
+  }
+  if (children.size() < 2) {
+    const std::size_t middle = range.begin + range.size() / 2;
+    children = {{range.begin, middle}, {middle, range.end}};
+  }
+  return children;
+}
+
+} // namespace internal
+
+/*!
+  Indices of exactly `min(number_of_samples, n)` points, increasing. The fullest leaf is split until there are
+  enough leaves, so dense parts get more samples; each leaf gives the point nearest to its centroid.
+  \param points distinct, in the order of `neighborhood::spatial_order()`
+  Deterministic; depends on the positions only. O(n log n).
+*/
+inline std::vector<std::uint32_t> octree_samples(const std::vector<Eigen::Vector3d>& points,
+                                                 std::size_t number_of_samples)
+{
+  using internal::Octree_range;
+  const std::size_t n = points.size();
+  std::vector<std::uint32_t> samples;
+  if (number_of_samples >= n) {
+    samples.resize(n);
+    for (std::size_t i = 0; i < n; ++i)
+      samples[i] = static_cast<std::uint32_t>(i);
+    return samples;
+  }
+  const auto is_smaller = [](const Octree_range& a, const Octree_range& b) {
+    return a.size() != b.size() ? a.size() < b.size() : a.begin > b.begin;
+  };
+  std::priority_queue<Octree_range, std::vector<Octree_range>, decltype(is_smaller)> leaves(
+      is_smaller);
+  leaves.push({0, n});
+  while (leaves.size() < number_of_samples) {
+    const Octree_range fullest = leaves.top();
+    leaves.pop();
+    std::vector<Octree_range> children = internal::split_range(points, fullest);
+    // The last split may give too many: join neighbours, the smallest pair first.
+    while (leaves.size() + children.size() > number_of_samples) {
+      std::size_t best = 0;
+      for (std::size_t c = 1; c + 1 < children.size(); ++c)
+        if (children[c + 1].end - children[c].begin < children[best + 1].end - children[best].begin)
+          best = c;
+      children[best].end = children[best + 1].end;
+      children.erase(children.begin() + static_cast<std::ptrdiff_t>(best) + 1);
+    }
+    for (const Octree_range& child : children)
+      leaves.push(child);
+  }
+  for (; !leaves.empty(); leaves.pop()) {
+    const Octree_range leaf = leaves.top();
+    Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
+    for (std::size_t i = leaf.begin; i < leaf.end; ++i)
+      centroid += points[i];
+    centroid /= static_cast<double>(leaf.size());
+    std::size_t nearest = leaf.begin;
+    for (std::size_t i = leaf.begin + 1; i < leaf.end; ++i)
+      if ((points[i] - centroid).squaredNorm() <
+          by_far * (points[nearest] - centroid).squaredNorm())
+        nearest = i;
+    samples.push_back(static_cast<std::uint32_t>(nearest));
+  }
+  std::sort(samples.begin(), samples.end());
+  return samples;
+}
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_BODY_OCTREE_SAMPLES_H

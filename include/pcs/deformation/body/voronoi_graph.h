@@ -1,0 +1,226 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Edges and weights from the Voronoi cells of the points in their tangent planes: exact on irregular samplings.
+
+#ifndef PCS_DEFORMATION_BODY_VORONOI_GRAPH_H
+#define PCS_DEFORMATION_BODY_VORONOI_GRAPH_H
+
+#include <pcs/deformation/body/Voronoi_stars.h>
+#include <pcs/deformation/model/Elastic_network.h>
+#include <pcs/internal/parallel.h>
+#include <pcs/neighborhood/Proximity_graph.h>
+
+#include <boost/pending/disjoint_sets.hpp>
+#include <boost/property_map/property_map.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <numeric>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+/// Share of the proximity weights where there are no cells to speak of. [-]
+constexpr double proximity_share = 0.05;
+/// Sides that weigh less than this in total do not hold a point: it lies on a wire, at a corner, or is an outlier. [-]
+constexpr double least_star = 1.5;
+/// Lighter edges do not hold two parts together. [-]
+constexpr double least_link = 0.02;
+/// Clouds with edges that are lighter still are no sampled surface, but points at ever smaller distances; their factors
+/// need all edges there are. [-]
+constexpr double least_surface_weight = 1e-14;
+/// Weights of the edges at a point, on average. [-]
+constexpr double mean_degree = 6.5;
+
+namespace internal {
+
+/// The two cells of an edge have a say in its weight each. Proximity edges come in where the stars are weak, and where
+/// components would fall apart.
+template <class ConcurrencyTag>
+Weighted_graph star_graph(const Voronoi_stars& stars,
+                          const neighborhood::Proximity_graph& neighbors,
+                          const Weighted_graph& proximity)
+{
+  const std::size_t n = stars.size();
+  const auto half_weight = [&](std::size_t i, std::uint32_t j) {
+    double weight = 0;
+    for (std::size_t e = stars.first[i]; e < stars.first[i + 1]; ++e)
+      if (stars.side[e].neighbor == j)
+        weight += 0.5 * static_cast<double>(stars.side[e].weight);
+    return weight;
+  };
+  std::vector<double> weight(neighbors.neighbor.size()), weakness(n);
+  pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
+    double sum = 0;
+    for (std::size_t e = neighbors.first[i]; e < neighbors.first[i + 1]; ++e) {
+      const auto k = static_cast<std::uint32_t>(i);
+      const std::uint32_t j = neighbors.neighbor[e];
+      weight[e] = half_weight(std::min(j, k), std::max(j, k)) +
+                  half_weight(std::max(j, k), std::min(j, k)); // the same bits for both half-edges
+      sum += weight[e];
+    }
+    weakness[i] = std::max(0.0, 1 - sum / least_star);
+  });
+
+  // Weak edges hold nothing together: there, the heaviest proximity edges stay as they are.
+  using Index_map = boost::typed_identity_property_map<std::uint32_t>;
+  std::vector<std::uint32_t> rank(n, 0), parent(n);
+  std::iota(parent.begin(), parent.end(), std::uint32_t(0));
+  boost::disjoint_sets parts(boost::make_iterator_property_map(rank.begin(), Index_map()),
+                             boost::make_iterator_property_map(parent.begin(), Index_map()));
+  const auto share = [&](std::uint32_t i, std::uint32_t j) {
+    return 0.5 * proximity_share * (weakness[i] + weakness[j]);
+  };
+  for (std::uint32_t i = 0; i < n; ++i) {
+    for (std::size_t e = neighbors.first[i]; e < neighbors.first[i + 1]; ++e)
+      if (weight[e] > least_link)
+        parts.union_set(i, neighbors.neighbor[e]);
+    for (std::size_t e = proximity.first[i]; e < proximity.first[i + 1]; ++e)
+      if (share(i, proximity.neighbor[e]) * proximity.weight[e] > least_link)
+        parts.union_set(i, proximity.neighbor[e]);
+  }
+  struct Bridge
+  {
+    double weight;
+    std::uint32_t from, to;
+  };
+  std::vector<Bridge> candidates;
+  for (std::uint32_t i = 0; i < n; ++i)
+    for (std::size_t e = proximity.first[i]; e < proximity.first[i + 1]; ++e)
+      if (i < proximity.neighbor[e] && parts.find_set(i) != parts.find_set(proximity.neighbor[e]))
+        candidates.push_back({proximity.weight[e], i, proximity.neighbor[e]});
+  std::sort(candidates.begin(), candidates.end(), [](const Bridge& a, const Bridge& b) {
+    return std::make_tuple(-a.weight, a.from, a.to) < std::make_tuple(-b.weight, b.from, b.to);
+  });
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> bridges; // both half-edges
+  for (const Bridge& b : candidates)
+    if (parts.find_set(b.from) != parts.find_set(b.to)) {
+      parts.union_set(b.from, b.to);
+      bridges.emplace_back(b.from, b.to);
+      bridges.emplace_back(b.to, b.from);
+    }
+  std::sort(bridges.begin(), bridges.end());
+
+  Weighted_graph graph;
+  graph.first.resize(n + 1);
+  constexpr std::size_t block_size = 512;
+  struct Rows
+  {
+    std::vector<std::uint32_t> neighbor;
+    std::vector<double> weight;
+  };
+  std::vector<Rows> blocks((n + block_size - 1) / block_size);
+  pcs::internal::for_each_block<ConcurrencyTag>(
+      n,
+      block_size,
+      [&](std::size_t begin, std::size_t end) {
+        Rows& rows = blocks[begin / block_size];
+        std::vector<std::pair<std::uint32_t, double>> row;
+        for (std::size_t i = begin; i < end; ++i) {
+          row.clear();
+          for (std::size_t e = neighbors.first[i]; e < neighbors.first[i + 1]; ++e)
+            row.emplace_back(neighbors.neighbor[e], weight[e]);
+          for (std::size_t e = proximity.first[i]; e < proximity.first[i + 1]; ++e) {
+            const std::uint32_t j = proximity.neighbor[e];
+            const auto k = static_cast<std::uint32_t>(i);
+            const bool is_bridge =
+                !bridges.empty() &&
+                std::binary_search(bridges.begin(), bridges.end(), std::make_pair(k, j));
+            const double added =
+                (is_bridge ? 1 : share(std::min(j, k), std::max(j, k))) * proximity.weight[e];
+            if (added > 0)
+              row.emplace_back(j, added);
+          }
+          std::sort(row.begin(), row.end());
+          const std::size_t before = rows.neighbor.size();
+          for (const auto& [j, w] : row)
+            if (rows.neighbor.size() > before && rows.neighbor.back() == j)
+              rows.weight.back() += w;
+            else {
+              rows.neighbor.push_back(j);
+              rows.weight.push_back(w);
+            }
+          for (std::size_t e = before; e < rows.weight.size(); ++e)
+            rows.weight[e] = representable_weight(rows.weight[e]);
+          graph.first[i + 1] = static_cast<std::uint32_t>(rows.neighbor.size() - before);
+        }
+      });
+  for (std::size_t i = 0; i < n; ++i)
+    graph.first[i + 1] += graph.first[i];
+  graph.neighbor.reserve(graph.first.back());
+  graph.weight.reserve(graph.first.back());
+  for (const Rows& rows : blocks) {
+    graph.neighbor.insert(graph.neighbor.end(), rows.neighbor.begin(), rows.neighbor.end());
+    graph.weight.insert(graph.weight.end(), rows.weight.begin(), rows.weight.end());
+  }
+  return graph;
+}
+
+} // namespace internal
+
+/*!
+  The graph of the points whose Voronoi cells touch along the surface, weighted by the length of the common side over
+  the distance: the cotangent Laplacian of a Delaunay triangulation, without one.
+
+  On a plane, linear functions are harmonic for these weights, however irregular the points; for those of
+  `set_edge_weights()` they are only on average. Every cell is cut in the tangent plane of its point, among the
+  neighbours of neighbours; cells that are large or open look again among those of the cells around them. Where no
+  cell can be cut (wires, outliers), a share of the proximity weights takes over. Of clouds without any typical
+  spacing, the proximity graph is returned as it is.
+
+  \param proximity weighted by `set_edge_weights()`; the result has the same components
+
+  O(n) for bounded degrees.
+*/
+template <class ConcurrencyTag>
+Weighted_graph voronoi_graph(const std::vector<Vec3>& points, const Weighted_graph& proximity)
+{
+  using internal::Voronoi_stars;
+  const std::size_t n = points.size();
+  constexpr int number_of_passes = 5;
+  if (std::any_of(proximity.weight.begin(), proximity.weight.end(), [](double w) {
+        return w < least_surface_weight;
+      }))
+    return proximity;
+  const std::vector<internal::Tangent_plane> planes =
+      internal::tangent_planes<ConcurrencyTag>(points, proximity);
+  Voronoi_stars stars =
+      internal::voronoi_stars<ConcurrencyTag>(points,
+                                              planes,
+                                              internal::Proximity_neighbors{proximity},
+                                              {},
+                                              [](std::size_t) { return true; });
+  for (int pass = 1; pass < number_of_passes; ++pass) {
+    const internal::Star_neighbors neighbors(stars, ConcurrencyTag());
+    const auto is_made = [&](std::size_t i) {
+      bool is_changed = stars.is_changed[i] != 0;
+      neighbors.for_each_neighbor(i, [&](std::uint32_t j) {
+        is_changed = is_changed || stars.is_changed[j] != 0;
+      });
+      return is_changed && neighbors.is_doubtful[i] != 0;
+    };
+    stars = internal::voronoi_stars<ConcurrencyTag>(points, planes, neighbors, stars, is_made);
+  }
+
+  const internal::Star_neighbors neighbors(stars, ConcurrencyTag());
+  Weighted_graph graph = internal::star_graph<ConcurrencyTag>(stars, neighbors.graph, proximity);
+  const double sum = pcs::internal::blocked_reduce<ConcurrencyTag>(
+      graph.weight.size(),
+      0.0,
+      [&](std::size_t e) { return graph.weight[e]; },
+      std::plus<double>());
+  const double scale = sum > 0 ? mean_degree * static_cast<double>(n) / sum : 1;
+  for (double& w : graph.weight)
+    w *= scale;
+  return graph;
+}
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_BODY_VORONOI_GRAPH_H

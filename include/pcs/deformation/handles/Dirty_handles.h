@@ -1,0 +1,66 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Tells whose points have to be written, so that handles that do not move keep every bit.
+
+#ifndef PCS_DEFORMATION_HANDLES_DIRTY_HANDLES_H
+#define PCS_DEFORMATION_HANDLES_DIRTY_HANDLES_H
+
+#include <pcs/core/Similarity.h>
+#include <pcs/deformation/model/Harmonic_system.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+class Dirty_handles
+{
+public:
+  /*!
+    Of each handle, whether its points are written: those that move, or did so the last time. Allocates nothing while the
+    number of handles stays.
+
+    \param transforms of the handles, in local coordinates; the outside of the region of interest, which never moves, comes
+           last if there is one
+    \param followed handles that points elsewhere have come to follow
+    \param is_at_rest whether the samples are
+  */
+  const std::vector<char>& find(const std::vector<Similarity>& transforms,
+                                bool has_outside,
+                                const std::vector<Node_constraint>& followed,
+                                bool is_at_rest)
+  {
+    const std::size_t outside_count = has_outside && !transforms.empty() ? 1 : 0;
+    const std::size_t count = transforms.size() - outside_count;
+    // Points of a new handle may have been carried away before they became a handle.
+    m_was_moved.resize(count, m_is_displaced ? 1 : 0);
+    for (const Node_constraint h : followed)
+      if (static_cast<std::size_t>(h) < count && m_is_displaced)
+        m_was_moved[static_cast<std::size_t>(h)] = 1;
+    m_is_written = m_was_moved;
+    m_is_written.resize(transforms.size(), 0);
+    for (std::size_t h = 0; h < count; ++h) {
+      m_was_moved[h] = transforms[h].is_identity() ? 0 : 1;
+      m_is_written[h] = m_is_written[h] || m_was_moved[h] ? 1 : 0;
+    }
+    m_is_displaced = m_is_displaced || !is_at_rest;
+    return m_is_written;
+  }
+
+  /// The present shape is the rest shape.
+  void accept()
+  {
+    m_was_moved.clear();
+    m_is_displaced = false;
+  }
+
+private:
+  std::vector<char> m_was_moved, m_is_written;
+  bool m_is_displaced = false; ///< whether points were written elsewhere than at rest
+};
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_HANDLES_DIRTY_HANDLES_H

@@ -1,0 +1,232 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The handles of an editing session: which sites they hold, how strongly, and how they move.
+
+#ifndef PCS_DEFORMATION_HANDLES_HANDLE_SET_H
+#define PCS_DEFORMATION_HANDLES_HANDLE_SET_H
+
+#include <pcs/core/Similarity.h>
+#include <pcs/core/errors.h>
+#include <pcs/deformation/body/Sampled_body.h>
+#include <pcs/deformation/model/Elastic_network.h>
+#include <pcs/deformation/model/Harmonic_system.h>
+#include <pcs/internal/text.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+/// Of a site that is not in the region of interest.
+constexpr Node_constraint outside_region = -3;
+
+/// Transformations are in the caller's coordinates. The number of a handle that was removed is not used again.
+class Handle_set
+{
+public:
+  /// \param region indices of the region of interest, or null for all points. A place is in it with all of its points
+  template <class ConcurrencyTag>
+  void start(const Sampled_body<ConcurrencyTag>& body, const std::vector<std::uint32_t>* region)
+  {
+    m_has_outside = region != nullptr;
+    m_handle_of_site.assign(body.number_of_sites(), free_node);
+    if (!m_has_outside)
+      return;
+    std::vector<char> is_inside(body.number_of_points(), 0);
+    for (const auto i : *region)
+      is_inside[i] = 1;
+    for (std::size_t i = 0; i < is_inside.size(); ++i)
+      if (!is_inside[i])
+        m_handle_of_site[body.site_of_input[i]] = outside_region;
+  }
+
+  /// Of all handles that ever were.
+  std::size_t size() const { return m_transforms.size(); }
+  bool contains(std::size_t handle) const { return handle < m_is_used.size() && m_is_used[handle]; }
+  bool empty() const { return std::find(m_is_used.begin(), m_is_used.end(), 1) == m_is_used.end(); }
+
+  /// Whether there are points outside the region of interest, which a handle after all others holds.
+  bool has_outside() const { return m_has_outside; }
+  Node_constraint outside_handle() const { return static_cast<Node_constraint>(size()); }
+
+  const std::vector<Similarity>& transforms() const { return m_transforms; }
+  /// Centroid of the handle's points at rest.
+  const Vec3& centroid(std::size_t handle) const { return m_centroid[handle]; }
+
+  /// As the caller said: a handle, `free_node` or `outside_region`.
+  Node_constraint of_site(std::size_t site) const { return m_handle_of_site[site]; }
+  bool is_soft(Node_constraint h) const
+  {
+    return h >= 0 && m_weight[static_cast<std::size_t>(h)] > 0;
+  }
+  /// The exact handle that holds a site; the outside of the region counts as one.
+  Node_constraint exact_handle(std::size_t site) const
+  {
+    const Node_constraint h = m_handle_of_site[site];
+    if (h == outside_region)
+      return outside_handle();
+    return is_soft(h) ? free_node : h;
+  }
+  bool has_soft_handles() const
+  {
+    for (std::size_t h = 0; h < size(); ++h)
+      if (m_is_used[h] && m_weight[h] > 0)
+        return true;
+    return false;
+  }
+
+  /// Of every handle, the outside included.
+  std::vector<double> softness_weights() const
+  {
+    std::vector<double> weights = m_weight;
+    if (m_has_outside)
+      weights.push_back(0);
+    return weights;
+  }
+
+  /// Whether a handle holds points of a component.
+  std::vector<char> reached_components(std::size_t number_of_components) const
+  {
+    std::vector<char> is_reached(number_of_components, 0);
+    for (std::size_t h = 0; h < size(); ++h)
+      if (m_is_used[h])
+        for (const auto component : m_components_of_handle[h])
+          is_reached[component] = 1;
+    return is_reached;
+  }
+
+  /// Adds a handle that stays where it is. \param weight 0: exact; positive: soft, see `Node_constraints`
+  template <class ConcurrencyTag>
+  std::size_t add(const Sampled_body<ConcurrencyTag>& body,
+                  const std::vector<std::uint32_t>& indices,
+                  double weight,
+                  const char* function)
+  {
+    if (indices.empty())
+      throw Invalid_input(std::string(function) + ": a handle needs at least one point");
+    for (const auto i : indices) {
+      const Node_constraint h = m_handle_of_site[body.site_of_input[i]];
+      if (h == outside_region)
+        throw Invalid_input(std::string(function) + ": point " + std::to_string(i) +
+                            " of the handle (or another one at the same place) is outside the "
+                            "region of interest");
+      if (h >= 0 && m_is_used[static_cast<std::size_t>(h)])
+        throw Invalid_input(std::string(function) + ": point " + std::to_string(i) +
+                            " (or another one at the same place) belongs to handle " +
+                            std::to_string(h) + " already; a point has one target");
+    }
+    const std::size_t handle = size();
+    std::vector<char> is_reached(body.number_of_components(), 0);
+    Vec3 sum = Vec3::Zero(); // every site once
+    std::size_t number = 0;
+    for (const auto i : indices) {
+      const std::size_t site = body.site_of_input[i];
+      if (m_handle_of_site[site] == static_cast<Node_constraint>(handle))
+        continue;
+      m_handle_of_site[site] = static_cast<Node_constraint>(handle);
+      is_reached[body.component_of_site[site]] = 1;
+      sum += body.rest_of_site(site);
+      ++number;
+    }
+    m_transforms.emplace_back();
+    m_weight.push_back(weight);
+    m_is_used.push_back(1);
+    m_components_of_handle.emplace_back();
+    for (std::size_t c = 0; c < is_reached.size(); ++c)
+      if (is_reached[c])
+        m_components_of_handle.back().push_back(static_cast<std::uint32_t>(c));
+    m_centroid.push_back(body.frame.to_world(sum / static_cast<double>(number)));
+    return handle;
+  }
+
+  /// Frees the points of a handle.
+  void remove(std::size_t handle)
+  {
+    for (auto& h : m_handle_of_site)
+      if (h == static_cast<Node_constraint>(handle))
+        h = free_node;
+    m_is_used[handle] = 0;
+    m_transforms[handle] = Similarity();
+  }
+
+  /// Throws `Invalid_input` if the motion cannot be represented beside the cloud.
+  void set_transform(const Local_frame& frame, std::size_t handle, const Similarity& transform)
+  {
+    const double distance = (transform(frame.origin) - frame.origin).norm() / frame.unit;
+    if (!transform.is_finite() || !(distance < largest_motion) ||
+        !(transform.scale() < largest_motion && transform.scale() > 1 / largest_motion))
+      throw Invalid_input("pcs deformation: the motion of handle " + std::to_string(handle) +
+                          " has scale " + pcs::internal::to_text(transform.scale()) +
+                          " and takes the cloud " + pcs::internal::to_text(distance) +
+                          " times its extent away; both must be less than " +
+                          pcs::internal::to_text(largest_motion));
+    m_transforms[handle] = transform;
+  }
+
+  /// Those of an earlier moment; handles that were added since are at rest.
+  void restore(const std::vector<Similarity>& transforms)
+  {
+    m_transforms = transforms;
+    m_transforms.resize(m_is_used.size());
+  }
+
+  void put_at_rest() { m_transforms.assign(size(), Similarity()); }
+
+  /// In local coordinates: `x -> sR x + (sR c + t - c) / unit`; the outside of the region comes last.
+  void local_transforms(const Local_frame& frame, std::vector<Similarity>& local) const
+  {
+    local.clear();
+    for (const Similarity& t : m_transforms) {
+      Similarity linear = Similarity::from_scale(t.scale());
+      for (const auto& turn : t.turns())
+        linear = Similarity::from_turn(turn) * linear;
+      const Vec3& c = frame.origin;
+      const Vec3 offset = (linear(c) - c) + t.translation();
+      local.push_back(Similarity::from_translation(offset / frame.unit) * linear);
+    }
+    if (m_has_outside)
+      local.emplace_back();
+  }
+
+  /// After the rest shape has changed.
+  template <class ConcurrencyTag>
+  void update_centroids(const Sampled_body<ConcurrencyTag>& body)
+  {
+    std::vector<Vec3> sum(size(), Vec3::Zero());
+    std::vector<double> count(size(), 0);
+    for (std::size_t site = 0; site < m_handle_of_site.size(); ++site) {
+      const Node_constraint h = m_handle_of_site[site];
+      if (h < 0)
+        continue;
+      sum[static_cast<std::size_t>(h)] += body.rest_of_site(site);
+      count[static_cast<std::size_t>(h)] += 1;
+    }
+    for (std::size_t h = 0; h < size(); ++h)
+      if (count[h] > 0)
+        m_centroid[h] = body.frame.to_world(sum[h] / count[h]);
+  }
+
+private:
+  /// Scale and distance [extents] beyond which double precision keeps nothing of the shape.
+  static constexpr double largest_motion = 1e12;
+
+  std::vector<Node_constraint> m_handle_of_site;
+  bool m_has_outside = false;
+  // one for each handle
+  std::vector<Similarity> m_transforms;
+  std::vector<double> m_weight; ///< 0: exact
+  std::vector<char> m_is_used;
+  std::vector<std::vector<std::uint32_t>> m_components_of_handle;
+  std::vector<Vec3> m_centroid;
+};
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_HANDLES_HANDLE_SET_H

@@ -1,0 +1,181 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Where a handle ends on an irregular sampling: along its outermost points, not along each of its points.
+
+#ifndef PCS_DEFORMATION_HANDLES_STRAIGHTEN_BORDERS_H
+#define PCS_DEFORMATION_HANDLES_STRAIGHTEN_BORDERS_H
+
+#include <pcs/deformation/model/Elastic_network.h>
+#include <pcs/deformation/model/Harmonic_system.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+namespace internal {
+
+/// How far a handle reaches beyond one of its nodes, and in which direction.
+struct Border_advance
+{
+  Vec3 direction = Vec3::Zero(); ///< unit vector out of the handle
+  double distance = 0;           ///< [L]
+};
+
+/// Handle nodes farther to the side than this say nothing about the border at a node. [spacings]
+constexpr double widest_border_patch = 2;
+/// The border leaves at least this share of an edge to the free node. [-]
+constexpr double least_free_share = 0.2;
+/// Borders this near to their node stay there. [shares of the edge]
+constexpr double negligible_advance = 1e-6;
+
+/// The line through the outermost nodes of the handle around node `j`, seen from `j`.
+inline Border_advance
+border_advance(const Elastic_network& network, const Node_constraints& constraints, std::size_t j)
+{
+  const Weighted_graph& graph = network.surface;
+  const auto for_each_near = [&](const auto& use) {
+    for (auto a = graph.begin(j); a != graph.end(j); ++a) {
+      use(*a);
+      for (auto b = graph.begin(*a); b != graph.end(*a); ++b)
+        if (*b != j)
+          use(*b);
+    }
+  };
+  const Node_constraint handle = constraints.handle_of_node[j];
+  const double reach = widest_border_patch * local_spacing(network.rest, graph, j);
+  Vec3 inside = Vec3::Zero(), outside = Vec3::Zero();
+  double number_inside = 1, number_outside = 0;
+  for_each_near([&](std::uint32_t k) {
+    const Vec3 offset = network.rest[k] - network.rest[j];
+    if (constraints.handle_of_node[k] == handle) {
+      inside += offset;
+      number_inside += 1;
+    } else if (!constraints.is_prescribed(k)) {
+      outside += offset;
+      number_outside += 1;
+    }
+  });
+  Border_advance result;
+  if (number_outside == 0)
+    return result;
+  const Vec3 out = outside / number_outside - inside / number_inside;
+  const double length = out.norm();
+  if (!(length > 0))
+    return result;
+  result.direction = out / length;
+  for_each_near([&](std::uint32_t k) {
+    if (constraints.handle_of_node[k] != handle)
+      return;
+    const Vec3 offset = network.rest[k] - network.rest[j];
+    const double ahead = offset.dot(result.direction);
+    if ((offset - ahead * result.direction).squaredNorm() <= reach * reach)
+      result.distance = std::max(result.distance, ahead);
+  });
+  return result;
+}
+
+} // namespace internal
+
+/*!
+  Gives the edges between free nodes and exact handles their true length up to the border of the handle.
+
+  Points that are picked by a region of space end on average half a spacing before its border, and fields that are
+  held at each of them alone yield as if the handle were that much shorter. Here the border runs through the outermost
+  points of the handle around each of them (on a grid: through all). Where it crosses an edge at a share `t` of its
+  length, a node that is prescribed like the handle is added to `result`, with the edge's weight over `1 - t`.
+  Constraints are extended to the new nodes.
+
+  Returns `false`, with `result` untouched, if no border leaves its nodes. O(n).
+*/
+inline bool straighten_borders(const Elastic_network& network,
+                               Node_constraints& constraints,
+                               Elastic_network& result)
+{
+  const Weighted_graph& graph = network.surface;
+  const std::size_t n = network.size();
+  struct Held_edge
+  {
+    std::size_t free, held; ///< half-edges, by number
+    std::uint32_t node, handle_node;
+    double share;
+  };
+  std::vector<Held_edge> edges;
+  for (std::uint32_t j = 0; j < n; ++j) {
+    if (!constraints.is_prescribed(j))
+      continue;
+    internal::Border_advance advance;
+    bool is_known = false;
+    for (std::size_t e = graph.first[j]; e < graph.first[j + 1]; ++e) {
+      const std::uint32_t i = graph.neighbor[e];
+      if (constraints.is_prescribed(i) || constraints.handle_of_node[i] == unreached_node)
+        continue;
+      if (!is_known)
+        advance = internal::border_advance(network, constraints, j);
+      is_known = true;
+      const double ahead = (network.rest[i] - network.rest[j]).dot(advance.direction);
+      if (!(ahead > 0) || !(advance.distance > internal::negligible_advance * ahead))
+        continue;
+      const double share = std::min(1 - internal::least_free_share, advance.distance / ahead);
+      const auto back = std::lower_bound(graph.begin(i), graph.end(i), j);
+      edges.push_back({static_cast<std::size_t>(back - graph.neighbor.data()), e, i, j, share});
+    }
+  }
+  if (edges.empty())
+    return false;
+
+  // The rows of the free nodes lead to the new nodes; the held halves of the edges go.
+  std::sort(edges.begin(), edges.end(), [](const Held_edge& a, const Held_edge& b) {
+    return a.free < b.free;
+  });
+  std::vector<char> is_dropped(graph.neighbor.size(), 0);
+  for (const Held_edge& b : edges)
+    is_dropped[b.free] = is_dropped[b.held] = 1;
+  result = Elastic_network();
+  result.rest = network.rest;
+  result.links = network.links;
+  result.area = network.area;
+  result.surface_rank = network.surface_rank;
+  result.rank = network.rank;
+  Weighted_graph& surface = result.surface;
+  surface.neighbor.reserve(graph.neighbor.size());
+  surface.weight.reserve(graph.neighbor.size());
+  auto next = edges.begin();
+  const auto new_weight = [&](const Held_edge& b) {
+    return representable_weight(graph.weight[b.free] / (1 - b.share));
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e)
+      if (!is_dropped[e]) {
+        surface.neighbor.push_back(graph.neighbor[e]);
+        surface.weight.push_back(graph.weight[e]);
+      }
+    for (; next != edges.end() && next->node == i; ++next) {
+      surface.neighbor.push_back(static_cast<std::uint32_t>(result.rest.size()));
+      surface.weight.push_back(new_weight(*next));
+      const Vec3& held = network.rest[next->handle_node];
+      result.rest.push_back(held + next->share * (network.rest[i] - held));
+      constraints.handle_of_node.push_back(constraints.handle_of_node[next->handle_node]);
+    }
+    surface.first.push_back(static_cast<std::uint32_t>(surface.neighbor.size()));
+  }
+  for (const Held_edge& b : edges) {
+    surface.neighbor.push_back(b.node);
+    surface.weight.push_back(new_weight(b));
+    surface.first.push_back(static_cast<std::uint32_t>(surface.neighbor.size()));
+  }
+  if (result.links.size() > 0)
+    result.links.first.resize(result.rest.size() + 1, result.links.first.back());
+  return true;
+}
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_HANDLES_STRAIGHTEN_BORDERS_H

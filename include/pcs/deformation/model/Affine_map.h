@@ -1,0 +1,53 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Affine maps of samples: the identity, their rotations, what they do to normals.
+
+#ifndef PCS_DEFORMATION_MODEL_AFFINE_MAP_H
+#define PCS_DEFORMATION_MODEL_AFFINE_MAP_H
+
+#include <pcs/core/rotations.h>
+#include <pcs/deformation/upsampling/blend_block.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+namespace pcs {
+namespace deformation {
+
+using Vec3 = Eigen::Vector3d;
+using Row_major_matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+inline Affine_map identity_map()
+{
+  return {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
+}
+
+/// The rotation nearest to `a`; the identity if `a` is not invertible.
+inline Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& a)
+{
+  const Vec3 x = a.col(0).normalized(), z = a.col(0).cross(a.col(1)).normalized();
+  Eigen::Matrix3d start;
+  start << x, z.cross(x), z;
+  if (!(a.determinant() > 0) || !start.allFinite())
+    return Eigen::Matrix3d::Identity();
+  constexpr int number_of_steps = 20; // it stops by itself after a few
+  return improve_rotation(a, Quaternion(start), number_of_steps).toRotationMatrix();
+}
+
+/// The normal of a surface that `a` maps, as long as before.
+inline Vec3 turn_normal(const Eigen::Matrix3d& a, const Vec3& normal)
+{
+  Eigen::Matrix3d cofactor;
+  cofactor.row(0) = a.row(1).cross(a.row(2));
+  cofactor.row(1) = a.row(2).cross(a.row(0));
+  cofactor.row(2) = a.row(0).cross(a.row(1));
+  const Vec3 turned = cofactor * normal;
+  const double length = turned.norm();
+  return length > 0 ? Vec3(normal.norm() / length * turned) : normal;
+}
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_MODEL_AFFINE_MAP_H

@@ -1,0 +1,160 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The discrete body that is deformed: nodes at rest, weighted surface edges, and links through the inside.
+
+#ifndef PCS_DEFORMATION_MODEL_ELASTIC_NETWORK_H
+#define PCS_DEFORMATION_MODEL_ELASTIC_NETWORK_H
+
+#include <pcs/internal/parallel.h>
+#include <pcs/neighborhood/Proximity_graph.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+using Vec3 = Eigen::Vector3d;
+
+/// A proximity graph with one symmetric weight per half-edge [-].
+struct Weighted_graph : neighborhood::Proximity_graph
+{
+  std::vector<double> weight;
+};
+
+struct Elastic_network
+{
+  std::vector<Vec3> rest; ///< positions of the nodes [L]
+  Weighted_graph surface; ///< edges along the surface
+  Weighted_graph links;   ///< springs through the inside; may be empty (then `links.size() == 0`)
+  /// Of the first nodes: the share of the surface of their component that each stands for. [-]
+  std::vector<double> area;
+  /// Of the first nodes, an order of elimination for factors over the surface, and over the links as well: found once,
+  /// good for any choice of free nodes. Empty if it is not worth it.
+  std::vector<std::uint32_t> surface_rank, rank;
+  std::size_t size() const { return rest.size(); }
+};
+
+/// An edge is never taken for shorter than this share of the spacing around it, so that two points that nearly
+/// coincide do not outweigh all others.
+constexpr double shortest_relative_edge = 0.2;
+/// Spacings of two neighbours that differ by more are an outlier and its victim.
+constexpr double widest_spacing_step = 2;
+
+/// Squares of extreme lengths underflow; the matrices need finite, positive weights.
+inline double representable_weight(double w)
+{
+  return std::isfinite(w) ? std::min(1e9, std::max(1e-30, w)) : 1;
+}
+
+/// Median length of the edges at node `i`: the spacing there, whatever single outlier is linked to it. [L]
+inline double local_spacing(const std::vector<Vec3>& rest,
+                            const neighborhood::Proximity_graph& graph,
+                            std::size_t i)
+{
+  std::array<double, 64> lengths;
+  const std::size_t count = std::min(lengths.size(), graph.degree(i));
+  if (count == 0)
+    return 0;
+  for (std::size_t e = 0; e < count; ++e)
+    lengths[e] = (rest[graph.begin(i)[e]] - rest[i]).norm();
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(count / 2);
+  std::nth_element(lengths.begin(), middle, lengths.begin() + static_cast<std::ptrdiff_t>(count));
+  return *middle;
+}
+
+/// Sets `area` from the spacings; \p component holds the component of each node.
+template <class ConcurrencyTag>
+void set_areas(const std::vector<std::uint32_t>& component, Elastic_network& network)
+{
+  const std::size_t n = network.size();
+  network.area.resize(n);
+  pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
+    const double spacing = local_spacing(network.rest, network.surface, i);
+    network.area[i] = spacing * spacing;
+  });
+  std::vector<double> sum;
+  for (std::size_t i = 0; i < n; ++i) {
+    sum.resize(std::max<std::size_t>(sum.size(), component[i] + 1), 0);
+    sum[component[i]] += network.area[i];
+  }
+  for (std::size_t i = 0; i < n; ++i)
+    network.area[i] = sum[component[i]] > 0 ? network.area[i] / sum[component[i]] : 1;
+}
+
+/// Edges beyond this many median spacings lead to outliers.
+constexpr double longest_typical_edge = 4;
+
+/// Root mean square length of the edges, those to outliers left out. [L]
+inline double typical_edge(const std::vector<Vec3>& rest,
+                           const neighborhood::Proximity_graph& graph)
+{
+  std::vector<double> spacing;
+  for (std::size_t i = 0; i < graph.size(); ++i)
+    if (graph.degree(i) > 0)
+      spacing.push_back(local_spacing(rest, graph, i));
+  if (spacing.empty())
+    return 0;
+  const auto middle = spacing.begin() + static_cast<std::ptrdiff_t>(spacing.size() / 2);
+  std::nth_element(spacing.begin(), middle, spacing.end());
+  const double longest = longest_typical_edge * *middle;
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < graph.size(); ++i)
+    for (auto j = graph.begin(i); j != graph.end(i); ++j) {
+      const double squared = (rest[*j] - rest[i]).squaredNorm();
+      if (squared <= longest * longest) {
+        sum += squared;
+        count += 1;
+      }
+    }
+  return count > 0 ? std::sqrt(sum / count) : *middle;
+}
+
+/*!
+  Weights `w_ij = (s_i^2 + s_j^2) / (2 |x_j - x_i|^2)`, scaled to mean 1, where `s_i` is `local_spacing()`, the larger
+  taken for at most `widest_spacing_step` times the smaller. `1 / d^2` turns differences into slopes; the factor `s^2` is the area
+  that a point stands for, so that densely sampled parts do not become stiffer than sparse ones, and far outliers pull
+  on nothing.
+*/
+template <class ConcurrencyTag>
+void set_edge_weights(const std::vector<Vec3>& rest, Weighted_graph& graph)
+{
+  const std::size_t n = graph.size();
+  std::vector<double> spacing(n, 0);
+  pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
+    spacing[i] = local_spacing(rest, graph, i);
+  });
+  graph.weight.resize(graph.neighbor.size());
+  pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
+    for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
+      const std::size_t j = graph.neighbor[e];
+      const double smaller = std::min(spacing[i], spacing[j]);
+      const double larger =
+          std::min(std::max(spacing[i], spacing[j]), widest_spacing_step * smaller);
+      const double area = 0.5 * (smaller * smaller + larger * larger);
+      const double floor = shortest_relative_edge * shortest_relative_edge * area;
+      const double d2 = std::max((rest[j] - rest[i]).squaredNorm(), floor);
+      graph.weight[e] = d2 > 0 ? representable_weight(area / d2) : 1;
+    }
+  });
+  const double sum = pcs::internal::blocked_reduce<ConcurrencyTag>(
+      graph.weight.size(),
+      0.0,
+      [&](std::size_t e) { return graph.weight[e]; },
+      std::plus<double>());
+  const double scale = sum > 0 ? static_cast<double>(graph.weight.size()) / sum : 1;
+  for (double& w : graph.weight)
+    w *= scale;
+}
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_MODEL_ELASTIC_NETWORK_H

@@ -1,0 +1,141 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// One graph Laplacian with prescribed nodes eliminated, factorised once, solved for many boundary values.
+
+#ifndef PCS_DEFORMATION_MODEL_HARMONIC_SYSTEM_H
+#define PCS_DEFORMATION_MODEL_HARMONIC_SYSTEM_H
+
+#include <pcs/deformation/model/Elastic_network.h>
+#include <pcs/internal/parallel.h>
+#include <pcs/linear_algebra/Sparse_cholesky.h>
+#include <pcs/linear_algebra/graph_laplacian.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+/// What is prescribed at a node: the number of its handle, or one of the two values below.
+using Node_constraint = std::int32_t;
+constexpr Node_constraint free_node = -1;
+/// The node belongs to no part that a handle reaches; it stays where it is.
+constexpr Node_constraint unreached_node = -2;
+
+/// Which nodes are unknowns, and how soft the others are.
+struct Node_constraints
+{
+  std::vector<Node_constraint> handle_of_node;
+  /// Per handle: 0 prescribes its nodes exactly; a positive value ties them with springs of that weight relative
+  /// to the sum of the node's edge weights. [-]
+  std::vector<double> softness_weight;
+
+  bool is_prescribed(std::size_t node) const
+  {
+    const Node_constraint h = handle_of_node[node];
+    return h >= 0 && !(softness_weight[static_cast<std::size_t>(h)] > 0);
+  }
+  bool is_soft(std::size_t node) const
+  {
+    const Node_constraint h = handle_of_node[node];
+    return h >= 0 && softness_weight[static_cast<std::size_t>(h)] > 0;
+  }
+  /// Weight of the spring of a soft node whose edge weights sum to `degree`; one without edges has its spring alone.
+  double soft_weight(std::size_t node, double degree) const
+  {
+    return softness_weight[static_cast<std::size_t>(handle_of_node[node])] *
+           (degree > 0 ? degree : 1);
+  }
+};
+
+/// Rows of the unknowns: nodes that are free or soft, in increasing order.
+struct Free_rows
+{
+  std::vector<std::uint32_t> row_of_node;
+  std::vector<std::uint32_t> node_of_row;
+
+  explicit Free_rows(const Node_constraints& constraints = {})
+  {
+    const auto& handle = constraints.handle_of_node;
+    row_of_node.assign(handle.size(), linear_algebra::not_free);
+    for (std::size_t i = 0; i < handle.size(); ++i)
+      if (handle[i] == free_node || constraints.is_soft(i)) {
+        row_of_node[i] = static_cast<std::uint32_t>(node_of_row.size());
+        node_of_row.push_back(static_cast<std::uint32_t>(i));
+      }
+  }
+
+  std::size_t size() const { return node_of_row.size(); }
+};
+
+/// Finds the orders of elimination of a network whose constraints will change.
+inline void rank_nodes(Elastic_network& network)
+{
+  Node_constraints all_free;
+  all_free.handle_of_node.assign(network.size(), free_node);
+  const Free_rows rows(all_free);
+  const auto order = [&](std::vector<const Weighted_graph*> graphs) {
+    return linear_algebra::Cholesky_pattern::minimum_degree_order(
+        linear_algebra::free_laplacian(graphs, rows.row_of_node, rows.node_of_row, {}));
+  };
+  network.surface_rank = order({&network.surface});
+  if (!network.links.neighbor.empty())
+    network.rank = order({&network.surface, &network.links});
+}
+
+/// The ranks of the unknowns; empty if there are none.
+inline std::vector<std::uint32_t> rank_of_rows(const std::vector<std::uint32_t>& rank_of_node,
+                                               const Free_rows& rows)
+{
+  std::vector<std::uint32_t> rank;
+  if (!rank_of_node.empty())
+    for (const std::uint32_t i : rows.node_of_row)
+      rank.push_back(i < rank_of_node.size() ? rank_of_node[i] : i);
+  return rank;
+}
+
+/// Sum of the surface weights at node `i`: the mass with which local terms enter. [-]
+inline double node_degree(const Weighted_graph& graph, std::size_t i)
+{
+  double sum = 0;
+  for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e)
+    sum += graph.weight[e];
+  return sum;
+}
+
+/*!
+  Solves `L u = 0` at the unknown nodes for given `u` at the prescribed ones (soft ones: `L u + w (u - value) = 0`).
+  `value(node)` is asked for prescribed and soft nodes. `result[node]` is written for the unknown nodes only.
+*/
+template <class ConcurrencyTag, class Row, class Value>
+void solve_harmonic(const linear_algebra::Sparse_cholesky& factor,
+                    const Weighted_graph& graph,
+                    const Node_constraints& constraints,
+                    const Free_rows& rows,
+                    const Value& value,
+                    std::vector<Row>& rhs,
+                    std::vector<Row>& work,
+                    std::vector<Row>& result)
+{
+  rhs.resize(rows.size());
+  pcs::internal::for_each_index<ConcurrencyTag>(rows.size(), [&](std::size_t r) {
+    const std::size_t i = rows.node_of_row[r];
+    Row b = Row::Zero();
+    for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e)
+      if (constraints.is_prescribed(graph.neighbor[e]))
+        b += graph.weight[e] * value(graph.neighbor[e]);
+    if (constraints.is_soft(i))
+      b += constraints.soft_weight(i, node_degree(graph, i)) * value(i);
+    rhs[r] = b;
+  });
+  factor.solve<ConcurrencyTag>(rhs, work);
+  pcs::internal::for_each_index<ConcurrencyTag>(rows.size(), [&](std::size_t r) {
+    result[rows.node_of_row[r]] = rhs[r];
+  });
+}
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_MODEL_HARMONIC_SYSTEM_H

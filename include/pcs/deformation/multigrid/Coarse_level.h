@@ -1,0 +1,202 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Coarser copies of the elastic network, which find the large rotations that a dragged handle asks for.
+
+#ifndef PCS_DEFORMATION_MULTIGRID_COARSE_LEVEL_H
+#define PCS_DEFORMATION_MULTIGRID_COARSE_LEVEL_H
+
+#include <pcs/core/Deformation_options.h>
+#include <pcs/deformation/body/Sample_links.h>
+#include <pcs/deformation/body/Sample_regions.h>
+#include <pcs/deformation/body/interior_links.h>
+#include <pcs/deformation/body/octree_samples.h>
+#include <pcs/deformation/handles/add_boundary_nodes.h>
+#include <pcs/deformation/handles/anchor_free_components.h>
+#include <pcs/deformation/model/Elastic_network.h>
+#include <pcs/deformation/model/Harmonic_system.h>
+#include <pcs/deformation/solver/Elastic_solver.h>
+#include <pcs/internal/parallel.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+/// A level has one node for this many of the finer one.
+constexpr std::size_t coarsening_ratio = 5;
+/// Networks with fewer nodes get no coarser level.
+constexpr std::size_t smallest_coarsened_network = 1000;
+/// Largest number of passes on a coarse level; they are cheap there, and carry far.
+constexpr int number_of_coarse_passes = 100;
+
+/// Of the fall of the energy that would end the passes of the finest level, were it as small: a pass there costs more
+/// than one here, and what stays undone here costs passes there. [-]
+constexpr double coarse_share_of_tolerance = 0.5;
+
+/*!
+  A pass carries a rotation over a few edges only. Under a handle that is dragged without being turned, the whole
+  rotation has to be found that way; on a coarse network the same distance is a few edges. The passes of each level
+  start from the deviations (`Elastic_solver::deviations()`) found on the coarser one.
+*/
+template <class ConcurrencyTag>
+class Coarse_level
+{
+public:
+  /// \param finer its nodes in spatial order
+  /// \param component the component of each of its nodes
+  /// \param has_links whether closed surfaces get springs through their inside
+  Coarse_level(const Elastic_network& finer,
+               const std::vector<std::uint32_t>& component,
+               bool has_links)
+    : m_node_of_sample(octree_samples(finer.rest, finer.size() / coarsening_ratio))
+  {
+    constexpr std::size_t number_of_sample_neighbors = 4;
+    Sample_regions regions = grow_regions(finer.rest, finer.surface, m_node_of_sample);
+    m_network.surface =
+        sample_graph(finer.rest, finer.surface, m_node_of_sample, regions, m_weight_unit);
+    m_links = link_by_regions<ConcurrencyTag>(finer.rest,
+                                              m_node_of_sample,
+                                              regions,
+                                              m_network.surface,
+                                              number_of_sample_neighbors,
+                                              Sample_weights::compact);
+    m_sample_of_node = std::move(regions.sample_of_point);
+    m_border_finder = Border_finder(finer.surface);
+    for (const auto node : m_node_of_sample) {
+      m_network.rest.push_back(finer.rest[node]);
+      m_component.push_back(component[node]);
+    }
+    set_areas<ConcurrencyTag>(m_component, m_network);
+    if (has_links && m_network.size() <= largest_linked_network)
+      m_network.links = interior_links<ConcurrencyTag>(m_network, m_component);
+    rank_nodes(m_network);
+  }
+
+  const Elastic_network& network() const { return m_network; }
+  const std::vector<std::uint32_t>& component() const { return m_component; }
+  const Node_constraints& constraints() const { return m_constraints; }
+
+  /// Takes over the constraints of the finer level.
+  void constrain(const Node_constraints& of_finer)
+  {
+    m_constraints = Node_constraints();
+    m_constraints.softness_weight = of_finer.softness_weight;
+    for (const auto node : m_node_of_sample)
+      m_constraints.handle_of_node.push_back(of_finer.handle_of_node[node]);
+    draw_nodes_of_soft_handles(of_finer);
+    anchor_free_components([&](std::size_t node) { return m_component[node]; },
+                           m_sample_of_node,
+                           [&](std::size_t i) { return of_finer.handle_of_node[i]; },
+                           m_constraints);
+  }
+
+  /// Prepares `improve()`. Returns `false` if a matrix is singular.
+  bool factorize(const Elastic_network& finer, const Node_constraints& of_finer, double stiffness)
+  {
+    const auto handle_of_node = [&](std::size_t node) {
+      return of_finer.is_prescribed(node) ? of_finer.handle_of_node[node] : free_node;
+    };
+    const auto position = [&](std::size_t node) { return finer.rest[node]; };
+    const std::vector<Border_edge> border =
+        m_border_finder.find<ConcurrencyTag>(finer.surface, [&](std::size_t node) {
+          return of_finer.is_prescribed(node);
+        });
+    Node_constraints constraints = m_constraints;
+    m_bounded = add_boundary_nodes(
+        Boundary_input<decltype(handle_of_node), decltype(position)>{m_network,
+                                                                     m_weight_unit,
+                                                                     border,
+                                                                     m_sample_of_node,
+                                                                     handle_of_node,
+                                                                     position},
+        constraints);
+    return m_solver.constrain(m_bounded, std::move(constraints), stiffness);
+  }
+
+  /// Runs the passes of this level, less of them if `progress` asks to stop. `guess`: in, of this level's nodes, or empty; out, of the finer one's.
+  /// A pass may gain as much less than one over `finest_size` nodes as it costs less: what it leaves has to be done there.
+  void improve(const std::vector<Similarity>& transforms,
+               Elastic_options options,
+               std::size_t finest_size,
+               bool needs_link_offsets,
+               pcs::internal::Progress& progress,
+               Deviation_guess& guess)
+  {
+    options.maximal_number_of_passes = number_of_coarse_passes;
+    options.tolerance *= coarse_share_of_tolerance * static_cast<double>(m_network.size()) /
+                         static_cast<double>(finest_size);
+    pcs::internal::Progress only_stops([&](double) { return progress(0); });
+    const Elastic_result result = m_solver.solve(transforms, options, only_stops, guess);
+    guess.is_far_from_field =
+        result.is_far_from_field || result.energy < sure_advantage * result.first_pass_energy;
+    if (needs_link_offsets)
+      m_solver.link_offsets(guess.link_offsets);
+    guess.deviations.clear();
+    if (guess.is_far_from_field || needs_link_offsets ||
+        result.energy < least_advantage * result.first_pass_energy)
+      guess.deviations = m_solver.deviations();
+    carry(guess);
+  }
+
+  /// From a guess of this level's nodes to one of the finer level's.
+  void carry(Deviation_guess& guess)
+  {
+    if (!guess.deviations.empty())
+      to_finer(guess.deviations);
+    if (!guess.link_offsets.empty())
+      to_finer(guess.link_offsets);
+  }
+
+  /// The finer level has a new rest shape.
+  void accept(const Elastic_network& finer)
+  {
+    for (std::size_t s = 0; s < m_node_of_sample.size(); ++s)
+      m_network.rest[s] = finer.rest[m_node_of_sample[s]];
+  }
+
+private:
+  /// A soft handle between the nodes draws those in whose regions it lies, in every component that it holds.
+  void draw_nodes_of_soft_handles(const Node_constraints& of_finer)
+  {
+    auto& of_node = m_constraints.handle_of_node;
+    std::set<std::pair<Node_constraint, std::uint32_t>> has_node; // handle and component
+    for (std::size_t i = 0; i < of_node.size(); ++i)
+      has_node.emplace(of_node[i], m_component[i]);
+    for (std::size_t i = 0; i < m_sample_of_node.size(); ++i) {
+      const std::uint32_t node = m_sample_of_node[i];
+      if (of_finer.is_soft(i) && node != no_sample && of_node[node] == free_node &&
+          has_node.count({of_finer.handle_of_node[i], m_component[node]}) == 0)
+        of_node[node] = of_finer.handle_of_node[i];
+    }
+  }
+
+  void to_finer(std::vector<Vec3>& values)
+  {
+    m_fine.assign(m_sample_of_node.size(), Vec3::Zero());
+    pcs::internal::for_each_index<ConcurrencyTag>(m_fine.size(), [&](std::size_t i) {
+      for (std::size_t b = i * m_links.k; b < (i + 1) * m_links.k; ++b)
+        if (m_links.sample[b] != no_sample)
+          m_fine[i] += static_cast<double>(m_links.weight[b]) * values[m_links.sample[b]];
+    });
+    values.assign(m_fine.begin(), m_fine.end()); // keeps the memory of both
+  }
+
+  std::vector<std::uint32_t> m_node_of_sample, m_sample_of_node, m_component;
+  Elastic_network m_network;     ///< over the samples
+  Border_finder m_border_finder; ///< of the finer network's surface
+  double m_weight_unit = 1;
+  Sample_links m_links; ///< from the finer nodes to the samples
+  Node_constraints m_constraints;
+  Elastic_network m_bounded; ///< with nodes on the borders of the handles
+  Elastic_solver<ConcurrencyTag> m_solver;
+  std::vector<Vec3> m_fine; ///< of the finer network's nodes
+};
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_MULTIGRID_COARSE_LEVEL_H

@@ -1,0 +1,117 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// All coarser copies of the elastic network of a session, from the finest to one of a few hundred nodes.
+
+#ifndef PCS_DEFORMATION_MULTIGRID_COARSE_LEVELS_H
+#define PCS_DEFORMATION_MULTIGRID_COARSE_LEVELS_H
+
+#include <pcs/core/Similarity.h>
+#include <pcs/deformation/model/Elastic_network.h>
+#include <pcs/deformation/model/Elastic_options.h>
+#include <pcs/deformation/multigrid/Coarse_level.h>
+#include <pcs/internal/progress.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+/*!
+  Networks above a certain size have no interior links. If coarser ones have, the finest of these makes passes until it
+  converges; those between it and the session's network only carry what it finds.
+*/
+template <class ConcurrencyTag>
+class Coarse_levels
+{
+public:
+  Coarse_levels() = default;
+
+  /// \param finest its nodes in spatial order
+  /// \param component the component of each of its nodes
+  /// \param has_links whether closed surfaces get springs through their inside
+  Coarse_levels(const Elastic_network& finest, std::vector<std::uint32_t> component, bool has_links)
+    : m_size_of_passes(finest.size())
+  {
+    const Elastic_network* finer = &finest;
+    const std::vector<std::uint32_t>* of_finer = &component;
+    bool is_linked = !finest.links.neighbor.empty();
+    while (finer->size() >= smallest_coarsened_network) {
+      m_level.emplace_back(*finer, *of_finer, has_links);
+      finer = &m_level.back().network();
+      of_finer = &m_level.back().component();
+      if (!is_linked && !finer->links.neighbor.empty()) {
+        is_linked = m_has_offsets = true;
+        m_first = m_level.size() - 1;
+        m_size_of_passes = finer->size();
+      }
+    }
+  }
+
+  /// Takes over the constraints of the session's network and factorises. Returns `false` if a matrix is singular.
+  bool constrain(const Elastic_network& finest, const Node_constraints& of_finest, double stiffness)
+  {
+    bool is_regular = true;
+    const Elastic_network* finer = &finest;
+    const Node_constraints* of_finer = &of_finest;
+    for (std::size_t l = 0; l < m_level.size(); ++l) {
+      m_level[l].constrain(*of_finer);
+      if (l >= m_first)
+        is_regular = m_level[l].factorize(*finer, *of_finer, stiffness) && is_regular;
+      finer = &m_level[l].network();
+      of_finer = &m_level[l].constraints();
+    }
+    return is_regular;
+  }
+
+  /// Runs the passes of all levels; less of them if `progress` says so.
+  const Deviation_guess& solve(const std::vector<Similarity>& transforms,
+                               const Elastic_options& options,
+                               pcs::internal::Progress& progress)
+  {
+    Deviation_guess& guess = m_guess;
+    guess.deviations.clear();
+    guess.link_offsets.clear();
+    guess.is_far_from_field = false;
+    for (std::size_t l = m_level.size(); l-- > 0 && progress(0);)
+      if (l >= m_first)
+        m_level[l].improve(transforms,
+                           options,
+                           m_size_of_passes,
+                           m_has_offsets && l == m_first,
+                           progress,
+                           guess);
+      else
+        m_level[l].carry(guess);
+    return guess;
+  }
+
+  /// Whether they have links that the session's network lacks.
+  bool has_link_offsets() const { return m_has_offsets; }
+
+  /// The session's network has a new rest shape.
+  void accept(const Elastic_network& finest)
+  {
+    const Elastic_network* finer = &finest;
+    for (auto& level : m_level) {
+      level.accept(*finer);
+      finer = &level.network();
+    }
+  }
+
+private:
+  std::deque<Coarse_level<ConcurrencyTag>>
+      m_level; ///< the finest first; a deque does not move them
+  Deviation_guess m_guess;
+  std::size_t m_first = 0;          ///< finer ones only carry
+  bool m_has_offsets = false;       ///< whether the first has links that finer networks lack
+  std::size_t m_size_of_passes = 0; ///< of the finest network that makes passes until it converges
+};
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_MULTIGRID_COARSE_LEVELS_H

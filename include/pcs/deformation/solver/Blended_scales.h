@@ -1,0 +1,194 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The scales of the handles, blended between them, and how much of them bodies take along the way.
+
+#ifndef PCS_DEFORMATION_SOLVER_BLENDED_SCALES_H
+#define PCS_DEFORMATION_SOLVER_BLENDED_SCALES_H
+
+#include <pcs/core/Similarity.h>
+#include <pcs/deformation/model/Elastic_network.h>
+#include <pcs/deformation/model/Harmonic_system.h>
+#include <pcs/deformation/solver/Elastic_factors.h>
+#include <pcs/internal/parallel.h>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+/*!
+  The logarithm of the scale is harmonic between handles. Edges across its gradient grow with it; along the gradient they
+  grow by a share of it, as much as the handles leave room for: a rod whose end is scaled where it is gets thicker, not
+  longer, or it would have to buckle. One share for all bodies.
+*/
+template <class ConcurrencyTag>
+class Blended_scales
+{
+public:
+  /// For new motions of the handles; along the gradient nothing grows yet.
+  void begin(const Elastic_network& network,
+             const Node_constraints& constraints,
+             const Elastic_factors& factors,
+             const std::vector<Similarity>& transforms)
+  {
+    const std::size_t n = network.size();
+    m_growth.clear();
+    m_direction.clear();
+    const auto differs = [&](const Similarity& t) { return t.scale() != 1; };
+    if (std::none_of(transforms.begin(), transforms.end(), differs))
+      return;
+    blend(network, constraints, factors, transforms);
+    m_growth.resize(n);
+    find_directions(network, constraints);
+    set_share(0);
+  }
+
+  /// What the edges of every node grow by before they are turned: symmetric; empty if no handle has a scale. [-]
+  const std::vector<Eigen::Matrix3d>& growth() const { return m_growth; }
+
+  /// Edges along the gradient of the scale grow by this share of it. [-]
+  void set_share(double share)
+  {
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        m_growth.size(),
+        [&](std::size_t i) {
+          const double across = std::exp(m_log_scale[i][0]);
+          const double along =
+              std::max(1 + share * (across - 1), least_growth * std::min(1.0, across));
+          m_growth[i] = across * Eigen::Matrix3d::Identity();
+          if (!m_direction[i].isZero(0))
+            m_growth[i] += (along - across) * m_direction[i] * m_direction[i].transpose();
+        },
+        512);
+  }
+
+  /// From the energies with shares of 0, 1/2 and 1, as they are quadratic in it; 1 if it does not matter. [-]
+  static double share_of_least_energy(double none, double half, double all)
+  {
+    const double curvature = 2 * (none + all) - 4 * half, slope = all - none - curvature;
+    return curvature > 1e-12 * (none + all)
+               ? std::min(1.0, std::max(-1.0, -0.5 * slope / curvature))
+               : 1.0;
+  }
+
+private:
+  using Vec1 = Eigen::Matrix<double, 1, 1>;
+
+  /// Scales that differ by less than this across an edge have no direction. [-]
+  static constexpr double least_difference = 1e-9;
+  /// Over one ring, differences of a harmonic function scatter so much that bodies get longer by some per cent of the
+  /// scale, which is enough to buckle.
+  static constexpr int number_of_rings = 3;
+  static constexpr double normal_share =
+      1e-3; ///< across a surface, where the edges say nothing [-]
+  /// Of an edge along the gradient, where a negative share would turn it around. [-]
+  static constexpr double least_growth = 0.25;
+
+  /// Of edges around a node.
+  struct Sums
+  {
+    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+    Vec3 change = Vec3::Zero();
+    double largest = 0;
+
+    Sums& operator+=(const Sums& other)
+    {
+      spread += other.spread;
+      change += other.change;
+      largest = std::max(largest, other.largest);
+      return *this;
+    }
+  };
+
+  void blend(const Elastic_network& network,
+             const Node_constraints& constraints,
+             const Elastic_factors& factors,
+             const std::vector<Similarity>& transforms)
+  {
+    m_log_scale.assign(network.size(), Vec1::Zero());
+    const auto value = [&](std::size_t i) {
+      return Vec1(
+          std::log(transforms[static_cast<std::size_t>(constraints.handle_of_node[i])].scale()));
+    };
+    solve_harmonic<ConcurrencyTag>(factors.field(),
+                                   network.surface,
+                                   constraints,
+                                   factors.rows(),
+                                   value,
+                                   m_rhs,
+                                   m_work,
+                                   m_log_scale);
+    for (std::size_t i = 0; i < network.size(); ++i)
+      if (constraints.is_prescribed(i))
+        m_log_scale[i] = value(i);
+  }
+
+  /// Along the gradient of the logarithm of scale at rest, by least squares over some rings of neighbours. Null where
+  /// that is constant.
+  void find_directions(const Elastic_network& network, const Node_constraints& constraints)
+  {
+    const auto& graph = network.surface;
+    const std::size_t n = network.size();
+    m_sums.resize(n);
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        n,
+        [&](std::size_t i) {
+          m_sums[i] = Sums();
+          for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
+            const std::size_t j = graph.neighbor[e];
+            const Vec3 edge = network.rest[j] - network.rest[i];
+            const double difference = m_log_scale[j][0] - m_log_scale[i][0];
+            m_sums[i].spread += graph.weight[e] * edge * edge.transpose();
+            m_sums[i].change += graph.weight[e] * difference * edge;
+            m_sums[i].largest = std::max(m_sums[i].largest, std::abs(difference));
+          }
+        },
+        512);
+    for (int ring = 1; ring < number_of_rings; ++ring) {
+      m_next_sums.resize(n);
+      pcs::internal::for_each_index<ConcurrencyTag>(
+          n,
+          [&](std::size_t i) {
+            Sums sums = m_sums[i];
+            for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e)
+              sums += m_sums[graph.neighbor[e]];
+            m_next_sums[i] = sums;
+          },
+          512);
+      m_sums.swap(m_next_sums);
+    }
+    m_direction.assign(n, Vec3::Zero());
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        n,
+        [&](std::size_t i) {
+          const Sums& sums = m_sums[i];
+          const double trace = sums.spread.trace();
+          if (constraints.is_prescribed(i) || !(sums.largest > least_difference) || !(trace > 0))
+            return;
+          const Vec3 gradient =
+              (sums.spread / trace + normal_share * Eigen::Matrix3d::Identity()).inverse() *
+              (sums.change / trace);
+          const double norm = gradient.norm();
+          if (norm > 0 && std::isfinite(norm))
+            m_direction[i] = gradient / norm;
+        },
+        512);
+  }
+
+  std::vector<Vec1> m_log_scale, m_rhs, m_work;
+  std::vector<Sums> m_sums, m_next_sums;
+  std::vector<Vec3> m_direction; ///< of the gradient at rest, or null
+  std::vector<Eigen::Matrix3d> m_growth;
+};
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_SOLVER_BLENDED_SCALES_H

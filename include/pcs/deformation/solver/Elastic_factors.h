@@ -1,0 +1,94 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The constant matrices of an elastic network under handles, factorised.
+
+#ifndef PCS_DEFORMATION_SOLVER_ELASTIC_FACTORS_H
+#define PCS_DEFORMATION_SOLVER_ELASTIC_FACTORS_H
+
+#include <pcs/deformation/model/Elastic_network.h>
+#include <pcs/deformation/model/Elastic_options.h>
+#include <pcs/deformation/model/Harmonic_system.h>
+#include <pcs/internal/parallel.h>
+
+#include <Eigen/SparseCore>
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+/// Factors over the free and soft nodes: of the field of the handles, of positions, and of the smoothing of deviations.
+class Elastic_factors
+{
+public:
+  const Free_rows& rows() const { return m_rows; }
+  const linear_algebra::Sparse_cholesky& field() const { return m_field; }
+  const linear_algebra::Sparse_cholesky& smoothing() const { return m_smoothing; }
+  /// That of the field, but for networks with links.
+  const linear_algebra::Sparse_cholesky& position() const { return m_has_links ? m_link : m_field; }
+  /// `mu D` of a row: how much the best local rotation counts against those of the neighbours.
+  double fit_weight(std::size_t row) const { return m_fit_weight[row]; }
+
+  /// Returns `false` if a matrix is singular (a free part without handle).
+  template <class ConcurrencyTag>
+  bool
+  factorize(const Elastic_network& network, const Node_constraints& constraints, double stiffness)
+  {
+    m_rows = Free_rows(constraints);
+    m_has_links = !network.links.neighbor.empty();
+    m_fit_weight.resize(m_rows.size());
+    std::vector<double> soft(m_rows.size(), 0), smoothing(m_rows.size(), 0);
+    for (std::size_t r = 0; r < m_rows.size(); ++r) {
+      const std::size_t i = m_rows.node_of_row[r];
+      const double degree = node_degree(network.surface, i);
+      if (constraints.is_soft(i))
+        soft[r] = constraints.soft_weight(i, degree);
+      m_fit_weight[r] = default_fit_weight / stiffness * relative_area(network, i) * degree;
+      smoothing[r] = soft[r] + m_fit_weight[r];
+    }
+    const auto assemble = [&](std::vector<const Weighted_graph*> graphs,
+                              const std::vector<double>& extra) {
+      return linear_algebra::free_laplacian(graphs, m_rows.row_of_node, m_rows.node_of_row, extra);
+    };
+    const Weighted_graph* surface = &network.surface;
+    bool field_ok = false, smoothing_ok = false, position_ok = true;
+    const Eigen::SparseMatrix<double> of_field = assemble({surface}, soft);
+    std::shared_ptr<const linear_algebra::Cholesky_pattern> pattern;
+    pcs::internal::invoke_both<ConcurrencyTag>(
+        [&] {
+          pattern = std::make_shared<const linear_algebra::Cholesky_pattern>(
+              of_field,
+              rank_of_rows(network.surface_rank, m_rows));
+        },
+        [&] {
+          if (m_has_links)
+            position_ok = m_link.factorize(assemble({surface, &network.links}, soft),
+                                           rank_of_rows(network.rank, m_rows));
+        });
+    pcs::internal::invoke_both<ConcurrencyTag>(
+        [&] { field_ok = m_field.factorize(of_field, pattern); },
+        [&] { smoothing_ok = m_smoothing.factorize(assemble({surface}, smoothing), pattern); });
+    return field_ok && smoothing_ok && position_ok;
+  }
+
+private:
+  /// The area of a node in units of the reference network's.
+  static double relative_area(const Elastic_network& network, std::size_t node)
+  {
+    const double area = node < network.area.size() ? reference_size * network.area[node] : 1;
+    return std::min(largest_relative_area, std::max(smallest_relative_area, area));
+  }
+
+  Free_rows m_rows;
+  linear_algebra::Sparse_cholesky m_field, m_link, m_smoothing;
+  std::vector<double> m_fit_weight; ///< of each row, its degree included
+  bool m_has_links = false;
+};
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_SOLVER_ELASTIC_FACTORS_H

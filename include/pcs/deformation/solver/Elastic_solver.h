@@ -1,0 +1,242 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Rotations and positions of an elastic network under handles: alternating solves until the energy is least.
+
+#ifndef PCS_DEFORMATION_SOLVER_ELASTIC_SOLVER_H
+#define PCS_DEFORMATION_SOLVER_ELASTIC_SOLVER_H
+
+#include <pcs/core/Similarity.h>
+#include <pcs/core/Status.h>
+#include <pcs/deformation/model/Elastic_network.h>
+#include <pcs/deformation/model/Elastic_options.h>
+#include <pcs/deformation/solver/Anderson_mixing.h>
+#include <pcs/deformation/solver/Elastic_state.h>
+#include <pcs/deformation/solver/Elastic_step.h>
+#include <pcs/internal/parallel.h>
+#include <pcs/internal/progress.h>
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+/*!
+  Passes, the text's equation (2.2): the best local rotations of a shape, their deviations from the field of the handles
+  smoothed, the next shape from these (`Elastic_step`). They are accelerated by Anderson mixing. Of all states that they
+  go through, the one with the least energy is kept, so more passes never make it worse.
+*/
+template <class ConcurrencyTag>
+class Elastic_solver
+{
+public:
+  const Elastic_network& network() const { return m_shape.network(); }
+  const Node_constraints& constraints() const { return m_shape.constraints(); }
+  /// The present shape, until the next call.
+  Elastic_state state() const { return m_shape.state(); }
+  /// Rotation of every node relative to the field of the handles. [rad]
+  const std::vector<Vec3>& deviations() const { return m_smooth; }
+
+  /// As `Elastic_step`.
+  void link_offsets(std::vector<Vec3>& offsets) { m_shape.link_offsets(offsets); }
+  bool constrain(const Elastic_network& network, Node_constraints constraints, double stiffness)
+  {
+    return m_shape.constrain(network, std::move(constraints), stiffness);
+  }
+
+  /// Solves for one transformation per handle, from the rest shape. The guess is the first state, or tried after the
+  /// first pass, when that is not known to be worth it. Where it was found with links that this network lacks, energies do
+  /// not compare: it is taken, and little is changed.
+  Elastic_result solve(const std::vector<Similarity>& transforms,
+                       const Elastic_options& options,
+                       pcs::internal::Progress& progress,
+                       const Deviation_guess& guess = {})
+  {
+    Elastic_result result;
+    const bool has_passes = options.maximal_number_of_passes > 0;
+    const bool has_offsets = has_passes && !guess.link_offsets.empty() && !m_shape.has_links();
+    m_shape.begin(transforms, options, false, has_offsets ? &guess.link_offsets : nullptr);
+    m_mixing.restart();
+    m_smooth.assign(network().size(), Vec3::Zero());
+    m_best_smooth.assign(network().size(), Vec3::Zero());
+    result.is_far_from_field = has_offsets || (has_passes && guess.is_far_from_field);
+    if (result.is_far_from_field) {
+      take(guess);
+      m_shape.turn(m_smooth);
+    }
+    m_shape.place(true);
+    result.energy = result.initial_energy = m_shape.fit_and_measure(true);
+    make_passes(options, progress, result.is_far_from_field ? nullptr : &guess, result);
+    return result;
+  }
+
+  /*!
+    The same from where the last solve under these constraints ended, as seen from the field: for handles that have moved
+    little since. Returns `false` if that has more energy than `highest_energy`; the state is of no use then. Not for
+    networks that lack the links of coarser ones.
+  */
+  bool solve_further(const std::vector<Similarity>& transforms,
+                     const Elastic_options& options,
+                     pcs::internal::Progress& progress,
+                     double highest_energy,
+                     Elastic_result& result)
+  {
+    result = Elastic_result();
+    m_shape.begin(transforms, options, true, nullptr);
+    m_mixing.restart();
+    result.is_far_from_field = true;
+    m_shape.turn(m_smooth);
+    m_shape.place(false);
+    result.energy = result.initial_energy = m_shape.fit_and_measure(true);
+    if (!(result.energy <= highest_energy))
+      return false;
+    make_passes(options, progress, nullptr, result);
+    return true;
+  }
+
+private:
+  const Free_rows& rows() const { return m_shape.rows(); }
+
+  /// The guess, if there is one, may replace the state after the first pass.
+  void make_passes(const Elastic_options& options,
+                   pcs::internal::Progress& progress,
+                   const Deviation_guess* guess,
+                   Elastic_result& result)
+  {
+    result.status =
+        options.maximal_number_of_passes == 0 ? Status::iteration_limit : Status::converged;
+    if (rows().size() == 0)
+      return;
+    bool is_checking = false; // that there is no more to gain than an accelerated pass did
+    for (int pass = 0; pass < options.maximal_number_of_passes; ++pass) {
+      if (!progress(static_cast<double>(pass) / options.maximal_number_of_passes)) {
+        result.status = Status::cancelled;
+        return;
+      }
+      const double before = result.energy;
+      const bool is_last =
+          m_shape.has_link_offsets() || pass + 1 == options.maximal_number_of_passes;
+      const bool is_accelerated =
+          !is_checking && pass >= (result.is_far_from_field ? 1 : first_accelerated_pass);
+      bool has_improved = improve(is_accelerated, is_last, result);
+      if (pass == 0 && !result.is_far_from_field)
+        result.first_pass_energy = result.energy;
+      if (pass == 0 && guess && !guess->deviations.empty()) {
+        result.is_far_from_field = start_from(*guess, result);
+        has_improved = has_improved || result.is_far_from_field;
+      }
+      result.number_of_passes = pass + 1;
+      result.status = Status::converged;
+      // Without the links, each further pass would let the body collapse.
+      if (m_shape.has_link_offsets() || !has_improved)
+        return;
+      const double gain = before - result.energy;
+      is_checking = is_accelerated && gain <= poor_gain * options.tolerance * before;
+      if (is_checking)
+        m_mixing.restart();
+      else if (gain <= options.tolerance * before)
+        return;
+      result.status = Status::iteration_limit;
+    }
+  }
+
+  /// One pass: accelerated if that lowers the energy, else plain; `false` if neither does (rounding at the optimum).
+  bool improve(bool is_accelerated, bool is_last, Elastic_result& result)
+  {
+    m_shape.keep();
+    m_best_smooth.swap(m_smooth);
+    m_shape.smooth_deviations(m_smooth);
+    if (is_accelerated)
+      m_plain = m_smooth;
+    mix(is_accelerated);
+    double energy = apply_deviations(!is_last);
+    if (is_accelerated && !(energy < result.energy)) {
+      m_mixing.restart();
+      m_smooth = m_plain;
+      m_shape.restart_from_kept();
+      energy = apply_deviations(!is_last);
+    }
+    if (!(energy < result.energy)) {
+      m_shape.swap_kept();
+      m_smooth.swap(m_best_smooth);
+      return false;
+    }
+    result.energy = energy;
+    return true;
+  }
+
+  /// What a pass starts from and what it makes of that: the deviations and, where there are links, the positions that give
+  /// them their directions. Without these, what the links hold back would look like the answer to the deviations.
+  void mix(bool is_wanted)
+  {
+    if (!m_shape.has_links()) {
+      m_mixing.mix(m_best_smooth, m_smooth, is_wanted);
+      return;
+    }
+    const std::size_t n = rows().size();
+    m_state.resize(2 * n);
+    m_image.resize(2 * n);
+    pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t r) {
+      const std::size_t i = rows().node_of_row[r];
+      m_state[r] = m_best_smooth[i];
+      m_state[n + r] = m_shape.directing()[i];
+      m_image[r] = m_smooth[i];
+      m_image[n + r] = m_shape.position()[i];
+    });
+    m_mixing.mix(m_state, m_image, is_wanted);
+    if (is_wanted)
+      pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t r) {
+        const std::size_t i = rows().node_of_row[r];
+        m_smooth[i] = m_image[r];
+        m_shape.position()[i] = m_image[n + r];
+      });
+  }
+
+  void take(const Deviation_guess& guess)
+  {
+    for (const auto i : rows().node_of_row)
+      m_smooth[i] = i < guess.deviations.size() ? guess.deviations[i] : Vec3(Vec3::Zero());
+  }
+
+  /// A guess replaces the present state if it is clearly better: where the field of the handles explains the motion,
+  /// it is more exact than a coarse network, and what folds up there is no shape here. Returns whether it did.
+  bool start_from(const Deviation_guess& guess, Elastic_result& result)
+  {
+    m_shape.keep_all();
+    m_best_smooth.swap(m_smooth);
+    take(guess);
+    m_shape.turn(m_smooth);
+    m_shape.follow(true); // the present positions know nothing of the guess
+    if (m_shape.has_links())
+      for (int i = 0; i < settling_solves; ++i)
+        m_shape.solve_positions(false);
+    const double energy = m_shape.fit_and_measure(true);
+    if (energy < guess_advantage * result.energy) {
+      result.energy = energy;
+      m_mixing.restart();
+      return true;
+    }
+    m_shape.restore_all();
+    m_smooth.swap(m_best_smooth);
+    return false;
+  }
+
+  /// The next shape; returns its energy.
+  double apply_deviations(bool has_next)
+  {
+    m_shape.turn(m_smooth);
+    m_shape.follow(false);
+    return m_shape.fit_and_measure(has_next);
+  }
+
+  Elastic_step<ConcurrencyTag> m_shape;
+  Anderson_mixing<ConcurrencyTag> m_mixing;
+  std::vector<Vec3> m_smooth, m_best_smooth, m_plain; ///< deviations, smoothed: what is used
+  std::vector<Vec3> m_state, m_image;                 ///< of a pass, for the mixing
+};
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_SOLVER_ELASTIC_SOLVER_H

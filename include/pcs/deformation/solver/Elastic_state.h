@@ -1,0 +1,198 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// What a node of an elastic network sees of its edges: right sides, energies and best maps.
+
+#ifndef PCS_DEFORMATION_SOLVER_ELASTIC_STATE_H
+#define PCS_DEFORMATION_SOLVER_ELASTIC_STATE_H
+
+#include <pcs/core/rotations.h>
+#include <pcs/deformation/model/Elastic_network.h>
+#include <pcs/deformation/model/Harmonic_system.h>
+#include <pcs/deformation/solver/measure_edges.h>
+#include <pcs/linear_algebra/small_symmetric.h>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+/// A network, where its nodes are now, and what its edges aim at: a view.
+struct Elastic_state
+{
+  const Elastic_network& network;
+  const Node_constraints& constraints;
+  const std::vector<Vec3>& position; ///< [L]
+  /// `R_i A_i`: the rotation after the growth. [-]
+  const std::vector<Eigen::Matrix3d>& frame;
+  /// The frame, times the stretch that the material allows. [-]
+  const std::vector<Eigen::Matrix3d>& target;
+  /// What edges grow by between handles that are scaled, `A_i`; empty if none is. [-]
+  const std::vector<Eigen::Matrix3d>& growth;
+
+  /// Weight of the frame in `deformation_gradient()`, relative to the spread of the edges: it decides where the
+  /// edges say nothing, across a surface.
+  static constexpr double frame_share = 0.05;
+  /// Of shorter edges, relative to the coordinates, rounding leaves too little to measure a gradient. [-]
+  static constexpr double shortest_measured_edge = 1e-10;
+
+  /// Right side of node `i` from its surface edges; returns its degree. Number by number, as in `newton_turn()`.
+  double sum_edges(std::size_t i, Vec3& b) const
+  {
+    const auto& graph = network.surface;
+    const double *own = target[i].data(), *xi = network.rest[i].data();
+    double degree = 0, edges[3] = {}, sum[3] = {};
+    for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
+      const std::size_t j = graph.neighbor[e];
+      const double *other = target[j].data(), *xj = network.rest[j].data();
+      const double w = graph.weight[e];
+      double edge[3];
+      for (int k = 0; k < 3; ++k) {
+        edge[k] = w * (xi[k] - xj[k]);
+        edges[k] += edge[k];
+      }
+      for (int k = 0; k < 3; ++k)
+        sum[k] += 0.5 * (other[k] * edge[0] + other[3 + k] * edge[1] + other[6 + k] * edge[2]);
+      if (constraints.is_prescribed(j))
+        for (int k = 0; k < 3; ++k)
+          sum[k] += w * position[j][k];
+      degree += w;
+    }
+    for (int k = 0; k < 3; ++k)
+      b[k] = sum[k] + 0.5 * (own[k] * edges[0] + own[3 + k] * edges[1] + own[6 + k] * edges[2]);
+    return degree;
+  }
+
+  Vec3 link_target(std::size_t i, std::size_t j, bool links_turn) const
+  {
+    if (links_turn) {
+      const Vec3 edge = network.rest[i] - network.rest[j];
+      return 0.5 * (frame[i] * edge + frame[j] * edge);
+    }
+    const Vec3 present = position[i] - position[j];
+    const double length = present.norm();
+    return length > 0 ? Vec3(rest_length(i, j) / length * present) : Vec3(Vec3::Zero());
+  }
+
+  /// What `Measure_edges` asks for.
+  Edge_input edges() const
+  {
+    const auto& graph = network.surface;
+    return {graph.first.data(),
+            graph.neighbor.data(),
+            graph.weight.data(),
+            network.rest.data(),
+            position.data(),
+            target.data()};
+  }
+
+  double link_energy(std::size_t i) const
+  {
+    const auto& links = network.links;
+    double energy = 0;
+    if (!links.neighbor.empty())
+      for (std::size_t e = links.first[i]; e < links.first[i + 1]; ++e) {
+        const std::size_t j = links.neighbor[e];
+        if (j < i)
+          continue;
+        const double error = (position[i] - position[j]).norm() - rest_length(i, j);
+        energy += links.weight[e] * error * error;
+      }
+    return energy;
+  }
+
+  /// The rest shape that a material of the given Poisson's ratio takes under the present main stretch `s1` along
+  /// `v`: `S = s1 v v^T + s1^-nu (I - v v^T)`.
+  Eigen::Matrix3d transverse_stretch(std::size_t i, double poisson_ratio) const
+  {
+    const Eigen::Matrix3d in_rest = frame[i].inverse() * deformation_gradient(i);
+    const auto eigen = linear_algebra::symmetric_eigen<3>(0.5 * (in_rest + in_rest.transpose()));
+    if (!(eigen.values.minCoeff() > 0) || !eigen.values.allFinite())
+      return Eigen::Matrix3d::Identity();
+    int main = 0;
+    for (int k = 1; k < 3; ++k)
+      if (std::abs(std::log(eigen.values[k])) > std::abs(std::log(eigen.values[main])))
+        main = k;
+    // Beyond a factor of ten the network is torn, not stretched.
+    const double s1 = std::min(10.0, std::max(0.1, eigen.values[main]));
+    const Vec3 v = eigen.vectors.col(main);
+    const double across = std::pow(s1, -poisson_ratio);
+    return (s1 - across) * v * v.transpose() + across * Eigen::Matrix3d::Identity();
+  }
+
+  /// Best linear map of the edges at node `i` from rest to now, completed by the frame across the surface. [-]
+  Eigen::Matrix3d deformation_gradient(std::size_t i) const
+  {
+    // Number by number, as in `newton_turn()`.
+    const auto& graph = network.surface;
+    const double *xi = network.rest[i].data(), *pi = position[i].data();
+    double longest = 0, farthest = 0, covariance[9] = {};
+    double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0; // the spread of the edges at rest
+    for (int k = 0; k < 3; ++k)
+      farthest = std::max(farthest, std::abs(pi[k]));
+    for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e) {
+      const std::size_t j = graph.neighbor[e];
+      const double *xj = network.rest[j].data(), *pj = position[j].data();
+      double rest[3], weighted[3];
+      for (int k = 0; k < 3; ++k) {
+        rest[k] = xj[k] - xi[k];
+        weighted[k] = graph.weight[e] * rest[k];
+        longest = std::max(longest, std::abs(rest[k]));
+        farthest = std::max(farthest, std::abs(pj[k]));
+      }
+      for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < 3; ++r)
+          covariance[3 * c + r] += (pj[r] - pi[r]) * weighted[c];
+      xx += weighted[0] * rest[0];
+      yy += weighted[1] * rest[1];
+      zz += weighted[2] * rest[2];
+      xy += weighted[0] * rest[1];
+      xz += weighted[0] * rest[2];
+      yz += weighted[1] * rest[2];
+    }
+    const double share = frame_share * (xx + yy + zz);
+    if (!(longest > shortest_measured_edge * farthest) ||
+        !(share > std::numeric_limits<double>::min()))
+      return frame[i];
+    // Relative to the trace, so that the determinant does not vanish for short edges.
+    const double unit = frame_share / share;
+    xx = unit * xx + frame_share;
+    yy = unit * yy + frame_share;
+    zz = unit * zz + frame_share;
+    xy *= unit;
+    xz *= unit;
+    yz *= unit;
+    const double axx = yy * zz - yz * yz, axy = xz * yz - xy * zz, axz = xy * yz - xz * yy,
+                 ayy = xx * zz - xz * xz, ayz = xy * xz - xx * yz, azz = xx * yy - xy * xy;
+    const double inverse = 1 / (xx * axx + xy * axy + xz * axz);
+    const double* own = frame[i].data();
+    Eigen::Matrix3d result;
+    for (int r = 0; r < 3; ++r) {
+      const double x = unit * covariance[r] + frame_share * own[r],
+                   y = unit * covariance[3 + r] + frame_share * own[3 + r],
+                   z = unit * covariance[6 + r] + frame_share * own[6 + r];
+      result(r, 0) = inverse * (x * axx + y * axy + z * axz);
+      result(r, 1) = inverse * (x * axy + y * ayy + z * ayz);
+      result(r, 2) = inverse * (x * axz + y * ayz + z * azz);
+    }
+    return result;
+  }
+
+private:
+  double rest_length(std::size_t i, std::size_t j) const
+  {
+    const Vec3 edge = network.rest[i] - network.rest[j];
+    return growth.empty() ? edge.norm() : (0.5 * (growth[i] + growth[j]) * edge).norm();
+  }
+};
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_SOLVER_ELASTIC_STATE_H

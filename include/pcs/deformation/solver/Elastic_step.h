@@ -1,0 +1,342 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The shape that an elastic network takes under handles and given rotations: constant factors.
+
+#ifndef PCS_DEFORMATION_SOLVER_ELASTIC_STEP_H
+#define PCS_DEFORMATION_SOLVER_ELASTIC_STEP_H
+
+#include <pcs/core/Similarity.h>
+#include <pcs/core/rotations.h>
+#include <pcs/deformation/model/Elastic_network.h>
+#include <pcs/deformation/model/Elastic_options.h>
+#include <pcs/deformation/solver/Blended_scales.h>
+#include <pcs/deformation/solver/Elastic_factors.h>
+#include <pcs/deformation/solver/Elastic_state.h>
+#include <pcs/deformation/solver/Position_solver.h>
+#include <pcs/deformation/solver/fit_rotations.h>
+#include <pcs/deformation/solver/measure_edges.h>
+#include <pcs/deformation/solver/rotation_field.h>
+#include <pcs/internal/parallel.h>
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+/*!
+  Rotations are `exp(d) B`: deviations from the rotation field `B` of the handles. From them follow positions,
+  `L x = b`, `b_i = sum_j w_ij (G_i + G_j)/2 (x0_i - x0_j)` with `G_i = R_i A_i S_i`: the rotation, the growth between
+  handles of different scale (`Blended_scales`), the stretch that the material allows; from positions their energy, and the
+  deviations of the rotations that fit them best.
+
+  All matrices are constant while the constraints are; the three factors are made in `constrain()`.
+*/
+template <class ConcurrencyTag>
+class Elastic_step
+{
+public:
+  const Elastic_network& network() const { return *m_network; }
+  const Node_constraints& constraints() const { return m_constraints; }
+  /// The nodes that are solved for.
+  const Free_rows& rows() const { return m_factors.rows(); }
+  bool has_links() const { return !m_network->links.neighbor.empty(); }
+  /// The present shape, until the next call.
+  Elastic_state state() const
+  {
+    return {*m_network,
+            m_constraints,
+            m_position,
+            m_frame,
+            is_stretched() ? m_target : m_frame,
+            m_scales.growth()};
+  }
+
+  /// Takes a network, which must outlive its use here, and constraints, and factorises. Returns `false` if a matrix is
+  /// singular (a free part without handle).
+  bool constrain(const Elastic_network& network, Node_constraints constraints, double stiffness)
+  {
+    m_network = &network;
+    m_constraints = std::move(constraints);
+    const bool is_regular = m_factors.factorize<ConcurrencyTag>(network, m_constraints, stiffness);
+    m_position = network.rest;
+    m_frame.assign(network.size(), Eigen::Matrix3d::Identity());
+    return is_regular;
+  }
+
+  /*!
+    New motions of the handles; rotations are those of their field.
+    \param is_further whether the stretch of the material is kept
+    \param link_offsets what links that this network lacks add to the positions of the first nodes; may be null
+  */
+  void begin(const std::vector<Similarity>& transforms,
+             const Elastic_options& options,
+             bool is_further,
+             const std::vector<Vec3>* link_offsets)
+  {
+    m_transforms = &transforms;
+    m_link_offsets = nullptr;
+    m_poisson_ratio = options.poisson_ratio;
+    if (!is_further)
+      m_stretch.assign(is_stretched() ? m_network->size() : 0, Eigen::Matrix3d::Identity());
+    m_field_solver(options.rotation_field,
+                   m_factors.field(),
+                   m_network->surface,
+                   m_constraints,
+                   rows(),
+                   transforms,
+                   m_field);
+    m_rotation = m_field;
+    m_scales.begin(*m_network, m_constraints, m_factors, transforms);
+    if (!m_scales.growth().empty())
+      find_room();
+    m_link_offsets = link_offsets;
+  }
+
+  /// Whether positions hold what links of another network add to them: energies do not compare with those of others.
+  bool has_link_offsets() const { return m_link_offsets != nullptr; }
+
+  /// Rotations from deviations. [rad]
+  void turn(const std::vector<Vec3>& deviations)
+  {
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        rows().size(),
+        [&](std::size_t r) {
+          const std::size_t i = rows().node_of_row[r];
+          m_rotation[i] = rotation_from_rodrigues(deviations[i]) * m_field[i];
+        },
+        block);
+  }
+
+  /// Positions of constrained nodes, then of all others.
+  void place(bool links_turn)
+  {
+    place_constrained_nodes(*m_network, m_constraints, *m_transforms, m_position);
+    follow(links_turn);
+  }
+
+  /// Positions that follow the rotations.
+  void follow(bool links_turn)
+  {
+    update_frames();
+    solve_positions(links_turn);
+  }
+
+  /// The same again, after positions have changed, from which links take their directions.
+  void solve_positions(bool links_turn)
+  {
+    m_position_solver(state(), *m_transforms, m_factors, links_turn, m_position);
+    if (m_link_offsets)
+      for (const auto i : rows().node_of_row)
+        if (i < m_link_offsets->size())
+          m_position[i] += (*m_link_offsets)[i];
+  }
+
+  /// One sweep: the energy of the present state and, if there is a next pass, the deviation of each node's best rotation
+  /// from the field.
+  double fit_and_measure(bool has_next)
+  {
+    const std::size_t n = m_network->size();
+    m_deviation.resize(n);
+    m_energies.resize((n + block - 1) / block);
+    pcs::internal::for_each_block<ConcurrencyTag>(n,
+                                                  block,
+                                                  [&](std::size_t begin, std::size_t end) {
+                                                    m_energies[begin / block] =
+                                                        fit_block(begin, end, has_next);
+                                                  });
+    return std::accumulate(m_energies.begin(), m_energies.end(), 0.0);
+  }
+
+  /// Smoothed deviations of the rotations that fit best: `(L + mu D) d' = mu D d`. [rad]
+  void smooth_deviations(std::vector<Vec3>& smooth)
+  {
+    m_rhs.resize(rows().size());
+    pcs::internal::for_each_index<ConcurrencyTag>(rows().size(), [&](std::size_t r) {
+      m_rhs[r] = m_factors.fit_weight(r) * m_deviation[rows().node_of_row[r]];
+    });
+    m_factors.smoothing().template solve<ConcurrencyTag>(m_rhs, m_work);
+    pcs::internal::for_each_index<ConcurrencyTag>(rows().size(), [&](std::size_t r) {
+      smooth[rows().node_of_row[r]] = m_rhs[r];
+    });
+  }
+
+  std::vector<Vec3>& position() { return m_position; }
+  /// From where links had their directions. [L]
+  const std::vector<Vec3>& directing() const { return m_position_solver.directing(); }
+
+  /// How far the interior links move the nodes: to the present positions from those that the surface alone would give
+  /// with the same frames. Empty without links. One solve.
+  void link_offsets(std::vector<Vec3>& offsets)
+  {
+    m_position_solver.link_offsets(state(), *m_transforms, m_factors, offsets);
+  }
+
+  /// \name What was kept may be taken back
+  /// @{
+
+  /// Positions and frames; the frames are to be made anew.
+  void keep()
+  {
+    m_kept_position = m_position;
+    m_kept_frame.resize(m_frame.size());
+    m_kept_frame.swap(m_frame);
+  }
+  void swap_kept()
+  {
+    m_position.swap(m_kept_position);
+    m_frame.swap(m_kept_frame);
+  }
+  /// The positions go on from those that were kept.
+  void restart_from_kept() { m_position = m_kept_position; }
+
+  /// All that a pass goes on from.
+  void keep_all()
+  {
+    keep();
+    m_kept_deviation = m_deviation;
+    m_kept_rotation = m_rotation;
+    m_kept_directing = m_position_solver.directing();
+  }
+  void restore_all()
+  {
+    swap_kept();
+    m_deviation.swap(m_kept_deviation);
+    m_rotation.swap(m_kept_rotation);
+    m_position_solver.restore_directing(m_kept_directing);
+  }
+
+  /// @}
+
+private:
+  static constexpr std::size_t block = 512;
+
+  bool is_stretched() const { return m_poisson_ratio != 0; }
+
+  /// `fit_and_measure()` for a block of nodes.
+  double fit_block(std::size_t begin, std::size_t end, bool has_next)
+  {
+    const Elastic_state state = this->state();
+    const Edge_input edges = state.edges();
+    const Measure_edges measure_edges = choose_measure_edges();
+    const Fit_rotations fit_rotations = choose_fit_rotations();
+    Rotation_fits fits;
+    std::array<std::size_t, Rotation_fits::size> node_of_fit;
+    std::size_t count = 0;
+    double energy = 0;
+    const auto finish = [&] {
+      fit_rotations(fit_damping, count, fits);
+      for (std::size_t k = 0; k < count; ++k)
+        m_deviation[node_of_fit[k]] = {fits.deviation[0][k],
+                                       fits.deviation[1][k],
+                                       fits.deviation[2][k]};
+      count = 0;
+    };
+    for (std::size_t i = begin; i < end; ++i) {
+      if (m_constraints.handle_of_node[i] == unreached_node)
+        continue;
+      Eigen::Matrix3d covariance;
+      energy += measure_edges(edges, i, covariance);
+      energy += state.link_energy(i);
+      if (!has_next || m_constraints.is_prescribed(i))
+        continue;
+      if (!state.growth.empty())
+        covariance *= state.growth[i];
+      if (is_stretched())
+        m_stretch[i] = state.transverse_stretch(i, m_poisson_ratio);
+      node_of_fit[count] = i;
+      fits.set(count++, covariance, m_rotation[i], m_field[i]);
+      if (count == Rotation_fits::size)
+        finish();
+    }
+    finish();
+    return energy;
+  }
+
+  /// How much bodies grow along the gradient of scale: as the field of the handles leaves room for them, so that least
+  /// energy is left. That is quadratic in the share, because positions are linear in it. The present positions stay.
+  void find_room()
+  {
+    m_kept_position = m_position;
+    place_constrained_nodes(*m_network, m_constraints, *m_transforms, m_position);
+    const double none = energy_with_share(0);
+    m_ungrown = m_position;
+    const double all = energy_with_share(1);
+    for (const auto i : rows().node_of_row)
+      m_ungrown[i] = 0.5 * (m_ungrown[i] + m_position[i]);
+    m_position.swap(m_ungrown);
+    const double half = energy_with_share(0.5, false);
+    m_scales.set_share(m_scales.share_of_least_energy(none, half, all));
+    m_position.swap(m_kept_position);
+  }
+
+  double energy_with_share(double share, bool is_solved = true)
+  {
+    m_scales.set_share(share);
+    update_frames();
+    if (is_solved)
+      solve_positions(true);
+    const Elastic_state state = this->state();
+    const Edge_input edges = state.edges();
+    const Measure_edges measure_edges = choose_measure_edges();
+    return pcs::internal::blocked_reduce<ConcurrencyTag>(
+        m_network->size(),
+        0.0,
+        [&](std::size_t i) {
+          Eigen::Matrix3d covariance;
+          const bool is_reached = m_constraints.handle_of_node[i] != unreached_node;
+          return is_reached ? measure_edges(edges, i, covariance) : 0.0;
+        },
+        [](double a, double b) { return a + b; },
+        block,
+        m_energies);
+  }
+
+  void update_frames()
+  {
+    if (is_stretched())
+      m_target.resize(m_network->size());
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        m_network->size(),
+        [&](std::size_t i) {
+          if (m_constraints.is_prescribed(i)) {
+            const Similarity& t =
+                (*m_transforms)[static_cast<std::size_t>(m_constraints.handle_of_node[i])];
+            m_frame[i] = t.scale() * t.rotation();
+          } else {
+            m_frame[i] = m_rotation[i].toRotationMatrix();
+            if (!m_scales.growth().empty())
+              m_frame[i] *= m_scales.growth()[i];
+          }
+          if (is_stretched())
+            m_target[i] = m_frame[i] * m_stretch[i];
+        },
+        block);
+  }
+
+  const Elastic_network* m_network = nullptr;
+  Node_constraints m_constraints;
+  Elastic_factors m_factors;
+  Rotation_field_solver<ConcurrencyTag> m_field_solver;
+  Position_solver<ConcurrencyTag> m_position_solver;
+  Blended_scales<ConcurrencyTag> m_scales;
+
+  const std::vector<Similarity>* m_transforms = nullptr;
+  const std::vector<Vec3>* m_link_offsets = nullptr;
+  double m_poisson_ratio = 0;
+  std::vector<Quaternion> m_field, m_rotation, m_kept_rotation;
+  std::vector<Eigen::Matrix3d> m_frame, m_kept_frame, m_stretch, m_target;
+  std::vector<Vec3> m_position, m_kept_position, m_ungrown, m_kept_directing, m_rhs, m_work;
+  std::vector<Vec3> m_deviation, m_kept_deviation; ///< of the best local rotations from the field
+  std::vector<double> m_energies;                  ///< of blocks of nodes
+};
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_SOLVER_ELASTIC_STEP_H

@@ -1,0 +1,131 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Positions of an elastic network under given frames: one linear solve with a constant factor.
+
+#ifndef PCS_DEFORMATION_SOLVER_POSITION_SOLVER_H
+#define PCS_DEFORMATION_SOLVER_POSITION_SOLVER_H
+
+#include <pcs/core/Similarity.h>
+#include <pcs/deformation/model/Elastic_network.h>
+#include <pcs/deformation/model/Harmonic_system.h>
+#include <pcs/deformation/solver/Elastic_factors.h>
+#include <pcs/deformation/solver/Elastic_state.h>
+#include <pcs/internal/parallel.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+/// Nodes of handles go where these take them; what no handle reaches stays at rest.
+inline void place_constrained_nodes(const Elastic_network& network,
+                                    const Node_constraints& constraints,
+                                    const std::vector<Similarity>& transforms,
+                                    std::vector<Vec3>& position)
+{
+  for (std::size_t i = 0; i < network.size(); ++i)
+    if (constraints.is_prescribed(i))
+      position[i] =
+          transforms[static_cast<std::size_t>(constraints.handle_of_node[i])](network.rest[i]);
+    else if (constraints.handle_of_node[i] == unreached_node)
+      position[i] = network.rest[i];
+}
+
+/*!
+  Solves `(L + L_links) x = b`: surface edges aim at their rest edges, turned by the mean of the frames at their ends;
+  links at their rest length, in a direction that is known beforehand.
+*/
+template <class ConcurrencyTag>
+class Position_solver
+{
+public:
+  /// Links keep their turned direction if they turn, as at first; otherwise they are springs in the direction that they have
+  /// in `position`, because a link through a twisted bar must not turn with either end. \p state looks at `position`.
+  void operator()(const Elastic_state& state,
+                  const std::vector<Similarity>& transforms,
+                  const Elastic_factors& factors,
+                  bool links_turn,
+                  std::vector<Vec3>& position)
+  {
+    const auto& links = state.network.links;
+    if (!links.neighbor.empty() && !links_turn)
+      m_directing = position;
+    solve(factors, factors.position(), [&](std::size_t i) {
+      Vec3 b = surface_load(state, transforms, i);
+      if (!links.neighbor.empty())
+        for (std::size_t e = links.first[i]; e < links.first[i + 1]; ++e) {
+          const std::size_t j = links.neighbor[e];
+          b += links.weight[e] * state.link_target(i, j, links_turn);
+          if (state.constraints.is_prescribed(j))
+            b += links.weight[e] * position[j];
+        }
+      return b;
+    });
+    pcs::internal::for_each_index<ConcurrencyTag>(m_rhs.size(), [&](std::size_t r) {
+      position[factors.rows().node_of_row[r]] = m_rhs[r];
+    });
+    if (!links.neighbor.empty() && links_turn)
+      m_directing = position;
+  }
+
+  /// The positions that gave the links their directions in the last solve; the present ones if the links turned; of no use
+  /// without links. [L]
+  const std::vector<Vec3>& directing() const { return m_directing; }
+  /// Undoes the solves since it was \p directing, which is of no use afterwards.
+  void restore_directing(std::vector<Vec3>& directing) { m_directing.swap(directing); }
+
+  /// How far the links move the nodes: to the positions of `state` from those that the surface alone would give with the
+  /// same frames. Empty without links. One solve. [L]
+  void link_offsets(const Elastic_state& state,
+                    const std::vector<Similarity>& transforms,
+                    const Elastic_factors& factors,
+                    std::vector<Vec3>& offsets)
+  {
+    offsets.clear();
+    if (state.network.links.neighbor.empty())
+      return;
+    solve(factors, factors.field(), [&](std::size_t i) {
+      return surface_load(state, transforms, i);
+    });
+    offsets.assign(state.network.size(), Vec3::Zero());
+    for (std::size_t r = 0; r < m_rhs.size(); ++r) {
+      const std::size_t i = factors.rows().node_of_row[r];
+      offsets[i] = state.position[i] - m_rhs[r];
+    }
+  }
+
+private:
+  template <class Load>
+  void
+  solve(const Elastic_factors& factors, const linear_algebra::Sparse_cholesky& factor, Load load)
+  {
+    const auto& node_of_row = factors.rows().node_of_row;
+    m_rhs.resize(node_of_row.size());
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        m_rhs.size(),
+        [&](std::size_t r) { m_rhs[r] = load(node_of_row[r]); },
+        512);
+    factor.template solve<ConcurrencyTag>(m_rhs, m_work);
+  }
+
+  static Vec3 surface_load(const Elastic_state& state,
+                           const std::vector<Similarity>& transforms,
+                           std::size_t node)
+  {
+    Vec3 b;
+    const double degree = state.sum_edges(node, b);
+    if (state.constraints.is_soft(node))
+      b += state.constraints.soft_weight(node, degree) *
+           transforms[static_cast<std::size_t>(state.constraints.handle_of_node[node])](
+               state.network.rest[node]);
+    return b;
+  }
+
+  std::vector<Vec3> m_rhs, m_work, m_directing;
+};
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_SOLVER_POSITION_SOLVER_H

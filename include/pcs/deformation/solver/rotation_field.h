@@ -1,0 +1,210 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Extends the rotations of the handles over the whole body: the constant part of the deformation.
+
+#ifndef PCS_DEFORMATION_SOLVER_ROTATION_FIELD_H
+#define PCS_DEFORMATION_SOLVER_ROTATION_FIELD_H
+
+#include <pcs/core/Deformation_options.h>
+#include <pcs/core/Similarity.h>
+#include <pcs/core/rotations.h>
+#include <pcs/deformation/model/Harmonic_system.h>
+#include <pcs/internal/parallel.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace pcs {
+
+namespace deformation {
+
+/*!
+  Rotations of all nodes from those of the handles.
+
+  With frames `q_i = p_i q_i0`, equation (2.1) of the dissertation, `q_i q_ij = q_j`, in the least-squares sense is
+  `min sum w_ij |p_i - p_j|^2` over the rotations `p_i` from rest to deformed: a scalar Laplacian, in which the
+  local frames cancel. `Rotation_field::quaternion` solves just that. Linear blending spreads a large angle
+  unevenly and cannot count turns; `Rotation_field::geodesic` therefore
+
+  1. blends rotation vectors where all turns share one axis (exact for any angle);
+  2. otherwise, where the handles are less than `widest_lifted_angle` apart, blends quaternions and follows with
+     three steps of the harmonic map, `L s = sum w log(q_j q_i^-1)`, `q <- exp(s) q`;
+  3. otherwise blends the handles' turns one after another, each as rotation vectors in space.
+*/
+template <class ConcurrencyTag>
+class Rotation_field_solver
+{
+public:
+  /// Angle between handles on the double cover [rad] up to which linear blending is a safe start; it fails at pi.
+  static constexpr double widest_lifted_angle = 1.9;
+  static constexpr int number_of_intrinsic_steps = 3;
+
+  /// Writes the rotation of every node to `field`; unreached nodes get the identity.
+  void operator()(Rotation_field kind,
+                  const linear_algebra::Sparse_cholesky& factor,
+                  const Weighted_graph& graph,
+                  const Node_constraints& constraints,
+                  const Free_rows& rows,
+                  const std::vector<Similarity>& transforms,
+                  std::vector<Quaternion>& field)
+  {
+    m_factor = &factor;
+    m_graph = &graph;
+    m_constraints = &constraints;
+    m_rows = &rows;
+    field.assign(graph.size(), Quaternion::Identity());
+    m_lifted.clear();
+    for (const Similarity& t : transforms) {
+      Quaternion q = Quaternion::Identity();
+      for (const auto& turn : t.turns())
+        q = rotation_exp(turn) * q;
+      m_lifted.push_back(q.normalized());
+    }
+    if (kind == Rotation_field::quaternion)
+      blend_quaternions(field);
+    else if (is_one_axis(transforms))
+      blend_stage(transforms, 0, field);
+    else if (is_narrow(transforms)) {
+      blend_quaternions(field);
+      for (int step = 0; step < number_of_intrinsic_steps; ++step)
+        intrinsic_step(field);
+    } else {
+      std::size_t number_of_stages = 0;
+      for (const Similarity& t : transforms)
+        number_of_stages = std::max(number_of_stages, t.turns().size());
+      for (std::size_t stage = 0; stage < number_of_stages; ++stage)
+        blend_stage(transforms, stage, field);
+    }
+    for (std::size_t i = 0; i < graph.size(); ++i)
+      if (constraints.is_prescribed(i))
+        field[i] = m_lifted[static_cast<std::size_t>(constraints.handle_of_node[i])];
+  }
+
+private:
+  using Vec4 = Eigen::Vector4d;
+
+  static bool is_one_axis(const std::vector<Similarity>& transforms)
+  {
+    Vec3 axis = Vec3::Zero();
+    for (const Similarity& t : transforms) {
+      if (t.turns().size() > 1)
+        return false;
+      for (const auto& turn : t.turns()) {
+        if (axis.squaredNorm() == 0)
+          axis = turn;
+        else if (axis.cross(turn).norm() > 1e-9 * axis.norm() * turn.norm())
+          return false;
+      }
+    }
+    return true;
+  }
+
+  /// Handles without nodes, removed ones for instance, have no say.
+  bool is_narrow(const std::vector<Similarity>& transforms)
+  {
+    m_has_nodes.assign(transforms.size(), 0);
+    for (const auto h : m_constraints->handle_of_node)
+      if (h >= 0)
+        m_has_nodes[static_cast<std::size_t>(h)] = 1;
+    double lowest = 1;
+    for (std::size_t a = 0; a < transforms.size(); ++a) {
+      if (!m_has_nodes[a])
+        continue;
+      if (transforms[a].total_angle() > 2 * static_cast<double>(EIGEN_PI))
+        return false; // the double cover has lost count
+      for (std::size_t b = 0; b < a; ++b)
+        if (m_has_nodes[b])
+          lowest = std::min(lowest, m_lifted[a].dot(m_lifted[b]));
+    }
+    return lowest > std::cos(widest_lifted_angle);
+  }
+
+  std::size_t handle(std::size_t node) const
+  {
+    return static_cast<std::size_t>(m_constraints->handle_of_node[node]);
+  }
+
+  void blend_quaternions(std::vector<Quaternion>& field)
+  {
+    m_value4.resize(field.size());
+    solve_harmonic<ConcurrencyTag>(
+        *m_factor,
+        *m_graph,
+        *m_constraints,
+        *m_rows,
+        [&](std::size_t i) { return Vec4(m_lifted[handle(i)].coeffs()); },
+        m_rhs4,
+        m_work4,
+        m_value4);
+    pcs::internal::for_each_index<ConcurrencyTag>(m_rows->size(), [&](std::size_t r) {
+      const std::size_t i = m_rows->node_of_row[r];
+      const double length = m_value4[i].norm();
+      // Opposite handles cancel somewhere between them; there the field is undefined and any rotation serves.
+      if (length > 1e-12)
+        field[i].coeffs() = m_value4[i] / length;
+    });
+  }
+
+  void blend_stage(const std::vector<Similarity>& transforms,
+                   std::size_t stage,
+                   std::vector<Quaternion>& field)
+  {
+    m_value3.resize(field.size());
+    solve_harmonic<ConcurrencyTag>(
+        *m_factor,
+        *m_graph,
+        *m_constraints,
+        *m_rows,
+        [&](std::size_t i) {
+          const auto& turns = transforms[handle(i)].turns();
+          return stage < turns.size() ? turns[stage] : Vec3(Vec3::Zero());
+        },
+        m_rhs3,
+        m_work3,
+        m_value3);
+    pcs::internal::for_each_index<ConcurrencyTag>(m_rows->size(), [&](std::size_t r) {
+      const std::size_t i = m_rows->node_of_row[r];
+      field[i] = (rotation_exp(m_value3[i]) * field[i]).normalized();
+    });
+  }
+
+  void intrinsic_step(std::vector<Quaternion>& field)
+  {
+    const auto rotation_at = [&](std::size_t j) {
+      return m_constraints->is_prescribed(j) ? m_lifted[handle(j)] : field[j];
+    };
+    m_rhs3.resize(m_rows->size());
+    pcs::internal::for_each_index<ConcurrencyTag>(m_rows->size(), [&](std::size_t r) {
+      const std::size_t i = m_rows->node_of_row[r];
+      const Quaternion inverse = field[i].conjugate();
+      Vec3 b = Vec3::Zero();
+      for (std::size_t e = m_graph->first[i]; e < m_graph->first[i + 1]; ++e)
+        b += m_graph->weight[e] * rotation_log(rotation_at(m_graph->neighbor[e]) * inverse);
+      if (m_constraints->is_soft(i))
+        b += m_constraints->soft_weight(i, node_degree(*m_graph, i)) *
+             rotation_log(m_lifted[handle(i)] * inverse);
+      m_rhs3[r] = b;
+    });
+    m_factor->solve<ConcurrencyTag>(m_rhs3, m_work3);
+    pcs::internal::for_each_index<ConcurrencyTag>(m_rows->size(), [&](std::size_t r) {
+      Quaternion& q = field[m_rows->node_of_row[r]];
+      q = (rotation_exp(m_rhs3[r]) * q).normalized();
+    });
+  }
+
+  const linear_algebra::Sparse_cholesky* m_factor = nullptr;
+  const Weighted_graph* m_graph = nullptr;
+  const Node_constraints* m_constraints = nullptr;
+  const Free_rows* m_rows = nullptr;
+  std::vector<Quaternion> m_lifted;
+  std::vector<char> m_has_nodes; ///< per handle
+  std::vector<Vec3> m_rhs3, m_work3, m_value3;
+  std::vector<Vec4> m_rhs4, m_work4, m_value4;
+};
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_SOLVER_ROTATION_FIELD_H

@@ -1,0 +1,123 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Takes what the upsampling computes to the caller, and computes the points that it does not.
+
+#ifndef PCS_DEFORMATION_UPSAMPLING_MOVED_POINT_WRITER_H
+#define PCS_DEFORMATION_UPSAMPLING_MOVED_POINT_WRITER_H
+
+#include <pcs/core/Similarity.h>
+#include <pcs/deformation/body/Sampled_body.h>
+#include <pcs/deformation/handles/Site_constraints.h>
+#include <pcs/deformation/model/Affine_map.h>
+#include <pcs/deformation/upsampling/Outlier_maps.h>
+#include <pcs/internal/instruction_set.h>
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+/*!
+  The `Writer` of `Upsampling::apply()`, over places. `Output` stands for the caller's points, by input index, with
+  `write(i, position, normal, gradient)` and, for what `Writer` has them for, `prefetch(i)`, `can_stream()` and
+  `stream(i, positions, normals)`.
+*/
+template <class ConcurrencyTag, class Output>
+class Moved_point_writer
+{
+public:
+  /// \param transforms of the handles, in local coordinates
+  /// \param is_written of each handle: whether the points that it holds are to be written
+  Moved_point_writer(const Sampled_body<ConcurrencyTag>& body,
+                     const Site_constraints& sites,
+                     const Outlier_maps& outlier_maps,
+                     const std::vector<Similarity>& transforms,
+                     const std::vector<char>& is_written,
+                     Output& output)
+    : m_body(body),
+      m_sites(sites),
+      m_outlier_maps(outlier_maps),
+      m_transforms(transforms),
+      m_is_written(is_written),
+      m_output(output),
+      m_does_stream(body.is_in_callers_order && output.can_stream())
+  {
+  }
+
+  /// A point in the caller's coordinates.
+  PCS_ALWAYS_INLINE void
+  write(std::size_t place, const Vec3& p, const Vec3& normal, const Eigen::Matrix3d& gradient) const
+  {
+    m_output.write(m_body.input_of_place[place], p, normal, gradient);
+  }
+
+  PCS_ALWAYS_INLINE void expect(std::size_t place) const
+  {
+    m_output.prefetch(m_body.input_of_place[place]);
+  }
+
+  bool does_stream() const { return m_does_stream; }
+
+  PCS_ALWAYS_INLINE bool stream(std::size_t first_place, const Block_output& out) const
+  {
+    return m_output.stream(first_place, out.position, out.normal);
+  }
+
+  /// A point that is not blended from samples.
+  void write_other(std::size_t place) const
+  {
+    const std::size_t site = m_body.site_of_place[place];
+    const Node_constraint h = m_sites[site];
+    if (h >= 0 && m_is_written[static_cast<std::size_t>(h)])
+      write_rigid(place, m_transforms[static_cast<std::size_t>(h)]);
+    else if (h == outlier_site)
+      write_mapped(place, m_outlier_maps.of_site(m_body, site));
+    else if (h == returning_site)
+      write_mapped(place, identity_map());
+  }
+
+  void write_mapped(std::size_t place, const Affine_map& map) const
+  {
+    const Eigen::Matrix3d a = Eigen::Map<const Row_major_matrix>(map.a);
+    Vec3 normal = Vec3::Zero();
+    if (m_body.upsampling.has_normals())
+      normal = turn_normal(a, m_body.upsampling.rest_normal(place));
+    write_local(place,
+                a * m_body.upsampling.rest(place) + Eigen::Map<const Vec3>(map.t),
+                normal,
+                a);
+  }
+
+private:
+  void write_rigid(std::size_t place, const Similarity& t) const
+  {
+    Vec3 normal = Vec3::Zero();
+    if (m_body.upsampling.has_normals())
+      normal = t.rotation() * m_body.upsampling.rest_normal(place);
+    write_local(place, t(m_body.upsampling.rest(place)), normal, t.scale() * t.rotation());
+  }
+
+  void write_local(std::size_t place,
+                   const Vec3& p,
+                   const Vec3& normal,
+                   const Eigen::Matrix3d& gradient) const
+  {
+    write(place, m_body.frame.to_world(p), normal, gradient);
+  }
+
+  const Sampled_body<ConcurrencyTag>& m_body;
+  const Site_constraints& m_sites;
+  const Outlier_maps& m_outlier_maps;
+  const std::vector<Similarity>& m_transforms;
+  const std::vector<char>& m_is_written;
+  Output& m_output;
+  bool m_does_stream;
+};
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_UPSAMPLING_MOVED_POINT_WRITER_H

@@ -1,0 +1,363 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Carries the motion of the samples to all points: blended affine maps, eight points at a time.
+
+#ifndef PCS_DEFORMATION_UPSAMPLING_UPSAMPLING_H
+#define PCS_DEFORMATION_UPSAMPLING_UPSAMPLING_H
+
+#include <pcs/deformation/body/Sample_links.h>
+#include <pcs/deformation/upsampling/blend_block.h>
+#include <pcs/internal/Huge_page_allocator.h>
+#include <pcs/internal/instruction_set.h>
+#include <pcs/internal/lanes.h>
+#include <pcs/internal/parallel.h>
+#include <pcs/internal/streaming_stores.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+/// Instead of the handle that holds all points of a block: there is none; or nothing moves any of them.
+constexpr std::int32_t mixed_block = -1, still_block = -2;
+
+/*!
+  Points in blocks of eight with the samples that move any of them. Memory per point: 24 bytes of
+  position, 24 of normal if there are normals, and some 2.5 bytes per sample of the block.
+*/
+class Upsampling
+{
+public:
+  Upsampling() = default;
+
+  /// \param point `point(i)` is the position of point `i` in `[0, n)`; neighbours in this order should be near
+  /// \param row `row(i)` is the row of `links` that holds for point `i`
+  template <class Point_at, class Row_at>
+  Upsampling(std::size_t n,
+             const Point_at& point,
+             const Row_at& row,
+             std::vector<Vec3> sample_points,
+             const Sample_links& links)
+    : m_size(n), m_sample_points(std::move(sample_points))
+  {
+    set_rest(point);
+    m_first.push_back(0);
+    m_base.reserve(number_of_blocks());
+    std::unordered_map<std::uint64_t, std::uint32_t> pair_index; // looked up only, never iterated
+    std::vector<Member> members;
+    for (std::size_t block = 0; block < number_of_blocks(); ++block) {
+      members.clear();
+      for (std::size_t l = 0; l < lanes; ++l) {
+        const std::size_t i = row(std::min(block * lanes + l, m_size - 1));
+        for (std::size_t b = 0; b < links.k; ++b) {
+          const std::uint32_t s = links.sample[i * links.k + b];
+          if (s == no_sample)
+            break;
+          auto found = std::find_if(members.begin(), members.end(), [s](const Member& m) {
+            return m.sample == s;
+          });
+          if (found == members.end())
+            found = members.insert(found, {s, {}});
+          found->weight[l] += links.weight[i * links.k + b];
+        }
+      }
+      add_block(members, pair_index);
+    }
+  }
+
+  std::size_t size() const { return m_size; }
+  std::size_t number_of_blocks() const { return (m_size + lanes - 1) / lanes; }
+  bool has_normals() const { return !m_normal.empty(); }
+
+  template <class Point_at>
+  void set_rest(const Point_at& point)
+  {
+    pack(point, m_rest);
+  }
+  template <class Normal_at>
+  void set_normals(const Normal_at& normal)
+  {
+    pack(normal, m_normal);
+  }
+  void set_sample_points(std::vector<Vec3> sample_points)
+  {
+    m_sample_points = std::move(sample_points);
+  }
+  const std::vector<Vec3>& sample_points() const { return m_sample_points; }
+
+  Vec3 rest(std::size_t i) const { return lane(m_rest, i); }
+  Vec3 rest_normal(std::size_t i) const { return lane(m_normal, i); }
+
+  /// From the coordinates of the points to those that are written.
+  struct Output_frame
+  {
+    double unit = 1;
+    Vec3 origin = Vec3::Zero();
+  };
+
+  /// Which handles draw the points of a block: those from `entry[first[block]]` to `entry[first[block + 1]]`. None
+  /// draws any if `first` is null.
+  struct Fades
+  {
+    const std::uint32_t* first = nullptr;
+    const Block_fade* entry = nullptr;
+  };
+
+  /// What moves the points of a block: the samples those whose bit is set in `is_blended[block]`, or the handle
+  /// `holder[block]` all of them, if that is neither `mixed_block` nor `still_block`.
+  struct Block_motions
+  {
+    const std::uint8_t* is_blended = nullptr;
+    const std::int32_t* holder = nullptr;
+    const char* is_written =
+        nullptr; ///< of each handle: whether the points that it holds are to be written
+    const Handle_map* handles = nullptr;
+    Fades fades;
+  };
+
+  /*!
+    Writes the points in blocks side by side, with a `Writer`:
+
+    | call | meaning |
+    |---|---|
+    | `write(i, position, normal, gradient)` | for all that the samples or the holder of a block move; `normal` is zero without normals, `gradient` only set if `HasGradients` |
+    | `does_stream()`, `stream(i, block_output)` | whether, and now do, the same for eight points from `i` on, past the caches; may decline by `false` |
+    | `expect(i)` | if not `does_stream()`: some time before, for what `write` will touch to be asked for |
+    | `write_other(i)` | for the points of a mixed block that are not blended |
+  */
+  template <class ConcurrencyTag, bool HasGradients, class Writer>
+  void apply(const std::vector<Affine_map>& maps,
+             const Output_frame& frame,
+             const Block_motions& motions,
+             const Writer& writer)
+  {
+    update_pairs<ConcurrencyTag>(maps);
+    const auto apply_to_all = [&](auto outputs) {
+      apply_blocks<ConcurrencyTag, decltype(outputs)::value>(frame, motions, writer);
+    };
+    if constexpr (HasGradients)
+      apply_to_all(std::integral_constant<Blend_outputs, Blend_outputs::gradients>());
+    else if (has_normals())
+      apply_to_all(std::integral_constant<Blend_outputs, Blend_outputs::normals>());
+    else
+      apply_to_all(std::integral_constant<Blend_outputs, Blend_outputs::positions>());
+  }
+
+private:
+  struct Member
+  {
+    std::uint32_t sample;
+    std::array<float, lanes> weight;
+  };
+  struct Sample_pair
+  {
+    std::uint32_t base, sample;
+  };
+
+  template <class Vector_at>
+  void pack(const Vector_at& vector, pcs::internal::Huge_vector<Lane_vectors>& packed) const
+  {
+    packed.resize(number_of_blocks());
+    for (std::size_t i = 0; i < packed.size() * lanes; ++i) {
+      const Vec3 v = vector(std::min(i, m_size - 1));
+      for (int c = 0; c < 3; ++c)
+        packed[i / lanes].value[c][i % lanes] = v[c];
+    }
+  }
+
+  static Vec3 lane(const pcs::internal::Huge_vector<Lane_vectors>& vectors, std::size_t i)
+  {
+    const auto& v = vectors[i / lanes].value;
+    return {v[0][i % lanes], v[1][i % lanes], v[2][i % lanes]};
+  }
+
+  void add_block(const std::vector<Member>& members,
+                 std::unordered_map<std::uint64_t, std::uint32_t>& pair_index)
+  {
+    // The base is the sample with the largest share; its weight is what the others leave.
+    std::size_t base = 0;
+    float largest = -1;
+    for (std::size_t u = 0; u < members.size(); ++u) {
+      float total = 0;
+      for (const float w : members[u].weight)
+        total += w;
+      if (total > largest) {
+        largest = total;
+        base = u;
+      }
+    }
+    m_base.push_back(members.empty() ? 0 : members[base].sample);
+    for (std::size_t u = 0; u < members.size(); ++u) {
+      if (u == base)
+        continue;
+      const Sample_pair pair{m_base.back(), members[u].sample};
+      const std::uint64_t key = std::uint64_t(pair.base) << 32 | pair.sample;
+      const auto [found, is_new] =
+          pair_index.emplace(key, static_cast<std::uint32_t>(m_pairs.size()));
+      if (is_new)
+        m_pairs.push_back(pair);
+      Block_entry entry{found->second, {}};
+      for (std::size_t l = 0; l < lanes; ++l)
+        entry.weight[l] = static_cast<std::uint16_t>(
+            std::lround(weight_steps * static_cast<double>(members[u].weight[l])));
+      m_entry.push_back(entry);
+    }
+    m_first.push_back(static_cast<std::uint32_t>(m_entry.size()));
+  }
+
+  /// The maps of bases, and what changes from the base of a block to each of its other samples; shared by all blocks of
+  /// the base.
+  template <class ConcurrencyTag>
+  void update_pairs(const std::vector<Affine_map>& maps)
+  {
+    m_base_maps.resize(maps.size());
+    pcs::internal::for_each_index<ConcurrencyTag>(maps.size(), [&](std::size_t s) {
+      m_base_maps[s] = base_map(maps[s], m_sample_points[s].data());
+    });
+    m_differences.resize(m_pairs.size());
+    pcs::internal::for_each_index<ConcurrencyTag>(m_pairs.size(), [&](std::size_t p) {
+      const auto [base, sample] = m_pairs[p];
+      m_differences[p] = map_difference(maps[base], maps[sample], m_sample_points[base].data());
+    });
+  }
+
+  /// Which points of a block are computed.
+  static std::uint8_t computed(const Block_motions& motions, std::size_t block)
+  {
+    const std::int32_t holder = motions.holder[block];
+    return holder < 0 ? motions.is_blended[block] : motions.is_written[holder] ? whole_block : 0;
+  }
+
+  template <class ConcurrencyTag, Blend_outputs Outputs, class Writer>
+  void
+  apply_blocks(const Output_frame& frame, const Block_motions& motions, const Writer& writer) const
+  {
+    const auto blend = choose_blend_block<Outputs>();
+    const bool does_stream = Outputs != Blend_outputs::gradients && writer.does_stream();
+    pcs::internal::for_each_block<ConcurrencyTag>(
+        m_base.size(),
+        256,
+        [&](std::size_t begin, std::size_t end) {
+          // A block is written while the next one is computed: what waits for a result would keep the processor from
+          // looking ahead.
+          Block_output out[2]{};
+          Block_input in{};
+          in.differences = m_differences.data();
+          in.frame_unit = frame.unit;
+          in.frame_origin = frame.origin.data();
+          in.handles = motions.handles;
+          std::uint8_t mask[2]{};
+          const auto put = [&](std::size_t block) PCS_LAMBDA_INLINE {
+            const std::size_t at = block % 2;
+            if (mask[at] != 0 || motions.holder[block] == mixed_block)
+              write_block<Outputs>(block, mask[at], out[at], does_stream, writer);
+          };
+          for (std::size_t block = begin; block < end; ++block) {
+            if (block + blocks_ahead < m_base.size() &&
+                computed(motions, block + blocks_ahead) != 0)
+              prefetch(block + blocks_ahead, does_stream, writer);
+            mask[block % 2] = computed(motions, block);
+            if (mask[block % 2] != 0) {
+              set_input(motions, block, in);
+              blend(in, out[block % 2]);
+            }
+            if (block != begin)
+              put(block - 1);
+          }
+          put(end - 1);
+          if (does_stream)
+            pcs::internal::end_stream();
+        });
+  }
+
+  /// Asks for what a later block reads: the processor foresees it only up to the next page of 4 KB.
+  template <class Writer>
+  PCS_ALWAYS_INLINE void prefetch(std::size_t block, bool does_stream, const Writer& writer) const
+  {
+    if (!does_stream && (block + 1) * lanes <= m_size)
+      pcs::internal::unroll<lanes>([&](auto l)
+                                       PCS_LAMBDA_INLINE { writer.expect(block * lanes + l); });
+    pcs::internal::prefetch(&m_rest[block], sizeof(Lane_vectors));
+    if (has_normals())
+      pcs::internal::prefetch(&m_normal[block], sizeof(Lane_vectors));
+    // A fixed number of bytes: a branch that depends on how many there are would be foreseen too seldom.
+    pcs::internal::prefetch(m_entry.data() + m_first[block], bytes_of_entries);
+  }
+
+  template <Blend_outputs Outputs, class Writer>
+  PCS_ALWAYS_INLINE void write_block(std::size_t block,
+                                     std::uint8_t mask,
+                                     const Block_output& out,
+                                     bool does_stream,
+                                     const Writer& writer) const
+  {
+    Eigen::Matrix3d gradient = Eigen::Matrix3d::Identity();
+    const std::size_t first = block * lanes;
+    const std::size_t count = std::min(lanes, m_size - first);
+    if (Outputs != Blend_outputs::gradients && mask == whole_block && count == lanes) {
+      if (does_stream && writer.stream(first, out))
+        return;
+      // Most blocks: without a branch per point, which costs more than the writing.
+      pcs::internal::unroll<lanes>([&](auto l) PCS_LAMBDA_INLINE {
+        writer.write(first + l, at(out.position, l), at(out.normal, l), gradient);
+      });
+      return;
+    }
+    for (std::size_t l = 0; l < count; ++l)
+      if (mask >> l & 1) {
+        if constexpr (Outputs == Blend_outputs::gradients)
+          for (int k = 0; k < 9; ++k)
+            gradient(k / 3, k % 3) = out.gradient[k][l];
+        writer.write(first + l, at(out.position, l), at(out.normal, l), gradient);
+      } else
+        writer.write_other(first + l);
+  }
+
+  static Vec3 at(const Lane_vectors& v, std::size_t l)
+  {
+    return {v.value[0][l], v.value[1][l], v.value[2][l]};
+  }
+
+  void set_input(const Block_motions& motions, std::size_t block, Block_input& in) const
+  {
+    in.base = &m_base_maps[m_base[block]];
+    in.entry = m_entry.data() + m_first[block];
+    in.entry_end = m_entry.data() + m_first[block + 1];
+    in.rest = &m_rest[block];
+    in.normal = has_normals() ? &m_normal[block] : nullptr;
+    if (motions.fades.first) {
+      in.fade = motions.fades.entry + motions.fades.first[block];
+      in.fade_end = motions.fades.entry + motions.fades.first[block + 1];
+    }
+    const std::int32_t holder = motions.holder[block];
+    in.holder = holder < 0 ? nullptr : motions.handles + holder;
+  }
+
+  static constexpr std::size_t blocks_ahead = 12;
+  static constexpr std::size_t bytes_of_entries = 128; ///< of most blocks
+  static constexpr std::uint8_t whole_block = 0xff;
+
+  std::size_t m_size = 0;
+  std::vector<Vec3> m_sample_points;
+  pcs::internal::Huge_vector<Lane_vectors> m_rest, m_normal;
+  std::vector<std::uint32_t> m_base, m_first;
+  pcs::internal::Huge_vector<Block_entry> m_entry;
+  std::vector<Sample_pair> m_pairs;
+  std::vector<Base_map> m_base_maps;
+  std::vector<Map_difference> m_differences;
+};
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_UPSAMPLING_UPSAMPLING_H

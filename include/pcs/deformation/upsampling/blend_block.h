@@ -1,0 +1,135 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The inner kernel of upsampling: blends the affine maps of a few samples for eight points.
+
+#ifndef PCS_DEFORMATION_UPSAMPLING_BLEND_BLOCK_H
+#define PCS_DEFORMATION_UPSAMPLING_BLEND_BLOCK_H
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+namespace pcs {
+namespace deformation {
+
+/// The affine map `x -> a x + t` of one sample; `a` row by row.
+struct Affine_map
+{
+  double a[9], t[3];
+};
+
+constexpr std::size_t lanes = 8;
+
+/// Coordinates of eight points: x of all, y of all, z of all.
+struct Lane_vectors
+{
+  double value[3][lanes];
+};
+
+/// Weights are stored in 16 bits, in steps of one over this.
+constexpr double weight_steps = 65535;
+
+/// What a kernel computes for every point.
+enum class Blend_outputs {
+  positions,
+  normals,  ///< and normals
+  gradients ///< and normals, if the input has them, and the linear part of the blended map
+};
+
+struct Block_output
+{
+  Lane_vectors position, normal;
+  double gradient[9][lanes]; ///< row by row
+};
+
+/// The map of a sample around its position at rest: `x -> a (x - origin) + center`.
+struct Base_map
+{
+  double a[9], origin[3], center[3];
+};
+
+/// How the map of a sample differs from that of the base, around the base's position, per step of weight: linear part
+/// row by row, then offset.
+struct Map_difference
+{
+  double value[12];
+};
+
+/// A sample of a block besides its base: which difference, and how much of it for each point.
+struct Block_entry
+{
+  std::uint32_t pair;
+  std::uint16_t weight[lanes];
+};
+
+/// Where a handle takes the points around it, and `turn`, row by row, their normals.
+struct Handle_map
+{
+  Affine_map map;
+  double turn[9];
+};
+
+/// How far the points of a block are drawn to one handle; zero for those that are not.
+struct Block_fade
+{
+  std::uint32_t handle;
+  double weight[lanes];
+};
+
+struct Block_input
+{
+  const Base_map* base;
+  const Map_difference* differences;
+  const Block_entry *entry, *entry_end;
+  const Lane_vectors *rest, *normal;
+  double frame_unit;          ///< positions are multiplied by it, then
+  const double* frame_origin; ///< moved by this
+  const Block_fade *fade, *fade_end;
+  const Handle_map* handles;
+  const Handle_map*
+      holder; ///< takes all points of the block along, whatever the samples do; or null
+};
+
+inline Base_map base_map(const Affine_map& map, const double* origin)
+{
+  Base_map result;
+  std::copy_n(map.a, 9, result.a);
+  std::copy_n(origin, 3, result.origin);
+  for (int r = 0; r < 3; ++r) {
+    result.center[r] = map.t[r];
+    for (int c = 0; c < 3; ++c)
+      result.center[r] += map.a[3 * r + c] * origin[c];
+  }
+  return result;
+}
+
+inline Map_difference
+map_difference(const Affine_map& base, const Affine_map& sample, const double* origin)
+{
+  Map_difference result;
+  for (int r = 0; r < 3; ++r) {
+    double offset = sample.t[r] - base.t[r];
+    for (int c = 0; c < 3; ++c) {
+      const double difference = sample.a[3 * r + c] - base.a[3 * r + c];
+      result.value[3 * r + c] = difference / weight_steps;
+      offset += difference * origin[c];
+    }
+    result.value[9 + r] = offset / weight_steps;
+  }
+  return result;
+}
+
+using Blend_block = void (*)(const Block_input&, Block_output&);
+
+/// The kernel for this machine. All give the same bits.
+template <Blend_outputs Outputs>
+Blend_block choose_blend_block();
+
+} // namespace deformation
+} // namespace pcs
+
+#ifndef PCS_COMPILED_DEFORMATION
+#include <pcs/deformation/upsampling/blend_block_impl.h>
+#endif
+
+#endif // PCS_DEFORMATION_UPSAMPLING_BLEND_BLOCK_H

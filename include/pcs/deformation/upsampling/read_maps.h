@@ -1,0 +1,89 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The affine maps of the samples, from the solved network, and of the handles.
+
+#ifndef PCS_DEFORMATION_UPSAMPLING_READ_MAPS_H
+#define PCS_DEFORMATION_UPSAMPLING_READ_MAPS_H
+
+#include <pcs/core/Similarity.h>
+#include <pcs/deformation/model/Affine_map.h>
+#include <pcs/deformation/solver/Elastic_state.h>
+#include <pcs/internal/parallel.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+/// Whether a sample has another one for a neighbour, and not only nodes on the borders of handles, which may be so near
+/// that a stretch measured there would throw the points of the sample away. The samples are the first nodes.
+inline bool
+has_sample_beside(const Weighted_graph& graph, std::size_t sample, std::size_t number_of_samples)
+{
+  return std::any_of(graph.begin(sample), graph.end(sample), [&](std::uint32_t other) {
+    return other < number_of_samples;
+  });
+}
+
+/// The deformation gradient of every sample, which carries stretch as well, about its new position; the frame of one
+/// without another beside it. The samples are the first nodes of the network.
+/// \param transforms of the handles, in the coordinates of the network
+/// \param rest of the samples [L]
+/// \param maps one for each sample
+/// \param are_finite room to work in
+/// \return whether all of them are finite
+template <class ConcurrencyTag>
+bool read_maps(const Elastic_state& state,
+               const std::vector<Similarity>& transforms,
+               const std::vector<Vec3>& rest,
+               std::vector<Affine_map>& maps,
+               std::vector<int>& are_finite)
+{
+  const int is_finite = pcs::internal::blocked_reduce<ConcurrencyTag>(
+      maps.size(),
+      1,
+      [&](std::size_t s) {
+        const Node_constraint h = state.constraints.handle_of_node[s];
+        if (h == unreached_node) {
+          maps[s] = identity_map();
+          return 1;
+        }
+        const bool is_rigid = state.constraints.is_prescribed(s);
+        const bool is_measured =
+            !is_rigid && has_sample_beside(state.network.surface, s, maps.size());
+        const Eigen::Matrix3d a = is_measured ? state.deformation_gradient(s) : state.frame[s];
+        // A prescribed map is the handle's own, to the last bit.
+        const Vec3 t = is_rigid ? transforms[static_cast<std::size_t>(h)].translation()
+                                : Vec3(state.position[s] - a * rest[s]);
+        Eigen::Map<Row_major_matrix>(maps[s].a) = a;
+        Eigen::Map<Vec3>(maps[s].t) = t;
+        return a.allFinite() && t.allFinite() ? 1 : 0;
+      },
+      [](int one, int other) { return one & other; },
+      512,
+      are_finite);
+  return is_finite == 1;
+}
+
+/// Of the handles, in the coordinates of their transformations.
+inline void read_handle_maps(const std::vector<Similarity>& transforms,
+                             std::vector<Handle_map>& maps)
+{
+  maps.resize(transforms.size());
+  for (std::size_t h = 0; h < transforms.size(); ++h) {
+    const Eigen::Matrix3d turn = transforms[h].rotation();
+    Eigen::Map<Row_major_matrix>(maps[h].turn) = turn;
+    Eigen::Map<Row_major_matrix>(maps[h].map.a) = transforms[h].scale() * turn;
+    Eigen::Map<Vec3>(maps[h].map.t) = transforms[h].translation();
+  }
+}
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_UPSAMPLING_READ_MAPS_H

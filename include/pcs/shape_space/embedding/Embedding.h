@@ -1,0 +1,81 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// A tree on a topology, as lengths, directions and frames of its edges.
+
+#ifndef PCS_SHAPE_SPACE_EMBEDDING_EMBEDDING_H
+#define PCS_SHAPE_SPACE_EMBEDDING_EMBEDDING_H
+
+#include <pcs/core/rotations.h>
+#include <pcs/shape_space/model/Orl_coordinates.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+namespace internal {
+
+/// Lengths, radii, attachments and directions of a tree; nothing for branches that it does not have.
+struct Embedding
+{
+  std::vector<Vec3> direction;   ///< per edge; null for edges that do not exist
+  std::vector<Quaternion> frame; ///< per edge
+  Orl_coordinates x;
+};
+
+/// A tree without branches.
+inline Embedding empty_embedding(const Orl_layout& layout, const Vec3& root)
+{
+  const std::size_t n = layout.number_of_edges(), m = layout.branches.size();
+  Embedding result;
+  result.direction.assign(n, Vec3::Zero());
+  result.frame.assign(n, Quaternion::Identity());
+  Orl_coordinates& x = result.x;
+  x.root = root;
+  x.orientation.assign(n, Quaternion::Identity());
+  x.length.assign(n, 0);
+  x.radius.assign(n, 0);
+  x.base_radius.assign(m, 0);
+  x.attachment.assign(m, 0);
+  return result;
+}
+
+/// Length and direction of an edge. A path that comes back to where it was, or a node of the other tree beside one of its own,
+/// still has an edge there, without a direction: see `lend_directions()`.
+inline void set_edge(const Vec3& way, double shortest, double& length, Vec3& direction)
+{
+  const double norm = way.norm();
+  length = std::max(norm, shortest);
+  direction = norm > shortest ? Vec3(way / norm) : Vec3(Vec3::Zero());
+}
+
+/// Edges without a direction point like the one before on their branch, or like the first that has one.
+inline void lend_directions(const Orl_layout::Branch& branch, std::vector<Vec3>& direction)
+{
+  const auto begin = direction.begin() + static_cast<std::ptrdiff_t>(branch.first_edge);
+  const auto end = begin + static_cast<std::ptrdiff_t>(branch.number_of_edges);
+  const auto known = std::find_if(begin, end, [](const Vec3& d) { return d != Vec3::Zero(); });
+  Vec3 last = known != end ? *known : Vec3(Vec3::UnitZ());
+  for (auto d = begin; d != end; ++d)
+    last = *d = *d != Vec3::Zero() ? *d : last;
+}
+
+/// Carries frames along the edges that exist without twist, from `root` at the beginning of the trunk.
+inline void set_frames(const Orl_layout& layout, const Quaternion& root, Embedding& tree)
+{
+  for (std::size_t e = 0; e < layout.number_of_edges(); ++e)
+    if (tree.x.length[e] > 0) {
+      const std::size_t p = layout.edge_before[e];
+      const Quaternion parent = p == none ? root : tree.frame[p];
+      const Quaternion step = shortest_turn(Vec3::UnitZ(), parent.conjugate() * tree.direction[e]);
+      tree.frame[e] = parent * step;
+      tree.frame[e].normalize();
+    }
+}
+
+} // namespace internal
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_EMBEDDING_EMBEDDING_H

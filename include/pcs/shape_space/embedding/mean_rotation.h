@@ -1,0 +1,216 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Rotations in the middle of others: least sum of angles, or of their squares.
+
+#ifndef PCS_SHAPE_SPACE_EMBEDDING_MEAN_ROTATION_H
+#define PCS_SHAPE_SPACE_EMBEDDING_MEAN_ROTATION_H
+
+#include <pcs/linear_algebra/small_symmetric.h>
+#include <pcs/shape_space/model/Orl_coordinates.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+namespace internal {
+
+/// Minimises the sum of squared chords: a start for both means, whatever the signs of the quaternions.
+inline Quaternion chordal_mean(const std::vector<Quaternion>& q, const std::vector<double>& w)
+{
+  Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
+  for (std::size_t i = 0; i < q.size(); ++i)
+    sum += w[i] * q[i].coeffs() * q[i].coeffs().transpose();
+  const auto eigen = linear_algebra::symmetric_eigen<4>(sum);
+  Quaternion mean;
+  mean.coeffs() = eigen.vectors.col(3);
+  if (mean.w() < 0)
+    mean.coeffs() = -mean.coeffs();
+  mean.normalize();
+  return mean;
+}
+
+inline double
+sum_of_angles(const Quaternion& at, const std::vector<Quaternion>& q, const std::vector<double>& w)
+{
+  double sum = 0;
+  for (std::size_t i = 0; i < q.size(); ++i)
+    sum += w[i] * angle_between(at, q[i]);
+  return sum;
+}
+
+/// One step towards the L1 mean from a place that is none of the data: Newton's, or else Weiszfeld's.
+struct L1_step
+{
+  Vec3 newton = Vec3::Zero(), weiszfeld = Vec3::Zero();
+  double gradient = 0; ///< length of the sum of weighted unit vectors
+};
+
+inline L1_step
+l1_step(const Quaternion& at, const std::vector<Quaternion>& q, const std::vector<double>& w)
+{
+  L1_step step;
+  Vec3 pull = Vec3::Zero();
+  Eigen::Matrix3d curvature = Eigen::Matrix3d::Zero();
+  double sum = 0;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    const Vec3 v = rotation_log(at.conjugate() * q[i]);
+    const double angle = v.norm();
+    if (!(angle > 1e-14) || !(w[i] > 0))
+      continue;
+    const Vec3 u = v / angle;
+    pull += w[i] * u;
+    sum += w[i] / angle;
+    // second derivative of the distance on a sphere of radius 2
+    curvature += w[i] * 0.5 / std::tan(0.5 * std::min(angle, 3.1)) *
+                 (Eigen::Matrix3d::Identity() - u * u.transpose());
+  }
+  step.gradient = pull.norm();
+  if (!(sum > 0))
+    return step;
+  step.weiszfeld = pull / sum;
+  Vec3 newton;
+  const bool is_solved = linear_algebra::solve_symmetric(curvature, pull, newton) &&
+                         (curvature * newton - pull).norm() <= 1e-6 * step.gradient;
+  step.newton = is_solved ? newton : step.weiszfeld;
+  return step;
+}
+
+} // namespace internal
+
+/*!
+  The rotation with the least sum of weighted angles to others (R. Hartley, K. Aftab, J. Trumpf 2011), unique if they lie
+  within a ball of radius pi/2. A data point is taken if the pull of all others does not exceed its weight; else steps of
+  Weiszfeld, or of Newton where they do better. Where a whole arc has the least sum, its middle. Weights of 0 do not vote;
+  `q` has one element at least.
+*/
+inline Quaternion l1_mean_rotation(const std::vector<Quaternion>& q, const std::vector<double>& w)
+{
+  using namespace internal;
+  Quaternion best = chordal_mean(q, w);
+  double least = sum_of_angles(best, q, w);
+  double total = 0;
+  for (const double weight : w)
+    total += weight;
+  if (!(total > 0) || least <= 1e-12 * total)
+    return best;
+  // the best data points; two of them that are equally good are the ends of an arc of minima
+  std::vector<Quaternion> ends;
+  double least_at_data = least * (1 + 1e-12);
+  std::vector<double> sums(q.size());
+  constexpr std::size_t most_for_all_pairs = 128;
+  if (q.size() <= most_for_all_pairs) {
+    for (std::size_t i = 0; i < q.size(); ++i)
+      if (w[i] > 0) {
+        sums[i] = sum_of_angles(q[i], q, w);
+        least_at_data = std::min(least_at_data, sums[i]);
+      }
+    for (std::size_t i = 0; i < q.size(); ++i)
+      if (w[i] > 0 && sums[i] <= least_at_data * (1 + 1e-12))
+        ends.push_back(q[i]);
+    if (!ends.empty()) {
+      const Quaternion middle = chordal_mean(ends, std::vector<double>(ends.size(), 1));
+      const double sum = sum_of_angles(middle, q, w);
+      if (sum <= least * (1 + 1e-12)) {
+        best = sum <= least_at_data * (1 + 1e-12) ? middle : ends.front();
+        least = std::min(sum, least_at_data);
+      } else if (least_at_data <= least) {
+        best = ends.front();
+        least = least_at_data;
+      }
+    }
+  }
+  constexpr int number_of_steps = 200;
+  for (int k = 0; k < number_of_steps; ++k) {
+    // at a data point: the pull of the others against its own weight
+    double weight_here = 0;
+    for (std::size_t i = 0; i < q.size(); ++i)
+      if (angle_between(best, q[i]) <= 1e-14)
+        weight_here += w[i];
+    const L1_step step = l1_step(best, q, w);
+    if (step.gradient <= std::max(weight_here, 1e-13 * total))
+      break;
+    Vec3 way =
+        weight_here > 0 ? Vec3(step.weiszfeld * (1 - weight_here / step.gradient)) : step.newton;
+    bool is_better = false;
+    for (int attempt = 0; attempt < 40 && !is_better; ++attempt) {
+      if (attempt == 1 && !(weight_here > 0))
+        way = step.weiszfeld;
+      else if (attempt > 1)
+        way *= 0.5;
+      Quaternion next = best * rotation_exp(way);
+      next.normalize();
+      const double sum = sum_of_angles(next, q, w);
+      if (sum < least) {
+        is_better = true;
+        best = next;
+        least = sum;
+      }
+    }
+    if (!is_better || way.norm() < 1e-15)
+      break;
+  }
+  return best;
+}
+
+/// The rotation with the least sum of weighted squared angles; weights may be negative if their sum is positive.
+inline Quaternion l2_mean_rotation(const std::vector<Quaternion>& q, const std::vector<double>& w)
+{
+  double total = 0;
+  bool is_convex = true;
+  std::size_t heaviest = 0;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    total += w[i];
+    is_convex = is_convex && w[i] >= 0;
+    heaviest = w[i] > w[heaviest] ? i : heaviest;
+  }
+  if (!(total > 0))
+    return internal::chordal_mean(q, std::vector<double>(q.size(), 1));
+  Quaternion mean = is_convex ? internal::chordal_mean(q, w) : q[heaviest];
+  constexpr int number_of_steps = 100;
+  for (int k = 0; k < number_of_steps; ++k) {
+    Vec3 pull = Vec3::Zero();
+    for (std::size_t i = 0; i < q.size(); ++i)
+      pull += w[i] / total * rotation_log(mean.conjugate() * q[i]);
+    if (!(pull.norm() > 1e-15))
+      break;
+    mean = mean * rotation_exp(pull);
+    mean.normalize();
+  }
+  return mean;
+}
+
+/// The middle of the interval of weighted medians; 0 without weights.
+inline double weighted_median(const std::vector<double>& values, const std::vector<double>& w)
+{
+  std::vector<std::size_t> order;
+  double total = 0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (w[i] > 0) {
+      order.push_back(i);
+      total += w[i];
+    }
+  if (order.empty())
+    return 0;
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return values[a] != values[b] ? values[a] < values[b] : a < b;
+  });
+  double sum = 0;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    sum += w[order[k]];
+    if (std::abs(sum - 0.5 * total) <= 1e-12 * total && k + 1 < order.size())
+      return 0.5 * (values[order[k]] + values[order[k + 1]]);
+    if (sum > 0.5 * total)
+      return values[order[k]];
+  }
+  return values[order.back()];
+}
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_EMBEDDING_MEAN_ROTATION_H

@@ -1,0 +1,117 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// From any number of trees and scans to a family with points.
+
+#ifndef PCS_SHAPE_SPACE_FAMILY_BUILD_FAMILY_H
+#define PCS_SHAPE_SPACE_FAMILY_BUILD_FAMILY_H
+
+#include <pcs/core/Orl_options.h>
+#include <pcs/core/Orl_report.h>
+#include <pcs/core/Orl_space_data.h>
+#include <pcs/internal/Stopwatch.h>
+#include <pcs/internal/progress.h>
+#include <pcs/shape_space/family/Family_points_impl.h>
+#include <pcs/shape_space/family/Tree_family.h>
+#include <pcs/shape_space/family/make_family.h>
+#include <pcs/shape_space/family/star_correspondences.h>
+#include <pcs/shape_space/matching/find_yaw_candidates.h>
+#include <pcs/shape_space/model/Build_options.h>
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+
+inline void describe(const Transport_summary& summary, Orl_report& report)
+{
+  report.number_of_windows = summary.number_of_windows;
+  report.number_of_failed_windows = summary.number_of_failures;
+  report.worst_marginal_violation = summary.worst_violation;
+  report.untransported_mass_share = summary.mean_remaining;
+  report.mean_marginal_violation = summary.mean_violation;
+}
+
+/// `false` when `progress` asks to stop. Reads `built.family.orientation`.
+template <class ConcurrencyTag>
+bool build_family(const std::vector<Tree_input>& inputs,
+                  const Build_options& options,
+                  Virtual_direction direction,
+                  bool has_unit_weights,
+                  pcs::internal::Progress& progress,
+                  Built_family& built,
+                  Orl_report& report)
+{
+  pcs::internal::Stopwatch watch;
+  std::vector<const Rooted_tree*> trees;
+  for (const Tree_input& input : inputs)
+    trees.push_back(&input.tree);
+  progress.stage(0, 0.7);
+  Shared_topology_builder<ConcurrencyTag> topology(trees,
+                                                   options.weights,
+                                                   options.number_of_rounds);
+  if (!topology.run(progress))
+    return false;
+  report.seconds.matching = watch.lap();
+  built.family = make_family<ConcurrencyTag>(topology,
+                                             trees,
+                                             options.weights,
+                                             built.family.orientation,
+                                             direction,
+                                             has_unit_weights);
+  const Tree_family& family = built.family;
+  report.seconds.topology = watch.lap();
+
+  progress.stage(0.7, 0.8);
+  std::vector<std::vector<std::size_t>> edges;
+  Orl_geometry geometry;
+  for (std::size_t t = 0; t < trees.size(); ++t) {
+    if (!progress(static_cast<double>(t) / static_cast<double>(trees.size())))
+      return false;
+    build_geometry(family.layout, family.x[t], family.orientation, geometry);
+    edges.push_back(
+        edges_of_points<ConcurrencyTag>(family, inputs[t], t, geometry, options.assignment));
+  }
+  report.seconds.assignment = watch.lap();
+  if (!progress(1))
+    return false;
+  built.has_normals = true;
+  for (const Tree_input& input : inputs)
+    built.has_normals = built.has_normals && input.normals.size() == input.points.size();
+  const std::vector<Family_source> sources = choose_points(family.layout, edges, options.points_of);
+  for (const Family_source& s : sources) {
+    const Tree_input& input = inputs[s.tree];
+    const Vec3 p = input.points[s.point] + (input.tree.origin - family.origin);
+    built.points.push_back({s.tree, s.point, s.edge, internal::to_array(p), {0, 0, 0}});
+    if (built.has_normals)
+      built.points.back().normal = internal::to_array(input.normals[s.point]);
+  }
+  progress.stage(0.8, 1);
+  Transport_summary summary;
+  built.partners = find_partners<ConcurrencyTag>(family,
+                                                 inputs,
+                                                 edges,
+                                                 sources,
+                                                 options.transport,
+                                                 summary,
+                                                 [&](double f) { return !progress(f); });
+  report.seconds.transport = watch.lap();
+  if (progress.is_cancelled())
+    return false;
+  describe(summary, report);
+  for (std::size_t b = 0; b < family.layout.branches.size(); ++b) {
+    for (std::size_t t = 0; t < 2; ++t)
+      report.number_of_branches[t] += family.has[t][b] ? 1 : 0;
+    report.number_of_matched_branches += family.has[0][b] && family.has[1][b] ? 1 : 0;
+  }
+  report.number_of_common_branches = family.layout.branches.size();
+  report.number_of_edges = family.layout.number_of_edges();
+  report.share_of_changes = topology.share_of_changes();
+  return true;
+}
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_FAMILY_BUILD_FAMILY_H

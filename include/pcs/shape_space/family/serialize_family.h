@@ -1,0 +1,295 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// A family of trees as plain numbers, and back; numbers may come from a file and are checked.
+
+#ifndef PCS_SHAPE_SPACE_FAMILY_SERIALIZE_FAMILY_H
+#define PCS_SHAPE_SPACE_FAMILY_SERIALIZE_FAMILY_H
+
+#include <pcs/core/Orl_options.h>
+#include <pcs/core/Orl_space_data.h>
+#include <pcs/core/errors.h>
+#include <pcs/shape_space/family/Tree_family.h>
+#include <pcs/shape_space/family/make_family.h>
+#include <pcs/shape_space/input/tree_input.h>
+#include <pcs/shape_space/pair/Embedded_pair.h>
+#include <pcs/shape_space/pair/serialize_topology.h>
+#include <pcs/shape_space/points/Point_instances_impl.h>
+#include <pcs/shape_space/points/surface_patches.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <string>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+namespace internal {
+
+inline Orl_space_data::Tree store(const Orl_coordinates& x)
+{
+  Orl_space_data::Tree result;
+  result.root = to_array(x.root);
+  for (const Quaternion& q : x.orientation)
+    result.orientation.push_back({q.x(), q.y(), q.z(), q.w()});
+  result.length = x.length;
+  result.radius = x.radius;
+  result.base_radius = x.base_radius;
+  result.attachment = x.attachment;
+  return result;
+}
+
+inline Orl_coordinates restore(const Orl_space_data::Tree& stored)
+{
+  Orl_coordinates x;
+  x.root = to_vector(stored.root);
+  for (const auto& q : stored.orientation)
+    x.orientation.emplace_back(q[3], q[0], q[1], q[2]);
+  x.length = stored.length;
+  x.radius = stored.radius;
+  x.base_radius = stored.base_radius;
+  x.attachment = stored.attachment;
+  return x;
+}
+
+} // namespace internal
+
+/// Everything but points.
+inline Orl_space_data store_family(const Tree_family& family)
+{
+  Orl_space_data result;
+  result.orientation = static_cast<int>(family.orientation);
+  result.origin = internal::to_array(family.origin);
+  for (const Orl_layout::Branch& b : family.layout.branches) {
+    result.branches.push_back({b.parent, b.number_of_edges, b.reference_edge});
+    for (std::size_t e = b.first_edge + 1; e < b.first_edge + b.number_of_edges; ++e)
+      if (family.layout.edge_before[e] + 1 != e)
+        result.references.push_back({e, family.layout.edge_before[e]});
+  }
+  for (std::size_t t = 0; t < family.x.size(); ++t) {
+    result.trees.push_back(internal::store(family.x[t]));
+    result.trees.back().tip = family.tip[t];
+    result.trees.back().has = family.has[t];
+  }
+  result.reference = internal::store(family.reference);
+  const Orl_weights& w = family.weights;
+  result.weights = {w.orientation, w.length, w.radius, w.base_radius, w.attachment, w.root};
+  const Matching_weights& m = family.matching;
+  result.matching = {m.curve,
+                     m.position,
+                     m.single,
+                     m.children,
+                     m.carried,
+                     m.is_carried ? 1.0 : 0.0,
+                     m.is_published ? 1.0 : 0.0,
+                     m.fork_ratio,
+                     static_cast<double>(m.number_of_paths),
+                     static_cast<double>(m.number_of_trials),
+                     m.length,
+                     m.turn,
+                     m.far,
+                     m.trunk_fork_ratio};
+  return result;
+}
+
+/// Throws `pcs::Invalid_input` with a message that begins with `caller` unless the numbers make sense together.
+inline Tree_family restore_family(const Orl_space_data& stored, const std::string& caller)
+{
+  const auto check = [&](bool is_right, const char* what) {
+    if (!is_right)
+      throw Invalid_input(caller + ": " + what);
+  };
+  Tree_family family;
+  check(stored.orientation >= 0 && stored.orientation <= 2, "there is no such orientation");
+  family.orientation = static_cast<Orl_orientation>(stored.orientation);
+  family.origin = internal::to_vector(stored.origin);
+  check(is_place(family.origin), "the origin is not finite, or beyond 1e100");
+  check(!stored.branches.empty() && stored.trees.size() > 1, "there are not two trees");
+  for (std::size_t i = 0; i < stored.branches.size(); ++i) {
+    const Orl_space_data::Branch& b = stored.branches[i];
+    Orl_layout::Branch branch;
+    branch.parent = b.parent;
+    branch.first_edge = family.layout.number_of_edges();
+    branch.number_of_edges = b.number_of_edges;
+    branch.reference_edge = b.reference_edge;
+    check(i == 0 ? b.parent == none && b.reference_edge == none : b.parent < i,
+          "a branch comes before its parent");
+    check(b.number_of_edges > 0 && b.number_of_edges < 1000000, "a branch has no edge");
+    if (i > 0) {
+      const Orl_layout::Branch& parent = family.layout.branches[b.parent];
+      check(b.reference_edge >= parent.first_edge &&
+                b.reference_edge < parent.first_edge + parent.number_of_edges,
+            "a branch refers to an edge that is not of its parent");
+    }
+    for (std::size_t j = 0; j < branch.number_of_edges; ++j)
+      family.layout.edge_before.push_back(j == 0 ? branch.reference_edge
+                                                 : branch.first_edge + j - 1);
+    family.layout.branches.push_back(branch);
+  }
+  const std::size_t n = family.layout.number_of_edges(), m = family.layout.branches.size();
+  for (const auto& [edge, earlier] : stored.references) {
+    const auto last = std::upper_bound(
+        family.layout.branches.begin(),
+        family.layout.branches.end(),
+        edge,
+        [](std::size_t e, const Orl_layout::Branch& b) { return e < b.first_edge; });
+    check(edge < n && earlier < edge && earlier >= std::prev(last)->first_edge,
+          "an edge refers to one that is not before it on its branch");
+    family.layout.edge_before[edge] = earlier;
+  }
+  set_parent_edges(family.layout, family.orientation);
+  const auto check_tree = [&](const Orl_space_data::Tree& t) {
+    check(t.orientation.size() == n && t.length.size() == n && t.radius.size() == n &&
+              t.base_radius.size() == m && t.attachment.size() == m,
+          "a tree has another number of edges or branches than the topology");
+    check(is_place(internal::to_vector(t.root)), "a root is not finite, or beyond 1e100");
+    for (const auto& q : t.orientation)
+      check(std::abs(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1) < 1e-6,
+            "an orientation is not of unit length");
+    for (const auto* values : {&t.length, &t.radius, &t.base_radius, &t.attachment})
+      for (const double v : *values)
+        check(is_length(v), "a length, radius or attachment is not from 0 to 1e100");
+    for (std::size_t b = 1; b < m; ++b)
+      check(t.attachment[b] <=
+                static_cast<double>(
+                    family.layout.branches[family.layout.branches[b].parent].number_of_edges),
+            "a branch is attached beyond its parent");
+  };
+  for (const Orl_space_data::Tree& t : stored.trees) {
+    check_tree(t);
+    check(t.tip.size() == m && t.has.size() == m && t.has[0], "a tree has no trunk");
+    for (std::size_t b = 1; b < m; ++b)
+      check(!t.has[b] || t.has[stored.branches[b].parent],
+            "a tree has a branch without its parent");
+    family.x.push_back(internal::restore(t));
+    family.has.push_back(t.has);
+    family.tip.push_back(t.tip);
+  }
+  check_tree(stored.reference);
+  family.reference = internal::restore(stored.reference);
+  const Orl_space_data::Weights& w = stored.weights;
+  check(w.orientation.size() == n && w.length.size() == n && w.radius.size() == n &&
+            w.base_radius.size() == m && w.attachment.size() == m && is_length(w.root),
+        "the weights do not fit the topology");
+  for (const auto* values : {&w.orientation, &w.length, &w.radius, &w.base_radius, &w.attachment})
+    for (const double v : *values)
+      check(is_length(v), "a weight is not from 0 to 1e100");
+  family.weights = {w.orientation, w.length, w.radius, w.base_radius, w.attachment, w.root};
+  for (const double v : stored.matching)
+    check(is_length(v), "a weight of the matching is not from 0 to 1e100");
+  for (const std::size_t i : {8u, 9u})
+    check(stored.matching[i] >= 1 && stored.matching[i] <= 1e15,
+          "a number of paths or trials is out of range");
+  Matching_weights& weights = family.matching;
+  weights.curve = stored.matching[0];
+  weights.position = stored.matching[1];
+  weights.single = stored.matching[2];
+  weights.children = stored.matching[3];
+  weights.carried = stored.matching[4];
+  weights.is_carried = stored.matching[5] != 0;
+  weights.is_published = stored.matching[6] != 0;
+  weights.fork_ratio = stored.matching[7];
+  weights.number_of_paths = static_cast<std::size_t>(stored.matching[8]);
+  weights.number_of_trials = static_cast<std::size_t>(stored.matching[9]);
+  weights.length = stored.matching[10];
+  weights.turn = stored.matching[11];
+  weights.far = stored.matching[12];
+  weights.trunk_fork_ratio = stored.matching[13];
+  internal::find_growth_direction(family);
+  return family;
+}
+
+inline std::vector<Vec3> points_of_stored(const std::vector<std::array<double, 3>>& stored,
+                                          const std::string& caller)
+{
+  std::vector<Vec3> result;
+  for (const auto& p : stored) {
+    result.push_back(internal::to_vector(p));
+    if (!is_place(result.back()))
+      throw Invalid_input(caller + ": a point or normal is not finite, or beyond 1e100");
+  }
+  return result;
+}
+
+/// Points and pairs of a space of two trees; returns the scans, without trees.
+template <class ConcurrencyTag>
+std::vector<Tree_input> restore_pair(const Orl_space_data& stored,
+                                     const Tree_family& family,
+                                     const std::string& caller,
+                                     Embedded_pair& pair)
+{
+  Orl_correspondences pairs;
+  pairs.pairs = stored.pairs;
+  check_pairs(pairs,
+              family.layout.number_of_edges(),
+              {stored.trees[0].point.size(), stored.trees[1].point.size()},
+              caller);
+  std::vector<Tree_input> inputs(2);
+  std::array<std::vector<Vec3>, 2> points, normals;
+  for (std::size_t t = 0; t < 2; ++t) {
+    Tree_input& input = inputs[t];
+    input.tree.origin = family.origin;
+    input.points = points[t] = points_of_stored(stored.trees[t].point, caller);
+    input.normals = normals[t] = points_of_stored(stored.trees[t].normal, caller);
+    if (!input.normals.empty() && input.normals.size() != input.points.size())
+      throw Invalid_input(caller + ": a tree has more points than normals, or less");
+    pair.x[t] = family.x[t];
+    build_geometry(family.layout, pair.x[t], family.orientation, pair.geometry[t]);
+  }
+  pair.layout = family.layout;
+  pair.is_relative =
+      edges_with_radius(family.layout, pair.geometry, [&](std::size_t t, std::size_t b) {
+        return family.has[t][b] != 0;
+      });
+  pair.instances.set(pair.layout,
+                     pair.geometry,
+                     points,
+                     normals,
+                     pair.is_relative,
+                     stored.pairs,
+                     ConcurrencyTag());
+  return inputs;
+}
+
+inline void check_family_points(const Orl_space_data& stored,
+                                std::size_t number_of_edges,
+                                const std::string& caller)
+{
+  std::vector<std::size_t> branch_of;
+  for (std::size_t b = 0; b < stored.branches.size(); ++b)
+    branch_of.insert(branch_of.end(), stored.branches[b].number_of_edges, b);
+  std::uint32_t last = 0, tree = 0;
+  for (const Orl_space_data::Point& p : stored.points) {
+    const bool is_right =
+        p.edge >= last && p.edge < number_of_edges && p.tree < stored.trees.size() &&
+        stored.trees[p.tree].has[branch_of[p.edge]] &&
+        (&p == stored.points.data() || p.edge != last || p.tree == tree) &&
+        is_place(internal::to_vector(p.position)) && is_place(internal::to_vector(p.normal));
+    if (!is_right)
+      throw Invalid_input(caller + ": a point is not finite, on no edge, or out of order");
+    last = p.edge;
+    tree = p.tree;
+  }
+  const Orl_space_data::Partner* before = nullptr;
+  for (const Orl_space_data::Partner& p : stored.partners) {
+    const bool is_right = p.point < stored.points.size() && p.tree < stored.trees.size() &&
+                          p.tree != stored.points[p.point].tree &&
+                          stored.trees[p.tree].has[branch_of[stored.points[p.point].edge]] &&
+                          (!before || before->point < p.point ||
+                           (before->point == p.point && before->tree < p.tree)) &&
+                          is_place(internal::to_vector(p.position)) &&
+                          is_place(internal::to_vector(p.normal));
+    if (!is_right)
+      throw Invalid_input(caller +
+                          ": a partner of a point is not finite, of no scan, or out of order");
+    before = &p;
+  }
+}
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_FAMILY_SERIALIZE_FAMILY_H

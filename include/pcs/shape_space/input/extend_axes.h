@@ -1,0 +1,134 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Skeletons that end before their scans do: ends are drawn out to where the points end.
+
+#ifndef PCS_SHAPE_SPACE_INPUT_EXTEND_AXES_H
+#define PCS_SHAPE_SPACE_INPUT_EXTEND_AXES_H
+
+#include <pcs/core/Tree_skeleton.h>
+#include <pcs/neighborhood/Nearest_neighbors.h>
+#include <pcs/shape_space/model/Rooted_tree.h>
+
+#include <CGAL/number_utils.h>
+
+#include <boost/range/iterator_range.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+
+namespace internal {
+
+/// How far from `end` the points behind it go, and where to; null if they do not go farther than sideways.
+inline Vec3 extension(const Vec3& end, double radius, const std::vector<Vec3>& points)
+{
+  constexpr std::size_t least_number = 8;
+  constexpr double share = 0.98, rounded_end = 2; // in units of the radius
+  if (points.size() < least_number)
+    return Vec3::Zero();
+  Vec3 direction = Vec3::Zero();
+  for (const Vec3& p : points)
+    direction += p - end;
+  if (!(direction.norm() > 0))
+    return Vec3::Zero();
+  direction.normalize();
+  std::vector<double> reach;
+  double sideways = 0;
+  for (const Vec3& p : points) {
+    reach.push_back((p - end).dot(direction));
+    sideways += ((p - end) - reach.back() * direction).squaredNorm();
+  }
+  const auto last =
+      reach.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(reach.size() - 1));
+  std::nth_element(reach.begin(), last, reach.end());
+  const double width = std::max(radius, std::sqrt(sideways / static_cast<double>(reach.size())));
+  if (!(*last > rounded_end * width))
+    return Vec3::Zero();
+  return *last * direction;
+}
+
+} // namespace internal
+
+/*!
+  Moves the tips of a tree, and its root if one branch begins there, to where the points of its scan end; returns how many.
+
+  The length of a branch is that of its axis. Where the axes of one scan go to the tips of its leaves and those of another one
+  do not, a leaf seems to shrink. The points that an end is nearest to and that lie beyond it say how far the end moves, if
+  there are eight of them and they go farther than they are wide. \f$O(n \log m)\f$ for n points and m nodes.
+*/
+template <class Kernel, class PointRange>
+std::size_t extend_axes(Tree_skeleton<Kernel>& tree, const PointRange& scan)
+{
+  constexpr double samples_per_edge = 16;
+  const auto n = static_cast<std::size_t>(num_vertices(tree));
+  const std::size_t root = tree[boost::graph_bundle].root;
+  if (root >= n || num_edges(tree) == 0)
+    return 0;
+  const auto to_vector = [](const auto& p) {
+    return Vec3(CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z()));
+  };
+  const Vec3 origin = to_vector(tree[root].point);
+  std::vector<Vec3> place;
+  for (std::size_t v = 0; v < n; ++v)
+    place.push_back(to_vector(tree[v].point) - origin);
+  double total = 0;
+  for (const auto e : boost::make_iterator_range(edges(tree)))
+    total += (place[target(e, tree)] - place[source(e, tree)]).norm();
+  if (!(total > 0) || !is_length(total))
+    return 0;
+  const double step = total / (samples_per_edge * static_cast<double>(num_edges(tree)));
+
+  // places on all axes; those at ends tell which
+  constexpr std::size_t no_end = npos;
+  std::vector<Vec3> samples{place[root]}, outward(n, Vec3::Zero());
+  std::vector<std::size_t> end{out_degree(root, tree) == 1 ? root : no_end};
+  for (const auto e : boost::make_iterator_range(edges(tree))) {
+    const std::size_t u = source(e, tree), v = target(e, tree);
+    const Vec3 axis = place[v] - place[u];
+    const double pieces = std::ceil(axis.norm() / step);
+    if (!(pieces > 0))
+      continue;
+    for (double k = 1; k <= pieces; ++k) {
+      samples.push_back(place[u] + k / pieces * axis);
+      end.push_back(k == pieces && out_degree(v, tree) == 0 ? v : no_end);
+    }
+    outward[v] = axis;
+    if (u == root)
+      outward[u] = -axis;
+  }
+
+  const neighborhood::Nearest_neighbors search(samples);
+  std::vector<neighborhood::Nearest_neighbors::Neighbor> found;
+  std::vector<std::vector<Vec3>> beyond(n);
+  for (const auto& point : scan) {
+    const Vec3 p = to_vector(point) - origin;
+    if (!is_place(p))
+      continue;
+    search(p, 1, found);
+    const std::size_t v = end[found[0].index];
+    if (v != no_end && (p - place[v]).dot(outward[v]) > 0)
+      beyond[v].push_back(p);
+  }
+  std::size_t number_moved = 0;
+  for (std::size_t v = 0; v < n; ++v) {
+    const Vec3 way = internal::extension(place[v], CGAL::to_double(tree[v].radius), beyond[v]);
+    if (way.isZero(0))
+      continue;
+    const Vec3 to = origin + place[v] + way;
+    tree[v].point = typename Kernel::Point_3(to.x(), to.y(), to.z());
+    ++number_moved;
+  }
+  return number_moved;
+}
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_INPUT_EXTEND_AXES_H

@@ -1,0 +1,120 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// A tree of the space as a skeleton of the caller.
+
+#ifndef PCS_SHAPE_SPACE_INPUT_WRITE_SKELETON_H
+#define PCS_SHAPE_SPACE_INPUT_WRITE_SKELETON_H
+
+#include <pcs/core/Tree_skeleton.h>
+#include <pcs/shape_space/model/Orl_coordinates.h>
+
+#include <boost/graph/adjacency_list.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+
+namespace internal {
+
+/// Where the children of a branch sit, in numbers of its nodes; those near a node sit at it.
+inline std::vector<std::vector<double>> seats_of_children(const Orl_layout& layout,
+                                                          const Orl_coordinates& x,
+                                                          const std::vector<std::size_t>& order,
+                                                          std::vector<double>& seat)
+{
+  constexpr double at_node = 1e-9;
+  std::vector<std::vector<double>> seats(layout.branches.size());
+  seat.assign(layout.branches.size(), 0);
+  for (std::size_t b = 0; b < layout.branches.size(); ++b) {
+    const std::size_t parent = layout.branches[b].parent;
+    if (parent == none || order[b] == none)
+      continue;
+    const auto last = static_cast<double>(layout.branches[parent].number_of_edges);
+    seat[b] = std::min(last, std::max(0.0, x.attachment[b]));
+    if (std::abs(seat[b] - std::round(seat[b])) < at_node)
+      seat[b] = std::round(seat[b]);
+    seats[parent].push_back(seat[b]);
+  }
+  for (auto& of_parent : seats) {
+    std::sort(of_parent.begin(), of_parent.end());
+    of_parent.erase(std::unique(of_parent.begin(), of_parent.end()), of_parent.end());
+  }
+  return seats;
+}
+
+} // namespace internal
+
+/// A tree of the space as a skeleton. An edge that carries a branch is divided there. Branches without length, and what
+/// hangs on them, are left out.
+template <class Kernel>
+void write_skeleton(const Orl_layout& layout,
+                    const Orl_coordinates& x,
+                    const Orl_geometry& geometry,
+                    const Vec3& origin,
+                    Tree_skeleton<Kernel>& result)
+{
+  using FT = typename Kernel::FT;
+  Tree_skeleton<Kernel> tree;
+  Tree_bundle& bundle = tree[boost::graph_bundle];
+  std::vector<std::size_t> branch_of(layout.branches.size(), npos);
+  const std::vector<std::size_t> order = orders_of_branches(layout, x);
+  std::vector<double> seat;
+  const std::vector<std::vector<double>> seats =
+      internal::seats_of_children(layout, x, order, seat);
+  std::vector<std::vector<std::size_t>> vertex_of_seat(layout.branches.size());
+  for (std::size_t b = 0; b < layout.branches.size(); ++b) {
+    const Orl_layout::Branch& branch = layout.branches[b];
+    if (order[b] == none)
+      continue;
+    const bool is_trunk = branch.parent == none;
+    branch_of[b] = bundle.branches.size();
+    bundle.branches.push_back(
+        {is_trunk ? npos : branch_of[branch.parent], static_cast<int>(order[b]), b});
+    std::size_t previous = npos;
+    if (!is_trunk) {
+      const auto& of_parent = seats[branch.parent];
+      const auto k = std::lower_bound(of_parent.begin(), of_parent.end(), seat[b]);
+      previous = vertex_of_seat[branch.parent][static_cast<std::size_t>(k - of_parent.begin())];
+    }
+    const auto add = [&](const Vec3& local, double radius) {
+      const Vec3 p = local + origin;
+      Tree_node<Kernel> node;
+      node.point = typename Kernel::Point_3(static_cast<FT>(p.x()),
+                                            static_cast<FT>(p.y()),
+                                            static_cast<FT>(p.z()));
+      node.radius = node.major_radius = node.minor_radius = static_cast<FT>(radius);
+      node.branch = branch_of[b];
+      const std::size_t v = add_vertex(node, tree);
+      if (previous != npos)
+        add_edge(previous, v, tree);
+      else
+        bundle.root = v;
+      previous = v;
+    };
+    auto next = seats[b].begin();
+    for (std::size_t j = 0; j <= branch.number_of_edges; ++j) {
+      const std::size_t v = layout.first_node(b) + j;
+      const auto place = static_cast<double>(j);
+      for (; next != seats[b].end() && *next < place; ++next) { // between this node and the last
+        const double f = *next - (place - 1);
+        add((1 - f) * geometry.node[v - 1] + f * geometry.node[v],
+            (1 - f) * geometry.radius[v - 1] + f * geometry.radius[v]);
+        vertex_of_seat[b].push_back(previous);
+      }
+      add(geometry.node[v], geometry.radius[v]);
+      for (; next != seats[b].end() && *next == place; ++next)
+        vertex_of_seat[b].push_back(previous);
+    }
+  }
+  result = std::move(tree);
+}
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_INPUT_WRITE_SKELETON_H

@@ -1,0 +1,422 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Which branch of one tree is which of another, level by level below matched parents.
+
+#ifndef PCS_SHAPE_SPACE_MATCHING_BRANCH_MATCHING_H
+#define PCS_SHAPE_SPACE_MATCHING_BRANCH_MATCHING_H
+
+#include <pcs/core/Orl_options.h>
+#include <pcs/internal/parallel.h>
+#include <pcs/internal/progress.h>
+#include <pcs/shape_space/matching/Matched_branch.h>
+#include <pcs/shape_space/matching/Matching_energy.h>
+#include <pcs/shape_space/matching/Matching_memo.h>
+#include <pcs/shape_space/matching/linear_assignment.h>
+#include <pcs/shape_space/model/Branch_paths.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+
+/*!
+  The search for the matching of least energy.
+
+  Two branches are tried with several ways to continue each; below each try, children are assigned to each other at least
+  cost, which asks the same question for every pair of children. All ways of the trunks are looked at with one try for
+  each pair below first, and the best of these again with more.
+*/
+template <class ConcurrencyTag>
+class Branch_matching
+{
+public:
+  /// `paths`: the ways in which the trees may be taken apart.
+  Branch_matching(const Rooted_tree& tree_1,
+                  const Rooted_tree& tree_2,
+                  const Matching_weights& weights,
+                  std::array<Branch_paths, 2> paths,
+                  bool is_at_tips = false)
+    : m_energy(tree_1, tree_2, weights, std::move(paths), is_at_tips, ConcurrencyTag()),
+      m_number_of_trials(weights.number_of_trials),
+      m_most_trunk_trials(trunk_factor * weights.number_of_trials)
+  {
+  }
+
+  static Branch_paths
+  find_paths(const Rooted_tree& tree, const Matching_weights& weights, double other_ratio = 1)
+  {
+    return find_branch_paths(tree,
+                             weights.fork_ratio,
+                             weights.is_published ? 1 : weights.number_of_paths,
+                             weights.trunk_fork_ratio,
+                             other_ratio);
+  }
+
+  const Branch_paths& paths(int t) const { return m_energy.paths(t); }
+  const Matching_energy& energy() const { return m_energy; }
+
+  /// Pairs of trunks that are matched with all their children; less than the default saves most of the time.
+  void set_number_of_trunk_trials(std::size_t n) { m_most_trunk_trials = n; }
+  /// The trunk of tree 2 is known: a path of `paths(1)`.
+  void set_second_trunk(std::size_t path) { m_energy.set_second_trunk(path); }
+  /// Whether there are `Branch_paths::other_trunks`.
+  bool has_other_trunks() const { return !paths(0).other_trunks.empty(); }
+  /// Whether they are matched from now on; what is known of branches stays known.
+  void use_other_trunks(bool do_use)
+  {
+    if (do_use != m_uses_other_trunks)
+      m_energy.swap_trunks();
+    m_uses_other_trunks = do_use;
+  }
+  /// Tree 2 is turned as a whole, about an axis of the caller; that costs nothing. [rad]
+  void set_turn(double angle, const Vec3& axis)
+  {
+    m_turn = Eigen::AngleAxisd(angle, m_energy.frame().transpose() * axis).toRotationMatrix();
+    for (Matching_memo& answers : m_known)
+      answers.forget();
+  }
+
+  /// What the most promising trunks cost, with one try for each pair below.
+  double look()
+  {
+    m_effort = 1;
+    constexpr double any = std::numeric_limits<double>::infinity();
+    return match_children(find_trials(0, 0, m_turn, any, 1).front(), m_turn, any)->cost;
+  }
+
+  /// Null when `progress` asks to stop, and when the cost is not below `most_cost`; what is only looked at with few ways may
+  /// cost a little more.
+  std::shared_ptr<const Matched_branch>
+  run(pcs::internal::Progress& progress,
+      const double most_cost = std::numeric_limits<double>::infinity())
+  {
+    const Eigen::Matrix3d rotation = m_turn;
+    // one look at trunks of very many children is dear enough
+    const auto children = [&](int t) {
+      return m_energy.path(t, paths(t).paths_of[0].front()).children.size();
+    };
+    const bool is_wide = std::max(children(0), children(1)) > most_at_once;
+    std::vector<Trial> trials =
+        find_trials(0, 0, rotation, most_cost, is_wide ? m_number_of_trials : m_most_trunk_trials);
+    const std::size_t all = trials.size(), most = m_effort = m_number_of_trials;
+    Result best;
+    std::size_t number_done = 0;
+    const auto is_stopped = [&] {
+      return !progress(static_cast<double>(number_done++) /
+                       static_cast<double>(all > most ? all + most : all));
+    };
+    if (all > most) {
+      m_effort = 1;
+      std::vector<std::pair<double, std::size_t>> order;
+      for (std::size_t k = 0; k < all; ++k) {
+        if (is_stopped())
+          return nullptr;
+        const double limit = best ? trunk_slack * best->cost : trunk_slack * most_cost;
+        if (Result result = match_children(trials[k], rotation, limit)) {
+          order.emplace_back(result->cost, k);
+          if (!best || result->cost < best->cost)
+            best = std::move(result);
+        }
+      }
+      std::sort(order.begin(), order.end());
+      std::vector<Trial> chosen;
+      for (std::size_t k = 0; k < order.size() && k < most; ++k)
+        chosen.push_back(std::move(trials[order[k].second]));
+      trials = std::move(chosen);
+      m_effort = most;
+    }
+    for (Trial& trial : trials) {
+      if (is_stopped())
+        return nullptr;
+      if (Result result = match_children(std::move(trial), rotation, best ? best->cost : most_cost))
+        best = std::move(result);
+    }
+    return best;
+  }
+
+private:
+  using Result = std::shared_ptr<const Matched_branch>;
+  using Trial = Matching_energy::Trial;
+  using Children = Matching_energy::Children;
+
+  static constexpr std::size_t most_at_once = 512; // children that are assigned at a time
+  static constexpr int number_of_passes = 3;       // of a turn by curve and children
+  static constexpr double rematch_turn = 0.4;      // Frobenius norm: a turn by about 0.3 rad
+  static constexpr double trunk_slack = 1.05;      // what a look at few ways may be wrong by
+
+  Result match(std::size_t start_1, std::size_t start_2, const Eigen::Matrix3d& rotation)
+  {
+    const Matching_key question(start_1, start_2, rotation * m_turn.transpose());
+    Matching_memo& known = m_known[m_effort == 1 ? 0 : 1];
+    if (const Result* const answer = known.find(question))
+      return *answer;
+    double limit = m_energy.single_term(m_energy.weight(0, start_1)) +
+                   m_energy.single_term(m_energy.weight(1, start_2));
+    const Eigen::Matrix3d turned = question.rotation() * m_turn;
+    Result best;
+    for (Trial& trial : find_trials(start_1, start_2, turned, limit, m_effort))
+      if (Result result = match_children(std::move(trial), turned, limit)) {
+        limit = result->cost;
+        best = std::move(result);
+      }
+    known.keep(question, best);
+    return best;
+  }
+
+  /// The nodes that follow what is compared of two paths, or their tips.
+  std::array<std::size_t, 2> compared_ends(std::size_t p1, std::size_t p2) const
+  {
+    const std::array<std::size_t, 2> last = m_energy.last_nodes(p1, p2);
+    const std::vector<std::size_t>&nodes_1 = m_energy.path(0, p1).nodes,
+          &nodes_2 = m_energy.path(1, p2).nodes;
+    return {nodes_1[std::min(last[0] + 1, nodes_1.size() - 1)],
+            nodes_2[std::min(last[1] + 1, nodes_2.size() - 1)]};
+  }
+
+  /// Pairs of paths that may continue two branches, the most promising first, judged without looking below their
+  /// children; those that cost at least `limit` by themselves are left out.
+  std::vector<Trial> find_trials(std::size_t start_1,
+                                 std::size_t start_2,
+                                 const Eigen::Matrix3d& rotation,
+                                 double limit,
+                                 std::size_t most) const
+  {
+    const auto &paths_1 = paths(0).paths_of[start_1], &paths_2 = paths(1).paths_of[start_2];
+    const double difference = m_energy.least_difference(start_1, start_2);
+    const double curve_weight = m_energy.weights().curve;
+    const bool is_turned = m_energy.is_turned(), is_alone = paths_1.size() * paths_2.size() == 1;
+    std::vector<Trial> chosen;
+    const auto take = [&](std::size_t p1, std::size_t p2) {
+      // without children of both, no place of a child hangs on how the curves correspond
+      const bool is_leaf =
+          m_energy.path(0, p1).children.empty() || m_energy.path(1, p2).children.empty();
+      Trial trial = m_energy.match_curves(p1,
+                                          p2,
+                                          rotation,
+                                          is_leaf ? Matching_energy::few_samples
+                                                  : Matching_energy::number_of_samples);
+      if (is_turned || trial.cost < limit)
+        chosen.push_back(std::move(trial));
+    };
+    struct Candidate
+    {
+      double cost;
+      std::size_t p1, p2;
+    };
+    using limits = std::numeric_limits<double>;
+    std::vector<Candidate> order;
+    std::vector<double> lowest; // the costs that count, a heap
+    Matching_energy::Child_cost_cache prices;
+    std::set<std::array<std::size_t, 2>> known;
+    for (const std::size_t p1 : paths_1)
+      for (const std::size_t p2 : paths_2) {
+        if (curve_weight * m_energy.least_energy(p1, p2, rotation) + difference >= limit)
+          continue;
+        // paths that part beyond where they are cut are the same
+        if (!is_alone && !known.insert(compared_ends(p1, p2)).second)
+          continue;
+        double cost = 0;
+        if (!is_alone) {
+          const double most_cost = lowest.size() < most ? limits::infinity() : lowest.front();
+          cost = m_energy.quick_cost_of_paths(p1, p2, rotation, most_cost, prices);
+          if (cost > most_cost)
+            continue;
+          if (lowest.size() == most) {
+            std::pop_heap(lowest.begin(), lowest.end());
+            lowest.pop_back();
+          }
+          lowest.push_back(cost);
+          std::push_heap(lowest.begin(), lowest.end());
+        }
+        order.push_back({cost, p1, p2});
+      }
+    std::stable_sort(order.begin(), order.end(), [](const Candidate& x, const Candidate& y) {
+      return x.cost < y.cost;
+    });
+    for (std::size_t k = 0; k < order.size() && k < most; ++k)
+      take(order[k].p1, order[k].p2);
+    return chosen;
+  }
+
+  /// Everything that hangs on two curves. Null as soon as it is known that the cost is not below `limit`.
+  Result match_children(Trial trial, const Eigen::Matrix3d& rotation, double limit)
+  {
+    const Branch_path &path_1 = m_energy.path(0, trial.path_1),
+                      &path_2 = m_energy.path(1, trial.path_2);
+    if (!m_energy.is_turned() && trial.cost >= limit)
+      return nullptr;
+    const Children a = m_energy.children_of(0, path_1, trial.last[0], nullptr);
+    Children b = m_energy.children_of(1, path_2, trial.last[1], &trial.gamma);
+    const auto find_turn = [&] { return m_energy.turn(trial, a, b, rotation, number_of_passes); };
+    Eigen::Matrix3d turned = find_turn();
+    auto result = std::make_shared<Matched_branch>();
+    result->cost = trial.cost;
+    if (m_energy.is_turned()) {
+      if ((turned - rotation).norm() > rematch_turn) {
+        // what runs along what is seen better now
+        trial = m_energy.match_curves(trial.path_1, trial.path_2, turned, trial.gamma.size());
+        b = m_energy.children_of(1, path_2, trial.last[1], &trial.gamma);
+        turned = find_turn();
+      }
+      result->cost = m_energy.turned_energy(trial, rotation, turned);
+    }
+    result->cost += m_energy.rest_cost(trial.path_1, trial.path_2, trial.last);
+    if (result->cost >= limit)
+      return nullptr;
+    result->path_1 = trial.path_1;
+    result->path_2 = trial.path_2;
+    result->last = trial.last;
+    result->rotation = m_energy.frame() * turned * m_energy.frame().transpose();
+    for (const double w : a.weight)
+      result->cost += m_energy.single_term(w);
+    for (const double w : b.weight)
+      result->cost += m_energy.single_term(w);
+    if (!assign_children(path_1, path_2, a, b, turned, limit, *result))
+      return nullptr;
+    return result;
+  }
+
+  /// Adds the pairs of children, and what they cost less than alone; false if the cost is not below `limit`. Very many
+  /// children are assigned in turn, the heaviest first: time and memory grow as their number, not as its cube.
+  bool assign_children(const Branch_path& path_1,
+                       const Branch_path& path_2,
+                       const Children& a,
+                       const Children& b,
+                       const Eigen::Matrix3d& turned,
+                       double limit,
+                       Matched_branch& result)
+  {
+    std::array<std::vector<std::size_t>, 2> order = {by_index(a), by_index(b)};
+    if (std::max(a.s.size(), b.s.size()) <= most_at_once)
+      return assign_some(path_1, path_2, a, b, order[0], order[1], turned, limit, result);
+    order = {Matching_energy::by_weight(a.weight), Matching_energy::by_weight(b.weight)};
+    std::array<std::vector<std::size_t>, 2> open;
+    for (std::size_t done = 0; done < std::max(order[0].size(), order[1].size());
+         done += most_at_once) {
+      for (std::size_t t = 0; t < 2; ++t) {
+        std::vector<std::size_t>&all = order[t], &now = open[t];
+        // the lightest of those that found no partner are tried once more
+        if (now.size() > most_at_once)
+          now.erase(now.begin(), now.end() - most_at_once);
+        for (std::size_t k = done; k < std::min(all.size(), done + most_at_once); ++k)
+          now.push_back(all[k]);
+      }
+      const std::size_t first = result.pairs.size();
+      assign_some(path_1,
+                  path_2,
+                  a,
+                  b,
+                  open[0],
+                  open[1],
+                  turned,
+                  std::numeric_limits<double>::infinity(),
+                  result);
+      for (std::size_t k = first; k < result.pairs.size(); ++k) {
+        erase_value(open[0], result.pairs[k].child_1);
+        erase_value(open[1], result.pairs[k].child_2);
+      }
+    }
+    std::sort(result.pairs.begin(), result.pairs.end(), [](const auto& x, const auto& y) {
+      return x.child_1 < y.child_1;
+    });
+    return result.cost < limit;
+  }
+
+  static std::vector<std::size_t> by_index(const Children& children)
+  {
+    std::vector<std::size_t> order(children.s.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    return order;
+  }
+
+  static void erase_value(std::vector<std::size_t>& values, std::size_t value)
+  {
+    values.erase(std::find(values.begin(), values.end(), value));
+  }
+
+  /// The same for some children of both. Bounds first; what the assignment asks for is made exact until it asks for nothing
+  /// more.
+  bool assign_some(const Branch_path& path_1,
+                   const Branch_path& path_2,
+                   const Children& a,
+                   const Children& b,
+                   const std::vector<std::size_t>& rows,
+                   const std::vector<std::size_t>& columns,
+                   const Eigen::Matrix3d& turned,
+                   double limit,
+                   Matched_branch& result)
+  {
+    const std::size_t n = rows.size(), m = columns.size();
+    std::vector<double> gain(n * m);
+    std::vector<Result> exact(n * m);
+    const double parent_length = m_energy.length(0, result.path_1);
+    const auto rest = [&](std::size_t i, std::size_t j) {
+      return m_energy.position_term(a.length[i], b.length[j], a.s[i], b.s[j], parent_length) -
+             m_energy.single_term(a.weight[i]) - m_energy.single_term(b.weight[j]);
+    };
+    for (std::size_t r = 0; r < n; ++r)
+      for (std::size_t c = 0; c < m; ++c)
+        gain[r * m + c] = m_energy.least_cost(path_1.children[rows[r]].start,
+                                              path_2.children[columns[c]].start,
+                                              turned) +
+                          rest(rows[r], columns[c]);
+    Assignment assignment(n, m, gain);
+    assignment.solve();
+    const std::vector<std::size_t>& partner = assignment.columns();
+    std::vector<std::size_t> wanted;
+    for (;;) {
+      wanted.clear();
+      double bound = result.cost;
+      for (std::size_t r = 0; r < n; ++r)
+        if (partner[r] != none) {
+          bound += gain[r * m + partner[r]];
+          if (!exact[r * m + partner[r]])
+            wanted.push_back(r);
+        }
+      if (bound >= limit)
+        return false;
+      if (wanted.empty())
+        break;
+      pcs::internal::for_each_index<ConcurrencyTag>(
+          wanted.size(),
+          [&](std::size_t k) {
+            const std::size_t r = wanted[k], c = partner[r], i = rows[r], j = columns[c];
+            Result& found = exact[r * m + c];
+            found = match(path_1.children[i].start, path_2.children[j].start, turned);
+            gain[r * m + c] = found ? found->cost + rest(i, j) : 0;
+          },
+          1);
+      assignment.raise(wanted);
+    }
+    for (std::size_t r = 0; r < n; ++r)
+      if (partner[r] != none) {
+        result.cost += gain[r * m + partner[r]];
+        result.pairs.push_back({rows[r], columns[partner[r]], exact[r * m + partner[r]]});
+      }
+    return true;
+  }
+
+  Matching_energy m_energy;
+  Eigen::Matrix3d m_turn = Eigen::Matrix3d::Identity(); // of tree 2
+  bool m_uses_other_trunks = false;
+  std::size_t m_number_of_trials, m_most_trunk_trials;
+  std::size_t m_effort = m_number_of_trials; // tries for each pair below the trunks
+  std::array<Matching_memo, 2> m_known;      // with one try for each pair, and with more
+};
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_MATCHING_BRANCH_MATCHING_H

@@ -1,0 +1,399 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// What it costs to make one branch another: bending, stretching, turning, moving along the parent, or growing alone.
+
+#ifndef PCS_SHAPE_SPACE_MATCHING_MATCHING_ENERGY_H
+#define PCS_SHAPE_SPACE_MATCHING_MATCHING_ENERGY_H
+
+#include <pcs/core/Orl_options.h>
+#include <pcs/core/rotations.h>
+#include <pcs/shape_space/matching/Matched_branch.h>
+#include <pcs/shape_space/matching/Path_curves.h>
+#include <pcs/shape_space/matching/align_vectors.h>
+#include <pcs/shape_space/matching/elastic_curves.h>
+#include <pcs/shape_space/matching/linear_assignment.h>
+#include <pcs/shape_space/model/Branch_paths.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numeric>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+
+/// All terms of the energy of a matching of two trees, for any of the ways to take them apart.
+class Matching_energy : public Path_curves
+{
+public:
+  static constexpr std::size_t most_children = 256; ///< looked at in quick costs: the heaviest ones
+
+  /// Two curves, matched.
+  struct Trial
+  {
+    std::size_t path_1, path_2;
+    std::array<std::size_t, 2>
+        last; ///< nodes that they end with: where growth is at tips, not always the tips
+    double cost;
+    std::vector<double> gamma;
+  };
+
+  /// Attachments of the children, as shares of the first curve.
+  struct Children
+  {
+    std::vector<double> s, weight;
+    std::vector<double> length; ///< of the longest path
+    std::vector<Vec3> direction;
+    std::vector<std::size_t> start;
+  };
+  /// What children of tree 2 were worth in similar questions, by the node that they begin with.
+  using Child_cost_cache = std::unordered_map<std::size_t, double>;
+
+  template <class ConcurrencyTag>
+  Matching_energy(const Rooted_tree& tree_1,
+                  const Rooted_tree& tree_2,
+                  const Matching_weights& weights,
+                  std::array<Branch_paths, 2> paths,
+                  bool grows_at_tips,
+                  ConcurrencyTag tag)
+    : Path_curves(tree_1, tree_2, std::move(paths), grows_at_tips, tag), m_weights(weights)
+  {
+  }
+
+  const Matching_weights& weights() const { return m_weights; }
+  /// What grew on beyond the last nodes costs: no partner is looked for there.
+  double rest_cost(std::size_t p1, std::size_t p2, const std::array<std::size_t, 2>& last) const
+  {
+    double length = 0;
+    for (int t = 0; t < 2; ++t) {
+      const Branch_path& whole = path(t, t == 0 ? p1 : p2);
+      const std::size_t end = last[static_cast<std::size_t>(t)];
+      length += (whole.length() - whole.arc[end]) / unit(t);
+      for (const Branch_path::Child& c : whole.children)
+        length += c.position > end ? weight(t, c.start) : 0;
+    }
+    return single_term(length);
+  }
+
+  /// A bound for the elastic energy: no pair of tangents is closer than the cones around the mean directions allow.
+  double least_energy(std::size_t p1, std::size_t p2, const Eigen::Matrix3d& rotation) const
+  {
+    const Sampled_curve &a = curves(0)[p1], &b = curves(1)[p2];
+    double length_1 = a.length, length_2 = b.length;
+    if (is_cut(length_1, length_2)) // the beginning of a curve is in the same cone, or nearly so
+      length_1 = length_2 = std::min(length_1, length_2);
+    const double cosine = std::min(1.0, std::max(-1.0, a.direction.dot(rotation * b.direction)));
+    const double angle = std::max(0.0, std::acos(cosine) - a.spread - b.spread);
+    if (m_weights.is_published || !m_weights.is_carried)
+      return elastic_energy(length_1, length_2, std::max(0.0, std::cos(angle)) * (1 + 1e-12));
+    // the branch may turn by a part of the angle
+    const double t = m_weights.turn;
+    const double gain = std::sqrt(1 + t * t + 2 * t * std::cos(angle)) - t;
+    return elastic_energy(length_1, length_2, gain * (1 + 1e-12));
+  }
+
+  /// All that two subtrees cost at least: what one of them has more is stretched or single.
+  double least_cost(std::size_t start_1, std::size_t start_2, const Eigen::Matrix3d& rotation) const
+  {
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::size_t p1 : paths(0).paths_of[start_1])
+      for (const std::size_t p2 : paths(1).paths_of[start_2])
+        least = std::min(least, least_energy(p1, p2, rotation));
+    return m_weights.curve * least + least_difference(start_1, start_2);
+  }
+
+  double least_difference(std::size_t start_1, std::size_t start_2) const
+  {
+    return is_turned() ? m_weights.single * std::min(1.0, m_weights.length) *
+                             std::abs(weight(0, start_1) - weight(1, start_2)) * (1 - 1e-12)
+                       : 0;
+  }
+
+  /// The energy of two branches that turn with their parents by `carried`, and by themselves to `rotation`.
+  double turned_energy(const Trial& trial,
+                       const Eigen::Matrix3d& carried,
+                       const Eigen::Matrix3d& rotation) const
+  {
+    const std::size_t n = trial.gamma.size();
+    std::array<Sampled_curve, 2> cut;
+    const Sampled_curve &one = curve(0, trial.path_1, n, trial.last[0], cut[0]),
+                        &two = curve(1, trial.path_2, n, trial.last[1], cut[1]);
+    double sum = 0;
+    for (std::size_t i = 0; i + 1 < n; ++i) {
+      const double x = trial.gamma[i] * static_cast<double>(n - 1);
+      const auto j = static_cast<Eigen::Index>(std::min(n - 1, static_cast<std::size_t>(x + 0.5)));
+      const double slope = (trial.gamma[i + 1] - trial.gamma[i]) * static_cast<double>(n - 1);
+      sum += std::sqrt(slope) *
+             one.tangents.col(static_cast<Eigen::Index>(i)).dot(rotation * two.tangents.col(j));
+    }
+    const double cosine = 0.5 * ((carried.transpose() * rotation).trace() - 1);
+    const double length = std::sqrt(one.length * two.length);
+    return m_weights.curve * elastic_energy(one.length,
+                                            two.length,
+                                            std::max(0.0, sum / static_cast<double>(n - 1))) +
+           m_weights.curve * m_weights.turn * 2 * length * (1 - cosine) +
+           length_term(one.length, two.length);
+  }
+
+  double position_term(double w1, double w2, double s1, double s2, double parent_length) const
+  {
+    const double d = std::abs(s1 - s2);
+    if (m_weights.is_published)
+      return m_weights.position * parent_length * d * d;
+    // far is far: branches of other species are not single for their place alone
+    const double w = grows_at_tips() ? std::min(w1, w2) : 0.5 * (w1 + w2);
+    return m_weights.position * w * d / (1 + d / m_weights.far);
+  }
+
+  /// Indices, the heaviest first.
+  static std::vector<std::size_t> by_weight(const std::vector<double>& weight)
+  {
+    std::vector<std::size_t> order(weight.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
+      return weight[i] > weight[j];
+    });
+    return order;
+  }
+
+  bool is_turned() const { return m_weights.is_carried && !m_weights.is_published; }
+
+  double single_term(double w) const { return (m_weights.is_published ? 1 : m_weights.single) * w; }
+
+  /// Up to the node `last`.
+  Children children_of(int t,
+                       const Branch_path& path,
+                       std::size_t last,
+                       const std::vector<double>* gamma) const
+  {
+    Children result;
+    for (const Branch_path::Child& c : path.children) {
+      if (c.position > last)
+        break;
+      const double s = path.arc[c.position] / path.arc[last];
+      result.s.push_back(gamma ? inverse_at(*gamma, s) : s);
+      result.weight.push_back(weight(t, c.start));
+      result.start.push_back(c.start);
+      result.length.push_back(curves(t)[paths(t).paths_of[c.start].front()].length);
+      result.direction.push_back(curves(t)[paths(t).paths_of[c.start].front()].direction);
+    }
+    return result;
+  }
+
+  /// The assignment of children by quick costs.
+  std::vector<std::size_t> quick_assignment(const Children& a,
+                                            const Children& b,
+                                            const Eigen::Matrix3d& rotation,
+                                            double parent_length) const
+  {
+    return assign_rows(a.s.size(), b.s.size(), quick_gains(a, b, rotation, parent_length));
+  }
+
+  /// What two paths cost, judged without looking below their children; infinity where it is seen at once that it is more
+  /// than `most`.
+  double quick_cost_of_paths(std::size_t p1,
+                             std::size_t p2,
+                             const Eigen::Matrix3d& rotation,
+                             double most,
+                             Child_cost_cache& prices) const
+  {
+    const Trial trial = match_curves(p1, p2, rotation, few_samples);
+    const Children a = children_of(0, path(0, p1), trial.last[0], nullptr);
+    const Children b = children_of(1, path(1, p2), trial.last[1], &trial.gamma);
+    const Eigen::Matrix3d turned = turn(trial, a, b, rotation, 0);
+    double cost = is_turned() ? turned_energy(trial, rotation, turned) : trial.cost;
+    cost += rest_cost(p1, p2, trial.last);
+    return cost + quick_cost_of_children(a, b, turned, length(0, p1), most - cost, prices);
+  }
+
+  /// The turn by which two paths and their children fit, likewise.
+  Eigen::Matrix3d
+  quick_turn(std::size_t p1, std::size_t p2, const Eigen::Matrix3d& rotation, int passes) const
+  {
+    const Trial trial = match_curves(p1, p2, rotation, few_samples);
+    return turn(trial,
+                children_of(0, path(0, p1), trial.last[0], nullptr),
+                children_of(1, path(1, p2), trial.last[1], &trial.gamma),
+                rotation,
+                passes);
+  }
+
+  /// What it leaves; infinity where it is seen at once that it is more than `most`. Of very many children, what the light ones
+  /// have more in one tree than in the other counts as single.
+  double quick_cost_of_children(const Children& all_1,
+                                const Children& all_2,
+                                const Eigen::Matrix3d& rotation,
+                                double parent_length,
+                                double most,
+                                Child_cost_cache& prices) const
+  {
+    constexpr double slack = 1e-9; // rounding must not decide
+    std::array<Children, 2> few;
+    std::array<double, 2> light = {0, 0};
+    const Children &a = heaviest(all_1, few[0], light[0]), &b = heaviest(all_2, few[1], light[1]);
+    const std::size_t n = a.s.size(), m = b.s.size();
+    double total = single_term(std::abs(light[0] - light[1]));
+    for (const double w : a.weight)
+      total += single_term(w);
+    for (const double w : b.weight)
+      total += single_term(w);
+    const std::vector<double> gain = quick_gains(a, b, rotation, parent_length);
+    std::vector<double> known(m, 0);
+    for (std::size_t j = 0; j < m; ++j)
+      if (const auto it = prices.find(b.start[j]); it != prices.end())
+        known[j] = it->second;
+    Assignment assignment(n, m, gain, known);
+    const bool is_solved = assignment.solve(most - total * (1 - slack));
+    for (std::size_t j = 0; j < m; ++j)
+      prices[b.start[j]] = assignment.prices()[j];
+    if (!is_solved)
+      return std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < n; ++i)
+      if (const std::size_t j = assignment.columns()[i]; j != none)
+        total += gain[i * m + j];
+    return total;
+  }
+
+  /// The turn that carries branch 2 to branch 1, from the curves, the children, and what the parents say.
+  Eigen::Matrix3d turn(const Trial& trial,
+                       const Children& all_1,
+                       const Children& all_2,
+                       const Eigen::Matrix3d& carried,
+                       int passes) const
+  {
+    if (!m_weights.is_carried || m_weights.is_published)
+      return carried;
+    std::array<Children, 2> few;
+    std::array<double, 2> light;
+    const Children &a = heaviest(all_1, few[0], light[0]), &b = heaviest(all_2, few[1], light[1]);
+    const std::vector<double>& gamma = trial.gamma;
+    const std::size_t n = gamma.size();
+    std::array<Sampled_curve, 2> cut;
+    const Sampled_curve &one = curve(0, trial.path_1, n, trial.last[0], cut[0]),
+                        &two = curve(1, trial.path_2, n, trial.last[1], cut[1]);
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    for (std::size_t i = 0; i < n; ++i) {
+      const double x = gamma[i] * static_cast<double>(n - 1);
+      const auto j = static_cast<Eigen::Index>(std::min(n - 1, static_cast<std::size_t>(x + 0.5)));
+      covariance +=
+          one.tangents.col(static_cast<Eigen::Index>(i)) * two.tangents.col(j).transpose();
+    }
+    const double length = std::sqrt(one.length * two.length);
+    covariance *= length / static_cast<double>(n);
+    covariance += m_weights.carried * length * carried;
+    Quaternion q = align_vectors(covariance, Quaternion(carried));
+    if (m_weights.children <= 0 || a.s.empty() || b.s.empty())
+      return q.toRotationMatrix();
+    for (int pass = 0; pass < passes; ++pass) {
+      const Eigen::Matrix3d rotation = q.toRotationMatrix();
+      const std::vector<std::size_t> partner = quick_assignment(a, b, rotation, one.length);
+      Eigen::Matrix3d all = covariance;
+      for (std::size_t i = 0; i < partner.size(); ++i)
+        if (partner[i] != none)
+          all += m_weights.children * std::sqrt(a.weight[i] * b.weight[partner[i]]) *
+                 a.direction[i] * b.direction[partner[i]].transpose();
+      q = align_vectors(all, q);
+    }
+    return q.toRotationMatrix();
+  }
+
+  /// Energy and reparametrisation of two paths.
+  Trial match_curves(std::size_t p1,
+                     std::size_t p2,
+                     const Eigen::Matrix3d& rotation,
+                     std::size_t samples = number_of_samples) const
+  {
+    thread_local Elastic_matcher fine(number_of_samples, 3), coarse(few_samples, 3);
+    Elastic_matcher& matcher = samples == number_of_samples ? fine : coarse;
+    const std::array<std::size_t, 2> last = last_nodes(p1, p2);
+    std::array<Sampled_curve, 2> cut;
+    const Sampled_curve &one = curve(0, p1, samples, last[0], cut[0]),
+                        &two = curve(1, p2, samples, last[1], cut[1]);
+    const double energy = elastic_energy(one.length, two.length, matcher(one, two, rotation));
+    return {p1, p2, last, m_weights.curve * energy, matcher.gamma()};
+  }
+
+private:
+  /// Of curves whose tangents agree by `agreement`. Where lengths have a term of their own, it does not count what they differ
+  /// by: a branch that grew to four times its length would be single even if nothing else had changed.
+  double elastic_energy(double a, double b, double agreement) const
+  {
+    const double mean = 2 * std::sqrt(a * b);
+    return std::max(0.0, (is_turned() ? mean : a + b) - mean * agreement);
+  }
+
+  double length_term(double a, double b) const
+  {
+    return m_weights.length * m_weights.single * std::abs(a - b);
+  }
+
+  /// All children if they are not too many, else the heaviest in the same order, kept in `few`; `light` is the weight of the
+  /// rest.
+  static const Children& heaviest(const Children& all, Children& few, double& light)
+  {
+    light = 0;
+    const std::size_t n = all.s.size();
+    if (n <= most_children)
+      return all;
+    std::vector<std::size_t> order = by_weight(all.weight);
+    for (std::size_t k = most_children; k < n; ++k)
+      light += all.weight[order[k]];
+    order.resize(most_children);
+    std::sort(order.begin(), order.end());
+    for (const std::size_t i : order) {
+      few.s.push_back(all.s[i]);
+      few.weight.push_back(all.weight[i]);
+      few.length.push_back(all.length[i]);
+      few.direction.push_back(all.direction[i]);
+      few.start.push_back(all.start[i]);
+    }
+    return few;
+  }
+
+  /// What pairs of children cost more than both alone, by quick costs.
+  std::vector<double> quick_gains(const Children& a,
+                                  const Children& b,
+                                  const Eigen::Matrix3d& rotation,
+                                  double parent_length) const
+  {
+    const std::size_t n = a.s.size(), m = b.s.size();
+    std::vector<double> gain(n * m);
+    std::vector<Vec3> turned;
+    for (const Vec3& direction : b.direction)
+      turned.push_back(rotation * direction);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < m; ++j)
+        gain[i * m + j] =
+            m_weights.curve * quick_cost(a.weight[i], b.weight[j], a.direction[i].dot(turned[j])) +
+            position_term(a.length[i], b.length[j], a.s[i], b.s[j], parent_length) -
+            single_term(a.weight[i]) - single_term(b.weight[j]);
+    return gain;
+  }
+
+  /// Cost of two subtrees of given weights as if each were one straight branch, at an angle of given cosine.
+  double quick_cost(double weight_1, double weight_2, double dot) const
+  {
+    double cosine = std::max(0.0, dot);
+    if (is_turned()) {
+      const double t = m_weights.turn;
+      cosine = std::sqrt(1 + t * t + 2 * t * dot) - t;
+    }
+    if (grows_at_tips())
+      return 2 * std::min(weight_1, weight_2) * (1 - cosine) + length_term(weight_1, weight_2);
+    return elastic_energy(weight_1, weight_2, cosine) + length_term(weight_1, weight_2);
+  }
+
+  Matching_weights m_weights;
+};
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_MATCHING_MATCHING_ENERGY_H

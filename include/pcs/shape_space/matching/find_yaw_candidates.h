@@ -1,0 +1,134 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Turns of a tree about the vertical after which its branches may fit those of another one better.
+
+#ifndef PCS_SHAPE_SPACE_MATCHING_FIND_YAW_CANDIDATES_H
+#define PCS_SHAPE_SPACE_MATCHING_FIND_YAW_CANDIDATES_H
+
+#include <pcs/internal/parallel.h>
+#include <pcs/internal/progress.h>
+#include <pcs/shape_space/matching/Matching_energy.h>
+#include <pcs/shape_space/model/Alignment_options.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+
+namespace internal {
+
+/// A turn of tree 2, and what the trunks and their children cost then, by quick costs.
+struct Turned_trees
+{
+  double angle, cost;
+  std::size_t path_1, path_2; ///< trunks
+};
+
+/// The turn about `axis` that is nearest to `rotation`; `angle` if all are as near.
+inline double
+nearest_turn(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& axis, double angle)
+{
+  const Eigen::Matrix3d skew = rotation - rotation.transpose();
+  const double sine = axis.dot(Eigen::Vector3d(skew(2, 1), skew(0, 2), skew(1, 0)));
+  const double cosine = rotation.trace() - axis.dot(rotation * axis);
+  return std::hypot(sine, cosine) > 1e-9 ? std::atan2(sine, cosine) : angle;
+}
+
+/// Looks at all pairs of trunks, then turns on to where the children of the best pair stand.
+inline Turned_trees
+settle_turn(const Matching_energy& energy, const Vec3& axis, double angle, int passes)
+{
+  constexpr int passes_of_turn = 3;
+  constexpr double least_step = 1e-12; // [rad]
+  Turned_trees best{angle, 0, 0, 0};
+  for (int pass = 0;; ++pass) {
+    const Eigen::Matrix3d rotation = Eigen::AngleAxisd(best.angle, axis).toRotationMatrix();
+    Matching_energy::Child_cost_cache prices;
+    best.cost = std::numeric_limits<double>::infinity();
+    for (const std::size_t p1 : energy.paths(0).paths_of[0])
+      for (const std::size_t p2 : energy.paths(1).paths_of[0]) {
+        const double cost = energy.quick_cost_of_paths(p1, p2, rotation, best.cost, prices);
+        if (cost < best.cost)
+          best = {best.angle, cost, p1, p2};
+      }
+    if (pass == passes)
+      return best;
+    const double next =
+        nearest_turn(energy.quick_turn(best.path_1, best.path_2, rotation, passes_of_turn),
+                     axis,
+                     best.angle);
+    if (std::abs(next - best.angle) < least_step)
+      return best;
+    best.angle = next;
+  }
+}
+
+} // namespace internal
+
+/*!
+  Angles about the vertical by which branches fit, the most promising first. [rad]
+
+  From 24 angles each turn goes on to where the branches at the trunks stand, seen without what hangs on them. Turns of less
+  than a step are none: what trees that stand alike differ by is left to their branches. Nothing is found if
+  `progress` asks to stop.
+*/
+template <class ConcurrencyTag>
+std::vector<double> find_yaw_candidates(const Matching_energy& energy,
+                                        const Vec3& up,
+                                        std::size_t most,
+                                        pcs::internal::Progress& progress)
+{
+  using internal::Turned_trees;
+  constexpr std::size_t number_of_starts = 24, batch = 4;
+  constexpr double pi = static_cast<double>(EIGEN_PI), step = 2 * pi / number_of_starts;
+  constexpr int first_passes = 3, last_passes = 20;
+  const Vec3 axis = energy.frame().transpose() * up;
+  std::vector<Turned_trees> turned(number_of_starts);
+  static_assert(number_of_starts % batch == 0);
+  for (std::size_t first = 0; first < number_of_starts; first += batch) {
+    if (!progress(0))
+      return {};
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        batch,
+        [&](std::size_t i) {
+          const std::size_t k = first + i;
+          turned[k] =
+              internal::settle_turn(energy, axis, step * static_cast<double>(k), first_passes);
+        },
+        1);
+  }
+  std::stable_sort(turned.begin(), turned.end(), [](const Turned_trees& a, const Turned_trees& b) {
+    return a.cost < b.cost;
+  });
+  std::vector<double> result;
+  for (const Turned_trees& t : turned) {
+    const auto is_new = [&](double angle) {
+      const auto distance = [&](double other) {
+        return std::abs(std::remainder(angle - other, 2 * pi));
+      };
+      return distance(0) > step && std::all_of(result.begin(), result.end(), [&](double other) {
+               return distance(other) > 0.5 * step;
+             });
+    };
+    if (result.size() == most || !is_new(t.angle))
+      continue;
+    if (!progress(0))
+      return {};
+    const double angle = internal::settle_turn(energy, axis, t.angle, last_passes).angle;
+    if (is_new(angle))
+      result.push_back(angle);
+  }
+  return result;
+}
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_MATCHING_FIND_YAW_CANDIDATES_H

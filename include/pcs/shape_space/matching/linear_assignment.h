@@ -1,0 +1,197 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Assignment of rows to columns at least cost, where leaving both alone is free.
+
+#ifndef PCS_SHAPE_SPACE_MATCHING_LINEAR_ASSIGNMENT_H
+#define PCS_SHAPE_SPACE_MATCHING_LINEAR_ASSIGNMENT_H
+
+#include <pcs/shape_space/model/Rooted_tree.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+
+/*!
+  Minimises the sum of `gain[i * m + j]` over pairs, each row and column at most once; rows and columns may stay single.
+  Entries that are not negative are never used.
+
+  Shortest augmenting paths (Jonker, Volgenant 1987); O(n^2 m) at first. When entries grow, only the pairs that they belong
+  to are solved again: what is known of all others stays true. Ties: the lowest index first.
+*/
+class Assignment
+{
+public:
+  /// `gain` is kept by reference; it may change between calls, as `raise()` says. `prices` of columns, not positive, are those
+  /// of a similar problem, or empty: the nearer they are, the less there is to do.
+  Assignment(std::size_t n,
+             std::size_t m,
+             const std::vector<double>& gain,
+             const std::vector<double>& prices = std::vector<double>())
+    : m_gain(gain), m_rows(n, m), m_columns(m, 1)
+  {
+    if (!prices.empty())
+      m_columns.price = prices;
+    std::vector<std::size_t> best(n, none);
+    for (std::size_t r = 0; r < n; ++r)
+      for (std::size_t c = 0; c < m; ++c)
+        if (const double g = gain[r * m + c]; g < 0 && g - m_columns.price[c] < m_rows.price[r]) {
+          m_rows.price[r] = g - m_columns.price[c];
+          best[r] = c;
+        }
+    for (const double p : m_rows.price)
+      m_bound += p;
+    for (const double p : m_columns.price)
+      m_bound += p;
+    for (std::size_t r = 0; r < n; ++r)
+      if (best[r] != none && m_columns.partner[best[r]] == none) {
+        m_columns.partner[best[r]] = r;
+        m_rows.partner[r] = best[r];
+      }
+  }
+
+  /// What all pairs together cost at least, as far as is known; after `solve()` what they cost.
+  double bound() const { return m_bound; }
+
+  /// Finds the pairs of least cost; false as soon as it is known that they cost more than `most` together.
+  bool solve(double most = std::numeric_limits<double>::infinity())
+  {
+    for (std::size_t r = 0; r < m_rows.partner.size() && m_bound <= most; ++r)
+      augment(m_rows, m_columns, r);
+    for (std::size_t c = 0; c < m_columns.partner.size() && m_bound <= most; ++c)
+      augment(m_columns, m_rows, c);
+    return m_bound <= most;
+  }
+
+  const std::vector<double>& prices() const { return m_columns.price; }
+  /// The column of each row, or `none`.
+  const std::vector<std::size_t>& columns() const { return m_rows.partner; }
+
+  /// To be called after entries of rows with their columns grew, and no others changed.
+  void raise(const std::vector<std::size_t>& rows)
+  {
+    std::vector<std::size_t> columns;
+    for (const std::size_t r : rows) {
+      columns.push_back(m_rows.partner[r]);
+      m_columns.partner[columns.back()] = none;
+      m_rows.partner[r] = none;
+    }
+    for (const std::size_t r : rows)
+      augment(m_rows, m_columns, r);
+    for (const std::size_t c : columns)
+      augment(m_columns, m_rows, c);
+  }
+
+private:
+  struct Reached
+  {
+    std::size_t row, column; ///< the column it came by
+    double distance;
+  };
+  struct Side
+  {
+    Side(std::size_t n, std::size_t step) : price(n, 0), partner(n, none), stride(step) {}
+    std::vector<double> price; ///< dual
+    std::vector<std::size_t> partner;
+    std::size_t stride; ///< in the table
+  };
+
+  /// Gives `r` a partner, or leaves it or another one of its side single; what is single has no price.
+  void augment(Side& own, Side& other, std::size_t r)
+  {
+    if (own.partner[r] != none || !(own.price[r] < 0))
+      return;
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const std::size_t m = other.price.size(), stride = other.stride;
+    m_least.assign(m, infinity);
+    m_previous.resize(m);
+    m_open = other.price; // -inf: in the tree
+    double *const least = m_least.data(), *const open = m_open.data();
+    std::size_t* const previous = m_previous.data();
+    m_tree.assign(1, {r, none, 0});
+    double single = -own.price[r]; // least reduced cost of leaving one of the tree single
+    std::size_t single_row = r, end = none;
+    double reached = 0;
+    for (;;) {
+      const std::size_t row = m_tree.back().row;
+      const double* const gain = m_gain.data() + row * own.stride;
+      const double begin = reached - own.price[row];
+      double nearest = single;
+      std::size_t next = none;
+      for (std::size_t j = 0; j < m; ++j) {
+        const double g = gain[j * stride];
+        const double reduced = begin + g - open[j];
+        if (g < 0 && reduced < least[j]) {
+          least[j] = reduced;
+          previous[j] = row;
+        }
+        if (least[j] < nearest && open[j] > -infinity) {
+          nearest = least[j];
+          next = j;
+        }
+      }
+      reached = std::max(reached, nearest);
+      if (next == none)
+        break;
+      if (other.partner[next] == none) {
+        end = next;
+        break;
+      }
+      open[next] = -infinity;
+      m_tree.push_back({other.partner[next], next, reached});
+      const double alone = reached - own.price[m_tree.back().row];
+      if (alone < single) {
+        single = alone;
+        single_row = m_tree.back().row;
+      }
+    }
+    m_bound += reached;
+    for (const Reached& t : m_tree) {
+      own.price[t.row] = std::min(0.0, own.price[t.row] + (reached - t.distance));
+      if (t.column != none)
+        other.price[t.column] -= reached - t.distance;
+    }
+    // flip the path
+    std::size_t column = end;
+    if (column == none) {
+      own.price[single_row] = 0; // but for rounding it is
+      if (single_row == r)
+        return;
+      column = own.partner[single_row];
+      own.partner[single_row] = none;
+    }
+    for (;;) {
+      const std::size_t i = m_previous[column];
+      const std::size_t freed = own.partner[i];
+      other.partner[column] = i;
+      own.partner[i] = column;
+      if (i == r)
+        break;
+      column = freed;
+    }
+  }
+
+  const std::vector<double>& m_gain;
+  Side m_rows, m_columns;
+  double m_bound = 0; // sum of all prices
+  std::vector<double> m_least, m_open;
+  std::vector<std::size_t> m_previous;
+  std::vector<Reached> m_tree;
+};
+
+/// The column of each row, or `none`.
+inline std::vector<std::size_t>
+assign_rows(std::size_t n, std::size_t m, const std::vector<double>& gain)
+{
+  Assignment assignment(n, m, gain);
+  assignment.solve();
+  return assignment.columns();
+}
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_MATCHING_LINEAR_ASSIGNMENT_H

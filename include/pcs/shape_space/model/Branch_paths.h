@@ -1,0 +1,175 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The branches that a tree may be taken apart into: longest continuations, and nearly as long ones.
+
+#ifndef PCS_SHAPE_SPACE_MODEL_BRANCH_PATHS_H
+#define PCS_SHAPE_SPACE_MODEL_BRANCH_PATHS_H
+
+#include <pcs/shape_space/model/Rooted_tree.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+
+/// So may a child that shortens the branch by this share of its length at most: which twig is the tip is a matter of chance,
+/// and all twigs beyond the fork hang on that choice.
+constexpr double tip_share = 0.05;
+
+/// All else depends on the trunk: so many times more candidates are looked at.
+constexpr std::size_t trunk_factor = 6;
+
+/// Below so many branches that hang on each other, there is one way to continue: what may continue one of them begins another,
+/// and the number of questions would grow as the square of their number.
+constexpr std::size_t levels_of_choice = 24;
+
+/// A branch begins with an edge; the node at its end names the place. Several paths may begin there.
+struct Branch_path
+{
+  std::vector<std::size_t> nodes; ///< from the node on the parent branch to the tip
+  std::vector<double> arc;        ///< length from the beginning to each node [L]
+  struct Child
+  {
+    std::size_t start;    ///< node at the end of the first edge
+    std::size_t position; ///< index in `nodes`
+  };
+  std::vector<Child> children; ///< by position, then longest first
+  bool is_continued =
+      false;             ///< whether it goes on where another branch was cut: it begins as thick
+  bool is_trunk = false; ///< whether it begins with the root itself, and not with an edge
+  double length() const { return arc.back(); }
+  std::size_t tip() const { return nodes.back(); }
+};
+
+/// All paths that a matching may choose from. `paths_of[v]`: those that begin with the edge to `v`, longest first; for the
+/// root, the trunks.
+struct Branch_paths
+{
+  std::vector<Branch_path> paths;
+  std::vector<std::vector<std::size_t>> paths_of;
+  std::vector<std::size_t> other_trunks; ///< for a second look, much shorter ones among them
+};
+
+namespace internal {
+
+/// Follows the longest continuation from `v`, which is already in `nodes`.
+inline void follow_longest(const Rooted_tree& tree, std::vector<std::size_t>& nodes)
+{
+  for (std::size_t v = nodes.back(); tree.first_child[v] < tree.first_child[v + 1];) {
+    v = tree.children[tree.first_child[v]];
+    nodes.push_back(v);
+  }
+}
+
+inline Branch_path make_path(const Rooted_tree& tree, std::vector<std::size_t> nodes, bool is_trunk)
+{
+  Branch_path path;
+  path.is_trunk = is_trunk;
+  path.nodes = std::move(nodes);
+  path.arc.push_back(0);
+  for (std::size_t k = 1; k < path.nodes.size(); ++k)
+    path.arc.push_back(path.arc.back() + tree.edge_length(path.nodes[k]));
+  // other children of the first node belong to the parent branch, unless there is none
+  for (std::size_t k = is_trunk ? 0 : 1; k < path.nodes.size(); ++k)
+    for (std::size_t c = tree.first_child[path.nodes[k]]; c < tree.first_child[path.nodes[k] + 1];
+         ++c)
+      if (k + 1 == path.nodes.size() || tree.children[c] != path.nodes[k + 1])
+        path.children.push_back({tree.children[c], k});
+  return path;
+}
+
+/// The longest path from `start`, and others that leave it at a fork of nearly equal continuations.
+inline std::vector<std::vector<std::size_t>> candidate_paths(const Rooted_tree& tree,
+                                                             std::size_t start,
+                                                             double fork_ratio,
+                                                             std::size_t maximal_number)
+{
+  std::vector<std::size_t> longest;
+  if (tree.parents[start] != none)
+    longest.push_back(tree.parents[start]);
+  longest.push_back(start);
+  follow_longest(tree, longest);
+  std::vector<std::pair<double, std::vector<std::size_t>>> others; // lost length, path
+  double total = 0;
+  for (std::size_t k = 1; k < longest.size(); ++k)
+    total += tree.edge_length(longest[k]);
+  for (std::size_t k = 0; k + 1 < longest.size() && maximal_number > 1; ++k) {
+    const std::size_t v = longest[k];
+    if (v != start && k == 0)
+      continue; // the node on the parent branch
+    const double rest = tree.heights[v];
+    const double most_lost = std::max((1 - fork_ratio) * rest, tip_share * total);
+    for (std::size_t c = tree.first_child[v] + 1; c < tree.first_child[v + 1]; ++c) {
+      const std::size_t w = tree.children[c];
+      const double length = tree.edge_length(w) + tree.heights[w];
+      if (rest - length > most_lost)
+        break;
+      std::vector<std::size_t> path(longest.begin(),
+                                    longest.begin() + static_cast<std::ptrdiff_t>(k + 1));
+      path.push_back(w);
+      follow_longest(tree, path);
+      others.emplace_back(rest - length, std::move(path));
+    }
+  }
+  std::stable_sort(others.begin(), others.end(), [](const auto& a, const auto& b) {
+    return a.first < b.first;
+  });
+  std::vector<std::vector<std::size_t>> result{longest};
+  for (std::size_t i = 0; i < others.size() && result.size() < maximal_number; ++i)
+    result.push_back(std::move(others[i].second));
+  return result;
+}
+
+} // namespace internal
+
+/// `maximal_number` 1 gives the decomposition by longest paths alone. `trunk_ratio` is the fork ratio of the trunk,
+/// if it is less; `other_ratio`, if it is less than both, that of other trunks.
+inline Branch_paths find_branch_paths(const Rooted_tree& tree,
+                                      double fork_ratio,
+                                      std::size_t maximal_number,
+                                      double trunk_ratio,
+                                      double other_ratio = 1)
+{
+  Branch_paths result;
+  result.paths_of.resize(tree.size());
+  const std::vector<std::size_t> level = internal::levels_of_branches(tree);
+  std::vector<std::size_t> starts{0};
+  std::vector<char> is_found(tree.size(), 0);
+  is_found[0] = 1;
+  while (!starts.empty()) {
+    const std::size_t start = starts.back();
+    starts.pop_back();
+    const std::size_t most = level[start] > levels_of_choice    ? 1
+                             : maximal_number > 1 && start == 0 ? trunk_factor * maximal_number
+                                                                : maximal_number;
+    const double ratio = start == 0 ? std::min(trunk_ratio, fork_ratio) : fork_ratio;
+    const auto add = [&](std::vector<std::size_t>&& nodes) {
+      result.paths.push_back(internal::make_path(tree, std::move(nodes), start == 0));
+      for (const Branch_path::Child& child : result.paths.back().children)
+        if (!is_found[child.start]) {
+          is_found[child.start] = 1;
+          starts.push_back(child.start);
+        }
+      return result.paths.size() - 1;
+    };
+    std::vector<std::size_t>& paths = result.paths_of[start];
+    for (auto& nodes : internal::candidate_paths(tree, start, ratio, most))
+      paths.push_back(add(std::move(nodes)));
+    if (start == 0 && maximal_number > 1 && other_ratio < ratio)
+      for (auto& nodes : internal::candidate_paths(tree, start, other_ratio, most)) {
+        const auto known = std::find_if(paths.begin(), paths.end(), [&](std::size_t p) {
+          return result.paths[p].nodes == nodes;
+        });
+        result.other_trunks.push_back(known == paths.end() ? add(std::move(nodes)) : *known);
+      }
+  }
+  return result;
+}
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_MODEL_BRANCH_PATHS_H

@@ -1,0 +1,41 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// What the building of a space is told, and what it finds for more than two trees.
+
+#ifndef PCS_SHAPE_SPACE_MODEL_BUILD_OPTIONS_H
+#define PCS_SHAPE_SPACE_MODEL_BUILD_OPTIONS_H
+
+#include <pcs/core/Orl_options.h>
+#include <pcs/core/Orl_space_data.h>
+#include <pcs/shape_space/family/Tree_family.h>
+#include <pcs/shape_space/matching/Matched_branch.h>
+#include <pcs/shape_space/model/Alignment_options.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+
+struct Build_options
+{
+  Matching_weights weights;
+  Alignment_options standing;
+  Point_assignment_options assignment;
+  Transport_options transport;
+  std::size_t number_of_rounds = 3;
+  std::size_t points_of = none; ///< scan that gives the points where it can
+};
+
+struct Built_family
+{
+  Tree_family family;
+  std::vector<Orl_space_data::Point> points;     ///< by edge
+  std::vector<Orl_space_data::Partner> partners; ///< by point
+  bool has_normals = false;
+};
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_MODEL_BUILD_OPTIONS_H

@@ -1,0 +1,302 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Orientations, radii and lengths of the edges of a topology, and the tree in space that they stand for.
+
+#ifndef PCS_SHAPE_SPACE_MODEL_ORL_COORDINATES_H
+#define PCS_SHAPE_SPACE_MODEL_ORL_COORDINATES_H
+
+#include <pcs/core/Orl_options.h>
+#include <pcs/core/rotations.h>
+#include <pcs/shape_space/model/Rooted_tree.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+
+/// Edges and branches of a topology. Edges of a branch are consecutive, parents come first. Node 0 of branch `b` is at
+/// `first_edge + b` in lists of nodes.
+struct Orl_layout
+{
+  struct Branch
+  {
+    std::size_t parent = none; ///< branch
+    std::size_t first_edge = 0, number_of_edges = 0;
+    std::size_t reference_edge =
+        none; ///< edge of the parent that the orientation of the first edge refers to
+  };
+  std::vector<Branch> branches;
+  std::vector<std::size_t>
+      edge_before; ///< that frames are carried on from: on the branch, or the reference edge
+  std::vector<std::size_t>
+      parent_edge; ///< that the orientation refers to, see `set_parent_edges()`; `none`: the axes of the input
+
+  std::size_t number_of_edges() const { return edge_before.size(); }
+  std::size_t number_of_nodes() const { return edge_before.size() + branches.size(); }
+  std::size_t first_node(std::size_t b) const { return branches[b].first_edge + b; }
+};
+
+/*!
+  What orientations refer to. An edge refers to the first one of its branch: where each refers to the one before, as in the
+  text, half of each of many small turns about all kinds of axes is not half of what they make together, so that noise of an
+  axis turns all that is behind it. A branch that is turned as a whole differs by the turn of its first edge either way.
+*/
+inline void set_parent_edges(Orl_layout& layout, Orl_orientation kind)
+{
+  layout.parent_edge = layout.edge_before;
+  if (kind == Orl_orientation::gauge_fixed)
+    for (const Orl_layout::Branch& b : layout.branches)
+      for (std::size_t j = 1; j < b.number_of_edges; ++j)
+        layout.parent_edge[b.first_edge + j] = b.first_edge;
+}
+
+/// A tree of the space.
+struct Orl_coordinates
+{
+  Vec3 root = Vec3::Zero();            ///< [L]
+  std::vector<Quaternion> orientation; ///< per edge
+  std::vector<double> length, radius;  ///< per edge; the radius is that of its end [L]
+  std::vector<double> base_radius;     ///< per branch [L]
+  std::vector<double>
+      attachment; ///< per branch: number of a node of the parent, and the share of the edge behind
+};
+
+/// The same tree in space. Buffers are reused.
+struct Orl_geometry
+{
+  std::vector<Vec3> node;        ///< relative to the origin of the space [L]
+  std::vector<double> radius;    ///< per node [L]
+  std::vector<Quaternion> frame; ///< per edge; the z axis is its direction
+};
+
+inline Quaternion turn_about_z(double angle)
+{
+  return Quaternion(std::cos(0.5 * angle), 0, 0, std::sin(0.5 * angle));
+}
+
+/// The shortest turn from one unit vector to another; about an axis near x or y if they are opposite.
+inline Quaternion shortest_turn(const Vec3& from, const Vec3& to)
+{
+  const double c = from.dot(to);
+  if (c < -1 + 1e-12) {
+    const Vec3 other = std::abs(from.x()) < 0.8 ? Vec3::UnitX() : Vec3::UnitY();
+    const Vec3 axis = from.cross(other).normalized();
+    return Quaternion(0, axis.x(), axis.y(), axis.z());
+  }
+  const Vec3 axis = from.cross(to);
+  Quaternion q(1 + c, axis.x(), axis.y(), axis.z());
+  q.normalize();
+  return q;
+}
+
+/// The place on branch `b` at `t`, the number of a node and the share of the edge behind it.
+inline Vec3
+place_on_branch(const Orl_layout& layout, const Orl_geometry& geometry, std::size_t b, double t)
+{
+  const std::size_t first = layout.first_node(b), n = layout.branches[b].number_of_edges;
+  const double clamped = std::min(static_cast<double>(n), std::max(0.0, t));
+  const auto k = std::min(n - 1, static_cast<std::size_t>(clamped));
+  const double f = clamped - static_cast<double>(k);
+  if (f == 0)
+    return geometry.node[first + k];
+  return (1 - f) * geometry.node[first + k] + f * geometry.node[first + k + 1];
+}
+
+inline Quaternion compose(Orl_orientation kind, const Quaternion& parent, const Quaternion& q)
+{
+  return kind == Orl_orientation::world_axes ? q * parent : parent * q;
+}
+inline Quaternion relative(Orl_orientation kind, const Quaternion& parent, const Quaternion& frame)
+{
+  return kind == Orl_orientation::world_axes ? frame * parent.conjugate()
+                                             : parent.conjugate() * frame;
+}
+
+inline void build_geometry(const Orl_layout& layout,
+                           const Orl_coordinates& x,
+                           Orl_orientation kind,
+                           Orl_geometry& result)
+{
+  result.node.resize(layout.number_of_nodes());
+  result.radius.resize(layout.number_of_nodes());
+  result.frame.resize(layout.number_of_edges());
+  for (std::size_t b = 0; b < layout.branches.size(); ++b) {
+    const Orl_layout::Branch& branch = layout.branches[b];
+    const std::size_t first = layout.first_node(b);
+    result.node[first] = branch.parent == none
+                             ? x.root
+                             : place_on_branch(layout, result, branch.parent, x.attachment[b]);
+    result.radius[first] = x.base_radius[b];
+    for (std::size_t j = 0; j < branch.number_of_edges; ++j) {
+      const std::size_t e = branch.first_edge + j;
+      const std::size_t p = layout.parent_edge[e];
+      result.frame[e] =
+          p == none ? x.orientation[e] : compose(kind, result.frame[p], x.orientation[e]);
+      result.frame[e].normalize();
+      result.node[first + j + 1] =
+          result.node[first + j] + x.length[e] * (result.frame[e] * Vec3::UnitZ());
+      result.radius[first + j + 1] = x.radius[e];
+    }
+  }
+}
+
+/// Orders of the branches of a tree, the trunk's is 0; `none` for branches without length, and for what hangs on them.
+inline std::vector<std::size_t> orders_of_branches(const Orl_layout& layout,
+                                                   const Orl_coordinates& x)
+{
+  std::vector<std::size_t> order(layout.branches.size(), none);
+  for (std::size_t b = 0; b < order.size(); ++b) {
+    const Orl_layout::Branch& branch = layout.branches[b];
+    double length = 0;
+    for (std::size_t j = 0; j < branch.number_of_edges; ++j)
+      length += x.length[branch.first_edge + j];
+    if (branch.parent == none)
+      order[b] = 0;
+    else if (length > 0 && order[branch.parent] != none)
+      order[b] = order[branch.parent] + 1;
+  }
+  return order;
+}
+
+/// Angle of the rotation between two orientations: in [0, pi], whatever the signs of the quaternions. [rad]
+inline double angle_between(const Quaternion& a, const Quaternion& b)
+{
+  const Quaternion d = a.conjugate() * b; // atan2 keeps small angles, acos would not
+  return 2 * std::atan2(d.vec().norm(), std::abs(d.w()));
+}
+
+/// What the distances of trees are made of; constant over the data set, one weight per coordinate.
+struct Orl_weights
+{
+  std::vector<double> orientation, length, radius; ///< per edge
+  std::vector<double> base_radius, attachment;     ///< per branch
+  double root = 1;
+};
+
+inline double distance(const Orl_coordinates& x,
+                       const Orl_coordinates& y,
+                       const Orl_weights& w,
+                       Orl_metric metric)
+{
+  double total = 0;
+  const auto add = [&](double difference) {
+    total += metric == Orl_metric::square ? difference * difference : std::abs(difference);
+  };
+  add(w.root * (x.root - y.root).norm());
+  for (std::size_t e = 0; e < x.length.size(); ++e) {
+    const double angle = angle_between(x.orientation[e], y.orientation[e]);
+    add(metric == Orl_metric::cone ? std::min(x.length[e], y.length[e]) * std::min(angle, 2.0)
+                                   : w.orientation[e] * angle);
+    add(w.length[e] * (x.length[e] - y.length[e]));
+    add(w.radius[e] * (x.radius[e] - y.radius[e]));
+  }
+  for (std::size_t b = 0; b < x.attachment.size(); ++b) {
+    add(w.base_radius[b] * (x.base_radius[b] - y.base_radius[b]));
+    add(w.attachment[b] * (x.attachment[b] - y.attachment[b]));
+  }
+  return metric == Orl_metric::square ? std::sqrt(total) : total;
+}
+
+/// What shrinks beyond an end of the path keeps this share of what it is there: where some edges of a branch all but
+/// vanish, everything that grows on these gathers in one place.
+constexpr double least_beyond_end = 0.5;
+
+/// The value at `t` of a quantity that is not negative: linear between `x` and `y`, and beyond an end where it grows;
+/// where it shrinks beyond an end it decays with the same slope at that end, and nears its least share.
+inline double positive_value(double x, double y, double t)
+{
+  if (t >= 0 && t <= 1)
+    return (1 - t) * x + t * y;
+  const double end = t > 1 ? y : x, step = t > 1 ? y - x : x - y, beyond = t > 1 ? t - 1 : -t;
+  if (step >= 0 || end <= 0)
+    return end > 0 ? end + beyond * step : 0;
+  constexpr double rest = 1 - least_beyond_end;
+  return end * (least_beyond_end + rest * std::exp(beyond * step / (rest * end)));
+}
+
+/// The same for a quantity in [0, `last`]; beyond an end it nears a place on the way to the bound that it moves to, and never
+/// reaches the bound: branches that move along their parent do not gather at its end.
+inline double bounded_value(double x, double y, double t, double last)
+{
+  if (t >= 0 && t <= 1)
+    return (1 - t) * x + t * y;
+  const bool is_falling = t > 1 ? y < x : x < y;
+  return is_falling ? std::min(last, positive_value(x, y, t))
+                    : std::max(0.0, last - positive_value(last - x, last - y, t));
+}
+
+/// The orientation at `t`; beyond an end at most `maximal_turn` further. [rad]
+inline Quaternion
+orientation_at(const Quaternion& x, const Quaternion& y, double t, double maximal_turn)
+{
+  if (t == 0)
+    return x;
+  if (t == 1)
+    return y;
+  const Vec3 u = rotation_log(x.conjugate() * y);
+  const double angle = u.norm();
+  if (t > 1 && angle * (t - 1) > maximal_turn)
+    t = 1 + maximal_turn / angle;
+  else if (t < 0 && -angle * t > maximal_turn)
+    t = -maximal_turn / angle;
+  Quaternion q = x * rotation_exp(t * u);
+  q.normalize();
+  return q;
+}
+
+/// The tree at `t` on the path from `x` (0) to `y` (1) and beyond.
+inline void coordinates_at(const Orl_layout& layout,
+                           const Orl_coordinates& x,
+                           const Orl_coordinates& y,
+                           double t,
+                           double maximal_turn,
+                           Orl_coordinates& result)
+{
+  const std::size_t n = layout.number_of_edges(), m = layout.branches.size();
+  result.root = (1 - t) * x.root + t * y.root;
+  result.orientation.resize(n);
+  result.length.resize(n);
+  result.radius.resize(n);
+  result.base_radius.resize(m);
+  result.attachment.resize(m);
+  for (std::size_t e = 0; e < n; ++e) {
+    result.orientation[e] = orientation_at(x.orientation[e], y.orientation[e], t, maximal_turn);
+    result.length[e] = positive_value(x.length[e], y.length[e], t);
+    result.radius[e] = positive_value(x.radius[e], y.radius[e], t);
+  }
+  for (std::size_t b = 0; b < m; ++b) {
+    result.base_radius[b] = positive_value(x.base_radius[b], y.base_radius[b], t);
+    const std::size_t p = layout.branches[b].parent;
+    const double last = p == none ? 0 : static_cast<double>(layout.branches[p].number_of_edges);
+    result.attachment[b] = bounded_value(x.attachment[b], y.attachment[b], t, last);
+  }
+}
+
+/// Makes no edge thicker than the place it grows from.
+inline void limit_radii(const Orl_layout& layout, Orl_coordinates& x)
+{
+  for (std::size_t b = 0; b < layout.branches.size(); ++b) {
+    const Orl_layout::Branch& branch = layout.branches[b];
+    if (branch.parent != none) {
+      const Orl_layout::Branch& parent = layout.branches[branch.parent];
+      const auto k = std::min(parent.number_of_edges, static_cast<std::size_t>(x.attachment[b]));
+      const auto next = std::min(parent.number_of_edges, k + 1);
+      const auto at = [&](std::size_t i) {
+        return i == 0 ? x.base_radius[branch.parent] : x.radius[parent.first_edge + i - 1];
+      };
+      const double f = x.attachment[b] - static_cast<double>(k);
+      x.base_radius[b] = std::min(x.base_radius[b], (1 - f) * at(k) + f * at(next));
+    }
+    double above = x.base_radius[b];
+    for (std::size_t e = branch.first_edge; e < branch.first_edge + branch.number_of_edges; ++e)
+      above = x.radius[e] = std::min(x.radius[e], above);
+  }
+}
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_MODEL_ORL_COORDINATES_H

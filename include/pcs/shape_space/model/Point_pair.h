@@ -1,0 +1,33 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Points of two trees that correspond.
+
+#ifndef PCS_SHAPE_SPACE_MODEL_POINT_PAIR_H
+#define PCS_SHAPE_SPACE_MODEL_POINT_PAIR_H
+
+#include <pcs/core/Orl_correspondences.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace pcs {
+namespace shape_space {
+
+constexpr std::uint32_t no_point = Orl_correspondences::no_point;
+
+/// A point of tree 1 and one of tree 2, on an edge. One of them may be missing.
+using Point_pair = Orl_correspondences::Pair;
+
+struct Transport_summary
+{
+  std::size_t number_of_windows = 0;
+  std::size_t number_of_failures = 0; ///< windows whose method did not come to its end
+  double worst_violation = 0;         ///< of the marginals of a window, whose mass is 1 [-]
+  double mean_violation = 0;          ///< over windows
+  double mean_remaining = 0;          ///< mass without counterpart within reach, over windows [-]
+};
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_MODEL_POINT_PAIR_H

@@ -1,0 +1,370 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// A rooted tree of any Boost.Graph type, copied to arrays: parents before children, coincident nodes joined.
+
+#ifndef PCS_SHAPE_SPACE_MODEL_ROOTED_TREE_H
+#define PCS_SHAPE_SPACE_MODEL_ROOTED_TREE_H
+
+#include <pcs/core/errors.h>
+
+#include <CGAL/number_utils.h>
+
+#include <boost/graph/graph_traits.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+
+using Vec3 = Eigen::Vector3d;
+
+/// No node, no branch.
+constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+
+/// Edges shorter than this share of the tree's extent join their ends: they have no direction.
+constexpr double shortest_edge = 1e-9;
+
+/// Coordinates relative to the root, lengths and radii beyond this are refused, as if they were not finite: squares of them
+/// must be finite, and sums of these, far beyond the ends of a path, too. [L]
+constexpr double most_length = 1e100;
+
+inline bool is_length(double value)
+{
+  return value >= 0 && value <= most_length;
+}
+inline bool is_place(const Vec3& p)
+{
+  return is_length(p.cwiseAbs().maxCoeff()) && p.allFinite();
+}
+
+/// Nodes in an order in which parents come first; node 0 is the root.
+struct Rooted_tree
+{
+  Vec3 origin = Vec3::Zero();       ///< of the local coordinates, in those of the caller [L]
+  double extent = 0;                ///< diagonal of the bounding box [L]
+  std::vector<Vec3> points;         ///< relative to `origin` [L]
+  std::vector<double> radii;        ///< [L]
+  std::vector<double> base_radii;   ///< at the beginning of the edge to a node; NaN: not given [L]
+  std::vector<std::size_t> parents; ///< `none` for the root
+  std::vector<std::size_t>
+      sources; ///< index of the vertex in the caller's graph; `none` for a node put on an axis
+  std::vector<std::size_t> first_child,
+      children;                ///< children of v: [first_child[v], first_child[v + 1])
+  std::vector<double> heights; ///< length of the longest path from a node to a tip [L]
+  std::vector<double> weights; ///< length of all edges below a node [L]
+  std::vector<std::size_t> node_of_source;
+
+  std::size_t size() const { return points.size(); }
+  double edge_length(std::size_t v) const { return (points[v] - points[parents[v]]).norm(); }
+};
+
+namespace internal {
+
+/// A total order that does not depend on how the nodes are numbered, nor on rounding, nor on how the tree stands, save for
+/// copies of a branch that are turned against each other.
+inline bool is_before(const Rooted_tree& tree, std::size_t v, std::size_t w)
+{
+  const double step = 1e-9 * tree.extent; // lengths that differ by less are the same
+  const auto key = [&](std::size_t x) {
+    const double length = tree.edge_length(x);
+    return std::array<double, 4>{std::round((tree.heights[x] + length) / step),
+                                 std::round((tree.weights[x] + length) / step),
+                                 std::round(length / step),
+                                 std::round(tree.radii[x] / step)};
+  };
+  const auto a = key(v), b = key(w);
+  if (a != b)
+    return a > b;
+  for (int i = 0; i < 3; ++i)
+    if (tree.points[v][i] != tree.points[w][i])
+      return tree.points[v][i] < tree.points[w][i];
+  if (tree.radii[v] != tree.radii[w])
+    return tree.radii[v] > tree.radii[w];
+  return v < w;
+}
+
+/// Fills children, heights and weights from parents; children in the order of `is_before`.
+inline void connect(Rooted_tree& tree)
+{
+  const std::size_t n = tree.size();
+  tree.heights.assign(n, 0);
+  tree.weights.assign(n, 0);
+  tree.first_child.assign(n + 1, 0);
+  for (std::size_t v = 1; v < n; ++v)
+    ++tree.first_child[tree.parents[v] + 1];
+  std::partial_sum(tree.first_child.begin(), tree.first_child.end(), tree.first_child.begin());
+  tree.children.resize(n > 0 ? n - 1 : 0);
+  std::vector<std::size_t> next(tree.first_child.begin(), tree.first_child.end());
+  for (std::size_t v = 1; v < n; ++v)
+    tree.children[next[tree.parents[v]]++] = v;
+  for (std::size_t v = n; v-- > 0;) {
+    // sorted first, so that the sum of weights has one order, too
+    std::sort(tree.children.begin() + static_cast<std::ptrdiff_t>(tree.first_child[v]),
+              tree.children.begin() + static_cast<std::ptrdiff_t>(tree.first_child[v + 1]),
+              [&](std::size_t a, std::size_t b) { return is_before(tree, a, b); });
+    for (std::size_t c = tree.first_child[v]; c < tree.first_child[v + 1]; ++c) {
+      const std::size_t w = tree.children[c];
+      const double length = tree.edge_length(w);
+      tree.heights[v] = std::max(tree.heights[v], length + tree.heights[w]);
+      tree.weights[v] += length + tree.weights[w];
+    }
+  }
+}
+
+/// For each node, how many branches the one that carries it hangs on, where every branch goes on along the longest path.
+inline std::vector<std::size_t> levels_of_branches(const Rooted_tree& tree)
+{
+  std::vector<std::size_t> level(tree.size(), 0);
+  for (std::size_t v = 0; v < tree.size(); ++v) // parents first
+    for (std::size_t c = tree.first_child[v]; c < tree.first_child[v + 1]; ++c)
+      level[tree.children[c]] = level[v] + (c == tree.first_child[v] ? 0 : 1);
+  return level;
+}
+
+/// A node this close to the axis of an edge, as a share of the radius there, begins a branch on that axis.
+constexpr double on_axis = 1e-3;
+
+/*!
+  For each child of `p`, that whose edge runs through it, the longest one first of equals, or `none`. Children are looked at by
+  the x coordinates of their directions: O(n log n) for `n` of them in all directions.
+*/
+inline std::vector<std::size_t>
+axes_through(const Rooted_tree& tree, std::size_t p, const std::vector<std::size_t>& children)
+{
+  const std::size_t n = children.size();
+  std::vector<std::size_t> result(n, none);
+  const double shortest = shortest_edge * tree.extent;
+  std::vector<Vec3> edge(n);
+  std::vector<double> length(n);
+  std::vector<std::pair<double, std::size_t>> by_x; // of its direction, and the child
+  double thickest = tree.radii[p];
+  for (std::size_t i = 0; i < n; ++i) {
+    edge[i] = tree.points[children[i]] - tree.points[p];
+    length[i] = edge[i].norm();
+    thickest = std::max(thickest, tree.radii[children[i]]);
+    if (length[i] > shortest)
+      by_x.emplace_back(edge[i].x() / length[i], i);
+  }
+  std::sort(by_x.begin(), by_x.end());
+  std::vector<std::size_t> near;
+  for (const auto& [x, i] : by_x) {
+    // unit vectors are no farther apart than this, where one end is as near to the other edge
+    const double apart = 1e-9 + 1.5 * std::max(on_axis * thickest, shortest) / length[i];
+    near.clear();
+    for (auto other =
+             std::lower_bound(by_x.begin(), by_x.end(), std::make_pair(x - apart, std::size_t(0)));
+         other != by_x.end() && other->first <= x + apart;
+         ++other)
+      near.push_back(other->second);
+    std::sort(near.begin(), near.end());
+    double longest = length[i] * (1 + shortest_edge);
+    for (const std::size_t j : near) {
+      const double t = edge[i].dot(edge[j]) / std::max(edge[j].squaredNorm(), 1e-300);
+      const double radius = (1 - t) * tree.radii[p] + t * tree.radii[children[j]];
+      if (j != i && length[j] > longest && t > 0 &&
+          (edge[i] - t * edge[j]).norm() <= std::max(on_axis * radius, shortest)) {
+        result[i] = j;
+        longest = length[j];
+      }
+    }
+  }
+  return result;
+}
+
+/*!
+  Where the first node of a branch lies on the axis of its parent, between two nodes of that, the axis gets a node there.
+  Without it the branch would seem to begin at the node before, and to run along its parent.
+*/
+inline Rooted_tree with_nodes_at_bases(const Rooted_tree& all)
+{
+  const std::size_t n = all.size();
+  std::vector<std::vector<std::size_t>> children(n);
+  for (std::size_t v = 1; v < n; ++v)
+    children[all.parents[v]].push_back(v);
+  Rooted_tree tree;
+  tree.origin = all.origin;
+  tree.extent = all.extent;
+  const auto add = [&](const Vec3& point, double radius, std::size_t parent, std::size_t source) {
+    tree.points.push_back(point);
+    tree.radii.push_back(radius);
+    tree.parents.push_back(parent);
+    tree.sources.push_back(source);
+    return tree.size() - 1;
+  };
+  std::vector<std::size_t> new_node(n, none);
+  new_node[0] = add(all.points[0], all.radii[0], none, all.sources[0]);
+  struct Base
+  {
+    double share;
+    std::size_t node;
+  };
+  for (std::size_t p = 0; p < n; ++p) {
+    std::vector<std::vector<Base>> bases(children[p].size());
+    const std::vector<std::size_t> axis_of = axes_through(all, p, children[p]);
+    for (std::size_t i = 0; i < children[p].size(); ++i)
+      if (axis_of[i] != none) {
+        std::size_t axis = axis_of[i];
+        while (axis_of[axis] != none) // an axis that lies on a longer one itself
+          axis = axis_of[axis];
+        const Vec3 w = all.points[children[p][axis]] - all.points[p];
+        const double t = (all.points[children[p][i]] - all.points[p]).dot(w) / w.squaredNorm();
+        bases[axis].push_back({t, children[p][i]});
+      }
+    for (std::size_t j = 0; j < children[p].size(); ++j)
+      if (axis_of[j] == none) {
+        std::size_t last = new_node[p];
+        const std::size_t w = children[p][j];
+        std::stable_sort(bases[j].begin(), bases[j].end(), [](const Base& a, const Base& b) {
+          return a.share < b.share;
+        });
+        for (const Base& base : bases[j]) {
+          const double radius = (1 - base.share) * all.radii[p] + base.share * all.radii[w];
+          last = add(all.points[base.node], radius, last, none);
+          new_node[base.node] =
+              add(all.points[base.node], all.radii[base.node], last, all.sources[base.node]);
+        }
+        new_node[w] = add(all.points[w], all.radii[w], last, all.sources[w]);
+      }
+  }
+  return tree;
+}
+
+/// The tree without edges that have no length.
+inline Rooted_tree without_coincident_nodes(const Rooted_tree& all, std::size_t number_of_sources)
+{
+  const double threshold = shortest_edge * all.extent;
+  Rooted_tree tree;
+  tree.origin = all.origin;
+  tree.extent = all.extent;
+  tree.node_of_source.resize(number_of_sources);
+  std::vector<std::size_t> new_node(all.size());
+  std::vector<double> base(all.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t v = 0; v < all.size(); ++v) {
+    const std::size_t p = all.parents[v];
+    const bool is_joined =
+        p != none && (all.points[v] - tree.points[new_node[p]]).norm() <= threshold;
+    if (is_joined) {
+      new_node[v] = new_node[p];
+      // a node that stands there twice says nothing of what begins there
+      base[v] = all.radii[v] == all.radii[p] ? base[p] : all.radii[v];
+    } else {
+      new_node[v] = tree.size();
+      tree.points.push_back(all.points[v]);
+      tree.radii.push_back(all.radii[v]);
+      tree.base_radii.push_back(p == none ? all.radii[v] : base[p]);
+      tree.parents.push_back(p == none ? none : new_node[p]);
+      tree.sources.push_back(all.sources[v]);
+    }
+    if (all.sources[v] == none)
+      continue;
+    tree.node_of_source[all.sources[v]] = new_node[v];
+    if (tree.sources[new_node[v]] == none)
+      tree.sources[new_node[v]] = all.sources[v];
+  }
+  connect(tree);
+  return tree;
+}
+
+} // namespace internal
+
+/*!
+  Copies `graph`. The rules for the caller's data are checked here: one root, every other vertex has one parent and is
+  reached from the root, coordinates and radii are finite and not beyond `most_length`, radii are not negative.
+  Throws `pcs::Invalid_input` with a message that begins with `caller`.
+*/
+template <class TreeGraph, class NodePointMap, class RadiusMap, class VertexIndexMap>
+Rooted_tree make_rooted_tree(const TreeGraph& graph,
+                             const NodePointMap& point_map,
+                             const RadiusMap& radius_map,
+                             const VertexIndexMap& index_map,
+                             const std::string& caller)
+{
+  using Vertex = typename boost::graph_traits<TreeGraph>::vertex_descriptor;
+  const auto fail = [&](const std::string& what) { throw Invalid_input(caller + ": " + what); };
+  const auto n = static_cast<std::size_t>(num_vertices(graph));
+  if (n < 2)
+    fail("the tree has " + std::to_string(n) + " nodes, at least 2 are needed");
+
+  std::vector<std::size_t> parents(n, none);
+  std::vector<Vertex> vertices_by_index(n, *vertices(graph).first);
+  std::vector<char> is_taken(n, 0);
+  const auto index_of = [&](const Vertex& v) {
+    const auto i = static_cast<std::size_t>(get(index_map, v));
+    if (i >= n)
+      fail("a vertex has the index " + std::to_string(i) + ", which is not below the " +
+           std::to_string(n) + " nodes");
+    return i;
+  };
+  for (auto [v, end] = vertices(graph); v != end; ++v) {
+    const std::size_t i = index_of(*v);
+    if (is_taken[i])
+      fail("two vertices have the index " + std::to_string(i));
+    is_taken[i] = 1;
+    vertices_by_index[i] = *v;
+    for (auto [e, last] = out_edges(*v, graph); e != last; ++e) {
+      const std::size_t c = index_of(target(*e, graph));
+      if (parents[c] != none)
+        fail("node " + std::to_string(c) + " has two parents, " + std::to_string(parents[c]) +
+             " and " + std::to_string(i));
+      parents[c] = i;
+    }
+  }
+  const auto root = std::find(parents.begin(), parents.end(), none);
+  if (root == parents.end())
+    fail("the graph has no root: every node has a parent");
+  if (std::count(parents.begin(), parents.end(), none) > 1)
+    fail("the graph has " + std::to_string(std::count(parents.begin(), parents.end(), none)) +
+         " nodes without parent; a tree has one root");
+
+  // breadth first along out-edges, so that parents come first
+  Rooted_tree all;
+  std::vector<std::size_t> new_node(n, none);
+  const auto add = [&](std::size_t i) {
+    const auto& p = get(point_map, vertices_by_index[i]);
+    const Vec3 position(CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z()));
+    const double radius = CGAL::to_double(get(radius_map, vertices_by_index[i]));
+    if (!position.allFinite())
+      fail("the coordinates of node " + std::to_string(i) + " are not finite");
+    if (!is_length(radius))
+      fail("the radius of node " + std::to_string(i) + " is not a number from 0 to 1e100");
+    new_node[i] = all.size();
+    all.points.push_back(position);
+    all.radii.push_back(radius);
+    all.parents.push_back(parents[i] == none ? none : new_node[parents[i]]);
+    all.sources.push_back(i);
+  };
+  add(static_cast<std::size_t>(root - parents.begin()));
+  for (std::size_t done = 0; done < all.size(); ++done)
+    for (auto [e, last] = out_edges(vertices_by_index[all.sources[done]], graph); e != last; ++e)
+      add(static_cast<std::size_t>(get(index_map, target(*e, graph))));
+  if (all.size() != n)
+    fail(std::to_string(n - all.size()) + " nodes are not reached from the root: there is a cycle");
+
+  Vec3 low = all.points[0], high = low;
+  for (const Vec3& p : all.points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  all.origin = all.points[0];
+  all.extent = (high - low).norm();
+  if (!(all.extent > 0) || !is_length(all.extent))
+    fail("the nodes of the tree do not span a box of a size between 0 and 1e100");
+  for (Vec3& p : all.points)
+    p -= all.origin;
+  return internal::without_coincident_nodes(internal::with_nodes_at_bases(all), n);
+}
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_MODEL_ROOTED_TREE_H

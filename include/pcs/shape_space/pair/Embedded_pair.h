@@ -1,0 +1,37 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Two trees on their common topology: all that a shape space of them keeps.
+
+#ifndef PCS_SHAPE_SPACE_PAIR_EMBEDDED_PAIR_H
+#define PCS_SHAPE_SPACE_PAIR_EMBEDDED_PAIR_H
+
+#include <pcs/core/Orl_options.h>
+#include <pcs/shape_space/model/Common_topology.h>
+#include <pcs/shape_space/model/Orl_coordinates.h>
+#include <pcs/shape_space/points/Point_instances.h>
+
+#include <array>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+
+struct Embedded_pair
+{
+  Orl_orientation orientation = Orl_orientation::gauge_fixed;
+  Virtual_direction direction = Virtual_direction::of_partner;
+  bool has_unit_weights = false;
+  Quaternion turn = Quaternion::Identity(); ///< after which tree 2 stands like tree 1
+  Common_topology topology;
+  Orl_layout layout;
+  std::array<Orl_coordinates, 2> x;
+  std::array<Orl_geometry, 2> geometry;
+  std::vector<char> is_relative;
+  Orl_weights weights;
+  Point_instances instances;
+};
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_PAIR_EMBEDDED_PAIR_H

@@ -1,0 +1,296 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The common topology of two trees, for the kind of growth that explains more of what differs.
+
+#ifndef PCS_SHAPE_SPACE_PAIR_MATCH_TREES_H
+#define PCS_SHAPE_SPACE_PAIR_MATCH_TREES_H
+
+#include <pcs/core/Orl_options.h>
+#include <pcs/internal/progress.h>
+#include <pcs/shape_space/embedding/refine_yaw.h>
+#include <pcs/shape_space/matching/Branch_matching.h>
+#include <pcs/shape_space/matching/build_topology.h>
+#include <pcs/shape_space/matching/find_yaw_candidates.h>
+#include <pcs/shape_space/model/Common_topology.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+
+/// Of a matching of two trees.
+struct Matching_cost
+{
+  double energy = 0; ///< in units of the kind of growth [-]
+  double share =
+      0; ///< of what it could cost: 0 if the smaller tree is all found in the other, 1 if nothing is [-]
+  bool is_at_tips = false; ///< which kind of growth it is
+  double turn = 0;         ///< angle about the vertical by which tree 2 stands like tree 1 [rad]
+};
+
+/*!
+  Matches the branches of two trees; the result has no branches when `progress` asks to stop.
+
+  The energies of the two kinds of growth are in units of their own. What the greater tree has more costs in any case, and
+  what is above that is compared with what it would be if nothing were matched; growth at tips must leave clearly less of it.
+  So must other trunks than the longest paths, or nearly as long ones, for trees that grow along their branches.
+*/
+template <class ConcurrencyTag>
+class Tree_matching
+{
+public:
+  Tree_matching(const std::array<const Rooted_tree*, 2>& trees,
+                const Matching_weights& weights,
+                const Alignment_options& standing,
+                pcs::internal::Progress& progress,
+                Common_topology& result)
+    : m_trees(trees),
+      m_weights(weights),
+      m_standing(standing),
+      m_progress(progress),
+      m_result(result)
+  {
+  }
+
+  Matching_cost run()
+  {
+    if (m_weights.growth != Branch_growth::at_tips || m_weights.is_published)
+      if (!match_along_branches())
+        return m_cost;
+    if (m_weights.growth != Branch_growth::along_branches && !m_weights.is_published)
+      match_at_tips();
+    return m_cost;
+  }
+
+private:
+  using Matching = Branch_matching<ConcurrencyTag>;
+  using Result = std::shared_ptr<const Matched_branch>;
+
+  // virtual trees that grew at their tips leave less than 0.6 of it; of plants whose leaves stretch most leave 0.7 and more,
+  // and the days between others are predicted better by stretched branches then
+  static constexpr double clearly = 2. / 3;
+  // the longest path through a tomato is its stem and one of its leaves, on every day another one; but of all paths some
+  // other one matches at a little less cost by chance
+  static constexpr double wide_fork_ratio = 0.3;
+
+  static constexpr double any_cost = std::numeric_limits<double>::infinity();
+
+  /// What two trees cost at least, and what they cost more if nothing is matched. [-]
+  struct Range
+  {
+    double least, more;
+  };
+  Range range(double unit_1, double unit_2) const
+  {
+    const double a = m_trees[0]->weights[0] / unit_1, b = m_trees[1]->weights[0] / unit_2;
+    const double least = m_weights.single * std::min(1.0, m_weights.length) * std::abs(a - b);
+    return {least, m_weights.single * (a + b) - least};
+  }
+
+  void build(const Matching& matching, const Result& trunk, bool is_at_tips, const Range& from)
+  {
+    m_result.paths = {matching.paths(0), matching.paths(1)};
+    internal::Topology_builder builder(*m_trees[0], *m_trees[1], m_result.paths);
+    m_result.branches = builder.run(*trunk);
+    if (m_cost.turn != 0)
+      m_cost.turn = refine_yaw(m_trees, m_result, m_standing.up, m_cost.turn);
+    m_cost.is_at_tips = is_at_tips;
+    m_cost.energy = trunk->cost;
+    m_cost.share =
+        from.more > 0 ? std::min(1.0, std::max(0.0, trunk->cost - from.least) / from.more) : 0;
+  }
+
+  std::array<Branch_paths, 2> paths(double other_ratio) const
+  {
+    return {Matching::find_paths(*m_trees[0], m_weights, other_ratio),
+            Matching::find_paths(*m_trees[1], m_weights, other_ratio)};
+  }
+
+  /// A matching with trunks that are the longest paths, or nearly so, unless others leave clearly less. Nothing is looked for
+  /// that costs `most` or more.
+  Result match_trunks(Matching& matching, const Range& from, double most)
+  {
+    const auto share_of = [&](double cost) { return std::max(0.0, cost - from.least); };
+    matching.use_other_trunks(false);
+    // where it is known that others that cost less than `most` leave clearly less, it does not matter how much
+    const Result longest = matching.run(m_progress, from.least + share_of(most) / clearly);
+    const double least = longest ? from.least + clearly * share_of(longest->cost) : most;
+    if (m_progress.is_cancelled() || !matching.has_other_trunks())
+      return longest;
+    matching.use_other_trunks(true);
+    const Result other = matching.run(m_progress, std::min(most, least));
+    return other ? other : longest;
+  }
+
+  /// Of the ways in which the trees may stand, that of least cost, if it is below `most`.
+  template <class Match>
+  Result match_standing(Matching& matching, const Range& from, double most, const Match& match)
+  {
+    Result best = match(most);
+    if (m_progress.is_cancelled())
+      return nullptr;
+    double turn = 0;
+    if (m_standing.alignment == Orl_alignment::rotate_about_up) {
+      most = from.least + turned_share * std::max(0.0, (best ? best->cost : most) - from.least);
+      for (const double angle : promising_turns(matching)) {
+        matching.set_turn(angle, m_standing.up);
+        if (Result found = match(most); found && found->cost < most) {
+          best = std::move(found);
+          most = best->cost;
+          turn = angle;
+        }
+      }
+    }
+    if (!best || m_progress.is_cancelled())
+      return nullptr;
+    m_cost.turn = turn;
+    return best;
+  }
+
+  /// Turns after which a look at the trees shows less cost than without, the best first.
+  std::vector<double> promising_turns(Matching& matching) const
+  {
+    std::vector<double> angles = find_yaw_candidates<ConcurrencyTag>(matching.energy(),
+                                                                     m_standing.up,
+                                                                     number_of_looks,
+                                                                     m_progress);
+    angles.insert(angles.begin(), 0);
+    std::vector<double> cost;
+    for (const double angle : angles) {
+      if (!m_progress(0))
+        return {};
+      matching.set_turn(angle, m_standing.up);
+      cost.push_back(matching.look());
+    }
+    std::vector<std::size_t> order(angles.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
+      return cost[i] < cost[j];
+    });
+    std::vector<double> result;
+    for (const std::size_t k : order)
+      if (cost[k] < cost[0] && result.size() < number_of_turns)
+        result.push_back(angles[k]);
+    return result;
+  }
+
+  bool match_along_branches()
+  {
+    Matching matching(*m_trees[0], *m_trees[1], m_weights, paths(wide_fork_ratio));
+    const Range from = range(m_trees[0]->heights[0], m_trees[1]->heights[0]);
+    const Result trunk = match_standing(matching, from, any_cost, [&](double most) {
+      return match_trunks(matching, from, most);
+    });
+    if (trunk)
+      build(matching, trunk, false, from);
+    return trunk != nullptr;
+  }
+
+  void match_at_tips()
+  {
+    const double highest = std::max(m_trees[0]->heights[0], m_trees[1]->heights[0]);
+    const Range from = range(highest, highest);
+    Matching matching(*m_trees[0], *m_trees[1], m_weights, paths(1), true);
+    matching.set_number_of_trunk_trials(2 * m_weights.number_of_trials);
+    // where both kinds are looked at, `m_cost` is that of branches that stretch
+    const double most = m_weights.growth == Branch_growth::at_tips
+                            ? any_cost
+                            : from.least + clearly * m_cost.share * from.more;
+    const Result trunk = match_standing(matching, from, most, [&](double limit) {
+      Result found = matching.run(m_progress, limit);
+      return found && found->cost < limit ? found : nullptr;
+    });
+    if (trunk)
+      build(matching, trunk, true, from);
+  }
+
+  static constexpr std::size_t number_of_looks = 8, number_of_turns = 2;
+  // of what is left without a turn, that with a turn leaves: copies with noise that stand right seem to be turned by chance
+  static constexpr double turned_share = 0.95;
+
+  std::array<const Rooted_tree*, 2> m_trees;
+  const Matching_weights& m_weights;
+  const Alignment_options& m_standing;
+  pcs::internal::Progress& m_progress;
+  Common_topology& m_result;
+  Matching_cost m_cost;
+};
+
+namespace internal {
+
+/// How far the edges of a tree reach from its root: the same however it stands. [L^3]
+inline double second_moment(const Rooted_tree& tree)
+{
+  double sum = 0;
+  for (std::size_t v = 1; v < tree.size(); ++v)
+    sum += tree.edge_length(v) * tree.points[v].squaredNorm();
+  return sum;
+}
+
+/// Whether a tree comes first where two are matched: the shorter one, of equally long ones the more compact one, if that can
+/// be told in spite of rounding.
+inline bool is_clearly_shorter(const Rooted_tree& one, const Rooted_tree& two)
+{
+  constexpr double rounding = 1e-9;
+  for (const auto& [a, b] : {std::make_pair(one.weights[0], two.weights[0]),
+                             std::make_pair(one.heights[0], two.heights[0]),
+                             std::make_pair(second_moment(one), second_moment(two))})
+    if (std::abs(a - b) > rounding * (a + b))
+      return a < b;
+  return false;
+}
+
+} // namespace internal
+
+/*!
+  Matches the branches of two trees, in an order of their own: the way back has the same matching. Where it cannot be told
+  which tree comes first, both orders are tried, and the matching is that which leaves less of what the trees differ by.
+*/
+template <class ConcurrencyTag>
+Matching_cost match_trees(const std::array<const Rooted_tree*, 2>& trees,
+                          const Matching_weights& weights,
+                          const Alignment_options& standing,
+                          pcs::internal::Progress& progress,
+                          Common_topology& result)
+{
+  using Matching = Tree_matching<ConcurrencyTag>;
+  constexpr double rounding = 1e-9;
+  Matching_cost cost;
+  cost.share = std::numeric_limits<double>::infinity();
+  if (!internal::is_clearly_shorter(*trees[1], *trees[0])) {
+    cost = Matching(trees, weights, standing, progress, result).run();
+    if (cost.share <= rounding || progress.is_cancelled() ||
+        internal::is_clearly_shorter(*trees[0], *trees[1]))
+      return cost;
+  }
+  Common_topology back;
+  Matching_cost cost_back = Matching({trees[1], trees[0]}, weights, standing, progress, back).run();
+  if (progress.is_cancelled()) {
+    result = Common_topology();
+    return cost_back;
+  }
+  if (!(cost_back.share < cost.share * (1 - rounding)))
+    return cost;
+  cost_back.turn = 0 - cost_back.turn; // no negative zero
+  std::swap(back.paths[0], back.paths[1]);
+  for (Common_branch& b : back.branches) {
+    std::swap(b.path[0], b.path[1]);
+    std::swap(b.node[0], b.node[1]);
+    std::swap(b.attachment[0], b.attachment[1]);
+  }
+  result = std::move(back);
+  return cost_back;
+}
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_PAIR_MATCH_TREES_H

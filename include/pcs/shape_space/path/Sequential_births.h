@@ -1,0 +1,125 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Branches that only one end of a path has, born one after the other: a branch when the tip of its parent passes its base.
+
+#ifndef PCS_SHAPE_SPACE_PATH_SEQUENTIAL_BIRTHS_H
+#define PCS_SHAPE_SPACE_PATH_SEQUENTIAL_BIRTHS_H
+
+#include <pcs/shape_space/model/Orl_coordinates.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+
+/// Memory of `Sequential_births`, used again.
+struct Sequential_births_buffers
+{
+  std::vector<double> life, length; ///< per branch
+};
+
+/*!
+  Changes the lengths of branches that only one end of a path has.
+
+  Tips move evenly from the birth of their branch to the end of the path. In total as much length is born in any part of the path
+  as if all were born together, so the path has constant speed in `Orl_metric::sum`, where it is one of the shortest paths:
+  no length ever turns back.
+*/
+class Sequential_births
+{
+public:
+  Sequential_births(const Orl_layout& layout, Sequential_births_buffers& buffers)
+    : m_layout(layout), m_buffers(buffers)
+  {
+  }
+
+  /// `x` is the tree at `t`, in [0, 1], of the path from `a` to `b`. Linear in the number of edges and, per step of a search
+  /// that ends after a few dozen, of branches.
+  void operator()(const Orl_coordinates& a, const Orl_coordinates& b, double t, Orl_coordinates& x)
+  {
+    grow(a, b, t, x);
+    grow(b, a, 1 - t, x); // what is lost is born on the way back
+  }
+
+private:
+  double length_of(const Orl_coordinates& x, std::size_t b) const
+  {
+    const Orl_layout::Branch& branch = m_layout.branches[b];
+    double sum = 0;
+    for (std::size_t j = 0; j < branch.number_of_edges; ++j)
+      sum += x.length[branch.first_edge + j];
+    return sum;
+  }
+
+  /// Distance from the base of branch `b` to a place on it.
+  double arc(const Orl_coordinates& x, std::size_t b, double place) const
+  {
+    const Orl_layout::Branch& branch = m_layout.branches[b];
+    double sum = 0;
+    for (std::size_t j = 0; j < branch.number_of_edges; ++j)
+      sum += std::min(1.0, std::max(0.0, place - static_cast<double>(j))) *
+             x.length[branch.first_edge + j];
+    return sum;
+  }
+
+  void grow(const Orl_coordinates& from, const Orl_coordinates& to, double t, Orl_coordinates& x)
+  {
+    std::vector<double>&life = m_buffers.life, &length = m_buffers.length;
+    const std::size_t n = m_layout.branches.size();
+    life.assign(n, 1);
+    length.assign(n, 0);
+    double total = 0;
+    for (std::size_t b = 0; b < n; ++b) {
+      if (length_of(from, b) > 0)
+        continue;
+      length[b] = length_of(to, b);
+      total += length[b];
+      const std::size_t p = m_layout.branches[b].parent;
+      if (p != none && length[p] > 0)
+        life[b] = std::max(least_life, life[p] * (1 - arc(to, p, to.attachment[b]) / length[p]));
+    }
+    const double rest = rest_of_time(t * total, total);
+    for (std::size_t b = 0; b < n; ++b) {
+      if (!(length[b] > 0))
+        continue;
+      double reach = length[b] * std::max(0.0, 1 - rest / life[b]);
+      const Orl_layout::Branch& branch = m_layout.branches[b];
+      for (std::size_t e = branch.first_edge; e < branch.first_edge + branch.number_of_edges; ++e) {
+        x.length[e] = std::min(to.length[e], reach);
+        reach = std::max(0.0, reach - to.length[e]);
+      }
+    }
+  }
+
+  /// The time before the end when as much is born as wanted. What is born falls with it, in pieces that are linear and ever
+  /// flatter, so that Newton's steps from 0 never go too far and end on the right piece.
+  double rest_of_time(double wanted, double total) const
+  {
+    const std::vector<double>&life = m_buffers.life, &length = m_buffers.length;
+    double rest = 0, born = total;
+    for (;;) {
+      double slope = 0;
+      for (std::size_t b = 0; b < life.size(); ++b)
+        slope += rest < life[b] ? length[b] / life[b] : 0;
+      const double next = slope > 0 ? rest + (born - wanted) / slope : rest;
+      if (!(next > rest))
+        return rest;
+      rest = std::min(1.0, next);
+      born = 0;
+      for (std::size_t b = 0; b < life.size(); ++b)
+        born += length[b] * std::max(0.0, 1 - rest / life[b]);
+    }
+  }
+
+  static constexpr double least_life = 1e-6; // of a branch at the very tip of its parent [-]
+
+  const Orl_layout& m_layout;
+  Sequential_births_buffers& m_buffers;
+};
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_PATH_SEQUENTIAL_BIRTHS_H

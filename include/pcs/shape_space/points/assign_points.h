@@ -1,0 +1,290 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Which edge of a tree each point of its scan lies on, by distance and normals.
+
+#ifndef PCS_SHAPE_SPACE_POINTS_ASSIGN_POINTS_H
+#define PCS_SHAPE_SPACE_POINTS_ASSIGN_POINTS_H
+
+#include <pcs/core/Orl_options.h>
+#include <pcs/internal/parallel.h>
+#include <pcs/linear_algebra/small_symmetric.h>
+#include <pcs/neighborhood/Nearest_neighbors.h>
+#include <pcs/shape_space/model/Rooted_tree.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+
+/// A piece of a branch: a cone around an axis.
+struct Tube
+{
+  Vec3 from, to;                 ///< [L]
+  double from_radius, to_radius; ///< [L]
+  std::size_t branch;
+};
+
+/// A tree of boxes around tubes; finds the tubes that a point may lie on.
+class Tube_tree
+{
+public:
+  Tube_tree(const std::vector<Tube>& tubes, double noise, double absolute_noise)
+    : m_tubes(tubes), m_noise(noise), m_absolute(absolute_noise)
+  {
+    m_order.resize(tubes.size());
+    for (std::size_t i = 0; i < tubes.size(); ++i)
+      m_order[i] = i;
+    if (!tubes.empty())
+      build(0, tubes.size());
+  }
+
+  /// Squared distance from the surface of a tube in units of the noise, and the direction from its axis.
+  double misfit(std::size_t tube, const Vec3& p, Vec3* radial = nullptr) const
+  {
+    const Tube& t = m_tubes[tube];
+    const Vec3 axis = t.to - t.from;
+    const double s = std::min(1.0, std::max(0.0, (p - t.from).dot(axis) / axis.squaredNorm()));
+    const Vec3 off = p - t.from - s * axis;
+    const double d = off.norm(), r = (1 - s) * t.from_radius + s * t.to_radius;
+    if (radial)
+      *radial = d > 0 ? Vec3(off / d) : Vec3(Vec3::Zero());
+    const double x = (d - r) / (m_noise * r + m_absolute);
+    return x * x;
+  }
+
+  /// Calls `visit(tube, misfit)` for all tubes whose misfit can be below the bound that `visit` returns.
+  template <class Visit>
+  void search(const Vec3& p, const Visit& visit) const
+  {
+    if (m_cells.empty())
+      return;
+    double bound = std::numeric_limits<double>::infinity();
+    std::array<std::pair<double, std::size_t>, 128> stack;
+    std::size_t size = 0;
+    stack[size++] = {least_misfit(m_cells[0], p), 0};
+    while (size > 0) {
+      const auto [least, c] = stack[--size];
+      if (least > bound)
+        continue;
+      const Cell& cell = m_cells[c];
+      if (cell.left == none) {
+        for (std::size_t i = cell.begin; i < cell.end; ++i)
+          bound = visit(m_order[i], misfit(m_order[i], p));
+        continue;
+      }
+      const double a = least_misfit(m_cells[cell.left], p);
+      const double b = least_misfit(m_cells[cell.right], p);
+      // the nearer one last, so that it is looked at first; the depth is that of a balanced tree
+      stack[size++] = a < b ? std::make_pair(b, cell.right) : std::make_pair(a, cell.left);
+      stack[size++] = a < b ? std::make_pair(a, cell.left) : std::make_pair(b, cell.right);
+    }
+  }
+
+private:
+  struct Cell
+  {
+    Vec3 low, high;
+    double radius;
+    std::size_t left = none, right = none, begin, end;
+  };
+
+  double least_misfit(const Cell& cell, const Vec3& p) const
+  {
+    const Vec3 off = (cell.low - p).cwiseMax(p - cell.high).cwiseMax(0.0);
+    const double outside = std::max(0.0, off.norm() - cell.radius);
+    const double x = outside / (m_noise * cell.radius + m_absolute);
+    return x * x;
+  }
+
+  std::size_t build(std::size_t begin, std::size_t end)
+  {
+    Cell cell;
+    cell.begin = begin;
+    cell.end = end;
+    cell.low = cell.high = m_tubes[m_order[begin]].from;
+    cell.radius = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Tube& t = m_tubes[m_order[i]];
+      cell.low = cell.low.cwiseMin(t.from).cwiseMin(t.to);
+      cell.high = cell.high.cwiseMax(t.from).cwiseMax(t.to);
+      cell.radius = std::max({cell.radius, t.from_radius, t.to_radius});
+    }
+    const std::size_t index = m_cells.size();
+    m_cells.push_back(cell);
+    if (end - begin > 4) {
+      Eigen::Index axis = 0;
+      (cell.high - cell.low).maxCoeff(&axis);
+      const std::size_t middle = begin + (end - begin) / 2;
+      const auto at = [&](std::size_t i) { return m_tubes[i].from[axis] + m_tubes[i].to[axis]; };
+      std::nth_element(
+          m_order.begin() + static_cast<std::ptrdiff_t>(begin),
+          m_order.begin() + static_cast<std::ptrdiff_t>(middle),
+          m_order.begin() + static_cast<std::ptrdiff_t>(end),
+          [&](std::size_t a, std::size_t b) { return at(a) != at(b) ? at(a) < at(b) : a < b; });
+      const std::size_t left = build(begin, middle), right = build(middle, end);
+      m_cells[index].left = left;
+      m_cells[index].right = right;
+    }
+    return index;
+  }
+
+  const std::vector<Tube>& m_tubes;
+  double m_noise, m_absolute;
+  std::vector<std::size_t> m_order;
+  std::vector<Cell> m_cells;
+};
+
+namespace internal {
+
+/// Direction of least variance of the nearest points; its sign has no meaning.
+inline Vec3 estimate_normal(const std::vector<Vec3>& points,
+                            const neighborhood::Nearest_neighbors& search,
+                            std::size_t i,
+                            std::size_t k)
+{
+  thread_local std::vector<neighborhood::Nearest_neighbors::Neighbor> found;
+  search(points[i], k + 1, found);
+  Vec3 mean = Vec3::Zero();
+  for (const auto& f : found)
+    mean += points[f.index];
+  mean /= static_cast<double>(found.size());
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (const auto& f : found)
+    covariance += (points[f.index] - mean) * (points[f.index] - mean).transpose();
+  const auto eigen = linear_algebra::symmetric_eigen<3>(covariance);
+  return eigen.vectors.col(0);
+}
+
+} // namespace internal
+
+/// Beyond the end of a piece and before the next of its branch, on the outer side of a bend, both are as near: there the plane
+/// that halves the angle between them decides. `tube` is either of them.
+inline std::size_t side_of_bend(const std::vector<Tube>& tubes, std::size_t tube, const Vec3& p)
+{
+  const auto is_next = [&](std::size_t k) {
+    return k + 1 < tubes.size() && tubes[k].branch == tubes[k + 1].branch &&
+           tubes[k].to == tubes[k + 1].from;
+  };
+  for (const std::size_t k : {tube, tube - 1})
+    if (k < tubes.size() && is_next(k)) {
+      const Vec3 one = tubes[k].to - tubes[k].from, two = tubes[k + 1].to - tubes[k + 1].from;
+      const Vec3 off = p - tubes[k].to;
+      if (off.dot(one) >= 0 && off.dot(two) <= 0)
+        return off.dot(one.stableNormalized() + two.stableNormalized()) < 0 ? k : k + 1;
+    }
+  return tube;
+}
+
+/*!
+  The tube of each point. A point belongs to the branch whose surface it is nearest to, in units of the noise; where
+  several branches are about as near, at forks, the deviation of the point's normal from the direction away from the axis
+  decides as well. `normals` may be empty: then they are estimated, at forks only.
+*/
+template <class ConcurrencyTag>
+std::vector<std::size_t> assign_points(const std::vector<Vec3>& points,
+                                       const std::vector<Vec3>& normals,
+                                       const std::vector<Tube>& tubes,
+                                       double extent,
+                                       const Point_assignment_options& options)
+{
+  if (points.empty() || tubes.empty())
+    return std::vector<std::size_t>(points.size(), none);
+  // noise that does not shrink with the radius: how far points lie from the nearest surface
+  double absolute = 1e-6 * extent;
+  {
+    const Tube_tree tree(tubes, 0, 1);
+    std::vector<double> distances;
+    const std::size_t step = std::max<std::size_t>(1, points.size() / 2000);
+    for (std::size_t i = 0; i < points.size(); i += step) {
+      double least = std::numeric_limits<double>::infinity();
+      tree.search(points[i],
+                  [&](std::size_t, double misfit) { return least = std::min(least, misfit); });
+      distances.push_back(std::sqrt(least));
+    }
+    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+    std::nth_element(distances.begin(), middle, distances.end());
+    absolute = std::max(absolute, *middle);
+  }
+
+  // how far the best branch must be ahead for normals not to matter: three times the noise
+  constexpr double margin = 9;
+  const Tube_tree tree(tubes, options.noise, absolute);
+  struct Candidate
+  {
+    std::size_t tube;
+    double misfit;
+  };
+  const auto candidates = [&](std::size_t i, std::vector<Candidate>& found) {
+    found.clear();
+    double least = std::numeric_limits<double>::infinity();
+    tree.search(points[i], [&](std::size_t tube, double misfit) {
+      if (misfit <= least + margin) {
+        found.push_back({tube, misfit});
+        least = std::min(least, misfit);
+      }
+      return least + margin;
+    });
+    // the best tube of each branch
+    std::sort(found.begin(), found.end(), [&](const Candidate& a, const Candidate& b) {
+      return a.misfit != b.misfit ? a.misfit < b.misfit : a.tube < b.tube;
+    });
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < found.size() && found[k].misfit <= least + margin; ++k) {
+      bool is_new = true;
+      for (std::size_t j = 0; j < kept && is_new; ++j)
+        is_new = tubes[found[j].tube].branch != tubes[found[k].tube].branch;
+      if (is_new)
+        found[kept++] = found[k];
+    }
+    found.resize(kept);
+  };
+
+  std::vector<std::size_t> result(points.size(), none);
+  std::vector<char> is_ambiguous(points.size(), 0);
+  pcs::internal::for_each_index<ConcurrencyTag>(points.size(), [&](std::size_t i) {
+    thread_local std::vector<Candidate> found;
+    candidates(i, found);
+    result[i] = found.front().tube;
+    is_ambiguous[i] = found.size() > 1;
+  });
+  const neighborhood::Nearest_neighbors search(points);
+  const auto settle = [&](std::size_t i) { result[i] = side_of_bend(tubes, result[i], points[i]); };
+  pcs::internal::for_each_index<ConcurrencyTag>(points.size(), [&](std::size_t i) {
+    if (!is_ambiguous[i]) {
+      settle(i);
+      return;
+    }
+    thread_local std::vector<Candidate> found;
+    candidates(i, found);
+    const Vec3 normal =
+        normals.empty() ? internal::estimate_normal(points, search, i, options.number_of_neighbors)
+                        : normals[i];
+    double least = std::numeric_limits<double>::infinity();
+    for (const Candidate& c : found) {
+      Vec3 radial;
+      tree.misfit(c.tube, points[i], &radial);
+      const double cosine = std::min(1.0, std::abs(radial.dot(normal)));
+      const double angle = std::acos(cosine) / options.normal_angle;
+      const double score = c.misfit + angle * angle;
+      if (score < least) {
+        least = score;
+        result[i] = c.tube;
+      }
+    }
+    settle(i);
+  });
+  return result;
+}
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_POINTS_ASSIGN_POINTS_H

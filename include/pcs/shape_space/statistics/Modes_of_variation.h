@@ -1,0 +1,72 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// How trees differ from their mean.
+
+#ifndef PCS_SHAPE_SPACE_STATISTICS_MODES_OF_VARIATION_H
+#define PCS_SHAPE_SPACE_STATISTICS_MODES_OF_VARIATION_H
+
+#include <pcs/core/Orl_options.h>
+#include <pcs/shape_space/model/Orl_coordinates.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+
+/// The space of modes as seen in features of trees.
+struct Mode_features
+{
+  Mode_inner_product measure = Mode_inner_product::branches;
+  Eigen::VectorXd mean;                 ///< [L]
+  Eigen::MatrixXd directions;           ///< per standard deviation of each mode (column) [L]
+  std::vector<double> weight, variance; ///< per block, see `Tree_covariance`
+  double least_deviation = 0;           ///< smaller ones are rounding [L]
+};
+
+/// Where a tree lies in the space of the modes.
+struct Mode_coordinates
+{
+  Eigen::VectorXd scores; ///< in standard deviations [-]
+  /// From the space of the modes: root of the mean square over the branches of the tree, each in units of how much it
+  /// varies; the inputs are 1 from their mean. [-]
+  double distance = 0;
+};
+
+/// Directions in which trees differ most, at their mean.
+struct Modes_of_variation
+{
+  Orl_coordinates mean;       ///< least squares
+  Eigen::MatrixXd directions; ///< tangent vectors at the mean, one column per mode, of unit length
+  Eigen::VectorXd deviations; ///< change of a tree by one standard deviation of each mode [L]
+  Eigen::VectorXd shares;     ///< of the variance, largest first [-]
+  Eigen::MatrixXd scores;     ///< of each tree (row) for each mode, in standard deviations [-]
+  Eigen::VectorXd center;     ///< mean of the tangent vectors; rounding if the mean is exact
+  Mode_features features;
+  std::vector<std::vector<double>>
+      left_out; ///< distance of each tree from the space of k modes of all others [-]
+
+  std::size_t size() const { return static_cast<std::size_t>(deviations.size()); }
+  /// Share of the variance that the first `k` modes have. [-]
+  double share(std::size_t k) const
+  {
+    return size() > 0 ? shares.head(static_cast<Eigen::Index>(std::min(k, size()))).sum() : 1;
+  }
+  /// Root of the mean square of the left-out distances for `k` modes of the others. [-]
+  double left_out_error(std::size_t k) const
+  {
+    double sum = 0;
+    for (const auto& d : left_out)
+      sum += d[std::min(k, d.size() - 1)] * d[std::min(k, d.size() - 1)];
+    return left_out.empty() ? 0 : std::sqrt(sum / static_cast<double>(left_out.size()));
+  }
+};
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_STATISTICS_MODES_OF_VARIATION_H

@@ -1,0 +1,387 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// A distribution of trees, learned from a few, and new trees drawn from it.
+
+#ifndef PCS_SHAPE_SPACE_STATISTICS_TREE_DISTRIBUTION_H
+#define PCS_SHAPE_SPACE_STATISTICS_TREE_DISTRIBUTION_H
+
+#include <pcs/core/Orl_options.h>
+#include <pcs/internal/Random_stream.h>
+#include <pcs/shape_space/statistics/Direction_chart.h>
+#include <pcs/shape_space/statistics/mean_tree.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+
+/*!
+  A Gaussian in a space where lengths and radii are logarithms, so that they stay positive, and directions those of a
+  `Direction_chart`, so that branches keep their slant; and a chance for each branch to be there if its parent is.
+
+  A sum of the deviations of the inputs with normal weights has their covariance. For few trees this is shrunk towards one
+  where branches vary by themselves, but each as a whole, in the ways in which that branch varies in the inputs (O. Ledoit,
+  M. Wolf 2003; J. Schaefer, K. Strimmer 2005; their target has blocks here, not numbers). Branches that few trees have
+  are turned, stretched and thickened as a whole as those of their order are. Values of branches that an input lacks are
+  unknown, not 0: they count as those of the middle, and the deviations of the others are scaled up for it.
+*/
+class Tree_distribution
+{
+public:
+  /// `has[t][b]`: whether tree `t` has branch `b`; `up`: direction of growth, of unit length.
+  template <class ConcurrencyTag>
+  Tree_distribution(const Orl_layout& layout,
+                    const std::vector<const Orl_coordinates*>& trees,
+                    const std::vector<std::vector<char>>& has,
+                    Orl_orientation orientation,
+                    const Vec3& up,
+                    ConcurrencyTag)
+    : m_layout(layout), m_has(has), m_orientation(orientation)
+  {
+    const std::size_t m = layout.branches.size();
+    m_count.assign(m, 0);
+    m_order.assign(m, 0);
+    for (std::size_t b = 0; b < m; ++b) {
+      for (std::size_t t = 0; t < trees.size(); ++t)
+        m_count[b] += has[t][b] ? 1 : 0;
+      if (layout.branches[b].parent != none)
+        m_order[b] = m_order[layout.branches[b].parent] + 1;
+    }
+    find_counts();
+    find_seats(trees);
+    find_middle<ConcurrencyTag>(trees);
+    find_deviations(trees, up);
+    pool_variances();
+    if (trees.size() > 2)
+      estimate_shrinkage();
+  }
+
+  /// The tree number `index` of a family: the same for the same seed, whatever else is drawn.
+  Orl_coordinates
+  draw(std::uint64_t seed, std::uint64_t index, const Tree_sampling_options& o) const
+  {
+    pcs::internal::Random_stream random(seed, index);
+    const auto normal = [&] {
+      double x = random.normal();
+      for (int i = 0; i < 1000 && std::abs(x) > o.truncation; ++i)
+        x = random.normal();
+      return std::min(o.truncation, std::max(-o.truncation, x));
+    };
+    const double shrinkage = o.shrinkage < 0 ? m_shrinkage : o.shrinkage;
+    const Eigen::VectorXd z = draw_deviations(shrinkage, normal);
+    const std::vector<char> presence = draw_presence(o, [&] { return random.uniform(); });
+    Orl_coordinates x = m_middle;
+    std::vector<Direction_chart::Pair> turns(m_layout.number_of_edges());
+    for (std::size_t b = 0; b < m_layout.branches.size(); ++b) {
+      const Orl_layout::Branch& branch = m_layout.branches[b];
+      const std::size_t parent = branch.parent;
+      const bool is_there = presence[b] != 0;
+      Eigen::Index k = first(b);
+      double total = 0;
+      for (std::size_t e = branch.first_edge; e < branch.first_edge + branch.number_of_edges;
+           ++e, k += 4) {
+        turns[e] = o.spread * z.segment<2>(k);
+        x.length[e] = is_there ? m_middle.length[e] * std::exp(o.spread * z[k + 2]) : 0;
+        x.radius[e] = is_there ? m_middle.radius[e] * std::exp(o.spread * z[k + 3]) : 0;
+        total += x.length[e];
+      }
+      x.base_radius[b] = total > 0 ? m_middle.base_radius[b] * std::exp(o.spread * z[k]) : 0;
+      if (parent != none) {
+        const double last = static_cast<double>(m_layout.branches[parent].number_of_edges);
+        const double low = o.do_keep_in_range ? m_lowest_seat[parent] : 0,
+                     high = o.do_keep_in_range ? m_highest_seat[parent] : last;
+        x.attachment[b] =
+            std::min(high, std::max(low, m_middle.attachment[b] + o.spread * z[k + 1]));
+      }
+    }
+    const std::vector<Quaternion> frame = m_chart.exp(turns);
+    for (std::size_t e = 0; e < frame.size(); ++e) {
+      const std::size_t p = m_layout.parent_edge[e];
+      x.orientation[e] = p == none ? frame[e] : relative(m_orientation, frame[p], frame[e]);
+    }
+    return x;
+  }
+
+  /// Weight of the covariance where branches vary by themselves. [-]
+  double shrinkage() const { return m_shrinkage; }
+
+private:
+  /// Four coordinates per edge, then two per branch: one block for each branch.
+  Eigen::Index first(std::size_t b) const
+  {
+    return static_cast<Eigen::Index>(4 * m_layout.branches[b].first_edge + 2 * b);
+  }
+  Eigen::Index size(std::size_t b) const
+  {
+    return static_cast<Eigen::Index>(4 * m_layout.branches[b].number_of_edges + 2);
+  }
+
+  /// Which branches are there, order by order. Where there are more or fewer than in all inputs, the branches change that
+  /// were drawn with the least odds.
+  template <class Uniform>
+  std::vector<char> draw_presence(const Tree_sampling_options& o, const Uniform& uniform) const
+  {
+    const std::size_t m = m_layout.branches.size();
+    std::vector<char> result(m, 1);
+    std::vector<double> odds(m,
+                             0); // how much the chance is greater than what was drawn, as logarithm
+    for (std::size_t b = 0; b < m; ++b)
+      if (const std::size_t parent = m_layout.branches[b].parent; parent != none) {
+        const double chance = m_count[b] / m_count[parent], drawn = uniform();
+        odds[b] = o.do_draw_presence
+                      ? std::log(chance / (1 - chance)) - std::log(drawn / (1 - drawn))
+                      : m_count[b] - 0.5 * static_cast<double>(m_has.size());
+      }
+    std::vector<std::size_t> open;
+    for (std::size_t k = 1; k < m_fewest.size(); ++k) {
+      open.clear();
+      for (std::size_t b = 0; b < m; ++b)
+        if (m_order[b] == k) {
+          result[b] = 0;
+          if (result[m_layout.branches[b].parent])
+            open.push_back(b);
+        }
+      std::stable_sort(open.begin(), open.end(), [&](std::size_t a, std::size_t b) {
+        return odds[a] > odds[b];
+      });
+      std::size_t count = 0;
+      while (count < open.size() && odds[open[count]] > 0)
+        ++count;
+      if (o.do_draw_presence && o.do_keep_in_range)
+        count = std::min({open.size(), m_most[k], std::max(count, m_fewest[k])});
+      for (std::size_t i = 0; i < count; ++i)
+        result[open[i]] = 1;
+    }
+    return result;
+  }
+
+  template <class Normal>
+  Eigen::VectorXd draw_deviations(double shrinkage, const Normal& normal) const
+  {
+    const auto n = static_cast<std::size_t>(m_deviations.cols());
+    const double divisor = std::sqrt(std::max(1.0, static_cast<double>(n) - 1));
+    Eigen::VectorXd z = Eigen::VectorXd::Zero(m_deviations.rows());
+    for (Eigen::Index t = 0; t < m_deviations.cols(); ++t)
+      z += normal() / divisor * m_deviations.col(t);
+    for (std::size_t b = 0; b < m_layout.branches.size(); ++b) {
+      const double members = m_count[b] - 1;
+      // all branches together: unknown values are 0, and vary too little
+      z.segment(first(b), size(b)) *=
+          std::sqrt((1 - shrinkage)) * divisor / std::sqrt(std::max(1.0, members));
+      // the branch by itself
+      const double own = std::sqrt(shrinkage / (members + prior));
+      for (std::size_t t = 0; t < n; ++t)
+        if (m_has[t][b] && members > 0)
+          z.segment(first(b), size(b)) +=
+              own * normal() *
+              m_deviations.col(static_cast<Eigen::Index>(t)).segment(first(b), size(b));
+      Pool score;
+      for (Eigen::Index i = 0; i < score.size(); ++i)
+        score[i] = own * std::sqrt(prior) * normal() * m_pool[m_order[b]][i];
+      for (Eigen::Index k = first(b); k < first(b) + size(b) - 2; k += 4)
+        z.segment<4>(k) += score.head<4>();
+      z.segment<2>(first(b) + size(b) - 2) += score.tail<2>();
+    }
+    return z;
+  }
+
+  /// Radii that are not known are 0, and stay so.
+  static double log_ratio(double value, double middle)
+  {
+    constexpr double least = 1e-6;
+    return middle > 0 ? std::log(std::max(value, least * middle) / middle) : 0;
+  }
+
+  /// Least and largest number of branches of each order in the inputs.
+  void find_counts()
+  {
+    const std::size_t orders = 1 + *std::max_element(m_order.begin(), m_order.end());
+    m_fewest.assign(orders, m_order.size());
+    m_most.assign(orders, 0);
+    for (const std::vector<char>& has : m_has) {
+      std::vector<std::size_t> count(orders, 0);
+      for (std::size_t b = 0; b < m_order.size(); ++b)
+        count[m_order[b]] += has[b] ? 1 : 0;
+      for (std::size_t k = 0; k < orders; ++k) {
+        m_fewest[k] = std::min(m_fewest[k], count[k]);
+        m_most[k] = std::max(m_most[k], count[k]);
+      }
+    }
+  }
+
+  /// The part of each branch that carries branches in an input.
+  void find_seats(const std::vector<const Orl_coordinates*>& trees)
+  {
+    m_lowest_seat.assign(m_order.size(), std::numeric_limits<double>::infinity());
+    m_highest_seat.assign(m_order.size(), 0);
+    for (std::size_t b = 0; b < m_order.size(); ++b)
+      for (std::size_t t = 0; t < trees.size(); ++t)
+        if (const std::size_t parent = m_layout.branches[b].parent; parent != none && m_has[t][b]) {
+          m_lowest_seat[parent] = std::min(m_lowest_seat[parent], trees[t]->attachment[b]);
+          m_highest_seat[parent] = std::max(m_highest_seat[parent], trees[t]->attachment[b]);
+        }
+  }
+
+  /// Middle of the trees that have each branch: geometric means, Frechet means of orientations.
+  template <class ConcurrencyTag>
+  void find_middle(const std::vector<const Orl_coordinates*>& trees)
+  {
+    std::vector<double> ones(trees.size(), 1);
+    m_middle = mean_tree<ConcurrencyTag>(m_layout, trees, ones, Tree_mean::frechet);
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        m_layout.branches.size(),
+        [&](std::size_t b) {
+          std::vector<const Orl_coordinates*> members;
+          for (std::size_t t = 0; t < trees.size(); ++t)
+            if (m_has[t][b])
+              members.push_back(trees[t]);
+          const auto n = static_cast<double>(members.size());
+          const auto geometric = [&](const auto& get) {
+            double sum = 0;
+            for (const Orl_coordinates* x : members) {
+              if (!(get(*x) > 0))
+                return 0.0;
+              sum += std::log(get(*x));
+            }
+            return std::exp(sum / n);
+          };
+          m_middle.base_radius[b] = geometric([&](const auto& x) { return x.base_radius[b]; });
+          m_middle.attachment[b] = 0;
+          for (const Orl_coordinates* x : members)
+            m_middle.attachment[b] += x->attachment[b] / n;
+          const Orl_layout::Branch& branch = m_layout.branches[b];
+          std::vector<Quaternion> q(members.size());
+          for (std::size_t e = branch.first_edge; e < branch.first_edge + branch.number_of_edges;
+               ++e) {
+            m_middle.length[e] = geometric([&](const auto& x) { return x.length[e]; });
+            m_middle.radius[e] = geometric([&](const auto& x) { return x.radius[e]; });
+            for (std::size_t i = 0; i < members.size(); ++i)
+              q[i] = members[i]->orientation[e];
+            m_middle.orientation[e] = l2_mean_rotation(q, std::vector<double>(q.size(), 1));
+          }
+        },
+        8);
+  }
+
+  /// Column t: tree t against the middle; 0 for branches that it does not have.
+  void find_deviations(const std::vector<const Orl_coordinates*>& trees, const Vec3& up)
+  {
+    const std::size_t n = trees.size();
+    std::vector<std::vector<Quaternion>> frame(n);
+    Orl_geometry geometry;
+    build_geometry(m_layout, m_middle, m_orientation, geometry);
+    const std::vector<Quaternion> middle = geometry.frame;
+    for (std::size_t t = 0; t < n; ++t) {
+      build_geometry(m_layout, *trees[t], m_orientation, geometry);
+      frame[t] = geometry.frame;
+    }
+    m_chart = Direction_chart(m_layout, up, middle, frame, m_has, m_middle.length);
+    m_deviations.setZero(
+        static_cast<Eigen::Index>(4 * m_layout.number_of_edges() + 2 * m_layout.branches.size()),
+        static_cast<Eigen::Index>(n));
+    for (std::size_t t = 0; t < n; ++t) {
+      std::vector<Vec3> direction;
+      for (const Quaternion& q : frame[t])
+        direction.push_back(q * Vec3::UnitZ());
+      const std::vector<Direction_chart::Pair> turns = m_chart.log(direction, m_has[t], t);
+      auto z = m_deviations.col(static_cast<Eigen::Index>(t));
+      for (std::size_t b = 0; b < m_layout.branches.size(); ++b) {
+        if (!m_has[t][b])
+          continue;
+        const Orl_layout::Branch& branch = m_layout.branches[b];
+        Eigen::Index k = first(b);
+        for (std::size_t e = branch.first_edge; e < branch.first_edge + branch.number_of_edges;
+             ++e, k += 4) {
+          z.segment<2>(k) = turns[e];
+          z[k + 2] = log_ratio(trees[t]->length[e], m_middle.length[e]);
+          z[k + 3] = log_ratio(trees[t]->radius[e], m_middle.radius[e]);
+        }
+        z[k] = log_ratio(trees[t]->base_radius[b], m_middle.base_radius[b]);
+        z[k + 1] = trees[t]->attachment[b] - m_middle.attachment[b];
+      }
+    }
+  }
+
+  /// Standard deviations of branches as a whole, by order: means over their edges vary so.
+  void pool_variances()
+  {
+    const std::size_t orders = 1 + *std::max_element(m_order.begin(), m_order.end());
+    m_pool.assign(orders, Pool::Zero());
+    std::vector<double> weight(orders, 0);
+    for (std::size_t b = 0; b < m_layout.branches.size(); ++b) {
+      const auto edges = static_cast<double>(m_layout.branches[b].number_of_edges);
+      for (Eigen::Index t = 0; t < m_deviations.cols(); ++t) {
+        Pool whole = Pool::Zero();
+        for (Eigen::Index k = first(b); k < first(b) + size(b) - 2; k += 4)
+          whole.head<4>() += m_deviations.col(t).segment<4>(k) / edges;
+        whole.tail<2>() = m_deviations.col(t).segment<2>(first(b) + size(b) - 2);
+        m_pool[m_order[b]] += whole.cwiseAbs2();
+      }
+      weight[m_order[b]] += m_count[b] - 1;
+    }
+    for (std::size_t k = 0; k < orders; ++k)
+      m_pool[k] = (m_pool[k] / std::max(1.0, weight[k])).cwiseSqrt();
+  }
+
+  /// The share that makes the expected error of the covariance least, from products of the data only.
+  void estimate_shrinkage()
+  {
+    // units: a turn counts with the length it carries, a logarithm with the length or radius itself
+    const Eigen::Index trees = m_deviations.cols();
+    const auto n = static_cast<double>(trees);
+    double typical = 0;
+    for (const double length : m_middle.length)
+      typical += length / static_cast<double>(m_middle.length.size());
+    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(trees, trees);
+    double own_squares = 0, own_fourth = 0; // of products within branches
+    for (std::size_t b = 0; b < m_layout.branches.size(); ++b) {
+      Eigen::MatrixXd z = m_deviations.middleRows(first(b), size(b));
+      const Orl_layout::Branch& branch = m_layout.branches[b];
+      Eigen::Index k = 0;
+      for (std::size_t e = branch.first_edge; e < branch.first_edge + branch.number_of_edges;
+           ++e, k += 4) {
+        z.middleRows<3>(k) *= m_middle.length[e];
+        z.row(k + 1) *= m_chart.reach(b, e);
+        z.row(k + 3) *= m_middle.radius[e];
+      }
+      z.row(k) *= m_middle.base_radius[b];
+      z.row(k + 1) *= typical;
+      const Eigen::MatrixXd own = z.transpose() * z;
+      own_squares += own.squaredNorm() / (n * n);
+      own_fourth += own.diagonal().squaredNorm();
+      gram += own;
+    }
+    // sums over pairs of coordinates of different branches
+    const double squares = gram.squaredNorm() / (n * n) - own_squares;
+    const double noise = ((gram.diagonal().squaredNorm() - own_fourth) / n - squares) / (n - 1);
+    m_shrinkage = squares > 0 ? std::min(1.0, std::max(0.0, noise / squares)) : 0;
+  }
+
+  static constexpr double prior = 2; // further members of each branch that vary like its order
+  // two numbers of direction, logarithms of length and radius, of the radius at the base, attachment
+  using Pool = Eigen::Matrix<double, 6, 1>;
+
+  Orl_layout m_layout;
+  std::vector<std::vector<char>> m_has;
+  Orl_orientation m_orientation;
+  std::vector<double> m_count; // trees that have each branch
+  std::vector<std::size_t> m_order;
+  std::vector<std::size_t> m_fewest, m_most;         // branches of each order in an input
+  std::vector<double> m_lowest_seat, m_highest_seat; // on each branch
+  Orl_coordinates m_middle;
+  Direction_chart m_chart;
+  Eigen::MatrixXd m_deviations;
+  std::vector<Pool> m_pool; // by order
+  double m_shrinkage = 0.5; // two trees do not tell
+};
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_STATISTICS_TREE_DISTRIBUTION_H

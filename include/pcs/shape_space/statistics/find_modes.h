@@ -1,0 +1,319 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// How trees differ from their mean: principal directions in the tangent space there.
+
+#ifndef PCS_SHAPE_SPACE_STATISTICS_FIND_MODES_H
+#define PCS_SHAPE_SPACE_STATISTICS_FIND_MODES_H
+
+#include <pcs/core/Orl_options.h>
+#include <pcs/internal/parallel.h>
+#include <pcs/linear_algebra/small_symmetric.h>
+#include <pcs/shape_space/statistics/Modes_of_variation.h>
+#include <pcs/shape_space/statistics/Tangent_space.h>
+#include <pcs/shape_space/statistics/Tree_covariance.h>
+#include <pcs/shape_space/statistics/Tree_features.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+
+namespace internal {
+
+struct Principal_scores
+{
+  Eigen::MatrixXd vectors; ///< n x k, of unit length
+  Eigen::VectorXd shares;  ///< k, of the trace
+};
+
+/// Eigenvectors of a covariance of trees about their mean that belong to eigenvalues above rounding, largest first.
+inline Principal_scores principal_scores(const Eigen::MatrixXd& covariance)
+{
+  const Eigen::Index n = covariance.rows();
+  const Eigen::MatrixXd center =
+      Eigen::MatrixXd::Identity(n, n) - Eigen::MatrixXd::Constant(n, n, 1 / static_cast<double>(n));
+  const auto eigen = linear_algebra::symmetric_eigen<Eigen::Dynamic>(center * covariance * center);
+  Principal_scores result;
+  const double largest = n > 0 ? std::max(0.0, eigen.values[n - 1]) : 0;
+  Eigen::Index k = 0;
+  while (k < n - 1 && largest > 0 && eigen.values[n - 1 - k] > 1e-12 * largest)
+    ++k;
+  result.vectors = eigen.vectors.rightCols(k).rowwise().reverse();
+  result.shares = eigen.values.tail(k).reverse() / std::max(1e-300, eigen.values.sum());
+  return result;
+}
+
+/// `distance[k]`: of a tree from the space of the first k modes.
+struct Mode_fit
+{
+  Eigen::VectorXd scores;
+  std::vector<double> distance;
+};
+
+/// Weighted least squares over the blocks that the tree has, by modified Gram-Schmidt, so that k modes come before k + 1.
+inline Mode_fit fit_modes(const Tree_features& features,
+                          const Mode_features& modes,
+                          const Eigen::VectorXd& values,
+                          const std::vector<char>& has)
+{
+  Eigen::VectorXd root = Eigen::VectorXd::Zero(values.size());
+  double scale = 0; // expected square for no modes
+  for (std::size_t b = 0; b < features.number_of_blocks(); ++b)
+    if (has[b]) {
+      root.segment(features.first(b), features.size(b)).setConstant(std::sqrt(modes.weight[b]));
+      scale += modes.weight[b] * modes.variance[b];
+    }
+  Eigen::VectorXd rest = root.cwiseProduct(values - modes.mean);
+  const Eigen::Index k = modes.directions.cols();
+  Eigen::MatrixXd q = root.asDiagonal() * modes.directions, r = Eigen::MatrixXd::Zero(k, k);
+  Eigen::VectorXd c = Eigen::VectorXd::Zero(k);
+  Mode_fit result;
+  double apart = 0; // of trees without spread
+  if (!(scale > 0))
+    for (std::size_t b = 0; b < features.number_of_blocks(); ++b)
+      if (has[b] && (values - modes.mean).segment(features.first(b), features.size(b)).norm() >
+                        modes.least_deviation)
+        apart = std::numeric_limits<double>::infinity();
+  const auto add_distance = [&] {
+    result.distance.push_back(scale > 0 ? std::sqrt(rest.squaredNorm() / scale) : apart);
+  };
+  add_distance();
+  for (Eigen::Index j = 0; j < k; ++j) {
+    const double whole = q.col(j).norm();
+    for (int pass = 0; pass < 2; ++pass)
+      for (Eigen::Index i = 0; i < j; ++i) {
+        const double d = q.col(i).dot(q.col(j));
+        q.col(j) -= d * q.col(i);
+        r(i, j) += d;
+      }
+    r(j, j) = q.col(j).norm();
+    if (r(j, j) > 1e-8 * whole) { // else the tree does not tell it from the modes before
+      q.col(j) /= r(j, j);
+      for (int pass = 0; pass < 2; ++pass) {
+        const double d = q.col(j).dot(rest);
+        rest -= d * q.col(j);
+        c[j] += d;
+      }
+    } else {
+      q.col(j).setZero();
+      r(j, j) = 0;
+    }
+    add_distance();
+  }
+  result.scores = Eigen::VectorXd::Zero(k);
+  for (Eigen::Index j = k; j-- > 0;) {
+    double sum = c[j];
+    for (Eigen::Index i = j + 1; i < k; ++i)
+      sum -= r(j, i) * result.scores[i];
+    result.scores[j] = r(j, j) > 0 ? sum / r(j, j) : 0;
+  }
+  return result;
+}
+
+/// The part of `modes` that is seen in features, from deviations of trees and their scores.
+inline void set_features(const Tree_features& features,
+                         const Tree_covariance& covariance,
+                         const Eigen::MatrixXd& scores,
+                         double least_deviation,
+                         Mode_features& modes)
+{
+  modes.least_deviation = least_deviation;
+  modes.mean = covariance.mean();
+  modes.directions =
+      covariance.deviations() * scores / std::max(1.0, static_cast<double>(scores.rows() - 1));
+  modes.weight.clear();
+  modes.variance.clear();
+  for (std::size_t b = 0; b < features.number_of_blocks(); ++b) {
+    modes.weight.push_back(covariance.weight(b));
+    modes.variance.push_back(covariance.variance(b));
+  }
+}
+
+} // namespace internal
+
+/*!
+  At most `most` modes; fewer if the trees do not differ in so many ways. The sign of a mode is such that its largest
+  coordinate is positive.
+
+  Scores are the principal components of the `Tree_covariance` of `Tree_features`: what trees show of the branches that
+  they have. A mode is the change of tangent vectors with its score, by least squares: lengths of branches that come and
+  go change with it, too. All modes together give all trees. Where no branch differs between the trees that have it, all
+  that is left is which trees have it: the modes are those of `Mode_inner_product::metric`, as `features` tell.
+*/
+template <class ConcurrencyTag>
+Modes_of_variation find_modes(const Orl_layout& layout,
+                              const std::vector<const Orl_coordinates*>& trees,
+                              const Orl_weights& weights,
+                              Orl_orientation orientation,
+                              const Orl_coordinates& mean,
+                              std::size_t most,
+                              Mode_inner_product measure = Mode_inner_product::branches)
+{
+  const Tangent_space tangent(layout, mean, weights);
+  const Tree_features features(layout, weights, orientation, mean, measure);
+  const auto n = static_cast<Eigen::Index>(trees.size());
+  Eigen::MatrixXd z(tangent.dimension(), n), values(features.dimension(), n);
+  std::vector<std::vector<char>> has(trees.size());
+  pcs::internal::for_each_index<ConcurrencyTag>(
+      trees.size(),
+      [&](std::size_t t) {
+        z.col(static_cast<Eigen::Index>(t)) = tangent.log(*trees[t]);
+        values.col(static_cast<Eigen::Index>(t)) = features(*trees[t], has[t]);
+      },
+      1);
+  Modes_of_variation result;
+  result.mean = mean;
+  result.center = z.rowwise().mean();
+  z.colwise() -= result.center;
+  double size = 0;
+  for (const double length : mean.length)
+    size += length;
+  const double least = 1e-9 * size; // of equal trees
+  const Tree_covariance covariance(features,
+                                   values,
+                                   has,
+                                   least,
+                                   Eigen::MatrixXd(),
+                                   ConcurrencyTag());
+  const internal::Principal_scores principal = internal::principal_scores(covariance.covariance());
+  const double divisor = std::sqrt(std::max(1.0, static_cast<double>(n - 1)));
+  Eigen::MatrixXd directions(tangent.dimension(), 0);
+  std::vector<double> deviations, shares;
+  result.scores.resize(n, 0);
+  for (Eigen::Index k = 0; k < principal.shares.size() && deviations.size() < most; ++k) {
+    Eigen::VectorXd score = principal.vectors.col(k) * divisor;
+    Eigen::VectorXd u = z * score / (divisor * divisor);
+    const double deviation = u.norm();
+    if (!(deviation > least))
+      continue;
+    u /= deviation;
+    Eigen::Index largest = 0;
+    u.cwiseAbs().maxCoeff(&largest);
+    if (u[largest] < 0) {
+      u = -u;
+      score = -score;
+    }
+    const auto i = static_cast<Eigen::Index>(deviations.size());
+    directions.conservativeResize(Eigen::NoChange, i + 1);
+    result.scores.conservativeResize(Eigen::NoChange, i + 1);
+    directions.col(i) = u;
+    result.scores.col(i) = score;
+    deviations.push_back(deviation);
+    shares.push_back(principal.shares[k]);
+  }
+  if (deviations.empty() && most > 0 && measure == Mode_inner_product::branches)
+    return find_modes<ConcurrencyTag>(layout,
+                                      trees,
+                                      weights,
+                                      orientation,
+                                      mean,
+                                      most,
+                                      Mode_inner_product::metric);
+  result.directions = std::move(directions);
+  result.deviations =
+      Eigen::Map<Eigen::VectorXd>(deviations.data(), static_cast<Eigen::Index>(deviations.size()));
+  result.shares =
+      Eigen::Map<Eigen::VectorXd>(shares.data(), static_cast<Eigen::Index>(shares.size()));
+  result.features.measure = measure;
+  internal::set_features(features, covariance, result.scores, least, result.features);
+  if (n > 2) {
+    result.left_out.resize(trees.size());
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        trees.size(),
+        [&](std::size_t t) {
+          std::vector<Eigen::Index> others;
+          std::vector<std::vector<char>> of_others;
+          for (std::size_t i = 0; i < trees.size(); ++i)
+            if (i != t) {
+              others.push_back(static_cast<Eigen::Index>(i));
+              of_others.push_back(has[i]);
+            }
+          Eigen::MatrixXd x(values.rows(), n - 1), start(n - 1, n - 1);
+          for (Eigen::Index i = 0; i < n - 1; ++i) {
+            x.col(i) = values.col(others[static_cast<std::size_t>(i)]);
+            for (Eigen::Index j = 0; j < n - 1; ++j)
+              start(i, j) = covariance.covariance()(others[static_cast<std::size_t>(i)],
+                                                    others[static_cast<std::size_t>(j)]);
+          }
+          const Tree_covariance rest(features, x, of_others, least, start, CGAL::Sequential_tag());
+          const internal::Principal_scores p = internal::principal_scores(rest.covariance());
+          const Eigen::Index k = std::min(p.vectors.cols(), static_cast<Eigen::Index>(most));
+          Mode_features modes;
+          internal::set_features(features,
+                                 rest,
+                                 p.vectors.leftCols(k) * std::sqrt(static_cast<double>(n - 2)),
+                                 least,
+                                 modes);
+          result.left_out[t] =
+              internal::fit_modes(features, modes, values.col(static_cast<Eigen::Index>(t)), has[t])
+                  .distance;
+        },
+        1);
+  }
+  return result;
+}
+
+/// Scores that explain the branches of a tree best, by the first `most` modes.
+inline Mode_coordinates project_on_modes(const Orl_layout& layout,
+                                         const Orl_weights& weights,
+                                         Orl_orientation orientation,
+                                         const Modes_of_variation& modes,
+                                         const Orl_coordinates& x,
+                                         std::size_t most = none)
+{
+  const Tree_features features(layout, weights, orientation, modes.mean, modes.features.measure);
+  std::vector<char> has;
+  const Eigen::VectorXd values = features(x, has);
+  Mode_features first = modes.features;
+  if (most < modes.size())
+    first.directions.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(most));
+  internal::Mode_fit fit = internal::fit_modes(features, first, values, has);
+  return {std::move(fit.scores), fit.distance.back()};
+}
+
+/// The tree with given scores; missing ones are 0.
+inline Orl_coordinates tree_of_modes(const Orl_layout& layout,
+                                     const Orl_weights& weights,
+                                     const Modes_of_variation& modes,
+                                     const std::vector<double>& scores)
+{
+  const Tangent_space tangent(layout, modes.mean, weights);
+  Eigen::VectorXd z = modes.center;
+  for (std::size_t k = 0; k < scores.size() && k < modes.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    z += scores[k] * modes.deviations[i] * modes.directions.col(i);
+  }
+  return tangent.exp(z);
+}
+
+/*!
+  How unlike the trees of the modes a tree is: the root of the mean of two squares, of its scores and of its distance from
+  the space of the modes, over the middle one of the trees themselves when left out. About 1 for a tree of the same
+  kind; without modes or spread, 0 for the mean and infinite for all others. [-]
+*/
+inline double outlier_score(const Modes_of_variation& modes, const Mode_coordinates& at)
+{
+  const double inside =
+      at.scores.size() > 0 ? at.scores.squaredNorm() / static_cast<double>(at.scores.size()) : 0;
+  if (at.distance <= 1e-9) // rounding
+    return std::sqrt(0.5 * inside);
+  std::vector<double> usual;
+  for (const auto& d : modes.left_out)
+    usual.push_back(d[std::min(modes.size(), d.size() - 1)]);
+  std::sort(usual.begin(), usual.end());
+  const double scale = usual.empty() ? 1 : usual[usual.size() / 2];
+  const double outside = at.distance / scale; // infinite without spread
+  return std::sqrt(0.5 * (inside + outside * outside));
+}
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_STATISTICS_FIND_MODES_H

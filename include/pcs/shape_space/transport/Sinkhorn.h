@@ -1,0 +1,100 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Regularised transport over a sparse list of arcs, as in the text, in logarithms.
+
+#ifndef PCS_SHAPE_SPACE_TRANSPORT_SINKHORN_H
+#define PCS_SHAPE_SPACE_TRANSPORT_SINKHORN_H
+
+#include <pcs/core/Orl_options.h>
+#include <pcs/shape_space/transport/Transport_simplex.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace pcs {
+namespace shape_space {
+
+/*!
+  Alternating projections (M. Cuturi, 2013) with potentials; epsilon is halved from the largest cost down. All arcs have a
+  flow. With arcs that cannot carry the marginals, the violation stays large: it is reported.
+*/
+inline Transport_plan sinkhorn(const Transport_problem& problem, const Sinkhorn_options& options)
+{
+  const std::size_t n = problem.supplies.size(), m = problem.demands.size();
+  double largest = 0;
+  for (const Transport_problem::Arc& a : problem.arcs)
+    largest = std::max(largest, a.cost);
+  if (!(largest > 0))
+    largest = 1;
+  std::vector<double> f(n, 0), g(m, 0), top, sum;
+  double epsilon = largest;
+  const auto logarithm = [&](const Transport_problem::Arc& a) {
+    return (f[a.source] + g[a.target] - a.cost) / epsilon;
+  };
+  // potential += epsilon (log weight - log sum of the plan); a side at a time
+  const auto project = [&](bool is_source) {
+    std::vector<double>& potential = is_source ? f : g;
+    const std::vector<double>& weight = is_source ? problem.supplies : problem.demands;
+    top.assign(potential.size(), -std::numeric_limits<double>::infinity());
+    sum.assign(potential.size(), 0);
+    for (const Transport_problem::Arc& a : problem.arcs) {
+      double& t = top[is_source ? a.source : a.target];
+      t = std::max(t, logarithm(a));
+    }
+    for (const Transport_problem::Arc& a : problem.arcs) {
+      const std::size_t i = is_source ? a.source : a.target;
+      sum[i] += std::exp(logarithm(a) - top[i]);
+    }
+    for (std::size_t i = 0; i < potential.size(); ++i)
+      if (sum[i] > 0)
+        potential[i] += epsilon * (std::log(weight[i]) - top[i] - std::log(sum[i]));
+  };
+  const auto violation = [&] {
+    std::vector<double> defect(problem.supplies);
+    defect.insert(defect.end(), problem.demands.begin(), problem.demands.end());
+    for (const Transport_problem::Arc& a : problem.arcs) {
+      const double mass = std::exp(logarithm(a));
+      defect[a.source] -= mass;
+      defect[n + a.target] -= mass;
+    }
+    double total = 0;
+    for (const double d : defect)
+      total += std::abs(d);
+    return total;
+  };
+  const double last = options.regularization * largest;
+  for (;;) {
+    const bool is_last = epsilon <= last;
+    const std::size_t passes = is_last ? options.iterations : 20;
+    for (std::size_t i = 0; i < passes; ++i) {
+      project(true);
+      project(false);
+      if (is_last && i % 20 == 19 && violation() < options.tolerance)
+        break;
+    }
+    if (is_last)
+      break;
+    epsilon = std::max(last, 0.5 * epsilon);
+  }
+
+  Transport_plan plan;
+  plan.violation = violation();
+  plan.is_complete = plan.violation < options.tolerance;
+  plan.is_unmet.assign(n + m, 0);
+  for (std::size_t k = 0; k < problem.arcs.size(); ++k) {
+    const Transport_problem::Arc& a = problem.arcs[k];
+    const double mass = std::exp(logarithm(a));
+    plan.cost += mass * a.cost;
+    plan.flows.push_back({static_cast<std::uint32_t>(k), mass});
+  }
+  return plan;
+}
+
+} // namespace shape_space
+} // namespace pcs
+
+#endif // PCS_SHAPE_SPACE_TRANSPORT_SINKHORN_H

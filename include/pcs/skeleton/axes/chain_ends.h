@@ -1,0 +1,273 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Where an axis ends: trial pieces beyond it, points that end, points inside of it.
+
+#ifndef PCS_SKELETON_AXES_CHAIN_ENDS_H
+#define PCS_SKELETON_AXES_CHAIN_ENDS_H
+
+#include <pcs/skeleton/axes/Axis_fit.h>
+#include <pcs/skeleton/axes/Chain_options.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// Adds straight pieces at both ends; the points decide later how much of them stays.
+inline void prolong(const Chain_view& view, bool do_base, Axis& axis)
+{
+  const auto piece = [&](bool is_tip) {
+    const std::size_t n = axis.size();
+    const auto node = [&](std::size_t k) -> const Axis_node& {
+      return axis[is_tip ? n - 1 - k : k];
+    };
+    const double reach = 2 * node(0).radius + 4 * view.scan.spacing;
+    std::size_t k = 1;
+    while (k + 1 < n && (node(k).point - node(0).point).norm() < reach)
+      ++k;
+    Vec3 d = node(0).point - node(k).point;
+    const double length = d.norm();
+    Axis_node end = node(0);
+    if (length > 0)
+      end.point +=
+          d / length *
+          (view.rules.extension * end.radius + view.rules.extension_offset * view.scan.spacing);
+    return end;
+  };
+  const Axis_node before = piece(false), behind = piece(true);
+  if (do_base)
+    axis.insert(axis.begin(), before);
+  axis.push_back(behind);
+}
+
+/// How many points of each segment lie on the surface, and how many inside of it.
+struct Filling
+{
+  std::vector<double> on, inside;
+  std::vector<double> deep; ///< those of `inside` that no flute of a stem explains
+
+  Filling(const Chain_view& view, const Axis_fit& fit)
+    : on(fit.axis().size(), 0), inside(on), deep(on)
+  {
+    for (const Axis_place& p : fit.places()) {
+      if (p.share < 0 || p.share > 1)
+        continue;
+      const double r = radius_at(fit.axis(), p), e = p.distance - r;
+      const double limit =
+          std::max(view.rules.filled_noise * view.set.noise, view.rules.filled_depth * r);
+      if (e <= limit)
+        (e < -limit ? inside : on)[p.segment] += 1;
+      if (e < -std::max(limit, view.rules.deep * r))
+        deep[p.segment] += 1;
+    }
+  }
+
+  /// Share of the points of the segments of [begin, end) that lies inside; 1 if there are too few to tell.
+  double share(std::size_t begin, std::size_t end) const
+  {
+    double a = 0, b = 0;
+    for (std::size_t k = begin; k < end; ++k) {
+      a += inside[k];
+      b += on[k];
+    }
+    constexpr double enough = 20;
+    return a + b >= enough ? a / (a + b) : 1;
+  }
+
+  /// Whether more than the share lies inside, in the segments of [begin, end).
+  bool is_filled(std::size_t begin, std::size_t end, double share) const
+  {
+    constexpr double fewest = 6;
+    double a = 0, b = 0;
+    for (std::size_t k = begin; k < end; ++k) {
+      a += inside[k];
+      b += on[k];
+    }
+    return a >= fewest && a > share * (a + b);
+  }
+};
+
+/*!
+  Wood is hollow to a scanner: where a thick axis that was hollow gets points inside, it runs around a fork, and ends. One
+  that never was hollow is an irregular stem, or seen badly, and stays; so does one that is hollow again farther on, with
+  more points than before, because it only passed buttresses or a whorl. Wood does not widen: an axis that does so beyond
+  such a place need not be as thick.
+*/
+inline void cut_filled(const Chain_view& view, Axis_fit& fit)
+{
+  constexpr std::size_t window = 4;
+  Axis& axis = fit.axis();
+  const std::size_t n = axis.size();
+  const Filling filling(view, fit);
+  // points on the surface up to each node; one deep inside outweighs so many that `filled` balances
+  std::vector<double> balance(n + 1, 0);
+  for (std::size_t k = 0; k < n; ++k)
+    balance[k + 1] =
+        balance[k] + filling.on[k] + filling.inside[k] - filling.deep[k] / view.rules.filled;
+  std::vector<double> highest = balance; // from each node on
+  for (std::size_t k = n; k-- > 0;)
+    highest[k] = std::max(highest[k], highest[k + 1]);
+  std::vector<double> thickest(n); // from each node on
+  for (std::size_t k = n; k-- > 0;)
+    thickest[k] = std::max(axis[k].radius, k + 1 < n ? thickest[k + 1] : 0);
+  double least = 1; // share inside of the best stretch so far
+  for (std::size_t k = window; k + window < n; ++k) {
+    least = std::min(least, filling.share(k - window, k));
+    const bool is_mostly_beyond = highest[k] - balance[k] > std::max(0.0, balance[k]);
+    const bool does_widen = thickest[k] > view.rules.widening * axis[k].radius;
+    const double thick = does_widen ? view.rules.thick_widening : view.rules.thick;
+    if (axis[k].radius >= thick * view.scan.spacing && least < 0.5 * view.rules.filled &&
+        filling.is_filled(k, k + window, view.rules.filled) && !is_mostly_beyond) {
+      axis.resize(k + 1);
+      fit.project();
+      return;
+    }
+  }
+}
+
+/// The largest radius that a hollow stretch has all along which is `view.rules.steady` radii long; 0: there is none.
+inline double steady_radius(const Chain_view& view, const Axis_fit& fit)
+{
+  const Axis& axis = fit.axis();
+  const Filling filling(view, fit);
+  double thickest = 0;
+  for (std::size_t k = 0; k < axis.size(); ++k) {
+    if (!(axis[k].radius > std::max(thickest, view.rules.thick * view.scan.spacing)))
+      continue;
+    const double wanted = view.rules.steady * axis[k].radius;
+    double length = 0, narrowest = axis[k].radius;
+    std::size_t end = k;
+    while (end + 1 < axis.size() && length < wanted && narrowest > thickest) {
+      length += (axis[end + 1].point - axis[end].point).norm();
+      narrowest = std::min(narrowest, axis[++end].radius);
+    }
+    if (length >= wanted && narrowest > thickest && filling.share(k, end) < view.rules.filled)
+      thickest = narrowest;
+  }
+  return thickest;
+}
+
+/*!
+  Wood tapers: an axis that begins much thinner than it is farther out, where it is hollow, was reached through something
+  else, such as a twig that touches it. It begins where it is thick; what lies before is left to other axes.
+*/
+inline void cut_thin_base(const Chain_view& view, Axis_fit& fit)
+{
+  Axis& axis = fit.axis();
+  double narrowest = axis.front().radius; // most axes taper, or are thin
+  const bool may_be_thin = std::any_of(axis.begin(), axis.end(), [&](const Axis_node& node) {
+    narrowest = std::min(narrowest, node.radius);
+    return node.radius >= view.rules.thick * view.scan.spacing &&
+           narrowest < view.rules.thin_base * node.radius;
+  });
+  if (!may_be_thin)
+    return;
+  const double radius = steady_radius(view, fit);
+  const auto begin = std::find_if(axis.begin(), axis.end(), [&](const Axis_node& node) {
+    return node.radius >= view.rules.thick_base * radius;
+  });
+  const bool is_thin = std::any_of(axis.begin(), begin, [&](const Axis_node& node) {
+    return node.radius < view.rules.thin_base * radius;
+  });
+  if (!is_thin || axis.end() - begin < 2)
+    return;
+  const Index shift = static_cast<Index>(begin - axis.begin());
+  axis.erase(axis.begin(), begin);
+  std::vector<Vec3> points = fit.points();
+  std::vector<Index> segments;
+  for (const Axis_place& p : fit.places())
+    segments.push_back(p.segment > shift ? p.segment - shift : 0);
+  fit.set_points(std::move(points), std::move(segments));
+  fit.project();
+}
+
+/// The number of nodes before a tip that collapses within a few radii, as where a trunk turns into one of its limbs; all nodes
+/// if it does not. Never 0 for an axis that has nodes.
+inline std::size_t size_without_collapse(const Chain_options& rules, const Axis& axis)
+{
+  double widest = 0, length = 0; // of the last stretch
+  for (std::size_t k = axis.size(); k-- > 0 && length <= rules.steady * widest;) {
+    widest = std::max(widest, axis[k].radius);
+    length += k > 0 ? (axis[k].point - axis[k - 1].point).norm() : 0;
+  }
+  std::size_t size = axis.size();
+  if (axis.empty() || axis.back().radius >= rules.thin_base * widest)
+    return size;
+  while (axis[size - 1].radius < rules.thick_base * widest)
+    --size;
+  return size;
+}
+
+/// Cuts the ends where the points end: outwards from the places of `base` and `tip`, as far as there are enough.
+inline void trim(const Chain_view& view, const Vec3& base, const Vec3& tip, Axis_fit& fit)
+{
+  Axis& axis = fit.axis();
+  const std::size_t segments_of_axis = axis.size() - 1;
+  std::vector<double> count(segments_of_axis, 0), lowest(segments_of_axis, 1),
+      highest(segments_of_axis, 0);
+  for (const Axis_place& p : fit.places()) {
+    const double r = radius_at(axis, p);
+    if (p.distance >
+        r + std::max(view.rules.cover_offset * view.scan.spacing, view.rules.cover_factor * r))
+      continue;
+    if (p.share < 0 || p.share > 1)
+      continue;
+    count[p.segment] += 1;
+    lowest[p.segment] = std::min(lowest[p.segment], p.share);
+    highest[p.segment] = std::max(highest[p.segment], p.share);
+  }
+  const auto is_supported = [&](std::size_t s) {
+    const double expected = 2 * 3.14159265358979323846 * axis[s].radius *
+                            view.set.density_at(axis, s) *
+                            (axis[s + 1].point - axis[s].point).norm();
+    return count[s] >= std::max(1.0, view.rules.extension_share * expected);
+  };
+  std::size_t from = nearest_place(axis, base).segment, to = nearest_place(axis, tip).segment;
+  if (from > to)
+    std::swap(from, to);
+  while (from < to && count[from] == 0)
+    ++from;
+  while (to > from && count[to] == 0)
+    --to;
+  if (count[from] == 0)
+    return;
+  while (from > 0 && is_supported(from - 1))
+    --from;
+  while (to + 1 < segments_of_axis && is_supported(to + 1))
+    ++to;
+  const double begin = double(from) + lowest[from], end = double(to) + highest[to];
+  Axis result;
+  const auto cut = [&](double a) {
+    const std::size_t s = std::min(axis.size() - 2, static_cast<std::size_t>(a));
+    Axis_node node = a - double(s) < 0.5 ? axis[s] : axis[s + 1];
+    const double t = a - double(s);
+    node.point = (1 - t) * axis[s].point + t * axis[s + 1].point;
+    node.radius = (1 - t) * axis[s].radius + t * axis[s + 1].radius;
+    return node;
+  };
+  if (!(end > begin))
+    return;
+  fit.estimate_errors();
+  result.push_back(cut(begin));
+  for (std::size_t k = static_cast<std::size_t>(begin) + 1; double(k) < end; ++k)
+    result.push_back(axis[k]);
+  result.push_back(cut(end));
+  axis = std::move(result);
+  std::vector<Vec3> points = fit.points();
+  std::vector<Index> segments;
+  segments.reserve(points.size());
+  for (const Axis_place& p : fit.places()) {
+    const Index shift = static_cast<Index>(begin);
+    segments.push_back(p.segment > shift ? p.segment - shift : 0);
+  }
+  fit.set_points(std::move(points), std::move(segments));
+  fit.project();
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_AXES_CHAIN_ENDS_H

@@ -1,0 +1,65 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Drops axes of two points where they are not what remains of thin branches.
+
+#ifndef PCS_SKELETON_AXES_DROP_TWO_POINT_AXES_H
+#define PCS_SKELETON_AXES_DROP_TWO_POINT_AXES_H
+
+#include <pcs/skeleton/model/Axis_set.h>
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// When axes of two points are believed.
+struct Two_point_axis_options
+{
+  double ratio = 1.7;     ///< largest number for each axis of three points [-]
+  std::size_t fewest = 6; ///< axes of three points, or there is nothing to go by [count]
+  double share = 0.05; ///< least of all axes: where thin twigs are seen well, few are in pieces [-]
+};
+
+/*!
+  Two points are a piece of a twig, or nothing. Twigs that a scan just about sees come in pieces of any number of points, what
+  chance puts side by side mostly in twos: drops all pairs if there are more of them for an axis of three points, or less for
+  all axes, than the rules say. Returns how many. O(axes + points).
+*/
+inline std::size_t drop_two_point_axes(const Two_point_axis_options& rules, Axis_set& set)
+{
+  std::size_t pairs = 0, triples = 0;
+  for (const Fitted_axis& a : set.axes) {
+    pairs += a.number_of_points == 2;
+    triples += a.number_of_points == 3;
+  }
+  const bool are_twigs = triples >= rules.fewest &&
+                         double(pairs) <= rules.ratio * double(triples) &&
+                         double(pairs) >= rules.share * double(set.axes.size());
+  if (pairs == 0 || are_twigs)
+    return 0;
+  // the number of each axis among those that stay, and of the nearest one below that does
+  std::vector<Index> own(set.axes.size(), none), next(set.axes.size(), none);
+  std::vector<Fitted_axis> kept;
+  for (Index a = 0; a < set.axes.size(); ++a) {
+    Fitted_axis& axis = set.axes[a];
+    if (axis.parent != none)
+      axis.parent = next[axis.parent]; // parents come first
+    next[a] = axis.parent;
+    if (axis.number_of_points == 2)
+      continue;
+    own[a] = next[a] = static_cast<Index>(kept.size());
+    kept.push_back(std::move(axis));
+  }
+  for (Index& a : set.axis_of_point)
+    if (a != none)
+      a = own[a];
+  set.axes = std::move(kept);
+  return pairs;
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_AXES_DROP_TWO_POINT_AXES_H

@@ -1,0 +1,390 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Finds all axes of a scan: chains of layers, long ones first, in passes over what is not explained yet.
+
+#ifndef PCS_SKELETON_AXES_FIT_AXES_H
+#define PCS_SKELETON_AXES_FIT_AXES_H
+
+#include <pcs/internal/parallel.h>
+#include <pcs/neighborhood/Nearest_neighbors.h>
+#include <pcs/skeleton/axes/Chain_fit.h>
+#include <pcs/skeleton/axes/Noise_and_density_model.h>
+#include <pcs/skeleton/axes/drop_two_point_axes.h>
+#include <pcs/skeleton/graph/Neighbor_graph.h>
+#include <pcs/skeleton/layers/cut_layers.h>
+#include <pcs/skeleton/model/Layer_tree.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// Rules of the whole search.
+struct Axis_options
+{
+  Link_rule links;
+  Chain_options chains;
+  int passes = 3;
+  double later_links = 0.7; ///< links of later passes are this much shorter [-]
+  //! replaces `Chain_options::protrusion` in later passes, in spacings [-]
+  double later_protrusion = 3;
+  double first_noise = 0.3; ///< noise before anything is known, in spacings [-]
+  double first_guess =
+      0.7; ///< with less than this share of it, the first chain is fitted again [-]
+  double least_noise = 0.08; ///< of points without any, in spacings: polygons are no smoother [-]
+  int most_cuts = 4;         ///< how often what is left of a chain is tried again
+  std::size_t shortest_rest = 4; ///< layers that such a rest needs [count]
+  Two_point_axis_options pairs;
+  std::size_t largest_wave = 64; ///< chains that are fitted side by side [count]
+  double most_lost = 0.05; ///< share of its points that a chain may lose to others of its wave [-]
+};
+
+namespace internal {
+
+/// The largest distance by which the axis leaves those that are there, in excess of the share of their radii.
+inline double
+protrusion_of(const Scan& scan, const Axis_set& set, const Axis& axis, double reach, double share)
+{
+  double best = -reach;
+  for (std::size_t k = axis.size(); k-- > 0 && best < reach;) {
+    const auto near =
+        scan.search->nearest_if(axis[k].point, reach, [&](Index i) { return set.is_covered(i); });
+    if (!(near.squared_distance < reach * reach))
+      return reach;
+    const Axis& other = set.axes[set.axis_of_point[near.index]].axis;
+    const Axis_place place = nearest_place(other, set.segment_of_point[near.index], axis[k].point);
+    best = std::max(best, place.distance - (1 + share) * radius_at(other, place));
+  }
+  return best;
+}
+
+/// Share of the points of a candidate that others have covered since it was fitted.
+inline double lost_share(const Candidate& candidate, const Axis_set& set)
+{
+  const std::size_t lost = static_cast<std::size_t>(
+      std::count_if(candidate.points.begin(), candidate.points.end(), [&](Index i) {
+        return set.is_covered(i);
+      }));
+  return candidate.points.empty() ? 0 : double(lost) / double(candidate.points.size());
+}
+
+/// Accepts candidates one after the other; each sees what the ones before it have covered.
+inline bool accept(const Scan& scan,
+                   const Chain_options& rules,
+                   Candidate& candidate,
+                   Index parent,
+                   Axis_set& set,
+                   Noise_and_density_model& statistics)
+{
+  if (candidate.axis.size() < 2)
+    return false;
+  std::size_t count = 0;
+  for (const Index i : candidate.points)
+    count += !set.is_covered(i);
+  if (count < rules.lowest_count ||
+      double(count) < rules.explained * double(candidate.number_of_own_points))
+    return false;
+  if (!set.axes.empty()) {
+    const double wanted = rules.protrusion * scan.spacing;
+    if (protrusion_of(scan, set, candidate.axis, wanted, rules.protrusion_radius) < wanted)
+      return false;
+  }
+  const Index number = static_cast<Index>(set.axes.size());
+  for (std::size_t k = 0; k < candidate.points.size(); ++k) {
+    const Index i = candidate.points[k];
+    if (set.is_covered(i))
+      continue;
+    set.axis_of_point[i] = number;
+    set.segment_of_point[i] = candidate.segments[k];
+  }
+  set.axes.push_back({std::move(candidate.axis), parent, count, 1});
+  statistics.add_deviations(candidate.deviations);
+  statistics.add_densities(candidate.densities);
+  return true;
+}
+
+/// The stretches of a chain, of at least `fewest` layers, in which most points are not explained.
+inline std::vector<Chain>
+open_stretches(const Layer_tree& tree, const Axis_set& set, const Chain& chain, std::size_t fewest)
+{
+  std::vector<Chain> stretches;
+  Chain stretch;
+  const auto finish = [&] {
+    if (stretch.nodes.size() >= fewest)
+      stretches.push_back(stretch);
+    stretch = Chain();
+  };
+  Index before = chain.parent_node;
+  for (const Index v : chain.nodes) {
+    std::size_t open = 0;
+    for (Index k = tree.first[v]; k < tree.first[v + 1]; ++k)
+      open += !set.is_covered(tree.point[k]);
+    if (2 * open >= tree.count(v)) {
+      if (stretch.nodes.empty())
+        stretch.parent_node = before;
+      else
+        stretch.length += (tree.center[v] - tree.center[stretch.nodes.back()]).norm();
+      stretch.nodes.push_back(v);
+    } else
+      finish();
+    before = v;
+  }
+  finish();
+  return stretches;
+}
+
+/// The chains of one tree of layers in the order in which they are fitted, and the axes that they became.
+class Chain_queue
+{
+public:
+  Chain_queue(const Scan& scan, const Layer_tree& tree) : m_chain_of_node(tree.size())
+  {
+    add(decompose_chains(scan, tree), 0);
+    m_number_of_sorted = size();
+  }
+
+  /// Of all chains, those that were fitted, too.
+  std::size_t size() const { return m_order.size(); }
+  const Chain& operator[](std::size_t place) const { return m_chains[m_order[place]]; }
+  /// How often what was left of a chain was tried again until this one [count].
+  int cuts(std::size_t place) const { return m_cuts[m_order[place]]; }
+
+  /// Adds chains, or pieces of some that are there, at the end.
+  void add(std::vector<Chain> chains, int cuts)
+  {
+    for (Chain& chain : chains) {
+      const Index c = static_cast<Index>(m_chains.size());
+      for (const Index v : chain.nodes)
+        m_chain_of_node[v] = c;
+      m_order.push_back(c);
+      m_chains.push_back(std::move(chain));
+      m_axis.push_back(none);
+      m_cuts.push_back(cuts);
+    }
+  }
+
+  /// Sorts those that were added among the chains from a place on, the longest first.
+  void sort(std::size_t from)
+  {
+    const auto is_longer = [&](Index x, Index y) {
+      return m_chains[x].length > m_chains[y].length;
+    };
+    const auto begin = m_order.begin();
+    const auto added = begin + static_cast<std::ptrdiff_t>(m_number_of_sorted);
+    std::stable_sort(added, m_order.end(), is_longer);
+    std::inplace_merge(begin + static_cast<std::ptrdiff_t>(from), added, m_order.end(), is_longer);
+    m_number_of_sorted = size();
+  }
+
+  void set_axis(std::size_t place, Index axis) { m_axis[m_order[place]] = axis; }
+
+  /// The axis of the nearest chain on the way to the root that has one, or `none`.
+  Index parent_axis(std::size_t place) const
+  {
+    Index c = m_order[place];
+    while (m_chains[c].parent_node != none) {
+      c = m_chain_of_node[m_chains[c].parent_node];
+      if (m_axis[c] != none)
+        return m_axis[c];
+    }
+    return none;
+  }
+
+private:
+  std::vector<Chain> m_chains;
+  std::vector<Index> m_axis;  ///< of each chain; `none`: it has none so far
+  std::vector<int> m_cuts;    ///< of each chain
+  std::vector<Index> m_order; ///< numbers of chains
+  std::vector<Index> m_chain_of_node;
+  std::size_t m_number_of_sorted = 0;
+};
+
+/*!
+  Fits the chains of one tree of layers, in waves whose members do not see each other: one that finds much of what others have
+  found is fitted again in the next wave. Where a chain leads through layers
+  that are explained already, as a second arc of a trunk does, only its stretches between them are fitted, each by itself:
+  what is left over beside an axis that is there is not one branch.
+  Whether it does learn about the surface: what the first pass has left over is not typical.
+  Returns `false` as soon as `progress` does, which sees a share of the work.
+*/
+template <class ConcurrencyTag, class Progress>
+bool fit_chains(const Scan& scan,
+                const Layer_tree& tree,
+                const Axis_options& rules,
+                Noise_and_density_model& statistics,
+                Axis_set& set,
+                bool does_learn,
+                const Progress& progress)
+{
+  Chain_queue queue(scan, tree);
+  std::size_t wave = 1;
+  std::vector<Candidate> candidates;
+  std::vector<std::size_t> places; // of the chains of a wave
+  for (std::size_t begin = 0; begin < queue.size();) {
+    const std::size_t end = std::min(queue.size(), begin + wave);
+    places.clear();
+    for (std::size_t k = begin; k < end; ++k) {
+      std::vector<Chain> open = open_stretches(tree, set, queue[k], 1);
+      if (open.size() == 1 && open.front().nodes.size() == queue[k].nodes.size())
+        places.push_back(k);
+      else
+        queue.add(std::move(open), queue.cuts(k));
+    }
+    const auto fit = [&] {
+      candidates.assign(places.size(), Candidate());
+      pcs::internal::for_each_index<ConcurrencyTag>(
+          places.size(),
+          [&](std::size_t k) {
+            candidates[k] = Chain_fit(scan, set, rules.chains)(tree, queue[places[k]]);
+          },
+          1);
+    };
+    fit();
+    // the trunk tells the noise, which may be far from the guess that it was fitted with
+    if (begin == 0 && does_learn && !candidates.empty()) {
+      const double noise = statistics.noise_of(candidates.front().deviations);
+      if (noise > 0 && noise < rules.first_guess * set.noise) {
+        set.noise = noise;
+        fit();
+      }
+    }
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      const std::size_t place = places[k];
+      if (lost_share(candidates[k], set) > rules.most_lost) {
+        queue.add({queue[place]}, queue.cuts(place));
+        continue;
+      }
+      const Index parent = queue.parent_axis(place);
+      if (accept(scan, rules.chains, candidates[k], parent, set, statistics))
+        queue.set_axis(place, static_cast<Index>(set.axes.size() - 1));
+      if (queue.cuts(place) >= rules.most_cuts)
+        continue;
+      std::vector<Chain> rest = open_stretches(tree, set, queue[place], rules.shortest_rest);
+      if (rest.size() != 1 || rest.front().nodes.size() < queue[place].nodes.size())
+        queue.add(std::move(rest), queue.cuts(place) + 1);
+    }
+    if (does_learn || !(set.density > 0))
+      statistics.learn(set);
+    begin = end;
+    queue.sort(begin);
+    if (!progress(double(end) / double(queue.size())))
+      return false;
+    wave = std::min(rules.largest_wave, 2 * wave);
+  }
+  return true;
+}
+
+/// In every component, the point nearest to an axis.
+template <class ConcurrencyTag>
+std::vector<Index> nearest_to_axes(const Scan& scan,
+                                   const Axis_set& set,
+                                   const std::vector<std::uint8_t>& is_used,
+                                   const Links& links)
+{
+  const std::size_t n = scan.size();
+  Point_sets sets = united_points<ConcurrencyTag>(n, links, [](const Link&) { return true; });
+  // a tree of the points of axes, where a search among all would pass many others, as in leaves
+  std::vector<Vec3> covered;
+  for (Index i = 0; i < n; ++i)
+    if (set.is_covered(i))
+      covered.push_back(scan.points[i]);
+  constexpr double most = 0.9;
+  if (double(covered.size()) > most * double(n))
+    covered.clear();
+  const neighborhood::Nearest_neighbors search(covered);
+  const auto distance = [&](const Vec3& p, double reach) {
+    const auto near =
+        covered.empty()
+            ? scan.search->nearest_if(p, reach, [&](Index j) { return set.is_covered(j); })
+            : search.nearest_if(p, reach, [](Index) { return true; });
+    return std::sqrt(near.squared_distance);
+  };
+  std::vector<Index> source(n, none);
+  std::vector<double> best(n, std::numeric_limits<double>::infinity());
+  for (Index i = 0; i < n; ++i) {
+    if (!is_used[i])
+      continue;
+    const Index c = sets.find(i);
+    if (source[c] == none)
+      source[c] = i;
+    const double reach = std::min(best[c], 1e3 * scan.spacing);
+    const double d = distance(scan.points[i], reach);
+    if (d < reach) {
+      best[c] = d;
+      source[c] = i;
+    }
+  }
+  source.erase(std::remove(source.begin(), source.end(), none), source.end());
+  std::sort(source.begin(), source.end());
+  return source;
+}
+
+} // namespace internal
+
+/*!
+  All axes: those of the chains of `first_tree`, then those of the points that are left. What is found until `progress`
+  returns `false` is returned.
+*/
+template <class ConcurrencyTag, class Progress>
+Axis_set fit_axes(const Scan& scan,
+                  const Layer_tree& first_tree,
+                  const Axis_options& rules,
+                  const Progress& progress)
+{
+  const std::size_t n = scan.size();
+  Axis_set set;
+  set.axis_of_point.assign(n, none);
+  set.segment_of_point.assign(n, none);
+  set.noise = rules.first_noise * scan.spacing;
+  Noise_and_density_model statistics(rules.least_noise * scan.spacing);
+  const auto share = [&](double from, double to) {
+    return [&progress, from, to](double f) { return progress(from + (to - from) * f); };
+  };
+  if (!internal::fit_chains<ConcurrencyTag>(scan,
+                                            first_tree,
+                                            rules,
+                                            statistics,
+                                            set,
+                                            true,
+                                            share(0, 0.7)))
+    return set;
+
+  Axis_options later = rules;
+  later.chains.protrusion = rules.later_protrusion;
+  later.links.local_factor *= rules.later_links;
+  later.links.lowest *= rules.later_links;
+  later.links.highest *= rules.later_links;
+  for (int pass = 1; pass < rules.passes; ++pass) {
+    std::vector<std::uint8_t> is_used(n);
+    for (Index i = 0; i < n; ++i)
+      is_used[i] = !scan.is_outlier[i] && !set.is_covered(i);
+    const Links rest = neighbor_links<ConcurrencyTag>(scan, is_used, later.links);
+    const std::vector<Index> sources =
+        internal::nearest_to_axes<ConcurrencyTag>(scan, set, is_used, rest);
+    const Neighbor_graph graph = graph_of(n, rest);
+    const Layer_tree tree =
+        layer_tree<ConcurrencyTag>(scan, rest, shortest_paths(scan, graph, sources));
+    const double done = 0.7 + 0.3 * double(pass - 1) / double(rules.passes - 1);
+    if (!internal::fit_chains<ConcurrencyTag>(scan,
+                                              tree,
+                                              later,
+                                              statistics,
+                                              set,
+                                              false,
+                                              share(done, done + 0.3 / double(rules.passes - 1))))
+      return set;
+  }
+  drop_two_point_axes(rules.pairs, set);
+  return set;
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_AXES_FIT_AXES_H

@@ -1,0 +1,137 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// What a fit expects of each section before it looks at the shape: radii by counting points and by their width, and places.
+
+#ifndef PCS_SKELETON_AXES_SECTION_PRIORS_H
+#define PCS_SKELETON_AXES_SECTION_PRIORS_H
+
+#include <pcs/skeleton/axes/Axis_fit.h>
+#include <pcs/skeleton/axes/Chain_options.h>
+#include <pcs/skeleton/axes/section_counts.h>
+#include <pcs/skeleton/axes/section_visibility.h>
+#include <pcs/skeleton/model/Axis_set.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// Whether noise hides the curvature of a section, so that its radius may be anything.
+inline bool is_blurred(const Chain_view& view, double radius)
+{
+  return radius < view.rules.blurred * view.set.noise;
+}
+
+/*!
+  The radius `counted` [L] where the fit has `found` one. Counts are wrong by a factor, up or down, so that what is found
+  tells by how much; but much fewer points than expected are no chance: an axis that runs between several twigs must not
+  look certain of its radius.
+*/
+inline Radius_prior counted_prior(const Chain_view& view, double counted, double found)
+{
+  const Chain_options& rules = view.rules;
+  const double most = rules.prior_ratio * counted;
+  const double size = found > most ? std::max(counted, most / found * most) : found;
+  return {counted, rules.prior_share * size + rules.prior_offset * view.scan.spacing, 0};
+}
+
+/*!
+  By how many times what hides an axis from the scanner lowers its counts, all along it, as its blurred sections tell; never
+  less than 1. Few nodes are not believed. `counted`: radii by counting [L], negative where sections cannot be seen.
+*/
+inline double
+hidden_factor(const Chain_view& view, const std::vector<double>& counted, const Axis& axis)
+{
+  std::vector<double> ratios;
+  for (std::size_t k = 0; k < axis.size(); ++k)
+    if (counted[k] > 0 && is_blurred(view, axis[k].radius))
+      ratios.push_back(std::log(axis[k].radius / counted[k]));
+  if (ratios.empty())
+    return 1;
+  const double size = double(ratios.size());
+  const double level = median(ratios) * size / (size + view.rules.hidden_nodes);
+  return std::min(view.rules.most_hidden, std::max(1.0, std::exp(level)));
+}
+
+/// The priors of all nodes by counting; without weight where there is nothing to go by. O(nodes + points).
+inline std::vector<Radius_prior>
+counted_priors(const Chain_view& view, const std::vector<double>& visible, const Axis_fit& fit)
+{
+  const Axis& axis = fit.axis();
+  std::vector<Radius_prior> priors(axis.size());
+  if (!(view.set.density > 0))
+    return priors;
+  const Section_counts counts = section_counts(view, fit, visible);
+  std::vector<double> counted(axis.size(), -1); // negative: hidden
+  for (std::size_t k = 0; k < axis.size(); ++k)
+    if (counts.visible_length[k] > view.rules.visible * counts.length[k])
+      counted[k] = counts.radius(k, view.set.density_at(axis, k));
+  const double factor = hidden_factor(view, counted, axis);
+  for (std::size_t k = 0; k < axis.size(); ++k)
+    if (counted[k] >= 0) {
+      const double radius = axis[k].radius;
+      priors[k] = counted_prior(view, (is_blurred(view, radius) ? factor : 1) * counted[k], radius);
+    }
+  return priors;
+}
+
+/*!
+  What is expected as long as nothing can be counted: a branch tapers. Where it is thicker than a line from what it is near its
+  base to a share of that at its tip, and has few points, curvature alone must not tell; it may be the way around several
+  twigs. Thick axes have enough points. `length`: from the base to the tip of all that the paths follow, of which the axis may
+  be a part [L]. O(nodes + points).
+*/
+inline std::vector<Radius_prior> taper_priors(const Chain_view& view,
+                                              const std::vector<double>& visible,
+                                              const Axis_fit& fit,
+                                              double length)
+{
+  const Chain_options& rules = view.rules;
+  const Axis& axis = fit.axis();
+  std::vector<Radius_prior> priors(axis.size());
+  std::vector<double> place(axis.size(), 0), radii; // lengths to the base; near it
+  for (std::size_t k = 1; k < axis.size(); ++k)
+    place[k] = place[k - 1] + (axis[k].point - axis[k - 1].point).norm();
+  for (std::size_t k = 0; k < axis.size() && place[k] <= rules.taper_from * place.back(); ++k)
+    radii.push_back(axis[k].radius);
+  const double base = median(radii);
+  length = std::max(length, place.back());
+  if (!(length > 0) || base >= rules.thick * view.scan.spacing)
+    return priors;
+  const Section_counts counts = section_counts(view, fit, visible);
+  for (std::size_t k = 0; k < axis.size(); ++k) {
+    const double radius = base * (1 - (1 - rules.taper_to) * place[k] / length);
+    if (place[k] > rules.taper_from * length && axis[k].radius > radius)
+      priors[k] = {radius,
+                   rules.taper_share * base * std::max(1.0, counts.count[k] / rules.taper_count),
+                   0};
+  }
+  return priors;
+}
+
+/*!
+  Tells `fit` what to expect of its sections as they are. `visible`: share of each that may have points [-]; `length`: as for
+  `taper_priors()`, 0 for a piece that need not taper [L].
+*/
+inline void expect_sections(const Chain_view& view,
+                            const std::vector<double>& visible,
+                            double length,
+                            Axis_fit& fit)
+{
+  std::vector<Radius_prior> priors = counted_priors(view, visible, fit);
+  if (!(view.set.density > 0) && length > 0)
+    priors = taper_priors(view, visible, fit, length);
+  const Section_visibility sides(view, fit);
+  add_width_priors(view, fit.axis(), sides, priors);
+  fit.set_priors(std::move(priors));
+  fit.set_priors(center_priors(view, fit.axis(), sides));
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_AXES_SECTION_PRIORS_H

@@ -1,0 +1,312 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Joined axes as one rooted tree of nodes, grouped in branches.
+
+#ifndef PCS_SKELETON_BRANCHING_GROUP_BRANCHES_H
+#define PCS_SKELETON_BRANCHING_GROUP_BRANCHES_H
+
+#include <pcs/skeleton/model/Axis_set.h>
+#include <pcs/skeleton/model/Branch_tree.h>
+#include <pcs/skeleton/model/Joint.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+namespace internal {
+
+/// Groups nodes, parents first and the root at the front, in branches. `number` tells where each node went.
+class Branch_grouper
+{
+public:
+  Branch_grouper(std::vector<Branch_node> nodes, double spacing) : m_spacing(spacing)
+  {
+    m_tree.nodes = std::move(nodes);
+  }
+
+  Branch_tree operator()()
+  {
+    link();
+    choose_continuations();
+    number_branches();
+    return std::move(m_tree);
+  }
+
+  const std::vector<Index>& number() const { return m_number; }
+
+private:
+  void link()
+  {
+    const std::size_t n = m_tree.nodes.size();
+    m_child.assign(n, {});
+    for (Index v = 0; v < n; ++v)
+      if (m_tree.nodes[v].parent != none)
+        m_child[m_tree.nodes[v].parent].push_back(v);
+    m_carried.assign(n, 0);
+    for (std::size_t v = n; v-- > 1;) {
+      const Branch_node& node = m_tree.nodes[v];
+      const double length = (node.point - m_tree.nodes[node.parent].point).norm();
+      m_carried[node.parent] += m_carried[v] + node.radius * node.radius * length;
+    }
+  }
+
+  /// The node a way ahead of `v` (to where most wood is) or behind it.
+  Index ahead(Index v, double length) const
+  {
+    double gone = 0;
+    while (gone < length && !m_child[v].empty()) {
+      Index best = m_child[v].front();
+      for (const Index c : m_child[v])
+        if (m_carried[c] > m_carried[best])
+          best = c;
+      gone += (m_tree.nodes[best].point - m_tree.nodes[v].point).norm();
+      v = best;
+    }
+    return v;
+  }
+  Index behind(Index v, double length) const
+  {
+    double gone = 0;
+    while (gone < length && m_tree.nodes[v].parent != none) {
+      const Index p = m_tree.nodes[v].parent;
+      gone += (m_tree.nodes[p].point - m_tree.nodes[v].point).norm();
+      v = p;
+    }
+    return v;
+  }
+
+  /// At a fork, the child that goes on is straight and carries most: sums change little when a tip is lost.
+  void choose_continuations()
+  {
+    const std::size_t n = m_tree.nodes.size();
+    m_next.assign(n, none);
+    const double unit = m_spacing * m_spacing * m_spacing;
+    for (Index v = 0; v < n; ++v) {
+      const Branch_node& node = m_tree.nodes[v];
+      const double reach = 4 * node.radius + 8 * m_spacing;
+      const Vec3 from = node.point - m_tree.nodes[behind(v, reach)].point;
+      double best = 0;
+      for (const Index c : m_child[v]) {
+        const Index w = ahead(c, reach);
+        const Vec3 to = m_tree.nodes[w].point - node.point;
+        const double norm = from.norm() * to.norm();
+        const double cosine = norm > 0 ? from.dot(to) / norm : 0;
+        const double radius = 0.5 * (m_tree.nodes[c].radius + m_tree.nodes[w].radius);
+        const double carried = m_carried[c] + 4 * m_spacing * radius * radius;
+        const double score = straightness * cosine + std::log(carried / unit);
+        if (m_next[v] == none || score > best) {
+          best = score;
+          m_next[v] = c;
+        }
+      }
+    }
+  }
+
+  /// Follows the continuations, inserts missing bases and drops needless ones.
+  void number_branches()
+  {
+    std::vector<Branch_node> nodes;
+    std::vector<Index> number(m_tree.nodes.size(), none);
+    std::vector<std::pair<Index, Index>> stack{{0, none}}; // first node, new number of the seat
+    while (!stack.empty()) {
+      const auto [start, seat] = stack.back();
+      stack.pop_back();
+      const Index b = static_cast<Index>(m_tree.branches.size());
+      m_tree.branches.emplace_back();
+      Branch& branch = m_tree.branches.back();
+      if (seat != none) {
+        branch.parent = nodes[seat].branch;
+        branch.order = m_tree.branches[branch.parent].order + 1;
+      }
+      Index before = seat;
+      const auto append = [&](Branch_node node) {
+        node.parent = before;
+        node.branch = b;
+        before = static_cast<Index>(nodes.size());
+        nodes.push_back(node);
+        branch.nodes.push_back(before);
+      };
+      const double tiny = 1e-3 * m_spacing;
+      if (seat != none && (m_tree.nodes[start].point - nodes[seat].point).norm() > tiny) {
+        Branch_node base = m_tree.nodes[start];
+        base.point = nodes[seat].point;
+        base.is_measured = false;
+        append(base);
+      }
+      for (Index v = start; v != none; v = m_next[v]) {
+        const bool is_double =
+            v != start && (m_tree.nodes[v].point - nodes[before].point).norm() < tiny;
+        if (!is_double)
+          append(m_tree.nodes[v]);
+        number[v] = before;
+        for (const Index c : m_child[v])
+          if (c != m_next[v])
+            stack.emplace_back(c, before);
+      }
+    }
+    m_tree.nodes = std::move(nodes);
+    m_number = std::move(number);
+  }
+
+  /// What a unit of the cosine counts against the logarithm of what a child carries [-].
+  static constexpr double straightness = 8;
+  double m_spacing;
+  Branch_tree m_tree;
+  std::vector<std::vector<Index>> m_child;
+  std::vector<Index> m_next, m_number;
+  std::vector<double> m_carried; ///< squared radii times lengths
+};
+
+/// Nodes with parents, while the tree is being built.
+class Tree_builder
+{
+public:
+  Tree_builder(const Axis_set& set, const std::vector<Joint>& joints, Index root, double spacing)
+    : m_set(set), m_joints(joints), m_spacing(spacing)
+  {
+    const std::size_t n = set.axes.size();
+    m_children.resize(n);
+    for (Index a = 0; a < n; ++a)
+      if (joints[a].parent != none)
+        m_children[joints[a].parent].push_back(a);
+    m_first_node.assign(n, none);
+    add_axes(root);
+    m_tree.number_of_unreached_axes =
+        static_cast<std::size_t>(std::count(m_first_node.begin(), m_first_node.end(), none));
+  }
+
+  Branch_tree operator()()
+  {
+    Branch_grouper group(std::move(m_tree.nodes), m_spacing);
+    const std::size_t unreached = m_tree.number_of_unreached_axes;
+    m_tree = group();
+    m_tree.number_of_unreached_axes = unreached;
+    m_number = group.number();
+    assign_points();
+    return std::move(m_tree);
+  }
+
+private:
+  struct Inserted
+  {
+    double at; ///< segment + share
+    Index axis;
+  };
+
+  /// Copies the axes in the order of a walk from the root, with a node where a child sits.
+  void add_axes(Index root)
+  {
+    std::vector<std::pair<Index, Index>> stack{{root, none}}; // axis, node that it sits on
+    while (!stack.empty()) {
+      const Index a = stack.back().first, seat = stack.back().second; // a lambda captures them
+      stack.pop_back();
+      const Axis& axis = m_set.axes[a].axis;
+      std::vector<Inserted> seats;
+      for (const Index c : m_children[a]) {
+        const Axis_place& p = m_joints[c].place;
+        seats.push_back({double(p.segment) + std::min(1.0, std::max(0.0, p.share)), c});
+      }
+      std::sort(seats.begin(), seats.end(), [](const Inserted& x, const Inserted& y) {
+        return x.at != y.at ? x.at < y.at : x.axis < y.axis;
+      });
+      const bool is_reversed = m_joints[a].is_reversed;
+      if (is_reversed)
+        std::reverse(seats.begin(), seats.end());
+      Index before = seat;
+      if (seat != none) { // its own node on the axis of the parent
+        Branch_node base;
+        static_cast<Axis_node&>(base) = is_reversed ? axis.back() : axis.front();
+        base.point = m_tree.nodes[seat].point;
+        base.is_measured = false;
+        before = add(base, seat);
+      }
+      m_first_node[a] = static_cast<Index>(m_tree.nodes.size());
+      m_node_of_place.emplace_back();
+      auto& places = m_node_of_place.back();
+      m_places_of_axis.resize(m_set.axes.size(), none);
+      m_places_of_axis[a] = static_cast<Index>(m_node_of_place.size() - 1);
+      places.assign(axis.size(), none);
+      std::size_t next = 0;
+      const auto add_seats = [&](double until) { // all seats on the way to `until`
+        for (; next < seats.size() &&
+               (is_reversed ? seats[next].at >= until : seats[next].at <= until);
+             ++next) {
+          const double at = seats[next].at;
+          const std::size_t s = std::min(axis.size() - 2, static_cast<std::size_t>(at));
+          const double t = at - double(s);
+          Branch_node node;
+          static_cast<Axis_node&>(node) = t < 0.5 ? axis[s] : axis[s + 1];
+          node.point = (1 - t) * axis[s].point + t * axis[s + 1].point;
+          node.radius = (1 - t) * axis[s].radius + t * axis[s + 1].radius;
+          const bool is_there = before != none && before >= m_first_node[a] &&
+                                (m_tree.nodes[before].point - node.point).norm() < 1e-3 * m_spacing;
+          if (!is_there)
+            before = add(node, before);
+          stack.emplace_back(seats[next].axis, before);
+        }
+      };
+      for (std::size_t i = 0; i < axis.size(); ++i) {
+        const std::size_t k = is_reversed ? axis.size() - 1 - i : i;
+        // a seat between the nodes comes before the next node
+        if (i > 0)
+          add_seats(is_reversed ? double(k) + 1e-9 : double(k) - 1e-9);
+        Branch_node node;
+        static_cast<Axis_node&>(node) = axis[k];
+        const bool is_there =
+            i > 0 && (m_tree.nodes[before].point - node.point).norm() < 1e-3 * m_spacing;
+        if (!is_there)
+          before = add(node, before);
+        places[k] = before;
+        add_seats(double(k));
+      }
+      add_seats(is_reversed ? -1.0 : double(axis.size()));
+    }
+  }
+
+  Index add(const Branch_node& node, Index parent)
+  {
+    m_tree.nodes.push_back(node);
+    m_tree.nodes.back().parent = parent;
+    return static_cast<Index>(m_tree.nodes.size() - 1);
+  }
+
+  void assign_points()
+  {
+    const std::size_t n = m_set.axis_of_point.size();
+    m_tree.node_of_point.assign(n, none);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Index a = m_set.axis_of_point[i];
+      if (a == none || m_places_of_axis[a] == none)
+        continue;
+      const auto& places = m_node_of_place[m_places_of_axis[a]];
+      const std::size_t k = std::min<std::size_t>(m_set.segment_of_point[i], places.size() - 1);
+      m_tree.node_of_point[i] = m_number[places[k]];
+    }
+  }
+
+  const Axis_set& m_set;
+  const std::vector<Joint>& m_joints;
+  double m_spacing;
+  Branch_tree m_tree;
+  std::vector<std::vector<Index>> m_children, m_node_of_place;
+  std::vector<Index> m_first_node, m_places_of_axis, m_number;
+};
+
+} // namespace internal
+
+/// The tree of all axes that the root reaches. O(nodes log nodes).
+inline Branch_tree
+branch_tree(const Axis_set& set, const std::vector<Joint>& joints, Index root, double spacing)
+{
+  return internal::Tree_builder(set, joints, root, spacing)();
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_BRANCHING_GROUP_BRANCHES_H

@@ -1,0 +1,393 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Decides for every axis on which other one it sits, and where: one rooted tree of branches.
+
+#ifndef PCS_SKELETON_BRANCHING_JOIN_AXES_H
+#define PCS_SKELETON_BRANCHING_JOIN_AXES_H
+
+#include <pcs/internal/parallel.h>
+#include <pcs/neighborhood/Nearest_neighbors.h>
+#include <pcs/skeleton/model/Axis.h>
+#include <pcs/skeleton/model/Axis_set.h>
+#include <pcs/skeleton/model/Joint.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <queue>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// What a joint costs: logarithms of odds, as they were found in scans of virtual trees. Lengths in spacings [-].
+struct Joint_options
+{
+  int rounds = 2;    ///< how often joints are chosen, the later ones between branches [count]
+  double reach = 30; ///< widest gap between the base of a branch and the surface of its parent
+  double long_reach = 0.2; ///< ... or this share of the length of the branch [-]
+  double base_length = 8;  ///< length over which the direction of a base is taken
+  double lateral = 1.8;    ///< cost of missing the parent's axis, per logarithm of 1 + length
+  double lateral_tolerance = 0.3; ///< of it free of charge, in radii of the parent
+  double gap = 0.044;             ///< cost of a gap, per length ...
+  double steep_gap = 12;          ///< ... and gaps longer than this cost more than their length
+  double overlap = 0.115;         ///< cost of a parent ahead of the base, per length
+  double tie = 0.05;  ///< of the whole distance: what costs nothing else is decided by it
+  double angle = 3.2; ///< cost of each unit of the cosine to the parent's direction below 1 ...
+  double lowest_cosine =
+      -0.2; ///< ... down to this one, since the parent itself may be turned round
+  double radius =
+      0.6; ///< cost of a thick base, per logarithm of its share of the parent's radius ...
+  double free_share = 0.37; ///< ... above this share
+  double taper = 0.85;      ///< gain of a base that is thicker than the tip, per logarithm
+  double reversal = 1.1;    ///< for using the tip as the base
+  double thinnest = 0.1;    ///< smaller radii count as this one
+};
+
+namespace internal {
+
+/// An end of an axis, seen from outside.
+struct Axis_end
+{
+  Vec3 point;
+  Vec3 inward; ///< unit vector into the axis
+  double radius;
+};
+
+inline Axis_end end_of(const Axis& axis, bool is_tip, double length)
+{
+  const std::size_t n = axis.size();
+  const auto node = [&](std::size_t k) -> const Axis_node& { return axis[is_tip ? n - 1 - k : k]; };
+  Axis_end end{node(0).point, Vec3::Zero(), 0};
+  double gone = 0, radius = node(0).radius;
+  std::size_t k = 1, count = 1;
+  Vec3 mean = Vec3::Zero(); // of the nodes, which damps the raggedness of a single one
+  for (; k < n && (gone < length || k < 3); ++k) {
+    gone += (node(k).point - node(k - 1).point).norm();
+    mean += node(k).point;
+    radius += node(k).radius;
+    ++count;
+  }
+  end.radius = radius / double(count);
+  const Vec3 d = mean / double(count - 1) - end.point;
+  end.inward = d.norm() > 0 ? Vec3(d.normalized()) : Vec3(Vec3::UnitZ());
+  return end;
+}
+
+inline Vec3 tangent(const Axis& axis, std::size_t segment)
+{
+  const Vec3 d = axis[segment + 1].point - axis[segment].point;
+  const double length = d.norm();
+  return length > 0 ? Vec3(d / length) : Vec3(Vec3::UnitZ());
+}
+
+} // namespace internal
+
+class Axis_joiner
+{
+public:
+  Axis_joiner(const Axis_set& set, double spacing, const Joint_options& rules)
+    : m_set(set), m_spacing(spacing), m_rules(rules)
+  {
+    for (Index a = 0; a < set.axes.size(); ++a)
+      for (Index k = 0; k < set.axes[a].axis.size(); ++k)
+        level_of(set.axes[a].axis[k].radius).add(set.axes[a].axis[k], {a, k});
+    for (Level& level : m_levels)
+      level.search = std::make_unique<neighborhood::Nearest_neighbors>(level.points);
+  }
+
+  /// A joint for every axis but the root; no cycles. Axes that nothing is near to have no parent.
+  template <class ConcurrencyTag>
+  std::vector<Joint> run(Index root) const
+  {
+    return run<ConcurrencyTag>(std::vector<Index>{root});
+  }
+  /// The same with several roots, each of which becomes a tree.
+  template <class ConcurrencyTag>
+  std::vector<Joint> run(const std::vector<Index>& roots) const
+  {
+    const std::size_t n = m_set.axes.size();
+    std::vector<std::uint8_t> is_root(n, 0);
+    for (const Index root : roots)
+      is_root[root] = 1;
+    std::vector<std::vector<Joint>> options(n);
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        n,
+        [&](std::size_t a) {
+          if (!is_root[a])
+            options[a] = options_of(static_cast<Index>(a));
+        },
+        16);
+    return choose(roots, options);
+  }
+
+private:
+  using Node = std::pair<Index, Index>; ///< axis, number on it
+
+  /// Nodes of similar radii: only among thick ones one must look far.
+  struct Level
+  {
+    double thickest = 0;
+    std::vector<Vec3> points;
+    std::vector<Node> nodes;
+    std::unique_ptr<neighborhood::Nearest_neighbors> search;
+
+    void add(const Axis_node& node, Node place)
+    {
+      thickest = std::max(thickest, node.radius);
+      points.push_back(node.point);
+      nodes.push_back(place);
+    }
+  };
+  Level& level_of(double radius)
+  {
+    const double doublings = std::log2(std::max(1.0, radius / m_spacing));
+    return m_levels[std::min(m_levels.size() - 1, static_cast<std::size_t>(doublings))];
+  }
+  /// Nodes whose surfaces are not much farther than `reach`, by axis, then by number.
+  std::vector<Node> nodes_near(const Vec3& place, double reach) const;
+
+  /// The cheapest place on axis `b` near the given nodes of it.
+  Joint best_place(const internal::Axis_end& end,
+                   Index b,
+                   const std::vector<Index>& nodes,
+                   double reach) const;
+  /// Infinite where it is not below `limit`, or out of reach.
+  double cost(const internal::Axis_end& end,
+              Index b,
+              const Axis_place& place,
+              double reach,
+              double limit) const;
+  /// No place on a segment costs less: what is far away, or has another direction, costs something in any case.
+  double least_cost(const internal::Axis_end& end, const Axis& axis, Index segment) const
+  {
+    const Axis_node &a = axis[segment], &b = axis[segment + 1];
+    const double length = (b.point - a.point).norm();
+    const double distance =
+        std::max(0.0, 0.5 * ((a.point - end.point).norm() + (b.point - end.point).norm() - length));
+    const double gap = std::max(0.0, distance - std::max(a.radius, b.radius));
+    return gap_cost(gap) + m_rules.tie * distance / m_spacing +
+           angle_cost(end, internal::tangent(axis, segment));
+  }
+  double gap_cost(double gap) const
+  {
+    return m_rules.gap * gap / m_spacing * std::max(1.0, gap / (m_rules.steep_gap * m_spacing));
+  }
+  double angle_cost(const internal::Axis_end& end, const Vec3& tangent) const
+  {
+    return m_rules.angle * (1 - std::max(tangent.dot(end.inward), m_rules.lowest_cosine));
+  }
+  double radius_ratio(double r, double to) const
+  {
+    const double thinnest = m_rules.thinnest * m_spacing;
+    return std::max(r, thinnest) / std::max(to, thinnest);
+  }
+  std::vector<Joint> options_of(Index a) const;
+  static std::vector<Joint> choose(const std::vector<Index>& roots,
+                                   const std::vector<std::vector<Joint>>& options);
+
+  const Axis_set& m_set;
+  double m_spacing;
+  Joint_options m_rules;
+  std::array<Level, 12> m_levels; // of doubled radii
+};
+
+inline double Axis_joiner::cost(const internal::Axis_end& end,
+                                Index b,
+                                const Axis_place& place,
+                                double reach,
+                                double limit) const
+{
+  const Axis& axis = m_set.axes[b].axis;
+  const double u = m_spacing, radius = radius_at(axis, place);
+  const Vec3 v = point_at(axis, place) - end.point;
+  const double distance = v.norm(), gap = std::max(0.0, distance - radius);
+  if (gap > reach)
+    return std::numeric_limits<double>::infinity();
+  const double back = -v.dot(end.inward); // > 0: the parent lies behind the base
+  const double lateral = (v + back * end.inward).norm();
+  const double missed = std::max(0.0, lateral - m_rules.lateral_tolerance * radius);
+  double sum = gap_cost(gap);
+  sum += m_rules.overlap * std::max(0.0, -back - radius) / u;
+  sum += m_rules.tie * (lateral + distance) / u;
+  sum += angle_cost(end, internal::tangent(axis, place.segment));
+  if (!(sum < limit)) // logarithms take most of the time
+    return std::numeric_limits<double>::infinity();
+  const double share = radius_ratio(end.radius, radius) / m_rules.free_share;
+  sum += m_rules.radius * std::log(std::max(1.0, share));
+  sum += m_rules.lateral * std::log1p(missed / u);
+  return sum;
+}
+
+inline Joint Axis_joiner::best_place(const internal::Axis_end& end,
+                                     Index b,
+                                     const std::vector<Index>& nodes,
+                                     double reach) const
+{
+  constexpr int parts = 6;
+  const Axis& axis = m_set.axes[b].axis;
+  Joint best;
+  best.parent = b;
+  const auto try_segment = [&](Index s) {
+    if (!(least_cost(end, axis, s) < best.cost))
+      return;
+    for (int k = 0; k <= parts; ++k) {
+      Axis_place place;
+      place.segment = s;
+      place.share = double(k) / parts;
+      const double c = cost(end, b, place, reach, best.cost);
+      if (c < best.cost) {
+        best.cost = c;
+        best.place = place;
+      }
+    }
+  };
+  const auto try_node = [&](Index node, Index& previous) {
+    for (const Index s : {node > 0 ? node - 1 : node, node})
+      if (s + 1 < axis.size() && s != previous) {
+        previous = s;
+        try_segment(s);
+      }
+  };
+  // what is near leaves little to try of the others
+  const Index nearest = *std::min_element(nodes.begin(), nodes.end(), [&](Index x, Index y) {
+    return (axis[x].point - end.point).squaredNorm() < (axis[y].point - end.point).squaredNorm();
+  });
+  Index previous = none;
+  try_node(nearest, previous);
+  previous = none;
+  for (const Index node : nodes)
+    if (node != nearest)
+      try_node(node, previous);
+  return best;
+}
+
+inline std::vector<Axis_joiner::Node> Axis_joiner::nodes_near(const Vec3& place, double reach) const
+{
+  const double slack = 8 * m_spacing; // the nearest place lies between nodes
+  std::vector<std::uint64_t> keys;    // of nodes, which are sorted faster
+  std::vector<Index> found;
+  for (const Level& level : m_levels) {
+    found.clear();
+    level.search->append_within(place, reach + slack + level.thickest, found);
+    for (const Index i : found) {
+      const auto [axis, number] = level.nodes[i];
+      const double gap = (level.points[i] - place).norm() - m_set.axes[axis].axis[number].radius;
+      if (gap < reach + slack)
+        keys.push_back(std::uint64_t(axis) << 32 | number);
+    }
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<Node> near;
+  near.reserve(keys.size());
+  for (const std::uint64_t key : keys)
+    near.emplace_back(static_cast<Index>(key >> 32), static_cast<Index>(key & 0xffffffff));
+  return near;
+}
+
+inline std::vector<Joint> Axis_joiner::options_of(Index a) const
+{
+  std::vector<Joint> options;
+  std::vector<Index> nodes;
+  const Axis& axis = m_set.axes[a].axis;
+  const double reach = std::max(m_rules.reach * m_spacing, m_rules.long_reach * length_of(axis));
+  for (const bool is_tip : {false, true}) {
+    const double length =
+        std::min(std::max(m_rules.base_length * m_spacing, 2 * axis.front().radius),
+                 0.7 * length_of(axis));
+    const internal::Axis_end end = internal::end_of(axis, is_tip, length);
+    const internal::Axis_end other = internal::end_of(axis, !is_tip, length);
+    const double cost_of_end = (is_tip ? m_rules.reversal * m_set.axes[a].direction : 0) -
+                               m_rules.taper * std::log(radius_ratio(end.radius, other.radius));
+    const std::vector<Node> near = nodes_near(end.point, reach);
+    for (std::size_t i = 0; i < near.size();) {
+      const Index b = near[i].first;
+      nodes.clear();
+      for (; i < near.size() && near[i].first == b; ++i)
+        nodes.push_back(near[i].second);
+      if (b == a)
+        continue;
+      Joint joint = best_place(end, b, nodes, reach);
+      joint.is_reversed = is_tip;
+      joint.cost += cost_of_end;
+      if (std::isfinite(joint.cost))
+        options.push_back(joint);
+    }
+  }
+  std::stable_sort(options.begin(), options.end(), [](const Joint& x, const Joint& y) {
+    return x.cost < y.cost;
+  });
+  constexpr std::size_t enough = 400;
+  if (options.size() > enough)
+    options.resize(enough);
+  return options;
+}
+
+/*!
+  Every axis takes its cheapest option; roots have none. What then does not hang on a root, because it runs in a circle, is led back
+  axis by axis where the change to an option that does costs least.
+*/
+inline std::vector<Joint> Axis_joiner::choose(const std::vector<Index>& roots,
+                                              const std::vector<std::vector<Joint>>& options)
+{
+  const std::size_t n = options.size();
+  std::vector<Joint> joints(n);
+  std::vector<std::vector<Index>> children(n), users(n); // users: who has an option on an axis
+  for (Index a = 0; a < n; ++a) {
+    if (options[a].empty())
+      continue;
+    joints[a] = options[a].front();
+    children[joints[a].parent].push_back(a);
+    for (const Joint& o : options[a])
+      users[o.parent].push_back(a);
+  }
+  std::vector<std::uint8_t> is_reached(n, 0);
+  // what a change to an option costs, who changes, and to which
+  using Change = std::tuple<double, Index, std::size_t>;
+  std::priority_queue<Change, std::vector<Change>, std::greater<Change>> changes;
+  const auto reach = [&](Index from) {
+    std::vector<Index> stack{from}, reached;
+    while (!stack.empty()) {
+      const Index a = stack.back();
+      stack.pop_back();
+      if (is_reached[a])
+        continue;
+      is_reached[a] = 1;
+      reached.push_back(a);
+      stack.insert(stack.end(), children[a].begin(), children[a].end());
+    }
+    for (const Index b : reached)
+      for (const Index a : users[b])
+        for (std::size_t k = 0; !is_reached[a] && k < options[a].size(); ++k)
+          if (options[a][k].parent == b) {
+            changes.emplace(options[a][k].cost - joints[a].cost, a, k);
+            break; // they are sorted
+          }
+  };
+  for (const Index root : roots)
+    reach(root);
+  while (!changes.empty()) {
+    const auto [cost, a, k] = changes.top();
+    changes.pop();
+    if (is_reached[a])
+      continue;
+    joints[a] = options[a][k];
+    reach(a);
+  }
+  for (Index a = 0; a < n; ++a)
+    if (!is_reached[a])
+      joints[a] = Joint();
+  return joints;
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_BRANCHING_JOIN_AXES_H

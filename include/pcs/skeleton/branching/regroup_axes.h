@@ -1,0 +1,76 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Makes the branches of a tree its axes, so that they can be joined once more.
+
+#ifndef PCS_SKELETON_BRANCHING_REGROUP_AXES_H
+#define PCS_SKELETON_BRANCHING_REGROUP_AXES_H
+
+#include <pcs/skeleton/model/Axis_set.h>
+#include <pcs/skeleton/model/Branch_tree.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/*!
+  Replaces the axes that `tree` was joined from by its branches, without the nodes on the axes of their parents. Where a
+  fit went over from one branch to another, the tree went on straight, and its branches are better known than the axes
+  were. Axes out of reach stay. Every point keeps an axis. O(nodes + points).
+*/
+inline void regroup_axes(const Branch_tree& tree, Axis_set& set)
+{
+  if (tree.branches.empty() || tree.branches.front().nodes.size() < 2)
+    return; // the root is a single place
+  std::vector<Fitted_axis> axes;
+  std::vector<Index> axis_of_branch(tree.branches.size(), none);
+  std::vector<Index> place(tree.nodes.size(), 0); // number of a node on its axis
+  for (Index b = 0; b < tree.branches.size(); ++b) {
+    const Branch& branch = tree.branches[b];
+    const Index seat = tree.nodes[branch.nodes.front()].parent;
+    if (branch.nodes.size() < 2) { // lies on its parent altogether
+      axis_of_branch[b] = axis_of_branch[branch.parent];
+      place[branch.nodes.front()] = place[seat];
+      continue;
+    }
+    const std::size_t first = seat != none && branch.nodes.size() > 2 ? 1 : 0;
+    Fitted_axis axis;
+    for (std::size_t k = 0; k < branch.nodes.size(); ++k) {
+      place[branch.nodes[k]] = static_cast<Index>(k > first ? k - first : 0);
+      if (k >= first)
+        axis.axis.push_back(tree.nodes[branch.nodes[k]]);
+    }
+    axis_of_branch[b] = static_cast<Index>(axes.size());
+    axes.push_back(std::move(axis));
+  }
+  std::vector<Index> out_of_reach(set.axes.size(), none); // their new numbers
+  for (std::size_t i = 0; i < set.axis_of_point.size(); ++i) {
+    Index& axis = set.axis_of_point[i];
+    if (axis == none)
+      continue;
+    const Index v = tree.node_of_point[i];
+    if (v != none) {
+      axis = axis_of_branch[tree.nodes[v].branch];
+      set.segment_of_point[i] = std::min(place[v], static_cast<Index>(axes[axis].axis.size() - 2));
+    } else {
+      Index& number = out_of_reach[axis];
+      if (number == none) {
+        number = static_cast<Index>(axes.size());
+        axes.push_back(std::move(set.axes[axis]));
+        axes.back().number_of_points = 0;
+        axes.back().parent = none; // it counted the old axes
+      }
+      axis = number;
+    }
+    ++axes[axis].number_of_points;
+  }
+  set.axes = std::move(axes);
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_BRANCHING_REGROUP_AXES_H

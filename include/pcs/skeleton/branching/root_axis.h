@@ -1,0 +1,82 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Which axis stands on the root, and which of its ends.
+
+#ifndef PCS_SKELETON_BRANCHING_ROOT_AXIS_H
+#define PCS_SKELETON_BRANCHING_ROOT_AXIS_H
+
+#include <pcs/skeleton/model/Axis.h>
+#include <pcs/skeleton/model/Axis_set.h>
+#include <pcs/skeleton/model/Scan.h>
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+inline Vec3 middle_of(const Scan& scan, const std::vector<Index>& points)
+{
+  Vec3 sum = Vec3::Zero();
+  for (const Index i : points)
+    sum += scan.points[i];
+  return sum / double(points.size());
+}
+
+inline Index nearest_axis(const Axis_set& set, const Vec3& p)
+{
+  Index best = 0;
+  double distance = std::numeric_limits<double>::infinity();
+  for (Index a = 0; a < set.axes.size(); ++a) {
+    const double d = nearest_place(set.axes[a].axis, p).distance;
+    if (d < distance) {
+      distance = d;
+      best = a;
+    }
+  }
+  return best;
+}
+
+/*!
+  The axis that explains the root, and most else: a trunk may stand on buttresses that have more of the root. If none does, the
+  nearest one. Instead of one that is small beside an axis which the root is near, too, that: chance pieces of a
+  foot may have all of the root, unless the caller gave it (`is_given`). `root` has points, `set` axes. O(axes + root).
+*/
+inline Index
+root_axis(const Scan& scan, const Axis_set& set, const std::vector<Index>& root, bool is_given)
+{
+  constexpr double small = 0.1, near = 4; // share of the points, radii from the axis
+  const auto points_of = [&](Index a) { return double(set.axes[a].number_of_points); };
+  std::vector<double> votes(set.axes.size(), 0);
+  for (const Index i : root)
+    if (set.is_covered(i))
+      votes[set.axis_of_point[i]] += points_of(set.axis_of_point[i]);
+  const auto most = std::max_element(votes.begin(), votes.end());
+  const Index best = *most > 0 ? static_cast<Index>(most - votes.begin())
+                               : nearest_axis(set, scan.points[root.front()]);
+  if (is_given)
+    return best;
+  const Vec3 middle = middle_of(scan, root);
+  Index largest = best;
+  for (Index a = 0; a < set.axes.size(); ++a) {
+    if (small * points_of(a) <= points_of(best) || points_of(a) <= points_of(largest))
+      continue;
+    const Axis_place place = nearest_place(set.axes[a].axis, middle);
+    if (place.distance <= near * radius_at(set.axes[a].axis, place))
+      largest = a;
+  }
+  return largest;
+}
+
+/// Whether the root lies at the tip of its axis.
+inline bool is_root_reversed(const Scan& scan, const Axis& axis, const std::vector<Index>& root)
+{
+  const Vec3 middle = middle_of(scan, root);
+  return (axis.back().point - middle).norm() < (axis.front().point - middle).norm();
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_BRANCHING_ROOT_AXIS_H

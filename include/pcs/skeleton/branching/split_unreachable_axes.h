@@ -1,0 +1,74 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Takes axes apart that were fused by their bases and that nothing reaches.
+
+#ifndef PCS_SKELETON_BRANCHING_SPLIT_UNREACHABLE_AXES_H
+#define PCS_SKELETON_BRANCHING_SPLIT_UNREACHABLE_AXES_H
+
+#include <pcs/skeleton/model/Axis_set.h>
+#include <pcs/skeleton/model/Joint.h>
+#include <pcs/skeleton/model/Scan.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/*!
+  Two bases side by side may be a branch that another one crosses, or two branches that leave it on opposite sides. Where
+  the branch that they would make is out of reach, but something that is not lies within `reach` of the place where they met,
+  they were the latter: both become axes of their own, which begin there. `joints` are those of the axes, `root` the one that stands
+  on the root. Returns how many axes there are more. O(axes log points + points).
+*/
+inline std::size_t split_unreachable_axes(const Scan& scan,
+                                          double reach,
+                                          const std::vector<Joint>& joints,
+                                          Index root,
+                                          Axis_set& set)
+{
+  const std::size_t n = set.axes.size();
+  std::vector<Index> other(n, none),
+      meeting(n, 0); // the new axis of the second part, its first node
+  const auto is_reached = [&](Index a) { return a == root || joints[a].parent != none; };
+  for (Index a = 0; a < n; ++a) {
+    const std::size_t m = set.axes[a].meeting, size = set.axes[a].axis.size();
+    if (is_reached(a) || m < 2 || m + 2 > size)
+      continue;
+    const auto near = scan.search->nearest_if(set.axes[a].axis[m].point, reach, [&](Index i) {
+      const Index b = set.axis_of_point[i];
+      return b != none && is_reached(b);
+    });
+    if (!(near.squared_distance < reach * reach))
+      continue;
+    Fitted_axis second = set.axes[a];
+    Fitted_axis& first = set.axes[a];
+    second.axis.erase(second.axis.begin(), second.axis.begin() + static_cast<std::ptrdiff_t>(m));
+    first.axis.resize(m);
+    std::reverse(first.axis.begin(), first.axis.end());
+    first.meeting = second.meeting = 0;
+    first.number_of_points = second.number_of_points = 0;
+    first.direction = second.direction = 1;
+    meeting[a] = static_cast<Index>(m);
+    other[a] = static_cast<Index>(set.axes.size());
+    set.axes.push_back(std::move(second));
+  }
+  for (std::size_t i = 0; i < set.axis_of_point.size(); ++i) {
+    Index& a = set.axis_of_point[i];
+    if (a == none || other[a] == none)
+      continue;
+    Index& s = set.segment_of_point[i];
+    const Index m = meeting[a];
+    const bool is_first = s + 1 < m; // the segment between both has no points
+    s = is_first ? m - 2 - s : s - std::min(s, m);
+    a = is_first ? a : other[a];
+    ++set.axes[a].number_of_points;
+  }
+  return set.axes.size() - n;
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_BRANCHING_SPLIT_UNREACHABLE_AXES_H

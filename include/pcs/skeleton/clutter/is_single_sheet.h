@@ -1,0 +1,158 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Recognises points that fill a sheet, and scans that are nothing else.
+
+#ifndef PCS_SKELETON_CLUTTER_IS_SINGLE_SHEET_H
+#define PCS_SKELETON_CLUTTER_IS_SINGLE_SHEET_H
+
+#include <pcs/linear_algebra/small_symmetric.h>
+#include <pcs/skeleton/layers/find_root.h>
+#include <pcs/skeleton/model/Scan.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// When points are a filled sheet, and when a scan is nothing else.
+struct Sheet_options
+{
+  int cells = 20;          ///< along the radius of a sheet
+  double thin = 0.1;       ///< deviation across it by that along it [-],
+  double full = 0.7;       ///< ... share of its cells that hold points,
+  double longest = 8;      ///< ... and its length by its width [-]
+  double standing = 0.999; ///< quantile of distances from its plane that tells what stands on it,
+  double tall = 0.5;       ///< ... which is this high, by its deviation across,
+  double outstanding = 10; ///< ... and by the median of all [-]
+};
+
+namespace internal {
+
+/// The nearest nine tenths of some points to `center`, seen across a sheet along `e1` and `e2`: lengths count by these, so that
+/// the disc may be an ellipse.
+struct Sheet_disc
+{
+  std::vector<std::array<double, 2>> places; ///< from the centre
+  double radius = 0;
+
+  Sheet_disc(const Scan& scan,
+             const std::vector<Index>& points,
+             const Vec3& center,
+             const Vec3& e1,
+             const Vec3& e2)
+  {
+    std::vector<double> distance;
+    for (const Index i : points) {
+      const Vec3 d = scan.points[i] - center;
+      places.push_back({d.dot(e1), d.dot(e2)});
+      distance.push_back(std::hypot(places.back()[0], places.back()[1]));
+    }
+    if (places.empty())
+      return;
+    const auto at = distance.begin() + static_cast<std::ptrdiff_t>(0.9 * double(distance.size()));
+    std::nth_element(distance.begin(), at, distance.end());
+    radius = *at;
+    places.erase(std::remove_if(places.begin(),
+                                places.end(),
+                                [&](const auto& p) { return std::hypot(p[0], p[1]) > radius; }),
+                 places.end());
+  }
+
+  /// The side of a cell that would hold so many of the points if they were spread evenly.
+  double cell_of(double crowd) const
+  {
+    return std::sqrt(crowd * area() / double(std::max<std::size_t>(1, places.size())));
+  }
+
+  /// Whether this share of the cells of the disc holds points; never if they or the cells are few.
+  bool is_filled(double cell, double share) const
+  {
+    const double all = area() / (cell * cell);
+    if (places.size() < 90 || !(all > 12))
+      return false;
+    std::vector<std::pair<long, long>> cells;
+    for (const auto& p : places)
+      cells.emplace_back(std::lround(p[0] / cell), std::lround(p[1] / cell));
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    return double(cells.size()) >= share * all;
+  }
+
+private:
+  double area() const { return 3.14159265358979323846 * radius * radius; }
+};
+
+/// Whether a tree stands or lies on a sheet: few points, but higher than they are wide.
+inline bool carries_a_tree(const Scan& scan,
+                           const std::vector<Index>& points,
+                           const Vec3& normal,
+                           const Sheet_options& rules)
+{
+  std::vector<double> heights;
+  for (const Index i : points)
+    heights.push_back(normal.dot(scan.points[i]));
+  std::vector<double> sorted = heights;
+  const double level = median(sorted);
+  for (double& h : heights)
+    h = std::abs(h - level);
+  sorted = heights;
+  const double usual = median(sorted);
+  const auto at =
+      sorted.begin() + static_cast<std::ptrdiff_t>(rules.standing * double(sorted.size()));
+  std::nth_element(sorted.begin(), at, sorted.end());
+  const double high = *at;
+  if (!(high > rules.outstanding * usual))
+    return false;
+  std::vector<Index> standing;
+  for (std::size_t k = 0; k < points.size(); ++k)
+    if (heights[k] > rules.outstanding * usual)
+      standing.push_back(points[k]);
+  return high > rules.tall * Slab_shape(scan, standing, normal).width;
+}
+
+} // namespace internal
+
+/// Whether all points together are one thin filled sheet, such as ground alone, or a wall; longer ones than
+/// `rules.longest` may be boards or rows of anything.
+inline bool is_single_sheet(const Scan& scan,
+                            const std::vector<std::uint8_t>& is_used,
+                            const Sheet_options& rules)
+{
+  std::vector<Index> points;
+  Vec3 mean = Vec3::Zero();
+  for (Index i = 0; i < scan.size(); ++i)
+    if (is_used[i]) {
+      points.push_back(i);
+      mean += scan.points[i];
+    }
+  if (points.empty())
+    return false;
+  mean /= double(points.size());
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (const Index i : points)
+    covariance += (scan.points[i] - mean) * (scan.points[i] - mean).transpose();
+  const auto eigen = linear_algebra::symmetric_eigen<3>(covariance / double(points.size()));
+  const Vec3 spread = eigen.values.cwiseMax(0).cwiseSqrt();
+  if (!(spread(0) < rules.thin * spread(1)) || !(spread(2) < rules.longest * spread(1)))
+    return false;
+  if (internal::carries_a_tree(scan, points, eigen.vectors.col(0), rules))
+    return false;
+  const Vec3 across = spread(2) / spread(1) * eigen.vectors.col(1), along = eigen.vectors.col(2);
+  const internal::Sheet_disc disc(scan, points, mean, along, across);
+  const double longest = std::max(along.norm(), across.norm());
+  return disc.is_filled(std::max(disc.radius / rules.cells, 3 * scan.spacing * longest),
+                        rules.full);
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_CLUTTER_IS_SINGLE_SHEET_H

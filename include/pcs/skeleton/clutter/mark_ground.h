@@ -1,0 +1,366 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Recognises a slice of ground below a tree, so that it is not taken for roots.
+
+#ifndef PCS_SKELETON_CLUTTER_MARK_GROUND_H
+#define PCS_SKELETON_CLUTTER_MARK_GROUND_H
+
+#include <pcs/skeleton/clutter/Terrain.h>
+#include <pcs/skeleton/clutter/is_single_sheet.h>
+#include <pcs/skeleton/graph/Neighbor_graph.h>
+#include <pcs/skeleton/layers/find_root.h>
+#include <pcs/skeleton/model/Scan.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// When a terrain is ground: a filled patch, much wider than the stem above it.
+struct Ground_options
+{
+  double noise = 4;     ///< points within this many times its noise are ground [-]
+  double crowd = 5;     ///< its cells would hold so many of them if these lay evenly [count],
+  double spread = 0.55; ///< ... and this share of the cells holds points [-]
+  double width = 3;     ///< of it relative to the stem [-]
+  double lying = 0.01;  ///< what has no stem has this many points by those of the ground [-]
+  double bin = 0.01;    ///< height of a bin relative to the extent upwards, at least 4 spacings [-]
+  int bins = 12;        ///< in which the stem is looked for, from below
+  double keep = 2;      ///< so many stem widths around the stem no plants are looked for,
+  double beside = 1.5;  ///< and nearer to it than this,
+  double foot = 2;      ///< ... ground is thinner: in multiples of the noise [-]
+  double filled = 0.4;  ///< share of the cells of a bin that plants fill [-]
+  Terrain_options terrain;
+  Sheet_options sheet;
+};
+
+namespace internal {
+
+/// Horizontal centre and root mean square width of one bin.
+struct Bin_extent
+{
+  Vec3 center = Vec3::Zero();
+  double width = 0;
+  std::size_t count = 0;
+};
+
+/// The low points of a scan in bins of equal height, from below.
+struct Low_bins
+{
+  double low = 0, high = 0, height = 0;    ///< nearly all points lie between `low` and `high`
+  std::vector<Index> bin;                  ///< of a point; `none`: too high, or not used
+  std::vector<std::vector<Index>> members; ///< points by bin
+
+  Low_bins(const Scan& scan,
+           const std::vector<double>& height_of,
+           const Ground_options& rules,
+           const std::vector<std::uint8_t>& is_used)
+    : bin(scan.size(), none), members(static_cast<std::size_t>(rules.bins))
+  {
+    const Index n = static_cast<Index>(scan.size());
+    std::vector<float> heights;
+    for (Index i = 0; i < n; ++i)
+      if (is_used[i])
+        heights.push_back(static_cast<float>(height_of[i]));
+    if (heights.empty())
+      return;
+    const auto quantile = [&](std::size_t k) {
+      const auto at = heights.begin() + static_cast<std::ptrdiff_t>(k);
+      std::nth_element(heights.begin(), at, heights.end());
+      return double(*at);
+    };
+    low = quantile(heights.size() / 1000);
+    high = quantile(heights.size() - 1 - heights.size() / 1000);
+    height = std::max(rules.bin * (high - low), 4 * scan.spacing);
+    for (Index i = 0; i < n; ++i) {
+      const double b = (height_of[i] - low) / height;
+      if (is_used[i] && b < double(rules.bins)) {
+        bin[i] = static_cast<Index>(std::max(0.0, b));
+        members[bin[i]].push_back(i);
+      }
+    }
+  }
+};
+
+/// What of each bin belongs to the stem of the tallest thing above the bins: followed downwards from part to part.
+inline std::vector<std::vector<Index>> stem_in_bins(const Scan& scan,
+                                                    const Links& links,
+                                                    const std::vector<double>& height_of,
+                                                    const std::vector<std::uint8_t>& is_used,
+                                                    const Low_bins& bins)
+{
+  const Index n = static_cast<Index>(scan.size());
+  const std::size_t count = bins.members.size();
+  Point_sets above(n), sets(n); // parts above all bins, and in each of them
+  Links across;
+  for (const Link& l : links) {
+    const Index a = bins.bin[l.first], b = bins.bin[l.second];
+    if (a == b)
+      (a == none ? above : sets).unite(l.first, l.second);
+    else
+      across.push_back(l);
+  }
+  std::vector<Index> size(n, 0);
+  std::vector<double> top(n, bins.low);
+  for (Index i = 0; i < n; ++i)
+    if (is_used[i]) {
+      ++size[bins.bin[i] == none ? above.find(i) : sets.find(i)];
+      if (bins.bin[i] == none)
+        top[above.find(i)] = std::max(top[above.find(i)], height_of[i]);
+    }
+  Index tallest = none;
+  const auto score = [&](Index i) { return double(size[i]) * (top[i] - bins.low); };
+  for (Index i = 0; i < n; ++i)
+    if (is_used[i] && bins.bin[i] == none &&
+        (tallest == none || score(above.find(i)) > score(tallest)))
+      tallest = above.find(i);
+  std::vector<std::vector<Index>> stem(count);
+  std::vector<std::uint8_t> is_stem(n, 0);
+  for (Index i = 0; i < n && tallest != none; ++i)
+    is_stem[i] = is_used[i] && bins.bin[i] == none && above.find(i) == tallest;
+  for (std::size_t b = count; b-- > 0;) {
+    Index part = none;
+    const auto offer = [&](Index i) {
+      const Index s = sets.find(i);
+      if (part == none || size[s] > size[part] || (size[s] == size[part] && s < part))
+        part = s;
+    };
+    for (const Link& l : across) {
+      if (bins.bin[l.first] == b && is_stem[l.second] && bins.bin[l.second] > b)
+        offer(l.first);
+      if (bins.bin[l.second] == b && is_stem[l.first] && bins.bin[l.first] > b)
+        offer(l.second);
+    }
+    if (part == none) // a gap: the thickest part
+      for (const Index i : bins.members[b])
+        offer(i);
+    for (const Index i : bins.members[b])
+      if (sets.find(i) == part) {
+        stem[b].push_back(i);
+        is_stem[i] = 1;
+      }
+  }
+  return stem;
+}
+
+inline Bin_extent extent_of(const Scan& scan, const std::vector<Index>& points, const Vec3& up)
+{
+  Bin_extent e;
+  e.count = points.size();
+  for (const Index i : points)
+    e.center += scan.points[i];
+  if (e.count > 0)
+    e.center /= double(e.count);
+  double sum = 0;
+  for (const Index i : points) {
+    const Vec3 d = scan.points[i] - e.center;
+    sum += (d - up.dot(d) * up).squaredNorm();
+  }
+  e.width = e.count > 0 ? std::sqrt(sum / double(e.count)) : 0;
+  return e;
+}
+
+/// Where the stem of a tree leaves the ground.
+struct Stem_foot
+{
+  Vec3 center = Vec3::Zero();
+  double width = 0; ///< root mean square, of most bins
+
+  /// Nothing if no stem is found in the bins.
+  static std::optional<Stem_foot>
+  find(const Scan& scan, const std::vector<std::vector<Index>>& stem, const Vec3& up)
+  {
+    std::vector<Bin_extent> extent;
+    std::vector<double> widths;
+    for (const auto& points : stem) {
+      extent.push_back(extent_of(scan, points, up));
+      if (extent.back().count >= 6)
+        widths.push_back(extent.back().width);
+    }
+    if (widths.size() < 4)
+      return std::nullopt;
+    std::sort(widths.begin(), widths.end());
+    Stem_foot foot;
+    foot.width = widths[widths.size() / 4];
+    for (const Bin_extent& bin : extent)
+      if (bin.count >= 6 &&
+          bin.width <= 1.5 * foot.width) { // the lowest one that is the stem alone
+        foot.center = bin.center;
+        return foot;
+      }
+    return std::nullopt;
+  }
+};
+
+/// Finds the points of ground: those of a terrain, and of plants on it.
+class Ground_finder
+{
+public:
+  Ground_finder(const Scan& scan,
+                const Links& links,
+                const Vec3& up,
+                const Ground_options& rules,
+                const std::vector<std::uint8_t>& is_used)
+    : m_scan(scan), m_links(links), m_up(up), m_rules(rules), m_is_used(is_used)
+  {
+    if (const auto terrain = find_terrain(scan, up, rules.terrain, is_used))
+      find_on(*terrain);
+  }
+
+  const std::vector<Index>& points() const { return m_points; }
+
+private:
+  double across(Index i, const Stem_foot& foot) const
+  {
+    const Vec3 d = m_scan.points[i] - foot.center;
+    return (d - m_up.dot(d) * m_up).norm();
+  }
+
+  double kept(const Stem_foot& foot) const
+  {
+    return m_rules.keep * foot.width + 4 * m_scan.spacing;
+  }
+
+  std::vector<Index> far_from(const Stem_foot& foot, const std::vector<Index>& points) const
+  {
+    std::vector<Index> far;
+    for (const Index i : points)
+      if (across(i, foot) > kept(foot))
+        far.push_back(i);
+    return far;
+  }
+
+  bool is_wide(const Stem_foot& foot, const std::vector<Index>& points) const
+  {
+    return std::any_of(points.begin(), points.end(), [&](Index i) {
+      return across(i, foot) > m_rules.width * foot.width;
+    });
+  }
+
+  Sheet_disc disc(const std::vector<Index>& points, const Vec3& center) const
+  {
+    const Vec3 e1 = m_up.unitOrthogonal();
+    return Sheet_disc(m_scan, points, center, e1, m_up.cross(e1));
+  }
+
+  bool is_filled(const std::vector<Index>& points, const Stem_foot& foot) const
+  {
+    const Sheet_disc sheet = disc(points, foot.center);
+    return sheet.is_filled(std::max(sheet.radius / m_rules.sheet.cells, 3 * m_scan.spacing),
+                           m_rules.filled);
+  }
+
+  /// The layer of the terrain, and the bins above it that plants fill.
+  void find_on(Terrain terrain)
+  {
+    const double noise = terrain.noise(m_scan, m_is_used), thickness = m_rules.noise * noise;
+    std::vector<double> height(m_scan.size());
+    std::vector<Index> layer;
+    std::vector<std::uint8_t> is_standing = m_is_used;
+    Vec3 center = Vec3::Zero();
+    for (Index i = 0; i < m_scan.size(); ++i) {
+      height[i] = terrain.height(m_scan.points[i]) - thickness;
+      if (!m_is_used[i] || height[i] > 0)
+        continue;
+      is_standing[i] = 0;
+      layer.push_back(i);
+      center += m_scan.points[i];
+    }
+    if (layer.empty())
+      return;
+    const Sheet_disc sheet = disc(layer, center / double(layer.size()));
+    if (!sheet.is_filled(sheet.cell_of(m_rules.crowd), m_rules.spread))
+      return;
+    Links links;
+    for (const Link& l : m_links)
+      if (is_standing[l.first] && is_standing[l.second])
+        links.push_back(l);
+    const Low_bins bins(m_scan, height, m_rules, is_standing);
+    const auto foot =
+        Stem_foot::find(m_scan, stem_in_bins(m_scan, links, height, is_standing, bins), m_up);
+    if (!foot) { // such as a stem that lies on it
+      const auto standing = std::count(is_standing.begin(), is_standing.end(), 1);
+      if (double(standing) >= m_rules.lying * double(layer.size()))
+        m_points = layer;
+      return;
+    }
+    if (!is_wide(*foot, layer))
+      return;
+    m_points = far_from(*foot, layer);
+    add_plants(bins, links, *foot);
+    terrain.bridge(foot->center, kept(*foot));
+    for (Index i = 0; i < m_scan.size(); ++i) {
+      const double distance = across(i, *foot);
+      if (!m_is_used[i] || distance > kept(*foot))
+        continue;
+      const bool is_beside = distance > m_rules.beside * foot->width;
+      if (terrain.height(m_scan.points[i]) <=
+          (is_beside ? thickness : m_rules.foot * noise) + m_scan.local_spacing[i])
+        m_points.push_back(i);
+    }
+  }
+
+  /// The bins that plants fill, and those parts of as many bins above them that go on from there.
+  void add_plants(const Low_bins& bins, const Links& links, const Stem_foot& foot)
+  {
+    std::size_t filled = 0;
+    while (filled < bins.members.size() && is_filled(far_from(foot, bins.members[filled]), foot))
+      ++filled;
+    std::vector<std::uint8_t> is_low(m_scan.size(), 0), is_plant(m_scan.size(), 0);
+    std::vector<Index> low;
+    for (std::size_t b = 0; b < std::min(2 * filled, bins.members.size()); ++b)
+      for (const Index i : far_from(foot, bins.members[b])) {
+        is_low[i] = 1;
+        low.push_back(i);
+      }
+    const Point_parts parts = connected_parts<CGAL::Sequential_tag>(is_low, links);
+    for (const Index i : low)
+      is_plant[parts.part[i]] |= bins.bin[i] < filled;
+    for (const Index i : low)
+      if (is_plant[parts.part[i]])
+        m_points.push_back(i);
+  }
+
+  const Scan& m_scan;
+  const Links& m_links;
+  Vec3 m_up;
+  const Ground_options& m_rules;
+  const std::vector<std::uint8_t>& m_is_used;
+  std::vector<Index> m_points;
+};
+
+} // namespace internal
+
+/*!
+  Takes ground out of `is_used`, and returns the number of its points: those of a terrain on which all others stand, if it
+  is a filled patch much wider than the stem, or if something lies on it. Plants that cover it go with it. `links` are those
+  between neighbours. O(n log n).
+*/
+inline std::size_t mark_ground(const Scan& scan,
+                               const Links& links,
+                               const Vec3& up,
+                               const Ground_options& rules,
+                               std::vector<std::uint8_t>& is_used)
+{
+  if (std::count(is_used.begin(), is_used.end(), 1) < 200)
+    return 0;
+  const internal::Ground_finder ground(scan, links, up, rules, is_used);
+  for (const Index i : ground.points())
+    is_used[i] = 0;
+  return ground.points().size();
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_CLUTTER_MARK_GROUND_H

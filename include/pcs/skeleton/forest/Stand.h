@@ -1,0 +1,47 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The trees of a scan of several: where they stand, and whose every point is.
+
+#ifndef PCS_SKELETON_FOREST_STAND_H
+#define PCS_SKELETON_FOREST_STAND_H
+
+#include <pcs/internal/progress.h>
+#include <pcs/skeleton/input/Session_hints.h>
+#include <pcs/skeleton/model/Scan.h>
+
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// A tree in the coordinates of the input.
+struct Detected_tree
+{
+  Vec3 foot = Vec3::Zero(); ///< on the axis of its thickest stem, where that begins
+  double radius = 0;        ///< of that stem, the largest in its lowest part [L]
+};
+
+struct Stand
+{
+  std::vector<Detected_tree> trees; ///< thick ones first
+  std::vector<Index> tree_of_input; ///< by point of the input; `none`: no tree's
+};
+
+/*!
+  Finds the trees of a scan. `input` is finite, with at least two different points. Returns `false` if the work was cancelled;
+  `forest` is untouched then. O(n log n).
+*/
+template <class ConcurrencyTag>
+bool find_trees(const std::vector<Vec3>& input,
+                const Session_hints& hints,
+                pcs::internal::Progress& progress,
+                Stand& forest);
+
+} // namespace skeleton
+} // namespace pcs
+
+#ifndef PCS_COMPILED_SKELETON
+#include <pcs/skeleton/forest/Stand_impl.h>
+#endif
+
+#endif // PCS_SKELETON_FOREST_STAND_H

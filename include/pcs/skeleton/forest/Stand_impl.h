@@ -1,0 +1,206 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Definitions of Forest.h.
+
+#ifndef PCS_SKELETON_FOREST_STAND_IMPL_H
+#define PCS_SKELETON_FOREST_STAND_IMPL_H
+
+#include <pcs/core/Skeleton_options.h>
+#include <pcs/internal/progress.h>
+#include <pcs/skeleton/Session_options.h>
+#include <pcs/skeleton/Session_stages.h>
+#include <pcs/skeleton/forest/Stand.h>
+#include <pcs/skeleton/forest/Stand_options.h>
+#include <pcs/skeleton/forest/Stem_detector.h>
+#include <pcs/skeleton/forest/Thinned_points.h>
+#include <pcs/skeleton/model/Scan.h>
+#include <pcs/skeleton/model/Scan_frame.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+namespace internal {
+
+/// What is found among one point of every cube of a side. By point of the input, if not said otherwise.
+struct Stand_state
+{
+  Scan_frame frame;
+  std::vector<Found_stem> stems; ///< those of a tree in a row; in coordinates of `frame`
+  std::vector<Index> tree_of_input, stem_of_input;
+  std::vector<float>
+      spacing_of_input; ///< among one point of each cube, by the median of those of trees [-]
+};
+
+/// Points get trees only if `are_wanted(stand)`, with the stems. `false` if the work was cancelled.
+template <class ConcurrencyTag, class Are_wanted>
+bool find_stand(const std::vector<Vec3>& input,
+                double side,
+                const Session_hints& hints,
+                const Stand_options& rules,
+                pcs::internal::Progress& progress,
+                const Are_wanted& are_wanted,
+                Stand_state& stand)
+{
+  stand.tree_of_input.assign(input.size(), none);
+  stand.stem_of_input.assign(input.size(), none);
+  const Thinned_points thinned(input, side);
+  if (thinned.points.size() < rules.solid_part) // far smaller than a tree
+    return progress(1);
+  Session_options options(hints);
+  options.leaf_removal = Leaf_removal::never;
+  options.do_trace_paths = false;
+  Session_stages<ConcurrencyTag> session(thinned.points, {}, options);
+  if (!session.find_paths(progress))
+    return false;
+  const Scan& scan = session.scan();
+  stand.frame = scan.frame;
+  Stem_detector<ConcurrencyTag> finder(scan,
+                                       session.used_points(),
+                                       hints.breast_height / scan.frame.unit,
+                                       options,
+                                       rules);
+  if (!finder.find(progress))
+    return false;
+  stand.stems = finder.stems();
+  const auto point_of = [&](std::size_t i) { return scan.point_of_input[thinned.of_input[i]]; };
+  if (!stand.stems.empty())
+    for (std::size_t i = 0; i < input.size(); ++i)
+      stand.stem_of_input[i] = finder.stem_of_point()[point_of(i)];
+  if (!are_wanted(stand))
+    return progress(1);
+  if (!finder.label(progress))
+    return false;
+  std::vector<double> spacings; // the ground may have its own
+  for (Index i = 0; i < scan.size(); ++i)
+    if (finder.tree_of_point()[i] != none)
+      spacings.push_back(scan.local_spacing[i]);
+  if (spacings.empty())
+    spacings = scan.local_spacing;
+  const double spacing = median(spacings);
+  stand.spacing_of_input.resize(input.size());
+  for (std::size_t i = 0; i < input.size(); ++i) {
+    stand.tree_of_input[i] = finder.tree_of_point()[point_of(i)];
+    stand.spacing_of_input[i] = static_cast<float>(scan.local_spacing[point_of(i)] / spacing);
+  }
+  return true;
+}
+
+/// Which stems of `coarse` have few points in `stand`. O(points).
+inline std::vector<bool>
+sparse_stems(const Stand_state& coarse, const Stand_options& rules, const Stand_state& stand)
+{
+  std::vector<bool> result(coarse.stems.size(), false);
+  if (coarse.stems.empty() || stand.spacing_of_input.empty())
+    return result;
+  std::vector<std::vector<float>> spacings(coarse.stems.size());
+  for (std::size_t i = 0; i < coarse.stem_of_input.size(); ++i)
+    if (coarse.stem_of_input[i] != none)
+      spacings[coarse.stem_of_input[i]].push_back(stand.spacing_of_input[i]);
+  for (std::size_t s = 0; s < result.size(); ++s)
+    result[s] = double(median(spacings[s])) >= rules.sparse;
+  return result;
+}
+
+/*!
+  Adds the trees of those stems of `coarse` that have few points: between those of others, their stems fall to pieces. Such trees get their points
+  that are few or nobody's. O(points + stems^2).
+*/
+inline void add_sparse_trees(const Stand_state& coarse,
+                             const std::vector<bool>& is_sparse,
+                             double breast_height,
+                             const Stand_options& rules,
+                             Stand_state& stand)
+{
+  if (coarse.stems.empty())
+    return;
+  Index number_of_trees = stand.stems.empty() ? 0 : stand.stems.back().tree + 1;
+  std::vector<Index> tree_of_coarse(coarse.stems.back().tree + 1, none);
+  for (std::size_t s = 0; s < coarse.stems.size(); ++s) {
+    Found_stem stem = coarse.stems[s];
+    Index& tree = tree_of_coarse[stem.tree];
+    if (tree != none || !is_sparse[s])
+      continue;
+    stem.foot = stand.frame.to_local(coarse.frame.to_input(stem.foot));
+    stem.radius *= coarse.frame.unit / stand.frame.unit;
+    stem.height *= coarse.frame.unit / stand.frame.unit;
+    const auto own = std::find_if(stand.stems.begin(), stand.stems.end(), [&](const Found_stem& o) {
+      const bool is_thicker = o.radius >= stem.radius;
+      return are_of_one_tree(is_thicker ? stem : o,
+                             is_thicker ? o : stem,
+                             breast_height / stand.frame.unit,
+                             rules);
+    });
+    tree = own == stand.stems.end() ? number_of_trees++ : own->tree;
+    if (own == stand.stems.end()) {
+      stem.tree = tree;
+      stand.stems.push_back(stem);
+    }
+  }
+  for (std::size_t i = 0; i < coarse.tree_of_input.size(); ++i) {
+    const Index c = coarse.tree_of_input[i];
+    if (c != none && tree_of_coarse[c] != none &&
+        (stand.tree_of_input[i] == none || double(stand.spacing_of_input[i]) >= rules.sparse))
+      stand.tree_of_input[i] = tree_of_coarse[c];
+  }
+}
+
+} // namespace internal
+
+template <class ConcurrencyTag>
+bool find_trees(const std::vector<Vec3>& input,
+                const Session_hints& hints,
+                pcs::internal::Progress& progress,
+                Stand& forest)
+{
+  const Stand_options rules;
+  const double side = rules.cell * hints.breast_height;
+  internal::Stand_state stand, coarse;
+  progress.stage(0, 0.75);
+  const auto always = [](const internal::Stand_state&) { return true; };
+  if (!internal::find_stand<ConcurrencyTag>(input, side, hints, rules, progress, always, stand))
+    return false;
+  std::vector<bool> is_sparse;
+  const auto has_sparse_stems = [&](const internal::Stand_state& other) {
+    is_sparse = internal::sparse_stems(other, rules, stand);
+    return std::find(is_sparse.begin(), is_sparse.end(), true) != is_sparse.end();
+  };
+  progress.stage(0.75, 1);
+  if (!internal::find_stand<ConcurrencyTag>(input,
+                                            rules.coarser * side,
+                                            hints,
+                                            rules,
+                                            progress,
+                                            has_sparse_stems,
+                                            coarse))
+    return false;
+  internal::add_sparse_trees(coarse, is_sparse, hints.breast_height, rules, stand);
+
+  std::vector<internal::Found_stem> thickest; // of every tree, thick ones first
+  for (const internal::Found_stem& stem : stand.stems)
+    if (stem.tree == thickest.size())
+      thickest.push_back(stem);
+  std::stable_sort(thickest.begin(), thickest.end(), [](const auto& a, const auto& b) {
+    return a.radius > b.radius;
+  });
+  Stand result;
+  std::vector<Index> place(thickest.size());
+  for (const internal::Found_stem& stem : thickest) {
+    place[stem.tree] = static_cast<Index>(result.trees.size());
+    result.trees.push_back({stand.frame.to_input(stem.foot), stand.frame.unit * stem.radius});
+  }
+  for (Index& tree : stand.tree_of_input)
+    tree = tree == none ? none : place[tree];
+  result.tree_of_input = std::move(stand.tree_of_input);
+  forest = std::move(result);
+  return true;
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_FOREST_STAND_IMPL_H

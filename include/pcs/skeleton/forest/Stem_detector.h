@@ -1,0 +1,414 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Finds the stems in a scan, and whose its points are.
+
+#ifndef PCS_SKELETON_FOREST_STEM_DETECTOR_H
+#define PCS_SKELETON_FOREST_STEM_DETECTOR_H
+
+#include <pcs/internal/parallel.h>
+#include <pcs/internal/progress.h>
+#include <pcs/neighborhood/Nearest_neighbors.h>
+#include <pcs/skeleton/Session_options.h>
+#include <pcs/skeleton/axes/fit_axes.h>
+#include <pcs/skeleton/branching/fuse_axes.h>
+#include <pcs/skeleton/branching/join_axes.h>
+#include <pcs/skeleton/forest/Stand_options.h>
+#include <pcs/skeleton/graph/Neighbor_graph.h>
+#include <pcs/skeleton/graph/shortest_paths.h>
+#include <pcs/skeleton/layers/cut_layers.h>
+#include <pcs/skeleton/layers/merge_ring_arcs.h>
+#include <pcs/skeleton/model/Axis.h>
+#include <pcs/skeleton/model/Axis_set.h>
+#include <pcs/skeleton/model/Scan.h>
+#include <pcs/skeleton/result/count_other_stems.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+namespace internal {
+
+/// The lowest points of a scan in a level grid, from which the ground rises at most by a slope.
+class Lowest_ground
+{
+public:
+  Lowest_ground(const Scan& scan,
+                double cell,
+                double slope,
+                const std::vector<std::uint8_t>& is_solid)
+    : m_slope(slope)
+  {
+    std::map<std::pair<double, double>, Vec3> lowest;
+    for (std::size_t i = 0; i < scan.size(); ++i) {
+      if (!is_solid[i])
+        continue;
+      const Vec3& p = scan.points[i];
+      const auto [at, is_new] =
+          lowest.emplace(std::make_pair(std::floor(p.x() / cell), std::floor(p.y() / cell)), p);
+      if (!is_new && p.z() < at->second.z())
+        at->second = p;
+    }
+    for (const auto& entry : lowest)
+      m_lowest.push_back(entry.second);
+  }
+
+  /// How far a place lies above it. O(cells).
+  double height(const Vec3& p) const
+  {
+    double ground = std::numeric_limits<double>::infinity();
+    for (const Vec3& q : m_lowest)
+      ground = std::min(ground, q.z() + m_slope * std::hypot(p.x() - q.x(), p.y() - q.y()));
+    return p.z() - ground;
+  }
+
+private:
+  double m_slope;
+  std::vector<Vec3> m_lowest;
+};
+
+/// What has no label gets that of its nearest ancestor with one. `parent(i)` is `none` at a root. O(n).
+template <class Parent>
+void inherit(std::vector<Index>& labels, const Parent& parent)
+{
+  std::vector<Index> way;
+  for (Index i = 0; i < labels.size(); ++i) {
+    way.clear();
+    Index at = i;
+    for (; at != none && labels[at] == none; at = parent(at))
+      way.push_back(at);
+    for (const Index j : way)
+      labels[j] = at == none ? none : labels[at];
+  }
+}
+
+/// A stem in a scan, and the tree that it belongs to.
+struct Found_stem
+{
+  Index axis, tree;
+  Vec3 foot;
+  double radius;
+  double height; ///< of the foot above the ground
+};
+
+/// Whether a stem belongs to the tree of one that is not thinner. z is up.
+inline bool are_of_one_tree(const Found_stem& stem,
+                            const Found_stem& thicker,
+                            double breast_height,
+                            const Stand_options& rules)
+{
+  const Vec3 d = stem.foot - thicker.foot;
+  return std::hypot(d.x(), d.y()) < rules.stool_radii * thicker.radius +
+                                        rules.stool * breast_height +
+                                        rules.lean * std::max({0.0, stem.height, thicker.height});
+}
+
+/*!
+  Axes are fitted twice. First along the paths from the lowest points of all that hangs together, to find stems; then along the
+  paths from the feet of these. Every axis of the second fit sits on another one by the odds of `Axis_joiner`, and so belongs
+  to a tree. z is up.
+*/
+template <class ConcurrencyTag>
+class Stem_detector
+{
+public:
+  Stem_detector(const Scan& scan,
+                const std::vector<std::uint8_t>& is_used,
+                double breast_height,
+                const Session_options& options,
+                const Stand_options& rules)
+    : m_scan(scan),
+      m_is_used(is_used),
+      m_breast_height(breast_height),
+      m_options(options),
+      m_rules(rules)
+  {
+  }
+
+  /// The first fit, and the stems in it. `false` if the work was cancelled.
+  bool find(pcs::internal::Progress& progress)
+  {
+    m_links = neighbor_links<ConcurrencyTag>(m_scan, m_is_used, m_options.axes.links);
+    const Links gaps = links_across_gaps(m_scan,
+                                         m_is_used,
+                                         m_options.axes.links,
+                                         connected_parts<ConcurrencyTag>(m_is_used, m_links));
+    m_links.insert(m_links.end(), gaps.begin(), gaps.end());
+    m_graph.reset(new Neighbor_graph(graph_of(m_scan.size(), m_links)));
+    m_tree_of_point.assign(m_scan.size(), none);
+    m_stem_of_point.assign(m_scan.size(), none);
+    m_is_solid = solid_points();
+    const std::vector<Index> lowest = lowest_points();
+    if (lowest.empty())
+      return progress(1);
+    if (!fit_along(shortest_paths(m_scan, *m_graph, lowest), progress, 0.5, 0.75))
+      return false;
+    find_stems();
+    m_feet = points_of_feet();
+    return true;
+  }
+
+  /// The second fit, along the paths from the stems, and the trees of all points. `false` if the work was cancelled.
+  bool label(pcs::internal::Progress& progress)
+  {
+    if (m_feet.empty())
+      return progress(1);
+    const Shortest_paths paths = shortest_paths(m_scan, *m_graph, m_feet);
+    if (!fit_along(paths, progress, 0.75, 1))
+      return false;
+    label_axes();
+    label_points(paths);
+    return true;
+  }
+
+  const std::vector<Found_stem>& stems() const { return m_stems; } ///< those of a tree in a row
+  /// By point of the scan; `none`: of no tree.
+  const std::vector<Index>& tree_of_point() const { return m_tree_of_point; }
+  /// By point of the scan, of the lowest part of stems; `none`: of no stem.
+  const std::vector<Index>& stem_of_point() const { return m_stem_of_point; }
+
+private:
+  /// Of every part, those within one layer of its lowest one.
+  std::vector<Index> lowest_points() const
+  {
+    const Point_parts parts = connected_parts<ConcurrencyTag>(m_is_used, m_links);
+    std::vector<double> low(m_scan.size(), std::numeric_limits<double>::infinity());
+    for (Index i = 0; i < m_scan.size(); ++i)
+      if (m_is_used[i])
+        low[parts.part[i]] = std::min(low[parts.part[i]], m_scan.points[i].z());
+    std::vector<Index> sources;
+    for (Index i = 0; i < m_scan.size(); ++i)
+      if (m_is_used[i] && parts.size[parts.part[i]] >= m_rules.solid_part &&
+          m_scan.points[i].z() <= low[parts.part[i]] + layer_thickness * m_scan.spacing)
+        sources.push_back(i);
+    return sources;
+  }
+
+  bool
+  fit_along(const Shortest_paths& paths, pcs::internal::Progress& progress, double from, double to)
+  {
+    Layer_tree layers = layer_tree<ConcurrencyTag>(m_scan, m_links, paths);
+    merge_ring_arcs<ConcurrencyTag>(m_scan, m_options.rings, layers);
+    bool is_running = true;
+    m_axes = fit_axes<ConcurrencyTag>(m_scan, layers, m_options.axes, [&](double f) {
+      return is_running = progress(from + (to - from) * f);
+    });
+    if (is_running)
+      fuse_axes<ConcurrencyTag>(m_scan.spacing, m_options.fusion, m_axes);
+    return is_running;
+  }
+
+  /// What hangs together in numbers, and may be ground or stand on it, whether it is used or not.
+  std::vector<std::uint8_t> solid_points() const
+  {
+    std::vector<std::uint8_t> is_solid(m_scan.size(), 1);
+    const Point_parts parts = connected_parts<ConcurrencyTag>(
+        is_solid,
+        neighbor_links<ConcurrencyTag>(m_scan, is_solid, m_options.axes.links));
+    for (std::size_t i = 0; i < is_solid.size(); ++i)
+      is_solid[i] = parts.size[parts.part[i]] >= m_rules.solid_part;
+    return is_solid;
+  }
+
+  /// Steep axes that begin near the ground and are not much thinner there.
+  void find_stems()
+  {
+    const Lowest_ground ground(m_scan,
+                               m_rules.ground_cell * m_breast_height,
+                               m_rules.ground_slope,
+                               m_is_solid);
+    std::vector<Found_stem> found;
+    for (Index a = 0; a < m_axes.axes.size(); ++a) {
+      const Axis_node* const foot = foot_of(m_axes.axes[a].axis, ground);
+      if (foot != nullptr)
+        found.push_back({a,
+                         none,
+                         foot->point,
+                         radius_near(m_axes.axes[a].axis, foot->point),
+                         ground.height(foot->point)});
+    }
+    std::stable_sort(found.begin(), found.end(), [](const Found_stem& a, const Found_stem& b) {
+      return a.radius > b.radius;
+    });
+    std::vector<Found_stem> thickest; // of every tree
+    for (Found_stem& stem : found) {
+      const auto own = std::find_if(thickest.begin(), thickest.end(), [&](const Found_stem& other) {
+        return are_of_one_tree(stem, other, m_breast_height, m_rules);
+      });
+      stem.tree = static_cast<Index>(own - thickest.begin());
+      if (own == thickest.end())
+        thickest.push_back(stem);
+    }
+    std::stable_sort(found.begin(), found.end(), [](const Found_stem& a, const Found_stem& b) {
+      return a.tree < b.tree;
+    });
+    m_stems = std::move(found);
+  }
+
+  /// The end from which an axis rises as stems do, whatever it does above; null if there is none.
+  const Axis_node* foot_of(const Axis& axis, const Lowest_ground& ground) const
+  {
+    const Axis_node* foot = nullptr;
+    double largest = 0; // radius
+    for (const bool is_reversed : {false, true}) {
+      const auto node_at = [&](std::size_t k) -> const Axis_node& {
+        return axis[is_reversed ? axis.size() - 1 - k : k];
+      };
+      double length = 0;
+      bool is_steep = false; // up to somewhere
+      std::size_t top = 0;
+      for (std::size_t k = 1; k < axis.size(); ++k) {
+        length += (node_at(k).point - node_at(k - 1).point).norm();
+        const double rise = node_at(k).point.z() - node_at(0).point.z();
+        is_steep =
+            is_steep || rise >= std::max(m_rules.rise * m_breast_height, m_rules.steep * length);
+        top = node_at(k).point.z() > node_at(top).point.z() ? k : top;
+      }
+      const Axis_slope_summary part(top + 1, node_at);
+      const double highest_foot =
+          std::min(m_rules.foot * m_breast_height, m_rules.foot_radii * part.lower_radius);
+      if (is_steep && part.rise >= m_rules.stout * part.lower_radius &&
+          part.lower_radius >= m_rules.taper * part.upper_radius &&
+          part.lower_radius >= m_rules.thinnest * m_breast_height && part.lower_radius > largest &&
+          ground.height(node_at(0).point) <= highest_foot) {
+        foot = &node_at(0);
+        largest = part.lower_radius;
+      }
+    }
+    return foot;
+  }
+
+  /// Largest radius of the lowest part of a stem.
+  double radius_near(const Axis& axis, const Vec3& foot) const
+  {
+    double radius = 0;
+    for (const Axis_node& node : axis)
+      if (node.point.z() <= foot.z() + m_rules.root * m_breast_height)
+        radius = std::max(radius, node.radius);
+    return radius;
+  }
+
+  /// The lowest points of all stems, which belong to their trees.
+  std::vector<Index> points_of_feet()
+  {
+    std::vector<Index> stem_of_axis(m_axes.axes.size(), none), sources;
+    for (Index s = 0; s < m_stems.size(); ++s)
+      stem_of_axis[m_stems[s].axis] = s;
+    for (Index i = 0; i < m_scan.size(); ++i) {
+      const Index s = m_axes.is_covered(i) ? stem_of_axis[m_axes.axis_of_point[i]] : none;
+      if (s == none || m_scan.points[i].z() > m_stems[s].foot.z() + m_rules.root * m_breast_height)
+        continue;
+      m_stem_of_point[i] = s;
+      m_tree_of_point[i] = m_stems[s].tree;
+      sources.push_back(i);
+    }
+    return sources;
+  }
+
+  /// The axis that explains the foot of a stem, and most else, is a root; the others belong to the tree that they hang on.
+  void label_axes()
+  {
+    std::map<std::pair<Index, Index>, double> votes; // of stem and axis
+    for (const Index i : m_feet)
+      if (m_axes.is_covered(i)) {
+        const Index a = m_axes.axis_of_point[i];
+        votes[{m_stem_of_point[i], a}] += double(m_axes.axes[a].number_of_points);
+      }
+    std::vector<Index> best(m_stems.size(), none);
+    for (const auto& [pair, vote] : votes) {
+      Index& b = best[pair.first];
+      if (b == none || vote > votes[{pair.first, b}])
+        b = pair.second;
+    }
+    m_tree_of_axis.assign(m_axes.axes.size(), none);
+    std::vector<Index> roots;
+    for (Index s = 0; s < m_stems.size(); ++s) {
+      if (best[s] == none || m_tree_of_axis[best[s]] != none)
+        continue;
+      m_tree_of_axis[best[s]] = m_stems[s].tree;
+      roots.push_back(best[s]);
+    }
+    const Axis_joiner joiner(m_axes, m_scan.spacing, m_options.joints);
+    const std::vector<Joint> joints = joiner.template run<ConcurrencyTag>(roots);
+    inherit(m_tree_of_axis, [&](Index a) { return joints[a].parent; });
+  }
+
+  /// By its axis; where that has no tree, or there is none, by the path from the nearest foot.
+  void label_points(const Shortest_paths& paths)
+  {
+    inherit(m_tree_of_point,
+            [&](Index i) { return paths.predecessor[i] == i ? none : paths.predecessor[i]; });
+    for (Index i = 0; i < m_scan.size(); ++i)
+      if (m_axes.is_covered(i) && m_tree_of_axis[m_axes.axis_of_point[i]] != none)
+        m_tree_of_point[i] = m_tree_of_axis[m_axes.axis_of_point[i]];
+    return_feet();
+  }
+
+  /// The part of the stems that was left out with the ground, to the nearest one in radii. On a slope it reaches above their feet.
+  void return_feet()
+  {
+    if (m_stems.empty())
+      return;
+    const auto reach = [&](const Found_stem& stem) {
+      return m_rules.base_radii * stem.radius + m_scan.spacing;
+    };
+    std::vector<Vec3> feet;
+    double widest = 0;
+    for (const Found_stem& stem : m_stems) {
+      feet.emplace_back(stem.foot.x(), stem.foot.y(), 0);
+      widest = std::max(widest, reach(stem));
+    }
+    const neighborhood::Nearest_neighbors search(feet);
+    pcs::internal::for_each_index<ConcurrencyTag>(
+        m_scan.size(),
+        [&](std::size_t i) {
+          if (m_is_used[i] || !m_is_solid[i])
+            return;
+          const Vec3& p = m_scan.points[i];
+          std::vector<Index> near;
+          search.within(Vec3(p.x(), p.y(), 0), widest, near);
+          double best = 1; // share of the reach of a stem
+          for (const Index s : near) {
+            const Found_stem& stem = m_stems[s];
+            const Vec3 d = p - stem.foot;
+            const double share = std::hypot(d.x(), d.y()) / reach(stem);
+            const bool is_level = d.z() <= m_rules.base_radii * stem.radius &&
+                                  d.z() >= -m_rules.foot * m_breast_height;
+            if (is_level && (share < best || (share == best && stem.tree < m_tree_of_point[i]))) {
+              best = share;
+              m_tree_of_point[i] = stem.tree;
+            }
+          }
+        },
+        4096);
+  }
+
+  const Scan& m_scan;
+  const std::vector<std::uint8_t>& m_is_used;
+  double m_breast_height; ///< in the unit of the scan
+  const Session_options& m_options;
+  const Stand_options& m_rules;
+  std::vector<std::uint8_t> m_is_solid;
+  Links m_links;
+  std::unique_ptr<Neighbor_graph> m_graph; // such graphs are copied, not moved
+  Axis_set m_axes;
+  std::vector<Found_stem> m_stems;
+  std::vector<Index> m_stem_of_point; ///< of those at the feet
+  std::vector<Index> m_feet;          ///< these points
+  std::vector<Index> m_tree_of_point, m_tree_of_axis;
+};
+
+} // namespace internal
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_FOREST_STEM_DETECTOR_H

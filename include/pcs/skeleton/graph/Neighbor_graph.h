@@ -1,0 +1,373 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The neighbour graph of a scan for Boost.Graph, with links that close gaps of occlusion.
+
+#ifndef PCS_SKELETON_GRAPH_NEIGHBOR_GRAPH_H
+#define PCS_SKELETON_GRAPH_NEIGHBOR_GRAPH_H
+
+#include <pcs/internal/Huge_page_allocator.h>
+#include <pcs/internal/parallel.h>
+#include <pcs/skeleton/graph/Point_cells.h>
+#include <pcs/skeleton/model/Scan.h>
+
+#include <boost/graph/compressed_sparse_row_graph.hpp>
+#include <boost/iterator/iterator_facade.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// Compressed rows of Boost.Graph, every edge in both directions; costs come from the points.
+using Neighbor_graph = boost::compressed_sparse_row_graph<boost::directedS,
+                                                          boost::no_property,
+                                                          boost::no_property,
+                                                          boost::no_property,
+                                                          Index,
+                                                          Index>;
+
+/// Which neighbours are linked, in multiples of the spacing [-].
+struct Link_rule
+{
+  double local_factor = 2.5;       ///< longest link relative to the local spacing
+  double lowest = 3, highest = 12; ///< bounds of it relative to the median spacing
+  double gap = 30; ///< widest gap that is closed, relative to the median spacing; 0: none
+
+  double longest(const Scan& scan, Index i) const
+  {
+    return std::min(std::max(local_factor * scan.local_spacing[i], lowest * scan.spacing),
+                    highest * scan.spacing);
+  }
+};
+
+/// Steps longer than this many spacings cost more than their length: a path should not jump [-].
+constexpr double cheap_step = 2.5;
+
+/// The cost of going from one point to another [L].
+inline double step_cost(const Scan& scan, Index i, Index j)
+{
+  const double d = (scan.points[i] - scan.points[j]).norm();
+  return d * std::max(1.0, d / (cheap_step * scan.spacing));
+}
+
+/// Two points that are linked, the smaller index first.
+struct Link
+{
+  Index first, second;
+
+  friend bool operator<(const Link& a, const Link& b)
+  {
+    return a.first != b.first ? a.first < b.first : a.second < b.second;
+  }
+};
+using Links = pcs::internal::Huge_vector<Link>;
+
+/// Sets of points that hang together: union by size, path halving.
+class Point_sets
+{
+public:
+  explicit Point_sets(std::size_t n) : m_size(n, 1), m_parent(n)
+  {
+    for (std::size_t i = 0; i < n; ++i)
+      m_parent[i] = static_cast<Index>(i);
+  }
+
+  Index find(Index i)
+  {
+    while (m_parent[i] != i)
+      i = m_parent[i] = m_parent[m_parent[i]];
+    return i;
+  }
+  void unite(Index i, Index j)
+  {
+    i = find(i);
+    j = find(j);
+    if (i == j)
+      return;
+    if (m_size[i] < m_size[j] || (m_size[i] == m_size[j] && j < i))
+      std::swap(i, j);
+    m_parent[j] = i;
+    m_size[i] += m_size[j];
+  }
+
+private:
+  std::vector<Index> m_size, m_parent;
+};
+
+/// Links between the points of `is_used` that are neighbours, each once, nearly in increasing order.
+template <class ConcurrencyTag>
+Links neighbor_links(const Scan& scan,
+                     const std::vector<std::uint8_t>& is_used,
+                     const Link_rule& rule)
+{
+  const std::size_t n = scan.size(), block = 4096, number_of_blocks = (n + block - 1) / block;
+  const auto is_link = [&](Index i, Index j) {
+    const double longest = std::max(rule.longest(scan, i), rule.longest(scan, j));
+    return (scan.points[i] - scan.points[j]).squaredNorm() <= longest * longest;
+  };
+  const auto knows = [&](Index i, Index j) {
+    bool does = false;
+    for (const Index k : scan.neighbors[i])
+      does |= k == j; // all of them: no branch to be guessed
+    return does;
+  };
+  // bit b: the link to the b-th neighbour is listed with this point
+  std::vector<std::uint16_t> links_of(n);
+  static_assert(neighbors_per_point <= 16, "pcs: one bit per neighbour");
+  std::vector<std::size_t> first(number_of_blocks + 1, 0);
+  pcs::internal::for_each_block<ConcurrencyTag>(n, block, [&](std::size_t begin, std::size_t end) {
+    std::size_t count = 0;
+    for (std::size_t k = begin; k < end; ++k) {
+      const Index i = static_cast<Index>(k);
+      if (!is_used[i])
+        continue;
+      unsigned bits = 0;
+      for (std::size_t b = 0; b < neighbors_per_point; ++b) {
+        const Index j = scan.neighbors[i][b];
+        // of two that know each other, the smaller one lists the link
+        if (j == none || !is_used[j] || !is_link(i, j) || (j < i && knows(j, i)))
+          continue;
+        bits |= 1U << b;
+        ++count;
+      }
+      links_of[i] = static_cast<std::uint16_t>(bits);
+    }
+    first[begin / block + 1] = count;
+  });
+  for (std::size_t b = 0; b < number_of_blocks; ++b)
+    first[b + 1] += first[b];
+  Links links;
+  links.reserve(first.back() + first.back() / 16); // for those that close gaps
+  links.resize(first.back());
+  pcs::internal::for_each_block<ConcurrencyTag>(n, block, [&](std::size_t begin, std::size_t end) {
+    Link* next = links.data() + first[begin / block];
+    for (std::size_t k = begin; k < end; ++k) {
+      const Index i = static_cast<Index>(k);
+      for (std::size_t b = 0; b < neighbors_per_point; ++b)
+        if (links_of[i] >> b & 1U) {
+          const Index j = scan.neighbors[i][b];
+          *next++ = {std::min(i, j), std::max(i, j)};
+        }
+    }
+  });
+  return links;
+}
+
+/*!
+  The sets of points that hang together by the links for which `is_wanted(link)` holds. Stretches of links are united side by
+  side as far as both ends are in one stretch of points, which is nearly always so in spatial order; then the rest.
+*/
+template <class ConcurrencyTag, class IsWanted>
+Point_sets united_points(std::size_t n, const Links& links, const IsWanted& is_wanted)
+{
+  constexpr std::size_t block = std::size_t(1) << 17;
+  const std::size_t number_of_blocks = (links.size() + block - 1) / block;
+  // of the stretches of points
+  std::vector<Index> border(number_of_blocks + 1, static_cast<Index>(n));
+  for (std::size_t b = 0; b < number_of_blocks; ++b)
+    border[b] = b == 0 ? 0 : std::max(border[b - 1], links[b * block].first);
+  Point_sets sets(n);
+  std::vector<std::vector<Link>> rest(number_of_blocks);
+  pcs::internal::for_each_block<ConcurrencyTag>(links.size(),
+                                                block,
+                                                [&](std::size_t begin, std::size_t end) {
+                                                  const std::size_t b = begin / block;
+                                                  for (std::size_t k = begin; k < end; ++k) {
+                                                    const Link& l = links[k];
+                                                    if (!is_wanted(l))
+                                                      continue;
+                                                    if (l.first >= border[b] &&
+                                                        l.second < border[b + 1])
+                                                      sets.unite(l.first, l.second);
+                                                    else
+                                                      rest[b].push_back(l);
+                                                  }
+                                                });
+  for (const std::vector<Link>& part : rest)
+    for (const Link& l : part)
+      sets.unite(l.first, l.second);
+  return sets;
+}
+
+/// The connected parts of some points: the set of each point, and the size of each set.
+struct Point_parts
+{
+  std::vector<Index> part; ///< a point of the part; `none` if not used
+  std::vector<Index> size; ///< by that point
+
+  std::vector<Index> points_of(Index s) const
+  {
+    std::vector<Index> points;
+    for (Index i = 0; i < part.size(); ++i)
+      if (part[i] == s)
+        points.push_back(i);
+    return points;
+  }
+};
+
+/// The connected parts of the points of `is_used`.
+template <class ConcurrencyTag>
+Point_parts connected_parts(const std::vector<std::uint8_t>& is_used, const Links& links)
+{
+  const std::size_t n = is_used.size();
+  Point_sets sets = united_points<ConcurrencyTag>(n, links, [&](const Link& l) {
+    return is_used[l.first] && is_used[l.second];
+  });
+  Point_parts parts{std::vector<Index>(n, none), std::vector<Index>(n, 0)};
+  for (Index i = 0; i < n; ++i)
+    if (is_used[i])
+      ++parts.size[parts.part[i] = sets.find(i)];
+  return parts;
+}
+
+/*!
+  The shortest links that join the parts of the points of `is_used`, in Boruvka's rounds, up to the widest gap of the rule. The
+  largest part never searches: the others find it. Where much lies outside of it, only points that have others about search.
+*/
+inline Links links_across_gaps(const Scan& scan,
+                               const std::vector<std::uint8_t>& is_used,
+                               const Link_rule& rule,
+                               const Point_parts& parts)
+{
+  Links across;
+  const std::size_t n = scan.size();
+  const double widest = rule.gap * scan.spacing;
+  Point_sets sets(n); // of parts
+  struct Best
+  {
+    double squared_distance;
+    Link link;
+  };
+  std::vector<Index> label = parts.part, size;
+  std::vector<Best> best;
+  std::optional<Point_cells> cells;
+  while (widest > 0) {
+    size.assign(n, 0);
+    std::size_t number_of_others = 0; // points outside of the largest part
+    for (Index i = 0; i < n; ++i)
+      if (is_used[i]) {
+        ++size[label[i] = sets.find(parts.part[i])];
+        ++number_of_others;
+      }
+    const Index largest =
+        static_cast<Index>(std::max_element(size.begin(), size.end()) - size.begin());
+    best.assign(n, {widest * widest, {none, none}});
+    number_of_others -= size[largest];
+    if (number_of_others == 0)
+      break;
+    if (number_of_others > n / 8 && !cells) // else it would cost more than it saves
+      cells.emplace(scan.points, is_used, widest);
+    const std::vector<Index> around = cells ? cells->common_label(label) : std::vector<Index>();
+    for (Index i = 0; i < n; ++i) {
+      if (!is_used[i] || label[i] == largest || (cells && around[cells->cell_of(i)] == label[i]))
+        continue;
+      Best& b = best[label[i]];
+      const auto found =
+          scan.search->nearest_if(scan.points[i], std::sqrt(b.squared_distance), [&](Index j) {
+            return is_used[j] && label[j] != label[i];
+          });
+      if (found.squared_distance < b.squared_distance)
+        b = {found.squared_distance, {std::min(i, found.index), std::max(i, found.index)}};
+    }
+    std::vector<Best> chosen;
+    for (const Best& b : best)
+      if (b.link.first != none)
+        chosen.push_back(b);
+    std::sort(chosen.begin(), chosen.end(), [](const Best& a, const Best& b) {
+      return a.squared_distance != b.squared_distance ? a.squared_distance < b.squared_distance
+                                                      : a.link < b.link;
+    });
+    bool is_joined = false;
+    for (const Best& b : chosen) {
+      const Index one = parts.part[b.link.first], other = parts.part[b.link.second];
+      if (sets.find(one) != sets.find(other)) {
+        sets.unite(one, other);
+        across.push_back(b.link);
+        is_joined = true;
+      }
+    }
+    if (!is_joined)
+      break;
+  }
+  return across;
+}
+
+namespace internal {
+
+/// Every link of two lists in both directions.
+class Edge_iterator : public boost::iterator_facade<Edge_iterator,
+                                                    std::pair<Index, Index>,
+                                                    boost::forward_traversal_tag,
+                                                    std::pair<Index, Index>>
+{
+public:
+  static Edge_iterator begin(const Links& first, const Links& second)
+  {
+    const Link *end = first.data() + first.size(), *next = second.data();
+    return first.empty() ? Edge_iterator(next, nullptr, nullptr)
+                         : Edge_iterator(first.data(), end, next);
+  }
+  static Edge_iterator end(const Links& second)
+  {
+    return Edge_iterator(second.data() + second.size(), nullptr, nullptr);
+  }
+
+private:
+  friend class boost::iterator_core_access;
+
+  Edge_iterator(const Link* link, const Link* end, const Link* next)
+    : m_link(link), m_end(end), m_next(next)
+  {
+  }
+
+  void increment()
+  {
+    m_link += m_is_reverse;
+    if (m_link == m_end)
+      m_link = m_next;
+    m_is_reverse = !m_is_reverse;
+  }
+  bool equal(const Edge_iterator& other) const
+  {
+    return m_link == other.m_link && m_is_reverse == other.m_is_reverse;
+  }
+  std::pair<Index, Index> dereference() const
+  {
+    return m_is_reverse ? std::make_pair(m_link->second, m_link->first)
+                        : std::make_pair(m_link->first, m_link->second);
+  }
+
+  const Link* m_link;
+  const Link *m_end, *m_next; ///< where the first list ends, and the other one begins
+  bool m_is_reverse = false;
+};
+
+} // namespace internal
+
+/// Rows from links and those that close gaps, each in both directions.
+inline Neighbor_graph graph_of(std::size_t n, const Links& links, const Links& gaps = Links())
+{
+  return Neighbor_graph(boost::edges_are_unsorted_multi_pass,
+                        internal::Edge_iterator::begin(links, gaps),
+                        internal::Edge_iterator::end(gaps),
+                        static_cast<Index>(n));
+}
+
+/// All points in one graph: where parts are apart, the gaps between them are closed.
+struct Linked_parts
+{
+  Links gaps;
+  std::unique_ptr<Neighbor_graph> graph;
+};
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_GRAPH_NEIGHBOR_GRAPH_H

@@ -1,0 +1,195 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The shortest paths over the neighbour graph of a scan.
+
+#ifndef PCS_SKELETON_GRAPH_SHORTEST_PATHS_H
+#define PCS_SKELETON_GRAPH_SHORTEST_PATHS_H
+
+#include <pcs/internal/lanes.h>
+#include <pcs/skeleton/graph/Neighbor_graph.h>
+#include <pcs/skeleton/model/Scan.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// The shortest paths from a set of sources; unreached points have an infinite distance and are their own predecessor.
+struct Shortest_paths
+{
+  std::vector<double> distance;
+  std::vector<Index> predecessor;
+};
+
+namespace internal {
+
+/*!
+  Points that wait for their turn, in buckets by distance: a ring of them, and what lies beyond it. Within a bucket they have no
+  order, so that the points to come are known and can be fetched.
+*/
+class Distance_buckets
+{
+public:
+  struct Entry
+  {
+    double distance;
+    Index point;
+  };
+
+  explicit Distance_buckets(double width) : m_scale(1 / width), m_ring(number_of_buckets) {}
+
+  void push(double distance, Index point)
+  {
+    const auto bucket = static_cast<std::uint64_t>(distance * m_scale);
+    if (bucket < m_now + number_of_buckets) {
+      m_ring[bucket % number_of_buckets].push_back({distance, point});
+      ++m_size;
+    } else
+      m_beyond.push_back({distance, point});
+  }
+
+  /// What waits in the nearest bucket; what is pushed from there on may be nearer than the rest of it.
+  bool pop(std::vector<Entry>& entries)
+  {
+    entries.clear();
+    while (m_size > 0 || !m_beyond.empty()) {
+      auto& bucket = m_ring[m_now % number_of_buckets];
+      if (!bucket.empty()) {
+        entries.swap(bucket);
+        m_size -= entries.size();
+        return true;
+      }
+      // entries beyond the ring are at least one round of it away
+      if (++m_now % number_of_buckets == 0 || m_size == 0)
+        bring_in();
+    }
+    return false;
+  }
+
+private:
+  static constexpr std::uint64_t number_of_buckets = 128;
+
+  /// Fills the ring from what lies beyond it, from its nearest point on if there is nothing before it.
+  void bring_in()
+  {
+    std::vector<Entry> beyond;
+    beyond.swap(m_beyond);
+    if (m_size == 0 && !beyond.empty()) {
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const Entry& e : beyond)
+        nearest = std::min(nearest, e.distance);
+      m_now = static_cast<std::uint64_t>(nearest * m_scale);
+    }
+    for (const Entry& e : beyond)
+      push(e.distance, e.point);
+  }
+
+  double m_scale;
+  std::vector<std::vector<Entry>> m_ring;
+  std::vector<Entry> m_beyond;
+  std::uint64_t m_now = 0; ///< the nearest bucket
+  std::size_t m_size = 0;  ///< of the ring
+};
+
+} // namespace internal
+
+/// Width of the buckets in spacings [-].
+constexpr double path_bucket = 1;
+
+/*!
+  Dijkstra's distances, found by buckets: a point may be done more than once, and is when it was late, but none waits for the
+  order of a heap, and its neighbours are in the cache when it is its turn. The distances are those of
+  `boost::dijkstra_shortest_paths()` to the last bit: either way each is the least of the sums over its neighbours. Of
+  predecessors that give the same sum, the first one stays. O(edges) but for points that are done again.
+*/
+inline Shortest_paths
+shortest_paths(const Scan& scan, const Neighbor_graph& graph, const std::vector<Index>& sources)
+{
+  constexpr std::size_t ahead = 2, far_ahead = 5; // in points
+  const std::size_t n = scan.size();
+  Shortest_paths paths;
+  paths.distance.assign(n, std::numeric_limits<double>::infinity());
+  paths.predecessor.resize(n);
+  for (std::size_t i = 0; i < n; ++i)
+    paths.predecessor[i] = static_cast<Index>(i);
+  std::vector<double>& distance = paths.distance;
+  internal::Distance_buckets waiting(path_bucket * scan.spacing);
+  for (const Index s : sources) {
+    distance[s] = 0;
+    waiting.push(0, s);
+  }
+  const auto fetch = [](const auto& element) {
+    pcs::internal::prefetch(&element, sizeof(element));
+  };
+  std::vector<internal::Distance_buckets::Entry> now;
+  while (waiting.pop(now))
+    for (std::size_t k = 0; k < now.size(); ++k) {
+      if (k + far_ahead < now.size()) {
+        const Index v = now[k + far_ahead].point;
+        fetch(distance[v]);
+        if (const auto [w, end] = adjacent_vertices(v, graph); w != end)
+          fetch(*w);
+      }
+      if (k + ahead < now.size() && !(now[k + ahead].distance > distance[now[k + ahead].point]))
+        for (auto [w, end] = adjacent_vertices(now[k + ahead].point, graph); w != end; ++w) {
+          fetch(distance[*w]);
+          fetch(scan.points[*w]);
+        }
+      const Index v = now[k].point;
+      const double before = now[k].distance;
+      if (before > distance[v])
+        continue; // it was reached on a shorter way since
+      for (auto [w, end] = adjacent_vertices(v, graph); w != end; ++w) {
+        const Index to = static_cast<Index>(*w);
+        if (distance[to] <= before)
+          continue;
+        const double d = before + step_cost(scan, v, to);
+        if (!(d < distance[to]))
+          continue;
+        distance[to] = d;
+        paths.predecessor[to] = v;
+        waiting.push(d, to);
+      }
+    }
+  return paths;
+}
+
+/// All points, each before the one that its path leads to. O(points).
+inline std::vector<Index> tips_first(const Shortest_paths& paths)
+{
+  const std::size_t n = paths.predecessor.size();
+  std::vector<Index> children(n, 0), order;
+  for (std::size_t i = 0; i < n; ++i)
+    if (paths.predecessor[i] != i)
+      ++children[paths.predecessor[i]];
+  order.reserve(n);
+  for (Index i = 0; i < n; ++i)
+    if (children[i] == 0)
+      order.push_back(i);
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const Index next = paths.predecessor[order[k]];
+    if (next != order[k] && --children[next] == 0)
+      order.push_back(next);
+  }
+  return order;
+}
+
+/// How many paths lead through each point, its own with them, for points in the order of `tips_first()` [count]. O(points).
+inline std::vector<double> carried_paths(const Shortest_paths& paths,
+                                         const std::vector<Index>& order)
+{
+  std::vector<double> carried(paths.predecessor.size(), 1);
+  for (const Index i : order)
+    if (paths.predecessor[i] != i)
+      carried[paths.predecessor[i]] += carried[i];
+  return carried;
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_GRAPH_SHORTEST_PATHS_H

@@ -1,0 +1,37 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// What the caller may tell a skeletonization.
+
+#ifndef PCS_SKELETON_INPUT_SESSION_HINTS_H
+#define PCS_SKELETON_INPUT_SESSION_HINTS_H
+
+#include <pcs/core/Skeleton_options.h>
+#include <pcs/skeleton/model/Given_skeleton.h>
+#include <pcs/skeleton/model/Scan.h>
+
+#include <optional>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+struct Session_hints
+{
+  Vec3 up = Vec3::UnitZ();
+  std::optional<Vec3> root; ///< in the coordinates of the input, as the next two
+  std::vector<Vec3> scanners;
+  std::optional<Given_skeleton> given; ///< measured; its positions stay
+  double beam_width = 0;               ///< of the scanners [rad]
+  bool do_register_stations = false;   ///< those of `stations`, or those that are found
+  std::vector<long long> stations;     ///< of the points; empty: not known
+  bool do_mark_ground = true;
+  Leaf_removal leaf_removal = Leaf_removal::where_found; ///< by the method `chains`
+  double breast_height = 1.3;                            ///< [L]
+  Skeleton_method method = Skeleton_method::chains;
+  Slice_options slices; ///< of the method `sections`
+};
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_INPUT_SESSION_HINTS_H

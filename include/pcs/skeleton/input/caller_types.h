@@ -1,0 +1,136 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// What the caller's points, graphs and named parameters are: traits, and a given skeleton as arrays.
+
+#ifndef PCS_SKELETON_INPUT_CALLER_TYPES_H
+#define PCS_SKELETON_INPUT_CALLER_TYPES_H
+
+#include <pcs/Named_function_parameters.h>
+#include <pcs/concepts.h>
+#include <pcs/core/Tree_skeleton.h>
+#include <pcs/core/errors.h>
+#include <pcs/skeleton/model/Given_skeleton.h>
+#include <pcs/skeleton/model/Scan.h>
+
+#include <CGAL/number_utils.h>
+#include <CGAL/property_map.h>
+
+#include <boost/graph/graph_traits.hpp>
+#include <boost/property_map/property_map.hpp>
+
+#include <cstddef>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+namespace internal {
+
+template <class Point>
+Vec3 to_vec3(const Point& p)
+{
+  return {CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())};
+}
+
+/// The vertices of a graph in an order in which parents come first; throws unless it is one tree.
+template <class Graph, class PointMap>
+Given_skeleton read_given(const Graph& graph, const PointMap& point_map)
+{
+  using Vertex = typename boost::graph_traits<Graph>::vertex_descriptor;
+  const std::string function = "pcs::extract_tree_skeleton(): given_skeleton ";
+  std::map<Vertex, Vertex> parent_of;
+  std::size_t count = 0;
+  for (auto [v, end] = vertices(graph); v != end; ++v, ++count)
+    for (auto [e, last] = out_edges(*v, graph); e != last; ++e)
+      if (!parent_of.emplace(target(*e, graph), *v).second)
+        throw Invalid_input(function + "has a node with two parents");
+  if (count < 2 || parent_of.size() + 1 != count)
+    throw Invalid_input(
+        function + "must be one tree with a root and at least one more node; it has " +
+        std::to_string(count) + " nodes and " + std::to_string(parent_of.size()) + " edges");
+  Given_skeleton given;
+  std::vector<Vertex> order;
+  const auto add = [&](Vertex v, Index parent) {
+    given.points.push_back(to_vec3(get(point_map, v)));
+    if (!given.points.back().allFinite())
+      throw Invalid_input(function + "has a position that is not finite");
+    given.parent.push_back(parent);
+    order.push_back(v);
+  };
+  for (auto [v, end] = vertices(graph); v != end; ++v)
+    if (parent_of.count(*v) == 0)
+      add(*v, none);
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const Vertex v = order[k]; // `order` grows
+    for (auto [e, last] = out_edges(v, graph); e != last; ++e)
+      add(target(*e, graph), static_cast<Index>(k));
+  }
+  if (order.size() != count)
+    throw Invalid_input(function + "has a cycle");
+  return given;
+}
+
+/// The types that a point range and a chain of named parameters stand for.
+template <class PointRange, class NamedParameters>
+struct Skeleton_types
+{
+  using Element = pcs::Element_reference<const PointRange>;
+  using Point_map = std::decay_t<decltype(pcs::internal::choose(
+      std::declval<const NamedParameters&>(),
+      CGAL::internal_np::point_map,
+      std::declval<CGAL::Identity_property_map<std::decay_t<Element>>>()))>;
+  using Point = pcs::Map_value<Point_map>;
+};
+
+template <class T, class = void>
+struct Is_range_of_points : std::false_type
+{
+};
+template <class T>
+struct Is_range_of_points<
+    T,
+    std::enable_if_t<!std::is_void_v<typename pcs::internal::Iterator_of<T>::type>>>
+  : pcs::internal::Is_point<std::decay_t<decltype(*std::begin(std::declval<T&>()))>>
+{
+};
+template <class T>
+constexpr bool is_range_of_points_v = Is_range_of_points<T>::value;
+
+template <class Graph, class = void>
+struct Is_mutable_graph : std::false_type
+{
+};
+template <class Graph>
+struct Is_mutable_graph<
+    Graph,
+    std::void_t<decltype(add_vertex(std::declval<Graph&>())),
+                decltype(add_edge(
+                    std::declval<typename boost::graph_traits<Graph>::vertex_descriptor>(),
+                    std::declval<typename boost::graph_traits<Graph>::vertex_descriptor>(),
+                    std::declval<Graph&>()))>> : std::true_type
+{
+};
+
+template <class T>
+const T& unwrapped(const T& value)
+{
+  return value;
+}
+template <class T>
+const T& unwrapped(const std::reference_wrapper<T>& value)
+{
+  return value.get();
+}
+
+} // namespace internal
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_INPUT_CALLER_TYPES_H

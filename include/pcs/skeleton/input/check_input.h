@@ -1,0 +1,128 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Refuses scans that are none, and hints that belong to another scan.
+
+#ifndef PCS_SKELETON_INPUT_CHECK_INPUT_H
+#define PCS_SKELETON_INPUT_CHECK_INPUT_H
+
+#include <pcs/core/errors.h>
+#include <pcs/internal/text.h>
+#include <pcs/skeleton/input/Session_hints.h>
+#include <pcs/skeleton/input/caller_types.h>
+#include <pcs/skeleton/model/Given_skeleton.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace pcs {
+
+//! \ingroup PkgPcsSkeletonRef
+//! a scan of fewer different points has no skeleton [count]
+constexpr std::size_t lowest_number_of_scan_points = 10;
+
+namespace skeleton {
+
+/// Larger coordinates have volumes that are no numbers.
+constexpr double largest_coordinate = 1e100;
+
+namespace internal {
+
+inline bool is_coordinate(const Vec3& p)
+{
+  return p.allFinite() && p.cwiseAbs().maxCoeff() <= largest_coordinate;
+}
+
+/// The positions of a range. Throws `Invalid_input`, whose text begins with `function`, at one that is none.
+template <class PointRange, class PointMap>
+std::vector<Vec3>
+read_input(const PointRange& points, const PointMap& point_map, const std::string& function)
+{
+  std::vector<Vec3> input;
+  input.reserve(static_cast<std::size_t>(std::end(points) - std::begin(points)));
+  for (auto it = std::begin(points); it != std::end(points); ++it) {
+    const Vec3 p = to_vec3(get(point_map, *it));
+    if (!is_coordinate(p))
+      throw Invalid_input(function + ": point " + std::to_string(input.size()) +
+                          " is not finite, or beyond 1e100");
+    input.push_back(p);
+  }
+  return input;
+}
+
+inline void check_number_of_points(const std::vector<Vec3>& input, const std::string& function)
+{
+  std::vector<Vec3> some;
+  for (const Vec3& p : input) {
+    if (some.size() < lowest_number_of_scan_points &&
+        std::find(some.begin(), some.end(), p) == some.end())
+      some.push_back(p);
+    if (some.size() == lowest_number_of_scan_points)
+      return;
+  }
+  throw Invalid_input(function + ": there are only " + std::to_string(some.size()) +
+                      " different points; there must be at least " +
+                      std::to_string(lowest_number_of_scan_points));
+}
+
+/// Scanners that are farther away, in diagonals of the box of the points, stand in other coordinates [-].
+constexpr double farthest_scanner = 500;
+
+/// A given skeleton has a length.
+inline void check_given(const Given_skeleton& given, const std::string& function)
+{
+  for (const Vec3& p : given.points)
+    if (!is_coordinate(p))
+      throw Invalid_input(function + ": given_skeleton has a position beyond 1e100");
+  if (std::all_of(given.points.begin(), given.points.end(), [&](const Vec3& p) {
+        return p == given.points.front();
+      }))
+    throw Invalid_input(function + ": all nodes of given_skeleton lie at one place");
+}
+
+} // namespace internal
+
+/*!
+  Throws `Invalid_input`, whose text begins with `function`, if there are too few points, or if the root or all of the given
+  skeleton is farther away from them than they are wide, or a scanner far beyond that. O(n).
+*/
+inline void
+check_input(const std::vector<Vec3>& input, const Session_hints& hints, const std::string& function)
+{
+  internal::check_number_of_points(input, function);
+  Vec3 low = input.front(), high = low;
+  for (const Vec3& p : input) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const auto distance = [&](const Vec3& p) { return (p - p.cwiseMax(low).cwiseMin(high)).norm(); };
+  const double diagonal = (high - low).norm();
+  const auto check = [&](double away, const std::string& what) {
+    if (!(away <= diagonal))
+      throw Invalid_input(function + ": " + what + " is " + pcs::internal::to_text(away) +
+                          " away from the points, which lie in a box with a diagonal of " +
+                          pcs::internal::to_text(diagonal));
+  };
+  for (const Vec3& p : hints.scanners)
+    if (!(distance(p) <= internal::farthest_scanner * diagonal))
+      throw Invalid_input(function + ": a scanner is " + pcs::internal::to_text(distance(p)) +
+                          " away from the points, which lie in a box with a diagonal of " +
+                          pcs::internal::to_text(diagonal) + ": are these other coordinates?");
+  if (hints.root)
+    check(distance(*hints.root), "root_position");
+  if (hints.given) {
+    internal::check_given(*hints.given, function);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Vec3& p : hints.given->points)
+      nearest = std::min(nearest, distance(p));
+    check(nearest, "given_skeleton");
+  }
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_INPUT_CHECK_INPUT_H

@@ -1,0 +1,187 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Layers of stems whose points are farther apart than layers are thick.
+
+#ifndef PCS_SKELETON_LAYERS_JOIN_SPARSE_LAYERS_H
+#define PCS_SKELETON_LAYERS_JOIN_SPARSE_LAYERS_H
+
+#include <pcs/internal/parallel.h>
+#include <pcs/skeleton/graph/Neighbor_graph.h>
+#include <pcs/skeleton/model/Scan.h>
+#include <pcs/skeleton/model/circle_fit.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// When layers are joined, and how many.
+struct Sparse_layer_options
+{
+  double thinnest = 1.3;  ///< thickness of layers that hang together, in local spacings [-]
+  int doublings = 4;      ///< layers become at most two to this power times thicker [count]
+  std::size_t fewest = 8; ///< points of a joined layer [count]
+  double radius = 2.5;    ///< least radius of it, in local spacings: thinner ones hang together [-]
+  double band = 0.2;      ///< largest deviation from a circle, in radii [-]
+  int sectors = 6;        ///< of 12, that must be seen
+};
+
+namespace internal {
+
+/// How often the layers about each point must be doubled to hang together.
+template <class ConcurrencyTag>
+std::vector<std::uint8_t> doublings_of_layers(const Scan& scan,
+                                              const std::vector<Index>& layer,
+                                              double thickness,
+                                              const Sparse_layer_options& rules)
+{
+  std::vector<std::uint8_t> level(scan.size(), 0);
+  pcs::internal::for_each_index<ConcurrencyTag>(scan.size(), [&](std::size_t i) {
+    if (layer[i] == none || rules.thinnest * scan.local_spacing[i] <= thickness)
+      return;
+    std::array<double, neighbors_per_point> others;
+    std::size_t count = 0; // single points may lie far from the others
+    for (const Index j : scan.neighbors[i])
+      if (j != none)
+        others[count++] = scan.local_spacing[j];
+    if (count == 0)
+      return;
+    const auto middle = others.begin() + static_cast<std::ptrdiff_t>(count / 2);
+    std::nth_element(others.begin(), middle, others.begin() + static_cast<std::ptrdiff_t>(count));
+    // long steps cost more than their length
+    const double wanted =
+        rules.thinnest * *middle * std::max(1.0, *middle / (cheap_step * scan.spacing));
+    while (level[i] < rules.doublings && std::ldexp(thickness, level[i]) < wanted)
+      ++level[i];
+  });
+  return level;
+}
+
+/// Finds the parts of thicker layers that lie on circles, where scans are sparse.
+class Sparse_layer_joiner
+{
+  using Member = std::pair<Index, Index>; // a set and a point of it
+
+public:
+  Sparse_layer_joiner(const Scan& scan,
+                      const std::vector<double>& distance,
+                      const std::vector<Index>& layer,
+                      const Sparse_layer_options& rules,
+                      std::vector<std::uint8_t> level)
+    : m_scan(scan), m_distance(distance), m_layer(layer), m_rules(rules), m_level(std::move(level))
+  {
+  }
+
+  void run(const Links& links, Point_sets& sets) const
+  {
+    Links sparse; // most scans have few
+    std::copy_if(links.begin(), links.end(), std::back_inserter(sparse), [&](const Link& l) {
+      return m_level[l.first] > 0 && m_level[l.second] > 0;
+    });
+    for (int level = 1; level <= m_rules.doublings && !sparse.empty(); ++level) {
+      sparse.erase(std::remove_if(sparse.begin(),
+                                  sparse.end(),
+                                  [&](const Link& l) {
+                                    return std::min(m_level[l.first], m_level[l.second]) < level;
+                                  }),
+                   sparse.end());
+      Point_sets joined = sets;
+      for (const Link& l : sparse)
+        if ((m_layer[l.first] >> level) == (m_layer[l.second] >> level))
+          joined.unite(l.first, l.second);
+      std::vector<Member> members; // set and point
+      for (Index i = 0; i < m_level.size(); ++i)
+        if (m_level[i] >= level)
+          members.emplace_back(joined.find(i), i);
+      std::sort(members.begin(), members.end());
+      for (std::size_t b = 0, e = 0; b < members.size(); b = e) {
+        bool is_whole = true;
+        for (; e < members.size() && members[e].first == members[b].first; ++e)
+          is_whole = is_whole && sets.find(members[e].second) == sets.find(members[b].second);
+        if (is_whole || e - b < m_rules.fewest || !is_ring(&members[b], &members[e - 1] + 1))
+          continue;
+        for (std::size_t k = b + 1; k < e; ++k)
+          sets.unite(members[b].second, members[k].second);
+      }
+    }
+  }
+
+private:
+  /// Whether the points lie on a circle around the direction in which the paths through them go on.
+  bool is_ring(const Member* begin, const Member* end) const
+  {
+    const double n = double(end - begin);
+    Vec3 mean = Vec3::Zero();
+    double middle = 0, spacing = 0;
+    for (const Member* m = begin; m != end; ++m) {
+      mean += m_scan.points[m->second] / n;
+      middle += m_distance[m->second] / n;
+      spacing += m_scan.local_spacing[m->second] / n;
+    }
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    Vec3 rise = Vec3::Zero();
+    for (const Member* m = begin; m != end; ++m) {
+      const Vec3 d = m_scan.points[m->second] - mean;
+      covariance += d * d.transpose();
+      rise += (m_distance[m->second] - middle) * d;
+    }
+    covariance += 1e-3 * covariance.trace() * Eigen::Matrix3d::Identity();
+    const Vec3 along = covariance.ldlt().solve(rise);
+    if (!(along.squaredNorm() > 0))
+      return false;
+    const Vec3 e1 = along.normalized().unitOrthogonal(), e2 = along.normalized().cross(e1);
+    std::vector<Vec2> plane;
+    for (const Member* m = begin; m != end; ++m) {
+      const Vec3 d = m_scan.points[m->second] - mean;
+      plane.emplace_back(d.dot(e1), d.dot(e2));
+    }
+    const Circle circle = fit_circle(plane);
+    return circle.radius > m_rules.radius * spacing &&
+           circle.deviation < m_rules.band * circle.radius &&
+           covered_sectors(plane, circle.center) >= m_rules.sectors;
+  }
+
+  const Scan& m_scan;
+  const std::vector<double>& m_distance;
+  const std::vector<Index>& m_layer;
+  Sparse_layer_options m_rules;
+  std::vector<std::uint8_t> m_level; ///< doublings that the layers about each point need
+};
+
+} // namespace internal
+
+/*!
+  Layers are as thick as usual spacings ask for. Where the points of a thick stem are farther apart they fall to pieces; there,
+  layers are joined by twos until they hang together, if that makes rings: twigs, of which there are points one behind the
+  other, are left as they are. `layer` is that of each point, `sets` has the connected parts of the layers. O(links + p log p) with p points in
+  sparse layers.
+*/
+template <class ConcurrencyTag>
+void join_sparse_layers(const Scan& scan,
+                        const Links& links,
+                        const std::vector<double>& distance,
+                        const std::vector<Index>& layer,
+                        double thickness,
+                        const Sparse_layer_options& rules,
+                        Point_sets& sets)
+{
+  std::vector<std::uint8_t> level =
+      internal::doublings_of_layers<ConcurrencyTag>(scan, layer, thickness, rules);
+  internal::Sparse_layer_joiner(scan, distance, layer, rules, std::move(level)).run(links, sets);
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_LAYERS_JOIN_SPARSE_LAYERS_H

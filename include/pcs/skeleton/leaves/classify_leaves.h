@@ -1,0 +1,210 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Tells the points of leaves from those of wood, by lines, surfaces and paths.
+
+#ifndef PCS_SKELETON_LEAVES_CLASSIFY_LEAVES_H
+#define PCS_SKELETON_LEAVES_CLASSIFY_LEAVES_H
+
+#include <pcs/internal/parallel.h>
+#include <pcs/skeleton/axes/Chain_options.h>
+#include <pcs/skeleton/graph/shortest_paths.h>
+#include <pcs/skeleton/leaves/detect_linear_points.h>
+#include <pcs/skeleton/leaves/detect_planar_patches.h>
+#include <pcs/skeleton/leaves/find_surface_wood.h>
+#include <pcs/skeleton/leaves/sampling_dimension.h>
+#include <pcs/skeleton/leaves/wood_score_of_paths.h>
+#include <pcs/skeleton/model/Axis.h>
+#include <pcs/skeleton/model/Axis_set.h>
+#include <pcs/skeleton/model/Scan.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// When points and axes are leaves.
+struct Leaf_options
+{
+  //! of the points that no axis explains: with fewer, leaves are not looked for [-]
+  double unexplained = 0.025;
+  double thick = 0.05; ///< share of the points that must be thick wood, or this is no tree [-]
+  //! least dimension of the points of thick wood; less have rows, which look like twigs [-]
+  double dimension = 1.9;
+  double leafy = 0.16; ///< share of the points that must be deep in leaves: fewer are chance [-]
+  std::size_t neighbors = 10; ///< that are leaves, too, around a point deep in leaves [count]
+  //! or the share of those that are no thick wood that must lie in flat patches [-]
+  double patchy = 0.035;
+  double wood_score = -0.8;    ///< least logarithm of the odds that a point is of wood [-]
+  double axis_likeness = -0.4; ///< the same of an axis [-]
+  //! the same where there are no leaves: of an axis, and of a point that no axis explains [-]
+  double bare_axis_likeness = -2, bare_point_likeness = 1;
+  double bare_reach = 2.5; ///< radii of the trunk around its axis where nothing strays [-]
+  int rounds = 3;          ///< of leaving out: points first, then axes twice [count]
+  double pipe_slack = 1.5; ///< `Pipe_model_options::slack` where there are leaves [-]
+  Surface_wood_options hollow;
+  Linear_point_options lines;
+  Wood_path_options paths;
+  Planar_patch_options patches;
+};
+
+/// Whether enough points are not explained to look for leaves.
+inline bool may_have_leaves(const Axis_set& set,
+                            const std::vector<std::uint8_t>& is_used,
+                            const Leaf_options& rules)
+{
+  std::size_t used = 0, open = 0;
+  for (Index i = 0; i < is_used.size(); ++i)
+    if (is_used[i]) {
+      ++used;
+      open += !set.is_covered(i);
+    }
+  return double(open) >= rules.unexplained * double(used);
+}
+
+/// Whether enough points are thick wood for a tree. O(points).
+inline bool has_thick_wood(const std::vector<std::uint8_t>& is_used,
+                           const std::vector<std::uint8_t>& is_thick,
+                           const Leaf_options& rules)
+{
+  std::size_t used = 0, thick = 0;
+  for (std::size_t i = 0; i < is_used.size(); ++i) {
+    used += is_used[i];
+    thick += is_used[i] && is_thick[i];
+  }
+  return double(thick) >= rules.thick * double(used);
+}
+
+/*!
+  Whether the points that are neither thick wood nor lines are leaves. Twigs that a scan just about sees are no lines, too,
+  but are mixed with those that it sees well, and make no flat patches. O(points).
+*/
+inline bool are_leaves(const Scan& scan,
+                       const std::vector<std::uint8_t>& is_used,
+                       const std::vector<std::uint8_t>& is_thick,
+                       const std::vector<std::uint8_t>& is_wood,
+                       const Leaf_options& rules)
+{
+  std::vector<std::uint8_t> is_open(scan.size());
+  std::size_t used = 0, thin = 0, deep = 0; // points, those not of thick wood, those deep in leaves
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    used += is_used[i];
+    thin += is_used[i] && !is_thick[i];
+    is_open[i] = is_used[i] && !is_wood[i];
+  }
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    std::size_t count = 0;
+    for (const Index j : scan.neighbors[i])
+      count += j != none && is_open[j];
+    deep += is_open[i] && count >= rules.neighbors;
+  }
+  return double(deep) >= rules.leafy * double(used) ||
+         double(count_patch_points(scan, is_open, is_thick, rules.patches)) >=
+             rules.patchy * double(thin);
+}
+
+/// The points of wood among all that are used.
+struct Found_wood
+{
+  std::vector<std::uint8_t> is_wood; ///< empty: there are no leaves, as far as is known
+  //! of wood: logarithm of the odds, by point; empty: nothing is known
+  std::vector<float> wood_score;
+  bool is_in_rows = false; ///< nothing is known, because the points lie in rows
+};
+
+/*!
+  The points of thick wood, which is hollow, and of thin wood, by its surroundings and the paths that it carries: `paths` lead
+  over all points that are used. Without `is_sure`, which says that there are leaves, all points are wood where what is left when
+  all lines are taken for wood does not look like leaves, and where the points of thick wood lie in rows: each of these is a line,
+  and its surroundings are not those of a twig or of a leaf.
+*/
+template <class ConcurrencyTag>
+Found_wood classify_wood_points(const Scan& scan,
+                                const Axis_set& set,
+                                const std::vector<std::uint8_t>& is_used,
+                                const Shortest_paths& paths,
+                                bool is_sure,
+                                const Leaf_options& rules)
+{
+  Found_wood result;
+  if (!is_sure && !may_have_leaves(set, is_used, rules))
+    return result;
+  const std::vector<std::uint8_t> is_thick =
+      points_on_hollow_sections<ConcurrencyTag>(scan, set, rules.hollow);
+  if (!is_sure && !has_thick_wood(is_used, is_thick, rules))
+    return result;
+  if (!is_sure && sampling_dimension(scan, is_thick) < rules.dimension) {
+    result.is_in_rows = true;
+    return result;
+  }
+  std::vector<float> wood_score(scan.size());
+  std::vector<std::uint8_t> is_line = points_on_lines<ConcurrencyTag>(
+      scan,
+      is_used,
+      is_thick,
+      rules.lines,
+      [&](std::size_t i, const internal::Line_search& search, float score) {
+        wood_score[i] = static_cast<float>(wood_probability(search.surroundings(score)));
+      });
+  for (std::size_t i = 0; i < scan.size(); ++i)
+    is_line[i] = is_used[i] && (is_thick[i] || is_line[i]);
+  result.wood_score =
+      wood_score_of_paths<ConcurrencyTag>(scan, is_used, is_thick, paths, wood_score, rules.paths);
+  if (!is_sure && !are_leaves(scan, is_used, is_thick, is_line, rules))
+    return result;
+  result.is_wood.resize(scan.size());
+  for (std::size_t i = 0; i < scan.size(); ++i)
+    result.is_wood[i] =
+        is_used[i] && (is_thick[i] || double(result.wood_score[i]) >= rules.wood_score);
+  return result;
+}
+
+/// Points that were taken for leaves but lie on the surfaces that were found are explained by these; returns how many.
+template <class ConcurrencyTag>
+std::size_t reassign_points(const Scan& scan,
+                            const Chain_options& rules,
+                            std::vector<std::uint8_t>& is_leaf,
+                            Axis_set& set)
+{
+  const std::size_t n = scan.size();
+  std::vector<Index> axis_of(n, none), segment_of(n, none);
+  pcs::internal::for_each_index<ConcurrencyTag>(
+      n,
+      [&](std::size_t i) {
+        const Vec3& p = scan.points[i];
+        if (!is_leaf[i])
+          return;
+        const auto near = scan.search->nearest_if(p, 4 * scan.spacing, [&](Index j) {
+          return set.is_covered(j);
+        });
+        if (!(near.squared_distance < 16 * scan.spacing * scan.spacing))
+          return;
+        const Index a = set.axis_of_point[near.index];
+        const Axis& axis = set.axes[a].axis;
+        const Axis_place place = nearest_place(axis, set.segment_of_point[near.index], p);
+        const double r = radius_at(axis, place);
+        if (place.distance >
+            r + std::max(rules.cover_offset * scan.spacing, rules.cover_factor * r))
+          return;
+        axis_of[i] = a;
+        segment_of[i] = place.segment;
+      },
+      256);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    if (axis_of[i] != none) {
+      set.axis_of_point[i] = axis_of[i];
+      set.segment_of_point[i] = segment_of[i];
+      ++set.axes[axis_of[i]].number_of_points;
+      is_leaf[i] = 0;
+      ++count;
+    }
+  return count;
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_LEAVES_CLASSIFY_LEAVES_H

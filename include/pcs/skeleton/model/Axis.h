@@ -1,0 +1,231 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The axis of a branch: a polyline with radii, and where a point lies relative to it.
+
+#ifndef PCS_SKELETON_MODEL_AXIS_H
+#define PCS_SKELETON_MODEL_AXIS_H
+
+#include <pcs/skeleton/model/Scan.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+struct Axis_node
+{
+  Vec3 point = Vec3::Zero();
+  double radius = 0;        ///< [L]
+  double radius_error = 0;  ///< standard error [L]
+  bool is_measured = false; ///< the points decide the radius, not the prior
+};
+
+/// At least one node; the base first.
+using Axis = std::vector<Axis_node>;
+
+/// The place of an axis that is nearest to a point.
+struct Axis_place
+{
+  Index segment = 0; ///< between nodes `segment` and `segment + 1`
+  double share =
+      0; ///< position on the segment; outside of [0, 1] only before the first and behind the last node
+  double distance = 0; ///< from the place clamped to the axis [L]
+};
+
+/// A segment of an axis, prepared for many points.
+struct Axis_segment
+{
+  Vec3 base, along;
+  double inverse; ///< of the squared length; 0: no length [1/L^2]
+
+  Axis_segment(const Axis_node& a, const Axis_node& b) : base(a.point), along(b.point - a.point)
+  {
+    const double length2 = along.squaredNorm();
+    inverse = length2 > 0 ? 1 / length2 : 0;
+  }
+
+  /// Position of the foot of `p` on the line, not clamped.
+  double share(const Vec3& p) const { return along.dot(p - base) * inverse; }
+  double squared_distance(double share, const Vec3& p) const
+  {
+    const double clamped = std::min(1.0, std::max(0.0, share));
+    return (p - base - clamped * along).squaredNorm();
+  }
+};
+
+inline std::vector<Axis_segment> segments_of(const Axis& axis)
+{
+  std::vector<Axis_segment> segments;
+  segments.reserve(axis.size());
+  for (std::size_t s = 0; s + 1 < axis.size(); ++s)
+    segments.emplace_back(axis[s], axis[s + 1]);
+  return segments;
+}
+
+namespace internal {
+
+/// Keeps the segment that is nearest to a point; `segment_at(s)` tells a segment, `last` is the last one.
+template <class SegmentAt>
+class Place_search
+{
+public:
+  Place_search(std::size_t last, const SegmentAt& segment_at, const Vec3& p)
+    : m_last(last), m_segment_at(segment_at), m_p(p)
+  {
+  }
+
+  /// Whether segment `s` is nearer than all before.
+  bool offer(std::size_t s)
+  {
+    const Axis_segment& segment = m_segment_at(s);
+    const double t = segment.share(m_p), d = segment.squared_distance(t, m_p);
+    m_last_share = t;
+    if (!(d < m_squared_distance))
+      return false;
+    m_squared_distance = d;
+    m_share = t;
+    m_segment = s;
+    return true;
+  }
+
+  /// Goes on from `s` until some segments in a row are not nearer, or one that is not leads away from the point.
+  template <bool IsForward>
+  void walk(std::size_t s)
+  {
+    constexpr int most_misses = 2;
+    for (int misses = 0; misses < most_misses && (IsForward ? s < m_last : s > 0);) {
+      s = IsForward ? s + 1 : s - 1;
+      misses = offer(s) ? 0 : misses + 1;
+      if (misses > 0 && (IsForward ? m_last_share < 0 : m_last_share > 1))
+        break;
+    }
+  }
+
+  Axis_place place() const
+  {
+    Axis_place place;
+    place.segment = static_cast<Index>(m_segment);
+    place.distance = std::sqrt(m_squared_distance);
+    const bool is_open = (m_segment == 0 && m_share < 0) || (m_segment == m_last && m_share > 1);
+    place.share = is_open ? m_share : std::min(1.0, std::max(0.0, m_share));
+    return place;
+  }
+
+private:
+  std::size_t m_last, m_segment = 0;
+  const SegmentAt& m_segment_at;
+  const Vec3& m_p;
+  double m_squared_distance = std::numeric_limits<double>::infinity(), m_share = 0;
+  double m_last_share = 0; ///< of the segment that was offered last
+};
+
+} // namespace internal
+
+/// Walks from segment `guess` to the nearest one. There is at least one segment.
+inline Axis_place
+nearest_place(const std::vector<Axis_segment>& segments, std::size_t guess, const Vec3& p)
+{
+  const auto segment_at = [&](std::size_t s) -> const Axis_segment& { return segments[s]; };
+  const std::size_t last = segments.size() - 1, s = std::min(guess, last);
+  internal::Place_search search(last, segment_at, p);
+  search.offer(s);
+  search.template walk<true>(s);
+  search.template walk<false>(s);
+  return search.place();
+}
+
+/// The same for a few points. The axis has at least two nodes.
+inline Axis_place nearest_place(const Axis& axis, std::size_t guess, const Vec3& p)
+{
+  const auto segment_at = [&](std::size_t s) { return Axis_segment(axis[s], axis[s + 1]); };
+  const std::size_t last = axis.size() - 2, s = std::min(guess, last);
+  internal::Place_search search(last, segment_at, p);
+  search.offer(s);
+  search.template walk<true>(s);
+  search.template walk<false>(s);
+  return search.place();
+}
+
+/// The nearest of all segments. O(nodes).
+inline Axis_place nearest_place(const Axis& axis, const Vec3& p)
+{
+  const auto segment_at = [&](std::size_t s) { return Axis_segment(axis[s], axis[s + 1]); };
+  internal::Place_search search(axis.size() - 2, segment_at, p);
+  for (std::size_t s = 0; s + 1 < axis.size(); ++s)
+    search.offer(s);
+  return search.place();
+}
+
+inline double radius_at(const Axis& axis, const Axis_place& place)
+{
+  const double t = std::min(1.0, std::max(0.0, place.share));
+  return (1 - t) * axis[place.segment].radius + t * axis[place.segment + 1].radius;
+}
+
+inline Vec3 point_at(const Axis& axis, const Axis_place& place)
+{
+  const double t = std::min(1.0, std::max(0.0, place.share));
+  return (1 - t) * axis[place.segment].point + t * axis[place.segment + 1].point;
+}
+
+/// Length along the nodes.
+inline double length_of(const Axis& axis)
+{
+  double sum = 0;
+  for (std::size_t k = 1; k < axis.size(); ++k)
+    sum += (axis[k].point - axis[k - 1].point).norm();
+  return sum;
+}
+
+/// Nodes closer than `factor` radii, but not than `lowest`, and not farther than `highest`.
+struct Node_spacing
+{
+  double factor, lowest, highest;
+  double operator()(double radius) const
+  {
+    return std::min(highest, std::max(lowest, factor * radius));
+  }
+};
+
+/// The same line with nodes at the wanted distances; both ends stay.
+inline Axis resample(const Axis& axis, const Node_spacing& spacing)
+{
+  if (axis.size() < 2)
+    return axis;
+  // "Number of steps" as a running integral of length / wanted distance, then equal steps of it.
+  std::vector<double> steps(axis.size(), 0);
+  for (std::size_t k = 1; k < axis.size(); ++k) {
+    const double wanted = spacing(0.5 * (axis[k].radius + axis[k - 1].radius));
+    steps[k] = steps[k - 1] + (axis[k].point - axis[k - 1].point).norm() / wanted;
+  }
+  // an axis across wide gaps has no use for more nodes than these: nothing is there
+  const double most = 4.0 * double(axis.size()) + 64;
+  const std::size_t count =
+      static_cast<std::size_t>(std::max(1.0, std::min(most, std::round(steps.back()))));
+  Axis result;
+  result.reserve(count + 1);
+  result.push_back(axis.front());
+  std::size_t s = 0;
+  for (std::size_t k = 1; k < count; ++k) {
+    const double at = steps.back() * double(k) / double(count);
+    while (s + 2 < axis.size() && steps[s + 1] < at)
+      ++s;
+    const double span = steps[s + 1] - steps[s];
+    const double t = span > 0 ? (at - steps[s]) / span : 0;
+    Axis_node node = t < 0.5 ? axis[s] : axis[s + 1];
+    node.point = (1 - t) * axis[s].point + t * axis[s + 1].point;
+    node.radius = (1 - t) * axis[s].radius + t * axis[s + 1].radius;
+    result.push_back(node);
+  }
+  result.push_back(axis.back());
+  return result;
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_MODEL_AXIS_H

@@ -1,0 +1,75 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The axes found so far, which points they explain, and what was learned from them about the scan.
+
+#ifndef PCS_SKELETON_MODEL_AXIS_SET_H
+#define PCS_SKELETON_MODEL_AXIS_SET_H
+
+#include <pcs/skeleton/model/Axis.h>
+#include <pcs/skeleton/model/Density_field.h>
+#include <pcs/skeleton/model/Scan.h>
+#include <pcs/skeleton/model/Visibility_field.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// One axis and where it came from.
+struct Fitted_axis
+{
+  Axis axis;
+  Index parent = none; ///< axis that the paths to the root lead to
+  std::size_t number_of_points = 0;
+  double direction = 1; ///< how sure its base is one: 0 if its pieces point to both sides alike [-]
+  std::size_t meeting = 0; ///< node where two pieces that point away from each other meet; 0: none
+};
+
+struct Axis_set
+{
+  std::vector<Fitted_axis> axes;
+  std::vector<Index> axis_of_point; ///< `none`: not explained by any axis
+  std::vector<Index> segment_of_point;
+  double noise = 0;   ///< standard deviation of points from the surface [L]
+  double density = 0; ///< median of points per area of the surface; 0: not known yet [1/L^2]
+  Density_field density_field;
+  Visibility_field facing_field;
+
+  /// Points per area of a branch at a place, along a unit vector [1/L^2].
+  double density_at(const Vec3& place, const Vec3& along) const
+  {
+    return density_field.is_known() ? density_field(place, along) : density;
+  }
+  /// The same at a node of an axis.
+  double density_at(const Axis& axis, std::size_t k) const
+  {
+    const Vec3 d = axis[std::min(axis.size() - 1, k + 1)].point - axis[k > 0 ? k - 1 : 0].point;
+    const double length = d.norm();
+    return density_at(axis[k].point, length > 0 ? Vec3(d / length) : Vec3(Vec3::UnitZ()));
+  }
+  /// The mean outward normal of the points at a node; zero where nothing is known.
+  Vec3 visibility_at(const Axis& axis, std::size_t k) const
+  {
+    const Vec3 d = axis[std::min(axis.size() - 1, k + 1)].point - axis[k > 0 ? k - 1 : 0].point;
+    const double length = d.norm();
+    const bool is_known = facing_field.is_known() && length > 0;
+    return is_known ? facing_field(axis[k].point, d / length) : Vec3(Vec3::Zero());
+  }
+
+  bool is_covered(Index i) const { return axis_of_point[i] != none; }
+
+  /// How far `p` lies outside of the axis that explains point `i`; negative inside [L].
+  double height_above(Index i, const Vec3& p) const
+  {
+    const Axis& axis = axes[axis_of_point[i]].axis;
+    const Axis_place place = nearest_place(axis, segment_of_point[i], p);
+    return place.distance - radius_at(axis, place);
+  }
+};
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_MODEL_AXIS_SET_H

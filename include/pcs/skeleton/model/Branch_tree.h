@@ -1,0 +1,59 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// A rooted tree of nodes, grouped in branches.
+
+#ifndef PCS_SKELETON_MODEL_BRANCH_TREE_H
+#define PCS_SKELETON_MODEL_BRANCH_TREE_H
+
+#include <pcs/skeleton/model/Axis.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// A node of the result. Parents have smaller numbers than their children.
+struct Branch_node : Axis_node
+{
+  Index parent = none;
+  Index branch = none;
+  double major_radius = 0, minor_radius = 0; ///< of the section; 0: a circle [L]
+  Vec3 major_axis = Vec3::Zero();
+
+  /// Makes the section smaller or larger, of the same shape.
+  void resize(double new_radius)
+  {
+    if (radius > 0) {
+      major_radius *= new_radius / radius;
+      minor_radius *= new_radius / radius;
+    }
+    radius = new_radius;
+  }
+};
+
+struct Branch
+{
+  Index parent = none; ///< branch
+  int order = 0;
+  std::vector<Index> nodes; ///< the first lies on the axis of the parent
+};
+
+struct Branch_tree
+{
+  std::vector<Branch_node> nodes;
+  std::vector<Branch> branches;     ///< parents before their children
+  std::vector<Index> node_of_point; ///< per point of the scan; `none`: not explained
+  std::size_t number_of_unreached_axes = 0;
+
+  /// Whether the edge to `v` leads to the base of another branch.
+  bool is_base(Index v) const
+  {
+    return nodes[v].parent == none || nodes[nodes[v].parent].branch != nodes[v].branch;
+  }
+};
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_MODEL_BRANCH_TREE_H

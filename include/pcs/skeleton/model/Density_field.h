@@ -1,0 +1,104 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// How many points per area a branch has, by where it is and where it points to.
+
+#ifndef PCS_SKELETON_MODEL_DENSITY_FIELD_H
+#define PCS_SKELETON_MODEL_DENSITY_FIELD_H
+
+#include <pcs/skeleton/model/Scan.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// What one good section says about the scan.
+struct Density_sample
+{
+  double density; ///< points per area [1/L^2]
+  double radius;  ///< of the section [L]
+  Vec3 place;
+  Vec3 along;                 ///< unit vector along the axis
+  Vec3 facing = Vec3::Zero(); ///< mean of the outward normals of its points
+};
+
+/// Places relative to the middle of samples, in their spread. Beyond the samples a field goes on as at the nearest place among
+/// them: a polynomial that was learned on a trunk says nothing of the crown.
+class Sample_frame
+{
+public:
+  Sample_frame() = default;
+  /// At least one sample. In learn_fields.h.
+  explicit Sample_frame(const std::vector<Density_sample>& samples);
+
+  Vec3 operator()(const Vec3& place) const { return m_scale * (place - m_center); }
+
+  /// That of the nearest place in the box about nearly all samples.
+  Vec3 within(const Vec3& place) const
+  {
+    const Vec3 q = m_sides.transpose() * (*this)(place);
+    return m_sides * q.cwiseMin(m_reach).cwiseMax(-m_reach);
+  }
+
+private:
+  Vec3 m_center = Vec3::Zero();
+  double m_scale = 1;
+  Eigen::Matrix3d m_sides = Eigen::Matrix3d::Identity(); ///< of the box, by columns
+  Vec3 m_reach = Vec3::Zero();                           ///< half its lengths, in the frame
+};
+
+/*!
+  Points thin out with the distance from a station, and where a branch points to it: the logarithm of the density is a
+  polynomial of second degree of the place and of the direction. Robust least squares with a ridge; neither a place nor a
+  prediction leaves the range of the samples.
+*/
+class Density_field
+{
+public:
+  static constexpr std::size_t fewest_samples = 60;
+  static constexpr double shared = 5; ///< sections next to each other share points [count]
+
+  /// Whether there were enough samples.
+  bool is_known() const { return m_is_known; }
+
+  /// Fits the field to samples of positive density. O(samples). In learn_fields.h, as it takes long to compile.
+  void learn(const std::vector<Density_sample>& all);
+
+  /// Points per area of a branch at `place` that runs along the unit vector `along` [1/L^2].
+  double operator()(const Vec3& place, const Vec3& along) const
+  {
+    const double value = m_middle + m_weights.dot(row(m_frame.within(place), along));
+    return std::exp(std::min(m_highest, std::max(m_lowest, value)));
+  }
+
+private:
+  static constexpr int size = 16;
+  static constexpr double least_deviation = 0.05;
+  using Row = Eigen::Matrix<double, size, 1>;
+
+  /// `q` is a place in the frame.
+  static Row row(const Vec3& q, const Vec3& t)
+  {
+    const double root = std::sqrt(2.0); // the ridge is the same for a turned scan
+    Row r;
+    r << 1, q.x(), q.y(), q.z(), q.x() * q.x(), q.y() * q.y(), q.z() * q.z(), root * q.x() * q.y(),
+        root * q.x() * q.z(), root * q.y() * q.z(), t.x() * t.x(), t.y() * t.y(), t.z() * t.z(),
+        root * t.x() * t.y(), root * t.x() * t.z(), root * t.y() * t.z();
+    return r;
+  }
+
+  bool m_is_known = false;
+  Sample_frame m_frame;
+  double m_middle = 0, m_lowest = 0, m_highest = 0; // of logarithms
+  Row m_weights = Row::Zero();
+};
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_MODEL_DENSITY_FIELD_H

@@ -1,0 +1,38 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Layers of equal path length from the root, their connected parts, and the tree that these form.
+
+#ifndef PCS_SKELETON_MODEL_LAYER_TREE_H
+#define PCS_SKELETON_MODEL_LAYER_TREE_H
+
+#include <pcs/skeleton/model/Scan.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// Thickness of a layer in spacings [-].
+constexpr double layer_thickness = 3;
+
+/// A node is a connected part of a layer. Parents have smaller numbers than their children.
+struct Layer_tree
+{
+  std::vector<Index> node_of_point; ///< `none` where no path leads
+  std::vector<Index> parent;        ///< `none` at the sources
+  std::vector<Vec3> center;         ///< mean of the points of a node
+  std::vector<double> spread;       ///< root of the mean squared distance from it [L]
+  std::vector<Index>
+      next_in_ring; ///< the child that continues a thick ring; itself: the ring ends here; `none`: no ring
+  std::vector<Index> first; ///< offsets into `point`
+  std::vector<Index> point; ///< the points node by node
+
+  std::size_t size() const { return parent.size(); }
+  std::size_t count(Index node) const { return first[node + 1] - first[node]; }
+};
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_MODEL_LAYER_TREE_H

@@ -1,0 +1,68 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The scan of a tree, prepared: distinct points about a local origin, their neighbours, spacing and outliers.
+
+#ifndef PCS_SKELETON_MODEL_SCAN_H
+#define PCS_SKELETON_MODEL_SCAN_H
+
+#include <pcs/internal/Huge_page_allocator.h>
+#include <pcs/neighborhood/Nearest_neighbors.h>
+#include <pcs/skeleton/model/Scan_frame.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+using neighborhood::Vec3;
+using Index = std::uint32_t;
+/// No point, no node, no branch.
+constexpr Index none = std::numeric_limits<Index>::max();
+
+/// Neighbours kept per point [count].
+constexpr std::size_t neighbors_per_point = 12;
+/// The neighbour whose distance measures the local spacing; the first is too noisy.
+constexpr std::size_t spacing_neighbor = 4;
+
+/// A scan ready for the stages. Points are distinct, in spatial order, in the coordinates of `frame`. It stays where it is: the
+/// search refers to its points.
+struct Scan
+{
+  Scan() = default;
+  Scan(const Scan&) = delete;
+  Scan& operator=(const Scan&) = delete;
+
+  Scan_frame frame;
+  std::vector<Vec3> points;
+  std::vector<Index> point_of_input; ///< which of `points` an input point became
+  pcs::internal::Huge_vector<std::array<Index, neighbors_per_point>>
+      neighbors;                     ///< nearest first, `none` behind
+  std::vector<double> local_spacing; ///< distance to the 4th neighbour [L]
+  std::vector<std::uint8_t> is_outlier;
+  double spacing = 0; ///< median distance to the nearest neighbour [L]
+  std::unique_ptr<neighborhood::Nearest_neighbors> search; ///< over all `points`
+
+  std::size_t size() const { return points.size(); }
+};
+
+/// The lower median; rearranges `values`. 0 if there are none.
+template <class T>
+T median(std::vector<T>& values)
+{
+  if (values.empty())
+    return T(0);
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_MODEL_SCAN_H

@@ -1,0 +1,241 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// All branches that a section carries have, side by side, not much more area than the section.
+
+#ifndef PCS_SKELETON_RADII_APPLY_PIPE_MODEL_H
+#define PCS_SKELETON_RADII_APPLY_PIPE_MODEL_H
+
+#include <pcs/skeleton/model/Branch_tree.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// The pipe model, as an upper bound.
+struct Pipe_model_options
+{
+  double slack = 3;     ///< areas of wood add up to one to two times that of the section below [-]
+  double thicker = 1.2; ///< proven branches this many times thicker than their parent stand alone
+  double proven =
+      0.7; ///< share of the area of a branch that must be proven, or nothing of it is [-]
+  std::size_t bins = 128; ///< of the longest way from the root [count]
+  int rounds = 6;
+};
+
+namespace internal {
+
+class Pipe_model
+{
+public:
+  Pipe_model(const std::vector<std::uint8_t>& is_proven,
+             const Pipe_model_options& rules,
+             Branch_tree& tree)
+    : m_is_proven(is_proven), m_rules(rules), m_tree(tree)
+  {
+    const std::size_t n = tree.nodes.size();
+    std::vector<double> way(n, 0);
+    double longest = 0;
+    for (std::size_t v = 1; v < n; ++v) {
+      const Branch_node& node = tree.nodes[v];
+      way[v] = way[node.parent] + (node.point - tree.nodes[node.parent].point).norm();
+      longest = std::max(longest, way[v]);
+    }
+    m_bin.resize(n);
+    for (std::size_t v = 0; v < n; ++v)
+      m_bin[v] =
+          longest > 0 ? static_cast<std::size_t>(way[v] / longest * double(rules.bins - 1)) : 0;
+    m_children.resize(n);
+    for (Index b = 1; b < tree.branches.size(); ++b)
+      m_children[seat_of(b)].push_back(b);
+    keep_proven();
+    find_independent();
+  }
+
+  std::size_t run()
+  {
+    std::vector<std::uint8_t> is_limited(m_tree.nodes.size(), 0);
+    for (int round = 0; round < m_rules.rounds; ++round)
+      if (!limit(is_limited))
+        break;
+    return static_cast<std::size_t>(std::count(is_limited.begin(), is_limited.end(), 1));
+  }
+
+private:
+  Index seat_of(Index b) const { return m_tree.nodes[m_tree.branches[b].nodes.front()].parent; }
+
+  /// Chance proves single sections in a cloud of leaves, not most of a branch.
+  void keep_proven()
+  {
+    m_is_kept.assign(m_tree.nodes.size(), 0);
+    for (const Branch& branch : m_tree.branches) {
+      double all = 0, proven = 0;
+      for (const Index v : branch.nodes) {
+        const double area = m_tree.nodes[v].radius * m_tree.nodes[v].radius;
+        all += area;
+        proven += m_is_proven[v] ? area : 0;
+      }
+      if (proven >= m_rules.proven * all)
+        for (const Index v : branch.nodes)
+          m_is_kept[v] = m_is_proven[v];
+    }
+  }
+
+  /// Branches that are proven to be thicker than what they sit on: their joints are wrong.
+  void find_independent()
+  {
+    const std::size_t n = m_tree.branches.size();
+    m_is_independent.assign(n, 0);
+    m_is_independent[0] = 1;
+    for (Index b = 1; b < n; ++b) {
+      const double least = m_rules.thicker * m_tree.nodes[seat_of(b)].radius;
+      double all = 0, thick = 0; // squared radii
+      for (const Index v : m_tree.branches[b].nodes) {
+        const double radius = m_tree.nodes[v].radius;
+        all += radius * radius;
+        if (m_is_proven[v] && radius > least)
+          thick += radius * radius;
+      }
+      m_is_independent[b] = 2 * thick > all;
+    }
+  }
+
+  /// What passes a bin.
+  struct Passing
+  {
+    double area = 0, count = 0; ///< sum of squared radii, branches
+  };
+  /// What is allowed in a bin.
+  struct Limit
+  {
+    double factor = 1; ///< of the squared radii
+    double share = 0;  ///< squared radius if all were equal; nothing is scaled below it
+  };
+  using Passings = std::vector<Passing>; // per bin
+  using Limits = std::vector<Limit>;     // per bin; empty: none
+
+  /// Calls `visit(v, passings)` for the nodes of a branch from its tip to its base, with all that `v` carries.
+  template <class Visit>
+  Passings walk(Index b, const std::vector<Passings>& of_branch, const Visit& visit) const
+  {
+    Passings sums(m_rules.bins);
+    const std::vector<Index>& nodes = m_tree.branches[b].nodes;
+    for (std::size_t k = nodes.size(); k-- > 0;) {
+      const Index v = nodes[k];
+      for (const Index c : m_children[v])
+        if (!m_is_independent[c])
+          for (std::size_t i = m_bin[v]; i < m_rules.bins; ++i) {
+            sums[i].area += of_branch[c][i].area;
+            sums[i].count += of_branch[c][i].count;
+          }
+      visit(v, sums);
+      // the edge before the node fills the bins that begin on it
+      const std::size_t from = k > 0 ? m_bin[nodes[k - 1]] : m_bin[v];
+      const double area = m_tree.nodes[v].radius * m_tree.nodes[v].radius;
+      for (std::size_t i = from; i < m_bin[v]; ++i) {
+        sums[i + 1].area += area;
+        sums[i + 1].count += 1;
+      }
+    }
+    return sums;
+  }
+
+  bool limit(std::vector<std::uint8_t>& is_limited)
+  {
+    const std::size_t n = m_tree.branches.size();
+    std::vector<Passings> of_branch(n);
+    std::vector<std::vector<std::pair<Index, Limits>>> limits(n); // by node, from the tip on
+    for (std::size_t b = n; b-- > 0;) {
+      const std::vector<Index>& nodes = m_tree.branches[b].nodes;
+      std::vector<double> thickest(m_rules.bins, 0); // the thickest node of a bin stands for it
+      for (const Index v : nodes)
+        if (m_is_proven[v])
+          thickest[m_bin[v]] = std::max(thickest[m_bin[v]], m_tree.nodes[v].radius);
+      std::size_t last = std::numeric_limits<std::size_t>::max();
+      of_branch[b] = walk(static_cast<Index>(b), of_branch, [&](Index v, const Passings& sums) {
+        if (m_bin[v] == last)
+          return;
+        last = m_bin[v];
+        double radius = thickest[last];
+        if (last > m_bin[nodes.front()])
+          radius = std::max(radius, thickest[last - 1]);
+        if (last + 1 < m_rules.bins)
+          radius = std::max(radius, thickest[last + 1]);
+        if (!(radius > 0))
+          return;
+        const double most = m_rules.slack * radius * radius;
+        Limits own;
+        for (std::size_t i = last + 1; i < m_rules.bins; ++i)
+          if (sums[i].area > most) {
+            own.resize(m_rules.bins);
+            own[i] = {most / sums[i].area, most / sums[i].count};
+          }
+        if (!own.empty())
+          limits[b].emplace_back(v, std::move(own));
+      });
+    }
+    bool did_change = false;
+    std::vector<Limits> at_seat(n);
+    for (Index b = 0; b < n; ++b) {
+      Limits present = m_is_independent[b] ? Limits() : std::move(at_seat[b]);
+      std::size_t next = limits[b].size();
+      for (const Index v : m_tree.branches[b].nodes) {
+        Branch_node& node = m_tree.nodes[v];
+        const Limit here = present.empty() ? Limit() : present[m_bin[v]];
+        const double area = node.radius * node.radius;
+        if (!m_is_kept[v] && here.factor < 1 && area > 1.01 * here.share) {
+          node.radius = std::sqrt(std::max(here.share, here.factor * area));
+          node.radius_error = std::max(node.radius_error, node.radius);
+          node.is_measured = false;
+          is_limited[v] = 1;
+          did_change = true;
+        }
+        if (next > 0 && limits[b][next - 1].first == v) {
+          const Limits& own = limits[b][--next].second;
+          present.resize(m_rules.bins);
+          for (std::size_t i = 0; i < present.size(); ++i)
+            if (own[i].factor < present[i].factor)
+              present[i] = own[i];
+        }
+        for (const Index c : m_children[v])
+          at_seat[c] = present;
+      }
+    }
+    return did_change;
+  }
+
+  const std::vector<std::uint8_t>& m_is_proven;
+  std::vector<std::uint8_t> m_is_kept; // whatever it adds up to
+  const Pipe_model_options& m_rules;
+  Branch_tree& m_tree;
+  std::vector<std::size_t> m_bin;
+  std::vector<std::vector<Index>> m_children; // branches that sit on a node
+  std::vector<std::uint8_t> m_is_independent;
+};
+
+} // namespace internal
+
+/*!
+  Where leaves were taken for wood, the areas of all branches at one distance from the root add up to many times that of the
+  trunk. Wood does not do that: scales the radii down at such distances, for what each node carries. Scaled nodes count as
+  inferred. Returns how many there are. O((nodes + branches) * bins).
+*/
+inline std::size_t apply_pipe_model(const std::vector<std::uint8_t>& is_proven,
+                                    const Pipe_model_options& rules,
+                                    Branch_tree& tree)
+{
+  if (tree.nodes.size() < 2 || !(rules.slack > 0))
+    return 0;
+  return internal::Pipe_model(is_proven, rules, tree).run();
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_RADII_APPLY_PIPE_MODEL_H

@@ -1,0 +1,294 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Radii that the points do not support are bounded by those below, which they do.
+
+#ifndef PCS_SKELETON_RADII_BOUND_RADII_H
+#define PCS_SKELETON_RADII_BOUND_RADII_H
+
+#include <pcs/internal/parallel.h>
+#include <pcs/skeleton/model/Branch_tree.h>
+#include <pcs/skeleton/model/Scan.h>
+#include <pcs/skeleton/model/nearest_edge.h>
+#include <pcs/skeleton/radii/apply_pipe_model.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// When points support a radius, and what bounds the others.
+struct Support_options
+{
+  double depth = 0.3;          ///< points this many radii below the surface lie inside ...
+  double depth_noise = 2;      ///< ... if that is more than this many times the noise
+  double filled = 0.2;         ///< share inside above which a section is a bush of leaves [-]
+  double branch_filled = 0.15; ///< the same from the base of the branch on [-]
+  std::size_t reach = 2;       ///< nodes on both sides that are looked at with one [count]
+  double fewest = 12;          ///< points that support a section [count]
+  double expected = 0.25;      ///< share of the expected ones [-]
+  double thicker = 1.5; ///< no branch is this many times thicker than its parent at the joint, but
+                        ///< where the points prove it, by ...
+  double proof_expected = 0.5; ///< ... this share of the expected ones on the surface,
+  double proof_filled = 0.05;  ///< ... at most this share inside,
+  double proof_error = 0.1;    ///< ... a standard error below this many radii [-];
+  //! with an error below this, and where something as thick is below, `expected` is enough: one side may be hidden
+  double proof_precise = 0.03;
+  double mostly = 0.7; ///< with this share of its volume proven a branch is no bush [-]
+  double slack =
+      3; ///< bound of a section that nothing speaks for or against, in radii by allometry
+  double filled_slack = 1; ///< the same of a filled one
+  double foot = 8;         ///< length of the foot of a trunk, in radii [-]
+  Pipe_model_options pipes;
+  double thinnest = 0.16; ///< no bound is below this many spacings: a single row of points
+};
+
+/// What the points of each node say.
+struct Section_support
+{
+  std::vector<double> on, inside; ///< points near the surface or outside of it, and inside
+
+  explicit Section_support(const Branch_tree& tree)
+    : on(tree.nodes.size(), 0), inside(tree.nodes.size(), 0)
+  {
+  }
+};
+
+/// Counts the points on the surface of each node and inside of it. O(points).
+template <class ConcurrencyTag>
+Section_support support_of_sections(const Scan& scan,
+                                    const Branch_tree& tree,
+                                    double noise,
+                                    const Support_options& rules)
+{
+  const std::vector<Index> next = successors(tree);
+  std::vector<std::uint8_t> is_inside(scan.size(), 0);
+  pcs::internal::for_each_index<ConcurrencyTag>(
+      scan.size(),
+      [&](std::size_t i) {
+        const Index v = tree.node_of_point[i];
+        if (v == none)
+          return;
+        const auto [squared_distance, offset, radius] =
+            nearest_edge(tree, next, v, scan.points[i], Base_edge::left_out);
+        const double depth = std::max(rules.depth_noise * noise, rules.depth * radius);
+        is_inside[i] = std::sqrt(squared_distance) < radius - depth;
+      },
+      4096);
+  Section_support support(tree);
+  for (std::size_t i = 0; i < scan.size(); ++i)
+    if (tree.node_of_point[i] != none)
+      ++(is_inside[i] ? support.inside : support.on)[tree.node_of_point[i]];
+  return support;
+}
+
+namespace internal {
+
+/// What the points say of the sections of one branch, each at least as long as thick.
+struct Branch_support
+{
+  std::vector<double> on, inside, expected; ///< points about each node
+  std::vector<std::uint8_t> is_proven, is_precise;
+  bool is_mostly_proven = false; ///< then what is filled is no cloud of leaves
+
+  Branch_support(const Section_support& support,
+                 const Branch& branch,
+                 const Branch_tree& tree,
+                 double density,
+                 const Support_options& rules)
+    : on(branch.nodes.size(), 0),
+      inside(on),
+      expected(on),
+      is_proven(on.size(), 0),
+      is_precise(on.size(), 0)
+  {
+    const std::size_t n = on.size();
+    double all = 0, proven = 0; // squared radii times lengths
+    for (std::size_t k = 0; k < n; ++k) {
+      const Branch_node& node = tree.nodes[branch.nodes[k]];
+      const auto is_near = [&](std::size_t j) {
+        return (tree.nodes[branch.nodes[j]].point - node.point).norm() <= node.radius;
+      };
+      std::size_t begin = k > rules.reach ? k - rules.reach : 0;
+      std::size_t end = std::min(n, k + rules.reach + 1);
+      while (begin > 0 && is_near(begin - 1))
+        --begin;
+      while (end < n && is_near(end))
+        ++end;
+      for (std::size_t j = begin; j < end; ++j) {
+        const Index w = branch.nodes[j];
+        on[k] += support.on[w];
+        inside[k] += support.inside[w];
+        expected[k] +=
+            2 * 3.14159265358979323846 * tree.nodes[w].radius * density * length_at(tree, w);
+      }
+      const bool is_hollow = inside[k] <= rules.proof_filled * (on[k] + inside[k]);
+      is_proven[k] = on[k] >= rules.proof_expected * expected[k] && is_hollow &&
+                     node.radius_error <= rules.proof_error * node.radius;
+      is_precise[k] = on[k] >= rules.expected * expected[k] && on[k] >= rules.fewest && is_hollow &&
+                      node.radius_error <= rules.proof_precise * node.radius;
+      const double volume = node.radius * node.radius * length_at(tree, branch.nodes[k]);
+      all += volume;
+      proven += is_proven[k] && node.is_measured && on[k] >= rules.fewest ? volume : 0;
+    }
+    is_mostly_proven = proven >= rules.mostly * all;
+  }
+
+private:
+  static double length_at(const Branch_tree& tree, Index v)
+  {
+    return tree.is_base(v) ? 0
+                           : (tree.nodes[v].point - tree.nodes[tree.nodes[v].parent].point).norm();
+  }
+};
+
+/// The lowest stretch of the trunk, of which single sections may be anything.
+struct Trunk_foot
+{
+  std::size_t size = 0; ///< nodes of the trunk; 0: another branch
+  double radius = 0;    ///< of the sections that are not filled, the median by length [L]
+
+  Trunk_foot(const Branch_tree& tree,
+             const Branch& branch,
+             const Branch_support& sections,
+             const Support_options& rules)
+  {
+    if (branch.parent != none)
+      return;
+    const auto is_hollow = [&](std::size_t k) {
+      const double all = sections.on[k] + sections.inside[k];
+      return tree.nodes[branch.nodes[k]].is_measured && sections.inside[k] <= rules.filled * all;
+    };
+    double thickest = 0;
+    for (std::size_t k = 0; k < branch.nodes.size(); ++k)
+      if (is_hollow(k))
+        thickest = std::max(thickest, tree.nodes[branch.nodes[k]].radius);
+    std::vector<std::pair<double, double>> radii; // and lengths
+    double length = 0, hollow = 0;
+    for (; size < branch.nodes.size() && length <= rules.foot * thickest; ++size) {
+      const Branch_node& node = tree.nodes[branch.nodes[size]];
+      const double step = size > 0 ? (node.point - tree.nodes[node.parent].point).norm() : 0;
+      length += step;
+      if (!is_hollow(size))
+        continue;
+      radii.emplace_back(node.radius, step);
+      hollow += step;
+    }
+    std::sort(radii.begin(), radii.end());
+    double sum = 0;
+    for (std::size_t k = 0; k < radii.size() && (k == 0 || sum < 0.5 * hollow); ++k) {
+      radius = radii[k].first;
+      sum += radii[k].second;
+    }
+  }
+
+  /// Whether a node of it is much thinner than the others: trunks are not.
+  bool is_odd(std::size_t k, double node_radius, const Support_options& rules) const
+  {
+    return k < size && rules.thicker * node_radius < radius;
+  }
+};
+
+/// The longest way from each node to a tip.
+inline std::vector<double> ways_to_tips(const Branch_tree& tree)
+{
+  std::vector<double> way(tree.nodes.size(), 0);
+  for (std::size_t v = tree.nodes.size(); v-- > 1;) { // children come behind their parents
+    const Index p = tree.nodes[v].parent;
+    way[p] = std::max(way[p], way[v] + (tree.nodes[v].point - tree.nodes[p].point).norm());
+  }
+  return way;
+}
+
+} // namespace internal
+
+/*!
+  Scanners see the surface of wood, not what is inside. Sections with points inside are bushes of leaves, with few points
+  anything: their radii are at most what is left, by the longest way to a tip, of the last radius below that the points
+  support, or the largest one that they support farther out on the branch. Such nodes count as inferred. Returns how many there are. O(points + nodes).
+*/
+inline std::size_t bound_radii(const Scan& scan,
+                               const Section_support& support,
+                               double density,
+                               const Support_options& rules,
+                               Branch_tree& tree)
+{
+  if (tree.nodes.empty())
+    return 0;
+  const std::vector<double> way = internal::ways_to_tips(tree);
+  struct Reference
+  {
+    double radius = 0, way = 0; ///< of the last supported node towards the root; 0: none
+    double narrowest = 0;       ///< radius since the last proven one
+    double thickest = 0;        ///< of all supported ones
+  };
+  std::vector<Reference> reference(tree.nodes.size());
+  std::vector<std::uint8_t> is_sure(tree.nodes.size(), 0);
+  std::size_t count = 0;
+  for (const Branch& branch : tree.branches) { // parents before their children
+    const internal::Branch_support sections(support, branch, tree, density, rules);
+    const internal::Trunk_foot foot(tree, branch, sections, rules);
+    double all_on = 0, all_inside = 0; // from the base to here
+    const std::size_t n = branch.nodes.size();
+    std::vector<double> bounds(n, std::numeric_limits<double>::infinity()), supported(n, 0);
+    for (std::size_t k = 0; k < n; ++k) {
+      const Index v = branch.nodes[k];
+      const Branch_node& node = tree.nodes[v];
+      const double on = sections.on[k], inside = sections.inside[k];
+      const double expected = sections.expected[k];
+      all_on += support.on[v];
+      all_inside += support.inside[v];
+      const Reference below = node.parent == none ? Reference() : reference[node.parent];
+      // then the joint is wrong, or the parent
+      const bool is_proven = sections.is_proven[k] != 0 ||
+                             (sections.is_precise[k] != 0 && node.radius <= below.thickest);
+      const bool is_bush = all_inside > rules.branch_filled * (all_on + all_inside) &&
+                           !(is_proven && sections.is_mostly_proven);
+      const bool is_filled = inside > rules.filled * (on + inside);
+      const bool is_too_thick =
+          below.way > 0 && !is_proven && node.radius > rules.thicker * below.narrowest;
+      const bool is_supported = node.is_measured && !is_bush && !is_filled && !is_too_thick &&
+                                on >= rules.fewest && on >= rules.expected * expected;
+      const bool is_odd = foot.is_odd(k, node.radius, rules);
+      const double typical = is_odd ? foot.radius : node.radius;
+      is_sure[v] = is_supported && is_proven && !is_odd;
+      reference[v] = below;
+      if (is_supported || !(below.way > 0)) {
+        supported[k] = is_supported ? node.radius : 0;
+        if (is_supported)
+          reference[v] = {typical,
+                          way[v],
+                          is_proven || !(below.way > 0) ? typical
+                                                        : std::min(typical, below.narrowest),
+                          std::max(typical, below.thickest)};
+        continue;
+      }
+      const double slack = is_filled || is_bush ? rules.filled_slack : rules.slack;
+      bounds[k] = std::max(rules.thinnest * scan.spacing,
+                           below.radius * std::min(1.0, slack * way[v] / below.way));
+    }
+    double carried = 0; // the thickest supported section farther out
+    for (std::size_t k = n; k-- > 0;) {
+      Branch_node& node = tree.nodes[branch.nodes[k]];
+      carried = std::max(carried, supported[k]);
+      const double bound = std::max(bounds[k], carried);
+      if (node.radius <= bound)
+        continue;
+      node.radius = bound;
+      node.radius_error = bound;
+      node.is_measured = false;
+      ++count;
+    }
+  }
+  return count + apply_pipe_model(is_sure, rules.pipes, tree);
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_RADII_BOUND_RADII_H

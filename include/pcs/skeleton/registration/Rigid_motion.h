@@ -1,0 +1,33 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// By how much the points of a station are moved.
+
+#ifndef PCS_SKELETON_REGISTRATION_RIGID_MOTION_H
+#define PCS_SKELETON_REGISTRATION_RIGID_MOTION_H
+
+#include <pcs/skeleton/model/Scan.h>
+
+#include <Eigen/Geometry>
+
+namespace pcs {
+namespace skeleton {
+
+/// A small rigid motion about the origin.
+struct Rigid_motion
+{
+  Vec3 shift = Vec3::Zero(); ///< [L]
+  Vec3 turn = Vec3::Zero();  ///< about this axis, by its length [rad]
+
+  Eigen::Matrix3d rotation() const
+  {
+    const double angle = turn.norm();
+    return angle > 0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix()
+                     : Eigen::Matrix3d::Identity().eval();
+  }
+  Vec3 operator()(const Vec3& p) const { return rotation() * p + shift; }
+};
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_REGISTRATION_RIGID_MOTION_H

@@ -1,0 +1,298 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Puts the points of all stations of a scan onto the same branches.
+
+#ifndef PCS_SKELETON_REGISTRATION_REGISTER_STATIONS_H
+#define PCS_SKELETON_REGISTRATION_REGISTER_STATIONS_H
+
+#include <pcs/core/Skeleton_options.h>
+#include <pcs/core/Skeleton_report.h>
+#include <pcs/internal/parallel.h>
+#include <pcs/internal/progress.h>
+#include <pcs/skeleton/Session_options.h>
+#include <pcs/skeleton/model/Scan.h>
+#include <pcs/skeleton/registration/Rigid_motion.h>
+#include <pcs/skeleton/registration/align_stations.h>
+#include <pcs/skeleton/registration/detect_scan_grids.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/*!
+  Stations that are registered with an error make branches too thick or too thin by as much. `Stages` fits axes to some of the
+  points; these tell how every station must move.
+*/
+template <class Stages>
+class Station_registration
+{
+public:
+  /// `scan` has its points, and nothing else yet; `is_wood` is empty or has one entry per point of the input.
+  Station_registration(const Scan& scan,
+                       const std::vector<std::uint8_t>& is_wood,
+                       const Session_options& options)
+    : m_scan(scan), m_is_wood(is_wood), m_options(options)
+  {
+  }
+
+  /// Finds the motions. `false`: `progress` stopped it.
+  bool run(pcs::internal::Progress& progress)
+  {
+    if (!progress(0))
+      return false;
+    read_stations(m_options.stations);
+    if (m_labels.size() < 2)
+      find_stations(m_options.beam_grids);
+    if (m_labels.size() < 2)
+      return progress(1);
+    m_places = m_scan.points;
+    m_moves.assign(m_labels.size(), Move::Identity());
+    double size = 0; // in noise
+    // motions that are large blur the draft that tells them
+    for (int pass = 0; pass < m_options.alignment.passes; ++pass) {
+      if (!improve(progress, size))
+        return false;
+      m_is_moved = m_is_moved || size > 0;
+      if (size <= m_options.alignment.much)
+        break;
+    }
+    return progress(1);
+  }
+
+  /// After `run()`: moves the points if that helps, and tells of the stations.
+  void move(Scan& scan, Skeleton_report& report)
+  {
+    if (!m_is_moved)
+      return;
+    report.stations = stations();
+    pcs::internal::for_each_index<ConcurrencyTag>(m_places.size(), [&](std::size_t k) {
+      m_places[k] = Scan_frame::rounded(m_places[k]);
+    });
+    scan.points = std::move(m_places);
+  }
+
+private:
+  using Move = Eigen::Isometry3d; ///< in the frame
+  using ConcurrencyTag = typename Stages::Concurrency_tag;
+
+  /// Drafts the tree and moves the places. `size` is that of the motions, in noise; 0 if they are no better than none. `false` if
+  /// stopped.
+  bool improve(pcs::internal::Progress& progress, double& size)
+  {
+    const Station_alignment_options& rules = m_options.alignment;
+    // some points are enough on thick branches, and more are needed on thin ones
+    for (m_stride = 1 + m_places.size() / enough;; m_stride = (m_stride + 3) / 4) {
+      Stages draft(chosen_places(), chosen_wood(), draft_options());
+      if (!draft.fit_axes(progress))
+        return false;
+      const Aligned_stations aligned = align(draft, rules);
+      const double noise = draft.axes().noise;
+      const bool is_sure =
+          aligned.error < rules.agreement * aligned.size || aligned.size < rules.least * noise;
+      if (!is_sure && m_stride > 1 && m_places.size() / m_stride <= 2 * enough)
+        continue;
+      size = aligned.error < aligned.size && noise > 0 ? aligned.size / noise : 0;
+      if (size > 0)
+        add(aligned.motions, draft.scan().frame);
+      return true;
+    }
+  }
+
+  /// Labels with more values tell something else; the work grows with the cube of their number [count].
+  static constexpr std::size_t most_stations = 100;
+  /// Points of the first draft, at most.
+  static constexpr std::size_t enough = 40000;
+
+  /// Some places, with those around them.
+  std::vector<Vec3> some_places() const
+  {
+    constexpr std::size_t most = 200000, block = 2000;
+    const std::size_t n = m_scan.size(), every = 1 + n / most;
+    std::vector<Vec3> places;
+    for (std::size_t k = 0; k < n; ++k)
+      if (k / block % every == 0)
+        places.push_back(m_scan.points[k]);
+    return places;
+  }
+
+  void find_stations(const Scan_grid_options& rules)
+  {
+    m_labels.clear();
+    m_grids = detect_scan_grids<ConcurrencyTag>(some_places(), rules);
+    m_station.assign(m_scan.size(), none);
+    if (m_grids.size() < 2)
+      return;
+    pcs::internal::for_each_index<ConcurrencyTag>(m_station.size(), [&](std::size_t k) {
+      double least = rules.loosest;
+      for (std::size_t s = 0; s < m_grids.size(); ++s) {
+        const double misfit = m_grids[s].misfit(m_scan.points[k], least);
+        if (misfit < least) {
+          least = misfit;
+          m_station[k] = static_cast<Index>(s);
+        }
+      }
+    });
+    for (std::size_t s = 0; s < m_grids.size(); ++s)
+      m_labels.push_back(static_cast<long long>(s));
+  }
+
+  void read_stations(const std::vector<long long>& of_input)
+  {
+    if (of_input.empty())
+      return;
+    std::map<long long, Index> number;
+    for (const long long label : of_input)
+      if (label >= 0)
+        number.emplace(label, 0);
+    if (number.size() > most_stations)
+      return; // these are no stations
+    for (auto& entry : number) {
+      entry.second = static_cast<Index>(m_labels.size());
+      m_labels.push_back(entry.first);
+    }
+    m_station.assign(m_scan.size(), none);
+    for (std::size_t i = 0; i < of_input.size(); ++i)
+      if (of_input[i] >= 0) {
+        Index& station = m_station[m_scan.point_of_input[i]];
+        station = std::min(station, number.at(of_input[i]));
+      }
+  }
+
+  std::vector<Vec3> chosen_places() const
+  {
+    std::vector<Vec3> places;
+    for (std::size_t k = 0; k < m_places.size(); k += m_stride)
+      places.push_back(m_places[k]);
+    return places;
+  }
+
+  std::vector<std::uint8_t> chosen_wood() const
+  {
+    if (m_is_wood.empty())
+      return {};
+    std::vector<std::uint8_t> is_wood(1 + (m_places.size() - 1) / m_stride, 0);
+    for (std::size_t i = 0; i < m_is_wood.size(); ++i)
+      if (m_is_wood[i] && m_scan.point_of_input[i] % m_stride == 0)
+        is_wood[m_scan.point_of_input[i] / m_stride] = 1;
+    return is_wood;
+  }
+
+  Session_options draft_options() const
+  {
+    Session_options options = m_options;
+    options.do_register_stations = false;
+    options.stations.clear();
+    options.method = Skeleton_method::chains;
+    options.axes.passes = 1; // finds thick wood, in leaves as well
+    options.leaf_removal = Leaf_removal::never;
+    options.given.reset();
+    options.up = Vec3::UnitZ();
+    options.scanners.clear();
+    options.breast_height /= m_scan.frame.unit;
+    if (options.root)
+      options.root = m_scan.frame.to_local(*options.root);
+    return options;
+  }
+
+  /// The motions of all stations by the axes of the draft, in its coordinates.
+  Aligned_stations align(const Stages& draft, const Station_alignment_options& rules) const
+  {
+    const Scan& scan = draft.scan();
+    std::vector<Index> station(scan.size(), none);
+    for (std::size_t k = 0; k * m_stride < m_station.size(); ++k)
+      station[scan.point_of_input[k]] = m_station[k * m_stride];
+    return align_stations<ConcurrencyTag>(scan, draft.axes(), station, m_labels.size(), rules);
+  }
+
+  /// Adds motions in the frame of a draft, and moves the places.
+  void add(const std::vector<Rigid_motion>& motions, const Scan_frame& draft)
+  {
+    std::vector<Move> steps;
+    for (std::size_t s = 0; s < motions.size(); ++s) {
+      const Rigid_motion& motion = motions[s];
+      Move step = Move::Identity();
+      step.linear() = draft.axes.transpose() * motion.rotation() * draft.axes;
+      step.translation() = draft.to_input(motion(draft.to_local(Vec3::Zero())));
+      m_moves[s] = step * m_moves[s];
+      steps.push_back(step);
+    }
+    pcs::internal::for_each_index<ConcurrencyTag>(m_station.size(), [&](std::size_t k) {
+      if (m_station[k] != none)
+        m_places[k] = steps[m_station[k]] * m_places[k];
+    });
+  }
+
+  std::vector<Scan_station> stations() const
+  {
+    std::vector<Scan_station> stations(m_labels.size());
+    std::vector<Vec3> middle(m_labels.size(), Vec3::Zero()); // of what is moved
+    for (std::size_t k = 0; k < m_station.size(); ++k)
+      if (m_station[k] != none) {
+        ++stations[m_station[k]].number_of_points;
+        middle[m_station[k]] += m_places[k];
+      }
+    for (std::size_t s = 0; s < stations.size(); ++s) {
+      Scan_station& station = stations[s];
+      station.label = m_labels[s];
+      const Vec3 after = middle[s] / double(std::max<std::size_t>(1, station.number_of_points));
+      const Vec3 before = m_moves[s].inverse() * after;
+      station.shift = m_scan.frame.unit * m_scan.frame.direction_to_input(after - before);
+      station.turn = Eigen::AngleAxisd(m_moves[s].linear()).angle();
+      if (!m_grids.empty()) {
+        station.position = m_scan.frame.to_input(m_grids[s].position);
+        station.azimuth_step = 1 / m_grids[s].rate[0];
+        station.elevation_step = 1 / m_grids[s].rate[1];
+      }
+    }
+    return stations;
+  }
+
+  const Scan& m_scan;
+  const std::vector<std::uint8_t>& m_is_wood; ///< of the input
+  const Session_options& m_options;
+  std::size_t m_stride = 1;
+  bool m_is_moved = false;
+  std::vector<Vec3> m_places;      ///< of the scan, moved
+  std::vector<Scan_grid> m_grids;  ///< empty where the caller knows the stations
+  std::vector<Index> m_station;    ///< of each place, or `none`
+  std::vector<long long> m_labels; ///< of the stations
+  std::vector<Move> m_moves;       ///< of the stations
+};
+
+/*!
+  Moves the points of all stations onto the same branches, if the options say so, there are several stations, and that can be told;
+  the report gets them. `scan` has its points, and nothing else yet; `is_wood` is empty or has one entry per point of the input.
+  `false`: `progress` stopped it, and nothing is moved.
+*/
+template <class Stages>
+bool register_stations(const std::vector<std::uint8_t>& is_wood,
+                       const Session_options& options,
+                       Scan& scan,
+                       Skeleton_report& report,
+                       pcs::internal::Progress& progress)
+{
+  if (!options.do_register_stations)
+    return true;
+  constexpr double share = 0.2; // of all work
+  Station_registration<Stages> registration(scan, is_wood, options);
+  progress.stage(0, share);
+  const bool is_done = registration.run(progress);
+  progress.stage(0, 1);
+  if (is_done)
+    registration.move(scan, report);
+  return is_done;
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_REGISTRATION_REGISTER_STATIONS_H

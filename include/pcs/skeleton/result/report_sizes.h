@@ -1,0 +1,157 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// What the report says of a tree: height, diameter at breast height, length and volume by order and by size, and its points.
+
+#ifndef PCS_SKELETON_RESULT_REPORT_SIZES_H
+#define PCS_SKELETON_RESULT_REPORT_SIZES_H
+
+#include <pcs/core/Skeleton_report.h>
+#include <pcs/skeleton/model/Axis_set.h>
+#include <pcs/skeleton/model/Branch_tree.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// Upper bounds of the radius in the classes of the report, in breast heights: 5, 10, 20 and 50 mm in metres.
+constexpr double size_bounds_by_breast_height[] = {0.005 / 1.3, 0.01 / 1.3, 0.02 / 1.3, 0.05 / 1.3};
+
+/// Half the length of the section whose radii tell the diameter at breast height, in breast heights: from 1.1 to 1.5 m.
+constexpr double half_section_by_breast_height = 0.2 / 1.3;
+
+/*!
+  The diameter of a branch on the piece that ends at node `v`, at `share` of it: a line through the radii within `half` along the
+  axis, on both sides, by least squares. Bark and noise change a radius within a hand's breadth. `v` is no base.
+  O(nodes of the branch).
+*/
+inline double diameter_of_section(const Branch_tree& tree, Index v, double share, double half)
+{
+  const std::vector<Index>& nodes = tree.branches[tree.nodes[v].branch].nodes;
+  const std::size_t place =
+      static_cast<std::size_t>(std::find(nodes.begin(), nodes.end(), v) - nodes.begin());
+  // integrals over the section of 1, s, s^2, r and s r, where s is the length from the place
+  double n = 0, s1 = 0, s2 = 0, r1 = 0, sr = 0;
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  const auto length_before = [&](std::size_t k) {
+    return (tree.nodes[nodes[k]].point - tree.nodes[nodes[k - 1]].point).norm();
+  };
+  const auto add = [&](std::size_t k,
+                       double from) { // the piece before node k, which begins at `from`
+    const double length = length_before(k);
+    const double begin = std::max(from, -half), end = std::min(from + length, half);
+    if (!(end > begin))
+      return;
+    const double a = tree.nodes[nodes[k - 1]].radius, b = tree.nodes[nodes[k]].radius;
+    const double places[] = {begin, 0.5 * (begin + end), end}, weights[] = {1, 4, 1};
+    for (int i = 0; i < 3; ++i) { // Simpson's rule, which is exact here
+      const double s = places[i], r = a + (b - a) * (s - from) / length;
+      const double w = (end - begin) / 6 * weights[i];
+      n += w;
+      s1 += w * s;
+      s2 += w * s * s;
+      r1 += w * r;
+      sr += w * s * r;
+      least = std::min(least, r);
+      most = std::max(most, r);
+    }
+  };
+  const double before = -share * length_before(place);
+  double from = before;
+  for (std::size_t k = place; k < nodes.size() && from < half; ++k) {
+    add(k, from);
+    from += length_before(k);
+  }
+  double to = before;
+  for (std::size_t k = place; k-- > 1 && to > -half;) {
+    to -= length_before(k);
+    add(k, to);
+  }
+  const double determinant = n * s2 - s1 * s1;
+  if (!(determinant > 0)) {
+    const double a = tree.nodes[tree.nodes[v].parent].radius;
+    return 2 * (a + share * (tree.nodes[v].radius - a));
+  }
+  return 2 * std::min(most, std::max(least, (s2 * r1 - s1 * sr) / determinant));
+}
+
+/// Fills in what depends on the tree alone, in the unit of the input: `unit` times that of the tree. O(nodes).
+inline void report_sizes(const Branch_tree& tree,
+                         double unit,
+                         const Vec3& up,
+                         double breast_height,
+                         Skeleton_report& r)
+{
+  r.breast_height = unit * breast_height;
+  for (const double b : size_bounds_by_breast_height)
+    r.size_bounds.push_back(unit * b * breast_height);
+  r.by_size.resize(r.size_bounds.size() + 1);
+  for (const Branch& b : tree.branches) {
+    const std::size_t order = static_cast<std::size_t>(b.order);
+    if (r.by_order.size() <= order)
+      r.by_order.resize(order + 1);
+    ++r.by_order[order].number_of_branches;
+    ++r.total.number_of_branches;
+  }
+  if (tree.nodes.empty())
+    return;
+  const double ground = up.dot(tree.nodes[0].point);
+  double thickest = 0; // of all that crosses breast height
+  for (Index v = 0; v < tree.nodes.size(); ++v) {
+    const Branch_node& node = tree.nodes[v];
+    r.height = std::max(r.height, unit * (up.dot(node.point) - ground));
+    r.reach = std::max(r.reach, unit * (node.point - tree.nodes[0].point).norm());
+    if (tree.is_base(v))
+      continue;
+    const Branch_node& below = tree.nodes[node.parent];
+    const double length = unit * (node.point - below.point).norm();
+    const double a = unit * below.radius, b = unit * node.radius;
+    const double volume = 3.14159265358979323846 / 3 * length * (a * a + a * b + b * b);
+    std::size_t size = 0;
+    while (size < r.size_bounds.size() && 0.5 * (a + b) > r.size_bounds[size])
+      ++size;
+    const std::size_t order = static_cast<std::size_t>(tree.branches[node.branch].order);
+    for (Branch_totals* w : {&r.total, &r.by_order[order], &r.by_size[size]}) {
+      w->length += length;
+      w->volume += volume;
+    }
+    const double h0 = up.dot(below.point) - ground - breast_height;
+    const double h1 = up.dot(node.point) - ground - breast_height;
+    if (h0 > 0 || h1 <= 0)
+      continue;
+    const double diameter =
+        unit *
+        diameter_of_section(tree, v, h0 / (h0 - h1), half_section_by_breast_height * breast_height);
+    if (order == 0 && r.diameter_at_breast_height == 0)
+      r.diameter_at_breast_height = diameter;
+    thickest = std::max(thickest, diameter);
+  }
+  if (r.diameter_at_breast_height == 0) // the trunk was lost below, among buttresses for example
+    r.diameter_at_breast_height = thickest;
+}
+
+/// Counts the points that no axis explains, and those of axes that are not part of the tree. O(points).
+inline void count_unexplained(const std::vector<std::uint8_t>& is_used,
+                              const Axis_set& set,
+                              const Branch_tree& tree,
+                              Skeleton_report& r)
+{
+  for (std::size_t i = 0; i < is_used.size(); ++i) {
+    if (!is_used[i])
+      continue;
+    const bool has_node = !tree.node_of_point.empty() && tree.node_of_point[i] != none;
+    const bool is_covered =
+        has_node || (!set.axis_of_point.empty() && set.is_covered(static_cast<Index>(i)));
+    r.number_of_unexplained_points += !is_covered;
+    r.number_of_unreached_points += is_covered && !has_node;
+  }
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_RESULT_REPORT_SIZES_H

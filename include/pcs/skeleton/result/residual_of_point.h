@@ -1,0 +1,54 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// How a point lies beside the branch that explains it: its distance from the surface, and the direction from the axis.
+
+#ifndef PCS_SKELETON_RESULT_RESIDUAL_OF_POINT_H
+#define PCS_SKELETON_RESULT_RESIDUAL_OF_POINT_H
+
+#include <pcs/skeleton/model/Branch_tree.h>
+#include <pcs/skeleton/model/Scan.h>
+#include <pcs/skeleton/model/nearest_edge.h>
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// The vector from the axis of its branch to point `p`, which has a node. `next` are the `successors()`.
+inline Vec3
+offset_of_point(const Scan& scan, const Branch_tree& tree, const std::vector<Index>& next, Index p)
+{
+  return nearest_edge(tree, next, tree.node_of_point[p], scan.points[p], Base_edge::cylinder)
+      .offset;
+}
+
+/// Distance of point `p`, which has a node, from the surface of its branch, as cones between nodes; negative inside [L].
+inline double residual_of_point(const Scan& scan,
+                                const Branch_tree& tree,
+                                const std::vector<Index>& next,
+                                Index p)
+{
+  const Place_on_edge place =
+      nearest_edge(tree, next, tree.node_of_point[p], scan.points[p], Base_edge::cylinder);
+  return std::sqrt(place.squared_distance) - place.radius;
+}
+
+/// The median distance of the points from the surface, of some ten thousand spread over all [L].
+inline double
+median_residual(const Scan& scan, const Branch_tree& tree, const std::vector<Index>& next)
+{
+  std::vector<double> distances;
+  constexpr std::size_t enough = 20000;
+  const std::size_t n = tree.node_of_point.size(), step = 1 + n / enough;
+  for (std::size_t i = 0; i < n; i += step)
+    if (tree.node_of_point[i] != none)
+      distances.push_back(std::abs(residual_of_point(scan, tree, next, static_cast<Index>(i))));
+  return median(distances);
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_RESULT_RESIDUAL_OF_POINT_H

@@ -1,0 +1,127 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The branches that were found as a graph of the caller, in the coordinates and the unit of the input.
+
+#ifndef PCS_SKELETON_RESULT_WRITE_RESULT_H
+#define PCS_SKELETON_RESULT_WRITE_RESULT_H
+
+#include <pcs/Named_function_parameters.h>
+#include <pcs/concepts.h>
+#include <pcs/core/Tree_skeleton.h>
+#include <pcs/skeleton/model/Branch_tree.h>
+#include <pcs/skeleton/model/Scan_frame.h>
+
+#include <boost/graph/graph_traits.hpp>
+
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// Fills a `Tree_skeleton` with all that is known of the nodes.
+template <class Graph>
+void write_ready_made(const Branch_tree& found, const Scan_frame& frame, Graph& tree)
+{
+  using Node = typename Graph::vertex_bundled;
+  using FT = typename Node::FT;
+  using P = typename Node::Point_3;
+  using V = typename Node::Vector_3;
+  Graph result;
+  for (const Branch_node& from : found.nodes) {
+    Node node;
+    const Vec3 p = frame.to_input(from.point);
+    node.point = P(FT(p.x()), FT(p.y()), FT(p.z()));
+    node.radius = FT(frame.unit * from.radius);
+    node.radius_error = FT(frame.unit * from.radius_error);
+    node.is_measured = from.is_measured;
+    const bool is_oval = from.major_radius > 0;
+    node.major_radius = FT(frame.unit * (is_oval ? from.major_radius : from.radius));
+    node.minor_radius = FT(frame.unit * (is_oval ? from.minor_radius : from.radius));
+    const Vec3 major = frame.direction_to_input(from.major_axis);
+    node.major_axis = V(FT(major.x()), FT(major.y()), FT(major.z()));
+    node.branch = from.branch;
+    const auto v = add_vertex(node, result);
+    if (from.parent != none)
+      add_edge(from.parent, v, result);
+  }
+  Tree_bundle bundle;
+  bundle.root = 0;
+  for (std::size_t b = 0; b < found.branches.size(); ++b) {
+    Tree_branch branch;
+    if (found.branches[b].parent != none)
+      branch.parent = found.branches[b].parent;
+    branch.order = found.branches[b].order;
+    branch.id = b;
+    bundle.branches.push_back(branch);
+  }
+  tree.swap(result);
+  tree[boost::graph_bundle] = bundle; // swap() of Boost 1.74 forgets it
+}
+
+namespace internal {
+
+template <class Graph, class = void>
+struct Has_clear : std::false_type
+{
+};
+template <class Graph>
+struct Has_clear<Graph, std::void_t<decltype(std::declval<Graph&>().clear())>> : std::true_type
+{
+};
+
+/// Removes all vertices. Where the graph cannot do so at once, one after the other: in vectors each takes O(size).
+template <class Graph>
+void clear_graph(Graph& graph)
+{
+  if constexpr (Has_clear<Graph>::value)
+    graph.clear();
+  else
+    while (num_vertices(graph) > 0) {
+      const auto v = *vertices(graph).first;
+      clear_vertex(v, graph);
+      remove_vertex(v, graph);
+    }
+}
+
+} // namespace internal
+
+/// Replaces any other graph; positions and radii go through the maps among the named parameters.
+template <class NamedParameters, class Graph>
+void write_graph(const Branch_tree& found,
+                 const Scan_frame& frame,
+                 const NamedParameters& np,
+                 Graph& tree)
+{
+  const auto point_map = CGAL::parameters::get_parameter(np, pcs::internal_np::node_point_map);
+  const auto radius_map = CGAL::parameters::get_parameter(np, pcs::internal_np::node_radius_map);
+  using P = pcs::Map_value<std::decay_t<decltype(point_map)>>;
+  using R = pcs::Map_value<std::decay_t<decltype(radius_map)>>;
+  constexpr bool are_maps_ok = is_point_or_vector_v<P> && std::is_floating_point_v<R>;
+  static_assert(are_maps_ok,
+                "pcs::extract_tree_skeleton(): `node_point_map` must store points with x(), y(), "
+                "z(), and `node_radius_map` floating point numbers");
+  if constexpr (are_maps_ok) {
+    using FT = std::decay_t<decltype(std::declval<const P&>().x())>;
+    internal::clear_graph(tree);
+    std::vector<typename boost::graph_traits<Graph>::vertex_descriptor> vertex;
+    vertex.reserve(found.nodes.size());
+    for (std::size_t k = 0; k < found.nodes.size(); ++k)
+      vertex.push_back(add_vertex(tree));
+    for (std::size_t k = 0; k < found.nodes.size(); ++k) {
+      const Branch_node& from = found.nodes[k];
+      const Vec3 p = frame.to_input(from.point);
+      put(point_map, vertex[k], P(FT(p.x()), FT(p.y()), FT(p.z())));
+      put(radius_map, vertex[k], R(frame.unit * from.radius));
+      if (from.parent != none)
+        add_edge(vertex[from.parent], vertex[k], tree);
+    }
+  }
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_RESULT_WRITE_RESULT_H

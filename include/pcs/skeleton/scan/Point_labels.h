@@ -1,0 +1,156 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Which points of a scan are looked at, and which were left out as outliers, leaves, ground or walls.
+
+#ifndef PCS_SKELETON_SCAN_POINT_LABELS_H
+#define PCS_SKELETON_SCAN_POINT_LABELS_H
+
+#include <pcs/core/Skeleton_report.h>
+#include <pcs/skeleton/axes/Chain_options.h>
+#include <pcs/skeleton/leaves/classify_leaves.h>
+#include <pcs/skeleton/model/Scan.h>
+#include <pcs/skeleton/scan/prepare_scan.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// The points of a scan that may be the tree. The others stay in the scan, for distances, and are outliers there. The report
+/// has their numbers.
+template <class ConcurrencyTag>
+class Point_labels
+{
+public:
+  using Flags = std::vector<std::uint8_t>; ///< 1 or 0 for each point of the scan
+
+  /// Both stay where they are, and change with the points.
+  Point_labels(Scan& scan, Skeleton_report& report) : m_scan(scan), m_report(report) {}
+
+  /// All but outliers and leaves; `is_wood` has an entry per point of the input, or is empty: all of them. The scan is
+  /// prepared.
+  void start(const Flags& is_wood)
+  {
+    const std::size_t n = m_scan.size();
+    Flags may_be_wood(n, is_wood.empty());
+    for (std::size_t i = 0; i < is_wood.size(); ++i)
+      may_be_wood[m_scan.point_of_input[i]] |= is_wood[i];
+    Flags is_used(n);
+    for (std::size_t i = 0; i < n; ++i)
+      is_used[i] = may_be_wood[i] && !m_scan.is_outlier[i];
+    if (number_of(is_used) == 0)
+      is_used = may_be_wood; // all are far from each other: better these than none
+    use_only(is_used);
+    m_is_leaf.resize(n);
+    m_is_found_leaf.assign(n, 0);
+    for (std::size_t i = 0; i < n; ++i)
+      m_is_leaf[i] = !may_be_wood[i];
+    m_report.number_of_duplicates = m_report.number_of_points - n;
+    m_report.number_of_leaf_points = number_of(m_is_leaf);
+    m_report.number_of_outliers = number_of(m_scan.is_outlier) - m_report.number_of_leaf_points;
+    m_report.spacing = m_scan.frame.unit * m_scan.spacing;
+  }
+
+  const Flags& flags() const { return m_is_used; }
+  bool is_empty() const { return number_of(m_is_used) == 0; }
+  /// Whether a point is left out as a leaf.
+  bool is_leaf(Index i) const { return m_is_leaf[i] != 0; }
+
+  /// All points are ground.
+  void leave_out_all()
+  {
+    m_report.number_of_ground_points = number_of(m_is_used);
+    std::fill(m_is_used.begin(), m_is_used.end(), std::uint8_t(0));
+  }
+
+  /// Keeps `is_left`; it has a spacing and more outliers of its own.
+  void leave_out_others(Flags is_left)
+  {
+    measure_part<ConcurrencyTag>(is_left, m_scan);
+    const std::size_t outliers = number_of(m_scan.is_outlier);
+    if (outliers < number_of(is_left)) {
+      for (std::size_t i = 0; i < m_scan.size(); ++i)
+        is_left[i] = is_left[i] && !m_scan.is_outlier[i];
+      m_report.number_of_outliers += outliers;
+    }
+    use_only(is_left);
+    m_report.spacing = m_scan.frame.unit * m_scan.spacing;
+  }
+
+  /// Keeps `is_wood`; the other used points are leaves.
+  void leave_out_leaves(const Flags& is_wood)
+  {
+    for (Index i = 0; i < m_scan.size(); ++i)
+      if (m_is_used[i] && !is_wood[i]) {
+        m_is_leaf[i] = m_is_found_leaf[i] = 1;
+        ++m_report.number_of_leaf_points;
+      }
+    use_only(is_wood);
+  }
+
+  /// What was found to be a leaf, but lies on the surfaces of axes, is none.
+  void reassign_leaves(const Chain_options& rules, Axis_set& axes)
+  {
+    m_report.number_of_leaf_points -=
+        reassign_points<ConcurrencyTag>(m_scan, rules, m_is_found_leaf, axes);
+    for (Index i = 0; i < m_scan.size(); ++i)
+      if (m_is_leaf[i] && axes.is_covered(i)) {
+        m_is_leaf[i] = 0;
+        m_is_used[i] = 1;
+        m_scan.is_outlier[i] = 0;
+      }
+  }
+
+  /// What was left out like leaves, but is none, is used again.
+  void undo_leaf_removal()
+  {
+    for (Index i = 0; i < m_scan.size(); ++i)
+      if (m_is_found_leaf[i]) {
+        m_is_leaf[i] = m_is_found_leaf[i] = 0;
+        m_is_used[i] = 1;
+        m_scan.is_outlier[i] = 0;
+        --m_report.number_of_leaf_points;
+      }
+  }
+
+  /// Height of the highest leaves that were found, but for one in a thousand; the lowest number without [L].
+  double top_of_leaves(const Vec3& up) const
+  {
+    std::vector<double> heights;
+    for (std::size_t i = 0; i < m_scan.size(); ++i)
+      if (m_is_found_leaf[i])
+        heights.push_back(up.dot(m_scan.points[i]));
+    if (heights.empty())
+      return std::numeric_limits<double>::lowest();
+    const auto at = heights.end() - 1 - static_cast<std::ptrdiff_t>(heights.size() / 1000);
+    std::nth_element(heights.begin(), at, heights.end());
+    return *at;
+  }
+
+private:
+  static std::size_t number_of(const Flags& flags)
+  {
+    return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), 1));
+  }
+
+  void use_only(const Flags& is_used)
+  {
+    m_is_used = is_used;
+    for (std::size_t i = 0; i < m_scan.size(); ++i)
+      m_scan.is_outlier[i] = !m_is_used[i];
+  }
+
+  Scan& m_scan;
+  Skeleton_report& m_report;
+  Flags m_is_used;
+  Flags m_is_leaf, m_is_found_leaf; ///< the second: not by the caller
+};
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_SCAN_POINT_LABELS_H

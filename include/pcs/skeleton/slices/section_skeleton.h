@@ -1,0 +1,337 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The skeleton of the dissertation: sections joined in dense regions, spanning trees with allometric radii in sparse ones.
+
+#ifndef PCS_SKELETON_SLICES_SECTION_SKELETON_H
+#define PCS_SKELETON_SLICES_SECTION_SKELETON_H
+
+#include <pcs/skeleton/branching/group_branches.h>
+#include <pcs/skeleton/layers/cut_layers.h>
+#include <pcs/skeleton/model/Branch_tree.h>
+#include <pcs/skeleton/model/Layer_tree.h>
+#include <pcs/skeleton/slices/detect_sections.h>
+
+#include <boost/graph/adjacency_list.hpp>
+#include <boost/graph/dijkstra_shortest_paths.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// How sections become branches.
+struct Section_tree_options
+{
+  std::size_t neighbors = 12; ///< sections that a section may be joined to
+  double longest = 25;        ///< of such a joint, in spacings [-]
+  double turn_cost =
+      1; ///< times the length, for sections that do not lie along the joint; 0: the text's [-]
+  double wider = 1.5;  ///< sections this much wider than their parent are wrong [-]
+  double thinning = 1; ///< distance of the nodes that are kept, in diameters [-]
+  double dense_radius = 0.25,
+         dense_offset = 2;   ///< distance from a cylinder that is dense, in radii and spacings
+  double allometry = 0.4;    ///< radius by importance to this power; 1/2 is da Vinci's rule [-]
+  double twig_radius = 0.15; ///< the thinnest twig, in spacings [-]
+};
+
+namespace internal {
+
+class Section_tree_builder
+{
+public:
+  Section_tree_builder(const Scan& scan,
+                       const std::vector<std::uint8_t>& is_used,
+                       const std::vector<Found_section>& sections,
+                       const Section_tree_options& rules)
+    : m_scan(scan), m_is_used(is_used), m_sections(sections), m_rules(rules)
+  {
+  }
+
+  Branch_tree operator()(const std::vector<Index>& root)
+  {
+    m_node_of_point.assign(m_scan.size(), none);
+    span(root);
+    filter();
+    thin();
+    mark_dense();
+    add_sparse(root);
+    if (m_nodes.empty())
+      return Branch_tree();
+    Branch_grouper group(m_nodes, m_scan.spacing);
+    Branch_tree tree = group();
+    tree.node_of_point.assign(m_scan.size(), none);
+    for (std::size_t i = 0; i < m_scan.size(); ++i)
+      if (m_node_of_point[i] != none)
+        tree.node_of_point[i] = group.number()[m_node_of_point[i]];
+    return tree;
+  }
+
+private:
+  using Graph = boost::adjacency_list<boost::vecS,
+                                      boost::vecS,
+                                      boost::undirectedS,
+                                      boost::no_property,
+                                      boost::property<boost::edge_weight_t, double>>;
+
+  /// Shortest paths over the centres, from the section nearest to the root.
+  void span(const std::vector<Index>& root)
+  {
+    const std::size_t n = m_sections.size();
+    m_parent.assign(n, none);
+    m_order.clear();
+    if (n == 0)
+      return;
+    std::vector<Vec3> centers;
+    for (const Found_section& s : m_sections)
+      centers.push_back(s.center);
+    const neighborhood::Nearest_neighbors search(centers);
+    Graph graph(n);
+    std::vector<neighborhood::Nearest_neighbors::Neighbor> found;
+    for (Index i = 0; i < n; ++i) {
+      search(centers[i], m_rules.neighbors + 1, found);
+      for (const auto& f : found) {
+        const Vec3 d = centers[f.index] - centers[i];
+        const double length = d.norm();
+        if (f.index == i || length > m_rules.longest * m_scan.spacing)
+          continue;
+        const double along = length > 0 ? std::min(std::abs(d.dot(m_sections[i].along)),
+                                                   std::abs(d.dot(m_sections[f.index].along))) /
+                                              length
+                                        : 1;
+        add_edge(i, f.index, length * (1 + m_rules.turn_cost * (1 - along)), graph);
+      }
+    }
+    Vec3 foot = Vec3::Zero();
+    for (const Index r : root)
+      foot += m_scan.points[r];
+    foot /= double(root.size());
+    Index start = 0;
+    for (Index i = 1; i < n; ++i)
+      if ((centers[i] - foot).squaredNorm() < (centers[start] - foot).squaredNorm())
+        start = i;
+    std::vector<Index> predecessor(n);
+    std::vector<double> distance(n);
+    const auto index = get(boost::vertex_index, graph);
+    boost::dijkstra_shortest_paths(
+        graph,
+        start,
+        boost::predecessor_map(boost::make_iterator_property_map(predecessor.begin(), index))
+            .distance_map(boost::make_iterator_property_map(distance.begin(), index)));
+    for (Index i = 0; i < n; ++i)
+      if (distance[i] < std::numeric_limits<double>::max())
+        m_order.push_back(i);
+    std::stable_sort(m_order.begin(), m_order.end(), [&](Index a, Index b) {
+      return distance[a] < distance[b];
+    });
+    // parents first, also where a distance is zero
+    std::stable_partition(m_order.begin(), m_order.end(), [&](Index a) { return a == start; });
+    for (const Index i : m_order)
+      if (i != start)
+        m_parent[i] = predecessor[i];
+  }
+
+  /// Removes leaves inside of their parents, and sections that are much wider than theirs.
+  void filter()
+  {
+    const std::size_t n = m_sections.size();
+    m_is_alive.assign(n, 0);
+    std::vector<std::size_t> children(n, 0);
+    for (const Index i : m_order) {
+      m_is_alive[i] = 1;
+      const Index p = m_parent[i];
+      if (p == none)
+        continue;
+      while (m_parent[i] != none && !m_is_alive[m_parent[i]])
+        m_parent[i] = m_parent[m_parent[i]];
+      if (m_parent[i] != none &&
+          m_sections[i].radius() > m_rules.wider * m_sections[m_parent[i]].radius())
+        m_is_alive[i] = 0;
+    }
+    for (const Index i : m_order)
+      if (m_is_alive[i] && m_parent[i] != none)
+        ++children[m_parent[i]];
+    for (std::size_t k = m_order.size(); k-- > 0;) {
+      const Index i = m_order[k], p = m_parent[i];
+      if (!m_is_alive[i] || children[i] > 0 || p == none)
+        continue;
+      if ((m_sections[i].center - m_sections[p].center).norm() < m_sections[p].radius()) {
+        m_is_alive[i] = 0;
+        --children[p];
+      }
+    }
+  }
+
+  /// Keeps forks, tips, and nodes a diameter apart.
+  void thin()
+  {
+    const std::size_t n = m_sections.size();
+    std::vector<std::size_t> children(n, 0);
+    for (const Index i : m_order)
+      if (m_is_alive[i] && m_parent[i] != none)
+        ++children[m_parent[i]];
+    std::vector<Index> number(n, none);
+    m_nodes.clear();
+    for (const Index i : m_order) {
+      if (!m_is_alive[i])
+        continue;
+      const Found_section& s = m_sections[i];
+      const Index p = m_parent[i];
+      const Index before = p == none ? none : number[p];
+      const bool is_needed = p == none || children[i] != 1 ||
+                             (s.center - m_nodes[before].point).norm() >=
+                                 m_rules.thinning * 2 * m_nodes[before].radius;
+      if (!is_needed) {
+        number[i] = before;
+        continue;
+      }
+      Branch_node node;
+      node.point = s.center;
+      node.radius = s.radius();
+      node.is_measured = true;
+      node.major_radius = s.major;
+      node.minor_radius = s.minor;
+      node.major_axis = s.major_axis;
+      node.parent = before;
+      number[i] = static_cast<Index>(m_nodes.size());
+      m_nodes.push_back(node);
+    }
+  }
+
+  /// Points near the generalized cylinder of an edge are dense, and belong to its upper node.
+  void mark_dense()
+  {
+    std::vector<Index> near;
+    std::vector<double> best(m_scan.size(), std::numeric_limits<double>::infinity());
+    for (Index v = 0; v < m_nodes.size(); ++v) {
+      const Branch_node& node = m_nodes[v];
+      const Branch_node& below = m_nodes[node.parent == none ? v : node.parent];
+      const Vec3 d = node.point - below.point;
+      const double wide = std::max(node.radius, below.radius);
+      const double reach =
+          (1 + m_rules.dense_radius) * wide + m_rules.dense_offset * m_scan.spacing;
+      near.clear();
+      m_scan.search->within(0.5 * (node.point + below.point),
+                            std::hypot(0.5 * d.norm() + wide, reach),
+                            near);
+      for (const Index i : near) {
+        if (!m_is_used[i])
+          continue;
+        const Vec3 q = m_scan.points[i] - below.point;
+        const double l2 = d.squaredNorm();
+        const double t = l2 > 0 ? std::min(1.0, std::max(0.0, q.dot(d) / l2)) : 1;
+        const double radius = (1 - t) * below.radius + t * node.radius;
+        const double off = std::abs((q - t * d).norm() - radius);
+        if (off < m_rules.dense_radius * radius + m_rules.dense_offset * m_scan.spacing &&
+            off < best[i]) {
+          best[i] = off;
+          m_node_of_point[i] = v;
+        }
+      }
+    }
+  }
+
+  /// Spanning trees over the rest, contracted to layers; radii by importance from that of the joint.
+  void add_sparse(const std::vector<Index>& root)
+  {
+    const std::size_t n = m_scan.size();
+    std::vector<std::uint8_t> is_rest(n);
+    for (std::size_t i = 0; i < n; ++i)
+      is_rest[i] = m_is_used[i] && m_node_of_point[i] == none;
+    std::vector<std::uint8_t> is_used = m_is_used;
+    Link_rule rule;
+    Links links = neighbor_links<CGAL::Sequential_tag>(m_scan, is_used, rule);
+    const Links gaps = links_across_gaps(m_scan,
+                                         is_used,
+                                         rule,
+                                         connected_parts<CGAL::Sequential_tag>(is_used, links));
+    links.insert(links.end(), gaps.begin(), gaps.end());
+    // all dense points are sources: every subtree of the rest begins where the dense region ends
+    std::vector<Index> sources;
+    for (Index i = 0; i < n; ++i)
+      if (m_is_used[i] && !is_rest[i])
+        sources.push_back(i);
+    if (sources.empty())
+      sources = root;
+    const Shortest_paths paths = shortest_paths(m_scan, graph_of(n, links), sources);
+    Links inner;
+    for (const Link& l : links)
+      if (is_rest[l.first] && is_rest[l.second])
+        inner.push_back(l);
+    Shortest_paths rest = paths;
+    for (std::size_t i = 0; i < n; ++i)
+      if (!is_rest[i])
+        rest.distance[i] = std::numeric_limits<double>::infinity();
+      else if (m_node_of_point[paths.predecessor[i]] != none)
+        rest.predecessor[i] = static_cast<Index>(i);
+    const Layer_tree tree = layer_tree<CGAL::Sequential_tag>(m_scan, inner, rest);
+    std::vector<double> importance(tree.size(), 0);
+    for (std::size_t v = tree.size(); v-- > 0;) {
+      importance[v] +=
+          tree.parent[v] == none ? 0 : (tree.center[v] - tree.center[tree.parent[v]]).norm();
+      importance[v] += m_scan.spacing;
+      if (tree.parent[v] != none)
+        importance[tree.parent[v]] += importance[v];
+    }
+    std::vector<Vec3> smooth = tree.center;
+    std::vector<Index> top(tree.size()), joint(tree.size(), none), number(tree.size(), none);
+    for (Index v = 0; v < tree.size(); ++v) {
+      if (tree.parent[v] != none) {
+        top[v] = top[tree.parent[v]];
+        smooth[v] = 0.5 * tree.center[v] + 0.5 * (0.5 * (smooth[tree.parent[v]] + tree.center[v]));
+        continue;
+      }
+      top[v] = v;
+      for (Index k = tree.first[v]; k < tree.first[v + 1] && joint[v] == none; ++k)
+        joint[v] = m_node_of_point[paths.predecessor[tree.point[k]]];
+    }
+    for (Index v = 0; v < tree.size(); ++v) {
+      const Index at = joint[top[v]];
+      if (at == none && !m_nodes.empty() && number[top[v]] == none && top[v] != v)
+        continue; // out of reach
+      if (at == none && top[v] == v && !m_nodes.empty())
+        continue;
+      const double base = at == none ? m_scan.spacing : m_nodes[at].radius;
+      Branch_node node;
+      node.point = smooth[v];
+      node.radius = std::max(
+          m_rules.twig_radius * m_scan.spacing,
+          std::min(base, base * std::pow(importance[v] / importance[top[v]], m_rules.allometry)));
+      node.parent = tree.parent[v] == none ? at : number[tree.parent[v]];
+      number[v] = static_cast<Index>(m_nodes.size());
+      m_nodes.push_back(node);
+      for (Index k = tree.first[v]; k < tree.first[v + 1]; ++k)
+        m_node_of_point[tree.point[k]] = number[v];
+    }
+  }
+
+  const Scan& m_scan;
+  const std::vector<std::uint8_t>& m_is_used;
+  const std::vector<Found_section>& m_sections;
+  Section_tree_options m_rules;
+  std::vector<Index> m_parent, m_order, m_node_of_point;
+  std::vector<std::uint8_t> m_is_alive;
+  std::vector<Branch_node> m_nodes;
+};
+
+} // namespace internal
+
+/// The whole way of the dissertation from its sections to a tree of branches.
+inline Branch_tree section_skeleton(const Scan& scan,
+                                    const std::vector<std::uint8_t>& is_used,
+                                    const std::vector<Found_section>& sections,
+                                    const std::vector<Index>& root,
+                                    const Section_tree_options& rules)
+{
+  return internal::Section_tree_builder(scan, is_used, sections, rules)(root);
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_SLICES_SECTION_SKELETON_H

@@ -1,0 +1,59 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Weights of the surface edges.
+
+#include <pcs/deformation/model/Elastic_network.h>
+#include <support/networks.h>
+
+#include <boost/test/unit_test.hpp>
+
+namespace test_Elastic_network {
+
+BOOST_AUTO_TEST_SUITE(Elastic_network)
+
+BOOST_AUTO_TEST_CASE(weights_are_symmetric_have_mean_one_and_fall_with_the_square)
+{
+  const auto network = pcs_test::network_of(pcs_test::random_points(300, 1));
+  const auto& g = network.surface;
+  std::vector<double> spacing(g.size());
+  for (std::size_t i = 0; i < g.size(); ++i)
+    spacing[i] = pcs::deformation::local_spacing(network.rest, g, i);
+  double sum = 0, unit = 0;
+  for (std::size_t i = 0; i < g.size(); ++i)
+    for (std::size_t e = g.first[i]; e < g.first[i + 1]; ++e) {
+      const std::size_t j = g.neighbor[e];
+      const auto back = std::lower_bound(g.begin(j), g.end(j), static_cast<std::uint32_t>(i));
+      BOOST_REQUIRE(g.weight[std::size_t(back - g.neighbor.data())] == g.weight[e]);
+      const double smaller = std::min(spacing[i], spacing[j]);
+      const double larger = std::min(std::max(spacing[i], spacing[j]), 2 * smaller);
+      const double area = 0.5 * (smaller * smaller + larger * larger);
+      const double expected =
+          area / std::max(0.04 * area, (network.rest[j] - network.rest[i]).squaredNorm());
+      if (unit == 0)
+        unit = g.weight[e] / expected;
+      BOOST_REQUIRE(std::abs(g.weight[e] - unit * expected) < 1e-12 * g.weight[e]);
+      sum += g.weight[e];
+    }
+  BOOST_TEST(sum / double(g.weight.size()) == 1, boost::test_tools::tolerance(1e-12));
+}
+
+BOOST_AUTO_TEST_CASE(two_points_that_nearly_coincide_do_not_outweigh_all_others)
+{
+  auto points = pcs_test::plate(10, 10, 1);
+  points.push_back(points[50] + pcs_test::Vec3(1e-12, 0, 0));
+  const auto network = pcs_test::network_of(points);
+  for (const double w : network.surface.weight)
+    BOOST_REQUIRE((std::isfinite(w) && w > 0 && w < 30));
+}
+
+BOOST_AUTO_TEST_CASE(a_graph_without_edges_has_no_weights)
+{
+  pcs::deformation::Weighted_graph graph;
+  graph.first.assign(4, 0);
+  pcs::deformation::set_edge_weights<CGAL::Sequential_tag>(pcs_test::random_points(3, 3), graph);
+  BOOST_TEST(graph.weight.empty());
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_Elastic_network

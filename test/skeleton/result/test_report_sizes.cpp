@@ -1,0 +1,129 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The diameter at breast height: that of a taper at the place, with the bark around it smoothed.
+
+#include <pcs/skeleton/result/report_sizes.h>
+#include <support/axes.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+#include <cstddef>
+
+namespace test_report_sizes {
+
+using namespace pcs::skeleton;
+
+namespace {
+
+double diameter_of(const Branch_tree& tree, double unit = 1)
+{
+  pcs::Skeleton_report report;
+  report_sizes(tree, unit, Vec3::UnitZ(), 1.3 / unit, report);
+  BOOST_TEST(report.breast_height == 1.3);
+  return report.diameter_at_breast_height;
+}
+
+Branch_tree trunk_to(const Vec3& tip, std::size_t steps, double first, double last)
+{
+  Branch_tree tree;
+  pcs_test::add_branch(tree, none, pcs_test::straight_axis(Vec3::Zero(), tip, steps, first, last));
+  return tree;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(sizes_of_trees)
+
+BOOST_AUTO_TEST_CASE(a_taper_has_the_diameter_of_the_place)
+{
+  // of many nodes, of two, leaning, and with its tip just above
+  for (const std::size_t steps : {200u, 7u, 1u})
+    for (const Vec3& tip : {Vec3(0, 0, 4), Vec3(3, 0, 4), Vec3(0, 0, 1.35), Vec3(0, 0, 1.31)}) {
+      const double share = 1.3 / tip.z();
+      const double d = diameter_of(trunk_to(tip, steps, 0.2, 0.1));
+      BOOST_TEST(std::abs(d - 2 * (0.2 - 0.1 * share)) < 1e-9, steps << " steps to " << tip.z());
+    }
+  const double d = diameter_of(trunk_to(Vec3(0, 0, 4000), 50, 200, 100), 0.001);
+  BOOST_TEST(std::abs(d - 2 * (0.2 - 0.1 * 1.3 / 4)) < 1e-9);
+}
+
+BOOST_AUTO_TEST_CASE(bark_is_smoothed_and_what_is_far_does_not_count)
+{
+  Branch_tree tree = trunk_to(Vec3(0, 0, 4), 400, 0.1, 0.1);
+  for (std::size_t k = 0; k <= 400; ++k)
+    tree.nodes[k].radius += 0.01 * std::cos(3.14159265358979323846 * double(k) / 5); // 10 cm
+  BOOST_TEST(std::abs(tree.nodes[130].radius - 0.11) < 1e-9);
+  const double d = diameter_of(tree);
+  BOOST_TEST(std::abs(d - 0.2) < 0.001);
+  for (std::size_t k = 0; k <= 400; ++k)
+    if (k < 110 || k > 150)
+      tree.nodes[k].radius = 1;
+  BOOST_TEST(std::abs(diameter_of(tree) - d) < 1e-9);
+  for (std::size_t k = 110; k <= 150; ++k)
+    tree.nodes[k].radius = k < 125 ? 1 : 0.01; // a line would be negative up there
+  BOOST_TEST(diameter_of(tree) >= 0.02);
+}
+
+BOOST_AUTO_TEST_CASE(branches_of_the_trunk_do_not_count)
+{
+  Branch_tree tree = trunk_to(Vec3(0, 0, 4), 40, 0.1, 0.1);
+  pcs_test::add_branch(tree,
+                       12,
+                       pcs_test::straight_axis(Vec3(0.2, 0, 1.2), Vec3(1, 0, 1.6), 8, 0.3, 0.3));
+  BOOST_TEST(std::abs(diameter_of(tree) - 0.2) < 1e-9);
+  // a trunk that is lost below: the thickest branch there
+  Branch_tree low = trunk_to(Vec3(0, 0, 1), 10, 0.1, 0.1);
+  for (const double r : {0.03, 0.05, 0.04})
+    pcs_test::add_branch(low,
+                         10,
+                         pcs_test::straight_axis(Vec3(r, 0, 1), Vec3(10 * r, 0, 2), 10, r, r));
+  BOOST_TEST(std::abs(diameter_of(low) - 0.1) < 1e-9);
+  BOOST_TEST(diameter_of(trunk_to(Vec3(0, 0, 1), 10, 0.1, 0.1)) == 0);
+}
+
+BOOST_AUTO_TEST_CASE(reach_is_the_way_to_the_farthest_node)
+{
+  for (const Vec3& tip : {Vec3(0, 0, 4), Vec3(3, 0, 0), Vec3(0, 2, -1)}) {
+    pcs::Skeleton_report report;
+    report_sizes(trunk_to(tip, 7, 0.1, 0.1), 10, Vec3::UnitZ(), 1.3, report);
+    BOOST_TEST(std::abs(report.reach - 10 * tip.norm()) < 1e-9);
+  }
+}
+
+// A trunk that winds over a ball is long for its diameter, and so is what fills the ball.
+BOOST_AUTO_TEST_CASE(wood_that_fills_the_space_is_doubted_and_no_tree)
+{
+  pcs::Skeleton_report report;
+  report.status = pcs::Status::converged;
+  report.noise = report.residual = 0.001;
+  report.spacing = 0.01;
+  report.height = report.reach = 2;
+  report.by_order.resize(1);
+  report.by_order[0].length = 13;
+  report.by_order[0].volume = report.total.volume = 0.35; // a diameter of 0.19
+  BOOST_TEST(pcs::warnings(report).size() == 1u);
+  report.height = report.reach = report.by_order[0].length = 13;
+  BOOST_TEST(pcs::warnings(report).empty());
+  report.height = 1; // it lies on the ground
+  BOOST_TEST(pcs::warnings(report).empty());
+}
+
+BOOST_AUTO_TEST_CASE(points_as_far_apart_as_the_trunk_is_thick_are_doubted)
+{
+  pcs::Skeleton_report report;
+  report.status = pcs::Status::converged;
+  report.height = report.reach = 4;
+  report.by_order.resize(1);
+  report.by_order[0].length = 4;
+  report.by_order[0].volume = report.total.volume = 4 * 3.14159265358979323846 * 0.05 * 0.05;
+  report.noise = report.residual = 0.001;
+  report.spacing = 0.03;
+  BOOST_TEST(pcs::warnings(report).empty());
+  report.spacing = 0.05;
+  BOOST_TEST(pcs::warnings(report).size() == 1u);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_report_sizes
