@@ -82,7 +82,7 @@ cat > edit.json << 'JSON'
     "rotate": { "axis": [1, 0, 0], "degrees": 40, "center": [0, 0, 3] }, "translate": [0.2, 0, 0.1] } ] }
 JSON
 run bend deform_point_set --input broadleaf.ply --edit edit.json --samples 2000 --output bend.ply --report bend.json
-run bend_all deform_point_set --input coarse.ply --edit edit.json --samples 0 --output bend_all.ply
+run bend_all deform_point_set --input coarse.ply --edit edit.json --samples 1000000 --output bend_all.ply
 run bend_default deform_point_set --input fruit.ply --default-edit --output bend_default.ply
 run bend_stream deform_point_set --input broadleaf.ply --edit edit.json --samples 1500 --stream \
   --stream-points 20000 --output bend_stream.ply

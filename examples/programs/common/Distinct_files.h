@@ -1,0 +1,70 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// No result may be written over an input or another result, however their names are spelled.
+
+#ifndef PCS_EXAMPLES_PROGRAMS_COMMON_DISTINCT_FILES_H
+#define PCS_EXAMPLES_PROGRAMS_COMMON_DISTINCT_FILES_H
+
+#include <pcs/core/errors.h>
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <system_error>
+
+namespace program {
+
+class Distinct_files
+{
+public:
+  /// Inputs may be the same file twice. Nothing happens with an empty path.
+  void add_input(const std::string& path) { add(path, false); }
+
+  /// Throws `pcs::Invalid_input` if it is an input, or a result already.
+  void add_output(const std::string& path) { add(path, true); }
+
+private:
+  struct Use
+  {
+    std::string path;
+    bool is_written;
+  };
+
+  /// Without links, so that spellings compare; what is not there yet keeps its name.
+  static std::string real(const std::string& path)
+  {
+    std::error_code error;
+    const auto canonical = std::filesystem::weakly_canonical(path, error);
+    return (error ? std::filesystem::absolute(path).lexically_normal() : canonical).string();
+  }
+
+  void add(const std::string& path, bool is_written)
+  {
+    if (path.empty())
+      return;
+    const auto [at, is_new] = m_uses.emplace(real(path), Use{path, is_written});
+    bool is_same = !is_new && (is_written || at->second.is_written);
+    std::string other = at->second.path;
+    std::error_code error;
+    const auto links = std::filesystem::hard_link_count(path, error);
+    if (is_new && !error && links > 1) // each of which has a name of its own
+      for (const auto& [name, use] : m_uses)
+        if (name != at->first && (is_written || use.is_written) &&
+            std::filesystem::equivalent(name, at->first, error)) {
+          is_same = true;
+          other = use.path;
+        }
+    if (is_same && path == other)
+      throw pcs::Invalid_input(path + " is named twice, they are the same file; a result would "
+                                      "destroy it");
+    if (is_same)
+      throw pcs::Invalid_input(path + " and " + other +
+                               " are the same file; a result would destroy it");
+  }
+
+  std::map<std::string, Use> m_uses; ///< by where they really are
+};
+
+} // namespace program
+
+#endif // PCS_EXAMPLES_PROGRAMS_COMMON_DISTINCT_FILES_H

@@ -1,0 +1,92 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// A small text file that is found to be writable before the work, and appears under its name only when complete.
+
+#ifndef PCS_EXAMPLES_PROGRAMS_COMMON_REPORT_FILE_H
+#define PCS_EXAMPLES_PROGRAMS_COMMON_REPORT_FILE_H
+
+#include <pcs/core/errors.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <system_error>
+#include <unistd.h>
+
+namespace program {
+
+class Report_file
+{
+public:
+  explicit Report_file(const std::string& path) : m_path(path), m_target(path)
+  {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (fs::is_directory(status))
+      throw pcs::IO_error(path, "is a directory, expected a file name");
+    if (fs::exists(status) && !fs::is_regular_file(status))
+      m_out.open(path); // a device or a pipe: renaming would replace it
+    else {
+      if (fs::exists(status))
+        m_target = fs::canonical(path, error); // a symbolic link stays one
+      static int number = 0;                   // two reports may be open in one folder
+      m_temporary = m_target.parent_path() / (".unfinished_report_" + std::to_string(getpid()) +
+                                              "_" + std::to_string(++number) + ".tmp");
+      m_out.open(m_temporary);
+    }
+    if (!m_out)
+      throw pcs::IO_error(path,
+                          std::string("cannot be opened for writing: ") + std::strerror(errno));
+    remove_temporary(); // it only exists while it is written: the work may be killed
+  }
+
+  Report_file(const Report_file&) = delete;
+  Report_file& operator=(const Report_file&) = delete;
+
+  ~Report_file() { remove_temporary(); }
+
+  /// Names of files need not be UTF-8: what is not is replaced.
+  void commit(const nlohmann::ordered_json& json)
+  {
+    commit(json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  }
+
+  void commit(const std::string& text)
+  {
+    if (!m_temporary.empty())
+      m_out.open(m_temporary);
+    m_out << text;
+    m_out.close();
+    std::error_code error;
+    if (m_out && !m_temporary.empty())
+      std::filesystem::rename(m_temporary, m_target, error);
+    if (!m_out || error)
+      throw pcs::IO_error(m_path,
+                          "cannot be written: " + (error ? error.message() : std::strerror(errno)));
+    m_temporary.clear();
+  }
+
+private:
+  void remove_temporary()
+  {
+    if (m_temporary.empty())
+      return;
+    m_out.close();
+    std::error_code error;
+    std::filesystem::remove(m_temporary, error);
+  }
+
+  std::string m_path;
+  std::filesystem::path m_target;
+  std::filesystem::path m_temporary; // empty when there is none
+  std::ofstream m_out;
+};
+
+} // namespace program
+
+#endif // PCS_EXAMPLES_PROGRAMS_COMMON_REPORT_FILE_H

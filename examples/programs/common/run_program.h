@@ -1,0 +1,58 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// What all programs do around their work: parse the command line, say in one sentence what failed, return an exit code.
+
+#ifndef PCS_EXAMPLES_PROGRAMS_COMMON_RUN_PROGRAM_H
+#define PCS_EXAMPLES_PROGRAMS_COMMON_RUN_PROGRAM_H
+
+#include <pcs/core/errors.h>
+#include <pcs/core/keep_memory.h>
+
+#include <CLI/CLI.hpp>
+
+#include <csignal>
+#include <exception>
+#include <iostream>
+#include <new>
+#include <string>
+
+namespace program {
+
+/// Parses, then calls `work()`, which returns whether all went well. 0: it did, 1: bad input, 2: a failure of ours.
+template <class Work>
+int run_program(CLI::App& app, int argc, char** argv, const Work& work)
+{
+  constexpr int bad_input = 1, internal_error = 2;
+  const auto fail = [&app](int exit_code, const std::string& what) {
+    std::cerr << app.get_name() << ": " << what << '\n';
+    return exit_code;
+  };
+#ifdef SIGXFSZ
+  std::signal(SIGXFSZ, SIG_IGN); // a limit of the size of files is an error like a full disk
+#endif
+  pcs::keep_memory();
+  try {
+    app.parse(argc, argv);
+    for (const CLI::Option* option : app.get_options())
+      for (const std::string& value : option->results())
+        if (value.empty()) // a variable of a script that is not set
+          throw pcs::Invalid_input(option->get_name() + " has an empty value");
+    return work() ? 0 : bad_input;
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0)
+      return app.exit(e); // --help, --version
+    return fail(bad_input, std::string(e.what()) + "\nRun with --help for more information.");
+  } catch (const pcs::IO_error& e) {
+    return fail(bad_input, e.what());
+  } catch (const pcs::Invalid_input& e) {
+    return fail(bad_input, e.what());
+  } catch (const std::bad_alloc&) {
+    return fail(internal_error, "not enough memory");
+  } catch (const std::exception& e) {
+    return fail(internal_error, std::string("internal error: ") + e.what());
+  }
+}
+
+} // namespace program
+
+#endif // PCS_EXAMPLES_PROGRAMS_COMMON_RUN_PROGRAM_H

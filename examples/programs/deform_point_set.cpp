@@ -1,0 +1,130 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// A program that deforms a point file: handles and motions come from a JSON file, all properties are kept.
+
+#include "common/Progress_line.h"
+#include "common/Report_file.h"
+#include "common/check_output.h"
+#include "common/run_program.h"
+#include "deformation/Deformation_options.h"
+#include "deformation/Edit.h"
+#include "deformation/Normals.h"
+#include "deformation/Run_report.h"
+#include "deformation/Streamed_deformation.h"
+#include "deformation/apply_edit.h"
+#include "deformation/default_edit.h"
+#include "deformation/read_edit.h"
+#include "deformation/run_session.h"
+#include <pcs/IO/points/Point_table.h>
+#include <pcs/IO/read_points.h>
+#include <pcs/IO/write_points.h>
+#include <pcs/core/Similarity.h>
+
+#include <CLI/CLI.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace program {
+
+/// Deforms the points of the table, and its normals if they are valid.
+void deform_table(pcs::IO::Point_table& table,
+                  const Edit& edit,
+                  const Options& options,
+                  Run_report& run)
+{
+  Edit_scan scan(edit, table);
+  const std::vector<std::uint32_t> handles = scan.add(table);
+  const std::vector<pcs::Similarity> motions = scan.motions();
+  run.points_of_handles.assign(edit.handles.size(), 0);
+  for (const std::uint32_t h : handles)
+    if (h != no_handle)
+      ++run.points_of_handles[h];
+
+  Normal_vectors normals;
+  if (table.has_normals()) {
+    normals = table.normals();
+    const std::optional<std::size_t> invalid = first_invalid(normals);
+    run.normals = invalid ? "unchanged" : "deformed";
+    if (invalid)
+      run.warnings.push_back(invalid_normal_warning(*invalid));
+  }
+  const bool do_normals = run.normals == "deformed";
+
+  Progress_line progress(!options.is_quiet);
+  run.deformation =
+      run_session({edit, motions, handles, table.points(), do_normals ? &normals : nullptr, ""},
+                  options,
+                  progress,
+                  [](const auto&) {});
+  if (do_normals)
+    store_normals(table, normals);
+  check_range(edit, table, 0);
+}
+
+void run_in_memory(const Options& options, std::optional<Edit> edit, Run_report& run)
+{
+  const Stopwatch reading;
+  pcs::IO::Point_table table = pcs::IO::read_points(options.input);
+  run.seconds_read = reading.seconds();
+  run.number_of_points = table.number_of_points();
+  run.number_of_neighbors = options.number_of_neighbors;
+  check_output(options.output, table.schema());
+  if (!edit)
+    edit = default_edit(table.points());
+  run.edit = edit->source;
+  deform_table(table, *edit, options, run);
+
+  const Stopwatch writing;
+  pcs::IO::write_points(options.output, table);
+  run.seconds_write = writing.seconds();
+}
+
+void run(const Options& options)
+{
+  const Stopwatch total;
+  Run_report run;
+  check(options);
+  std::optional<Edit> edit;
+  if (!options.is_default_edit)
+    edit = read_edit(options.edit);
+  std::optional<Report_file> report_file;
+  if (!options.report.empty())
+    report_file.emplace(options.report);
+
+  try {
+    if (options.is_streamed)
+      Streamed_deformation(options, run).run(std::move(edit));
+    else
+      run_in_memory(options, std::move(edit), run);
+  } catch (const pcs::Invalid_input& e) {
+    throw pcs::IO_error(options.input, e.what());
+  }
+  for (const std::string& warning : run.warnings)
+    std::cerr << "deform_point_set: warning: " << options.input << ": " << warning << '\n';
+  run.seconds_total = total.seconds();
+  if (report_file)
+    report_file->commit(to_json(run, options));
+  if (!options.is_quiet)
+    print_summary(std::cout, run, options);
+}
+
+} // namespace program
+
+int main(int argc, char** argv)
+{
+  program::Options options;
+  CLI::App app(
+      "Moves a few handles of a point cloud; the other points follow and keep their shape.",
+      "deform_point_set");
+  program::declare(app, options);
+  return program::run_program(app, argc, argv, [&] {
+    program::run(options);
+    return true;
+  });
+}

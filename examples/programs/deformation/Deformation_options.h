@@ -1,0 +1,130 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The command line of the program.
+
+#ifndef PCS_EXAMPLES_PROGRAMS_DEFORMATION_DEFORMATION_OPTIONS_H
+#define PCS_EXAMPLES_PROGRAMS_DEFORMATION_DEFORMATION_OPTIONS_H
+
+#include <pcs/core/errors.h>
+#include <pcs/deform_point_set.h>
+
+#include <CLI/CLI.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <system_error>
+#include <utility>
+
+namespace program {
+
+struct Options
+{
+  std::string input, edit, output, report;
+  // signed, so that CLI11 does not take -5 for a large number
+  std::int64_t number_of_samples = pcs::default_number_of_samples;
+  std::int64_t number_of_neighbors = pcs::default_number_of_neighbors;
+  std::int64_t number_of_kept_points = 1000000; // with --stream
+  std::int64_t chunk_size = 262144;             // with --stream [count]
+  bool is_default_edit = false, is_streamed = false, is_quiet = false;
+};
+
+inline const char* edit_help()
+{
+  return R"(The edit is a JSON file:
+  {"handles": [
+    {"select": {"box": [[x, y, z], [x, y, z]]}, "fixed": true},
+    {"select": {"sphere": {"center": [x, y, z], "radius": r}},
+     "rotate": {"axis": [x, y, z], "degrees": d, "center": [x, y, z]},
+     "translate": [x, y, z], "scale": s},
+    {"select": {"property": "status", "equals": 2}, "matrix": [16 numbers, row by row]},
+    {"select": {"indices": [0, 1, 2]}, "fixed": true, "softness": 1}
+  ]}
+Scale comes first, then rotation, then translation. The center is the fixed point of
+rotation and scale; without it that is the centroid of the selected points. The matrix
+must be made of a rotation, one scale and a translation. Bounds are inclusive.
+
+Files: PLY, LAS, OFF, or text (xyz, txt, csv, asc, pts, pwn). Order and properties of
+the points are kept, normals nx, ny, nz are turned; faces and lists are not kept. PLY is
+written in binary, with coordinates in double precision.
+
+With --stream the input may be larger than memory. It is read twice (text: three times;
+LAS output: once more). At most --stream-points points, spread over the file, are kept and
+deformed; they carry the others, whereas points of handles move exactly. A file with no
+more points gives the same output, byte for byte, as without --stream; otherwise each
+kept point is linked to at least 10 neighbours. For example:
+  generate_points large.ply 50000000 --float
+  deform_point_set --stream --input large.ply --default-edit --output out.ply
+
+Exit codes: 0 success, 1 bad input or usage, 2 internal error.)";
+}
+
+inline void declare(CLI::App& app, Options& options)
+{
+  app.footer(edit_help());
+  app.set_version_flag("--version", PCS_PROGRAM_VERSION);
+  app.add_option("--input", options.input, "points to deform")->required();
+  app.add_option("--edit", options.edit, "handles and their motions (JSON), see below");
+  app.add_flag(
+      "--default-edit",
+      options.is_default_edit,
+      "instead of --edit: hold the lowest 20 % along the longest axis, turn the highest 15 % by 40 "
+      "degrees about it and move them sideways");
+  app.add_option("--output", options.output, "deformed points; may be the input")->required();
+  app.add_option("--samples", options.number_of_samples, "size of the non-linear problem")
+      ->check(CLI::Range(std::int64_t(1), std::int64_t(std::numeric_limits<std::uint32_t>::max())))
+      ->capture_default_str();
+  app.add_option("--neighbors",
+                 options.number_of_neighbors,
+                 "nearest neighbours that a point is linked to")
+      ->check(
+          CLI::Range(std::int64_t(2), std::int64_t(pcs::neighborhood::maximal_number_of_neighbors)))
+      ->capture_default_str();
+  CLI::Option* stream =
+      app.add_flag("--stream",
+                   options.is_streamed,
+                   "from file to file, never with all points in memory; see below");
+  app.add_option("--stream-points",
+                 options.number_of_kept_points,
+                 "points that --stream keeps in memory, some 400 bytes each")
+      ->check(CLI::Range(std::int64_t(100), std::int64_t(1) << 26))
+      ->needs(stream)
+      ->capture_default_str();
+  app.add_option("--chunk-points", options.chunk_size, "points of a chunk; the output is the same")
+      ->check(CLI::Range(std::int64_t(1), std::int64_t(1) << 26))
+      ->needs(stream)
+      ->group("Advanced");
+  app.add_option("--report", options.report, "write counts, seconds and energies here (JSON)");
+  app.add_flag("--quiet", options.is_quiet, "print nothing but warnings and errors");
+}
+
+/// Checks what CLI11 cannot. Throws `pcs::Invalid_input`.
+inline void check(const Options& options)
+{
+  if (options.edit.empty() != options.is_default_edit)
+    throw pcs::Invalid_input("expected exactly one of --edit and --default-edit");
+  // The input may be the output; any other pair would destroy a file that is needed.
+  using Named_path = std::pair<const char*, const std::string*>;
+  const std::array<std::pair<Named_path, Named_path>, 4> pairs = {
+      {{{"--output", &options.output}, {"--edit", &options.edit}},
+       {{"--report", &options.report}, {"--input", &options.input}},
+       {{"--report", &options.report}, {"--edit", &options.edit}},
+       {{"--report", &options.report}, {"--output", &options.output}}}};
+  for (const auto& [a, b] : pairs) {
+    std::error_code error;
+    const bool are_equal =
+        !a.second->empty() && (std::filesystem::equivalent(*a.second, *b.second, error) ||
+                               std::filesystem::path(*a.second).lexically_normal() ==
+                                   std::filesystem::path(*b.second).lexically_normal());
+    if (are_equal)
+      throw pcs::Invalid_input(std::string(a.first) + " and " + b.first +
+                               " are the same file: " + *a.second);
+  }
+}
+
+} // namespace program
+
+#endif // PCS_EXAMPLES_PROGRAMS_DEFORMATION_DEFORMATION_OPTIONS_H

@@ -1,0 +1,69 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The normals of a table: taken out as vectors, put back in the types of their properties.
+
+#ifndef PCS_EXAMPLES_PROGRAMS_DEFORMATION_NORMALS_H
+#define PCS_EXAMPLES_PROGRAMS_DEFORMATION_NORMALS_H
+
+#include <pcs/IO/points/Point_table.h>
+#include <pcs/IO/points/Scalar_type.h>
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace program {
+
+using Normal_vectors = std::vector<pcs::IO::Point_table::Vector_3>;
+
+inline bool is_finite(const pcs::IO::Point_table::Vector_3& v)
+{
+  return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
+}
+
+/// The first point whose normal is not finite.
+inline std::optional<std::size_t> first_invalid(const Normal_vectors& normals)
+{
+  for (std::size_t i = 0; i < normals.size(); ++i)
+    if (!is_finite(normals[i]))
+      return i;
+  return std::nullopt;
+}
+
+/// Rounds and clamps if `T` is an integer type.
+template <class T>
+T to_property(double value)
+{
+  if constexpr (std::is_integral_v<T>) {
+    const double lowest = static_cast<double>(std::numeric_limits<T>::lowest());
+    const double highest = static_cast<double>(std::numeric_limits<T>::max());
+    if (value <= lowest)
+      return std::numeric_limits<T>::lowest();
+    if (value >= highest)
+      return std::numeric_limits<T>::max();
+    return static_cast<T>(std::round(value));
+  } else
+    return static_cast<T>(value);
+}
+
+/// Lengths whose square overflows leave no finite result: such normals stay as they are.
+inline void store_normals(pcs::IO::Point_table& table, const Normal_vectors& normals)
+{
+  constexpr const char* names[] = {"nx", "ny", "nz"};
+  for (int axis = 0; axis < 3; ++axis)
+    pcs::IO::dispatch(table.property_type(names[axis]), [&](auto tag) {
+      using T = typename decltype(tag)::type;
+      std::vector<T>& values = table.property<T>(names[axis]);
+      for (std::size_t i = 0; i < values.size(); ++i)
+        if (is_finite(normals[i]))
+          values[i] = to_property<T>(normals[i][axis]);
+    });
+}
+
+} // namespace program
+
+#endif // PCS_EXAMPLES_PROGRAMS_DEFORMATION_NORMALS_H

@@ -1,0 +1,139 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// What one run of the program did, as JSON and as a summary to read.
+
+#ifndef PCS_EXAMPLES_PROGRAMS_DEFORMATION_RUN_REPORT_H
+#define PCS_EXAMPLES_PROGRAMS_DEFORMATION_RUN_REPORT_H
+
+#include "deformation/Deformation_options.h"
+#include "deformation/Edit.h"
+#include <pcs/core/Deformation_report.h>
+
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <ostream>
+#include <string>
+#include <sys/resource.h>
+#include <vector>
+
+namespace program {
+
+class Stopwatch
+{
+public:
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - m_start).count(); }
+
+private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point m_start = Clock::now();
+};
+
+/// Largest memory of this process so far, to a tenth. [10^6 byte]
+inline double peak_memory()
+{
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+#ifdef __APPLE__
+  constexpr double unit = 1e-6;
+#else
+  constexpr double unit = 1024e-6; // counted in KiB
+#endif
+  return std::round(10 * unit * static_cast<double>(usage.ru_maxrss)) / 10;
+}
+
+struct Run_report
+{
+  pcs::Deformation_report deformation;
+  std::string edit;
+  std::uint64_t number_of_points = 0; ///< of the input; `deformation` counts those in memory
+  std::int64_t number_of_neighbors = 0;
+  std::uint64_t number_of_chunks = 0; ///< 0 unless streamed
+  std::vector<std::uint64_t> points_of_handles;
+  std::string normals = "none"; ///< none, deformed, or unchanged
+  std::vector<std::string> warnings;
+  double seconds_read = 0, seconds_write = 0, seconds_total = 0;
+};
+
+inline nlohmann::ordered_json to_json(const Run_report& run, const Options& options)
+{
+  const pcs::Deformation_report& r = run.deformation;
+  nlohmann::ordered_json json;
+  json["program"] = "deform_point_set";
+  json["version"] = PCS_PROGRAM_VERSION;
+  json["input"] = options.input;
+  json["edit"] = run.edit;
+  json["output"] = options.output;
+  json["status"] = pcs::to_string(r.status);
+  json["points"] = run.number_of_points;
+  json["streamed"] = options.is_streamed;
+  if (options.is_streamed) {
+    json["kept_points"] = r.number_of_points;
+    json["chunks"] = run.number_of_chunks;
+    json["points_per_second"] = static_cast<double>(run.number_of_points) / run.seconds_total;
+  }
+  json["duplicates"] = r.number_of_duplicates;
+  json["components"] = r.number_of_components;
+  json["unreached_components"] = r.number_of_unreached_components;
+  json["unreached_points"] = r.number_of_unreached_points;
+  json["points_of_handles"] = run.points_of_handles;
+  json["neighbors"] = run.number_of_neighbors;
+  json["samples"] = r.number_of_samples;
+  json["interior_links"] = r.number_of_interior_links;
+  json["iterations"] = r.number_of_iterations;
+  json["initial_energy"] = r.initial_energy;
+  json["energy"] = r.energy;
+  json["normals"] = run.normals;
+  json["seconds"] = {{"read", run.seconds_read},
+                     {"neighbors", r.seconds.neighbors},
+                     {"sampling", r.seconds.sampling},
+                     {"factorization", r.seconds.factorization},
+                     {"solving", r.seconds.solving},
+                     {"coarse_levels", r.seconds.coarse_levels}, // of "solving"
+                     {"upsampling", r.seconds.upsampling},
+                     {"write", run.seconds_write},
+                     {"total", run.seconds_total}};
+  json["peak_memory_MB"] = peak_memory();
+  json["warnings"] = run.warnings;
+  return json;
+}
+
+inline void print_summary(std::ostream& out, const Run_report& run, const Options& options)
+{
+  const pcs::Deformation_report& r = run.deformation;
+  const auto seconds = [&](const char* stage, double value) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%s %.3f", stage, value);
+    out << text;
+  };
+  out << "points      " << run.number_of_points << '\n';
+  if (options.is_streamed)
+    out << "            " << r.number_of_points << " of them kept, in " << run.number_of_chunks
+        << " chunks\n";
+  if (r.number_of_unreached_points > 0)
+    out << "            " << r.number_of_unreached_points
+        << " of them not connected to any handle: unchanged\n";
+  out << "samples     " << r.number_of_samples << '\n'
+      << "iterations  " << r.number_of_iterations << '\n'
+      << "status      " << r.status << '\n';
+  seconds("seconds     read", run.seconds_read);
+  seconds(", neighbors", r.seconds.neighbors);
+  seconds(", sampling", r.seconds.sampling);
+  seconds(", factorization", r.seconds.factorization);
+  seconds(",\n            solving", r.seconds.solving);
+  seconds(", upsampling", r.seconds.upsampling);
+  seconds(", write", run.seconds_write);
+  seconds(", total", run.seconds_total);
+  out << "\nwritten     " << options.output;
+  if (!options.report.empty())
+    out << ", " << options.report;
+  out << std::endl;
+}
+
+} // namespace program
+
+#endif // PCS_EXAMPLES_PROGRAMS_DEFORMATION_RUN_REPORT_H

@@ -1,0 +1,274 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Deforms a file that is never in memory at once: some points are deformed, and carry the others chunk by chunk.
+
+#ifndef PCS_EXAMPLES_PROGRAMS_DEFORMATION_STREAMED_DEFORMATION_H
+#define PCS_EXAMPLES_PROGRAMS_DEFORMATION_STREAMED_DEFORMATION_H
+
+#include "common/Progress_line.h"
+#include "common/check_output.h"
+#include "deformation/Deformation_options.h"
+#include "deformation/Edit.h"
+#include "deformation/Kept_points.h"
+#include "deformation/Normals.h"
+#include "deformation/Run_report.h"
+#include "deformation/apply_edit.h"
+#include "deformation/default_edit.h"
+#include "deformation/run_session.h"
+#include <pcs/IO/Point_reader.h>
+#include <pcs/IO/Point_writer.h>
+#include <pcs/IO/points/Point_table.h>
+#include <pcs/IO/write_points.h>
+#include <pcs/core/Similarity.h>
+#include <pcs/core/errors.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace program {
+
+class Streamed_deformation
+{
+public:
+  Streamed_deformation(const Options& options, Run_report& run)
+    : m_options(options), m_run(run), m_progress(!options.is_quiet)
+  {
+  }
+
+  /// Without an edit, the default edit is made from the kept points.
+  void run(std::optional<Edit> edit)
+  {
+    const Stopwatch reading;
+    if (std::filesystem::exists(m_options.input) &&
+        !std::filesystem::is_regular_file(m_options.input))
+      throw pcs::IO_error(m_options.input, "is no regular file, but --stream reads it twice");
+    count_points();
+    check_output(m_options.output, m_empty.schema());
+    keep_points(edit);
+    m_run.edit = m_edit->source;
+    m_run.seconds_read = reading.seconds();
+
+    const bool has_all = m_kept.numbers.size() == m_run.number_of_points;
+    Options options = m_options;
+    if (!has_all)
+      options.number_of_neighbors = std::max(least_neighbors, options.number_of_neighbors);
+    m_run.number_of_neighbors = options.number_of_neighbors;
+    m_run.deformation =
+        run_session({*m_edit,
+                     m_motions,
+                     m_kept.handles,
+                     m_kept.table.points(),
+                     do_normals() ? &m_kept.normals : nullptr,
+                     has_all ? "" : " (numbers count the points that --stream keeps)"},
+                    options,
+                    m_progress,
+                    [&](auto& session) { write(session); });
+    m_progress.clear();
+  }
+
+private:
+  using Table = pcs::IO::Point_table;
+
+  /// A random choice of points is uneven: with 6 links, as many as a scan needs, one group of 8 in a million points
+  /// was cut off from the rest and stayed behind with all that is near to it.
+  static constexpr std::int64_t least_neighbors = 10;
+
+  bool do_normals() const { return m_run.normals == "deformed"; }
+
+  /// Calls `use(chunk, number of its first point)` for all chunks of the input.
+  template <class Use>
+  std::uint64_t for_each_chunk(const char* stage, const Use& use)
+  {
+    pcs::IO::Point_reader reader(m_options.input);
+    Table chunk;
+    std::uint64_t first = 0, number_of_chunks = 0;
+    while (reader.read(chunk, static_cast<std::size_t>(m_options.chunk_size))) {
+      const std::size_t size = chunk.number_of_points();
+      use(chunk, first);
+      first += size;
+      ++number_of_chunks;
+      if (m_run.number_of_points > 0) // else they are being counted
+        m_progress.show(stage,
+                        std::min(1.0, double(first) / static_cast<double>(m_run.number_of_points)));
+    }
+    m_run.number_of_chunks = number_of_chunks;
+    return first;
+  }
+
+  void count_points()
+  {
+    std::optional<std::uint64_t> n;
+    {
+      const pcs::IO::Point_reader reader(m_options.input);
+      m_empty = Table(reader.schema());
+      n = reader.number_of_points();
+    }
+    m_run.number_of_points =
+        n ? *n : for_each_chunk("counting", [](const Table&, std::uint64_t) {});
+  }
+
+  void check_count(std::uint64_t n) const
+  {
+    if (n != m_run.number_of_points)
+      throw pcs::IO_error(m_options.input, "was changed by someone else while it was read");
+  }
+
+  /// The first pass: fills `m_kept` and everything that belongs to the edit.
+  void keep_points(std::optional<Edit>& edit)
+  {
+    const std::size_t number_of_handles = edit ? edit->handles.size() : 0;
+    if (edit)
+      set_edit(std::move(*edit));
+    Keeper keeper(m_run.number_of_points,
+                  static_cast<std::uint64_t>(m_options.number_of_kept_points),
+                  number_of_handles);
+    m_run.normals = m_empty.has_normals() ? "deformed" : "none";
+    const auto add = [&](const Table& chunk, std::uint64_t first) {
+      Normal_vectors normals;
+      if (do_normals()) {
+        normals = chunk.normals();
+        if (const std::optional<std::size_t> invalid = first_invalid(normals)) {
+          m_run.normals = "unchanged";
+          m_run.warnings.push_back(invalid_normal_warning(first + *invalid));
+        }
+      }
+      keeper.add(chunk, normals, m_scan ? m_scan->add(chunk) : std::vector<std::uint32_t>(), first);
+    };
+    check_count(for_each_chunk("reading", add));
+    m_kept = keeper.take(do_normals());
+
+    if (!m_scan) {
+      set_edit(default_edit(m_kept.table.points()));
+      m_kept.handles = m_scan->add(m_kept.table);
+    }
+    m_motions = m_scan->motions();
+    check_handles();
+  }
+
+  void set_edit(Edit edit)
+  {
+    m_edit = std::move(edit);
+    m_scan.emplace(*m_edit, m_empty);
+  }
+
+  void check_handles() const
+  {
+    std::vector<char> has_points(m_edit->handles.size(), 0);
+    for (const std::uint32_t h : m_kept.handles)
+      if (h != no_handle)
+        has_points[h] = 1;
+    for (std::size_t h = 0; h < has_points.size(); ++h)
+      if (!has_points[h])
+        throw pcs::IO_error(m_edit->source,
+                            m_edit->handles[h].pointer +
+                                "/select: none of its points is kept; raise --stream-points");
+  }
+
+  template <class Session>
+  void write(Session& session)
+  {
+    const Stopwatch writing;
+    pcs::IO::Write_options options;
+    options.number_of_points = m_run.number_of_points;
+    if (pcs::IO::internal::format_by_extension(m_options.output) == pcs::IO::File_format::las)
+      choose_las_grid(session, options);
+    m_run.points_of_handles.assign(m_edit->handles.size(), 0);
+    pcs::IO::Point_writer writer(m_options.output, m_empty.schema(), options);
+    check_count(for_each_chunk("writing", [&](Table& chunk, std::uint64_t first) {
+      for (const std::uint32_t h : move(session, chunk, first))
+        if (h != no_handle)
+          ++m_run.points_of_handles[h];
+      writer.append(chunk);
+    }));
+    writer.commit();
+    m_run.seconds_write = writing.seconds();
+  }
+
+  /// The grid that `write_points()` gives to the whole table: it depends on the bounding box only.
+  template <class Session>
+  void choose_las_grid(Session& session, pcs::IO::Write_options& options)
+  {
+    Vec3 low = Vec3::Zero(), high = Vec3::Zero();
+    check_count(for_each_chunk("measuring", [&](Table& chunk, std::uint64_t first) {
+      move(session, chunk, first);
+      if (first == 0)
+        low = high = to_vec3(chunk.points().front());
+      for (const auto& point : chunk.points()) {
+        low = low.cwiseMin(to_vec3(point));
+        high = high.cwiseMax(to_vec3(point));
+      }
+    }));
+    Table corners(m_empty.schema());
+    corners.points().emplace_back(low.x(), low.y(), low.z());
+    corners.points().emplace_back(high.x(), high.y(), high.z());
+    pcs::IO::internal::choose_las_grid(m_options.output, corners, options);
+  }
+
+  /// Moves the points of a chunk; chunks come in order. Returns the handle of each point.
+  template <class Session>
+  std::vector<std::uint32_t> move(Session& session, Table& chunk, std::uint64_t first)
+  {
+    if (first == 0)
+      m_next_kept = 0;
+    std::vector<std::uint32_t> handles = m_scan->handles_of(chunk, first);
+    Normal_vectors normals;
+    if (do_normals())
+      normals = chunk.normals();
+    std::vector<std::size_t> others;
+    for (std::size_t i = 0; i < handles.size(); ++i)
+      if (m_next_kept < m_kept.numbers.size() && m_kept.numbers[m_next_kept] == first + i) {
+        chunk.points()[i] = m_kept.table.points()[m_next_kept];
+        if (do_normals())
+          normals[i] = m_kept.normals[m_next_kept];
+        ++m_next_kept;
+      } else if (handles[i] != no_handle && is_hard(m_edit->handles[handles[i]]))
+        move_rigidly(m_motions[handles[i]],
+                     chunk.points()[i],
+                     do_normals() ? &normals[i] : nullptr);
+      else
+        others.push_back(i);
+
+    const auto np = pcs::parameters::point_map(Point_map{&chunk.points()});
+    if (do_normals())
+      session.apply(others, np.normal_map(Normal_map{&normals}));
+    else
+      session.apply(others, np);
+    check_range(*m_edit, chunk, first);
+    if (do_normals())
+      store_normals(chunk, normals);
+    return handles;
+  }
+
+  static void
+  move_rigidly(const pcs::Similarity& motion, Table::Point_3& point, Table::Vector_3* normal)
+  {
+    if (motion.is_identity()) // keeps every bit
+      return;
+    const Vec3 p = motion(to_vec3(point));
+    point = {p.x(), p.y(), p.z()};
+    if (normal != nullptr) {
+      const Vec3 n = motion.rotation() * Vec3(normal->x(), normal->y(), normal->z());
+      *normal = {n.x(), n.y(), n.z()};
+    }
+  }
+
+  const Options& m_options;
+  Run_report& m_run;
+  Progress_line m_progress;
+  Table m_empty; // with the properties of the input
+  std::optional<Edit> m_edit;
+  std::optional<Edit_scan> m_scan; // refers to m_edit
+  std::vector<pcs::Similarity> m_motions;
+  Kept_points m_kept;
+  std::size_t m_next_kept = 0; // the first one behind the points of the second pass so far
+};
+
+} // namespace program
+
+#endif // PCS_EXAMPLES_PROGRAMS_DEFORMATION_STREAMED_DEFORMATION_H

@@ -1,0 +1,148 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Deforms points and normals that are in memory with the motions of an edit.
+
+#ifndef PCS_EXAMPLES_PROGRAMS_DEFORMATION_RUN_SESSION_H
+#define PCS_EXAMPLES_PROGRAMS_DEFORMATION_RUN_SESSION_H
+
+#include "common/Progress_line.h"
+#include "deformation/Deformation_options.h"
+#include "deformation/Edit.h"
+#include "deformation/Normals.h"
+#include "deformation/apply_edit.h"
+#include <pcs/IO/points/Point_table.h>
+#include <pcs/Point_set_deformation.h>
+#include <pcs/core/Similarity.h>
+#include <pcs/core/errors.h>
+
+#include <boost/property_map/property_map.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace program {
+
+//! [index_map]
+/// Reads and writes `(*values)[i]` for a point number `i`. What is fixed is read only.
+template <class Value>
+struct Index_map
+{
+  using key_type = std::size_t;
+  using value_type = Value;
+  using reference = const Value&;
+  using category = boost::read_write_property_map_tag;
+
+  friend const Value& get(const Index_map& map, std::size_t i) { return (*map.values)[i]; }
+  friend void put(const Index_map& map, std::size_t i, const Value& value)
+  {
+    if (map.is_fixed == nullptr || !(*map.is_fixed)[i])
+      (*map.values)[i] = value;
+  }
+
+  std::vector<Value>* values = nullptr;
+  const std::vector<char>* is_fixed = nullptr; ///< null: none is
+};
+//! [index_map]
+
+using Point_map = Index_map<pcs::IO::Point_table::Point_3>;
+using Normal_map = Index_map<pcs::IO::Point_table::Vector_3>;
+
+/// The points of an edit: `handles[i]` is the handle of point `i`, or `no_handle`.
+struct Edited_points
+{
+  const Edit& edit;
+  const std::vector<pcs::Similarity>& motions;
+  const std::vector<std::uint32_t>& handles;
+  std::vector<pcs::IO::Point_table::Point_3>& points;
+  Normal_vectors* normals; ///< null: not to be deformed
+  std::string note;        ///< for messages that give the number of a point
+};
+
+inline bool is_hard(const Handle& handle)
+{
+  return handle.softness == 0;
+}
+
+/// The points of fixed handles: the library returns them up to rounding, the program bit for bit.
+inline std::vector<char> fixed_points(const Edit& edit, const std::vector<std::uint32_t>& handles)
+{
+  std::vector<char> is_fixed(handles.size(), 0);
+  for (std::size_t i = 0; i < handles.size(); ++i)
+    is_fixed[i] = handles[i] != no_handle && is_hard(edit.handles[handles[i]]) &&
+                  edit.handles[handles[i]].motion.is_fixed();
+  return is_fixed;
+}
+
+template <class Session>
+void add_handles(Session& session, const Edited_points& cloud)
+{
+  std::vector<std::vector<std::size_t>> indices(cloud.edit.handles.size());
+  for (std::size_t i = 0; i < cloud.handles.size(); ++i)
+    if (cloud.handles[i] != no_handle)
+      indices[cloud.handles[i]].push_back(i);
+  for (std::size_t h = 0; h < indices.size(); ++h)
+    try {
+      const auto handle = session.add_handle(indices[h], cloud.edit.handles[h].softness);
+      session.set_transformation(handle, cloud.motions[h]);
+    } catch (const pcs::Invalid_input& e) {
+      throw pcs::IO_error(cloud.edit.source,
+                          cloud.edit.handles[h].pointer + ": " + e.what() + cloud.note);
+    }
+}
+
+/// Deforms; then calls `use(session)` while the session is there.
+template <class Use>
+pcs::Deformation_report run_session(const Edited_points& cloud,
+                                    const Options& options,
+                                    Progress_line& progress,
+                                    const Use& use)
+{
+  const char* stage = "preparing";
+  const auto show = [&](double fraction) {
+    progress.show(stage, fraction);
+    return true;
+  };
+  std::vector<std::size_t> indices(cloud.points.size());
+  std::iota(indices.begin(), indices.end(), std::size_t(0));
+  const std::vector<char> is_fixed = fixed_points(cloud.edit, cloud.handles);
+  const auto run = [&](const auto& np) {
+    pcs::Point_set_deformation session(indices, np);
+    add_handles(session, cloud);
+    stage = "deforming";
+    const pcs::Deformation_report report = session.deform();
+    if (report.status == pcs::Status::numerical_failure)
+      throw std::runtime_error("a matrix could not be factorised; nothing was written");
+    use(session);
+    return report;
+  };
+  const auto np = pcs::parameters::point_map(Point_map{&cloud.points, &is_fixed})
+                      .number_of_samples(options.number_of_samples)
+                      .number_of_neighbors(options.number_of_neighbors)
+                      .callback(show);
+  return cloud.normals != nullptr ? run(np.normal_map(Normal_map{cloud.normals, &is_fixed}))
+                                  : run(np);
+}
+
+/// Throws if a point left the range of numbers. Points are numbered from `first` on.
+inline void check_range(const Edit& edit, const pcs::IO::Point_table& table, std::uint64_t first)
+{
+  for (std::size_t i = 0; i < table.number_of_points(); ++i)
+    if (!to_vec3(table.points()[i]).allFinite())
+      throw pcs::IO_error(edit.source,
+                          "the edit moves point " + std::to_string(first + i) +
+                              " out of the range of numbers");
+}
+
+inline std::string invalid_normal_warning(std::uint64_t number)
+{
+  return "the normal of point " + std::to_string(number) +
+         " is not finite: all normals are left as they are";
+}
+
+} // namespace program
+
+#endif // PCS_EXAMPLES_PROGRAMS_DEFORMATION_RUN_SESSION_H

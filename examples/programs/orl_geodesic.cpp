@@ -1,0 +1,315 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Program: trees between scanned trees, beyond them, and like them.
+
+#include "common/run_program.h"
+#include "common/up_direction.h"
+#include "shape_space/Results.h"
+#include "shape_space/Tree_file.h"
+#include "shape_space/align_trees.h"
+#include "shape_space/write_family.h"
+#include <pcs/IO/read_correspondences.h>
+#include <pcs/IO/read_shape_space.h>
+#include <pcs/IO/write_correspondences.h>
+#include <pcs/IO/write_shape_space.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <system_error>
+#include <vector>
+
+namespace orl_program {
+
+void add(Space& space, const Tree_file& file)
+{
+  if (!file.has_valid_normals) {
+    space.add(file.skeleton, file.points.points());
+    return;
+  }
+  const std::vector<Table::Vector_3> normals = file.points.normals();
+  std::vector<std::size_t> index(normals.size());
+  for (std::size_t i = 0; i < index.size(); ++i)
+    index[i] = i;
+  space.add(file.skeleton,
+            index,
+            np::point_map(CGAL::make_property_map(file.points.points()))
+                .normal_map(CGAL::make_property_map(normals)));
+}
+
+/// Whether branches and points were matched before: nothing is known of how.
+bool is_stored(const Options& o)
+{
+  std::error_code error;
+  return !o.load.empty() ||
+         (!o.correspondences.empty() && std::filesystem::exists(o.correspondences, error));
+}
+
+pcs::Matching_weights weights_of(const Options& o)
+{
+  pcs::Matching_weights weights;
+  weights.is_published = o.is_published;
+  return weights;
+}
+
+/// How branches and points are matched, in words that are kept with what was found.
+std::string method(const Options& o)
+{
+  return "--align " + o.align + " --up " + o.up + " --transport " + o.transport +
+         (o.is_published ? " --published-energy" : "");
+}
+
+/// What is stored may be asked for again, but nothing else.
+pcs::Orl_correspondences read_stored(const Options& o)
+{
+  pcs::Orl_correspondences stored = pcs::IO::read_correspondences(o.correspondences);
+  for (const auto& [name, value] : {std::make_pair("--align", " " + o.align),
+                                    std::make_pair("--up", " " + o.up),
+                                    std::make_pair("--transport", " " + o.transport),
+                                    std::make_pair("--published-energy", std::string())})
+    if (o.is_given(name) && (stored.note + " ").find(name + value + " ") == std::string::npos)
+      throw pcs::Invalid_input(o.correspondences + ": made with other options (" + stored.note +
+                               ") than " + name + value + "; leave this out, or name another file");
+  return stored;
+}
+
+pcs::Orl_report
+build(Space& space, const Options& o, const std::optional<pcs::Orl_correspondences>& stored)
+{
+  using namespace pcs::shape_space;
+  program::Progress_line line(!o.is_quiet);
+  Transport_options transport;
+  if (o.transport == "sinkhorn")
+    transport.method = Point_transport::sinkhorn;
+  const Orl_orientation orientation = o.orientation == "world-axes" ? Orl_orientation::world_axes
+                                      : o.orientation == "transported"
+                                          ? Orl_orientation::transported
+                                          : Orl_orientation::gauge_fixed;
+  const std::function<bool(double)> callback = [&](double f) {
+    line.show("correspondences", f);
+    return true;
+  };
+  const auto form = np::orientation(orientation);
+  if (stored)
+    try {
+      return space.build_from(*stored, form);
+    } catch (const pcs::Invalid_input& refusal) {
+      throw pcs::Invalid_input(o.correspondences + ": " + refusal.what());
+    }
+  // of more trees, each stands as it was given
+  const bool may_turn = o.align == "turns" && o.number_of_trees() == 2;
+  pcs::Orl_report report = space.build(
+      form.matching_weights(weights_of(o))
+          .transport_options(transport)
+          .alignment(may_turn ? Orl_alignment::rotate_about_up : Orl_alignment::as_given)
+          .up_direction(program::up_direction<Kernel>(o.up))
+          .callback(callback));
+  if (!o.correspondences.empty()) {
+    pcs::Orl_correspondences found = space.correspondences();
+    found.note = method(o);
+    pcs::IO::write_correspondences(o.correspondences, found);
+  }
+  return report;
+}
+
+/// Trees that grew at their tips have branches that go on where those of the other tree end.
+pcs::Branch_emergence branch_emergence(const Space& space, const Options& o)
+{
+  using pcs::Branch_emergence;
+  bool is_in_order = o.do_order_births;
+  if (!is_in_order && !o.do_join_births && o.load.empty() && o.number_of_trees() == 2)
+    for (const auto& branch : space.correspondences().branches)
+      is_in_order = is_in_order || branch.is_continued[0] || branch.is_continued[1];
+  return is_in_order ? Branch_emergence::sequential : Branch_emergence::simultaneous;
+}
+
+std::string matches_text(const Space& space, const Tree_file& one, const Tree_file& two)
+{
+  std::ostringstream text;
+  text << "tip_a,tip_b\n";
+  for (const pcs::Branch_match& m : space.matches())
+    text << (m.tip[0] == pcs::npos ? -1 : one.ids[m.tip[0]]) << ','
+         << (m.tip[1] == pcs::npos ? -1 : two.ids[m.tip[1]]) << '\n';
+  return text.str();
+}
+
+/// What was not found in this run is left out.
+nlohmann::ordered_json report_json(const Space& space,
+                                   const pcs::Orl_report& r,
+                                   const std::vector<Tree_file>& files,
+                                   const Options& o,
+                                   bool is_stored,
+                                   const std::vector<double>& turns)
+{
+  using pcs::Orl_metric;
+  const pcs::Orl_tree a = space.tree(0), b = space.tree(1);
+  nlohmann::ordered_json json;
+  json["status"] = pcs::to_string(r.status);
+  json["distance"] = {{"sum", r.distance},
+                      {"square", space.distance(a, b, np::metric(Orl_metric::square))},
+                      {"cone", space.distance(a, b, np::metric(Orl_metric::cone))}};
+  json["number_of_trees"] = r.number_of_trees;
+  json["number_of_common_branches"] = r.number_of_common_branches;
+  const bool is_pair = r.number_of_trees == 2;
+  if (!is_stored && is_pair) {
+    json["matching_energy"] = r.matching_energy;
+    json["unexplained_share"] = r.unexplained_share;
+    json["is_grown_at_tips"] = r.is_grown_at_tips;
+    json["turn_degrees"] = r.turn * 180 / CGAL_PI;
+  }
+  if (!is_stored) {
+    if (!is_pair)
+      json["share_of_changes"] = r.share_of_changes;
+    for (const double turn : turns)
+      json["turns_degrees"].push_back(turn * 180 / CGAL_PI);
+    json["number_of_windows"] = r.number_of_windows;
+    json["number_of_failed_windows"] = r.number_of_failed_windows;
+    json["marginal_violation"] = {{"worst", r.worst_marginal_violation},
+                                  {"mean", r.mean_marginal_violation}};
+    json["mean_remaining_mass"] = r.untransported_mass_share;
+  }
+  json["number_of_edges"] = r.number_of_edges;
+  if (o.load.empty()) {
+    for (const Tree_file& file : files)
+      json["number_of_nodes"].push_back(num_vertices(file.skeleton));
+    if (is_pair) {
+      json["number_of_branches"] = r.number_of_branches;
+      json["number_of_matched_branches"] = r.number_of_matched_branches;
+    }
+    for (const Tree_file& file : files)
+      json["number_of_points"].push_back(file.points.number_of_points());
+    json["number_of_point_pairs"] = r.number_of_point_pairs;
+    json["number_of_single_points"] = r.number_of_single_points;
+  }
+  json["seconds"] = {{"matching", r.seconds.matching},
+                     {"topology", r.seconds.topology},
+                     {"assignment", r.seconds.assignment},
+                     {"transport", r.seconds.transport},
+                     {"instances", r.seconds.instances},
+                     {"correspondences", r.seconds.total()}};
+  return json;
+}
+
+/// All files first: to find skeletons takes time.
+std::vector<Tree_file> read_trees(const Options& o)
+{
+  std::vector<Tree_file> files;
+  const auto file = [](const std::vector<std::string>& names, std::size_t i) {
+    return names.empty() ? std::string() : names[i];
+  };
+  for (std::size_t i = 0; i < o.number_of_trees(); ++i)
+    files.push_back(read_tree(file(o.trees, i), file(o.skeletons, i)));
+  return files;
+}
+
+void complete_trees(const Options& o, std::vector<Tree_file>& files)
+{
+  for (std::size_t i = 0; i < files.size(); ++i)
+    complete_tree(files[i], o.trees.empty() ? "" : o.trees[i], o.do_extend_axes, o.up);
+}
+
+/// A file with a path of its own, found to be writable before the work.
+class Extra_file
+{
+public:
+  explicit Extra_file(const std::string& path)
+  {
+    if (!path.empty())
+      m_file.emplace(path);
+  }
+  template <class Text>
+  void write(const Text& text)
+  {
+    if (m_file)
+      m_file->commit(text());
+  }
+
+private:
+  std::optional<program::Report_file> m_file;
+};
+
+void run(const Options& o)
+{
+  check(o);
+  check_files(o);
+  const bool was_stored = is_stored(o);
+  const Result_folder folder(o.output);
+  Extra_file matches(o.matches), report_file(o.report), changes(o.changes), distances(o.distances);
+  probe_file(o.save);
+  if (!was_stored)
+    probe_file(o.correspondences);
+  std::vector<Tree_file> files = read_trees(o);
+  Space space;
+  if (!o.load.empty()) {
+    space.restore(pcs::IO::read_shape_space(o.load));
+    check_numbers(o, space.number_of_trees());
+  }
+  std::optional<pcs::Orl_correspondences> stored;
+  if (was_stored && o.load.empty())
+    stored = read_stored(o);
+  complete_trees(o, files);
+
+  std::vector<double> turns; // of more than two trees, which stand turned in the files
+  pcs::Orl_report report;
+  if (o.load.empty()) {
+    for (std::size_t i = 0; i < files.size(); ++i)
+      try {
+        add(space, files[i]);
+      } catch (const pcs::Invalid_input& refusal) {
+        throw pcs::Invalid_input((o.skeletons.empty() ? o.trees : o.skeletons)[i] + ": " +
+                                 refusal.what());
+      }
+    if (files.size() > 2 && o.is_given("--align") && o.align == "turns") {
+      turns = align_trees(files, o.up, weights_of(o));
+      space = Space();
+      for (const Tree_file& file : files)
+        add(space, file);
+    }
+    report = build(space, o, stored);
+  } else {
+    report.status = pcs::Status::converged;
+    report.number_of_trees = space.number_of_trees();
+    report.number_of_common_branches = space.layout().branches.size();
+    report.number_of_edges = space.layout().number_of_edges();
+    report.distance = space.distance(Space::Handle(0), Space::Handle(1));
+  }
+  if (!o.save.empty())
+    pcs::IO::write_shape_space(o.save, space.data());
+  if (o.has_places()) {
+    const auto path = np::maximal_turn(o.maximal_turn * CGAL_PI / 180)
+                          .do_limit_radii(o.do_limit_radii)
+                          .branch_emergence(branch_emergence(space, o));
+    for (const double lambda : o.lambda)
+      write_tree(space, space.geodesic(0, 1, lambda, path), files, o, name_of(lambda));
+  }
+  write_family(space, files, o);
+  if (files.size() == 2)
+    matches.write([&] { return matches_text(space, files[0], files[1]); });
+  changes.write([&] { return changes_text(space, files); });
+  distances.write([&] { return distances_text(space); });
+  report_file.write([&] { return report_json(space, report, files, o, was_stored, turns); });
+  if (!o.is_quiet && o.load.empty())
+    std::cout << report << '\n';
+}
+
+} // namespace orl_program
+
+int main(int argc, char** argv)
+{
+  orl_program::Options options;
+  CLI::App app("Makes trees between scanned trees, beyond them, and like them.", "orl_geodesic");
+  orl_program::declare(app, options);
+  return program::run_program(app, argc, argv, [&] {
+    orl_program::run(options);
+    return true;
+  });
+}

@@ -1,0 +1,217 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// A program that cuts the scan of a stand into its trees.
+
+#include "common/Distinct_files.h"
+#include "common/Progress_line.h"
+#include "common/Report_file.h"
+#include "common/check_output.h"
+#include "common/run_program.h"
+#include "common/up_direction.h"
+#include <pcs/IO/points/Point_table.h>
+#include <pcs/IO/read_points.h>
+#include <pcs/IO/write_points.h>
+#include <pcs/core/errors.h>
+#include <pcs/segment_trees.h>
+
+#include <CGAL/Simple_cartesian.h>
+
+#include <boost/iterator/counting_iterator.hpp>
+#include <boost/property_map/property_map.hpp>
+#include <boost/range/iterator_range.hpp>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace program {
+
+struct Options
+{
+  std::string input, folder, points, report, up = "z";
+  double breast_height = pcs::default_breast_height;
+  std::size_t least_points = 1000;
+  bool do_keep_ground = false, is_quiet = false;
+};
+
+const char* help()
+{
+  return R"(Scans: PLY, LAS, OFF, or text (xyz, txt, csv, asc, pts, pwn).
+Folder: DIR/NAME_1.ply, DIR/NAME_2.ply ... of SCAN.ply, the trees with the thickest stems first, with all properties
+of their points. They are input for extract_tree_skeleton, all at once with --folder there.
+Points: the scan with `tree` (-1: ground, or of no tree).
+
+Exit codes: 0 success, 1 bad input or usage, or no tree, 2 internal error.)";
+}
+
+void declare(CLI::App& app, Options& options)
+{
+  app.footer(help());
+  app.set_version_flag("--version", PCS_PROGRAM_VERSION);
+  app.add_option("--input", options.input, "the scan of a stand")->required();
+  app.add_option("--folder", options.folder, "for a file of every tree");
+  app.add_option("--points", options.points, "the scan with the tree of every point");
+  app.add_option("--report", options.report, "trees, counts and seconds, JSON");
+  app.add_option("--least-points", options.least_points, "smaller trees get no file")
+      ->capture_default_str();
+  app.add_option("--up", options.up, "where trees grow to: x, y, z, -x, -y or -z")
+      ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))
+      ->capture_default_str();
+  app.add_option("--breast-height", options.breast_height, "unit of the sizes of stems")
+      ->capture_default_str();
+  app.add_flag("--keep-ground", options.do_keep_ground, "do not look for ground");
+  app.add_flag("--quiet", options.is_quiet, "print nothing but errors");
+}
+
+/// Where a tree goes; numbers begin with 1.
+std::string file_of_tree(const Options& options, std::size_t tree)
+{
+  const std::filesystem::path scan(options.input);
+  const std::string name = scan.stem().string() + "_" + std::to_string(tree + 1) + ".ply";
+  return (std::filesystem::path(options.folder) / name).string();
+}
+
+void make_folder(const std::string& folder)
+{
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!std::filesystem::is_directory(folder))
+    throw pcs::IO_error(folder, "is not a directory and cannot be made one");
+}
+
+nlohmann::ordered_json to_json(const Options& options, const pcs::Segmentation_report& r)
+{
+  nlohmann::ordered_json trees = nlohmann::ordered_json::array();
+  for (std::size_t t = 0; t < r.trees.size(); ++t) {
+    const pcs::Segmented_tree& tree = r.trees[t];
+    nlohmann::ordered_json row = {{"tree", t},
+                                  {"foot", tree.foot},
+                                  {"radius", tree.radius},
+                                  {"height", tree.height},
+                                  {"points", tree.number_of_points}};
+    if (!options.folder.empty() && tree.number_of_points >= options.least_points)
+      row["file"] = file_of_tree(options, t);
+    trees.push_back(row);
+  }
+  return {{"input", options.input},
+          {"status", to_string(r.status)},
+          {"points", r.number_of_points},
+          {"unassigned_points", r.number_of_unassigned_points},
+          {"trees", trees},
+          {"warnings", pcs::warnings(r)},
+          {"seconds", r.seconds}};
+}
+
+pcs::Segmentation_report
+segment(const pcs::IO::Point_table& table, const Options& options, std::vector<std::int32_t>& trees)
+{
+  const std::size_t n = table.number_of_points();
+  std::vector<std::size_t> tree_of_point(n, pcs::npos);
+  // the points are numbers here, and everything about them is a map
+  const auto indices = boost::make_iterator_range(boost::counting_iterator<std::size_t>(0),
+                                                  boost::counting_iterator<std::size_t>(n));
+  const auto identity = boost::typed_identity_property_map<std::size_t>();
+  Progress_line line(!options.is_quiet);
+  const std::function<bool(double)> callback = [&](double f) {
+    line.show("trees", f);
+    return true;
+  };
+  const pcs::Segmentation_report report =
+      pcs::segment_trees(indices,
+                         boost::make_iterator_property_map(tree_of_point.begin(), identity),
+                         pcs::parameters::point_map(
+                             boost::make_iterator_property_map(table.points().begin(), identity))
+                             .up_direction(up_direction<pcs::IO::Point_table::Kernel>(options.up))
+                             .breast_height(options.breast_height)
+                             .do_remove_ground(!options.do_keep_ground)
+                             .callback(callback));
+  line.clear();
+  trees.reserve(n);
+  for (const std::size_t t : tree_of_point)
+    trees.push_back(t == pcs::npos ? -1 : static_cast<std::int32_t>(t));
+  return report;
+}
+
+void write_trees(const pcs::IO::Point_table& table,
+                 const Options& options,
+                 const pcs::Segmentation_report& report,
+                 const std::vector<std::int32_t>& trees)
+{
+  std::vector<std::vector<std::size_t>> points(report.trees.size());
+  for (std::size_t i = 0; i < trees.size(); ++i)
+    if (trees[i] >= 0)
+      points[static_cast<std::size_t>(trees[i])].push_back(i);
+  for (std::size_t t = 0; t < points.size(); ++t)
+    if (points[t].size() >= options.least_points)
+      pcs::IO::write_points(file_of_tree(options, t), table.select(points[t]));
+}
+
+void run(const Options& options)
+{
+  if (options.folder.empty() && options.points.empty() && options.report.empty())
+    throw pcs::Invalid_input("one of --folder, --points and --report is required");
+  Distinct_files files;
+  files.add_input(options.input);
+  files.add_output(options.points);
+  files.add_output(options.report);
+  std::unique_ptr<Report_file> report_file;
+  if (!options.report.empty())
+    report_file = std::make_unique<Report_file>(options.report);
+  pcs::IO::Point_table table = pcs::IO::read_points(options.input);
+  if (table.has_property("tree"))
+    table.remove_property("tree");
+  if (!options.folder.empty()) {
+    make_folder(options.folder);
+    check_output(file_of_tree(options, 0), table.schema());
+  }
+  if (!options.points.empty()) {
+    pcs::IO::Point_table labelled(table.schema());
+    labelled.add_property("tree", std::vector<std::int32_t>());
+    check_output(options.points, labelled.schema());
+  }
+
+  std::vector<std::int32_t> trees;
+  const pcs::Segmentation_report report = segment(table, options, trees);
+  if (report.status != pcs::Status::converged)
+    throw pcs::Invalid_input(options.input + ": there is no stem in this scan (" +
+                             std::to_string(report.number_of_points) + " points)");
+  if (!options.folder.empty())
+    write_trees(table, options, report, trees);
+  if (!options.points.empty()) {
+    table.add_property("tree", std::move(trees));
+    pcs::IO::write_points(options.points, table);
+  }
+  const nlohmann::ordered_json json = to_json(options, report);
+  if (report_file)
+    report_file->commit(json);
+  for (const std::string& warning : pcs::warnings(report))
+    std::cerr << "segment_trees: warning: " << options.input << ": " << warning << '\n';
+  if (!options.is_quiet)
+    std::cout << "trees " << report.trees.size() << ", points of none "
+              << report.number_of_unassigned_points << " of " << report.number_of_points
+              << ", seconds " << report.seconds << '\n';
+}
+
+} // namespace program
+
+int main(int argc, char** argv)
+{
+  program::Options options;
+  CLI::App app("Finds the trees in the scan of a stand, and whose every point is.",
+               "segment_trees");
+  program::declare(app, options);
+  return program::run_program(app, argc, argv, [&] {
+    program::run(options);
+    return true;
+  });
+}

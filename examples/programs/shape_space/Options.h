@@ -1,0 +1,315 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The command line of the program for spaces of trees.
+
+#ifndef PCS_EXAMPLES_PROGRAMS_SHAPE_SPACE_OPTIONS_H
+#define PCS_EXAMPLES_PROGRAMS_SHAPE_SPACE_OPTIONS_H
+
+#include "common/is_seed.h"
+#include <pcs/core/errors.h>
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <initializer_list>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <set>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace orl_program {
+
+struct Options
+{
+  std::vector<std::string> trees, skeletons;
+  std::set<std::string> given; ///< names of all options of the command line
+  std::vector<double> lambda = {0, 0.25, 0.5, 0.75, 1};
+  std::string output, matches, report, correspondences;
+  std::string transport = "exact", orientation = "gauge-fixed", align = "turns", up = "z";
+  double maximal_turn = 45;
+  bool do_extend_axes = false, do_limit_radii = false, do_order_births = false,
+       do_join_births = false, is_published = false, is_quiet = false;
+
+  // families
+  bool do_mean = false, do_growth = false, do_mesh = false;
+  bool is_monotone = false, may_leave_range = false;
+  std::string mean_kind = "l1", mode_inner_product = "branches", load, save, changes, distances;
+  std::size_t number_of_modes = 0, number_of_samples = 0, number_of_frames = 11;
+  std::int64_t seed = 1; // signed, so that CLI11 does not take -1 for a large number
+  std::vector<double> weights, times;
+  double pipe_exponent = 0;
+
+  bool is_given(const std::string& name) const { return given.count(name) > 0; }
+  std::size_t number_of_trees() const { return std::max(trees.size(), skeletons.size()); }
+  bool is_family() const
+  {
+    return do_mean || do_growth || number_of_modes > 0 || number_of_samples > 0 ||
+           !weights.empty() || !save.empty() || !load.empty() || !changes.empty() ||
+           !distances.empty();
+  }
+  /// Whether trees are made at the places of `lambda`.
+  bool has_places() const { return is_given("--lambda") || !is_family(); }
+};
+
+/// Numbers separated by commas. CLI11 takes nothing for 0, and leaves out what is between two commas.
+inline CLI::Option* add_numbers(CLI::App& app,
+                                const std::string& name,
+                                std::vector<double>& values,
+                                const std::string& what)
+{
+  const auto read = [name, &values](const std::vector<std::string>& lists) {
+    values.clear();
+    for (const std::string& list : lists) {
+      std::istringstream words(list + ',');
+      for (std::string word; std::getline(words, word, ',');) {
+        double value = 0;
+        if (!CLI::detail::lexical_cast(CLI::detail::trim_copy(word), value) ||
+            CLI::detail::trim_copy(word).empty())
+          throw CLI::ValidationError(name,
+                                     "expected numbers separated by commas, found '" + list + "'");
+        values.push_back(value);
+      }
+    }
+  };
+  return app.add_option_function<std::vector<std::string>>(name, read, what)
+      ->type_name("FLOAT,...");
+}
+
+/// The name of the files of a place on the path.
+inline std::string name_of(double lambda)
+{
+  char text[64];
+  std::snprintf(text, sizeof(text), "lambda_%.3f", lambda == 0 ? 0.0 : lambda);
+  return text;
+}
+
+inline void declare_family(CLI::App& app, Options& o)
+{
+  const char* const group = "Families of trees";
+  app.add_flag("--mean", o.do_mean, "the mean of all trees: mean.swc, mean.ply")->group(group);
+  app.add_option("--mean-kind", o.mean_kind, "least sum of distances, or of their squares")
+      ->check(CLI::IsMember({"l1", "l2"}))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--modes",
+                 o.number_of_modes,
+                 "so many modes of variation, at two standard deviations either way: "
+                 "mode_1_minus.swc, mode_1_plus.swc, ..., and modes.json")
+      ->check(CLI::Range(0, 10000))
+      ->group(group);
+  app.add_option(
+         "--mode-measure",
+         o.mode_inner_product,
+         "what modes explain: how branches differ where trees have them, or the metric, for "
+         "trees that differ by which branches they have")
+      ->check(CLI::IsMember({"branches", "metric"}))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--sample", o.number_of_samples, "so many new trees: sample_0000.swc, ...")
+      ->check(CLI::Range(0, 10000))
+      ->group(group);
+  app.add_option("--seed", o.seed, "of new trees")
+      ->check(program::is_seed)
+      ->check(CLI::Range(std::int64_t(0), std::numeric_limits<std::int64_t>::max()))
+      ->capture_default_str()
+      ->group(group);
+  app.add_flag("--any-range",
+               o.may_leave_range,
+               "new trees may be larger or smaller than all inputs")
+      ->group(group);
+  app.add_option("--pipe-model",
+                 o.pipe_exponent,
+                 "radii of new trees to this power do not add up to more at forks; 2 to 2.5")
+      ->check(CLI::Range(0.0, 10.0))
+      ->group(group);
+  add_numbers(app, "--weights", o.weights, "one per tree: the tree between, combination.swc")
+      ->group(group);
+  app.add_flag("--growth", o.do_growth, "a smooth path through all trees: growth_0000.swc, ...")
+      ->group(group);
+  add_numbers(app, "--times", o.times, "of the trees for --growth, increasing; 0,1,2,... otherwise")
+      ->group(group);
+  app.add_option("--frames", o.number_of_frames, "of the path")
+      ->check(CLI::Range(2, 100000))
+      ->capture_default_str()
+      ->group(group);
+  app.add_flag("--monotone", o.is_monotone, "nothing shrinks on the path")->group(group);
+  app.add_option("--changes", o.changes, "write what became of each branch here (CSV, two trees)")
+      ->group(group);
+  app.add_option("--distances", o.distances, "write the distances of all pairs here (CSV)")
+      ->group(group);
+  app.add_flag("--mesh", o.do_mesh, "write surfaces as well: NAME_surface.ply")->group(group);
+  app.add_option("--save-space", o.save, "write the space here")->group(group);
+  app.add_option("--load-space", o.load, "read a space from here, instead of trees")->group(group);
+}
+
+inline void declare(CLI::App& app, Options& o)
+{
+  app.footer(
+      R"(Give --tree and --skeleton once for each tree: twice at least. Points: PLY, LAS, OFF or
+text. Skeletons: SWC, CSV, or .txtskl with layers of branches. Without --skeleton, skeletons are
+extracted from the points; without --tree, only skeletons are made.
+
+DIR gets lambda_0.250.ply and lambda_0.250.swc for each place on the path between the first two
+trees: 0 is the first, 1 the second; places beyond are allowed. Properties that all point files
+have are kept. Means, modes and the like are made instead of the path, or with --lambda as well.
+
+Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
+  app.set_version_flag("--version", PCS_PROGRAM_VERSION);
+  app.add_option("--tree", o.trees, "points of a tree, once for each")->allow_extra_args(false);
+  app.add_option("--skeleton", o.skeletons, "skeleton of a tree, once for each")
+      ->allow_extra_args(false);
+  add_numbers(app, "--lambda", o.lambda, "places on the path, separated by commas")
+      ->default_str("0,0.25,0.5,0.75,1");
+  app.add_option("--output", o.output, "folder for the results; it is made")->required();
+  app.add_option("--matches",
+                 o.matches,
+                 "write the ids of the tips of matched branches here (CSV)");
+  app.add_option("--report", o.report, "write distances, counts and seconds here (JSON)");
+  app.add_option("--correspondences",
+                 o.correspondences,
+                 "read what was computed before from this file, or write it if there is none");
+  app.add_option("--align",
+                 o.align,
+                 "whether the second of two trees may stand turned about the vertical, as a pot "
+                 "that was put down anew; of more trees each is turned to stand like the one "
+                 "before, if this is given")
+      ->check(CLI::IsMember({"none", "turns"}))
+      ->capture_default_str();
+  app.add_option("--up", o.up, "the vertical")
+      ->check(CLI::IsMember({"x", "y", "z"}))
+      ->capture_default_str();
+  app.add_option("--transport", o.transport, "how points are matched")
+      ->check(CLI::IsMember({"exact", "sinkhorn"}))
+      ->capture_default_str();
+  app.add_option("--orientation", o.orientation, "how orientations are measured")
+      ->check(CLI::IsMember({"gauge-fixed", "transported", "world-axes"}))
+      ->capture_default_str();
+  app.add_option("--maximal-turn", o.maximal_turn, "of an edge beyond the ends, in all [degrees]")
+      ->check(CLI::Range(0.0, 180.0))
+      ->capture_default_str();
+  app.add_flag("--extend-axes",
+               o.do_extend_axes,
+               "axes of given skeletons go to where the points end");
+  CLI::Option* const in_order =
+      app.add_flag("--births-in-order",
+                   o.do_order_births,
+                   "new branches begin when the tip of their parent passes, as wood grows; default "
+                   "for two trees that were found to have "
+                   "grown at their tips");
+  app.add_flag("--births-together",
+               o.do_join_births,
+               "new branches begin all at once; default for all others, and with --load-space")
+      ->excludes(in_order);
+  app.add_flag("--limit-radii", o.do_limit_radii, "no branch thicker than where it grows from");
+  app.add_flag("--published-energy", o.is_published, "match branches with the energy of the text");
+  app.add_flag("--quiet", o.is_quiet, "print nothing but errors");
+  declare_family(app, o);
+  app.parse_complete_callback([&app, &o] {
+    for (const CLI::Option* const option : app.get_options())
+      if (option->count() > 0)
+        o.given.insert(option->get_name());
+  });
+}
+
+/// What is asked for must have an effect.
+inline void check_effects(const Options& o)
+{
+  const auto refuse =
+      [&](bool is_in_vain, std::initializer_list<const char*> names, const std::string& why) {
+        for (const char* const name : names)
+          if (is_in_vain && o.is_given(name))
+            throw pcs::Invalid_input(name + (" has no effect " + why));
+      };
+  refuse(!o.load.empty(),
+         {"--orientation", "--extend-axes", "--align", "--up", "--transport", "--published-energy"},
+         "with --load-space: the trees of " + o.load + " were compared before");
+  refuse(o.load.empty() && o.trees.empty(),
+         {"--transport", "--extend-axes"},
+         "without points (--tree)");
+  refuse(o.load.empty() && o.skeletons.empty(),
+         {"--extend-axes"},
+         "without --skeleton: extracted axes go to where the points end");
+  refuse(!o.has_places(),
+         {"--maximal-turn", "--births-in-order", "--births-together"},
+         "without --lambda");
+  refuse(!o.has_places() && o.number_of_samples == 0,
+         {"--limit-radii"},
+         "without --lambda or --sample");
+  refuse(!o.do_mean, {"--mean-kind"}, "without --mean");
+  refuse(o.number_of_modes == 0, {"--mode-measure"}, "without --modes");
+  refuse(o.number_of_samples == 0,
+         {"--seed", "--any-range", "--pipe-model"},
+         "without --sample: no new trees are drawn");
+  refuse(!o.do_growth, {"--times", "--frames", "--monotone"}, "without --growth");
+}
+
+/// Lists with a number for each tree, and other numbers that are read late.
+inline void check_numbers(const Options& o, std::size_t number_of_trees)
+{
+  const auto check_list = [&](const char* name, const std::vector<double>& list) {
+    if (!list.empty() && list.size() != number_of_trees)
+      throw pcs::Invalid_input(std::string(name) + " has " + std::to_string(list.size()) +
+                               " numbers for " + std::to_string(number_of_trees) + " trees");
+    for (const double x : list)
+      if (!std::isfinite(x))
+        throw pcs::Invalid_input(std::string(name) + " must be finite numbers");
+  };
+  check_list("--weights", o.weights);
+  check_list("--times", o.times);
+  const double sum = std::accumulate(o.weights.begin(), o.weights.end(), 0.0);
+  if (!o.weights.empty() && !(sum > 0 && std::isfinite(sum)))
+    throw pcs::Invalid_input("--weights must add up to a finite number, more than 0");
+  for (std::size_t k = 1; k < o.times.size(); ++k)
+    if (!(o.times[k] > o.times[k - 1]))
+      throw pcs::Invalid_input("--times must increase");
+  if (!o.changes.empty() && number_of_trees != 2)
+    throw pcs::Invalid_input("--changes is for two trees, there are " +
+                             std::to_string(number_of_trees));
+}
+
+inline void check(const Options& o)
+{
+  const auto fail = [](const std::string& what) { throw pcs::Invalid_input(what); };
+  if (!o.load.empty() && !(o.trees.empty() && o.skeletons.empty()))
+    fail("--load-space is given with trees, expected one of both");
+  if (o.load.empty()) {
+    if (o.trees.empty() && o.skeletons.empty())
+      fail("expected --tree or --skeleton, twice");
+    for (const auto& [name, files] :
+         {std::make_pair("--tree", &o.trees), std::make_pair("--skeleton", &o.skeletons)})
+      if (files->size() == 1)
+        fail(std::string(name) + " is given 1 times, expected 2 at least");
+    if (!o.trees.empty() && !o.skeletons.empty() && o.trees.size() != o.skeletons.size())
+      fail("--tree is given " + std::to_string(o.trees.size()) + " times, --skeleton " +
+           std::to_string(o.skeletons.size()) + " times, expected as many");
+    const std::size_t n = o.number_of_trees();
+    if (n > 2 && !o.is_family() && !o.is_given("--lambda"))
+      fail("for " + std::to_string(n) +
+           " trees say what is wanted: --mean, --modes, --sample, --weights, --growth, "
+           "--save-space or --lambda");
+    if (n > 2 && (!o.correspondences.empty() || !o.matches.empty()))
+      fail("--correspondences and --matches are for two trees; use --save-space");
+    check_numbers(o, n);
+  } else if (!o.correspondences.empty() || !o.matches.empty())
+    fail("--correspondences and --matches need the trees, not --load-space");
+  for (const double l : o.lambda)
+    if (!std::isfinite(l) || std::abs(l) > 1000)
+      fail("--lambda must be finite numbers between -1000 and 1000");
+  std::map<std::string, double> names;
+  for (const double l : o.lambda)
+    if (const auto [it, is_new] = names.emplace(name_of(l), l); !is_new && it->second != l)
+      fail("--lambda has two places whose files would both be called " + it->first);
+  check_effects(o);
+}
+
+} // namespace orl_program
+
+#endif // PCS_EXAMPLES_PROGRAMS_SHAPE_SPACE_OPTIONS_H

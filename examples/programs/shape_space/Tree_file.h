@@ -1,0 +1,141 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// A tree of the command line: its skeleton, its points, and the names of its nodes.
+
+#ifndef PCS_EXAMPLES_PROGRAMS_SHAPE_SPACE_TREE_FILE_H
+#define PCS_EXAMPLES_PROGRAMS_SHAPE_SPACE_TREE_FILE_H
+
+#include "common/up_direction.h"
+#include <pcs/IO/points/Point_table.h>
+#include <pcs/IO/read_points.h>
+#include <pcs/IO/read_swc.h>
+#include <pcs/IO/read_tree_csv.h>
+#include <pcs/IO/read_txtskl.h>
+#include <pcs/core/Tree_skeleton.h>
+#include <pcs/core/errors.h>
+#include <pcs/shape_space/input/extend_axes.h>
+
+#if __has_include(<pcs/extract_tree_skeleton.h>)
+#include <pcs/extract_tree_skeleton.h>
+#define PCS_CAN_EXTRACT_SKELETONS 1
+#else
+#define PCS_CAN_EXTRACT_SKELETONS 0
+#endif
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace orl_program {
+
+using Kernel = pcs::IO::Point_table::Kernel;
+using Skeleton = pcs::Tree_skeleton<Kernel>;
+
+struct Tree_file
+{
+  Skeleton skeleton;
+  pcs::IO::Point_table points;
+  std::vector<std::int64_t> ids; ///< of the nodes, as in the file
+  bool has_valid_normals = false;
+};
+
+inline void read_skeleton(const std::string& path, Tree_file& tree)
+{
+  const std::filesystem::path extension = std::filesystem::path(path).extension();
+  if (extension == ".txtskl" || extension == ".TXTSKL")
+    pcs::IO::read_txtskl<Kernel>(path, tree.skeleton);
+  else if (extension == ".csv" || extension == ".CSV") {
+    std::vector<std::size_t> hits;
+    pcs::IO::read_tree_csv<Kernel>(path, tree.skeleton, hits, tree.ids);
+  } else
+    pcs::IO::read_swc<Kernel>(path, tree.skeleton, tree.ids);
+}
+
+inline void extract_skeleton(const std::string& points, const std::string& up, Tree_file& tree)
+{
+#if PCS_CAN_EXTRACT_SKELETONS
+  const auto report = [&] {
+    try {
+      return pcs::extract_tree_skeleton(
+          tree.points.points(),
+          tree.skeleton,
+          pcs::parameters::up_direction(program::up_direction<Kernel>(up)));
+    } catch (const pcs::Invalid_input& error) {
+      throw pcs::Invalid_input(points + ": " + error.what() + "; give a skeleton with --skeleton");
+    }
+  }();
+  if (report.status != pcs::Status::converged || num_vertices(tree.skeleton) < 2)
+    throw pcs::Invalid_input(points + ": no skeleton can be extracted (" +
+                             pcs::to_string(report.status) + "); give one with --skeleton");
+#else
+  static_cast<void>(tree);
+  static_cast<void>(up);
+  throw pcs::Invalid_input(points + ": a skeleton is needed; give one with --skeleton");
+#endif
+}
+
+/// Skeletons and points of which most are far from each other are in different coordinates.
+inline void
+check_place(const std::string& points, const std::string& skeleton, const Tree_file& tree)
+{
+  CGAL::Bbox_3 box;
+  for (std::size_t v = 0; v < num_vertices(tree.skeleton); ++v)
+    box += tree.skeleton[v].point.bbox();
+  const double far =
+      std::sqrt(CGAL::squared_distance(Kernel::Point_3(box.xmin(), box.ymin(), box.zmin()),
+                                       Kernel::Point_3(box.xmax(), box.ymax(), box.zmax())));
+  const auto& all = tree.points.points();
+  const auto number_of_far = std::count_if(all.begin(), all.end(), [&](const auto& p) {
+    for (int i = 0; i < 3; ++i)
+      if (p[i] < box.min(i) - far || p[i] > box.max(i) + far)
+        return true;
+    return false;
+  });
+  if (2 * static_cast<std::size_t>(number_of_far) > all.size())
+    throw pcs::Invalid_input(points + ": " + std::to_string(number_of_far) + " of " +
+                             std::to_string(all.size()) + " points are farther from " + skeleton +
+                             " than it is large; both must be in the same coordinates and unit");
+}
+
+/// What the files say. Either path may be empty, not both.
+inline Tree_file read_tree(const std::string& points, const std::string& skeleton)
+{
+  Tree_file tree;
+  if (!points.empty())
+    tree.points = pcs::IO::read_points(points);
+  if (!skeleton.empty()) {
+    read_skeleton(skeleton, tree);
+    check_place(points, skeleton, tree);
+  }
+  if (tree.points.has_normals()) {
+    tree.has_valid_normals = true;
+    for (const auto& n : tree.points.normals()) {
+      const double squared_length = n.squared_length();
+      tree.has_valid_normals =
+          tree.has_valid_normals && squared_length > 0 && std::isfinite(squared_length);
+    }
+  }
+  return tree;
+}
+
+/// Finds the skeleton if there is none, and names for nodes that have none. `up`: the axis along which trees grow.
+inline void complete_tree(Tree_file& tree,
+                          const std::string& points,
+                          bool do_extend_axes,
+                          const std::string& up)
+{
+  if (num_vertices(tree.skeleton) == 0)
+    extract_skeleton(points, up, tree);
+  else if (do_extend_axes)
+    pcs::shape_space::extend_axes(tree.skeleton, tree.points.points());
+  for (std::size_t v = tree.ids.size(); v < num_vertices(tree.skeleton); ++v) // the file has none
+    tree.ids.push_back(static_cast<std::int64_t>(v) + 1);
+}
+
+} // namespace orl_program
+
+#endif // PCS_EXAMPLES_PROGRAMS_SHAPE_SPACE_TREE_FILE_H

@@ -1,0 +1,284 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The command line of extract_tree_skeleton.
+
+#ifndef PCS_EXAMPLES_PROGRAMS_SKELETON_SKELETON_OPTIONS_H
+#define PCS_EXAMPLES_PROGRAMS_SKELETON_SKELETON_OPTIONS_H
+
+#include "common/Distinct_files.h"
+#include <pcs/core/errors.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <system_error>
+#include <vector>
+
+namespace program {
+
+struct Skeleton_options
+{
+  std::vector<std::string> inputs, also;
+  std::string swc, mesh, leaves, cylinders, edges, points, report, folder;
+  std::string up = "z", method = "chains", fit, wood, stations,
+              given; // no fit: the default of the library
+  std::vector<double> root, scanners;
+  double beam_milliradians = -1; // < 0: the default of the library
+  double tolerance = -1;         // < 0: the default of the library
+  double breast_height = 1.3;
+  bool do_keep_stations = false, do_keep_ground = false, do_remove_leaves = false,
+       do_keep_leaves = false, do_separate = false, do_use_all = false, do_fit_all = false,
+       is_quiet = false;
+
+  bool has_mesh() const
+  {
+    return !mesh.empty() || std::find(also.begin(), also.end(), "mesh") != also.end();
+  }
+};
+
+/// What decides about results, beside the scan and what can only be given for one scan.
+inline nlohmann::ordered_json to_json(const Skeleton_options& o)
+{
+  nlohmann::ordered_json json = {{"up", o.up},
+                                 {"method", o.method},
+                                 {"wood", o.wood},
+                                 {"stations", o.do_keep_stations ? "keep" : o.stations},
+                                 {"keep_ground", o.do_keep_ground},
+                                 {"leaves",
+                                  o.do_keep_leaves     ? "keep"
+                                  : o.do_remove_leaves ? "remove"
+                                                       : "automatic"},
+                                 {"breast_height", o.breast_height}};
+  if (o.method == "sections") {
+    json["fit"] = o.fit;
+    json["all_points"] = o.do_use_all;
+    json["no_support"] = o.do_fit_all;
+  }
+  if (o.has_mesh()) {
+    json["tolerance"] = o.tolerance;
+    json["separate"] = o.do_separate;
+  }
+  return json;
+}
+
+inline const char* skeleton_help()
+{
+  return R"(Scans: PLY, LAS, OFF, or text (xyz, txt, csv, asc, pts, pwn). A property `wood` (1: wood,
+0: leaf) is used if there is one, and `station` or `point_source_id`, the station that has measured a
+point: errors of their registration are taken out. Lengths of all results are in the unit of the scan, positions
+in its coordinates.
+
+SWC rows: id, type, x, y, z, radius, parent (-1 for the root); type is 5 + the order of the branch.
+Cylinders: the columns of TreeQSM, and the standard error of the radius.
+Points: the scan with `branch` (-1: none), `dense` (1: the section was measured there), `residual`,
+and `leaf` (1: left out as a leaf).
+
+Several scans, with --folder DIR: for each one DIR/NAME.swc, what --also names (DIR/NAME_mesh.ply,
+DIR/NAME_cylinders.csv, DIR/NAME_edges.ply, DIR/NAME_points.ply), and a line of JSON in
+DIR/batch.jsonl. A scan that fails gets a line with its error and the others go on. Started again,
+the batch leaves out what has succeeded; of scans that changed, or with other options, it replaces
+all that it made before.
+
+Exit codes: 0 success, 1 bad input or usage, or a scan of several failed, 2 internal error.)";
+}
+
+inline void declare(CLI::App& app, Skeleton_options& options)
+{
+  app.footer(skeleton_help());
+  app.set_version_flag("--version", PCS_PROGRAM_VERSION);
+  app.add_option("--input", options.inputs, "the scan of a tree, or several")->required();
+  app.add_option("--swc", options.swc, "the skeleton");
+  app.add_option("--mesh", options.mesh, "the closed surface, PLY or OBJ");
+  app.add_option("--leaves", options.leaves, "leaves made up on fine branches, PLY or OBJ");
+  app.add_option("--cylinders",
+                 options.cylinders,
+                 "one row per piece of branch, CSV; branches count from 1 there");
+  app.add_option("--edges", options.edges, "the skeleton as vertices and edges, PLY");
+  app.add_option("--points", options.points, "the scan with the branch of every point");
+  app.add_option("--report", options.report, "counts, sizes and seconds, JSON");
+  app.add_option("--folder", options.folder, "for the results of several scans");
+  app.add_option("--also", options.also, "with --folder: mesh, cylinders, edges, points")
+      ->check(CLI::IsMember({"mesh", "cylinders", "edges", "points"}))
+      ->delimiter(',');
+  app.add_option("--up", options.up, "where the tree grows to: x, y, z, -x, -y or -z")
+      ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))
+      ->capture_default_str();
+  app.add_option("--root", options.root, "x y z of the foot of the trunk")->expected(3);
+  app.add_option("--scanner", options.scanners, "x y z of a scanner; for several: x y z x y z ...");
+  app.add_option("--beam-milliradians",
+                 options.beam_milliradians,
+                 "width of the scanner's beam; widens thin branches, with --scanner")
+      ->check(CLI::NonNegativeNumber)
+      ->needs("--scanner");
+  app.add_option("--wood", options.wood, "property that tells wood (1) from leaves (0)");
+  app.add_option(
+      "--stations",
+      options.stations,
+      "property that tells which station has measured a point; else stations are found by "
+      "the grids of their beams");
+  app.add_flag("--keep-stations",
+               options.do_keep_stations,
+               "do not move stations so that all see the same branches")
+      ->excludes("--stations");
+  app.add_option("--skeleton",
+                 options.given,
+                 "SWC: measure along this skeleton; its positions stay")
+      ->excludes("--root");
+  app.add_option("--breast-height", options.breast_height, "height of the diameter in the report")
+      ->capture_default_str();
+  app.add_option("--tolerance", options.tolerance, "largest distance of the mesh from the sections")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--method",
+                 options.method,
+                 "how branches are found; `sections` is the dissertation's way")
+      ->check(CLI::IsMember({"chains", "sections"}))
+      ->capture_default_str();
+  app.add_option("--fit",
+                 options.fit,
+                 "of the method `sections`: how a section is fitted; `conic` if not given")
+      ->check(CLI::IsMember({"conic", "ellipse", "circle", "by_arc"}));
+  app.add_flag("--all-points",
+               options.do_use_all,
+               "of the method `sections`: not 20 points drawn at random");
+  app.add_flag("--no-support",
+               options.do_fit_all,
+               "of the method `sections`: a slice for every point");
+  app.add_flag("--keep-ground", options.do_keep_ground, "do not look for ground");
+  app.add_flag("--remove-leaves",
+               options.do_remove_leaves,
+               "leave leaves out even if the scan does not look as if it had many");
+  app.add_flag("--keep-leaves", options.do_keep_leaves, "do not look for leaves")
+      ->excludes("--remove-leaves");
+  app.add_flag("--separate", options.do_separate, "mesh: every branch a closed tube of its own");
+  app.add_flag("--quiet", options.is_quiet, "print nothing but errors");
+}
+
+/// Whether the folder of a result exists, and the name is a name. Throws `pcs::IO_error`.
+inline void check_folder_of(const std::string& path)
+{
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  if (!folder.empty() && !std::filesystem::is_directory(folder, error))
+    throw pcs::IO_error(path, "there is no such folder");
+  if (std::filesystem::is_directory(path, error))
+    throw pcs::IO_error(path, "is a directory, expected a file name");
+}
+
+inline void check_single(const Skeleton_options& options)
+{
+  if (options.inputs.size() > 1)
+    throw pcs::Invalid_input("several scans need --folder");
+  if (options.swc.empty())
+    throw pcs::Invalid_input("--swc is required");
+  if (!options.also.empty())
+    throw pcs::Invalid_input("--also needs --folder");
+  Distinct_files files;
+  files.add_input(options.inputs.front());
+  files.add_input(options.given);
+  for (const std::string* path : {&options.swc,
+                                  &options.mesh,
+                                  &options.leaves,
+                                  &options.cylinders,
+                                  &options.edges,
+                                  &options.points,
+                                  &options.report}) {
+    if (path->empty())
+      continue;
+    check_folder_of(*path);
+    files.add_output(*path);
+  }
+  for (const std::string* path : {&options.mesh, &options.leaves}) {
+    const std::string extension = std::filesystem::path(*path).extension().string();
+    if (!path->empty() && extension != ".ply" && extension != ".obj" && extension != ".PLY" &&
+        extension != ".OBJ")
+      throw pcs::IO_error(*path, "the extension of a mesh must be .ply or .obj");
+  }
+}
+
+/// Where the results of one scan of several go, without what tells them apart.
+inline std::string name_of_results(const std::string& input, const std::string& folder)
+{
+  return (std::filesystem::path(folder) / std::filesystem::path(input).stem()).string();
+}
+
+/// The names of the results of one scan of several.
+inline Skeleton_options options_of_one(const std::string& input, const Skeleton_options& options)
+{
+  Skeleton_options one = options;
+  const std::string name = name_of_results(input, options.folder);
+  one.swc = name + ".swc";
+  for (const std::string& kind : options.also)
+    if (kind == "mesh")
+      one.mesh = name + "_mesh.ply";
+    else if (kind == "cylinders")
+      one.cylinders = name + "_cylinders.csv";
+    else if (kind == "edges")
+      one.edges = name + "_edges.ply";
+    else
+      one.points = name + "_points.ply";
+  return one;
+}
+
+inline void check_batch(const Skeleton_options& options)
+{
+  for (const std::string* path : {&options.swc,
+                                  &options.mesh,
+                                  &options.leaves,
+                                  &options.cylinders,
+                                  &options.edges,
+                                  &options.points,
+                                  &options.report})
+    if (!path->empty())
+      throw pcs::Invalid_input("with --folder the results have the names of the scans; leave " +
+                               *path + " out");
+  if (!options.given.empty() || !options.root.empty() || !options.scanners.empty())
+    throw pcs::Invalid_input("--skeleton, --root and --scanner belong to one scan, not to several");
+  std::map<std::string, std::string> names;
+  for (const std::string& input : options.inputs) {
+    const auto [at, is_new] = names.emplace(std::filesystem::path(input).stem().string(), input);
+    if (!is_new)
+      throw pcs::Invalid_input("the results of " + at->second + " and " + input +
+                               " would have the same name");
+  }
+  Distinct_files files;
+  for (const std::string& input : options.inputs)
+    files.add_input(input);
+  for (const std::string& input : options.inputs) {
+    const Skeleton_options one = options_of_one(input, options);
+    for (const std::string* path : {&one.swc, &one.mesh, &one.cylinders, &one.edges, &one.points})
+      files.add_output(*path);
+  }
+}
+
+/// Checks what CLI11 cannot. Throws `pcs::Invalid_input` or `pcs::IO_error`.
+inline void check(const Skeleton_options& options)
+{
+  if (options.scanners.size() % 3 != 0)
+    throw pcs::Invalid_input("--scanner takes three coordinates for each scanner, found " +
+                             std::to_string(options.scanners.size()) + " numbers");
+  if (!std::isfinite(options.tolerance)) // for CLI11 everything is in range that is not out of it
+    throw pcs::Invalid_input("--tolerance must be a finite number");
+  const auto refuse = [](bool is_given, const char* name, const char* lacking) {
+    if (is_given)
+      throw pcs::Invalid_input(std::string(name) + " has no effect without " + lacking);
+  };
+  const bool has_sections = options.method == "sections";
+  refuse(!options.fit.empty() && !has_sections, "--fit", "--method sections");
+  refuse(options.do_use_all && !has_sections, "--all-points", "--method sections");
+  refuse(options.do_fit_all && !has_sections, "--no-support", "--method sections");
+  refuse(options.tolerance >= 0 && !options.has_mesh(), "--tolerance", "a mesh");
+  refuse(options.do_separate && !options.has_mesh(), "--separate", "a mesh");
+  if (options.folder.empty())
+    check_single(options);
+  else
+    check_batch(options);
+}
+
+} // namespace program
+
+#endif // PCS_EXAMPLES_PROGRAMS_SKELETON_SKELETON_OPTIONS_H

@@ -1,0 +1,109 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The report of a skeletonization as JSON.
+
+#ifndef PCS_EXAMPLES_PROGRAMS_SKELETON_SKELETON_REPORT_H
+#define PCS_EXAMPLES_PROGRAMS_SKELETON_SKELETON_REPORT_H
+
+#include <pcs/core/Skeleton_report.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cstddef>
+#include <string>
+#include <utility>
+
+namespace program {
+
+/// A warning of the library, with the options of the program in the place of parameters.
+inline std::string in_options(std::string sentence)
+{
+  for (const auto& [parameter, option] :
+       {std::make_pair("do_remove_leaves(true)", "--remove-leaves"),
+        std::make_pair("do_remove_leaves(false)", "--keep-leaves"),
+        std::make_pair("which a root position chooses", "which --root chooses"),
+        std::make_pair("breast height, which", "--breast-height, which")}) {
+    const std::size_t at = sentence.find(parameter);
+    if (at != std::string::npos)
+      sentence.replace(at, std::string(parameter).size(), option);
+  }
+  return sentence;
+}
+
+inline nlohmann::ordered_json to_json(const pcs::Branch_totals& wood)
+{
+  return {{"branches", wood.number_of_branches}, {"length", wood.length}, {"volume", wood.volume}};
+}
+
+inline nlohmann::ordered_json to_json(const pcs::Scan_station& s)
+{
+  nlohmann::ordered_json json = {{"label", s.label},
+                                 {"points", s.number_of_points},
+                                 {"shift", {s.shift.x(), s.shift.y(), s.shift.z()}},
+                                 {"turn", s.turn}};
+  if (s.azimuth_step > 0) { // found
+    json["position"] = {s.position.x(), s.position.y(), s.position.z()};
+    json["steps"] = {s.azimuth_step, s.elevation_step};
+  }
+  return json;
+}
+
+/// All figures; lengths in the unit of the input.
+inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skeleton_report& r)
+{
+  nlohmann::ordered_json json;
+  json["input"] = input;
+  json["status"] = pcs::to_string(r.status);
+  json["points"] = {{"all", r.number_of_points},
+                    {"duplicates", r.number_of_duplicates},
+                    {"outliers", r.number_of_outliers},
+                    {"leaves", r.number_of_leaf_points},
+                    {"ground", r.number_of_ground_points},
+                    {"walls", r.number_of_wall_points},
+                    {"unexplained", r.number_of_unexplained_points},
+                    {"out_of_reach", r.number_of_unreached_points}};
+  json["spacing"] = r.spacing;
+  json["voxel_size"] = r.voxel_size;
+  json["noise"] = r.noise;
+  json["residual"] = r.residual;
+  json["nodes"] = r.number_of_nodes;
+  json["branches"] = r.number_of_branches;
+  json["branches_out_of_reach"] = r.number_of_unreached_branches;
+  json["other_stems"] = r.number_of_other_stems;
+  json["in_rows"] = r.is_in_rows;
+  json["stations"] = nlohmann::ordered_json::array();
+  for (const pcs::Scan_station& s : r.stations)
+    json["stations"].push_back(to_json(s));
+  json["warnings"] = nlohmann::ordered_json::array();
+  for (const std::string& sentence : pcs::warnings(r))
+    json["warnings"].push_back(in_options(sentence));
+  json["height"] = r.height;
+  json["reach"] = r.reach;
+  json["breast_height"] = r.breast_height;
+  json["diameter_at_breast_height"] = nullptr;
+  if (r.diameter_at_breast_height > 0) // else nothing is that high
+    json["diameter_at_breast_height"] = r.diameter_at_breast_height;
+  json["total"] = to_json(r.total);
+  json["by_order"] = nlohmann::ordered_json::array();
+  for (const pcs::Branch_totals& wood : r.by_order)
+    json["by_order"].push_back(to_json(wood));
+  json["by_size"] = nlohmann::ordered_json::array();
+  for (std::size_t k = 0; k < r.by_size.size(); ++k) {
+    nlohmann::ordered_json size = to_json(r.by_size[k]);
+    size.erase("branches");
+    size["radius_from"] = k > 0 ? r.size_bounds[k - 1] : 0.0;
+    if (k < r.size_bounds.size())
+      size["radius_to"] = r.size_bounds[k];
+    json["by_size"].push_back(size);
+  }
+  json["seconds"] = {{"neighbors", r.seconds.neighbors},
+                     {"paths", r.seconds.paths},
+                     {"axes", r.seconds.axes},
+                     {"joints", r.seconds.joints},
+                     {"sections", r.seconds.sections}};
+  return json;
+}
+
+} // namespace program
+
+#endif // PCS_EXAMPLES_PROGRAMS_SKELETON_SKELETON_REPORT_H
