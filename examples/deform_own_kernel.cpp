@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Any kernel of CGAL, and its own transformations: here Epick and Aff_transformation_3.
+// Other kernels and transformations of CGAL: Epick and Aff_transformation_3.
 
 #include "pillar.h"
 #include <pcs/deform_point_set.h>

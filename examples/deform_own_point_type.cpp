@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Points of a type of your own, as a scanner delivers them: a property map says where the position is.
+// Points of a user-defined type: a property map gives access to the position.
 
 #include "pillar.h"
 #include <pcs/deform_point_set.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// CGAL::Point_set_3 (a GPL package of CGAL): its own maps are passed, nothing is copied.
+// CGAL::Point_set_3 (a GPL package of CGAL): its own maps are passed, and nothing is copied.
 
 #include "pillar.h"
 #include <pcs/deform_point_set.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Only a part of the cloud may move: everything outside keeps its place, bit for bit.
+// Region of interest: points outside keep their positions, bit for bit.
 
 #include "pillar.h"
 #include <pcs/deform_point_set.h>
@@ -28,7 +28,7 @@ int main()
     if (points[i].z() > 9.5)
       tip.push_back(i); // the tip is pulled; it must be part of the region
   }
-  const std::vector<std::size_t> fixed; // none: the border of the region holds
+  const std::vector<std::size_t> fixed; // empty: the boundary of the region is fixed
   const auto report = pcs::deform_point_set(points,
                                             fixed,
                                             tip,

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A session: handles are moved again and again, states are kept and brought back.
+// An interactive session: handles move repeatedly; states are saved and restored.
 
 #include "pillar.h"
 #include <pcs/Point_set_deformation.h>
@@ -55,7 +55,8 @@ int main()
     error = std::max(error, CGAL::squared_distance(points[i], at_rest[i]));
 
   //! [drag]
-  // The frames of a drag go on from the frame before; where the handle is let go, the result depends on that place only.
+  // Frames of a drag start from the previous frame; the final result depends on the last position
+  // only.
   std::size_t passes = 0;
   for (int frame = 1; frame <= 30; ++frame) {
     session.set_rotation(handle, Kernel::Vector_3(1, 0, 0), frame * CGAL_PI / 180);
@@ -66,7 +67,7 @@ int main()
   std::cout << passes << " passes for 30 frames\n";
 
   //! [accept]
-  // What was reached becomes the new shape at rest: the next motion starts from there.
+  // The current shape becomes the rest shape of the next motion.
   session.set_rotation(handle, Kernel::Vector_3(1, 0, 0), CGAL_PI / 6);
   session.deform();
   session.accept();

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A soft handle is drawn to its target by springs: the softer, the farther it stays away.
+// Soft handles: springs pull points to their targets; a softer handle stays farther away.
 
 #include "pillar.h"
 #include <pcs/deform_point_set.h>

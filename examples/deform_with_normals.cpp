@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Points with normals, as pairs: the normals turn with the surface.
+// Points with normals as pairs: the normals rotate with the surface.
 
 #include "pillar.h"
 #include <pcs/deform_point_set.h>

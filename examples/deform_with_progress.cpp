@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Progress, and a way out: a callback that returns false stops the work and leaves the points alone.
+// Progress and cancelling: a callback that returns false stops the work, and the points are
+// unchanged.
 
 #include "pillar.h"
 #include <pcs/deform_point_set.h>

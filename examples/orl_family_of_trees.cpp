@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A family of trees: their mean, how they differ, and new trees like them, with points in one order.
+// A family of trees: mean, modes of variation and new trees, with points in the same order.
 
 #include <pcs/Orl_shape_space.h>
 #include <pcs/generators/grow_tree.h>

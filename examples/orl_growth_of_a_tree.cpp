@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// One tree at three dates: a smooth path through all, and a table of what changed.
+// One tree at three dates: a smooth growth path, and a table of changes.
 
 #include <pcs/Orl_shape_space.h>
 #include <pcs/generators/grow_tree.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Trees in a graph type of one's own, with positions and radii in vectors.
+// Trees in a user-defined graph type, with positions and radii in vectors.
 
 #include <pcs/orl_geodesic.h>
 

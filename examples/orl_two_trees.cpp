@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Two trees of the same kind, the trees between them, and how far they are apart.
+// Two trees, the geodesic between them, and their distance.
 
 #include <pcs/Orl_shape_space.h>
 #include <pcs/generators/grow_tree.h>
@@ -14,7 +14,7 @@
 
 using Kernel = CGAL::Simple_cartesian<double>;
 
-/// A ring of points around every node: enough of a scan for an example.
+/// A ring of points around every node, as a minimal scan.
 std::vector<Kernel::Point_3> rings(const pcs::Tree_skeleton<Kernel>& tree)
 {
   std::vector<Kernel::Point_3> points;

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A shape for the examples: points on a pillar of radius 1 that stands on the origin and is 10 high.
+// A shape for the examples: points on a pillar of radius 1 that stands on the origin and is 10
+// high.
 
 #ifndef PCS_EXAMPLES_PILLAR_H
 #define PCS_EXAMPLES_PILLAR_H

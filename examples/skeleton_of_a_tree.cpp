@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Scans a virtual tree, finds its skeleton, and prints what a forester wants to know.
+// Extracts the skeleton of a virtual scan, and prints its forestry measures.
 
 #include <pcs/IO/write_points.h>
 #include <pcs/IO/write_swc.h>

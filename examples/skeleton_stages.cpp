@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Runs a skeletonization stage by stage, looks at what each one found, and makes a mesh of the result.
+// Runs a skeletonization stage by stage, inspects the intermediate results, and makes a mesh.
 
 #include <pcs/IO/write_mesh.h>
 #include <pcs/Tree_skeletonization.h>

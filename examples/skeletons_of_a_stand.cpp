@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Cuts a cloud of three trees apart, and finds the skeleton of each.
+// Segments a cloud of three trees, and extracts the skeleton of each.
 
 #include <pcs/extract_tree_skeleton.h>
 #include <pcs/generators/grow_tree.h>
@@ -40,7 +40,7 @@ int main()
   for (std::size_t t = 0; t < trees.size(); ++t) {
     std::vector<Kernel::Point_3> points;
     for (const auto& [point, tree] : stand)
-      if (tree == t) // pcs::npos: of no tree
+      if (tree == t) // pcs::npos: not part of a tree
         points.push_back(point);
     pcs::Tree_skeleton<Kernel> skeleton;
     const auto report = pcs::extract_tree_skeleton(points, skeleton);

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// One tree at two ages, and with edited branches: the ids of branches say what corresponds.
+// A virtual tree at two ages and with edited branches; branch ids give the correspondences.
 
 #include <pcs/core/Tree_measures.h>
 #include <pcs/generators/edit_branches.h>
@@ -38,7 +38,7 @@ int main()
 
   //! [edits]
   Tree edited = pcs::prune_branch(old_tree, 3);
-  pcs::turn_branch(edited, 5, Kernel::Vector_3(0, 0, 1), 0.5); // about the vertical [rad]
+  pcs::turn_branch(edited, 5, Kernel::Vector_3(0, 0, 1), 0.5); // yaw [rad]
   pcs::lengthen_branch(edited, 6, 1.3);
   //! [edits]
   const bool is_gone = ids(edited).count(3) == 0 && ids(edited).count(5) == 1;

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Grows a virtual tree, scans it from three stations, and compares the points with the truth.
+// Grows a virtual tree, scans it from three stations, and compares the points with the ground
+// truth.
 
 #include <pcs/generators/grow_tree.h>
 #include <pcs/generators/scan_tree.h>

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A program that deforms a point file: handles and motions come from a JSON file, all properties are kept.
+// Program: deforms a point file by the handles and motions of a JSON file, and keeps all
+// properties.
 
 #include "common/Progress_line.h"
 #include "common/Report_file.h"
@@ -119,9 +120,8 @@ void run(const Options& options)
 int main(int argc, char** argv)
 {
   program::Options options;
-  CLI::App app(
-      "Moves a few handles of a point cloud; the other points follow and keep their shape.",
-      "deform_point_set");
+  CLI::App app("Deforms a point cloud by handles; the other points follow as rigidly as possible.",
+               "deform_point_set");
   program::declare(app, options);
   return program::run_program(app, argc, argv, [&] {
     program::run(options);

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A program that turns the scan of a tree into a skeleton with radii, a mesh, and tables.
+// Program: extracts a skeleton with radii, a mesh and tables from the scan of a tree.
 
 #include "common/Progress_line.h"
 #include "common/Report_file.h"
@@ -9,6 +9,7 @@
 #include "common/up_direction.h"
 #include "skeleton/Batch_log.h"
 #include "skeleton/Skeleton_options.h"
+#include "skeleton/point_attributes.h"
 #include "skeleton/skeleton_report.h"
 #include <pcs/IO/internal/Output_file.h>
 #include <pcs/IO/points/Point_table.h>
@@ -69,21 +70,6 @@ pcs::Leaf_removal leaf_removal(const Skeleton_options& options, bool is_labelled
   return options.do_remove_leaves ? Leaf_removal::always : Leaf_removal::where_found;
 }
 
-/// Which station has measured a point; -1: not known. Empty: nothing is known.
-std::vector<long long> stations_of(const pcs::IO::Point_table& table, const std::string& wanted)
-{
-  if (!wanted.empty() && !table.has_property(wanted))
-    throw pcs::Invalid_input("the scan has no property '" + wanted + "'");
-  for (const std::string& name : {wanted, std::string("station"), std::string("point_source_id")})
-    if (!name.empty() && table.has_property(name)) {
-      std::vector<long long> stations;
-      for (const double x : table.property_as_double(name))
-        stations.push_back(x >= 0 && x < 1e15 ? std::llround(x) : -1);
-      return stations;
-    }
-  return {};
-}
-
 /// Of the points.
 struct Labels
 {
@@ -92,7 +78,7 @@ struct Labels
   std::vector<std::uint8_t> dense, leaf;
 };
 
-/// Labels only if somebody wants them.
+/// Labels are computed only if they are written.
 template <class Range, class NamedParameters>
 pcs::Skeleton_report extract_with_labels(const Range& indices,
                                          const Skeleton_options& options,
@@ -122,26 +108,19 @@ pcs::Skeleton_report extract(const std::string& input,
                              Labels& labels)
 {
   const std::size_t n = table.number_of_points();
-  std::vector<double> wood; // empty: all may be
-  bool is_labelled = false;
-  const std::string name = options.wood.empty() ? "wood" : options.wood;
-  if (table.has_property(name)) {
-    wood = table.property_as_double(name);
-    is_labelled = true;
-    if (!options.is_quiet && (options.do_keep_leaves || options.do_remove_leaves))
-      std::cerr
-          << "extract_tree_skeleton: warning: " << input << ": '" << name
-          << "' of the points tells which are leaves, --keep-leaves and --remove-leaves do not\n";
-  } else if (!options.wood.empty())
-    throw pcs::Invalid_input("the scan has no property '" + name + "'");
-  // the points are numbers here, and everything about them is a map
+  const std::vector<std::uint8_t> wood = wood_of_points(table, options.wood);
+  if (!wood.empty() && !options.is_quiet && (options.do_keep_leaves || options.do_remove_leaves))
+    std::cerr << "extract_tree_skeleton: warning: " << input
+              << ": the wood labels of the points are used; --keep-leaves and --remove-leaves are "
+                 "ignored\n";
+  // points are indices here, and their attributes are property maps
   const auto indices = boost::make_iterator_range(boost::counting_iterator<std::size_t>(0),
                                                   boost::counting_iterator<std::size_t>(n));
   const auto identity = boost::typed_identity_property_map<std::size_t>();
   const auto points = boost::make_iterator_property_map(table.points().begin(), identity);
   const auto is_wood = boost::make_function_property_map<std::size_t, bool>(
-      [&](std::size_t i) { return wood.empty() || wood[i] > 0.5; });
-  const std::vector<long long> stations = stations_of(table, options.stations);
+      [&](std::size_t i) { return wood.empty() || wood[i] != 0; });
+  const std::vector<long long> stations = stations_of_points(table, options.stations);
   const auto station = boost::make_function_property_map<std::size_t, long long>(
       [&](std::size_t i) { return stations.empty() ? -1 : stations[i]; });
   std::vector<Kernel::Point_3> scanners;
@@ -168,7 +147,7 @@ pcs::Skeleton_report extract(const std::string& input,
                       .station_map(station)
                       .do_remove_ground(!options.do_keep_ground)
                       .wood_map(is_wood)
-                      .do_remove_leaves(leaf_removal(options, is_labelled))
+                      .do_remove_leaves(leaf_removal(options, !wood.empty()))
                       .scanner_positions(scanners)
                       .beam_width(options.beam_milliradians < 0 ? pcs::default_beam_width
                                                                 : options.beam_milliradians / 1000)
@@ -210,7 +189,7 @@ std::size_t write_leaves(const std::string& path, const Tree& tree)
   return count;
 }
 
-/// With `do_commit` false only finds out whether the file could be written.
+/// With `do_commit` false only checks that the file can be written.
 void write_points_to(const std::string& path,
                      pcs::IO::Point_table table,
                      const Labels& labels,
@@ -245,6 +224,7 @@ nlohmann::ordered_json work_on(const std::string& input, const Skeleton_options&
       const pcs::IO::internal::Output_file probe(*path); // never committed
   pcs::internal::Stopwatch watch;
   pcs::IO::Point_table table = pcs::IO::read_points(input);
+  const std::size_t number_of_empty_rays = remove_rays_without_return(table);
   if (!options.points.empty()) {
     pcs::IO::Point_table labelled(table.schema());
     write_points_to(options.points, std::move(labelled), Labels(), false);
@@ -257,6 +237,9 @@ nlohmann::ordered_json work_on(const std::string& input, const Skeleton_options&
     throw pcs::Invalid_input("there is no tree in this scan (" +
                              std::to_string(report.number_of_points) + " points)");
   nlohmann::ordered_json json = to_json(input, report);
+  if (number_of_empty_rays > 0)
+    json["warnings"].push_back(std::to_string(number_of_empty_rays) +
+                               " rays without return (alpha 0) were left out");
   if (!options.is_quiet)
     for (const std::string sentence : json["warnings"])
       std::cerr << "extract_tree_skeleton: warning: " << input << ": " << sentence << '\n';
@@ -279,7 +262,7 @@ nlohmann::ordered_json work_on(const std::string& input, const Skeleton_options&
   return json;
 }
 
-/// One scan; throws if there is no tree in it, or before the work if a result cannot be written. Says of which scan.
+/// Processes one scan. Throws if it has no tree, or before the work if a result cannot be written.
 nlohmann::ordered_json run_one(const std::string& input, const Skeleton_options& options)
 {
   try {
@@ -307,7 +290,7 @@ void run_single(const Skeleton_options& options)
               << '\n';
 }
 
-/// Many scans; returns whether all have a skeleton.
+/// Processes several scans; returns whether all have a skeleton.
 bool run_batch(const Skeleton_options& options)
 {
   Batch_log log(options.folder);
@@ -325,7 +308,7 @@ bool run_batch(const Skeleton_options& options)
         continue;
       }
       json = run_one(input, one);
-    } catch (const std::exception& e) { // one bad tree never ends the batch
+    } catch (const std::exception& e) { // a failed scan does not end the batch
       const std::string what = e.what(),
                         scan = what.find(input) == std::string::npos ? input + ": " : "";
       std::cerr << "extract_tree_skeleton: " << scan << what << '\n';

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Writes a closed surface with bumps as a point file of any size, without holding it in memory.
+// Program: writes a closed bumpy surface as a point file of any size, in chunks.
 
 #include <pcs/IO/Point_writer.h>
 #include <pcs/IO/points/Point_schema.h>
@@ -17,7 +17,8 @@
 
 using Table = pcs::IO::Point_table;
 
-/// Point `i` of `n` on an upright ellipsoid of height 6, along a spiral of even density, with bumps.
+/// Point `i` of `n` on an upright ellipsoid of height 6, along a spiral of even density, with
+/// bumps.
 Table::Point_3 surface_point(std::uint64_t i, std::uint64_t n)
 {
   constexpr double golden_ratio = 1.618033988749895, pi = 3.141592653589793;
@@ -28,7 +29,7 @@ Table::Point_3 surface_point(std::uint64_t i, std::uint64_t n)
   return {radius * std::cos(angle), radius * std::sin(angle), 3 * z};
 }
 
-/// Throws unless it is a number of points that a file may have.
+/// Throws if it is not a valid number of points.
 std::uint64_t read_count(const std::string& text)
 {
   std::uint64_t n = 0;

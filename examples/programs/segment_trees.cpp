@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A program that cuts the scan of a stand into its trees.
+// Program: segments the scan of a stand into individual trees.
 
 #include "common/Distinct_files.h"
 #include "common/Progress_line.h"
@@ -40,18 +40,18 @@ struct Options
 {
   std::string input, folder, points, report, up = "z";
   double breast_height = pcs::default_breast_height;
-  std::size_t least_points = 1000;
+  std::size_t min_points = 1000;
   bool do_keep_ground = false, is_quiet = false;
 };
 
 const char* help()
 {
   return R"(Scans: PLY, LAS, OFF, or text (xyz, txt, csv, asc, pts, pwn).
-Folder: DIR/NAME_1.ply, DIR/NAME_2.ply ... of SCAN.ply, the trees with the thickest stems first, with all properties
-of their points. They are input for extract_tree_skeleton, all at once with --folder there.
-Points: the scan with `tree` (-1: ground, or of no tree).
+Folder: DIR/SCAN_1.ply, DIR/SCAN_2.ply, ..., trees with the thickest stems first, with all
+properties of their points. extract_tree_skeleton processes all of them with its own --folder.
+Points: the scan with the property `tree` (-1: ground, or not part of a tree).
 
-Exit codes: 0 success, 1 bad input or usage, or no tree, 2 internal error.)";
+Exit codes: 0 success, 1 bad input, bad usage or no tree, 2 internal error.)";
 }
 
 void declare(CLI::App& app, Options& options)
@@ -59,21 +59,23 @@ void declare(CLI::App& app, Options& options)
   app.footer(help());
   app.set_version_flag("--version", PCS_PROGRAM_VERSION);
   app.add_option("--input", options.input, "the scan of a stand")->required();
-  app.add_option("--folder", options.folder, "for a file of every tree");
-  app.add_option("--points", options.points, "the scan with the tree of every point");
-  app.add_option("--report", options.report, "trees, counts and seconds, JSON");
-  app.add_option("--least-points", options.least_points, "smaller trees get no file")
+  app.add_option("--folder", options.folder, "folder for one file per tree");
+  app.add_option("--points", options.points, "the scan with the tree label of every point");
+  app.add_option("--report", options.report, "trees, counts and seconds (JSON)");
+  app.add_option("--min-points", options.min_points, "trees with fewer points get no file")
       ->capture_default_str();
-  app.add_option("--up", options.up, "where trees grow to: x, y, z, -x, -y or -z")
+  app.add_option("--up", options.up, "up direction: x, y, z, -x, -y or -z")
       ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))
       ->capture_default_str();
-  app.add_option("--breast-height", options.breast_height, "unit of the sizes of stems")
+  app.add_option("--breast-height",
+                 options.breast_height,
+                 "height of the diameter of stems, which scales all size limits")
       ->capture_default_str();
-  app.add_flag("--keep-ground", options.do_keep_ground, "do not look for ground");
-  app.add_flag("--quiet", options.is_quiet, "print nothing but errors");
+  app.add_flag("--keep-ground", options.do_keep_ground, "keep ground points");
+  app.add_flag("--quiet", options.is_quiet, "print errors only");
 }
 
-/// Where a tree goes; numbers begin with 1.
+/// The path of the file of a tree; numbers begin with 1.
 std::string file_of_tree(const Options& options, std::size_t tree)
 {
   const std::filesystem::path scan(options.input);
@@ -99,7 +101,7 @@ nlohmann::ordered_json to_json(const Options& options, const pcs::Segmentation_r
                                   {"radius", tree.radius},
                                   {"height", tree.height},
                                   {"points", tree.number_of_points}};
-    if (!options.folder.empty() && tree.number_of_points >= options.least_points)
+    if (!options.folder.empty() && tree.number_of_points >= options.min_points)
       row["file"] = file_of_tree(options, t);
     trees.push_back(row);
   }
@@ -117,7 +119,7 @@ segment(const pcs::IO::Point_table& table, const Options& options, std::vector<s
 {
   const std::size_t n = table.number_of_points();
   std::vector<std::size_t> tree_of_point(n, pcs::npos);
-  // the points are numbers here, and everything about them is a map
+  // points are indices here, and their attributes are property maps
   const auto indices = boost::make_iterator_range(boost::counting_iterator<std::size_t>(0),
                                                   boost::counting_iterator<std::size_t>(n));
   const auto identity = boost::typed_identity_property_map<std::size_t>();
@@ -152,7 +154,7 @@ void write_trees(const pcs::IO::Point_table& table,
     if (trees[i] >= 0)
       points[static_cast<std::size_t>(trees[i])].push_back(i);
   for (std::size_t t = 0; t < points.size(); ++t)
-    if (points[t].size() >= options.least_points)
+    if (points[t].size() >= options.min_points)
       pcs::IO::write_points(file_of_tree(options, t), table.select(points[t]));
 }
 
@@ -183,7 +185,7 @@ void run(const Options& options)
   std::vector<std::int32_t> trees;
   const pcs::Segmentation_report report = segment(table, options, trees);
   if (report.status != pcs::Status::converged)
-    throw pcs::Invalid_input(options.input + ": there is no stem in this scan (" +
+    throw pcs::Invalid_input(options.input + ": no stem was found in this scan (" +
                              std::to_string(report.number_of_points) + " points)");
   if (!options.folder.empty())
     write_trees(table, options, report, trees);
@@ -197,7 +199,7 @@ void run(const Options& options)
   for (const std::string& warning : pcs::warnings(report))
     std::cerr << "segment_trees: warning: " << options.input << ": " << warning << '\n';
   if (!options.is_quiet)
-    std::cout << "trees " << report.trees.size() << ", points of none "
+    std::cout << "trees " << report.trees.size() << ", unassigned points "
               << report.number_of_unassigned_points << " of " << report.number_of_points
               << ", seconds " << report.seconds << '\n';
 }
@@ -207,8 +209,7 @@ void run(const Options& options)
 int main(int argc, char** argv)
 {
   program::Options options;
-  CLI::App app("Finds the trees in the scan of a stand, and whose every point is.",
-               "segment_trees");
+  CLI::App app("Segments the scan of a stand into individual trees.", "segment_trees");
   program::declare(app, options);
   return program::run_program(app, argc, argv, [&] {
     program::run(options);

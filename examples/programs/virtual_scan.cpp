@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A program that grows a virtual tree, or reads one, and scans it: points with labels, and the truth about them.
+// Program: grows or reads a virtual tree and scans it; writes labelled points and the ground truth.
 
 #include "common/Progress_line.h"
 #include "common/Report_file.h"
@@ -69,7 +69,7 @@ Tree make_tree(const Scan_options& options)
   return options.age == 1 ? tree : pcs::tree_at_age(tree, options.age);
 }
 
-/// The points as they are written; the caller moves them in.
+/// The table that is written.
 pcs::IO::Point_table table_of(Scan& scan)
 {
   pcs::IO::Point_table table(std::move(scan.points));
@@ -159,7 +159,7 @@ void run(Scan_options& options)
 int main(int argc, char** argv)
 {
   program::Scan_options options;
-  CLI::App app("Grows a virtual tree and scans it: points with labels, and the truth.",
+  CLI::App app("Grows and scans a virtual tree; writes labelled points and the ground truth.",
                "virtual_scan");
   program::declare(app, options);
   return program::run_program(app, argc, argv, [&] {

@@ -18,6 +18,8 @@ find_program(PCS_CLANG_FORMAT NAMES clang-format-14 clang-format)
 pcs_add_script_test(format.clang_format check_format.cmake
   -D CLANG_FORMAT=${PCS_CLANG_FORMAT})
 
+pcs_add_script_test(format.line_length check_line_length.cmake)
+
 if(EXISTS ${PROJECT_SOURCE_DIR}/examples/readme_example.cpp)
   pcs_add_script_test(readme.example check_readme.cmake)
 endif()

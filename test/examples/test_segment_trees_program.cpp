@@ -120,7 +120,7 @@ BOOST_AUTO_TEST_CASE(names_of_files_need_not_be_utf_8)
 
 BOOST_AUTO_TEST_CASE(small_trees_get_no_file)
 {
-  const int code = run("--input stand.ply --folder trees --least-points 100000000");
+  const int code = run("--input stand.ply --folder trees --min-points 100000000");
   BOOST_TEST_REQUIRE(code == 0, err);
   BOOST_TEST(!exists("trees/stand_1.ply"));
 }

@@ -260,6 +260,73 @@ BOOST_AUTO_TEST_CASE(options_change_what_they_say)
   BOOST_TEST(wood["points"]["leaves"] == 1500);
 }
 
+/// The points of the fork with more columns: `names`, and what `values(is_branch)` gives.
+template <class Values>
+std::string fork_table(const std::string& names, const Values& values)
+{
+  std::string table = "x,y,z," + names + "\n";
+  std::istringstream in(fork_text());
+  std::string line;
+  for (int i = 0; std::getline(in, line); ++i) {
+    std::replace(line.begin(), line.end(), ' ', ',');
+    table += line + ',' + values(i < 3000 && i % 2 == 1) + '\n';
+  }
+  return table;
+}
+
+BOOST_AUTO_TEST_CASE(wood_labels_of_other_programs_need_a_value)
+{
+  write("labels.csv", fork_table("label", [](bool is_branch) { return is_branch ? "2" : "4"; }));
+  refuses("--input labels.csv --swc old.swc --wood label", "--wood label=1");
+  refuses("--input labels.csv --swc old.swc --wood label", "2, 4");
+  refuses("--input labels.csv --swc old.swc --wood label=3", "no point is wood");
+  refuses("--input labels.csv --swc old.swc --wood label=stem", "PROPERTY=VALUE");
+  const int code = run("--quiet --input labels.csv --wood label=4 --swc a.swc --report a.json");
+  BOOST_REQUIRE_MESSAGE(code == 0, err);
+  BOOST_TEST(Json::parse(content("a.json"))["points"]["leaves"] == 1500);
+  // a property with the name that is used by default is no exception
+  write("wood.csv", fork_table("wood", [](bool is_branch) { return is_branch ? "1" : "2"; }));
+  refuses("--input wood.csv --swc old.swc", "1, 2");
+}
+
+BOOST_AUTO_TEST_CASE(rays_without_return_are_left_out)
+{
+  const auto cloud = [](const std::string& alpha, const std::string& alpha_of_rays) {
+    std::string table = fork_table("alpha", [&](bool) { return alpha; });
+    for (int i = 0; i < 50; ++i) // ends of rays that met nothing, high above
+      table +=
+          std::to_string(far_x + i) + ',' + std::to_string(far_y) + ",40," + alpha_of_rays + '\n';
+    return table;
+  };
+  write("rays.csv", cloud("255", "0"));
+  int code = run("--input rays.csv --swc a.swc --report a.json");
+  BOOST_REQUIRE_MESSAGE(code == 0, err);
+  BOOST_TEST(err.find("50 rays without return") != std::string::npos, err);
+  const Json without = Json::parse(content("a.json"));
+  BOOST_TEST(without["points"]["all"] == 7500);
+  code = run("--quiet --input tree.xyz --swc b.swc");
+  BOOST_REQUIRE_MESSAGE(code == 0, err);
+  BOOST_TEST(content("a.swc") == content("b.swc"));
+  // an alpha of 0 throughout says nothing about rays
+  write("colours.csv", cloud("0", "0"));
+  code = run("--quiet --input colours.csv --swc c.swc --report c.json");
+  BOOST_REQUIRE_MESSAGE(code == 0, err);
+  BOOST_TEST(Json::parse(content("c.json"))["points"]["all"] == 7550);
+}
+
+BOOST_AUTO_TEST_CASE(flight_lines_are_no_stations)
+{
+  // point_source_id alternates: as stations, two halves of each branch would be registered
+  write("lines.csv",
+        fork_table("point_source_id", [k = 0](bool) mutable { return k++ % 2 ? "7" : "8"; }));
+  int code = run("--quiet --input lines.csv --swc a.swc --report a.json");
+  BOOST_REQUIRE_MESSAGE(code == 0, err);
+  BOOST_TEST(Json::parse(content("a.json"))["stations"].empty());
+  code = run("--quiet --input lines.csv --stations point_source_id --swc b.swc --report b.json");
+  BOOST_REQUIRE_MESSAGE(code == 0, err);
+  BOOST_TEST(Json::parse(content("b.json"))["stations"].size() == 2u);
+}
+
 BOOST_AUTO_TEST_CASE(lengths_are_in_the_unit_of_the_input)
 {
   write("mm.xyz", fork_text(1000));

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// No result may be written over an input or another result, however their names are spelled.
+// Refuses to write a result over an input or over another result, whatever the spelling of the
+// paths.
 
 #ifndef PCS_EXAMPLES_PROGRAMS_COMMON_DISTINCT_FILES_H
 #define PCS_EXAMPLES_PROGRAMS_COMMON_DISTINCT_FILES_H
@@ -17,10 +18,10 @@ namespace program {
 class Distinct_files
 {
 public:
-  /// Inputs may be the same file twice. Nothing happens with an empty path.
+  /// The same file may be an input twice. Empty paths are ignored.
   void add_input(const std::string& path) { add(path, false); }
 
-  /// Throws `pcs::Invalid_input` if it is an input, or a result already.
+  /// Throws `pcs::Invalid_input` if `path` is an input or a result that was added before.
   void add_output(const std::string& path) { add(path, true); }
 
 private:
@@ -30,7 +31,8 @@ private:
     bool is_written;
   };
 
-  /// Without links, so that spellings compare; what is not there yet keeps its name.
+  /// The canonical path, so that spellings can be compared; a path that does not exist yet stays as
+  /// it is.
   static std::string real(const std::string& path)
   {
     std::error_code error;
@@ -62,7 +64,7 @@ private:
                                " are the same file; a result would destroy it");
   }
 
-  std::map<std::string, Use> m_uses; ///< by where they really are
+  std::map<std::string, Use> m_uses; ///< by canonical path
 };
 
 } // namespace program

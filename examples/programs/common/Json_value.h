@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A value of a JSON file that knows where it stands, so that every complaint names the place.
+// A value of a JSON file with its JSON pointer, so that every error names the position in the file.
 
 #ifndef PCS_EXAMPLES_PROGRAMS_COMMON_JSON_VALUE_H
 #define PCS_EXAMPLES_PROGRAMS_COMMON_JSON_VALUE_H
@@ -45,7 +45,7 @@ public:
     return {m_value->at(i), *m_file, m_pointer + "/" + std::to_string(i)};
   }
 
-  /// Throws what is wrong with this value.
+  /// Throws an error about this value.
   [[noreturn]] void fail(const std::string& what) const
   {
     throw pcs::IO_error(*m_file, (m_pointer.empty() ? "top level" : m_pointer) + ": " + what);
@@ -55,7 +55,7 @@ public:
     fail("expected " + expected + ", found " + description());
   }
 
-  /// Checks that this is an object with no keys besides these.
+  /// Checks that this is an object without other keys.
   const Json_value& object(std::initializer_list<const char*> keys) const
   {
     std::string list;
@@ -103,7 +103,7 @@ private:
     return text;
   }
 
-  /// Never prints what is inside: it may be large, or nested a million levels deep.
+  /// Never prints the content, which may be large or deeply nested.
   std::string description() const
   {
     if (m_value->is_object())
@@ -118,7 +118,7 @@ private:
   std::string m_pointer;
 };
 
-/// Parses a file. Throws `pcs::IO_error` if it is no JSON, or an object has a key twice.
+/// Parses a file. Throws `pcs::IO_error` if the file is not JSON, or an object repeats a key.
 inline Json read_json(const std::string& path)
 {
   std::ifstream in(path, std::ios::binary);

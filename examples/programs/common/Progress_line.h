@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// One line that shows progress on a terminal, and nothing anywhere else.
+// A progress line on a terminal; nothing is printed elsewhere.
 
 #ifndef PCS_EXAMPLES_PROGRAMS_COMMON_PROGRESS_LINE_H
 #define PCS_EXAMPLES_PROGRAMS_COMMON_PROGRESS_LINE_H

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A small text file that is found to be writable before the work, and appears under its name only when complete.
+// A text file that is checked to be writable before the work, and that appears only when it is
+// complete.
 
 #ifndef PCS_EXAMPLES_PROGRAMS_COMMON_REPORT_FILE_H
 #define PCS_EXAMPLES_PROGRAMS_COMMON_REPORT_FILE_H
@@ -50,7 +51,7 @@ public:
 
   ~Report_file() { remove_temporary(); }
 
-  /// Names of files need not be UTF-8: what is not is replaced.
+  /// Invalid UTF-8 in file names is replaced.
   void commit(const nlohmann::ordered_json& json)
   {
     commit(json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Finds out whether an output can be written, before anything is computed.
+// Checks that an output can be written before anything is computed.
 
 #ifndef PCS_EXAMPLES_PROGRAMS_COMMON_CHECK_OUTPUT_H
 #define PCS_EXAMPLES_PROGRAMS_COMMON_CHECK_OUTPUT_H
@@ -15,7 +15,7 @@
 
 namespace program {
 
-/// Finds out before the long work whether the format can hold the data and the folder be written to.
+/// Checks that the format can hold the data and that the folder is writable.
 inline void check_output(const std::string& path, const pcs::IO::Point_schema& schema)
 {
   std::error_code error;

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What a command line may give as a random seed.
+// Check of a random seed on the command line.
 
 #ifndef PCS_EXAMPLES_PROGRAMS_COMMON_IS_SEED_H
 #define PCS_EXAMPLES_PROGRAMS_COMMON_IS_SEED_H
@@ -12,7 +12,7 @@
 
 namespace program {
 
-/// A check for CLI11, which itself takes numbers that are too large for the largest one.
+/// A check for CLI11, which silently clamps numbers that are too large.
 inline std::string is_seed(const std::string& text)
 {
   std::int64_t seed = 0;

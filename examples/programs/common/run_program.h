@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What all programs do around their work: parse the command line, say in one sentence what failed, return an exit code.
+// The main function of all programs: parses the command line, prints errors in one sentence,
+// returns an exit code.
 
 #ifndef PCS_EXAMPLES_PROGRAMS_COMMON_RUN_PROGRAM_H
 #define PCS_EXAMPLES_PROGRAMS_COMMON_RUN_PROGRAM_H
@@ -18,7 +19,8 @@
 
 namespace program {
 
-/// Parses, then calls `work()`, which returns whether all went well. 0: it did, 1: bad input, 2: a failure of ours.
+/// Parses, then calls `work()`, which returns whether it succeeded. Returns 0: success, 1: bad
+/// input, 2: internal error.
 template <class Work>
 int run_program(CLI::App& app, int argc, char** argv, const Work& work)
 {

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The direction that an option names.
+// The direction of the option --up.
 
 #ifndef PCS_EXAMPLES_PROGRAMS_COMMON_UP_DIRECTION_H
 #define PCS_EXAMPLES_PROGRAMS_COMMON_UP_DIRECTION_H
@@ -9,7 +9,7 @@
 
 namespace program {
 
-/// Of x, y, z, -x, -y or -z.
+/// The unit vector of x, y, z, -x, -y or -z.
 template <class Kernel>
 typename Kernel::Vector_3 up_direction(const std::string& name)
 {

@@ -53,7 +53,7 @@ written in binary, with coordinates in double precision.
 
 With --stream the input may be larger than memory. It is read twice (text: three times;
 LAS output: once more). At most --stream-points points, spread over the file, are kept and
-deformed; they carry the others, whereas points of handles move exactly. A file with no
+deformed; the other points follow them, and points of handles move exactly. A file with no
 more points gives the same output, byte for byte, as without --stream; otherwise each
 kept point is linked to at least 10 neighbours. For example:
   generate_points large.ply 50000000 --float
@@ -74,19 +74,19 @@ inline void declare(CLI::App& app, Options& options)
       "instead of --edit: hold the lowest 20 % along the longest axis, turn the highest 15 % by 40 "
       "degrees about it and move them sideways");
   app.add_option("--output", options.output, "deformed points; may be the input")->required();
-  app.add_option("--samples", options.number_of_samples, "size of the non-linear problem")
+  app.add_option("--samples",
+                 options.number_of_samples,
+                 "number of samples on which the deformation is solved")
       ->check(CLI::Range(std::int64_t(1), std::int64_t(std::numeric_limits<std::uint32_t>::max())))
       ->capture_default_str();
   app.add_option("--neighbors",
                  options.number_of_neighbors,
-                 "nearest neighbours that a point is linked to")
+                 "number of nearest neighbours of the neighbour graph")
       ->check(
           CLI::Range(std::int64_t(2), std::int64_t(pcs::neighborhood::maximal_number_of_neighbors)))
       ->capture_default_str();
   CLI::Option* stream =
-      app.add_flag("--stream",
-                   options.is_streamed,
-                   "from file to file, never with all points in memory; see below");
+      app.add_flag("--stream", options.is_streamed, "process files larger than memory; see below");
   app.add_option("--stream-points",
                  options.number_of_kept_points,
                  "points that --stream keeps in memory, some 400 bytes each")
@@ -98,10 +98,10 @@ inline void declare(CLI::App& app, Options& options)
       ->needs(stream)
       ->group("Advanced");
   app.add_option("--report", options.report, "write counts, seconds and energies here (JSON)");
-  app.add_flag("--quiet", options.is_quiet, "print nothing but warnings and errors");
+  app.add_flag("--quiet", options.is_quiet, "print warnings and errors only");
 }
 
-/// Checks what CLI11 cannot. Throws `pcs::Invalid_input`.
+/// Checks that CLI11 cannot make. Throws `pcs::Invalid_input`.
 inline void check(const Options& options)
 {
   if (options.edit.empty() != options.is_default_edit)

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What an edit file says: which points each handle selects and how it moves.
+// An edit: the points that each handle selects, and its motion.
 
 #ifndef PCS_EXAMPLES_PROGRAMS_DEFORMATION_EDIT_H
 #define PCS_EXAMPLES_PROGRAMS_DEFORMATION_EDIT_H
@@ -31,21 +31,22 @@ struct Box
   Vec3 low, high;
 };
 
-/// Points not farther from the center than the radius.
+/// Points within `radius` of `center`.
 struct Sphere
 {
   Vec3 center;
   double radius = 0;
 };
 
-/// Points whose property has this value. Integers stay integers: a double cannot hold all of 64 bits.
+/// Points whose property has this value. Integers stay integers, since a double cannot hold 64
+/// bits.
 struct Property_equals
 {
   std::string name;
   std::variant<std::int64_t, std::uint64_t, double> value;
 };
 
-/// Points by their numbers, from 0.
+/// Points by index, from 0.
 struct Index_list
 {
   std::vector<std::uint64_t> indices;
@@ -60,7 +61,8 @@ struct Rotation
   std::optional<Vec3> center; ///< also the fixed point of the scale; by default the centroid
 };
 
-/// Scale, then rotation, then translation; or a matrix instead. Nothing at all: the points stay.
+/// Scale, then rotation, then translation; or a matrix instead. Without any of them the points keep
+/// their positions.
 struct Motion
 {
   std::optional<double> scale;
@@ -73,7 +75,7 @@ struct Motion
 
 struct Handle
 {
-  std::string pointer; ///< where it stands in the file, for messages
+  std::string pointer; ///< JSON pointer of the handle, for messages
   Selector selector;
   Motion motion;
   double softness = 0;

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Chooses the points of a large file that stay in memory.
+// Chooses the points of a large file that are kept in memory: a stratified random sample.
 
 #ifndef PCS_EXAMPLES_PROGRAMS_DEFORMATION_KEPT_POINTS_H
 #define PCS_EXAMPLES_PROGRAMS_DEFORMATION_KEPT_POINTS_H
@@ -17,16 +17,16 @@
 
 namespace program {
 
-/// Points with their numbers in the file, ascending.
+/// Points with their indices in the file, ascending.
 struct Kept_points
 {
   std::vector<std::uint64_t> numbers;
   pcs::IO::Point_table table;         ///< positions only
   Normal_vectors normals;             ///< may be empty
-  std::vector<std::uint32_t> handles; ///< `no_handle` as long as they are not known
+  std::vector<std::uint32_t> handles; ///< `no_handle` until they are known
 };
 
-/// Scrambles the bits of a number; different numbers give different results.
+/// A bijective hash of a number.
 inline std::uint64_t splitmix64(std::uint64_t x)
 {
   x += 0x9e3779b97f4a7c15u;

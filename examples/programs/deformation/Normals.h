@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The normals of a table: taken out as vectors, put back in the types of their properties.
+// Normals of a table as vectors, and back in the types of their properties.
 
 #ifndef PCS_EXAMPLES_PROGRAMS_DEFORMATION_NORMALS_H
 #define PCS_EXAMPLES_PROGRAMS_DEFORMATION_NORMALS_H
@@ -50,7 +50,7 @@ T to_property(double value)
     return static_cast<T>(value);
 }
 
-/// Lengths whose square overflows leave no finite result: such normals stay as they are.
+/// Normals whose squared length overflows are left unchanged.
 inline void store_normals(pcs::IO::Point_table& table, const Normal_vectors& normals)
 {
   constexpr const char* names[] = {"nx", "ny", "nz"};

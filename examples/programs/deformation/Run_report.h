@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What one run of the program did, as JSON and as a summary to read.
+// The report of a run, as JSON and as a summary.
 
 #ifndef PCS_EXAMPLES_PROGRAMS_DEFORMATION_RUN_REPORT_H
 #define PCS_EXAMPLES_PROGRAMS_DEFORMATION_RUN_REPORT_H

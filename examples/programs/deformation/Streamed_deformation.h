@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Deforms a file that is never in memory at once: some points are deformed, and carry the others chunk by chunk.
+// Out-of-core deformation: a sample of the points is deformed, and the others follow chunk by
+// chunk.
 
 #ifndef PCS_EXAMPLES_PROGRAMS_DEFORMATION_STREAMED_DEFORMATION_H
 #define PCS_EXAMPLES_PROGRAMS_DEFORMATION_STREAMED_DEFORMATION_H
@@ -75,8 +76,9 @@ public:
 private:
   using Table = pcs::IO::Point_table;
 
-  /// A random choice of points is uneven: with 6 links, as many as a scan needs, one group of 8 in a million points
-  /// was cut off from the rest and stayed behind with all that is near to it.
+  /// A random choice of points is uneven: with 6 links, as many as a scan needs, one group of 8 in
+  /// a million points
+  /// was disconnected and kept its position together with all points near it.
   static constexpr std::int64_t least_neighbors = 10;
 
   bool do_normals() const { return m_run.normals == "deformed"; }

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Finds the points of the handles of an edit and their motions; the input may come in pieces.
+// Finds the points of the handles of an edit and their motions; the input may arrive in chunks.
 
 #ifndef PCS_EXAMPLES_PROGRAMS_DEFORMATION_APPLY_EDIT_H
 #define PCS_EXAMPLES_PROGRAMS_DEFORMATION_APPLY_EDIT_H
@@ -78,7 +78,7 @@ public:
                       m_handle.selector);
   }
 
-  /// Throws what is wrong with the selection.
+  /// Throws an error about the selection.
   [[noreturn]] void fail(const std::string& below, const std::string& what) const
   {
     throw pcs::IO_error(m_edit.source, m_handle.pointer + "/select" + below + ": " + what);
@@ -142,7 +142,8 @@ private:
     return result;
   }
 
-  /// Integers are compared as integers; a wanted number is first rounded to `float` if the property is.
+  /// Integers are compared as integers; a wanted number is first rounded to `float` if the property
+  /// is.
   template <class Value, class Wanted>
   static bool is_equal(Value value, Wanted wanted)
   {
@@ -182,7 +183,8 @@ inline pcs::Similarity similarity(const Motion& motion, const Vec3& centroid)
   return result;
 }
 
-/// Meets all points once, in pieces and in order; then knows the motions and what is wrong with the edit.
+/// Visits all points once, in chunks and in order; then gives the motions, or the error of the
+/// edit.
 class Edit_scan
 {
 public:
@@ -223,7 +225,7 @@ public:
     return handles;
   }
 
-  /// Behind the last point: the motion of each handle. Throws `pcs::IO_error` that names the handle.
+  /// After the last point: the motion of each handle. Throws `pcs::IO_error` that names the handle.
   std::vector<pcs::Similarity> motions() const
   {
     for (std::size_t h = 0; h < m_selections.size(); ++h) {
@@ -299,7 +301,7 @@ private:
     throw pcs::IO_error(m_edit.source, message);
   }
 
-  /// Where the points are, so that a wrong unit or axis is seen at once.
+  /// The bounding box of the points, which shows a wrong unit or axis.
   std::string hint() const
   {
     if (m_count == 0)

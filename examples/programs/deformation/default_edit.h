@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// An edit that suits any cloud: the foot stays, the head is turned and moved sideways.
+// A default edit for any cloud: one end is fixed, the other is rotated and translated.
 
 #ifndef PCS_EXAMPLES_PROGRAMS_DEFORMATION_DEFAULT_EDIT_H
 #define PCS_EXAMPLES_PROGRAMS_DEFORMATION_DEFAULT_EDIT_H
@@ -16,7 +16,7 @@
 
 namespace program {
 
-/// Bounds of the coordinates of one axis, without the outermost hundredth at either end. [L]
+/// The 1st and 99th percentile of the coordinates along one axis. [L]
 struct Extent
 {
   double low, high;
@@ -41,7 +41,8 @@ inline Extent robust_extent(const std::vector<pcs::IO::Point_table::Point_3>& po
   return extent;
 }
 
-/// Along the longest axis: the lowest 20 % are fixed; the highest 15 % turn by 40 degrees about that axis and move
+/// Along the longest axis: the lowest 20 % are fixed; the highest 15 % turn by 40 degrees about
+/// that axis and move
 /// sideways by 10 % of the extent.
 inline Edit default_edit(const std::vector<pcs::IO::Point_table::Point_3>& points)
 {

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Reads an edit from a JSON file and checks it as far as it can be checked without the points.
+// Reads an edit from a JSON file, with all checks that do not need the points.
 
 #ifndef PCS_EXAMPLES_PROGRAMS_DEFORMATION_READ_EDIT_H
 #define PCS_EXAMPLES_PROGRAMS_DEFORMATION_READ_EDIT_H
@@ -151,7 +151,7 @@ inline Handle read_handle(const Json_value& json)
   return handle;
 }
 
-/// Throws `pcs::IO_error` that names the file, the place as a JSON pointer, and what was expected.
+/// Throws `pcs::IO_error` with the file, the JSON pointer, and what was expected.
 inline Edit read_edit(const std::string& path)
 {
   const Json json = read_json(path);

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Deforms points and normals that are in memory with the motions of an edit.
+// Deforms points and normals in memory by the motions of an edit.
 
 #ifndef PCS_EXAMPLES_PROGRAMS_DEFORMATION_RUN_SESSION_H
 #define PCS_EXAMPLES_PROGRAMS_DEFORMATION_RUN_SESSION_H
@@ -27,7 +27,7 @@
 namespace program {
 
 //! [index_map]
-/// Reads and writes `(*values)[i]` for a point number `i`. What is fixed is read only.
+/// Reads and writes `(*values)[i]` for a point number `i`. Fixed points are not written.
 template <class Value>
 struct Index_map
 {
@@ -94,7 +94,7 @@ void add_handles(Session& session, const Edited_points& cloud)
     }
 }
 
-/// Deforms; then calls `use(session)` while the session is there.
+/// Deforms, then calls `use(session)`.
 template <class Use>
 pcs::Deformation_report run_session(const Edited_points& cloud,
                                     const Options& options,
@@ -127,7 +127,7 @@ pcs::Deformation_report run_session(const Edited_points& cloud,
                                   : run(np);
 }
 
-/// Throws if a point left the range of numbers. Points are numbered from `first` on.
+/// Throws if a coordinate is not finite any more. Points are numbered from `first` on.
 inline void check_range(const Edit& edit, const pcs::IO::Point_table& table, std::uint64_t first)
 {
   for (std::size_t i = 0; i < table.number_of_points(); ++i)

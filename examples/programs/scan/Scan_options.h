@@ -43,8 +43,8 @@ struct Scan_options
 
 inline const char* scan_help()
 {
-  return R"(scan.ply has the properties `int node`, the number of the node of the tree that the point
-lies on (-1: ghost or outlier, -2: ground, -3: leaf, -4: post), and `int station`.
+  return R"(scan.ply has the properties `int node`, the index of the node of the tree that the
+point lies on (-1: ghost or outlier, -2: ground, -3: leaf, -4: post), and `int station`.
 truth.csv has one row for each node: id,parent,branch,order,x,y,z,r,a,b,hits; r is the radius
 of the circle with the area of the section, a and b its half axes, hits the number of points.
 
@@ -71,7 +71,7 @@ inline void declare(CLI::App& app, Scan_options& o)
   app.add_option("--truth", o.truth, "write the true tree here (CSV)");
   app.add_option("--swc", o.swc, "write the true tree here (SWC)");
   app.add_option("--report", o.report, "write counts, totals and seconds here (JSON)");
-  app.add_flag("--quiet", o.is_quiet, "print nothing but errors");
+  app.add_flag("--quiet", o.is_quiet, "print errors only");
 
   const char* tree = "The tree";
   CLI::Option* preset =
@@ -79,57 +79,67 @@ inline void declare(CLI::App& app, Scan_options& o)
   app.add_option("--tree", o.tree, "scan this tree instead (CSV or SWC)")
       ->excludes(preset)
       ->group(tree);
-  app.add_option("--seed", o.seed, "of the tree and of the scan")
+  app.add_option("--seed", o.seed, "random seed of the tree and of the scan")
       ->check(is_seed)
       ->capture_default_str()
       ->group(tree);
-  app.add_option("--height", o.height, "length of the trunk; all else grows with it")->group(tree);
-  app.add_option("--age", o.age, "share of its life, up to 1")->capture_default_str()->group(tree);
-  app.add_option("--prune", o.pruned, "ids of branches to remove")->group(tree);
-  app.add_option("--turn", o.turned_numbers, "id of a branch and degrees about the vertical")
+  app.add_option("--height", o.height, "length of the trunk; the whole tree is scaled")
       ->group(tree);
-  app.add_option("--lengthen", o.lengthened_numbers, "id of a branch and a factor")->group(tree);
+  app.add_option("--age", o.age, "fraction of its final age, up to 1")
+      ->capture_default_str()
+      ->group(tree);
+  app.add_option("--prune", o.pruned, "ids of branches to remove")->group(tree);
+  app.add_option("--turn", o.turned_numbers, "id of a branch and its yaw in degrees")->group(tree);
+  app.add_option("--lengthen", o.lengthened_numbers, "id of a branch and the factor of its length")
+      ->group(tree);
 
   const char* scanner = "The scanner";
   app.add_option("--stations", o.stations, "number of stations")
       ->check(CLI::Range(std::int64_t(1), std::int64_t(10000)))
       ->capture_default_str()
       ->group(scanner);
-  app.add_option("--distance", s.distance, "of the stations from the trunk, +-15 %")
+  app.add_option("--distance", s.distance, "distance of the stations from the trunk, +-15 %")
       ->capture_default_str()
       ->group(scanner);
-  app.add_option("--arc-degrees", o.arc_degrees, "arc of the stations; 60: one-sided")
+  app.add_option("--arc-degrees",
+                 o.arc_degrees,
+                 "arc over which stations are spread; 60: one-sided")
       ->capture_default_str()
       ->group(scanner);
-  app.add_option("--first-degrees", o.first_degrees, "where the arc begins")->group(scanner);
-  app.add_option("--step-degrees", o.step_degrees, "between beams")
+  app.add_option("--first-degrees", o.first_degrees, "azimuth at which the arc begins")
+      ->group(scanner);
+  app.add_option("--step-degrees", o.step_degrees, "angle between beams")
       ->capture_default_str()
       ->group(scanner);
-  app.add_option("--beam-milliradians", o.beam_milliradians, "width of a beam")
+  app.add_option("--beam-milliradians", o.beam_milliradians, "beam divergence")
       ->capture_default_str()
       ->group(scanner);
-  app.add_option("--noise", s.range_noise, "of ranges, standard deviation")
+  app.add_option("--noise", s.range_noise, "standard deviation of ranges")
       ->capture_default_str()
       ->group(scanner);
-  app.add_option("--registration", s.registration_error, "shift of stations, standard deviation")
+  app.add_option("--registration",
+                 s.registration_error,
+                 "standard deviation of the shift of stations")
       ->capture_default_str()
       ->group(scanner);
-  app.add_option("--outliers", s.outlier_share, "share of points anywhere")
+  app.add_option("--outliers", s.outlier_share, "fraction of outliers")
       ->check(share)
       ->capture_default_str()
       ->group(scanner);
-  app.add_option("--ghosts", s.ghost_share, "share of split beams that give a point between")
+  app.add_option("--ghosts",
+                 s.ghost_share,
+                 "fraction of split beams that give a ghost point between two surfaces")
       ->check(share)
       ->capture_default_str()
       ->group(scanner);
-  app.add_option("--voxel", s.voxel_size, "keep one point in each cube of this size")
+  app.add_option("--voxel", s.voxel_size, "voxel size: one point is kept per voxel")
       ->group(scanner);
 
   const char* around = "Surroundings";
   app.add_option("--wind", s.wind, "largest displacement of twigs between stations")->group(around);
   app.add_option("--leaves", s.leaves_per_length, "leaves per metre of twig")->group(around);
   app.add_option("--ground", s.ground_radius, "radius of a patch of ground")->group(around);
-  app.add_flag("--post", o.has_post, "a lamp post beside the tree")->group(around);
+  app.add_flag("--post", o.has_post, "add a lamp post beside the tree")->group(around);
 }
 
 /// Pairs of an id and a number. Throws `pcs::Invalid_input`.
@@ -147,7 +157,7 @@ inline std::vector<std::pair<std::size_t, double>> id_pairs(const std::vector<do
   return pairs;
 }
 
-/// Checks what CLI11 cannot and completes the scanner. Throws `pcs::Invalid_input`.
+/// Checks that CLI11 cannot make; completes the scanner. Throws `pcs::Invalid_input`.
 inline void complete(Scan_options& o)
 {
   constexpr double degree = 0.017453292519943295;

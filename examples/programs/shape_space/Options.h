@@ -59,7 +59,8 @@ struct Options
   bool has_places() const { return is_given("--lambda") || !is_family(); }
 };
 
-/// Numbers separated by commas. CLI11 takes nothing for 0, and leaves out what is between two commas.
+/// Numbers separated by commas. CLI11 takes nothing for 0, and leaves out what is between two
+/// commas.
 inline CLI::Option* add_numbers(CLI::App& app,
                                 const std::string& name,
                                 std::vector<double>& values,
@@ -210,7 +211,7 @@ Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
       ->excludes(in_order);
   app.add_flag("--limit-radii", o.do_limit_radii, "no branch thicker than where it grows from");
   app.add_flag("--published-energy", o.is_published, "match branches with the energy of the text");
-  app.add_flag("--quiet", o.is_quiet, "print nothing but errors");
+  app.add_flag("--quiet", o.is_quiet, "print errors only");
   declare_family(app, o);
   app.parse_complete_callback([&app, &o] {
     for (const CLI::Option* const option : app.get_options())

@@ -85,7 +85,8 @@ inline void check_files(const Options& o)
       files.add_output((fs::path(o.output) / name).string());
 }
 
-/// The folder of the results. Folders that were made for it go again when the work fails before there is a result.
+/// The folder of the results. Folders that were made for it go again when the work fails before
+/// there is a result.
 class Result_folder
 {
 public:
@@ -130,7 +131,8 @@ private:
   int m_number_of_exceptions = std::uncaught_exceptions();
 };
 
-/// Throws unless a file that is written later, by other means, can be. To open a pipe would be to write to it.
+/// Throws unless a file that is written later, by other means, can be. To open a pipe would be to
+/// write to it.
 inline void probe_file(const std::string& path)
 {
   std::error_code error;

@@ -122,7 +122,8 @@ inline Tree_file read_tree(const std::string& points, const std::string& skeleto
   return tree;
 }
 
-/// Finds the skeleton if there is none, and names for nodes that have none. `up`: the axis along which trees grow.
+/// Finds the skeleton if there is none, and names for nodes that have none. `up`: the axis along
+/// which trees grow.
 inline void complete_tree(Tree_file& tree,
                           const std::string& points,
                           bool do_extend_axes,

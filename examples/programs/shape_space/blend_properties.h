@@ -68,7 +68,8 @@ struct Type_range
 
 } // namespace internal
 
-/// The least type of columns that holds the values of both, of at most four bytes if whole: PLY has no others.
+/// The least type of columns that holds the values of both, of at most four bytes if whole: PLY has
+/// no others.
 inline pcs::IO::Scalar_type wider_type(pcs::IO::Scalar_type a, pcs::IO::Scalar_type b)
 {
   using Type = pcs::IO::Scalar_type;
@@ -103,8 +104,10 @@ inline void add_property(const std::string& name,
 }
 
 /*!
-  A value from many points with weights that add up to 1. Numbers with fractions are mixed, colours too, and of these light,
-  not its code: the codes of sRGB follow a power of it. Whole numbers are labels, those of the greatest share are taken.
+  A value from many points with weights that add up to 1. Numbers with fractions are mixed, colours
+  too, and of these light,
+  not its code: the codes of sRGB follow a power of it. Whole numbers are labels, those of the
+  greatest share are taken.
   What is no finite number has no part in it.
 */
 class Mixed_value
@@ -146,7 +149,8 @@ private:
   double m_sum = 0, m_light = 0, m_most = 0, m_main = 0, m_left_out = 0;
 };
 
-/// Adds every property that both tables have to `out`, the points of `tree`, in a type that holds the values of both.
+/// Adds every property that both tables have to `out`, the points of `tree`, in a type that holds
+/// the values of both.
 template <class Space>
 void blend_properties(const Space& space,
                       const pcs::Orl_tree& tree,

@@ -86,7 +86,8 @@ inline void write_scan(const Space& space,
   pcs::IO::write_points(path, out);
 }
 
-/// NAME.swc, NAME.ply if there are points, NAME_surface.ply if wanted, in the folder of the results.
+/// NAME.swc, NAME.ply if there are points, NAME_surface.ply if wanted, in the folder of the
+/// results.
 inline void write_tree(const Space& space,
                        const pcs::Orl_tree& tree,
                        const std::vector<Tree_file>& files,

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What a batch of extract_tree_skeleton has done: which results are there, and what they were made from.
+// The log of a batch of extract_tree_skeleton: results, and the inputs and options that they were
+// made from.
 
 #ifndef PCS_EXAMPLES_PROGRAMS_SKELETON_BATCH_LOG_H
 #define PCS_EXAMPLES_PROGRAMS_SKELETON_BATCH_LOG_H
@@ -20,7 +21,7 @@
 
 namespace program {
 
-/// A scan as it is now, and what else decides about its results.
+/// The present state of a scan, and the options that its results depend on.
 inline nlohmann::ordered_json origin_of(const std::string& input, const Skeleton_options& one)
 {
   namespace fs = std::filesystem;
@@ -32,7 +33,7 @@ inline nlohmann::ordered_json origin_of(const std::string& input, const Skeleton
           {"options", to_json(one)}};
 }
 
-/// FOLDER/batch.jsonl: a line for every scan that was worked on. Of those about the same results the last success counts.
+/// FOLDER/batch.jsonl: one line per processed scan. The last success of each result counts.
 class Batch_log
 {
 public:
@@ -55,7 +56,7 @@ public:
 
   const std::filesystem::path& path() const { return m_path; }
 
-  /// Whether all results are there, made from the same scan with the same options.
+  /// Whether all results exist and were made from the same scan with the same options.
   bool is_done(const Skeleton_options& one, const Json& origin) const
   {
     if (!is_same(one, origin))
@@ -70,7 +71,7 @@ public:
     return true;
   }
 
-  /// Throws `pcs::Invalid_input` if the results are there, but of another scan, which still exists.
+  /// Throws `pcs::Invalid_input` if the results belong to another scan that still exists.
   void check_owner(const Skeleton_options& one, const Json& origin) const
   {
     const auto entry = m_entries.find(one.swc);
@@ -82,8 +83,9 @@ public:
       throw pcs::Invalid_input(one.swc + " is the skeleton of " + before + "; use another folder");
   }
 
-  /// Removes what was made from a former state of the scan, or with other options, but for what was `made` now. For after the work:
-  /// it may be stopped.
+  /// Removes results of a former state of the scan or of other options, except those in `made`.
+  /// Called after the work,
+  /// which may be interrupted.
   void remove_outdated(const Skeleton_options& one,
                        const Json& origin,
                        const std::set<std::string>& made = {})
@@ -137,7 +139,7 @@ private:
     return std::filesystem::exists(path, error);
   }
 
-  /// The largest number if it is not there.
+  /// The largest number if the file does not exist.
   std::uintmax_t size_of(const std::string& name) const
   {
     std::error_code error;
@@ -169,7 +171,8 @@ private:
     return true;
   }
 
-  /// Returns whether the last line is torn. What is no line of a success of this version of the program is passed over.
+  /// Returns whether the last line is incomplete. Lines that are not a success of this version are
+  /// ignored.
   bool read()
   {
     std::ifstream in(m_path);

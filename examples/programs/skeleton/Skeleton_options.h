@@ -41,7 +41,7 @@ struct Skeleton_options
   }
 };
 
-/// What decides about results, beside the scan and what can only be given for one scan.
+/// The options that results depend on, without those that belong to a single scan.
 inline nlohmann::ordered_json to_json(const Skeleton_options& o)
 {
   nlohmann::ordered_json json = {{"up", o.up},
@@ -68,21 +68,22 @@ inline nlohmann::ordered_json to_json(const Skeleton_options& o)
 
 inline const char* skeleton_help()
 {
-  return R"(Scans: PLY, LAS, OFF, or text (xyz, txt, csv, asc, pts, pwn). A property `wood` (1: wood,
-0: leaf) is used if there is one, and `station` or `point_source_id`, the station that has measured a
-point: errors of their registration are taken out. Lengths of all results are in the unit of the scan, positions
-in its coordinates.
+  return R"(Scans: PLY, LAS, OFF, or text (xyz, txt, csv, asc, pts, pwn). A property `wood`
+(1: wood, 0: leaf) is used if it exists, and `station` as the station of a point, whose
+registration is corrected (--stations point_source_id for terrestrial LAS files). Rays without
+return (alpha 0 in ray clouds) are left out. Lengths are in the unit of the scan, and positions in
+its coordinates.
 
 SWC rows: id, type, x, y, z, radius, parent (-1 for the root); type is 5 + the order of the branch.
 Cylinders: the columns of TreeQSM, and the standard error of the radius.
 Points: the scan with `branch` (-1: none), `dense` (1: the section was measured there), `residual`,
 and `leaf` (1: left out as a leaf).
 
-Several scans, with --folder DIR: for each one DIR/NAME.swc, what --also names (DIR/NAME_mesh.ply,
+Several scans with --folder DIR: each gives DIR/NAME.swc, the results of --also (DIR/NAME_mesh.ply,
 DIR/NAME_cylinders.csv, DIR/NAME_edges.ply, DIR/NAME_points.ply), and a line of JSON in
-DIR/batch.jsonl. A scan that fails gets a line with its error and the others go on. Started again,
-the batch leaves out what has succeeded; of scans that changed, or with other options, it replaces
-all that it made before.
+DIR/batch.jsonl. A failed scan gets a line with its error, and the batch continues. When it is
+started again, the batch skips scans that have succeeded; it replaces the results of scans or options
+that have changed.
 
 Exit codes: 0 success, 1 bad input or usage, or a scan of several failed, 2 internal error.)";
 }
@@ -91,74 +92,75 @@ inline void declare(CLI::App& app, Skeleton_options& options)
 {
   app.footer(skeleton_help());
   app.set_version_flag("--version", PCS_PROGRAM_VERSION);
-  app.add_option("--input", options.inputs, "the scan of a tree, or several")->required();
+  app.add_option("--input", options.inputs, "one or more scans of trees")->required();
   app.add_option("--swc", options.swc, "the skeleton");
   app.add_option("--mesh", options.mesh, "the closed surface, PLY or OBJ");
-  app.add_option("--leaves", options.leaves, "leaves made up on fine branches, PLY or OBJ");
+  app.add_option("--leaves", options.leaves, "placeholder leaves on fine branches, PLY or OBJ");
   app.add_option("--cylinders",
                  options.cylinders,
-                 "one row per piece of branch, CSV; branches count from 1 there");
+                 "table of cylinders, CSV; branches are numbered from 1");
   app.add_option("--edges", options.edges, "the skeleton as vertices and edges, PLY");
   app.add_option("--points", options.points, "the scan with the branch of every point");
-  app.add_option("--report", options.report, "counts, sizes and seconds, JSON");
-  app.add_option("--folder", options.folder, "for the results of several scans");
+  app.add_option("--report", options.report, "counts, sizes and seconds (JSON)");
+  app.add_option("--folder", options.folder, "folder for the results of several scans");
   app.add_option("--also", options.also, "with --folder: mesh, cylinders, edges, points")
       ->check(CLI::IsMember({"mesh", "cylinders", "edges", "points"}))
       ->delimiter(',');
-  app.add_option("--up", options.up, "where the tree grows to: x, y, z, -x, -y or -z")
+  app.add_option("--up", options.up, "up direction: x, y, z, -x, -y or -z")
       ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))
       ->capture_default_str();
   app.add_option("--root", options.root, "x y z of the foot of the trunk")->expected(3);
   app.add_option("--scanner", options.scanners, "x y z of a scanner; for several: x y z x y z ...");
   app.add_option("--beam-milliradians",
                  options.beam_milliradians,
-                 "width of the scanner's beam; widens thin branches, with --scanner")
+                 "beam divergence, which makes thin branches too thick; with --scanner")
       ->check(CLI::NonNegativeNumber)
       ->needs("--scanner");
-  app.add_option("--wood", options.wood, "property that tells wood (1) from leaves (0)");
   app.add_option(
-      "--stations",
-      options.stations,
-      "property that tells which station has measured a point; else stations are found by "
-      "the grids of their beams");
+      "--wood",
+      options.wood,
+      "property that is 1 for wood and 0 for leaves; PROPERTY=VALUE if wood has another value");
+  app.add_option("--stations",
+                 options.stations,
+                 "property with the station of each point; otherwise stations are found by "
+                 "their scan grids");
   app.add_flag("--keep-stations",
                options.do_keep_stations,
-               "do not move stations so that all see the same branches")
+               "do not correct the registration of stations")
       ->excludes("--stations");
   app.add_option("--skeleton",
                  options.given,
-                 "SWC: measure along this skeleton; its positions stay")
+                 "SWC: measure radii along this skeleton, whose positions are kept")
       ->excludes("--root");
   app.add_option("--breast-height", options.breast_height, "height of the diameter in the report")
       ->capture_default_str();
-  app.add_option("--tolerance", options.tolerance, "largest distance of the mesh from the sections")
+  app.add_option("--tolerance", options.tolerance, "maximal distance of the mesh from the sections")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--method",
                  options.method,
-                 "how branches are found; `sections` is the dissertation's way")
+                 "how branches are found; `sections` is the method of the dissertation")
       ->check(CLI::IsMember({"chains", "sections"}))
       ->capture_default_str();
   app.add_option("--fit",
                  options.fit,
-                 "of the method `sections`: how a section is fitted; `conic` if not given")
+                 "method `sections`: how a section is fitted; default `conic`")
       ->check(CLI::IsMember({"conic", "ellipse", "circle", "by_arc"}));
   app.add_flag("--all-points",
                options.do_use_all,
-               "of the method `sections`: not 20 points drawn at random");
-  app.add_flag("--no-support",
-               options.do_fit_all,
-               "of the method `sections`: a slice for every point");
-  app.add_flag("--keep-ground", options.do_keep_ground, "do not look for ground");
+               "method `sections`: use all points of a slice, not a random sample of 20");
+  app.add_flag("--no-support", options.do_fit_all, "method `sections`: cut a slice at every point");
+  app.add_flag("--keep-ground", options.do_keep_ground, "keep ground points");
   app.add_flag("--remove-leaves",
                options.do_remove_leaves,
-               "leave leaves out even if the scan does not look as if it had many");
-  app.add_flag("--keep-leaves", options.do_keep_leaves, "do not look for leaves")
+               "remove leaves even without evidence of many leaves");
+  app.add_flag("--keep-leaves", options.do_keep_leaves, "keep leaf points")
       ->excludes("--remove-leaves");
-  app.add_flag("--separate", options.do_separate, "mesh: every branch a closed tube of its own");
-  app.add_flag("--quiet", options.is_quiet, "print nothing but errors");
+  app.add_flag("--separate", options.do_separate, "mesh: a separate closed tube per branch");
+  app.add_flag("--quiet", options.is_quiet, "print errors only");
 }
 
-/// Whether the folder of a result exists, and the name is a name. Throws `pcs::IO_error`.
+/// Checks that the folder of a result exists and that the path is not a folder. Throws
+/// `pcs::IO_error`.
 inline void check_folder_of(const std::string& path)
 {
   std::error_code error;
@@ -200,13 +202,13 @@ inline void check_single(const Skeleton_options& options)
   }
 }
 
-/// Where the results of one scan of several go, without what tells them apart.
+/// The common beginning of the paths of the results of one scan of a batch.
 inline std::string name_of_results(const std::string& input, const std::string& folder)
 {
   return (std::filesystem::path(folder) / std::filesystem::path(input).stem()).string();
 }
 
-/// The names of the results of one scan of several.
+/// The options for one scan of a batch, with the paths of its results.
 inline Skeleton_options options_of_one(const std::string& input, const Skeleton_options& options)
 {
   Skeleton_options one = options;
@@ -255,7 +257,7 @@ inline void check_batch(const Skeleton_options& options)
   }
 }
 
-/// Checks what CLI11 cannot. Throws `pcs::Invalid_input` or `pcs::IO_error`.
+/// Checks that CLI11 cannot make. Throws `pcs::Invalid_input` or `pcs::IO_error`.
 inline void check(const Skeleton_options& options)
 {
   if (options.scanners.size() % 3 != 0)

@@ -15,7 +15,7 @@
 
 namespace program {
 
-/// A warning of the library, with the options of the program in the place of parameters.
+/// A warning of the library, with options of the program instead of named parameters.
 inline std::string in_options(std::string sentence)
 {
   for (const auto& [parameter, option] :
@@ -48,7 +48,7 @@ inline nlohmann::ordered_json to_json(const pcs::Scan_station& s)
   return json;
 }
 
-/// All figures; lengths in the unit of the input.
+/// All members of the report; lengths in the unit of the input.
 inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skeleton_report& r)
 {
   nlohmann::ordered_json json;
@@ -61,14 +61,14 @@ inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skele
                     {"ground", r.number_of_ground_points},
                     {"walls", r.number_of_wall_points},
                     {"unexplained", r.number_of_unexplained_points},
-                    {"out_of_reach", r.number_of_unreached_points}};
+                    {"unreachable", r.number_of_unreached_points}};
   json["spacing"] = r.spacing;
   json["voxel_size"] = r.voxel_size;
   json["noise"] = r.noise;
   json["residual"] = r.residual;
   json["nodes"] = r.number_of_nodes;
   json["branches"] = r.number_of_branches;
-  json["branches_out_of_reach"] = r.number_of_unreached_branches;
+  json["unreachable_branches"] = r.number_of_unreached_branches;
   json["other_stems"] = r.number_of_other_stems;
   json["in_rows"] = r.is_in_rows;
   json["stations"] = nlohmann::ordered_json::array();
@@ -78,10 +78,10 @@ inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skele
   for (const std::string& sentence : pcs::warnings(r))
     json["warnings"].push_back(in_options(sentence));
   json["height"] = r.height;
-  json["reach"] = r.reach;
+  json["max_root_distance"] = r.reach;
   json["breast_height"] = r.breast_height;
   json["diameter_at_breast_height"] = nullptr;
-  if (r.diameter_at_breast_height > 0) // else nothing is that high
+  if (r.diameter_at_breast_height > 0) // 0 if the tree is lower
     json["diameter_at_breast_height"] = r.diameter_at_breast_height;
   json["total"] = to_json(r.total);
   json["by_order"] = nlohmann::ordered_json::array();

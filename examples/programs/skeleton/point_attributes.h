@@ -1,0 +1,143 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Attributes of the points of a scan: wood labels, scanner stations, rays without return.
+
+#ifndef PCS_EXAMPLES_PROGRAMS_SKELETON_POINT_ATTRIBUTES_H
+#define PCS_EXAMPLES_PROGRAMS_SKELETON_POINT_ATTRIBUTES_H
+
+#include <pcs/IO/points/Point_table.h>
+#include <pcs/core/errors.h>
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace program {
+
+/// The option --wood: NAME, or NAME=VALUE for labels of other programs.
+struct Wood_option
+{
+  std::string property;
+  std::optional<double> value; ///< of wood; none: 1
+};
+
+/// Throws `pcs::Invalid_input` if the part behind the last `=` is not a number.
+inline Wood_option parse_wood(const std::string& text)
+{
+  const std::size_t at = text.rfind('=');
+  if (at == std::string::npos)
+    return {text.empty() ? "wood" : text, {}};
+  double value = 0;
+  if (at == 0 || at + 1 == text.size() || !CLI::detail::lexical_cast(text.substr(at + 1), value) ||
+      !std::isfinite(value))
+    throw pcs::Invalid_input("--wood is '" + text +
+                             "'; expected PROPERTY or PROPERTY=VALUE, for example label=4");
+  return {text.substr(0, at), value};
+}
+
+/// The first few distinct values, for messages.
+inline std::string list_values(const std::vector<double>& values)
+{
+  constexpr std::size_t max_listed = 6;
+  std::set<double> distinct;
+  for (const double x : values)
+    if (distinct.insert(x).second && distinct.size() > max_listed)
+      break;
+  std::ostringstream out;
+  std::size_t k = 0;
+  for (const double x : distinct) {
+    if (k == max_listed)
+      return out.str() + ", ...";
+    out << (k++ > 0 ? ", " : "") << x;
+  }
+  return out.str();
+}
+
+/*!
+  Which points are wood by the property of --wood, or by a property `wood`. Empty if there is no
+  such property.
+  Throws `pcs::Invalid_input` if the property that was named is missing, or if its values are not 0
+  and 1 and the
+  value of wood was not named: other programs number their classes in their own way.
+*/
+inline std::vector<std::uint8_t> wood_of_points(const pcs::IO::Point_table& table,
+                                                const std::string& option)
+{
+  const Wood_option wood = parse_wood(option);
+  if (!table.has_property(wood.property)) {
+    if (option.empty())
+      return {};
+    throw pcs::Invalid_input("the scan has no property '" + wood.property + "'");
+  }
+  const std::vector<double> values = table.property_as_double(wood.property);
+  if (!wood.value)
+    for (const double x : values)
+      if (!(x == 0 || x == 1))
+        throw pcs::Invalid_input("property '" + wood.property + "' has the values " +
+                                 list_values(values) + "; expected 1 for wood and 0 for leaves. " +
+                                 "Name the value of wood, for example --wood " + wood.property +
+                                 "=1");
+  const double value = wood.value.value_or(1);
+  std::vector<std::uint8_t> is_wood(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    is_wood[i] = values[i] == value;
+  if (!values.empty() && std::find(is_wood.begin(), is_wood.end(), 1) == is_wood.end())
+    throw pcs::Invalid_input("no point is wood: property '" + wood.property + "' has the values " +
+                             list_values(values));
+  return is_wood;
+}
+
+/*!
+  The station of each point by the property of --stations, or by a property `station`; -1 if
+  unknown. Empty without
+  such a property. The LAS attribute `point_source_id` counts only if it is named: in scans from the
+  air it is the
+  flight line, whose points do not come from one position.
+*/
+inline std::vector<long long> stations_of_points(const pcs::IO::Point_table& table,
+                                                 const std::string& option)
+{
+  const std::string name = option.empty() ? "station" : option;
+  if (!table.has_property(name)) {
+    if (option.empty())
+      return {};
+    throw pcs::Invalid_input("the scan has no property '" + name + "'");
+  }
+  std::vector<long long> stations;
+  for (const double x : table.property_as_double(name))
+    stations.push_back(x >= 0 && x < 1e15 ? std::llround(x) : -1);
+  return stations;
+}
+
+/*!
+  Removes rays without return from a ray cloud of raycloudtools, where their `alpha` is 0 and their
+  position is an
+  arbitrary point in the air. Returns how many. Colours with an alpha of 0 throughout are left
+  alone.
+*/
+inline std::size_t remove_rays_without_return(pcs::IO::Point_table& table)
+{
+  if (!table.has_property("alpha"))
+    return 0;
+  const std::vector<double> alpha = table.property_as_double("alpha");
+  std::vector<std::size_t> returns;
+  for (std::size_t i = 0; i < alpha.size(); ++i)
+    if (alpha[i] > 0)
+      returns.push_back(i);
+  if (returns.empty() || returns.size() == alpha.size())
+    return 0;
+  table = table.select(returns);
+  return alpha.size() - returns.size();
+}
+
+} // namespace program
+
+#endif // PCS_EXAMPLES_PROGRAMS_SKELETON_POINT_ATTRIBUTES_H
