@@ -8,10 +8,12 @@
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/property_map.h>
 
+#include <boost/graph/adjacency_list.hpp>
 #include <boost/test/unit_test.hpp>
 
 #include <array>
 #include <deque>
+#include <functional>
 #include <list>
 #include <set>
 #include <utility>
@@ -55,6 +57,20 @@ BOOST_AUTO_TEST_CASE(random_access_ranges_are_recognised)
   static_assert(!pcs::is_random_access_range_v<std::set<int>>);
   static_assert(!pcs::is_random_access_range_v<int>);
   static_assert(!pcs::is_random_access_range_v<Nothing>);
+  BOOST_TEST(true, "checked by the compiler");
+}
+
+BOOST_AUTO_TEST_CASE(callbacks_graphs_and_point_maps_are_recognised)
+{
+  using Tree = boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS>;
+  using Undirected = boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS>;
+  static_assert(pcs::is_progress_callback_v<std::function<bool(double)>>);
+  static_assert(!pcs::is_progress_callback_v<int> && !pcs::is_progress_callback_v<Nothing>);
+  static_assert(pcs::is_tree_graph_v<Tree> && !pcs::is_tree_graph_v<Undirected>);
+  static_assert(!pcs::is_tree_graph_v<int> && !pcs::is_tree_graph_v<Nothing>);
+  static_assert(pcs::is_readable_point_map_v<Const_map, Point>);
+  static_assert(!pcs::is_read_write_point_map_v<Const_map, Point>);
+  static_assert(!pcs::is_read_write_tensor_map_v<Const_map, Point>);
   BOOST_TEST(true, "checked by the compiler");
 }
 

@@ -33,7 +33,7 @@ struct Drag
     session.add_handle(edit.handles[1].indices);
   }
 
-  pcs::Deformation_report turn_to(double angle, Start start)
+  pcs::Deformation_report turn_to(double angle, Solver_start start)
   {
     session.set_rotation(1, Vec3(0, 1, 1), angle);
     const auto report = session.deform(start);

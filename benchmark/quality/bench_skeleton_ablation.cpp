@@ -8,7 +8,7 @@
 #include <pcs/generators/grow_tree.h>
 #include <pcs/generators/scan_tree.h>
 #include <pcs/internal/progress.h>
-#include <pcs/skeleton/Session_stages.h>
+#include <pcs/skeleton/Session_impl.h>
 #include <pcs/skeleton/result/write_result.h>
 
 #include <CGAL/Simple_cartesian.h>
@@ -77,7 +77,9 @@ std::vector<Variant> variants()
   });
   add("ours: whole chains", Session_options(), nothing);
   add("ours, one pass", Session_options(), [](auto& o) { o.axes.passes = 1; });
-  add("ours, arcs of rings apart", Session_options(), [](auto& o) { o.rings.smallest = 1e9; });
+  add("ours, arcs of rings apart", Session_options(), [](auto& o) {
+    o.layers.rings.smallest = 1e9;
+  });
   add("ours, gaps stay open", Session_options(), [](auto& o) { o.axes.links.gap = 0; });
   add("ours, no noise correction", Session_options(), [](auto& o) {
     o.axes.chains.noise_share = 0;
@@ -89,7 +91,7 @@ std::vector<Variant> variants()
     o.axes.chains.width_count = std::numeric_limits<double>::infinity();
   });
   add("ours, radii not bounded", Session_options(), [](auto& o) {
-    pcs::skeleton::Support_options& r = o.support;
+    pcs::skeleton::Support_options& r = o.radii.support;
     r.filled = r.branch_filled = r.thicker = std::numeric_limits<double>::infinity();
     r.fewest = r.expected = r.pipes.slack = 0;
     r.slack = std::numeric_limits<double>::infinity();
@@ -131,9 +133,9 @@ std::vector<std::string> row_of(const Scene& scene, const Variant& variant)
   for (const auto& p : scene.scan.points)
     points.emplace_back(p.x(), p.y(), p.z());
   const pcs_bench::Timer timer;
-  pcs::skeleton::Session_stages<CGAL::Parallel_if_available_tag> session(std::move(points),
-                                                                         {},
-                                                                         variant.options);
+  pcs::skeleton::Session<CGAL::Parallel_if_available_tag> session(std::move(points),
+                                                                  {},
+                                                                  variant.options);
   pcs::internal::Progress progress{std::function<bool(double)>()};
   session.join(progress);
   const double seconds = timer.seconds();

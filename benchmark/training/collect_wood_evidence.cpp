@@ -7,7 +7,7 @@
 #include <pcs/generators/scan_tree.h>
 #include <pcs/internal/Random_stream.h>
 #include <pcs/internal/progress.h>
-#include <pcs/skeleton/Session_stages.h>
+#include <pcs/skeleton/Session_impl.h>
 
 #include <CGAL/Simple_cartesian.h>
 
@@ -85,11 +85,11 @@ struct Evidence
 };
 
 /// Goes through the rounds in which leaves are left out, and writes what is decided by.
-class Evidence_session : public Session_stages<Tag>
+class Evidence_session
 {
 public:
   Evidence_session(const Scan_of_tree& input, unsigned seed, Evidence& evidence)
-    : Session_stages<Tag>(coordinates(input), {}, options()),
+    : m_session(coordinates(input), {}, options()),
       m_seed(seed),
       m_evidence(evidence),
       m_input_node(input.node)
@@ -99,18 +99,17 @@ public:
   void run(std::size_t number_of_points)
   {
     pcs::internal::Progress progress{std::function<bool(double)>()};
-    find_paths(progress);
-    if (m_root.empty())
+    m_session.find_paths(progress);
+    if (m_state.root.empty())
       return;
     m_label.assign(m_scan.size(), Label::other);
     for (std::size_t i = 0; i < m_input_node.size(); ++i)
       m_label[m_scan.point_of_input[i]] = label_of(m_input_node[i]);
     fit();
     add_points(number_of_points);
-    for (m_leaf_rounds = 0; m_leaf_rounds + 1 < m_options.leaves.rounds;) {
-      if (!remove_leaves())
+    while (m_state.leaves.rounds + 1 < m_options.leaves.rounds) {
+      if (!pcs::skeleton::internal::remove_leaves(m_state))
         return;
-      ++m_leaf_rounds;
       fit();
       add_axes();
     }
@@ -139,17 +138,18 @@ private:
 
   void fit()
   {
-    m_axes =
-        pcs::skeleton::fit_axes<Tag>(m_scan, m_layers, m_options.axes, [](double) { return true; });
+    m_state.axes = pcs::skeleton::fit_axes<Tag>(m_scan, m_state.layers, m_options.axes, [](double) {
+      return true;
+    });
   }
 
   /// Some of the points that are not of thick wood, which is certain.
   void add_points(std::size_t number_of_points)
   {
     const Leaf_options& rules = m_options.leaves;
-    const std::vector<std::uint8_t>& is_used = m_used.flags();
+    const std::vector<std::uint8_t>& is_used = m_state.is_used();
     const std::vector<std::uint8_t> is_thick =
-        points_on_hollow_sections<Tag>(m_scan, m_axes, rules.hollow);
+        points_on_hollow_sections<Tag>(m_scan, m_state.axes, rules.hollow);
     std::vector<Surroundings> surroundings(m_scan.size());
     std::vector<float> wood_score(m_scan.size());
     points_on_lines<Tag>(
@@ -163,7 +163,7 @@ private:
         });
     const std::vector<float> score = scores_of_surroundings(is_used, is_thick, wood_score);
     const std::vector<Path_context> path =
-        path_contexts(m_scan, m_paths, score, rules.paths.reach * m_scan.spacing);
+        path_contexts(m_scan, m_state.paths, score, rules.paths.reach * m_scan.spacing);
 
     std::vector<Index> open;
     for (Index i = 0; i < m_scan.size(); ++i)
@@ -193,12 +193,12 @@ private:
   void add_axes()
   {
     const std::vector<Axis_evidence> evidence = evidence_of_axes<Tag>(m_scan,
-                                                                      m_axes,
-                                                                      m_used.flags(),
-                                                                      m_paths,
-                                                                      m_wood_score,
+                                                                      m_state.axes,
+                                                                      m_state.is_used(),
+                                                                      m_state.paths,
+                                                                      m_state.leaves.wood_score,
                                                                       m_options.breast_height);
-    const Index_groups points_of_axis(evidence.size(), m_axes.axis_of_point);
+    const Index_groups points_of_axis(evidence.size(), m_state.axes.axis_of_point);
     for (std::size_t a = 0; a < evidence.size(); ++a) {
       std::size_t wood = 0, count = 0;
       for (const Index i : points_of_axis[a]) {
@@ -214,6 +214,10 @@ private:
     }
   }
 
+  pcs::skeleton::Session<Tag> m_session;
+  pcs::skeleton::Session_state<Tag>& m_state = m_session.state();
+  const Session_options& m_options = m_state.options;
+  const pcs::skeleton::Scan& m_scan = m_state.scan;
   unsigned m_seed;
   Evidence& m_evidence;
   const std::vector<int>& m_input_node;

@@ -8,15 +8,31 @@
   `boost::VertexListGraph` and `boost::IncidenceGraph`, directed, with edges from parent to child
 
   \par Used by
-  `pcs::orl_geodesic()`, and `pcs::extract_tree_skeleton()` for `given_skeleton`, which needs positions only
-  (`given_point_map`), and no indices
+  `pcs::orl_geodesic()`, and `pcs::extract_tree_skeleton()` for `given_skeleton`, which needs
+  positions only (`given_point_map`), and no indices
 
   \par Required
-  one vertex without parent, from which all others are reached; readable property maps from vertices to points
-  (`node_point_map`), to numbers (`node_radius_map`) and to indices from 0 (`node_index_map`)
+  one vertex without parent, from which all others are reached; readable property maps from vertices
+  to points (`node_point_map`), to numbers (`node_radius_map`) and to indices from 0
+  (`node_index_map`)
+
+  \par Required expressions
+  \code
+  num_vertices(graph);
+  for (auto [v, end] = vertices(graph); v != end; ++v)
+    for (auto [e, last] = out_edges(*v, graph); e != last; ++e)
+      target(*e, graph);
+  \endcode
+
+  \par Checked by
+  `pcs::is_tree_graph_v`; the functions that read a tree check the same by a `static_assert`
+
+  \par Archetype
+  `Tree_archetype` with `Vertex_map_archetype` in `test/support/graph_archetypes.h`
 
   \par Models
-  `pcs::Tree_skeleton<Kernel>`, whose maps are found without being named; any `boost::adjacency_list` with such maps
+  `pcs::Tree_skeleton<Kernel>`, whose maps are found without being named; any
+  `boost::adjacency_list` with these maps
 */
 class TreeGraph
 {};

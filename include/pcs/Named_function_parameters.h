@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Named parameters of pcs: a chain of our own on top of CGAL's, so that both kinds may be passed.
+// Named parameters of pcs, chained on those of CGAL so that both kinds may be passed.
 
 #ifndef PCS_NAMED_FUNCTION_PARAMETERS_H
 #define PCS_NAMED_FUNCTION_PARAMETERS_H
@@ -10,21 +10,24 @@
 #include <functional>
 #include <type_traits>
 
-// The whole vocabulary in one list. PCS_SHARED(tag of CGAL, name), PCS_OWN(name).
-// Meaning, unit and default stand in the documentation of each function that reads a parameter.
+// All named parameters, grouped by algorithm: PCS_SHARED(tag of CGAL, name), PCS_OWN(name).
+// The documentation of each function that reads a parameter gives its meaning, unit and default.
 #define PCS_NAMED_PARAMETERS(PCS_SHARED, PCS_OWN)                                                  \
+  /* Shared by all algorithms, with the tags of CGAL */                                            \
   PCS_SHARED(point_t, point_map)                                                                   \
   PCS_SHARED(normal_t, normal_map)                                                                 \
   PCS_SHARED(geom_traits_t, geom_traits)                                                           \
   PCS_SHARED(callback_t, callback)                                                                 \
   PCS_SHARED(number_of_iterations_t, number_of_iterations)                                         \
   PCS_SHARED(random_seed_t, random_seed)                                                           \
+  /* deform_point_set(): sampling and neighbourhoods */                                            \
   PCS_OWN(number_of_samples)                                                                       \
   PCS_OWN(number_of_neighbors)                                                                     \
   PCS_OWN(number_of_sample_neighbors)                                                              \
   PCS_OWN(region_of_interest)                                                                      \
   PCS_OWN(sample_search)                                                                           \
   PCS_OWN(sample_weights)                                                                          \
+  /* deform_point_set(): the elastic model and what is moved along */                              \
   PCS_OWN(rotation_field)                                                                          \
   PCS_OWN(tolerance)                                                                               \
   PCS_OWN(stiffness)                                                                               \
@@ -32,6 +35,7 @@
   PCS_OWN(do_preserve_volume)                                                                      \
   PCS_OWN(vector_map)                                                                              \
   PCS_OWN(tensor_map)                                                                              \
+  /* extract_tree_skeleton(): the scan, its ground and its leaves */                               \
   PCS_OWN(up_direction)                                                                            \
   PCS_OWN(root_position)                                                                           \
   PCS_OWN(breast_height)                                                                           \
@@ -40,22 +44,27 @@
   PCS_OWN(do_remove_ground)                                                                        \
   PCS_OWN(wood_map)                                                                                \
   PCS_OWN(do_remove_leaves)                                                                        \
+  /* extract_tree_skeleton(): results at the points */                                             \
   PCS_OWN(point_is_leaf_map)                                                                       \
   PCS_OWN(point_branch_map)                                                                        \
   PCS_OWN(point_residual_map)                                                                      \
   PCS_OWN(point_is_dense_map)                                                                      \
+  /* Tree graphs: positions and radii of nodes */                                                  \
   PCS_OWN(node_point_map)                                                                          \
   PCS_OWN(node_radius_map)                                                                         \
+  /* extract_tree_skeleton(): method, radii, and a skeleton of the caller */                       \
   PCS_OWN(skeleton_method)                                                                         \
   PCS_OWN(slice_options)                                                                           \
   PCS_OWN(scanner_positions)                                                                       \
   PCS_OWN(beam_width)                                                                              \
   PCS_OWN(given_skeleton)                                                                          \
   PCS_OWN(given_point_map)                                                                         \
+  /* make_leaf_surface() and make_branch_surface() */                                              \
   PCS_OWN(leaf_length)                                                                             \
   PCS_OWN(leaves_per_length)                                                                       \
   PCS_OWN(leaf_branch_radius)                                                                      \
   PCS_OWN(do_join)                                                                                 \
+  /* orl_geodesic() and Orl_shape_space: trees and their correspondences */                        \
   PCS_OWN(node_index_map)                                                                          \
   PCS_OWN(matching_weights)                                                                        \
   PCS_OWN(assignment_options)                                                                      \
@@ -64,10 +73,12 @@
   PCS_OWN(virtual_direction)                                                                       \
   PCS_OWN(alignment)                                                                               \
   PCS_OWN(do_use_unit_weights)                                                                     \
+  /* Orl_shape_space: paths between trees */                                                       \
   PCS_OWN(maximal_turn)                                                                            \
   PCS_OWN(do_limit_radii)                                                                          \
   PCS_OWN(branch_emergence)                                                                        \
   PCS_OWN(point_path)                                                                              \
+  /* Orl_shape_space: statistics of several trees */                                               \
   PCS_OWN(metric)                                                                                  \
   PCS_OWN(tree_mean)                                                                               \
   PCS_OWN(tree_weights)                                                                            \

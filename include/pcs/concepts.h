@@ -1,10 +1,11 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What a model must offer: traits that the public functions check, and that users may check themselves.
+// Concept traits for ranges, property maps, callbacks and graphs; public functions check them.
 
 #ifndef PCS_CONCEPTS_H
 #define PCS_CONCEPTS_H
 
+#include <boost/graph/graph_traits.hpp>
 #include <boost/property_map/property_map.hpp>
 
 #include <iterator>
@@ -114,8 +115,8 @@ constexpr bool is_random_access_range_v =
 template <class Range>
 using Element_reference = decltype(*std::begin(std::declval<Range&>()));
 
-//! whether `T` has `x()`, `y()`, `z()` and can be made from three of these: any `Point_3` or `Vector_3` of CGAL,
-//! `Eigen::Vector3d`, or a type of your own
+//! whether `T` has `x()`, `y()`, `z()` and a constructor from three of these: any `Point_3` or
+//! `Vector_3` of CGAL, `Eigen::Vector3d`, or a user-defined type
 template <class T>
 constexpr bool is_point_or_vector_v = internal::Is_point<T>::value;
 
@@ -153,11 +154,55 @@ struct Is_index_range<T, std::enable_if_t<!std::is_void_v<typename Iterator_of<c
 {
 };
 
+template <class Graph, class = void>
+struct Is_rooted_tree_graph : std::false_type
+{
+};
+template <class Graph>
+struct Is_rooted_tree_graph<
+    Graph,
+    std::void_t<
+        decltype(num_vertices(std::declval<const Graph&>())),
+        decltype(vertices(std::declval<const Graph&>())),
+        // behind these two: graph_traits of a type that is no graph is a hard error
+        typename boost::graph_traits<Graph>::vertex_descriptor,
+        decltype(out_edges(std::declval<typename boost::graph_traits<Graph>::vertex_descriptor>(),
+                           std::declval<const Graph&>())),
+        decltype(target(std::declval<typename boost::graph_traits<Graph>::edge_descriptor>(),
+                        std::declval<const Graph&>()))>>
+  : std::is_convertible<typename boost::graph_traits<Graph>::directed_category, boost::directed_tag>
+{
+};
+
 } // namespace internal
 
-//! whether `T` is a range of integers: the numbers of points
+//! whether `T` is a range of integers: the indices of points
 template <class T>
 constexpr bool is_index_range_v = internal::Is_index_range<T>::value;
+
+//! whether `T` can be called with the completed fraction of the work and returns whether to
+//! continue
+template <class T>
+constexpr bool is_progress_callback_v = std::is_invocable_r_v<bool, T&, double>;
+
+//! whether `Map` is readable and its values have three coordinates
+template <class Map, class Key>
+constexpr bool is_readable_point_map_v =
+    is_point_or_vector_v<Map_value<Map>>&& is_readable_map_v<Map, Key, Map_value<Map>>;
+
+//! whether `Map` is readable and writable and its values have three coordinates
+template <class Map, class Key>
+constexpr bool is_read_write_point_map_v =
+    is_point_or_vector_v<Map_value<Map>>&& is_read_write_map_v<Map, Key, Map_value<Map>>;
+
+//! whether `Map` is readable and writable and its values are 3 x 3 matrices
+template <class Map, class Key>
+constexpr bool is_read_write_tensor_map_v =
+    is_matrix_3_v<Map_value<Map>>&& is_read_write_map_v<Map, Key, Map_value<Map>>;
+
+//! whether `Graph` is a directed graph whose vertices and out-edges can be listed
+template <class Graph>
+constexpr bool is_tree_graph_v = internal::Is_rooted_tree_graph<Graph>::value;
 
 } // namespace pcs
 

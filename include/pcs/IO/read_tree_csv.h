@@ -40,7 +40,7 @@ inline std::vector<std::string_view> split_at_commas(std::string_view line)
   }
 }
 
-//! for each of `tree_columns` its place in the header, `npos` if it is missing
+//! for each of `tree_columns` its index in the header, `npos` if it is missing
 inline std::array<std::size_t, 11> find_tree_columns(const Input_file& file,
                                                      std::string_view header)
 {
@@ -126,10 +126,10 @@ private:
   \brief reads a tree skeleton from a CSV file with the columns
          `id,parent,branch,order,x,y,z,r,a,b,hits`.
 
-  The first line names the columns, in any order; `hits` may be missing. One row is one node: its id,
-  that of its parent (-1: the root), the id and order of its branch, position, radius, the half axes
-  of its section, and the number of points that a scan has there. Nodes are numbered in the order of
-  the file, branches in the order of their first rows.
+  The first line names the columns, in any order; `hits` may be missing. One row is one node: its
+  id, that of its parent (-1: the root), the id and order of its branch, position, radius, the half
+  axes of its section, and the number of points that a scan has there. Nodes are numbered in the
+  order of the file, branches in the order of their first rows.
 
   \tparam Kernel a kernel of CGAL
   \param path name of the file

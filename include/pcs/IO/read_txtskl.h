@@ -20,10 +20,11 @@ namespace IO {
   \ingroup PkgPcsIORef
   \brief reads a tree skeleton from a `.txtskl` file.
 
-  The first line is the number of layers. A layer is a line `Layer <index>`, the number of its branches, and for each of
-  these a line `<father branch> <father point>` (counted from 0 in the layer above; `-1 -1` for the trunk), the number of
-  points, and one line `x y z radius` per point. Every branch keeps its own first node: the edge that leads to it has the
-  length 0 where the file repeats the father's point.
+  The first line is the number of layers. A layer is a line `Layer <index>`, the number of its
+  branches, and for each of these a line `<father branch> <father point>` (counted from 0 in the
+  layer above; `-1 -1` for the trunk), the number of points, and one line `x y z radius` per point.
+  Every branch keeps its own first node: the edge that leads to it has the length 0 where the file
+  repeats the father's point.
 
   \tparam Kernel a kernel of CGAL
   \param path name of the file

@@ -26,9 +26,10 @@ namespace IO {
   \ingroup PkgPcsIORef
   \brief writes one cylinder per edge inside a branch, with the columns that TreeQSM has for them.
 
-  Columns: `sx, sy, sz` (start), `ax, ay, az` (axis), `length, radius, parent, branch, order, radius_error,
-  is_measured`. The axis is a unit vector, `parent` the number of a row from 1, 0 for the first, `branch` counts from 1. Edges
-  of length zero have no cylinder. The file is complete or absent.
+  Columns: `sx, sy, sz` (start), `ax, ay, az` (axis), `length, radius, parent, branch, order,
+  radius_error, is_measured`. The axis is a unit vector, `parent` the number of a row from 1, 0 for
+  the first, `branch` counts from 1. Edges of length zero have no cylinder. The file is complete or
+  absent.
 
   \throws pcs::IO_error when the file cannot be written
   \throws pcs::Invalid_input when the graph is not a tree below its root, or a number is not finite

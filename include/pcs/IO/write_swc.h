@@ -99,8 +99,8 @@ void write_swc(const std::string& path,
   \ingroup PkgPcsIORef
   \brief writes a tree skeleton to an SWC file.
 
-  As above; the type of a node is 5 plus the order of its branch, 5 being the first of the types that
-  SWC leaves to its users.
+  As above; the type of a node is 5 plus the order of its branch, 5 being the first of the types
+  that SWC leaves to its users.
 */
 template <class Kernel>
 void write_swc(const std::string& path, const Tree_skeleton<Kernel>& tree)

@@ -29,8 +29,8 @@ namespace pcs {
   \ingroup PkgPcsCoreRef
   \brief The map x -> s R x + t, where R is kept as a sequence of turns about axes.
 
-  A rotation matrix cannot tell 720 degrees from none; the turns can. Turns about the same axis are added up, so an
-  editor may multiply small rotations for ever. Coordinates are in double precision.
+  A rotation matrix cannot tell 720 degrees from none; the turns can. Turns about the same axis are
+  added up, so an editor may multiply small rotations for ever. Coordinates are in double precision.
 */
 class Similarity
 {
@@ -78,8 +78,9 @@ public:
     return result;
   }
 
-  /// From a row-major 3 x 4 or 4 x 4 matrix. Throws `Invalid_input` unless it is a rotation (no reflection), a
-  /// uniform scale and a translation, to 1e-6. Its rotation counts as the one of at most 180 degrees.
+  /// From a row-major 3 x 4 or 4 x 4 matrix. Throws `Invalid_input` unless it is a rotation (no
+  /// reflection), a uniform scale and a translation, to 1e-6. Its rotation counts as the one of at
+  /// most 180 degrees.
   static Similarity from_matrix(const Eigen::Matrix<double, 3, 4>& m)
   {
     if (!m.allFinite())
@@ -149,7 +150,8 @@ private:
   {
     check_turn(turn);
     if (turn.squaredNorm() > 0) {
-      // Same axis, either sense: one turn with the sum of the angles, and nothing at all when they cancel.
+      // Same axis, either sense: one turn with the sum of the angles, and nothing at all when they
+      // cancel.
       const bool is_same_axis = !m_turns.empty() && turn.cross(m_turns.back()).norm() <=
                                                         1e-12 * turn.norm() * m_turns.back().norm();
       if (!is_same_axis)
@@ -180,7 +182,7 @@ private:
                           internal::to_text(largest_turn) + " rad on");
   }
 
-  static constexpr double largest_turn = 1e12; ///< a double tells 1e-4 rad apart there [rad]
+  static constexpr double largest_turn = 1e12; ///< a double resolves 1e-4 rad there [rad]
 
   Turns m_turns;
   Eigen::Matrix3d m_rotation = Eigen::Matrix3d::Identity();

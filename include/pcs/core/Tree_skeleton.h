@@ -16,7 +16,7 @@
 namespace pcs {
 
 //! \ingroup PkgPcsCoreRef
-//! stands for "none" wherever a node or a branch is named by its number
+//! means "none" wherever a node or a branch is named by its number
 constexpr std::size_t npos = std::numeric_limits<std::size_t>::max();
 
 /*!
@@ -54,7 +54,7 @@ struct Tree_node
 */
 struct Tree_branch
 {
-  //! index of the branch that carries this one, `npos` for the trunk
+  //! index of the parent branch, `npos` for the trunk
   std::size_t parent = npos;
   //! 0 for the trunk, 1 for branches on it, and so on
   int order = 0;

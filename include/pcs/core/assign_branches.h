@@ -20,7 +20,8 @@
 namespace pcs {
 namespace internal {
 
-//! length of the longest way from each node to a tip; throws unless all nodes hang on the root
+//! length of the longest path from each node to a tip; throws unless all nodes descend from the
+//! root
 template <class Kernel>
 std::vector<double> lengths_to_tips(const Tree_skeleton<Kernel>& tree)
 {

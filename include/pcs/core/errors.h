@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The two exceptions that pcs throws: a value that breaks a stated rule, and a file that cannot be read or written.
+// Exceptions of pcs: an invalid value, and a file that cannot be read or written.
 
 #ifndef PCS_CORE_ERRORS_H
 #define PCS_CORE_ERRORS_H

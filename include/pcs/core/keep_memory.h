@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A setting for programs that work on large clouds: freed memory stays with the process, on huge pages.
+// Memory setting for large clouds: freed memory stays with the process, on huge pages.
 
 #ifndef PCS_CORE_KEEP_MEMORY_H
 #define PCS_CORE_KEEP_MEMORY_H
@@ -19,14 +19,16 @@ namespace pcs {
 
 /*!
   \ingroup PkgPcsCoreRef
-  asks the C library to keep memory that is freed for what is allocated next, and Linux to put the first gigabyte of it on
-  pages of 2 MB. Every stage on a large cloud allocates and frees arrays of tens of megabytes; as it comes, glibc hands
-  each one back to the system, which clears it again page by page: a quarter to a third of the time of a skeleton on
-  virtual machines, less on real ones.
+  asks the C library to keep memory that is freed for what is allocated next, and Linux to put the
+  first gigabyte of it on pages of 2 MB. Every stage on a large cloud allocates and frees arrays of
+  tens of megabytes; as it comes, glibc hands each one back to the system, which clears it again
+  page by page: a quarter to a third of the time of a skeleton on virtual machines, less on real
+  ones.
 
-  For programs, not for libraries: it concerns the whole process. Call it once, before anything large is allocated. Nothing
-  is reserved, and results stay the same; the process keeps the most that it ever used. Where the C library is not
-  glibc, or with another allocator, it does nothing. Returns whether it did something. O(1).
+  For programs, not for libraries: it concerns the whole process. Call it once, before anything
+  large is allocated. Nothing is reserved, and results stay the same; the process keeps the most
+  that it ever used. Where the C library is not glibc, or with another allocator, it does nothing.
+  Returns whether it did something. O(1).
 */
 inline bool keep_memory()
 {

@@ -15,8 +15,8 @@ namespace pcs {
 
 using Quaternion = Eigen::Quaterniond;
 
-/// Unit quaternion of the rotation by `|u|` radians about `u`. Angles beyond 2 pi keep their sign on the
-/// double cover: `exp` of 360 degrees is -1.
+/// Unit quaternion of the rotation by `|u|` radians about `u`. Angles beyond 2 pi keep their sign
+/// on the double cover: `exp` of 360 degrees is -1.
 inline Quaternion rotation_exp(const Eigen::Vector3d& u)
 {
   const double angle = u.norm();
@@ -36,17 +36,18 @@ inline Eigen::Vector3d lifted_rotation_log(const Quaternion& q)
   return f * q.vec();
 }
 
-/// Rotation vector of the rotation `q`, the shorter way round: length in [0, pi]. [rad]
+/// Rotation vector of the rotation `q`, the shorter of the two: length in [0, pi]. [rad]
 inline Eigen::Vector3d rotation_log(const Quaternion& q)
 {
   return lifted_rotation_log(q.w() >= 0 ? q : Quaternion(-q.w(), -q.x(), -q.y(), -q.z()));
 }
 
 /*!
-  Four times the modified Rodrigues parameters of the rotation \p q of any length but zero, the shorter way round:
-  `4 tan(angle / 4)` times its axis, the stereographic projection of the unit quaternion. Equals the rotation vector but for
-  `angle^3 / 48`, up to a length of 4 instead of pi, and takes a root and a division where that takes an arc tangent
-  (M. D. Shuster, "A survey of attitude representations", J. Astronautical Sciences 41, 1993).
+  Four times the modified Rodrigues parameters of the rotation \p q of any length but zero, the
+  shorter of the two: `4 tan(angle / 4)` times its axis, the stereographic projection of the unit
+  quaternion. Equals the rotation vector but for `angle^3 / 48`, up to a length of 4 instead of pi,
+  and takes a root and a division where that takes an arc tangent (M. D. Shuster, "A survey of
+  attitude representations", J. Astronautical Sciences 41, 1993).
 */
 inline Eigen::Vector3d rodrigues_from_rotation(const Quaternion& q)
 {
@@ -57,7 +58,8 @@ inline Eigen::Vector3d rodrigues_from_rotation(const Quaternion& q)
   return {f * x, f * y, f * z};
 }
 
-/// The unit quaternion with four times the modified Rodrigues parameters \p u; any length is a rotation.
+/// The unit quaternion with four times the modified Rodrigues parameters \p u; any length is a
+/// rotation.
 inline Quaternion rotation_from_rodrigues(const Eigen::Vector3d& u)
 {
   const double s = u.squaredNorm() / 16, inverse = 1 / (1 + s), f = 0.5 * inverse;
@@ -65,10 +67,10 @@ inline Quaternion rotation_from_rodrigues(const Eigen::Vector3d& u)
 }
 
 /*!
-  Improves the rotation `q` towards the maximiser of `trace(R^T covariance)`, where `covariance` is the sum
-  of `w * deformed * rest^T` (M. Mueller et al., "A robust method to extract the rotational part of
-  deformations", 2016). What the bundle does not determine (a line, a point, nothing) stays as in `q`, so every
-  input has a defined answer.
+  Improves the rotation `q` towards the maximiser of `trace(R^T covariance)`, where `covariance` is
+  the sum of `w * deformed * rest^T` (M. Mueller et al., "A robust method to extract the rotational
+  part of deformations", 2016). What the bundle does not determine (a line, a point, nothing) stays
+  as in `q`, so every input has a defined answer.
 */
 inline Quaternion
 improve_rotation(const Eigen::Matrix3d& covariance, Quaternion q, int number_of_iterations)
@@ -91,10 +93,10 @@ improve_rotation(const Eigen::Matrix3d& covariance, Quaternion q, int number_of_
 }
 
 /*!
-  One step of Newton's method towards the maximiser of `trace(R^T covariance)`, as a rotation vector. \p m is
-  `covariance R^T` with the present `R`; `damping` is added to the Hessian, relative to the trace. The trace at
-  `exp(u) R` is `trace(m) + torque u - u^T hessian u / 2 + ...`; where it is not concave, the step is that of
-  `improve_rotation()`.
+  One step of Newton's method towards the maximiser of `trace(R^T covariance)`, as a rotation
+  vector. \p m is `covariance R^T` with the present `R`; `damping` is added to the Hessian, relative
+  to the trace. The trace at `exp(u) R` is `trace(m) + torque u - u^T hessian u / 2 + ...`; where it
+  is not concave, the step is that of `improve_rotation()`.
 */
 inline Eigen::Vector3d newton_turn(const Eigen::Matrix3d& m, double damping)
 {

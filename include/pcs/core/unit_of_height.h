@@ -12,7 +12,8 @@
 namespace pcs {
 namespace internal {
 
-/// Appends a sentence that begins with `subject` where `height` cannot be that of a tree. Both in one unit, or so it should be.
+/// Appends a sentence that begins with `subject` where `height` cannot be that of a tree. Both in
+/// one unit, or so it should be.
 inline void warn_of_unit(const std::string& subject,
                          double height,
                          double breast_height,

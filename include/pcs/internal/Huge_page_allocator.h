@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Large arrays: on pages of 2 MB where the system has them, and touched first by those who fill them.
+// Allocator for large arrays: huge pages (2 MB) and first touch by the filling threads.
 
 #ifndef PCS_INTERNAL_HUGE_PAGE_ALLOCATOR_H
 #define PCS_INTERNAL_HUGE_PAGE_ALLOCATOR_H
@@ -19,10 +19,11 @@
 namespace pcs {
 namespace internal {
 
-/// Like `std::allocator`. Blocks of several huge pages begin at the border of one, and Linux is told to use them: a walk
-/// through 50 MB misses the cache of page addresses 12,000 times otherwise. Elements that are made without arguments, as by
-/// `resize()`, are default-initialised: numbers have no value until they get one, and threads that fill an array side by
-/// side are the first to touch its pages, which the system clears then.
+/// Like `std::allocator`. Blocks of several huge pages begin at the border of one, and Linux is
+/// advised to use them: a walk through 50 MB misses the cache of page addresses 12,000 times
+/// otherwise. Elements that are made without arguments, as by `resize()`, are default-initialised:
+/// numbers have no value until they get one, and threads that fill an array side by side are the
+/// first to touch its pages, which the system clears then.
 template <class T>
 struct Huge_page_allocator
 {

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Seeded random numbers that are the same with every standard library and for every schedule of threads.
+// Seeded random numbers, independent of the standard library and of thread scheduling.
 
 #ifndef PCS_INTERNAL_RANDOM_STREAM_H
 #define PCS_INTERNAL_RANDOM_STREAM_H
@@ -11,7 +11,8 @@
 namespace pcs {
 namespace internal {
 
-/// The finaliser of SplitMix64 (Steele, Lea, Flood 2014): a bijection whose output bits look independent.
+/// The finaliser of SplitMix64 (Steele, Lea, Flood 2014): a bijection whose output bits look
+/// independent.
 inline std::uint64_t mix_bits(std::uint64_t x)
 {
   x += 0x9e3779b97f4a7c15u;

@@ -11,7 +11,8 @@
 namespace pcs {
 namespace skeleton {
 
-/// `std::atan2()` to 1e-11; 0 for the null vector. Has no branches, so that loops over it use wide instructions [rad].
+/// `std::atan2()` to 1e-11; 0 for the null vector. Has no branches, so that loops over it use wide
+/// instructions [rad].
 inline double fast_atan2(double y, double x)
 {
   constexpr double quarter = 0.78539816339744830962, least = 1e-300;

@@ -1,11 +1,12 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Compiles a kernel for the build's own instruction set, for AVX2 and for AVX-512, and picks one at run time.
+// Run-time selection of kernels compiled for the default instruction set, AVX2 and AVX-512.
 
 #ifndef PCS_INTERNAL_INSTRUCTION_SET_H
 #define PCS_INTERNAL_INSTRUCTION_SET_H
 
-// Kernels say where a multiply-add is fused, so all machines give the same bits; those without the instruction are slow.
+// Kernels say where a multiply-add is fused, so all machines give the same bits; those without the
+// instruction are slow.
 #if (defined(__GNUC__) || defined(__clang__)) && defined(__x86_64__) &&                            \
     !defined(PCS_NO_RUNTIME_DISPATCH)
 #define PCS_HAS_RUNTIME_DISPATCH 1
@@ -24,7 +25,8 @@
 #define PCS_ALWAYS_INLINE inline
 #endif
 
-// A lambda in a kernel must become part of it: alone it would be compiled for another instruction set.
+// A lambda in a kernel must become part of it: alone it would be compiled for another instruction
+// set.
 #if defined(__GNUC__) || defined(__clang__)
 #define PCS_LAMBDA_INLINE __attribute__((always_inline))
 #else
@@ -45,7 +47,8 @@ inline bool has_avx2()
 #endif
 }
 
-/// AVX-512 on whole registers: the extensions that all processors have that are not slowed down by it.
+/// AVX-512 on whole registers: the extensions that all processors have that are not slowed down by
+/// it.
 inline bool has_avx512()
 {
 #if PCS_HAS_RUNTIME_DISPATCH

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Short vectors of numbers for kernels: the compiler's own where it has them, plain arrays elsewhere.
+// Short SIMD vectors for kernels: compiler extensions where available, plain arrays elsewhere.
 
 #ifndef PCS_INTERNAL_LANES_H
 #define PCS_INTERNAL_LANES_H
@@ -19,7 +19,8 @@ namespace internal {
 
 #if (defined(__GNUC__) || defined(__clang__)) && !defined(PCS_NO_VECTOR_EXTENSIONS)
 
-// Both compilers split a vector that the machine does not have; the operations, and so the bits, stay the same.
+// Both compilers split a vector that the machine does not have; the operations, and so the bits,
+// stay the same.
 using Double2 = double __attribute__((vector_size(16))); // of every machine
 using Double4 = double __attribute__((vector_size(32)));
 using Double8 = double __attribute__((vector_size(64)));
@@ -163,8 +164,8 @@ PCS_ALWAYS_INLINE void prefetch([[maybe_unused]] const void* memory,
 #endif
 }
 
-/// Calls `f(std::integral_constant<std::size_t, I>)` for I = 0 ... N - 1, unrolled: arrays of lanes that are
-/// indexed by constants live in registers.
+/// Calls `f(std::integral_constant<std::size_t, I>)` for I = 0 ... N - 1, unrolled: arrays of lanes
+/// that are indexed by constants live in registers.
 template <class F, std::size_t... I>
 PCS_ALWAYS_INLINE void unroll(const F& f, std::index_sequence<I...>)
 {
@@ -177,9 +178,10 @@ PCS_ALWAYS_INLINE void unroll(const F& f)
 }
 
 /*!
-  How a kernel computes, on the doubles that fit a register: `fma` is `x * y + z` with one rounding, and nothing else is
-  fused, so that all kernels give the same bits; `subtract_product` is `z - x * y`. A single number stands for all lanes.
-  `to_doubles` reads as many steps of weights as there are lanes.
+  How a kernel computes, on the doubles that fit a register: `fma` is `x * y + z` with one rounding,
+  and nothing else is fused, so that all kernels give the same bits; `subtract_product` is `z - x *
+  y`. A single number stands for all lanes. `to_doubles` reads as many steps of weights as there are
+  lanes.
 */
 template <class Lanes>
 struct Plain_arithmetic
@@ -217,8 +219,9 @@ struct Plain_arithmetic
 using Portable_arithmetic = Plain_arithmetic<Double4>;
 
 #ifdef PCS_HAS_AVX_ASSEMBLY
-// Written out: whether a compiler fuses `x * y + z` depends on its options, conversions it takes to pieces, and a number
-// for all lanes it first loads into a register, from where it costs an operation to spread.
+// Written out: whether a compiler fuses `x * y + z` depends on its options, conversions it takes to
+// pieces, and a number for all lanes it first loads into a register, from where it costs an
+// operation to spread.
 struct Avx2_arithmetic
 {
   using Doubles = Double4;
@@ -297,9 +300,9 @@ using Avx512_arithmetic = Plain_arithmetic<Double8>;
 inline constexpr double reciprocal_root_series[] = {1, 0.5, 0.375, 0.3125};
 
 /*!
-  `1 / sqrt(x)` to one or two units in the last place, from a guess on the bits of `x`: neither a division nor a root,
-  which take longer than all else in a kernel. `x` must be positive. With `d = 1 - x y^2`, the series
-  `1 / sqrt(x) = y (1 + d / 2 + 3 d^2 / 8 + 5 d^3 / 16 + ...)` is cut after `d^3`, then once more after `d^2`: from an
+  `1 / sqrt(x)` to one or two units in the last place, from a guess on the bits of `x`: neither a
+  division nor a root, which take longer than all else in a kernel. `x` must be positive. With `d =
+  1 - x y^2`, the series `1 / sqrt(x) = y (1 + d / 2 + 3 d^2 / 8 + 5 d^3 / 16 + ...)` is cut after `d^3`, then once more after `d^2`: from an
   error of 3.5 % to 7e-6 and to 1e-15, in a shorter chain than four steps of Newton.
 */
 template <class Arithmetic>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Loops and sums over index ranges, sequential or by TBB, with the same bits for every number of threads.
+// Loops and sums over index ranges, sequential or by TBB, bit-identical for all thread counts.
 
 #ifndef PCS_INTERNAL_PARALLEL_H
 #define PCS_INTERNAL_PARALLEL_H
@@ -48,7 +48,8 @@ constexpr bool is_parallel()
 #if PCS_HAS_TBB
   return wants_parallel;
 #else
-  // Parallel_if_available_tag derives from Parallel_tag exactly when CGAL sees TBB; it must keep working here.
+  // Parallel_if_available_tag derives from Parallel_tag exactly when CGAL sees TBB; it must keep
+  // working here.
   static_assert(!wants_parallel || !std::is_same_v<ConcurrencyTag, CGAL::Parallel_tag>,
                 "pcs: CGAL::Parallel_tag needs TBB; link TBB (PCS_WITH_TBB) or use "
                 "CGAL::Parallel_if_available_tag");
@@ -56,7 +57,8 @@ constexpr bool is_parallel()
 #endif
 }
 
-/// Number of indices that one task takes. Fixed, so that no result depends on the number of threads.
+/// Number of indices that one task takes. Fixed, so that no result depends on the number of
+/// threads.
 constexpr std::size_t default_block = 1024;
 
 /// Calls `f(begin, end)` for consecutive blocks of at most `block` indices that cover `[0, n)`.
@@ -95,8 +97,8 @@ void for_each_index(std::size_t n, const F& f, std::size_t block = default_block
   });
 }
 
-/// Joins `value(i)` over `[0, n)`: sequentially inside blocks of fixed size, then block by block in order. `partial` is
-/// room for what they give, for callers that keep it.
+/// Joins `value(i)` over `[0, n)`: sequentially inside blocks of fixed size, then block by block in
+/// order. `partial` is room for what they give, for callers that keep it.
 template <class ConcurrencyTag, class T, class Value, class Join>
 T blocked_reduce(std::size_t n,
                  T init,

@@ -12,21 +12,23 @@
 namespace pcs {
 namespace internal {
 
-/// Called on the caller's thread between stages. Values never decrease; `false` from the callback means stop.
+/// Called on the caller's thread between stages. Values never decrease; `false` from the callback
+/// means stop.
 class Progress
 {
 public:
   Progress() = default;
   explicit Progress(std::function<bool(double)> callback) : m_callback(std::move(callback)) {}
 
-  /// Opens a stage that takes the share `[from, to]` of the whole work.
+  /// Opens a stage that covers the fraction `[from, to]` of the whole work.
   void stage(double from, double to)
   {
     m_from = from;
     m_to = to;
   }
 
-  /// Reports the fraction `f` in `[0, 1]` of the current stage. Returns `false` if the work must stop.
+  /// Reports the fraction `f` in `[0, 1]` of the current stage. Returns `false` if the work must
+  /// stop.
   bool operator()(double f)
   {
     if (m_is_cancelled)

@@ -49,13 +49,13 @@ PCS_ALWAYS_INLINE Double_pair across(Double_pair a, Double_pair b)
   return _mm_shuffle_pd(a, b, 2);
 }
 
-/// Writes two numbers that nobody reads soon: a store would first read the memory around them. Lines of 64 bytes should
-/// be written at one go, from the first to the last byte.
+/// Writes two numbers that are not read again soon: a store would first read the memory around
+/// them. Lines of 64 bytes should be written at one go, from the first to the last byte.
 PCS_ALWAYS_INLINE void stream(Double_pair both, double* to)
 {
 #if defined(__GNUC__) || defined(__clang__)
-  // Clang joins equal ends of branches and forgets what kind of store they have; one common store among the others to a
-  // line makes it ten times as slow.
+  // Clang joins equal ends of branches and forgets what kind of store they have; one common store
+  // among the others to a line makes it ten times as slow.
 #ifdef __AVX__
   __asm__ volatile("vmovntpd %1, %0" : "=m"(*reinterpret_cast<__m128d*>(to)) : "x"(both));
 #else

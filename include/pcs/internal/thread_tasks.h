@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Tasks in threads of their own, for the thread sanitizer: it cannot see how oneTBB orders tasks, which is not built for it.
+// Tasks in plain threads for the thread sanitizer, which cannot see how oneTBB orders tasks.
 
 #ifndef PCS_INTERNAL_THREAD_TASKS_H
 #define PCS_INTERNAL_THREAD_TASKS_H
@@ -32,7 +32,8 @@ void run_in_two_threads(const F& f, const G& g)
       std::rethrow_exception(error);
 }
 
-/// Calls `f(i)` for `i` in `[0, n)`. Neighbours are in different threads, so that whatever two of them share is seen.
+/// Calls `f(i)` for `i` in `[0, n)`. Neighbours are in different threads, so that whatever two of
+/// them share is seen.
 template <class F>
 void run_tasks_in_two_threads(std::size_t n, const F& f)
 {

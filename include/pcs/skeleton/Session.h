@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What `Tree_skeletonization` does, without its point types, and without a look at how.
+// The stages of a skeletonization on plain coordinates: the compiled part of
+// `Tree_skeletonization`.
 
 #ifndef PCS_SKELETON_SESSION_H
 #define PCS_SKELETON_SESSION_H
@@ -22,16 +23,22 @@
 namespace pcs {
 namespace skeleton {
 
-template <class ConcurrencyTag>
-class Session_stages;
+struct Session_options;
 
-/// The stages in order; each runs those before it that have not run yet, and stops when cancelled.
+template <class ConcurrencyTag>
+struct Session_state;
+
+/// The stages in order. Each runs those before it that have not run yet, and returns `false` when
+/// it is cancelled; called again, it continues where it was stopped.
 template <class ConcurrencyTag>
 class Session
 {
 public:
-  /// `input` is finite, with at least two different points; `is_wood` is empty or has one entry per point.
+  /// `input` is finite, with at least two different points; `is_wood` is empty or has one entry per
+  /// point.
   Session(std::vector<Vec3> input, std::vector<std::uint8_t> is_wood, Session_hints hints);
+  /// The same with all options of all stages.
+  Session(std::vector<Vec3> input, std::vector<std::uint8_t> is_wood, Session_options options);
   ~Session();
 
   bool find_neighbors(pcs::internal::Progress& progress);
@@ -45,18 +52,24 @@ public:
   const std::vector<Joint>& joints() const;
   const Branch_tree& tree() const;
   const Skeleton_report& report() const;
+  /// 1 for the points of the scan that may be the tree, otherwise 0.
+  const std::vector<std::uint8_t>& used_points() const;
 
   /// The node that explains an input point, or `none`.
   Index node_of_input(std::size_t i) const;
-  /// The unit vector across its branch from the axis to an input point; null on the axis. It has a node.
+  /// The unit vector from the axis to an input point that has a node; null on the axis.
   Vec3 normal_of_input(std::size_t i) const;
-  /// Distance of an input point from the surface of its branch; negative inside. It has a node.
+  /// Distance of an input point that has a node from the surface of its branch; negative inside
+  /// [L].
   double residual_of_input(std::size_t i) const;
-  /// Whether an input point is left out as a leaf, by the caller or because it was found to be one.
+  /// Whether an input point was removed as a leaf, by the caller or by the leaf-wood separation.
   bool is_leaf_of_input(std::size_t i) const;
 
+  /// Everything that the stages share; for programs that look inside, with Session_impl.h.
+  Session_state<ConcurrencyTag>& state() { return *m_state; }
+
 private:
-  std::unique_ptr<Session_stages<ConcurrencyTag>> m_stages;
+  std::unique_ptr<Session_state<ConcurrencyTag>> m_state;
 };
 
 } // namespace skeleton

@@ -1,31 +1,412 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Definitions of Session.h.
+// The pipeline of a skeletonization: definitions of Session.h.
 
 #ifndef PCS_SKELETON_SESSION_IMPL_H
 #define PCS_SKELETON_SESSION_IMPL_H
 
+#include <pcs/core/Skeleton_report.h>
+#include <pcs/internal/Stage_timer.h>
+#include <pcs/internal/progress.h>
 #include <pcs/skeleton/Session.h>
 #include <pcs/skeleton/Session_options.h>
-#include <pcs/skeleton/Session_stages.h>
+#include <pcs/skeleton/axes/reassign_points.h>
+#include <pcs/skeleton/scan/Point_labels.h>
+#include <pcs/skeleton/scan/prepare_scan.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
 namespace pcs {
 namespace skeleton {
 
+/// The last stage that is finished.
+enum class Stage { input, neighbors, paths, axes, joints };
+
+/// What the stages read and leave behind; also what survives a cancelled call.
+template <class ConcurrencyTag>
+struct Session_state
+{
+  // ---- the task
+  std::vector<Vec3> input;           ///< until the first stage takes it
+  std::vector<std::uint8_t> is_wood; ///< of the input; empty: unknown
+  Session_options options;           ///< from the first stage on in coordinates of the scan
+
+  // ---- how far it is
+  Stage stage = Stage::input;
+  Leaf_state leaves;  ///< rounds of the leaf-wood separation that are finished
+  Joined_axes joined; ///< rounds of regrouping that are finished, joints and branches
+
+  // ---- results, in the order of the stages
+  Skeleton_report report;
+  Scan scan;
+  Point_labels<ConcurrencyTag> labels{scan, report};
+  std::vector<std::uint8_t> may_be_tree; ///< for a given skeleton: the labels before any removal
+  Clutter_removal<ConcurrencyTag> clutter{scan, options.clutter, labels, report};
+  std::vector<Index> root;
+  Shortest_paths paths;
+  Layer_tree layers;
+  Axis_set axes;
+  std::vector<Found_section> sections; ///< of the method `sections`
+  std::vector<Index> successors;       ///< of the nodes of the tree
+
+  const std::vector<std::uint8_t>& is_used() const { return labels.flags(); }
+  bool has_sections() const { return options.method == Skeleton_method::sections; }
+};
+
+namespace internal {
+
+/// Fractions of the work after which the stages end.
+constexpr double end_of_neighbors = 0.35, end_of_clutter = 0.42, end_of_paths = 0.6,
+                 end_of_first_fit = 0.75, end_of_axes = 0.9, end_of_joints = 0.95,
+                 end_of_radii = 0.97;
+
+template <class Tag>
+bool finish(Session_state<Tag>& s, Stage stage, double end, pcs::internal::Progress& progress)
+{
+  s.stage = stage;
+  return progress(end);
+}
+
+// ---- neighbours
+
+/// The options of a draft of the tree, from some of the points, by which stations are registered.
+inline Session_options draft_options(Session_options options, const Scan_frame& frame)
+{
+  options.do_register_stations = false;
+  options.stations.clear();
+  options.method = Skeleton_method::chains;
+  options.axes.passes = 1; // finds thick wood, in leaves as well
+  options.leaf_removal = Leaf_removal::never;
+  options.given.reset();
+  options.up = Vec3::UnitZ();
+  options.scanners.clear();
+  options.breast_height /= frame.unit;
+  if (options.root)
+    options.root = frame.to_local(*options.root);
+  return options;
+}
+
+template <class Tag>
+bool register_stations(Session_state<Tag>& s, pcs::internal::Progress& progress)
+{
+  if (!s.options.do_register_stations)
+    return true;
+  const auto draft = [&s](std::vector<Vec3> points,
+                          std::vector<std::uint8_t> is_wood,
+                          pcs::internal::Progress& draft_progress) {
+    auto session = std::make_unique<Session<Tag>>(std::move(points),
+                                                  std::move(is_wood),
+                                                  draft_options(s.options, s.scan.frame));
+    if (!session->fit_axes(draft_progress))
+      session.reset();
+    return session;
+  };
+  return skeleton::register_stations<Tag>(s.is_wood,
+                                          s.options.stations,
+                                          s.options.registration,
+                                          draft,
+                                          s.scan,
+                                          s.report,
+                                          progress);
+}
+
+/// Expresses the hints in coordinates of the scan.
+template <class Tag>
+void localize_hints(Session_state<Tag>& s)
+{
+  const Scan_frame& frame = s.scan.frame;
+  Session_options& o = s.options;
+  o.up = Vec3::UnitZ();
+  o.breast_height /= frame.unit;
+  if (o.given) { // it is the tree, and begins at its root
+    s.may_be_tree = s.is_used();
+    o.method = Skeleton_method::chains;
+    if (!o.root)
+      o.root = o.given->points.front();
+  }
+  for (Vec3& scanner : o.scanners)
+    scanner = frame.to_local(scanner);
+}
+
+// ---- paths
+
+template <class Tag>
+Links used_links(const Session_state<Tag>& s)
+{
+  return neighbor_links<Tag>(s.scan, s.is_used(), s.options.axes.links);
+}
+
+/// Builds the graph of the used points, and finds the root unless it is to be kept.
+template <class Tag>
+void link_used(Session_state<Tag>& s, const Links& links, bool do_keep_root, Linked_parts& linked)
+{
+  const Session_options& o = s.options;
+  const auto find_root = [&](const Point_parts& parts) {
+    std::optional<Vec3> hint;
+    if (o.root)
+      hint = s.scan.frame.to_local(*o.root);
+    if (!do_keep_root)
+      s.root = points_of_root<Tag>(s.scan, s.is_used(), links, parts, hint, o.up, o.layers);
+  };
+  link_parts<Tag>(s.scan, s.is_used(), links, o.axes.links, find_root, linked);
+}
+
+template <class Tag>
+void trace_layers(Session_state<Tag>& s, Links& links, Linked_parts& linked)
+{
+  s.paths = skeleton::trace_layers<Tag>(s.scan, s.root, s.options.layers, links, linked, s.layers);
+}
+
+/// Removes the ground and flat faces, and links the points that are left. Returns `false` if
+/// `progress` stopped it; the ground is not removed then.
+template <class Tag>
+bool remove_ground(Session_state<Tag>& s,
+                   Links& links,
+                   Linked_parts& linked,
+                   pcs::internal::Progress& progress)
+{
+  const auto link = [&] {
+    if (s.options.do_trace_paths)
+      link_used(s, links, false, linked);
+  };
+  if (s.options.do_mark_ground) // most scans have no ground: they are linked meanwhile
+    s.clutter.mark_ground(links, s.options.up, link);
+  else
+    link();
+  if (!progress(end_of_clutter))
+    return false;
+  if (s.clutter.remove_ground_and_faces([&] { return used_links(s); }, links))
+    link();
+  return true;
+}
+
+// ---- axes
+
+template <class Tag>
+std::vector<std::uint8_t> find_wood(Session_state<Tag>& s)
+{
+  const Session_options& o = s.options;
+  if (s.leaves.rounds > 0)
+    return wood_by_axes<Tag>(s.scan,
+                             s.axes,
+                             s.is_used(),
+                             s.paths,
+                             o.breast_height,
+                             o.leaves,
+                             s.leaves);
+  const auto trunk = [&]() -> const Axis& {
+    return s.axes.axes[root_axis(s.scan, s.axes, s.root, o.root.has_value())].axis;
+  };
+  std::vector<std::uint8_t> is_wood = wood_by_points<Tag>(s.scan,
+                                                          s.axes,
+                                                          s.is_used(),
+                                                          s.paths,
+                                                          s.root,
+                                                          trunk,
+                                                          o.leaf_removal == Leaf_removal::always,
+                                                          o.breast_height,
+                                                          o.leaves,
+                                                          s.leaves);
+  s.report.is_in_rows = s.leaves.is_in_rows;
+  return is_wood;
+}
+
+/// Removes leaves, or what strays from the wood if there are none, and traces layers over the rest.
+/// Returns `false` if there is nothing to remove.
+template <class Tag>
+bool remove_leaves(Session_state<Tag>& s)
+{
+  if (s.axes.axes.empty() || (s.leaves.rounds > 0 && !s.leaves.has_leaves))
+    return false;
+  const std::vector<std::uint8_t> is_wood = find_wood(s);
+  const bool has_wood = std::find(is_wood.begin(), is_wood.end(), 1) != is_wood.end();
+  if (!has_wood || is_wood == s.is_used())
+    return false;
+  s.labels.remove_leaves(is_wood);
+  Links links = used_links(s);
+  Linked_parts linked;
+  link_used(s, links, !s.leaves.has_leaves, linked);
+  trace_layers(s, links, linked);
+  ++s.leaves.rounds; // a cancelled call continues with the wood
+  return true;
+}
+
+/// Fits axes, removes leaves, and fits again, as long as there are leaves.
+template <class Tag>
+bool fit_wood(Session_state<Tag>& s, pcs::internal::Progress& progress)
+{
+  const bool may_remove = s.options.leaf_removal != Leaf_removal::never;
+  const int rounds = may_remove ? s.options.leaves.rounds : 0;
+  do {
+    const int k = s.leaves.rounds;
+    const double width = end_of_axes - end_of_first_fit;
+    const double from = k == 0 ? end_of_paths : end_of_first_fit + width * (k - 1) / rounds;
+    const double part = k == 0 ? end_of_first_fit - end_of_paths : width / rounds;
+    bool is_running = true;
+    s.axes = skeleton::fit_axes<Tag>(s.scan, s.layers, s.options.axes, [&](double f) {
+      return is_running = progress(from + part * f);
+    });
+    if (!is_running)
+      return false;
+  } while (s.leaves.rounds < rounds && remove_leaves(s));
+  return true;
+}
+
+/// Points that were removed as leaves but lie on an axis are wood; without leaves all of them are.
+template <class Tag>
+void restore_wood(Session_state<Tag>& s)
+{
+  if (s.leaves.rounds > 0) {
+    const std::size_t count =
+        reassign_points<Tag>(s.scan, s.options.axes.chains, s.labels.found_leaves(), s.axes);
+    s.labels.restore_leaves(count, [&](Index i) { return s.axes.is_covered(i); });
+  }
+  if (!s.leaves.has_leaves)
+    s.labels.undo_leaf_removal();
+}
+
+/// Fits the axes of all branches, without leaves where there are any, and fuses pieces of the same
+/// axis.
+template <class Tag>
+bool fit_all_axes(Session_state<Tag>& s, pcs::internal::Progress& progress)
+{
+  if (!fit_wood(s, progress))
+    return false;
+  restore_wood(s);
+  fuse_axes<Tag>(s.scan.spacing, s.options.branching.fusion, s.axes);
+  const double unit = s.scan.frame.unit;
+  s.report.noise = unit * s.axes.noise;
+  s.report.density = s.axes.density / (unit * unit);
+  return true;
+}
+
+/// The method `sections`: sections at centers of curvature.
+template <class Tag>
+bool find_sections(Session_state<Tag>& s, pcs::internal::Progress& progress)
+{
+  const std::vector<Surface_frame> frames = principal_curvatures<Tag>(s.scan);
+  if (!progress(0.7))
+    return false;
+  s.sections = detect_sections(s.scan, s.is_used(), frames, s.options.slices, [&](double f) {
+    return progress(0.7 + 0.2 * f);
+  });
+  return !progress.is_cancelled();
+}
+
+// ---- joints
+
+template <class Tag>
+bool build_tree(Session_state<Tag>& s, pcs::internal::Progress& progress)
+{
+  const Session_options& o = s.options;
+  if (s.axes.axes.empty())
+    return true;
+  const auto joining = [&](double f) {
+    return progress(end_of_axes + (end_of_joints - end_of_axes) * f);
+  };
+  if (!build_branch_tree<Tag>(s.scan,
+                              s.root,
+                              o.root.has_value(),
+                              o.branching,
+                              joining,
+                              s.axes,
+                              s.joined))
+    return false;
+  if (s.leaves.has_leaves && s.leaves.rounds > 0) // remaining leaves make twigs thick
+    s.options.radii.support.pipes.slack = o.leaves.pipe_slack;
+  refine_radii<Tag>(s.scan, s.is_used(), s.axes, o.radii, s.joined.tree);
+  if (!o.given) // which is one tree
+    s.report.number_of_other_stems =
+        count_other_stems(s.axes, s.joined.joints, s.joined.root, s.joined.tree, o.stems);
+  return true;
+}
+
+/// Replaces the tree by the given skeleton with measured radii.
+template <class Tag>
+void measure_given_skeleton(Session_state<Tag>& s)
+{
+  const Session_options& o = s.options;
+  s.joined.tree = measure_given(s.scan,
+                                s.labels.is_empty() ? s.may_be_tree : s.is_used(),
+                                *o.given,
+                                s.joined.tree,
+                                o.radii.given);
+}
+
+template <class Tag>
+void correct_widening(Session_state<Tag>& s)
+{
+  const Session_options& o = s.options;
+  s.report.voxel_size =
+      s.scan.frame.unit *
+      skeleton::correct_widening(s.scan, o.scanners, o.beam_width, o.radii, s.joined.tree);
+}
+
+template <class Tag>
+void describe_tree(Session_state<Tag>& s)
+{
+  const Session_options& o = s.options;
+  s.successors = successors(s.joined.tree);
+  skeleton::describe_tree(s.scan,
+                          s.is_used(),
+                          s.axes,
+                          s.joined.tree,
+                          s.successors,
+                          o.up,
+                          o.breast_height,
+                          s.labels.top_of_leaves(o.up),
+                          s.report);
+}
+
+/// The tree of the method `sections`.
+template <class Tag>
+bool join_sections(Session_state<Tag>& s, pcs::internal::Progress& progress)
+{
+  const pcs::internal::Stage_timer timer(s.report.seconds.joints);
+  s.joined.tree = section_skeleton(s.scan, s.is_used(), s.sections, s.root, s.options.section_tree);
+  correct_widening(s);
+  describe_tree(s);
+  return finish(s, Stage::joints, end_of_radii, progress);
+}
+
+/// The tree of the method `chains`, or the given skeleton with measured radii.
+template <class Tag>
+bool join_branches(Session_state<Tag>& s, pcs::internal::Progress& progress)
+{
+  const pcs::internal::Stage_timer timer(s.report.seconds.joints);
+  if (!build_tree(s, progress))
+    return false;
+  if (s.options.given)
+    measure_given_skeleton(s);
+  return progress(end_of_radii);
+}
+
+} // namespace internal
+
 template <class ConcurrencyTag>
 Session<ConcurrencyTag>::Session(std::vector<Vec3> input,
                                  std::vector<std::uint8_t> is_wood,
                                  Session_hints hints)
-  : m_stages(std::make_unique<Session_stages<ConcurrencyTag>>(std::move(input),
-                                                              std::move(is_wood),
-                                                              Session_options(std::move(hints))))
+  : Session(std::move(input), std::move(is_wood), Session_options(std::move(hints)))
 {
+}
+
+template <class ConcurrencyTag>
+Session<ConcurrencyTag>::Session(std::vector<Vec3> input,
+                                 std::vector<std::uint8_t> is_wood,
+                                 Session_options options)
+  : m_state(std::make_unique<Session_state<ConcurrencyTag>>())
+{
+  m_state->report.number_of_points = input.size();
+  m_state->input = std::move(input);
+  m_state->is_wood = std::move(is_wood);
+  m_state->options = std::move(options);
 }
 
 template <class ConcurrencyTag>
@@ -34,85 +415,143 @@ Session<ConcurrencyTag>::~Session() = default;
 template <class ConcurrencyTag>
 bool Session<ConcurrencyTag>::find_neighbors(pcs::internal::Progress& progress)
 {
-  return m_stages->find_neighbors(progress);
+  Session_state<ConcurrencyTag>& s = *m_state;
+  if (s.stage >= Stage::neighbors)
+    return true;
+  const pcs::internal::Stage_timer timer(s.report.seconds.neighbors);
+  if (!progress(0))
+    return false;
+  if (s.scan.points.empty())
+    take_points<ConcurrencyTag>(std::move(s.input), s.options.up, s.scan);
+  if (!internal::register_stations(s, progress))
+    return false;
+  measure_points<ConcurrencyTag>(s.scan);
+  s.labels.start(s.is_wood);
+  internal::localize_hints(s);
+  return internal::finish(s, Stage::neighbors, internal::end_of_neighbors, progress);
 }
 
 template <class ConcurrencyTag>
 bool Session<ConcurrencyTag>::find_paths(pcs::internal::Progress& progress)
 {
-  return m_stages->find_paths(progress);
+  Session_state<ConcurrencyTag>& s = *m_state;
+  if (!find_neighbors(progress) || s.stage >= Stage::paths)
+    return s.stage >= Stage::paths;
+  const pcs::internal::Stage_timer timer(s.report.seconds.paths);
+  if (s.options.do_mark_ground && !s.clutter.remove_walls_and_roofs(s.options.up))
+    return internal::finish(s, Stage::paths, internal::end_of_paths, progress);
+  Links links = internal::used_links(s);
+  Linked_parts linked;
+  if (!internal::remove_ground(s, links, linked, progress))
+    return false;
+  if (s.options.do_trace_paths)
+    internal::trace_layers(s, links, linked);
+  return internal::finish(s, Stage::paths, internal::end_of_paths, progress);
 }
 
 template <class ConcurrencyTag>
 bool Session<ConcurrencyTag>::fit_axes(pcs::internal::Progress& progress)
 {
-  return m_stages->fit_axes(progress);
+  Session_state<ConcurrencyTag>& s = *m_state;
+  if (!find_paths(progress) || s.stage >= Stage::axes)
+    return s.stage >= Stage::axes;
+  const pcs::internal::Stage_timer timer(s.report.seconds.axes);
+  if (!s.root.empty()) // otherwise nothing is a tree
+    if (!(s.has_sections() ? internal::find_sections(s, progress)
+                           : internal::fit_all_axes(s, progress)))
+      return false;
+  return internal::finish(s, Stage::axes, internal::end_of_axes, progress);
 }
 
 template <class ConcurrencyTag>
 bool Session<ConcurrencyTag>::join(pcs::internal::Progress& progress)
 {
-  return m_stages->join(progress);
+  Session_state<ConcurrencyTag>& s = *m_state;
+  if (!fit_axes(progress) || s.stage >= Stage::joints)
+    return s.stage >= Stage::joints;
+  if (s.has_sections() && !s.root.empty())
+    return internal::join_sections(s, progress);
+  if (!internal::join_branches(s, progress))
+    return false;
+  const pcs::internal::Stage_timer timer(s.report.seconds.sections);
+  internal::correct_widening(s);
+  fit_section_ellipses<ConcurrencyTag>(s.scan,
+                                       s.axes.noise,
+                                       s.options.radii.sections,
+                                       s.joined.tree);
+  internal::describe_tree(s);
+  s.stage = Stage::joints;
+  return true;
 }
 
 template <class ConcurrencyTag>
 const Scan& Session<ConcurrencyTag>::scan() const
 {
-  return m_stages->scan();
+  return m_state->scan;
 }
 
 template <class ConcurrencyTag>
 const Layer_tree& Session<ConcurrencyTag>::layers() const
 {
-  return m_stages->layers();
+  return m_state->layers;
 }
 
 template <class ConcurrencyTag>
 const Axis_set& Session<ConcurrencyTag>::axes() const
 {
-  return m_stages->axes();
+  return m_state->axes;
 }
 
 template <class ConcurrencyTag>
 const std::vector<Joint>& Session<ConcurrencyTag>::joints() const
 {
-  return m_stages->joints();
+  return m_state->joined.joints;
 }
 
 template <class ConcurrencyTag>
 const Branch_tree& Session<ConcurrencyTag>::tree() const
 {
-  return m_stages->tree();
+  return m_state->joined.tree;
 }
 
 template <class ConcurrencyTag>
 const Skeleton_report& Session<ConcurrencyTag>::report() const
 {
-  return m_stages->report();
+  return m_state->report;
+}
+
+template <class ConcurrencyTag>
+const std::vector<std::uint8_t>& Session<ConcurrencyTag>::used_points() const
+{
+  return m_state->is_used();
 }
 
 template <class ConcurrencyTag>
 Index Session<ConcurrencyTag>::node_of_input(std::size_t i) const
 {
-  return m_stages->node_of_input(i);
+  return tree().node_of_point[scan().point_of_input[i]];
 }
 
 template <class ConcurrencyTag>
 Vec3 Session<ConcurrencyTag>::normal_of_input(std::size_t i) const
 {
-  return m_stages->normal_of_input(i);
+  const Vec3 across =
+      offset_of_point(scan(), tree(), m_state->successors, scan().point_of_input[i]);
+  const double length = across.norm();
+  return length > 0 ? scan().frame.direction_to_input(across / length) : Vec3(Vec3::Zero());
 }
 
 template <class ConcurrencyTag>
 double Session<ConcurrencyTag>::residual_of_input(std::size_t i) const
 {
-  return m_stages->residual_of_input(i);
+  return scan().frame.unit *
+         residual_of_point(scan(), tree(), m_state->successors, scan().point_of_input[i]);
 }
 
 template <class ConcurrencyTag>
 bool Session<ConcurrencyTag>::is_leaf_of_input(std::size_t i) const
 {
-  return m_stages->is_leaf_of_input(i);
+  return m_state->labels.is_leaf(scan().point_of_input[i]);
 }
 
 } // namespace skeleton

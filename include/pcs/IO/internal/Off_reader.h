@@ -117,7 +117,7 @@ private:
     m_number_of_points = m_rows_left = m_number_of_vertices;
   }
 
-  //! the first vertex tells whether there is an alpha and whether colours are integers
+  //! the first vertex shows whether there is an alpha and whether colours are integers
   void add_colors()
   {
     std::string_view rest = m_line;

@@ -150,7 +150,7 @@ private:
     return "/proc/self/fd/" + std::to_string(file);
   }
 
-  /// `false` where the file system has no such files, or they could not be named.
+  /// `false` where the file system has no unnamed files, or they could not be named.
   bool open_nameless()
   {
     const std::filesystem::path folder = m_target.parent_path();

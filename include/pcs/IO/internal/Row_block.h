@@ -204,7 +204,7 @@ void encode_field(std::size_t n,
   });
 }
 
-//! the integer that stands for a coordinate; as double, the caller checks the range
+//! the integer that encodes a coordinate; as double, the caller checks the range
 inline double quantize(double value, double scale, double offset)
 {
   return std::round((value - offset) / scale);

@@ -188,7 +188,8 @@ private:
                             std::string(name) + "' is missing");
   }
 
-  //! takes the names from the last comment before the first row, if it has one for each column; else nothing changes
+  //! takes the names from the last comment before the first row, if it has one for each column;
+  //! else nothing changes
   bool use_comment()
   {
     std::string_view names = m_comment;
@@ -253,7 +254,7 @@ private:
 
   Input_file m_file;
   std::string m_comment;                 // the last one before the first row
-  char m_separator = '\0';               // ' ' stands for any number of blanks and tabs
+  char m_separator = '\0';               // ' ' means any number of blanks and tabs
   std::vector<std::string_view> m_words; // of the current line
   bool m_has_row = false;                // there is a line that was not handed out yet
   std::uint64_t m_number_of_rows = 0;

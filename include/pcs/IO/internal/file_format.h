@@ -33,7 +33,7 @@ inline std::string extension_of(const std::string& path)
   return text;
 }
 
-//! the format that an extension stands for; throws if none
+//! the format of a file extension; throws if none
 inline File_format format_by_extension(const std::string& path)
 {
   const std::string extension = extension_of(path);
@@ -75,7 +75,7 @@ inline File_format format_by_content(const std::string& path)
     return File_format::las;
   if (is_off_keyword(word))
     return File_format::off;
-  return format_by_extension(path); // the reader of that format tells what is missing
+  return format_by_extension(path); // the reader of that format reports what is missing
 }
 
 } // namespace internal

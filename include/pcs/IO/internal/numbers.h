@@ -140,7 +140,7 @@ inline bool is_big_endian_machine()
   return first == 0;
 }
 
-//! reads a `T` from bytes, the other way round if `do_swap`
+//! reads a `T` from bytes, in reverse byte order if `do_swap`
 template <class T>
 T load(const unsigned char* from, bool do_swap)
 {
@@ -156,7 +156,7 @@ T load(const unsigned char* from, bool do_swap)
   return value;
 }
 
-//! writes a `T` to bytes, the other way round if `do_swap`
+//! writes a `T` to bytes, in reverse byte order if `do_swap`
 template <class T>
 void store(T value, unsigned char* to, bool do_swap)
 {

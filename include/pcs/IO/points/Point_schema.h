@@ -42,7 +42,7 @@ struct Las_metadata
   std::vector<unsigned char> tail;   //!< everything after the last point record (EVLRs, waveforms)
   std::uint64_t tail_position = 0;   //!< where `tail` began in the file it was read from [byte]
   std::array<double, 3> scale{};     //!< length of one step of the stored integers [L]
-  std::array<double, 3> offset{};    //!< what the integer 0 stands for [L]
+  std::array<double, 3> offset{};    //!< coordinate of the integer 0 [L]
 };
 
 /*!

@@ -147,7 +147,7 @@ public:
     m_values.emplace_back(std::move(values));
   }
 
-  //! gives an existing property new values, possibly of another type; it keeps its place
+  //! gives an existing property new values, possibly of another type; it keeps its index
   template <class T>
   void replace_property(const std::string& name, std::vector<T> values)
   {

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The scalar types a point property can have, and the container that holds one property in its own type.
+// Scalar types of point properties, and the container of one property.
 
 #ifndef PCS_IO_POINTS_SCALAR_TYPE_H
 #define PCS_IO_POINTS_SCALAR_TYPE_H
@@ -79,7 +79,7 @@ constexpr std::size_t scalar_index =
 template <class T>
 constexpr bool is_scalar_type_v = internal::scalar_index<T> < std::variant_size_v<Property_values>;
 
-//! the enumerator that stands for `T`
+//! the enumerator of `T`
 template <class T>
 constexpr Scalar_type scalar_type_of()
 {
@@ -89,7 +89,7 @@ constexpr Scalar_type scalar_type_of()
   return static_cast<Scalar_type>(internal::scalar_index<T>);
 }
 
-//! calls `f(Type_tag<T>())` with the type that `type` stands for
+//! calls `f(Type_tag<T>())` with the type that `type` names
 template <class Function>
 decltype(auto) dispatch(Scalar_type type, Function&& f)
 {

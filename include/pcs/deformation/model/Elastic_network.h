@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The discrete body that is deformed: nodes at rest, weighted surface edges, and links through the inside.
+// Elastic network: nodes at rest, weighted surface edges, and springs through the interior.
 
 #ifndef PCS_DEFORMATION_MODEL_ELASTIC_NETWORK_H
 #define PCS_DEFORMATION_MODEL_ELASTIC_NETWORK_H
@@ -34,16 +34,16 @@ struct Elastic_network
   std::vector<Vec3> rest; ///< positions of the nodes [L]
   Weighted_graph surface; ///< edges along the surface
   Weighted_graph links;   ///< springs through the inside; may be empty (then `links.size() == 0`)
-  /// Of the first nodes: the share of the surface of their component that each stands for. [-]
+  /// Of the first nodes: the fraction of the surface of their component that each represents. [-]
   std::vector<double> area;
-  /// Of the first nodes, an order of elimination for factors over the surface, and over the links as well: found once,
-  /// good for any choice of free nodes. Empty if it is not worth it.
+  /// Of the first nodes, an order of elimination for factors over the surface, and over the links
+  /// as well: found once, good for any choice of free nodes. Empty if it is not worth it.
   std::vector<std::uint32_t> surface_rank, rank;
   std::size_t size() const { return rest.size(); }
 };
 
-/// An edge is never taken for shorter than this share of the spacing around it, so that two points that nearly
-/// coincide do not outweigh all others.
+/// An edge is never taken for shorter than this fraction of the spacing around it, so that two
+/// points that nearly coincide do not outweigh all others.
 constexpr double shortest_relative_edge = 0.2;
 /// Spacings of two neighbours that differ by more are an outlier and its victim.
 constexpr double widest_spacing_step = 2;
@@ -54,7 +54,8 @@ inline double representable_weight(double w)
   return std::isfinite(w) ? std::min(1e9, std::max(1e-30, w)) : 1;
 }
 
-/// Median length of the edges at node `i`: the spacing there, whatever single outlier is linked to it. [L]
+/// Median length of the edges at node `i`: the spacing there, whatever single outlier is linked to
+/// it. [L]
 inline double local_spacing(const std::vector<Vec3>& rest,
                             const neighborhood::Proximity_graph& graph,
                             std::size_t i)
@@ -118,10 +119,10 @@ inline double typical_edge(const std::vector<Vec3>& rest,
 }
 
 /*!
-  Weights `w_ij = (s_i^2 + s_j^2) / (2 |x_j - x_i|^2)`, scaled to mean 1, where `s_i` is `local_spacing()`, the larger
-  taken for at most `widest_spacing_step` times the smaller. `1 / d^2` turns differences into slopes; the factor `s^2` is the area
-  that a point stands for, so that densely sampled parts do not become stiffer than sparse ones, and far outliers pull
-  on nothing.
+  Weights `w_ij = (s_i^2 + s_j^2) / (2 |x_j - x_i|^2)`, scaled to mean 1, where `s_i` is
+  `local_spacing()`, the larger taken for at most `widest_spacing_step` times the smaller. `1 / d^2`
+  turns differences into slopes; the factor `s^2` is the area that a point stands for, so that
+  densely sampled parts do not become stiffer than sparse ones, and far outliers pull on nothing.
 */
 template <class ConcurrencyTag>
 void set_edge_weights(const std::vector<Vec3>& rest, Weighted_graph& graph)

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// One graph Laplacian with prescribed nodes eliminated, factorised once, solved for many boundary values.
+// Harmonic interpolation on a graph: Laplacian with prescribed nodes eliminated.
 
 #ifndef PCS_DEFORMATION_MODEL_HARMONIC_SYSTEM_H
 #define PCS_DEFORMATION_MODEL_HARMONIC_SYSTEM_H
@@ -27,8 +27,8 @@ constexpr Node_constraint unreached_node = -2;
 struct Node_constraints
 {
   std::vector<Node_constraint> handle_of_node;
-  /// Per handle: 0 prescribes its nodes exactly; a positive value ties them with springs of that weight relative
-  /// to the sum of the node's edge weights. [-]
+  /// Per handle: 0 prescribes its nodes exactly; a positive value ties them with springs of that
+  /// weight relative to the sum of the node's edge weights. [-]
   std::vector<double> softness_weight;
 
   bool is_prescribed(std::size_t node) const
@@ -41,7 +41,8 @@ struct Node_constraints
     const Node_constraint h = handle_of_node[node];
     return h >= 0 && softness_weight[static_cast<std::size_t>(h)] > 0;
   }
-  /// Weight of the spring of a soft node whose edge weights sum to `degree`; one without edges has its spring alone.
+  /// Weight of the spring of a soft node whose edge weights sum to `degree`; one without edges has
+  /// its spring alone.
   double soft_weight(std::size_t node, double degree) const
   {
     return softness_weight[static_cast<std::size_t>(handle_of_node[node])] *
@@ -105,8 +106,16 @@ inline double node_degree(const Weighted_graph& graph, std::size_t i)
 }
 
 /*!
-  Solves `L u = 0` at the unknown nodes for given `u` at the prescribed ones (soft ones: `L u + w (u - value) = 0`).
-  `value(node)` is asked for prescribed and soft nodes. `result[node]` is written for the unknown nodes only.
+  Minimises the Dirichlet energy
+
+      sum_{edges ij} w_ij |u_i - u_j|^2 + sum_{soft i} s_i |u_i - value_i|^2
+
+  over `u` at the free and soft nodes, for given `u` at the prescribed ones. `w_ij` are the weights
+  of the graph [-], `s_i` is `Node_constraints::soft_weight()`. The normal equations are `L u = 0`
+  at free nodes and `(L u)_i + s_i (u_i - value_i) = 0` at soft ones; constraints as in equation
+  (2.3) of the dissertation. `factor` holds `L`, with the `s_i` on its diagonal, without the
+  prescribed nodes. `value(node)` is asked for prescribed and soft nodes. `result[node]` is written
+  for the unknown nodes only.
 */
 template <class ConcurrencyTag, class Row, class Value>
 void solve_harmonic(const linear_algebra::Sparse_cholesky& factor,

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Coarser copies of the elastic network, which find the large rotations that a dragged handle asks for.
+// One coarse level of the multigrid hierarchy of the elastic network.
 
 #ifndef PCS_DEFORMATION_MULTIGRID_COARSE_LEVEL_H
 #define PCS_DEFORMATION_MULTIGRID_COARSE_LEVEL_H
@@ -30,17 +30,23 @@ namespace deformation {
 constexpr std::size_t coarsening_ratio = 5;
 /// Networks with fewer nodes get no coarser level.
 constexpr std::size_t smallest_coarsened_network = 1000;
-/// Largest number of passes on a coarse level; they are cheap there, and carry far.
+/// Largest number of passes on a coarse level; they are cheap there, and reach far.
 constexpr int number_of_coarse_passes = 100;
 
-/// Of the fall of the energy that would end the passes of the finest level, were it as small: a pass there costs more
-/// than one here, and what stays undone here costs passes there. [-]
+/// Of the fall of the energy that would end the passes of the finest level, were it as small: a
+/// pass there costs more than one here, and what stays undone here costs passes there. [-]
 constexpr double coarse_share_of_tolerance = 0.5;
 
 /*!
-  A pass carries a rotation over a few edges only. Under a handle that is dragged without being turned, the whole
-  rotation has to be found that way; on a coarse network the same distance is a few edges. The passes of each level
-  start from the deviations (`Elastic_solver::deviations()`) found on the coarser one.
+  Reduces the energy of `Elastic_solver` over a network of one node per `coarsening_ratio` nodes of
+  the finer one, with weights of its own (`sample_graph()`). Deviations are prolonged linearly,
+  `d_i = sum_s w_is d_s`, over the samples `s` near a finer node with the weights of `Sample_links`;
+  they are the initial guess on the finer level. The scheme goes from coarse to fine once, without
+  residual correction; it replaces the one-level solve of the dissertation's equations (2.1) to
+  (2.3).
+
+  One pass propagates a rotation over a few edges only, but a handle that is dragged without being
+  turned needs rotations in the whole body. On a coarse network the same distance is a few edges.
 */
 template <class ConcurrencyTag>
 class Coarse_level
@@ -117,8 +123,9 @@ public:
     return m_solver.constrain(m_bounded, std::move(constraints), stiffness);
   }
 
-  /// Runs the passes of this level, less of them if `progress` asks to stop. `guess`: in, of this level's nodes, or empty; out, of the finer one's.
-  /// A pass may gain as much less than one over `finest_size` nodes as it costs less: what it leaves has to be done there.
+  /// Runs the passes of this level, less of them if `progress` asks to stop. `guess`: in, of this
+  /// level's nodes, or empty; out, of the finer one's. A pass may gain as much less than one over
+  /// `finest_size` nodes as it costs less: what it leaves has to be done there.
   void improve(const std::vector<Similarity>& transforms,
                Elastic_options options,
                std::size_t finest_size,
@@ -159,7 +166,8 @@ public:
   }
 
 private:
-  /// A soft handle between the nodes draws those in whose regions it lies, in every component that it holds.
+  /// A soft handle between the nodes draws those in whose regions it lies, in every component that
+  /// it holds.
   void draw_nodes_of_soft_handles(const Node_constraints& of_finer)
   {
     auto& of_node = m_constraints.handle_of_node;

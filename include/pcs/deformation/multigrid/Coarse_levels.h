@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// All coarser copies of the elastic network of a session, from the finest to one of a few hundred nodes.
+// Multigrid hierarchy of the elastic network: all coarse levels of a session.
 
 #ifndef PCS_DEFORMATION_MULTIGRID_COARSE_LEVELS_H
 #define PCS_DEFORMATION_MULTIGRID_COARSE_LEVELS_H
@@ -21,8 +21,9 @@ namespace pcs {
 namespace deformation {
 
 /*!
-  Networks above a certain size have no interior links. If coarser ones have, the finest of these makes passes until it
-  converges; those between it and the session's network only carry what it finds.
+  Networks above a certain size have no interior links. If coarser ones have, the finest of these
+  makes passes until it converges; those between it and the session's network only carry what it
+  finds.
 */
 template <class ConcurrencyTag>
 class Coarse_levels
@@ -51,7 +52,8 @@ public:
     }
   }
 
-  /// Takes over the constraints of the session's network and factorises. Returns `false` if a matrix is singular.
+  /// Takes over the constraints of the session's network and factorises. Returns `false` if a
+  /// matrix is singular.
   bool constrain(const Elastic_network& finest, const Node_constraints& of_finest, double stiffness)
   {
     bool is_regular = true;

@@ -19,8 +19,9 @@ namespace pcs {
 namespace deformation {
 
 /*!
-  For the iteration `x <- g(x)`, proposes the combination of the last few `g(x_j)` whose residuals `g(x_j) - x_j`
-  cancel best (D. G. Anderson 1965; H. F. Walker, P. Ni, SIAM J. Numer. Anal. 49, 2011). Memory: `2 depth` vectors.
+  For the iteration `x <- g(x)`, proposes the combination of the last few `g(x_j)` whose residuals
+  `g(x_j) - x_j` cancel best (D. G. Anderson 1965; H. F. Walker, P. Ni, SIAM J. Numer. Anal. 49,
+  2011). Memory: `2 depth` vectors.
 */
 template <class ConcurrencyTag>
 class Anderson_mixing

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The scales of the handles, blended between them, and how much of them bodies take along the way.
+// Scale field: interpolated scales of the handles, and growth of edges along its gradient.
 
 #ifndef PCS_DEFORMATION_SOLVER_BLENDED_SCALES_H
 #define PCS_DEFORMATION_SOLVER_BLENDED_SCALES_H
@@ -24,9 +24,10 @@ namespace pcs {
 namespace deformation {
 
 /*!
-  The logarithm of the scale is harmonic between handles. Edges across its gradient grow with it; along the gradient they
-  grow by a share of it, as much as the handles leave room for: a rod whose end is scaled where it is gets thicker, not
-  longer, or it would have to buckle. One share for all bodies.
+  The logarithm of the scale is harmonic between handles. Edges across its gradient grow with it;
+  along the gradient they grow by a share of it, as much as the handles leave room for: a rod whose
+  end is scaled where it is gets thicker, not longer, or it would have to buckle. One share for all
+  bodies.
 */
 template <class ConcurrencyTag>
 class Blended_scales
@@ -50,10 +51,11 @@ public:
     set_share(0);
   }
 
-  /// What the edges of every node grow by before they are turned: symmetric; empty if no handle has a scale. [-]
+  /// What the edges of every node grow by before they are turned: symmetric; empty if no handle has
+  /// a scale. [-]
   const std::vector<Eigen::Matrix3d>& growth() const { return m_growth; }
 
-  /// Edges along the gradient of the scale grow by this share of it. [-]
+  /// Edges along the gradient of the scale grow by this fraction of it. [-]
   void set_share(double share)
   {
     pcs::internal::for_each_index<ConcurrencyTag>(
@@ -69,7 +71,8 @@ public:
         512);
   }
 
-  /// From the energies with shares of 0, 1/2 and 1, as they are quadratic in it; 1 if it does not matter. [-]
+  /// From the energies with fractions of 0, 1/2 and 1, as they are quadratic in it; 1 if it does
+  /// not matter. [-]
   static double share_of_least_energy(double none, double half, double all)
   {
     const double curvature = 2 * (none + all) - 4 * half, slope = all - none - curvature;
@@ -83,12 +86,12 @@ private:
 
   /// Scales that differ by less than this across an edge have no direction. [-]
   static constexpr double least_difference = 1e-9;
-  /// Over one ring, differences of a harmonic function scatter so much that bodies get longer by some per cent of the
-  /// scale, which is enough to buckle.
+  /// Over one ring, differences of a harmonic function scatter so much that bodies get longer by
+  /// some per cent of the scale, which is enough to buckle.
   static constexpr int number_of_rings = 3;
   static constexpr double normal_share =
       1e-3; ///< across a surface, where the edges say nothing [-]
-  /// Of an edge along the gradient, where a negative share would turn it around. [-]
+  /// Of an edge along the gradient, where a negative fraction would turn it around. [-]
   static constexpr double least_growth = 0.25;
 
   /// Of edges around a node.
@@ -130,8 +133,8 @@ private:
         m_log_scale[i] = value(i);
   }
 
-  /// Along the gradient of the logarithm of scale at rest, by least squares over some rings of neighbours. Null where
-  /// that is constant.
+  /// Along the gradient of the logarithm of scale at rest, by least squares over some rings of
+  /// neighbours. Null where that is constant.
   void find_directions(const Elastic_network& network, const Node_constraints& constraints)
   {
     const auto& graph = network.surface;

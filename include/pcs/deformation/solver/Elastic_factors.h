@@ -20,7 +20,8 @@
 namespace pcs {
 namespace deformation {
 
-/// Factors over the free and soft nodes: of the field of the handles, of positions, and of the smoothing of deviations.
+/// Factors over the free and soft nodes: of the field of the handles, of positions, and of the
+/// smoothing of deviations.
 class Elastic_factors
 {
 public:
@@ -29,7 +30,7 @@ public:
   const linear_algebra::Sparse_cholesky& smoothing() const { return m_smoothing; }
   /// That of the field, but for networks with links.
   const linear_algebra::Sparse_cholesky& position() const { return m_has_links ? m_link : m_field; }
-  /// `mu D` of a row: how much the best local rotation counts against those of the neighbours.
+  /// `mu D` of a row: weight of the best local rotation against those of the neighbours.
   double fit_weight(std::size_t row) const { return m_fit_weight[row]; }
 
   /// Returns `false` if a matrix is singular (a free part without handle).

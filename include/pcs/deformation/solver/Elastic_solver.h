@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Rotations and positions of an elastic network under handles: alternating solves until the energy is least.
+// Alternating (local-global) minimisation of the elastic energy of a network under handles.
 
 #ifndef PCS_DEFORMATION_SOLVER_ELASTIC_SOLVER_H
 #define PCS_DEFORMATION_SOLVER_ELASTIC_SOLVER_H
@@ -23,9 +23,23 @@ namespace pcs {
 namespace deformation {
 
 /*!
-  Passes, the text's equation (2.2): the best local rotations of a shape, their deviations from the field of the handles
-  smoothed, the next shape from these (`Elastic_step`). They are accelerated by Anderson mixing. Of all states that they
-  go through, the one with the least energy is kept, so more passes never make it worse.
+  Reduces, over the positions `x` and rotations `R` of the free and soft nodes, the elastic energy
+
+      E(x, R) = sum_{edges ij} w_ij |(x_j - x_i) - (G_i + G_j)/2 (x0_j - x0_i)|^2  (+ links)  [L^2],
+
+  the residual of equation (2.2) of the dissertation. `x0` are the positions at rest, `w_ij` the
+  weights of the surface edges [-], `G_i` is `R_i` times growth and stretch (`Elastic_step`). Each
+  pass
+
+  1. fits the rotation of every node to its edges (`fit_rotations.h`), as a deviation `d_i` from the
+     rotation field of the handles (`rotation_field.h`);
+  2. smooths: minimises `sum_ij w_ij |d'_i - d'_j|^2 + sum_i mu_i D_i |d'_i - d_i|^2` over `d'`, which
+     is zero at the handles, with `D_i = sum_j w_ij` and `mu_i` from stiffness and area
+     (`Elastic_factors::fit_weight()`); soft nodes add their spring towards zero;
+  3. solves for the positions with `R_i = exp(d'_i) B_i` fixed.
+
+  Passes are accelerated by Anderson mixing. The smoothing is a regularisation that `E` does not
+  contain; the state with the lowest energy is kept, so more passes never increase `E`.
 */
 template <class ConcurrencyTag>
 class Elastic_solver
@@ -45,9 +59,9 @@ public:
     return m_shape.constrain(network, std::move(constraints), stiffness);
   }
 
-  /// Solves for one transformation per handle, from the rest shape. The guess is the first state, or tried after the
-  /// first pass, when that is not known to be worth it. Where it was found with links that this network lacks, energies do
-  /// not compare: it is taken, and little is changed.
+  /// Solves for one transformation per handle, from the rest shape. The guess is the first state,
+  /// or tried after the first pass, when that is not known to be worth it. Where it was found with
+  /// links that this network lacks, energies do not compare: it is taken, and little is changed.
   Elastic_result solve(const std::vector<Similarity>& transforms,
                        const Elastic_options& options,
                        pcs::internal::Progress& progress,
@@ -72,9 +86,10 @@ public:
   }
 
   /*!
-    The same from where the last solve under these constraints ended, as seen from the field: for handles that have moved
-    little since. Returns `false` if that has more energy than `highest_energy`; the state is of no use then. Not for
-    networks that lack the links of coarser ones.
+    The same from where the last solve under these constraints ended, as seen from the field: for
+    handles that have moved little since. Returns `false` if that has more energy than
+    `highest_energy`; the state is of no use then. Not for networks that lack the links of coarser
+    ones.
   */
   bool solve_further(const std::vector<Similarity>& transforms,
                      const Elastic_options& options,
@@ -141,7 +156,8 @@ private:
     }
   }
 
-  /// One pass: accelerated if that lowers the energy, else plain; `false` if neither does (rounding at the optimum).
+  /// One pass: accelerated if that lowers the energy, else plain; `false` if neither does (rounding
+  /// at the optimum).
   bool improve(bool is_accelerated, bool is_last, Elastic_result& result)
   {
     m_shape.keep();
@@ -166,8 +182,9 @@ private:
     return true;
   }
 
-  /// What a pass starts from and what it makes of that: the deviations and, where there are links, the positions that give
-  /// them their directions. Without these, what the links hold back would look like the answer to the deviations.
+  /// What a pass starts from and what it makes of that: the deviations and, where there are links,
+  /// the positions that give them their directions. Without these, the resistance of the links
+  /// would be taken for the effect of the deviations.
   void mix(bool is_wanted)
   {
     if (!m_shape.has_links()) {
@@ -199,8 +216,9 @@ private:
       m_smooth[i] = i < guess.deviations.size() ? guess.deviations[i] : Vec3(Vec3::Zero());
   }
 
-  /// A guess replaces the present state if it is clearly better: where the field of the handles explains the motion,
-  /// it is more exact than a coarse network, and what folds up there is no shape here. Returns whether it did.
+  /// A guess replaces the present state if it is clearly better: where the field of the handles
+  /// explains the motion, it is more exact than a coarse network, and what folds up there is no
+  /// shape here. Returns whether it did.
   bool start_from(const Deviation_guess& guess, Elastic_result& result)
   {
     m_shape.keep_all();

@@ -36,13 +36,15 @@ struct Elastic_state
   /// What edges grow by between handles that are scaled, `A_i`; empty if none is. [-]
   const std::vector<Eigen::Matrix3d>& growth;
 
-  /// Weight of the frame in `deformation_gradient()`, relative to the spread of the edges: it decides where the
-  /// edges say nothing, across a surface.
+  /// Weight of the frame in `deformation_gradient()`, relative to the spread of the edges: it
+  /// decides where the edges say nothing, across a surface.
   static constexpr double frame_share = 0.05;
-  /// Of shorter edges, relative to the coordinates, rounding leaves too little to measure a gradient. [-]
+  /// Of shorter edges, relative to the coordinates, rounding leaves too little to measure a
+  /// gradient. [-]
   static constexpr double shortest_measured_edge = 1e-10;
 
-  /// Right side of node `i` from its surface edges; returns its degree. Number by number, as in `newton_turn()`.
+  /// Right side of node `i` from its surface edges; returns its degree. Number by number, as in
+  /// `newton_turn()`.
   double sum_edges(std::size_t i, Vec3& b) const
   {
     const auto& graph = network.surface;
@@ -107,8 +109,8 @@ struct Elastic_state
     return energy;
   }
 
-  /// The rest shape that a material of the given Poisson's ratio takes under the present main stretch `s1` along
-  /// `v`: `S = s1 v v^T + s1^-nu (I - v v^T)`.
+  /// The rest shape that a material of the given Poisson's ratio takes under the present main
+  /// stretch `s1` along `v`: `S = s1 v v^T + s1^-nu (I - v v^T)`.
   Eigen::Matrix3d transverse_stretch(std::size_t i, double poisson_ratio) const
   {
     const Eigen::Matrix3d in_rest = frame[i].inverse() * deformation_gradient(i);
@@ -126,7 +128,8 @@ struct Elastic_state
     return (s1 - across) * v * v.transpose() + across * Eigen::Matrix3d::Identity();
   }
 
-  /// Best linear map of the edges at node `i` from rest to now, completed by the frame across the surface. [-]
+  /// Best linear map of the edges at node `i` from rest to now, completed by the frame across the
+  /// surface. [-]
   Eigen::Matrix3d deformation_gradient(std::size_t i) const
   {
     // Number by number, as in `newton_turn()`.

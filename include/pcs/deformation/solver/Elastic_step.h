@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The shape that an elastic network takes under handles and given rotations: constant factors.
+// Local-global step of an elastic network: positions from rotations, and the reverse.
 
 #ifndef PCS_DEFORMATION_SOLVER_ELASTIC_STEP_H
 #define PCS_DEFORMATION_SOLVER_ELASTIC_STEP_H
@@ -30,10 +30,11 @@ namespace pcs {
 namespace deformation {
 
 /*!
-  Rotations are `exp(d) B`: deviations from the rotation field `B` of the handles. From them follow positions,
-  `L x = b`, `b_i = sum_j w_ij (G_i + G_j)/2 (x0_i - x0_j)` with `G_i = R_i A_i S_i`: the rotation, the growth between
-  handles of different scale (`Blended_scales`), the stretch that the material allows; from positions their energy, and the
-  deviations of the rotations that fit them best.
+  Rotations are `exp(d) B`: deviations from the rotation field `B` of the handles. From them follow
+  positions, `L x = b`, `b_i = sum_j w_ij (G_i + G_j)/2 (x0_i - x0_j)` with `G_i = R_i A_i S_i`: the
+  rotation, the growth between handles of different scale (`Blended_scales`), the stretch that the
+  material allows; from positions their energy, and the deviations of the rotations that fit them
+  best.
 
   All matrices are constant while the constraints are; the three factors are made in `constrain()`.
 */
@@ -57,8 +58,8 @@ public:
             m_scales.growth()};
   }
 
-  /// Takes a network, which must outlive its use here, and constraints, and factorises. Returns `false` if a matrix is
-  /// singular (a free part without handle).
+  /// Takes a network, which must outlive its use here, and constraints, and factorises. Returns
+  /// `false` if a matrix is singular (a free part without handle).
   bool constrain(const Elastic_network& network, Node_constraints constraints, double stiffness)
   {
     m_network = &network;
@@ -98,7 +99,8 @@ public:
     m_link_offsets = link_offsets;
   }
 
-  /// Whether positions hold what links of another network add to them: energies do not compare with those of others.
+  /// Whether positions hold what links of another network add to them: energies do not compare with
+  /// those of others.
   bool has_link_offsets() const { return m_link_offsets != nullptr; }
 
   /// Rotations from deviations. [rad]
@@ -137,8 +139,8 @@ public:
           m_position[i] += (*m_link_offsets)[i];
   }
 
-  /// One sweep: the energy of the present state and, if there is a next pass, the deviation of each node's best rotation
-  /// from the field.
+  /// One sweep: the energy of the present state and, if there is a next pass, the deviation of each
+  /// node's best rotation from the field.
   double fit_and_measure(bool has_next)
   {
     const std::size_t n = m_network->size();
@@ -170,8 +172,8 @@ public:
   /// From where links had their directions. [L]
   const std::vector<Vec3>& directing() const { return m_position_solver.directing(); }
 
-  /// How far the interior links move the nodes: to the present positions from those that the surface alone would give
-  /// with the same frames. Empty without links. One solve.
+  /// How far the interior links move the nodes: to the present positions from those that the
+  /// surface alone would give with the same frames. Empty without links. One solve.
   void link_offsets(std::vector<Vec3>& offsets)
   {
     m_position_solver.link_offsets(state(), *m_transforms, m_factors, offsets);
@@ -258,8 +260,9 @@ private:
     return energy;
   }
 
-  /// How much bodies grow along the gradient of scale: as the field of the handles leaves room for them, so that least
-  /// energy is left. That is quadratic in the share, because positions are linear in it. The present positions stay.
+  /// How much bodies grow along the gradient of scale: as the field of the handles leaves room for
+  /// them, so that least energy is left. That is quadratic in the fraction, because positions are
+  /// linear in it. The present positions stay.
   void find_room()
   {
     m_kept_position = m_position;

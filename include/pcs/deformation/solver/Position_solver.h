@@ -33,15 +33,16 @@ inline void place_constrained_nodes(const Elastic_network& network,
 }
 
 /*!
-  Solves `(L + L_links) x = b`: surface edges aim at their rest edges, turned by the mean of the frames at their ends;
-  links at their rest length, in a direction that is known beforehand.
+  Solves `(L + L_links) x = b`: surface edges aim at their rest edges, turned by the mean of the
+  frames at their ends; links at their rest length, in a direction that is known beforehand.
 */
 template <class ConcurrencyTag>
 class Position_solver
 {
 public:
-  /// Links keep their turned direction if they turn, as at first; otherwise they are springs in the direction that they have
-  /// in `position`, because a link through a twisted bar must not turn with either end. \p state looks at `position`.
+  /// Links keep their turned direction if they turn, as at first; otherwise they are springs in the
+  /// direction that they have in `position`, because a link through a twisted bar must not turn
+  /// with either end. \p state looks at `position`.
   void operator()(const Elastic_state& state,
                   const std::vector<Similarity>& transforms,
                   const Elastic_factors& factors,
@@ -69,14 +70,14 @@ public:
       m_directing = position;
   }
 
-  /// The positions that gave the links their directions in the last solve; the present ones if the links turned; of no use
-  /// without links. [L]
+  /// The positions that gave the links their directions in the last solve; the present ones if the
+  /// links turned; of no use without links. [L]
   const std::vector<Vec3>& directing() const { return m_directing; }
   /// Undoes the solves since it was \p directing, which is of no use afterwards.
   void restore_directing(std::vector<Vec3>& directing) { m_directing.swap(directing); }
 
-  /// How far the links move the nodes: to the positions of `state` from those that the surface alone would give with the
-  /// same frames. Empty without links. One solve. [L]
+  /// How far the links move the nodes: to the positions of `state` from those that the surface
+  /// alone would give with the same frames. Empty without links. One solve. [L]
   void link_offsets(const Elastic_state& state,
                     const std::vector<Similarity>& transforms,
                     const Elastic_factors& factors,

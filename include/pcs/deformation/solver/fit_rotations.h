@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Turns nodes towards the rotations that fit their edges best, several at a time.
+// Rotation fit of the local step (Kabsch, Wahba's problem), vectorised over nodes.
 
 #ifndef PCS_DEFORMATION_SOLVER_FIT_ROTATIONS_H
 #define PCS_DEFORMATION_SOLVER_FIT_ROTATIONS_H
@@ -16,7 +16,14 @@
 namespace pcs {
 namespace deformation {
 
-/// Covariances, present rotations and those of the field of up to `size` nodes, number by number; and what is found.
+/*!
+  Input and result of the rotation fits of up to `size` nodes, stored coordinate by coordinate.
+
+  A fit maximises `tr(R^T C_i)` over rotations `R` (Kabsch, Wahba), which for fixed lengths
+  minimises `sum_j w_ij |(x_j - x_i) - R (x0_j - x0_i)|^2`, with the covariance
+  `C_i = sum_j w_ij (x_j - x_i) (x0_j - x0_i)^T` and the weights `w_ij` of the surface edges. One
+  damped step of Newton's method is made, from the present rotation.
+*/
 struct Rotation_fits
 {
   static constexpr std::size_t size = 32;
@@ -222,8 +229,9 @@ fit_rotations_avx512(double damping, std::size_t count, Rotation_fits& fits)
 } // namespace internal
 
 /*!
-  For the first `count` fits: one step of Newton's method (`newton_turn()`) from the present rotation towards that which
-  maximises `trace(R^T covariance)`, as a deviation from the field (`rodrigues_from_rotation()`).
+  For the first `count` fits: one step of Newton's method (`newton_turn()`) from the present
+  rotation towards that which maximises `trace(R^T covariance)`, as a deviation from the field
+  (`rodrigues_from_rotation()`).
 */
 using Fit_rotations = void (*)(double damping, std::size_t count, Rotation_fits& fits);
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Energy and covariance of the edges of a node, vector by vector, on the registers that the machine has.
+// Elastic energy and covariance of the edges of a node, vectorised.
 
 #ifndef PCS_DEFORMATION_SOLVER_MEASURE_EDGES_H
 #define PCS_DEFORMATION_SOLVER_MEASURE_EDGES_H
@@ -37,7 +37,7 @@ PCS_ALWAYS_INLINE void load_three(const double* from, Lanes& to)
     to[k] = from[k];
 }
 
-// The last lane holds what nobody asks for.
+// The last lane is not used.
 template <class Arithmetic>
 PCS_ALWAYS_INLINE double
 measure_edges(const Edge_input& in, std::size_t node, Eigen::Matrix3d& covariance)

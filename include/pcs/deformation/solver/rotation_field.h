@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Extends the rotations of the handles over the whole body: the constant part of the deformation.
+// Rotation field: harmonic interpolation of the rotations of the handles over the body.
 
 #ifndef PCS_DEFORMATION_SOLVER_ROTATION_FIELD_H
 #define PCS_DEFORMATION_SOLVER_ROTATION_FIELD_H
@@ -23,9 +23,11 @@ namespace deformation {
 /*!
   Rotations of all nodes from those of the handles.
 
-  With frames `q_i = p_i q_i0`, equation (2.1) of the dissertation, `q_i q_ij = q_j`, in the least-squares sense is
-  `min sum w_ij |p_i - p_j|^2` over the rotations `p_i` from rest to deformed: a scalar Laplacian, in which the
-  local frames cancel. `Rotation_field::quaternion` solves just that. Linear blending spreads a large angle
+  With frames `q_i = p_i q_i0`, equation (2.1) of the dissertation, `q_i q_ij = q_j`, in the
+  least-squares sense is `min sum_{edges ij} w_ij |p_i - p_j|^2` over the quaternions `p_i` of the
+  free and soft nodes, from rest to deformed, with `p_k` given at the handles (2.3) and the surface
+  weights `w_ij`: a scalar Laplacian, in which the local frames cancel. The unit length is restored
+  afterwards. `Rotation_field::quaternion` solves just that. Linear blending spreads a large angle
   unevenly and cannot count turns; `Rotation_field::geodesic` therefore
 
   1. blends rotation vectors where all turns share one axis (exact for any angle);
@@ -37,7 +39,8 @@ template <class ConcurrencyTag>
 class Rotation_field_solver
 {
 public:
-  /// Angle between handles on the double cover [rad] up to which linear blending is a safe start; it fails at pi.
+  /// Angle between handles on the double cover [rad] up to which linear blending is a safe start;
+  /// it fails at pi.
   static constexpr double widest_lifted_angle = 1.9;
   static constexpr int number_of_intrinsic_steps = 3;
 
@@ -101,7 +104,7 @@ private:
     return true;
   }
 
-  /// Handles without nodes, removed ones for instance, have no say.
+  /// Handles without nodes, removed ones for instance, are ignored.
   bool is_narrow(const std::vector<Similarity>& transforms)
   {
     m_has_nodes.assign(transforms.size(), 0);
@@ -113,7 +116,7 @@ private:
       if (!m_has_nodes[a])
         continue;
       if (transforms[a].total_angle() > 2 * static_cast<double>(EIGEN_PI))
-        return false; // the double cover has lost count
+        return false; // the double cover cannot count turns
       for (std::size_t b = 0; b < a; ++b)
         if (m_has_nodes[b])
           lowest = std::min(lowest, m_lifted[a].dot(m_lifted[b]));
@@ -141,7 +144,8 @@ private:
     pcs::internal::for_each_index<ConcurrencyTag>(m_rows->size(), [&](std::size_t r) {
       const std::size_t i = m_rows->node_of_row[r];
       const double length = m_value4[i].norm();
-      // Opposite handles cancel somewhere between them; there the field is undefined and any rotation serves.
+      // Opposite handles cancel somewhere between them; there the field is undefined and any
+      // rotation serves.
       if (length > 1e-12)
         field[i].coeffs() = m_value4[i] / length;
     });

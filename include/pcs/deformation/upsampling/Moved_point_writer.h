@@ -21,9 +21,9 @@ namespace pcs {
 namespace deformation {
 
 /*!
-  The `Writer` of `Upsampling::apply()`, over places. `Output` stands for the caller's points, by input index, with
-  `write(i, position, normal, gradient)` and, for what `Writer` has them for, `prefetch(i)`, `can_stream()` and
-  `stream(i, positions, normals)`.
+  The `Writer` of `Upsampling::apply()`, over places. `Output` stands for the caller's points, by
+  input index, with `write(i, position, normal, gradient)` and, for what `Writer` has them for,
+  `prefetch(i)`, `can_stream()` and `stream(i, positions, normals)`.
 */
 template <class ConcurrencyTag, class Output>
 class Moved_point_writer

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// How points far from all others follow the sample that they hang on.
+// Maps of outliers: similarities that follow the sample an outlier is attached to.
 
 #ifndef PCS_DEFORMATION_UPSAMPLING_OUTLIER_MAPS_H
 #define PCS_DEFORMATION_UPSAMPLING_OUTLIER_MAPS_H
@@ -21,7 +21,8 @@
 namespace pcs {
 namespace deformation {
 
-/// The similarity nearest to the map of the sample that an outlier hangs on: far away, a stretch would be a throw.
+/// The similarity nearest to the map of the sample that an outlier is attached to: far away, a
+/// stretch would move it too far.
 class Outlier_maps
 {
 public:

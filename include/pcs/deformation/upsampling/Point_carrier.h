@@ -23,9 +23,10 @@ namespace pcs {
 namespace deformation {
 
 /*!
-  The link of a point to the samples is found through the nearest site: its region, then the nearest samples among the
-  rings around that, with the weights that a point of the session would have. Built once per rest shape, 40 bytes per
-  site; const calls may run side by side. O(log n) per point.
+  The link of a point to the samples is found through the nearest site: its region, then the nearest
+  samples among the rings around that, with the weights that a point of the session would have.
+  Built once per rest shape, 40 bytes per site; const calls may run side by side. O(log n) per
+  point.
 */
 class Point_carrier
 {

@@ -28,7 +28,8 @@
 namespace pcs {
 namespace deformation {
 
-/// Instead of the handle that holds all points of a block: there is none; or nothing moves any of them.
+/// Instead of the handle that holds all points of a block: there is none; or nothing moves any of
+/// them.
 constexpr std::int32_t mixed_block = -1, still_block = -2;
 
 /*!
@@ -105,16 +106,16 @@ public:
     Vec3 origin = Vec3::Zero();
   };
 
-  /// Which handles draw the points of a block: those from `entry[first[block]]` to `entry[first[block + 1]]`. None
-  /// draws any if `first` is null.
+  /// Which handles draw the points of a block: those from `entry[first[block]]` to
+  /// `entry[first[block + 1]]`. None draws any if `first` is null.
   struct Fades
   {
     const std::uint32_t* first = nullptr;
     const Block_fade* entry = nullptr;
   };
 
-  /// What moves the points of a block: the samples those whose bit is set in `is_blended[block]`, or the handle
-  /// `holder[block]` all of them, if that is neither `mixed_block` nor `still_block`.
+  /// What moves the points of a block: the samples those whose bit is set in `is_blended[block]`,
+  /// or the handle `holder[block]` all of them, if that is neither `mixed_block` nor `still_block`.
   struct Block_motions
   {
     const std::uint8_t* is_blended = nullptr;
@@ -215,8 +216,8 @@ private:
     m_first.push_back(static_cast<std::uint32_t>(m_entry.size()));
   }
 
-  /// The maps of bases, and what changes from the base of a block to each of its other samples; shared by all blocks of
-  /// the base.
+  /// The maps of bases, and what changes from the base of a block to each of its other samples;
+  /// shared by all blocks of the base.
   template <class ConcurrencyTag>
   void update_pairs(const std::vector<Affine_map>& maps)
   {
@@ -248,8 +249,8 @@ private:
         m_base.size(),
         256,
         [&](std::size_t begin, std::size_t end) {
-          // A block is written while the next one is computed: what waits for a result would keep the processor from
-          // looking ahead.
+          // A block is written while the next one is computed: what waits for a result would keep
+          // the processor from looking ahead.
           Block_output out[2]{};
           Block_input in{};
           in.differences = m_differences.data();
@@ -290,7 +291,8 @@ private:
     pcs::internal::prefetch(&m_rest[block], sizeof(Lane_vectors));
     if (has_normals())
       pcs::internal::prefetch(&m_normal[block], sizeof(Lane_vectors));
-    // A fixed number of bytes: a branch that depends on how many there are would be foreseen too seldom.
+    // A fixed number of bytes: a branch that depends on how many there are would be foreseen too
+    // seldom.
     pcs::internal::prefetch(m_entry.data() + m_first[block], bytes_of_entries);
   }
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The inner kernel of upsampling: blends the affine maps of a few samples for eight points.
+// Upsampling kernel: linear blending of the affine maps of samples, for eight points at a time.
 
 #ifndef PCS_DEFORMATION_UPSAMPLING_BLEND_BLOCK_H
 #define PCS_DEFORMATION_UPSAMPLING_BLEND_BLOCK_H
@@ -48,14 +48,14 @@ struct Base_map
   double a[9], origin[3], center[3];
 };
 
-/// How the map of a sample differs from that of the base, around the base's position, per step of weight: linear part
-/// row by row, then offset.
+/// How the map of a sample differs from that of the base, around the base's position, per step of
+/// weight: linear part row by row, then offset.
 struct Map_difference
 {
   double value[12];
 };
 
-/// A sample of a block besides its base: which difference, and how much of it for each point.
+/// A sample of a block besides its base: which difference, and its weight for each point.
 struct Block_entry
 {
   std::uint32_t pair;
@@ -121,7 +121,16 @@ map_difference(const Affine_map& base, const Affine_map& sample, const double* o
 
 using Blend_block = void (*)(const Block_input&, Block_output&);
 
-/// The kernel for this machine. All give the same bits.
+/*!
+  The kernel for this machine. All give the same bits. A point `p` moves to
+
+      p' = sum_s w_s (A_s p + t_s),  sum_s w_s = 1,
+
+  over the samples `s` of its block, with stored weights `w_s` in steps of `1 / weight_steps`:
+  equations (2.4) and (2.5) of the dissertation, with the affine map of a sample in place of its
+  rotation. Points near a handle `h` then become `p' + f_h (A_h p + t_h - p')`, one handle after the
+  other.
+*/
 template <Blend_outputs Outputs>
 Blend_block choose_blend_block();
 

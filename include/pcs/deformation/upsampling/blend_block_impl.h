@@ -42,7 +42,8 @@ PCS_ALWAYS_INLINE void squared_length(const Doubles* v, Doubles& result)
 
 inline constexpr double smallest_square = 1e-290;
 
-/// The factor that gives `v` the length of which `squared` is the square; finite, and of no effect, where `v` is zero.
+/// The factor that gives `v` the length of which `squared` is the square; finite, and of no effect,
+/// where `v` is zero.
 template <class Arithmetic, class Doubles>
 PCS_ALWAYS_INLINE void scale_to_length(const Doubles& squared, const Doubles* v, Doubles& scale)
 {
@@ -133,9 +134,9 @@ PCS_ALWAYS_INLINE void carry_block(const Block_input& in, Block_output& out)
       sum w_s (A_s p + t_s) = (A_b + G) (p - o) + (A_b o + t_b) + g,
       G = sum w_s (A_s - A_b),  g = sum w_s ((A_s - A_b) o + t_s - t_b)
 
-  for any base sample `b` of the block and its position `o`: one sample less to add up, and a rigid motion, where all
-  differences are zero, stays exact. Normals get the cofactor matrix of the blended map, and keep their length. Last,
-  points around handles are drawn towards these.
+  for any base sample `b` of the block and its position `o`: one sample less to add up, and a rigid
+  motion, where all differences are zero, stays exact. Normals get the cofactor matrix of the
+  blended map, and keep their length. Last, points around handles are drawn towards these.
 */
 template <Blend_outputs Outputs, class Arithmetic>
 PCS_ALWAYS_INLINE void blend_block(const Block_input& in, Block_output& out)

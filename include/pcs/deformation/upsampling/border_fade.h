@@ -21,8 +21,8 @@
 namespace pcs {
 namespace deformation {
 
-/// A site that follows a handle by the share `weight` in (0, 1]. Sites near several handles are drawn to one after the
-/// other, in the order of the handles.
+/// A site that follows a handle by the fraction `weight` in (0, 1]. Sites near several handles are
+/// drawn to one after the other, in the order of the handles.
 struct Border_fade
 {
   std::uint32_t site;
@@ -41,8 +41,9 @@ struct Band_site
 };
 
 /*!
-  Shortest paths out of handles, each edge measured in the spacings of the samples at its ends: unlike distances over
-  the spacing at the nearest handle, these change no more between neighbours than the edge between them is long.
+  Shortest paths out of handles, each edge measured in the spacings of the samples at its ends:
+  unlike distances over the spacing at the nearest handle, these change no more between neighbours
+  than the edge between them is long.
 */
 template <class HandleOfSite, class SitePosition>
 class Band_search
@@ -62,7 +63,8 @@ public:
   {
   }
 
-  /// Appends the sites nearer than one spacing to the handle that the edges in `[begin, end)` leave.
+  /// Appends the sites nearer than one spacing to the handle that the edges in `[begin, end)`
+  /// leave.
   template <class EdgeIterator>
   void search(EdgeIterator begin, EdgeIterator end, std::vector<Band_site>& band)
   {
@@ -95,7 +97,8 @@ private:
     double per_length; ///< spacings in a unit of length
     std::uint32_t site;
   };
-  /// Sites wait in buckets of distance; one may wait more than once, and is left alone if it came nearer meanwhile.
+  /// Sites wait in buckets of distance; one may wait more than once, and is left alone if it came
+  /// nearer meanwhile.
   struct Entry
   {
     double distance;
@@ -152,12 +155,12 @@ private:
 };
 
 /*!
-  The share of a handle at `d` spacings is `(1 - d)^2`. What the handle and the samples ask for differs the more, the
-  farther a point is from the handle: falling at once where they agree keeps the field less steep than leaving the
-  handle smoothly would.
+  The share of a handle at `d` spacings is `(1 - d)^2`. What the handle and the samples ask for
+  differs the more, the farther a point is from the handle: falling at once where they agree keeps
+  the field less steep than leaving the handle smoothly would.
 
-  Between several handles, all of them together get `1 - prod(1 - share)`, each in proportion to `share / (1 - share)`,
-  which is one at the border of each.
+  Between several handles, all of them together get `1 - prod(1 - share)`, each in proportion to
+  `share / (1 - share)`, which is one at the border of each.
   \param begin, end the handles that reach one site, increasing
 */
 template <class Iterator>
@@ -187,9 +190,9 @@ void append_fades(Iterator begin, Iterator end, std::vector<Border_fade>& fades)
 } // namespace internal
 
 /*!
-  Free sites nearer to exact handles, along the graph, than one sample spacing, and their shares. Without them the
-  handle's points, which are placed exactly, part from their neighbours, which are blended from samples. Increasing by
-  site, then by handle. Costs the width of the bands only.
+  Free sites nearer to exact handles, along the graph, than one sample spacing, and their shares.
+  Without them the handle's points, which are placed exactly, part from their neighbours, which are
+  blended from samples. Increasing by site, then by handle. Costs the width of the bands only.
   \param border edges from sites of exact handles to others
   \param handle_of_site the handle that prescribes a site, or negative
   \param spacing_of_sample mean distance of each sample to its neighbours [L]

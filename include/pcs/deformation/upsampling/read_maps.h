@@ -20,8 +20,9 @@
 namespace pcs {
 namespace deformation {
 
-/// Whether a sample has another one for a neighbour, and not only nodes on the borders of handles, which may be so near
-/// that a stretch measured there would throw the points of the sample away. The samples are the first nodes.
+/// Whether a sample has another one for a neighbour, and not only nodes on the borders of handles,
+/// which may be so near that a stretch measured there would throw the points of the sample away.
+/// The samples are the first nodes.
 inline bool
 has_sample_beside(const Weighted_graph& graph, std::size_t sample, std::size_t number_of_samples)
 {
@@ -30,8 +31,9 @@ has_sample_beside(const Weighted_graph& graph, std::size_t sample, std::size_t n
   });
 }
 
-/// The deformation gradient of every sample, which carries stretch as well, about its new position; the frame of one
-/// without another beside it. The samples are the first nodes of the network.
+/// The deformation gradient of every sample, which contains stretch as well, about its new
+/// position; the frame of one without another beside it. The samples are the first nodes of the
+/// network.
 /// \param transforms of the handles, in the coordinates of the network
 /// \param rest of the samples [L]
 /// \param maps one for each sample

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSL-1.0
 // How two trees stand to each other.
 
-#ifndef PCS_SHAPE_SPACE_ALIGNMENT_OPTIONS_H
-#define PCS_SHAPE_SPACE_ALIGNMENT_OPTIONS_H
+#ifndef PCS_SHAPE_SPACE_MODEL_ALIGNMENT_OPTIONS_H
+#define PCS_SHAPE_SPACE_MODEL_ALIGNMENT_OPTIONS_H
 
 #include <pcs/core/Orl_options.h>
 #include <pcs/shape_space/model/Rooted_tree.h>
@@ -32,4 +32,4 @@ inline double angle_about(const Vec3& axis, const Eigen::Quaterniond& turn)
 } // namespace shape_space
 } // namespace pcs
 
-#endif // PCS_SHAPE_SPACE_ALIGNMENT_OPTIONS_H
+#endif // PCS_SHAPE_SPACE_MODEL_ALIGNMENT_OPTIONS_H

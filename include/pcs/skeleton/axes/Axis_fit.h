@@ -63,7 +63,8 @@ inline Radius_prior joined(const Radius_prior& a, const Radius_prior& b)
   return {(u * a.radius + v * b.radius) / (u + v), 1 / std::sqrt(u + v), a.measured + b.measured};
 }
 
-/// Where the points of a section lie: their middle is expected at `radius * facing` from its center.
+/// Where the points of a section lie: their middle is expected at `radius * facing` from its
+/// center.
 struct Center_prior
 {
   Vec3 middle = Vec3::Zero(); ///< of the points, moved along to the plane of the center
@@ -75,8 +76,8 @@ struct Center_prior
 constexpr double tukey_constant = 4.7, first_widening = 2.5;
 
 /*!
-  Least squares with Tukey's weights over centres and radii of all nodes; second differences of both are small a priori.
-  Each iteration is a banded Cholesky solution: O(points + nodes).
+  Least squares with Tukey's weights over centres and radii of all nodes; second differences of both
+  are small a priori. Each iteration is a banded Cholesky solution: O(points + nodes).
 */
 class Axis_fit
 {
@@ -94,8 +95,8 @@ public:
     m_places.resize(m_points.size());
     m_stride = 1;
   }
-  /// Every so many points only take part in the next steps, with as much weight as all. Finds the places of those that did
-  /// not before.
+  /// Every so many points only take part in the next steps, with as much weight as all. Finds the
+  /// places of those that did not before.
   void use_every(std::size_t stride)
   {
     const bool are_known = m_stride == 1 || stride == m_stride;
@@ -120,7 +121,8 @@ public:
     }
   }
 
-  /// One step from the present axis; `widening` scales the width of the weights. Leaves places up to date.
+  /// One step from the present axis; `widening` scales the width of the weights. Leaves places up
+  /// to date.
   bool iterate(double widening)
   {
     assemble(widening);
@@ -147,7 +149,8 @@ private:
   /// What the points of a segment add to the system of its two nodes.
   struct Segment_sums
   {
-    //! lower halves, by rows, of the blocks of the first node, of the second and the first, and of the second
+    //! lower halves, by rows, of the blocks of the first node, of the second and the first, and of
+    //! the second
     std::array<std::array<double, 10>, 3> products;
     std::array<std::array<double, 4>, 2> slope;
     std::array<double, 2> weight;
@@ -189,7 +192,8 @@ inline void Axis_fit::assemble(double widening)
   hold_along_axis();
 }
 
-/// Nothing but chance moves nodes along the axis: they stay in the planes across it. Damps steps, not the result.
+/// Nothing but chance moves nodes along the axis: they stay in the planes across it. Damps steps,
+/// not the result.
 inline void Axis_fit::hold_along_axis()
 {
   constexpr double everywhere = 0.005, along_axis = 100; // in points on the axis
@@ -225,10 +229,11 @@ inline void Axis_fit::add_points(double widening)
     const double weight = (1 - x * x) * precision, w = double(m_stride) * weight * weight;
     const double inverse = 1 / place.distance;
     const Vec3 n = inverse * (m_points[i] - point_at(m_axis, place));
-    // Second order: the surface is curved, and a point outside holds the axis across n, too. Without this, steps of thin
-    // axes swing between two sides of their points for ever.
+    // Second order: the surface is curved, and a point outside holds the axis across n, too.
+    // Without this, steps of thin axes swing between two sides of their points for ever.
     const double hold = std::max(0.0, e * inverse), pull = 1 - hold;
-    // e(c, r) = |p - c| - r with c, r linear between the nodes, so its derivatives are -(1 - t) d and -t d, d = (n, 1)
+    // e(c, r) = |p - c| - r with c, r linear between the nodes, so its derivatives are -(1 - t) d
+    // and -t d, d = (n, 1)
     const double products[10] = {pull * n.x() * n.x() + hold,
                                  pull * n.y() * n.x(),
                                  pull * n.y() * n.y() + hold,
@@ -338,8 +343,8 @@ inline void Axis_fit::add_center_priors()
   }
 }
 
-/// Nodes at the ends stay as far from their neighbours as they were: across a short segment of a thick axis steps overshoot, and
-/// every swing to the other side would carry the end farther out.
+/// Nodes at the ends stay as far from their neighbours as they were: across a short segment of a
+/// thick axis steps overshoot, and every swing to the other side would carry the end farther out.
 inline void Axis_fit::apply_step()
 {
   m_largest_change = 0;

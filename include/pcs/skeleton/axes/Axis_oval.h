@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The oval of an axis that is seen from one side: what its shape alone does to the distances of the points.
+// The oval of an axis that is seen from one side: what its shape alone does to the distances of the
+// points.
 
 #ifndef PCS_SKELETON_AXES_AXIS_OVAL_H
 #define PCS_SKELETON_AXES_AXIS_OVAL_H
@@ -37,8 +38,8 @@ struct Oval_options
 };
 
 /*!
-  Sections of distance `r (1 + x cos 2a + y sin 2a)` from the axis, with one oval for all of them: the angle a counts in frames
-  that do not twist.
+  Sections of distance `r (1 + x cos 2a + y sin 2a)` from the axis, with one oval for all of them:
+  the angle a counts in frames that do not twist.
 */
 class Axis_oval
 {
@@ -60,13 +61,15 @@ public:
   const Eigen::Vector2d& coefficients() const { return m_coefficients; }
 
   /*!
-    Adds what the residuals of a fit tell: least squares over the oval, and the place and radius of every stretch, which are
-    eliminated. Of an arc the oval explains little that a place and a radius do not; many sections together tell it.
-    `noise`: standard deviation of the points [L]. O(points).
+    Adds what the residuals of a fit tell: least squares over the oval, and the place and radius of
+    every stretch, which are eliminated. Of an arc the oval explains little that a place and a
+    radius do not; many sections together tell it. `noise`: standard deviation of the points [L].
+    O(points).
   */
   void improve(const Axis_fit& fit, double noise, const Oval_options& rules);
 
-  /// The points where they would be if all sections were round, by their places in a fit. O(points).
+  /// The points where they would be if all sections were round, by their places in a fit.
+  /// O(points).
   std::vector<Vec3> rounded(std::vector<Vec3> points, const Axis_fit& fit) const
   {
     for (std::size_t i = 0; i < points.size(); ++i) {

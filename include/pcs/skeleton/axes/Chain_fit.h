@@ -210,7 +210,8 @@ inline std::vector<Index> Chain_fit::gather(Axis_fit& fit) const
   fit.axis() = resample(fit.axis(), m_spacing);
   const Axis& axis = fit.axis();
   const double u = m_scan.spacing;
-  // Stretches of the axis as long as it is thick: nodes of a trunk alone would find every point ten times.
+  // Stretches of the axis as long as it is thick: nodes of a trunk alone would find every point ten
+  // times.
   std::vector<std::pair<Index, Index>> found; // point, middle node of a stretch
   std::vector<Index> near;
   std::vector<double> across(axis.size());
@@ -272,7 +273,8 @@ inline std::vector<Index> Chain_fit::gather(Axis_fit& fit) const
   return points;
 }
 
-/// The last nodes of a thick axis and a piece beyond them, fitted anew; empty if no points go on like that.
+/// The last nodes of a thick axis and a piece beyond them, fitted anew; empty if no points go on
+/// like that.
 inline Axis Chain_fit::tail_with_piece(const Axis& axis, std::size_t first) const
 {
   Axis_fit fit(Axis(axis.begin() + static_cast<std::ptrdiff_t>(first), axis.end()),
@@ -292,7 +294,8 @@ inline Axis Chain_fit::tail_with_piece(const Axis& axis, std::size_t first) cons
   return is_good ? longer : Axis();
 }
 
-/// A hollow piece straight ahead of a thick axis, `skip` beyond its tip and as thick; empty if there is none.
+/// A hollow piece straight ahead of a thick axis, `skip` beyond its tip and as thick; empty if
+/// there is none.
 inline Axis Chain_fit::piece_ahead(const Axis& axis, std::size_t first, double skip) const
 {
   const double radius = axis.back().radius, length = 4 * radius + 8 * m_scan.spacing;
@@ -317,9 +320,10 @@ inline Axis Chain_fit::piece_ahead(const Axis& axis, std::size_t first, double s
 }
 
 /*!
-  Follows a thick branch beyond its tip, piece by piece, as long as there are points around it: paths over the surface
-  end at occlusions, or turn into a side branch; a tip that collapses is left out then. Where points lie inside, as at a
-  whorl, it is looked for straight ahead. Returns whether the axis grew; if not, it is as it was.
+  Follows a thick branch beyond its tip, piece by piece, as long as there are points around it:
+  paths over the surface end at occlusions, or turn into a side branch; a tip that collapses is left
+  out then. Where points lie inside, as at a whorl, it is looked for straight ahead. Returns whether
+  the axis grew; if not, it is as it was.
 */
 inline bool Chain_fit::follow(Axis_fit& fit) const
 {
@@ -359,8 +363,9 @@ inline bool Chain_fit::follow(Axis_fit& fit) const
 }
 
 /*!
-  Where a thick axis is seen from one side, its oval moves the centers and changes the radii of sections: a circle through half of
-  an ellipse is off by as much as half axes differ. The oval is found, and the axis fitted to points without it.
+  Where a thick axis is seen from one side, its oval moves the centers and changes the radii of
+  sections: a circle through half of an ellipse is off by as much as half axes differ. The oval is
+  found, and the axis fitted to points without it.
 */
 inline void Chain_fit::round_ovals(Axis_fit& fit) const
 {

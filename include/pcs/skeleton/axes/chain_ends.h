@@ -65,7 +65,8 @@ struct Filling
     }
   }
 
-  /// Share of the points of the segments of [begin, end) that lies inside; 1 if there are too few to tell.
+  /// Share of the points of the segments of [begin, end) that lies inside; 1 if there are too few
+  /// to tell.
   double share(std::size_t begin, std::size_t end) const
   {
     double a = 0, b = 0;
@@ -91,10 +92,11 @@ struct Filling
 };
 
 /*!
-  Wood is hollow to a scanner: where a thick axis that was hollow gets points inside, it runs around a fork, and ends. One
-  that never was hollow is an irregular stem, or seen badly, and stays; so does one that is hollow again farther on, with
-  more points than before, because it only passed buttresses or a whorl. Wood does not widen: an axis that does so beyond
-  such a place need not be as thick.
+  Wood is hollow to a scanner: where a thick axis that was hollow gets points inside, it runs around
+  a fork, and ends. One that never was hollow is an irregular stem, or seen badly, and stays; so
+  does one that is hollow again farther on, with more points than before, because it only passed
+  buttresses or a whorl. Wood does not widen: an axis that does so beyond such a place need not be
+  as thick.
 */
 inline void cut_filled(const Chain_view& view, Axis_fit& fit)
 {
@@ -128,7 +130,8 @@ inline void cut_filled(const Chain_view& view, Axis_fit& fit)
   }
 }
 
-/// The largest radius that a hollow stretch has all along which is `view.rules.steady` radii long; 0: there is none.
+/// The largest radius that a hollow stretch has all along which is `view.rules.steady` radii long;
+/// 0: there is none.
 inline double steady_radius(const Chain_view& view, const Axis_fit& fit)
 {
   const Axis& axis = fit.axis();
@@ -151,8 +154,9 @@ inline double steady_radius(const Chain_view& view, const Axis_fit& fit)
 }
 
 /*!
-  Wood tapers: an axis that begins much thinner than it is farther out, where it is hollow, was reached through something
-  else, such as a twig that touches it. It begins where it is thick; what lies before is left to other axes.
+  Wood tapers: an axis that begins much thinner than it is farther out, where it is hollow, was
+  reached through something else, such as a twig that touches it. It begins where it is thick; what
+  lies before is left to other axes.
 */
 inline void cut_thin_base(const Chain_view& view, Axis_fit& fit)
 {
@@ -184,8 +188,8 @@ inline void cut_thin_base(const Chain_view& view, Axis_fit& fit)
   fit.project();
 }
 
-/// The number of nodes before a tip that collapses within a few radii, as where a trunk turns into one of its limbs; all nodes
-/// if it does not. Never 0 for an axis that has nodes.
+/// The number of nodes before a tip that collapses within a few radii, as where a trunk turns into
+/// one of its limbs; all nodes if it does not. Never 0 for an axis that has nodes.
 inline std::size_t size_without_collapse(const Chain_options& rules, const Axis& axis)
 {
   double widest = 0, length = 0; // of the last stretch
@@ -201,7 +205,8 @@ inline std::size_t size_without_collapse(const Chain_options& rules, const Axis&
   return size;
 }
 
-/// Cuts the ends where the points end: outwards from the places of `base` and `tip`, as far as there are enough.
+/// Cuts the ends where the points end: outwards from the places of `base` and `tip`, as far as
+/// there are enough.
 inline void trim(const Chain_view& view, const Vec3& base, const Vec3& tip, Axis_fit& fit)
 {
   Axis& axis = fit.axis();

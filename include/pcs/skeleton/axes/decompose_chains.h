@@ -28,13 +28,16 @@ struct Chain
   double length = 0;        ///< along the centres [L]
 };
 
-/// How many layers back the direction of a chain is taken from, and how many ahead that of a child [count].
+/// How many layers back the direction of a chain is taken from, and how many ahead that of a child
+/// [count].
 constexpr int direction_reach = 6, ahead_reach = 3;
 /// Added to the spread of a node, in spacings: thin nodes must not win by noise [-].
 constexpr double spread_offset = 0.4;
-/// Farther children than this many layers lie behind a gap; the way there must be this straight before and behind it [-].
+/// Farther children than this many layers lie behind a gap; the way there must be this straight
+/// before and behind it [-].
 constexpr double gap_layers = 1.5, gap_cosine = 0.8;
-/// What a unit of the cosine between both counts against the logarithms of height and spread: branches are straight [-].
+/// What a unit of the cosine between both counts against the logarithms of height and spread:
+/// branches are straight [-].
 constexpr double chain_straightness = 5;
 
 namespace internal {
@@ -63,7 +66,8 @@ inline Vec3 direction_to(const Layer_tree& tree, Index node)
 
 } // namespace internal
 
-/// The chains: the longest that begins at a source, then the others, longest first. A chain begins with the first node that is not its parent's. O(n log n).
+/// The chains: the longest that begins at a source, then the others, longest first. A chain begins
+/// with the first node that is not its parent's. O(n log n).
 inline std::vector<Chain> decompose_chains(const Scan& scan, const Layer_tree& tree)
 {
   const std::size_t m = tree.size();
@@ -77,7 +81,8 @@ inline std::vector<Chain> decompose_chains(const Scan& scan, const Layer_tree& t
       });
     return v;
   };
-  // Where points are missing on the way to a child, only what lies straight ahead may belong to the same branch.
+  // Where points are missing on the way to a child, only what lies straight ahead may belong to the
+  // same branch.
   const auto is_crooked_gap = [&](Index v, Index c, const Vec3& along) {
     const Vec3 jump = tree.center[c] - tree.center[v];
     const double length = jump.norm();

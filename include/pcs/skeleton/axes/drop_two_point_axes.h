@@ -23,9 +23,10 @@ struct Two_point_axis_options
 };
 
 /*!
-  Two points are a piece of a twig, or nothing. Twigs that a scan just about sees come in pieces of any number of points, what
-  chance puts side by side mostly in twos: drops all pairs if there are more of them for an axis of three points, or less for
-  all axes, than the rules say. Returns how many. O(axes + points).
+  Two points are a piece of a twig, or nothing. Twigs that a scan just about sees come in pieces of
+  any number of points, what chance puts side by side mostly in twos: drops all pairs if there are
+  more of them for an axis of three points, or less for all axes, than the rules say. Returns how
+  many. O(axes + points).
 */
 inline std::size_t drop_two_point_axes(const Two_point_axis_options& rules, Axis_set& set)
 {

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Finds all axes of a scan: chains of layers, long ones first, in passes over what is not explained yet.
+// Finds all axes of a scan: chains of layers, long ones first, in passes over what is not explained
+// yet.
 
 #ifndef PCS_SKELETON_AXES_FIT_AXES_H
 #define PCS_SKELETON_AXES_FIT_AXES_H
@@ -47,7 +48,8 @@ struct Axis_options
 
 namespace internal {
 
-/// The largest distance by which the axis leaves those that are there, in excess of the share of their radii.
+/// The largest distance by which the axis leaves those that are there, in excess of the share of
+/// their radii.
 inline double
 protrusion_of(const Scan& scan, const Axis_set& set, const Axis& axis, double reach, double share)
 {
@@ -139,7 +141,8 @@ open_stretches(const Layer_tree& tree, const Axis_set& set, const Chain& chain, 
   return stretches;
 }
 
-/// The chains of one tree of layers in the order in which they are fitted, and the axes that they became.
+/// The chains of one tree of layers in the order in which they are fitted, and the axes that they
+/// became.
 class Chain_queue
 {
 public:
@@ -206,12 +209,12 @@ private:
 };
 
 /*!
-  Fits the chains of one tree of layers, in waves whose members do not see each other: one that finds much of what others have
-  found is fitted again in the next wave. Where a chain leads through layers
-  that are explained already, as a second arc of a trunk does, only its stretches between them are fitted, each by itself:
-  what is left over beside an axis that is there is not one branch.
-  Whether it does learn about the surface: what the first pass has left over is not typical.
-  Returns `false` as soon as `progress` does, which sees a share of the work.
+  Fits the chains of one tree of layers, in waves whose members do not see each other: one that
+  finds much of what others have found is fitted again in the next wave. Where a chain leads through
+  layers that are explained already, as a second arc of a trunk does, only its stretches between
+  them are fitted, each by itself: what is left over beside an axis that is there is not one branch.
+  Whether it does learn about the surface: what the first pass has left over is not typical. Returns
+  `false` as soon as `progress` does, which sees a share of the work.
 */
 template <class ConcurrencyTag, class Progress>
 bool fit_chains(const Scan& scan,
@@ -328,8 +331,8 @@ std::vector<Index> nearest_to_axes(const Scan& scan,
 } // namespace internal
 
 /*!
-  All axes: those of the chains of `first_tree`, then those of the points that are left. What is found until `progress`
-  returns `false` is returned.
+  All axes: those of the chains of `first_tree`, then those of the points that are left. What is
+  found until `progress` returns `false` is returned.
 */
 template <class ConcurrencyTag, class Progress>
 Axis_set fit_axes(const Scan& scan,

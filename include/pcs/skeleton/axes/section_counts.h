@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Radii by counting points: how many lie on an axis at each node, and how much of the section there can have any.
+// Radii by counting points: how many lie on an axis at each node, and how much of the section there
+// can have any.
 
 #ifndef PCS_SKELETON_AXES_SECTION_COUNTS_H
 #define PCS_SKELETON_AXES_SECTION_COUNTS_H
@@ -75,8 +76,9 @@ section_counts(const Chain_view& view, const Axis_fit& fit, const std::vector<do
 }
 
 /*!
-  Share of the section at each node that lies outside of what another axis has taken: where a branch leaves its parent, the
-  points are the parent's, and inside of it there are none. Only nodes with few points are looked at. O(nodes log points).
+  Share of the section at each node that lies outside of what another axis has taken: where a branch
+  leaves its parent, the points are the parent's, and inside of it there are none. Only nodes with
+  few points are looked at. O(nodes log points).
 */
 inline std::vector<double> visible_shares(const Chain_view& view, const Axis_fit& fit)
 {

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What a fit expects of each section before it looks at the shape: radii by counting points and by their width, and places.
+// What a fit expects of each section before it looks at the shape: radii by counting points and by
+// their width, and places.
 
 #ifndef PCS_SKELETON_AXES_SECTION_PRIORS_H
 #define PCS_SKELETON_AXES_SECTION_PRIORS_H
@@ -27,9 +28,9 @@ inline bool is_blurred(const Chain_view& view, double radius)
 }
 
 /*!
-  The radius `counted` [L] where the fit has `found` one. Counts are wrong by a factor, up or down, so that what is found
-  tells by how much; but much fewer points than expected are no chance: an axis that runs between several twigs must not
-  look certain of its radius.
+  The radius `counted` [L] where the fit has `found` one. Counts are wrong by a factor, up or down,
+  so that what is found tells by how much; but much fewer points than expected are no chance: an
+  axis that runs between several twigs must not look certain of its radius.
 */
 inline Radius_prior counted_prior(const Chain_view& view, double counted, double found)
 {
@@ -40,8 +41,9 @@ inline Radius_prior counted_prior(const Chain_view& view, double counted, double
 }
 
 /*!
-  By how many times what hides an axis from the scanner lowers its counts, all along it, as its blurred sections tell; never
-  less than 1. Few nodes are not believed. `counted`: radii by counting [L], negative where sections cannot be seen.
+  By how many times what hides an axis from the scanner lowers its counts, all along it, as its
+  blurred sections tell; never less than 1. Few nodes are not believed. `counted`: radii by counting
+  [L], negative where sections cannot be seen.
 */
 inline double
 hidden_factor(const Chain_view& view, const std::vector<double>& counted, const Axis& axis)
@@ -57,7 +59,8 @@ hidden_factor(const Chain_view& view, const std::vector<double>& counted, const 
   return std::min(view.rules.most_hidden, std::max(1.0, std::exp(level)));
 }
 
-/// The priors of all nodes by counting; without weight where there is nothing to go by. O(nodes + points).
+/// The priors of all nodes by counting; without weight where there is nothing to go by. O(nodes +
+/// points).
 inline std::vector<Radius_prior>
 counted_priors(const Chain_view& view, const std::vector<double>& visible, const Axis_fit& fit)
 {
@@ -80,10 +83,11 @@ counted_priors(const Chain_view& view, const std::vector<double>& visible, const
 }
 
 /*!
-  What is expected as long as nothing can be counted: a branch tapers. Where it is thicker than a line from what it is near its
-  base to a share of that at its tip, and has few points, curvature alone must not tell; it may be the way around several
-  twigs. Thick axes have enough points. `length`: from the base to the tip of all that the paths follow, of which the axis may
-  be a part [L]. O(nodes + points).
+  What is expected as long as nothing can be counted: a branch tapers. Where it is thicker than a
+  line from what it is near its base to a share of that at its tip, and has few points, curvature
+  alone must not tell; it may be the way around several twigs. Thick axes have enough points.
+  `length`: from the base to the tip of all that the paths follow, of which the axis may be a part
+  [L]. O(nodes + points).
 */
 inline std::vector<Radius_prior> taper_priors(const Chain_view& view,
                                               const std::vector<double>& visible,
@@ -114,8 +118,8 @@ inline std::vector<Radius_prior> taper_priors(const Chain_view& view,
 }
 
 /*!
-  Tells `fit` what to expect of its sections as they are. `visible`: share of each that may have points [-]; `length`: as for
-  `taper_priors()`, 0 for a piece that need not taper [L].
+  Tells `fit` what to expect of its sections as they are. `visible`: share of each that may have
+  points [-]; `length`: as for `taper_priors()`, 0 for a piece that need not taper [L].
 */
 inline void expect_sections(const Chain_view& view,
                             const std::vector<double>& visible,

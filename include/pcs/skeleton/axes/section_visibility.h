@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// On which side of the sections of an axis its points lie, and what that tells of its place and radius.
+// On which side of the sections of an axis its points lie, and what that tells of its place and
+// radius.
 
 #ifndef PCS_SKELETON_AXES_SECTION_VISIBILITY_H
 #define PCS_SKELETON_AXES_SECTION_VISIBILITY_H
@@ -36,7 +37,8 @@ struct Section_visibility
   {
     const Axis& axis = fit.axis();
     const std::size_t n = axis.size();
-    // moments cost most, so only windows with an axis that `add_width_priors()` asks about have them
+    // moments cost most, so only windows with an axis that `add_width_priors()` asks about have
+    // them
     std::vector<char> is_thin(n, false);
     for (std::size_t k = 0; k < n; ++k)
       if (axis[k].radius < view.rules.width_radius * view.scan.spacing)
@@ -105,8 +107,9 @@ private:
 };
 
 /*!
-  Where the points of each section are expected to lie about its center. The points of a thin branch that is seen from one
-  side fit axes before, in and behind them nearly as well; thick branches tell which it is.
+  Where the points of each section are expected to lie about its center. The points of a thin branch
+  that is seen from one side fit axes before, in and behind them nearly as well; thick branches tell
+  which it is.
 */
 inline std::vector<Center_prior>
 center_priors(const Chain_view& view, const Axis& axis, const Section_visibility& sides)
@@ -124,10 +127,10 @@ center_priors(const Chain_view& view, const Axis& axis, const Section_visibility
 }
 
 /*!
-  Radii by how wide the points lie, where they lie on one side. A scanner samples the side that it sees evenly across its
-  beams, so that places across the line of sight are evenly spread over a diameter: their standard deviation is r / sqrt(3).
-  That depends neither on the density, which varies, nor on the curvature, which noise hides. Joined to `priors` by
-  their variances. O(nodes).
+  Radii by how wide the points lie, where they lie on one side. A scanner samples the side that it
+  sees evenly across its beams, so that places across the line of sight are evenly spread over a
+  diameter: their standard deviation is r / sqrt(3). That depends neither on the density, which
+  varies, nor on the curvature, which noise hides. Joined to `priors` by their variances. O(nodes).
 */
 inline void add_width_priors(const Chain_view& view,
                              const Axis& axis,

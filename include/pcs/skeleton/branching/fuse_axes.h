@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Joins axes end to end that are pieces of one branch: paths from the root lose a branch where another one crosses it.
+// Joins axes end to end that are pieces of one branch: paths from the root lose a branch where
+// another one crosses it.
 
 #ifndef PCS_SKELETON_BRANCHING_FUSE_AXES_H
 #define PCS_SKELETON_BRANCHING_FUSE_AXES_H
@@ -226,8 +227,9 @@ private:
 } // namespace internal
 
 /*!
-  Replaces axes that continue each other by one. Ends are paired by how far each lies off the line of the other, the bend,
-  the change of the radius and the gap, the best pairs first. Returns how many axes there are less. O(axes log axes).
+  Replaces axes that continue each other by one. Ends are paired by how far each lies off the line
+  of the other, the bend, the change of the radius and the gap, the best pairs first. Returns how
+  many axes there are less. O(axes log axes).
 */
 template <class ConcurrencyTag>
 std::size_t fuse_axes(double spacing, const Fusion_options& rules, Axis_set& set)

@@ -27,7 +27,8 @@
 namespace pcs {
 namespace skeleton {
 
-/// What a joint costs: logarithms of odds, as they were found in scans of virtual trees. Lengths in spacings [-].
+/// What a joint costs: logarithms of odds, as they were found in scans of virtual trees. Lengths in
+/// spacings [-].
 struct Joint_options
 {
   int rounds = 2;    ///< how often joints are chosen, the later ones between branches [count]
@@ -165,7 +166,8 @@ private:
               const Axis_place& place,
               double reach,
               double limit) const;
-  /// No place on a segment costs less: what is far away, or has another direction, costs something in any case.
+  /// No place on a segment costs less: what is far away, or has another direction, costs something
+  /// in any case.
   double least_cost(const internal::Axis_end& end, const Axis& axis, Index segment) const
   {
     const Axis_node &a = axis[segment], &b = axis[segment + 1];
@@ -331,8 +333,8 @@ inline std::vector<Joint> Axis_joiner::options_of(Index a) const
 }
 
 /*!
-  Every axis takes its cheapest option; roots have none. What then does not hang on a root, because it runs in a circle, is led back
-  axis by axis where the change to an option that does costs least.
+  Every axis takes its cheapest option; roots have none. What then does not hang on a root, because
+  it runs in a circle, is led back axis by axis where the change to an option that does costs least.
 */
 inline std::vector<Joint> Axis_joiner::choose(const std::vector<Index>& roots,
                                               const std::vector<std::vector<Joint>>& options)

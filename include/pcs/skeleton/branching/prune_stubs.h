@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Drops branches that are too short to be told from a bump, a bend or the ragged end of the one that they sit on.
+// Drops branches that are too short to be told from a bump, a bend or the ragged end of the one
+// that they sit on.
 
 #ifndef PCS_SKELETON_BRANCHING_PRUNE_STUBS_H
 #define PCS_SKELETON_BRANCHING_PRUNE_STUBS_H
@@ -20,12 +21,13 @@ namespace skeleton {
 struct Stub_options
 {
   double shortest =
-      4; ///< length outside of the parent that a branch without branches needs, in spacings; 0: any [-]
+      /// length outside of the parent that a branch without branches needs, in spacings; 0: any [-]
+      4;
 };
 
 /*!
-  Removes branches without branches that leave their parent by less than the shortest length; their points go to the node
-  that they sat on. Returns how many there were. O(nodes + points).
+  Removes branches without branches that leave their parent by less than the shortest length; their
+  points go to the node that they sat on. Returns how many there were. O(nodes + points).
 */
 inline std::size_t prune_stubs(double spacing, const Stub_options& rules, Branch_tree& tree)
 {

@@ -17,9 +17,10 @@ namespace pcs {
 namespace skeleton {
 
 /*!
-  Replaces the axes that `tree` was joined from by its branches, without the nodes on the axes of their parents. Where a
-  fit went over from one branch to another, the tree went on straight, and its branches are better known than the axes
-  were. Axes out of reach stay. Every point keeps an axis. O(nodes + points).
+  Replaces the axes that `tree` was joined from by its branches, without the nodes on the axes of
+  their parents. Where a fit went over from one branch to another, the tree went on straight, and
+  its branches are better known than the axes were. Axes out of reach stay. Every point keeps an
+  axis. O(nodes + points).
 */
 inline void regroup_axes(const Branch_tree& tree, Axis_set& set)
 {

@@ -39,9 +39,10 @@ inline Index nearest_axis(const Axis_set& set, const Vec3& p)
 }
 
 /*!
-  The axis that explains the root, and most else: a trunk may stand on buttresses that have more of the root. If none does, the
-  nearest one. Instead of one that is small beside an axis which the root is near, too, that: chance pieces of a
-  foot may have all of the root, unless the caller gave it (`is_given`). `root` has points, `set` axes. O(axes + root).
+  The axis that explains the root, and most else: a trunk may stand on buttresses that have more of
+  the root. If none does, the nearest one. Instead of one that is small beside an axis which the
+  root is near, too, that: chance pieces of a foot may have all of the root, unless the caller gave
+  it (`is_given`). `root` has points, `set` axes. O(axes + root).
 */
 inline Index
 root_axis(const Scan& scan, const Axis_set& set, const std::vector<Index>& root, bool is_given)

@@ -17,10 +17,11 @@ namespace pcs {
 namespace skeleton {
 
 /*!
-  Two bases side by side may be a branch that another one crosses, or two branches that leave it on opposite sides. Where
-  the branch that they would make is out of reach, but something that is not lies within `reach` of the place where they met,
-  they were the latter: both become axes of their own, which begin there. `joints` are those of the axes, `root` the one that stands
-  on the root. Returns how many axes there are more. O(axes log points + points).
+  Two bases side by side may be a branch that another one crosses, or two branches that leave it on
+  opposite sides. Where the branch that they would make is out of reach, but something that is not
+  lies within `reach` of the place where they met, they were the latter: both become axes of their
+  own, which begin there. `joints` are those of the axes, `root` the one that stands on the root.
+  Returns how many axes there are more. O(axes log points + points).
 */
 inline std::size_t split_unreachable_axes(const Scan& scan,
                                           double reach,

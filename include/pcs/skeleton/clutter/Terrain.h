@@ -92,7 +92,8 @@ public:
     spread(surface);
   }
 
-  /// Of a place above the surface, which goes on beyond its border as steep as it is in the mean [L].
+  /// Of a place above the surface, which goes on beyond its border as steep as it is in the mean
+  /// [L].
   double height(const Vec3& p) const
   {
     const Place at = place(p);

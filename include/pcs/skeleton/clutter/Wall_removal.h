@@ -42,8 +42,8 @@ public:
     leave_out(walls_and_roofs(m_scan, faces, up, m_rules, m_used.flags()));
   }
 
-  /// The other faces, and what is left beside them. `find_links` gives the links between the used points. Returns whether there
-  /// is any.
+  /// The other faces, and what is left beside them. `find_links` gives the links between the used
+  /// points. Returns whether there is any.
   template <class FindLinks>
   bool leave_out_rest(const FindLinks& find_links, Links& links)
   {
@@ -86,7 +86,7 @@ private:
     if (marked == 0 || double(left) < m_rules.least * double(left + marked))
       return false;
     m_report.number_of_wall_points += marked;
-    m_used.leave_out_others(std::move(is_left));
+    m_used.keep_only(std::move(is_left));
     return true;
   }
 

@@ -6,8 +6,8 @@
 #define PCS_SKELETON_CLUTTER_IS_SINGLE_SHEET_H
 
 #include <pcs/linear_algebra/small_symmetric.h>
-#include <pcs/skeleton/layers/find_root.h>
 #include <pcs/skeleton/model/Scan.h>
+#include <pcs/skeleton/model/Slab_shape.h>
 
 #include <Eigen/Core>
 
@@ -36,8 +36,8 @@ struct Sheet_options
 
 namespace internal {
 
-/// The nearest nine tenths of some points to `center`, seen across a sheet along `e1` and `e2`: lengths count by these, so that
-/// the disc may be an ellipse.
+/// The nearest nine tenths of some points to `center`, seen across a sheet along `e1` and `e2`:
+/// lengths count by these, so that the disc may be an ellipse.
 struct Sheet_disc
 {
   std::vector<std::array<double, 2>> places; ///< from the centre
@@ -120,8 +120,8 @@ inline bool carries_a_tree(const Scan& scan,
 
 } // namespace internal
 
-/// Whether all points together are one thin filled sheet, such as ground alone, or a wall; longer ones than
-/// `rules.longest` may be boards or rows of anything.
+/// Whether all points together are one thin filled sheet, such as ground alone, or a wall; longer
+/// ones than `rules.longest` may be boards or rows of anything.
 inline bool is_single_sheet(const Scan& scan,
                             const std::vector<std::uint8_t>& is_used,
                             const Sheet_options& rules)

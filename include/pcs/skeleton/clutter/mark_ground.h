@@ -8,7 +8,6 @@
 #include <pcs/skeleton/clutter/Terrain.h>
 #include <pcs/skeleton/clutter/is_single_sheet.h>
 #include <pcs/skeleton/graph/Neighbor_graph.h>
-#include <pcs/skeleton/layers/find_root.h>
 #include <pcs/skeleton/model/Scan.h>
 
 #include <Eigen/Core>
@@ -92,7 +91,8 @@ struct Low_bins
   }
 };
 
-/// What of each bin belongs to the stem of the tallest thing above the bins: followed downwards from part to part.
+/// What of each bin belongs to the stem of the tallest thing above the bins: followed downwards
+/// from part to part.
 inline std::vector<std::vector<Index>> stem_in_bins(const Scan& scan,
                                                     const Links& links,
                                                     const std::vector<double>& height_of,
@@ -342,9 +342,9 @@ private:
 } // namespace internal
 
 /*!
-  Takes ground out of `is_used`, and returns the number of its points: those of a terrain on which all others stand, if it
-  is a filled patch much wider than the stem, or if something lies on it. Plants that cover it go with it. `links` are those
-  between neighbours. O(n log n).
+  Takes ground out of `is_used`, and returns the number of its points: those of a terrain on which
+  all others stand, if it is a filled patch much wider than the stem, or if something lies on it.
+  Plants that cover it go with it. `links` are those between neighbours. O(n log n).
 */
 inline std::size_t mark_ground(const Scan& scan,
                                const Links& links,

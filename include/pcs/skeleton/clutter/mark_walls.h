@@ -7,7 +7,6 @@
 
 #include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/graph/Neighbor_graph.h>
-#include <pcs/skeleton/layers/find_root.h>
 #include <pcs/skeleton/model/Moments.h>
 #include <pcs/skeleton/model/Scan.h>
 
@@ -27,7 +26,8 @@
 namespace pcs {
 namespace skeleton {
 
-/// When points are a flat face: a plane that they fill, wider than a piece of a stem is within the same tolerance.
+/// When points are a flat face: a plane that they fill, wider than a piece of a stem is within the
+/// same tolerance.
 struct Wall_options
 {
   double cell = 0.083;  ///< of the grid relative to the root mean square radius of the scan [-],
@@ -107,7 +107,8 @@ struct Flat_face
 
 namespace internal {
 
-/// Finds flat faces: cells of a grid whose points lie in a plane, grown to patches of the same plane.
+/// Finds flat faces: cells of a grid whose points lie in a plane, grown to patches of the same
+/// plane.
 class Face_finder
 {
 public:
@@ -317,8 +318,8 @@ private:
 } // namespace internal
 
 /*!
-  The flat faces among the points of `is_used`: patches of one plane, wide and filled. What is curved, as a stem is, stays
-  narrow. O(n log n) in the points that are looked at.
+  The flat faces among the points of `is_used`: patches of one plane, wide and filled. What is
+  curved, as a stem is, stays narrow. O(n log n) in the points that are looked at.
 */
 inline std::vector<Flat_face>
 flat_faces(const Scan& scan, const Wall_options& rules, const std::vector<std::uint8_t>& is_used)
@@ -372,8 +373,8 @@ inline std::size_t mark_faces(const Scan& scan,
   return count;
 }
 
-/// Takes those parts out of `is_used` that lie beside faces: edges, frames, posts. `links` are those between neighbours. Returns
-/// the number of their points. O(faces x n).
+/// Takes those parts out of `is_used` that lie beside faces: edges, frames, posts. `links` are
+/// those between neighbours. Returns the number of their points. O(faces x n).
 inline std::size_t mark_beside_faces(const Scan& scan,
                                      const std::vector<Flat_face>& faces,
                                      const Links& links,

@@ -28,8 +28,8 @@ struct Stand
 };
 
 /*!
-  Finds the trees of a scan. `input` is finite, with at least two different points. Returns `false` if the work was cancelled;
-  `forest` is untouched then. O(n log n).
+  Finds the trees of a scan. `input` is finite, with at least two different points. Returns `false`
+  if the work was cancelled; `forest` is untouched then. O(n log n).
 */
 template <class ConcurrencyTag>
 bool find_trees(const std::vector<Vec3>& input,

@@ -7,8 +7,8 @@
 
 #include <pcs/core/Skeleton_options.h>
 #include <pcs/internal/progress.h>
+#include <pcs/skeleton/Session.h>
 #include <pcs/skeleton/Session_options.h>
-#include <pcs/skeleton/Session_stages.h>
 #include <pcs/skeleton/forest/Stand.h>
 #include <pcs/skeleton/forest/Stand_options.h>
 #include <pcs/skeleton/forest/Stem_detector.h>
@@ -26,7 +26,8 @@ namespace skeleton {
 
 namespace internal {
 
-/// What is found among one point of every cube of a side. By point of the input, if not said otherwise.
+/// What is found among one point of every cube of a side. By point of the input, if not said
+/// otherwise.
 struct Stand_state
 {
   Scan_frame frame;
@@ -54,7 +55,7 @@ bool find_stand(const std::vector<Vec3>& input,
   Session_options options(hints);
   options.leaf_removal = Leaf_removal::never;
   options.do_trace_paths = false;
-  Session_stages<ConcurrencyTag> session(thinned.points, {}, options);
+  Session<ConcurrencyTag> session(thinned.points, {}, options);
   if (!session.find_paths(progress))
     return false;
   const Scan& scan = session.scan();
@@ -107,8 +108,8 @@ sparse_stems(const Stand_state& coarse, const Stand_options& rules, const Stand_
 }
 
 /*!
-  Adds the trees of those stems of `coarse` that have few points: between those of others, their stems fall to pieces. Such trees get their points
-  that are few or nobody's. O(points + stems^2).
+  Adds the trees of those stems of `coarse` that have few points: between those of others, their
+  stems fall to pieces. Such trees get their points that are few or nobody's. O(points + stems^2).
 */
 inline void add_sparse_trees(const Stand_state& coarse,
                              const std::vector<bool>& is_sparse,

@@ -10,7 +10,8 @@
 namespace pcs {
 namespace skeleton {
 
-/// Which points are looked at, and what a stem is. Lengths in breast heights unless said otherwise [-].
+/// Which points are looked at, and what a stem is. Lengths in breast heights unless said otherwise
+/// [-].
 struct Stand_options
 {
   double cell = 0.0155; ///< one point is kept in every cube of this side

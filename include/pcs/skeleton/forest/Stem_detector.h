@@ -75,7 +75,8 @@ private:
   std::vector<Vec3> m_lowest;
 };
 
-/// What has no label gets that of its nearest ancestor with one. `parent(i)` is `none` at a root. O(n).
+/// What has no label gets that of its nearest ancestor with one. `parent(i)` is `none` at a root.
+/// O(n).
 template <class Parent>
 void inherit(std::vector<Index>& labels, const Parent& parent)
 {
@@ -112,9 +113,9 @@ inline bool are_of_one_tree(const Found_stem& stem,
 }
 
 /*!
-  Axes are fitted twice. First along the paths from the lowest points of all that hangs together, to find stems; then along the
-  paths from the feet of these. Every axis of the second fit sits on another one by the odds of `Axis_joiner`, and so belongs
-  to a tree. z is up.
+  Axes are fitted twice. First along the paths from the lowest points of all that hangs together, to
+  find stems; then along the paths from the feet of these. Every axis of the second fit sits on
+  another one by the odds of `Axis_joiner`, and so belongs to a tree. z is up.
 */
 template <class ConcurrencyTag>
 class Stem_detector
@@ -156,7 +157,8 @@ public:
     return true;
   }
 
-  /// The second fit, along the paths from the stems, and the trees of all points. `false` if the work was cancelled.
+  /// The second fit, along the paths from the stems, and the trees of all points. `false` if the
+  /// work was cancelled.
   bool label(pcs::internal::Progress& progress)
   {
     if (m_feet.empty())
@@ -196,13 +198,13 @@ private:
   fit_along(const Shortest_paths& paths, pcs::internal::Progress& progress, double from, double to)
   {
     Layer_tree layers = layer_tree<ConcurrencyTag>(m_scan, m_links, paths);
-    merge_ring_arcs<ConcurrencyTag>(m_scan, m_options.rings, layers);
+    merge_ring_arcs<ConcurrencyTag>(m_scan, m_options.layers.rings, layers);
     bool is_running = true;
     m_axes = fit_axes<ConcurrencyTag>(m_scan, layers, m_options.axes, [&](double f) {
       return is_running = progress(from + (to - from) * f);
     });
     if (is_running)
-      fuse_axes<ConcurrencyTag>(m_scan.spacing, m_options.fusion, m_axes);
+      fuse_axes<ConcurrencyTag>(m_scan.spacing, m_options.branching.fusion, m_axes);
     return is_running;
   }
 
@@ -313,7 +315,8 @@ private:
     return sources;
   }
 
-  /// The axis that explains the foot of a stem, and most else, is a root; the others belong to the tree that they hang on.
+  /// The axis that explains the foot of a stem, and most else, is a root; the others belong to the
+  /// tree that they hang on.
   void label_axes()
   {
     std::map<std::pair<Index, Index>, double> votes; // of stem and axis
@@ -336,7 +339,7 @@ private:
       m_tree_of_axis[best[s]] = m_stems[s].tree;
       roots.push_back(best[s]);
     }
-    const Axis_joiner joiner(m_axes, m_scan.spacing, m_options.joints);
+    const Axis_joiner joiner(m_axes, m_scan.spacing, m_options.branching.joints);
     const std::vector<Joint> joints = joiner.template run<ConcurrencyTag>(roots);
     inherit(m_tree_of_axis, [&](Index a) { return joints[a].parent; });
   }
@@ -352,7 +355,8 @@ private:
     return_feet();
   }
 
-  /// The part of the stems that was left out with the ground, to the nearest one in radii. On a slope it reaches above their feet.
+  /// The part of the stems that was left out with the ground, to the nearest one in radii. On a
+  /// slope it reaches above their feet.
   void return_feet()
   {
     if (m_stems.empty())

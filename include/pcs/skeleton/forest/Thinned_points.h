@@ -19,7 +19,8 @@ namespace skeleton {
 
 namespace internal {
 
-/// One point of every cube, and which of them stands for each point of the input. Neither depends on the order of the input.
+/// One point of every cube, and which of them stands for each point of the input. Neither depends
+/// on the order of the input.
 struct Thinned_points
 {
   std::vector<Vec3> points;

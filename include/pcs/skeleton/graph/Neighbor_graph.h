@@ -101,7 +101,8 @@ private:
   std::vector<Index> m_size, m_parent;
 };
 
-/// Links between the points of `is_used` that are neighbours, each once, nearly in increasing order.
+/// Links between the points of `is_used` that are neighbours, each once, nearly in increasing
+/// order.
 template <class ConcurrencyTag>
 Links neighbor_links(const Scan& scan,
                      const std::vector<std::uint8_t>& is_used,
@@ -161,8 +162,9 @@ Links neighbor_links(const Scan& scan,
 }
 
 /*!
-  The sets of points that hang together by the links for which `is_wanted(link)` holds. Stretches of links are united side by
-  side as far as both ends are in one stretch of points, which is nearly always so in spatial order; then the rest.
+  The sets of points that hang together by the links for which `is_wanted(link)` holds. Stretches of
+  links are united side by side as far as both ends are in one stretch of points, which is nearly
+  always so in spatial order; then the rest.
 */
 template <class ConcurrencyTag, class IsWanted>
 Point_sets united_points(std::size_t n, const Links& links, const IsWanted& is_wanted)
@@ -228,8 +230,9 @@ Point_parts connected_parts(const std::vector<std::uint8_t>& is_used, const Link
 }
 
 /*!
-  The shortest links that join the parts of the points of `is_used`, in Boruvka's rounds, up to the widest gap of the rule. The
-  largest part never searches: the others find it. Where much lies outside of it, only points that have others about search.
+  The shortest links that join the parts of the points of `is_used`, in Boruvka's rounds, up to the
+  widest gap of the rule. The largest part never searches: the others find it. Where much lies
+  outside of it, only points that have others about search.
 */
 inline Links links_across_gaps(const Scan& scan,
                                const std::vector<std::uint8_t>& is_used,

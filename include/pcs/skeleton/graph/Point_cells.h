@@ -54,7 +54,8 @@ public:
   /// Of a used point.
   Index cell_of(Index point) const { return m_cell_of_point[point]; }
 
-  /// For each cell, the label of all points in it and in the 26 cells about it; `none` if they differ. O(points + cells).
+  /// For each cell, the label of all points in it and in the 26 cells about it; `none` if they
+  /// differ. O(points + cells).
   std::vector<Index> common_label(const std::vector<Index>& label_of_point) const
   {
     constexpr Index nothing_yet = none - 1;

@@ -18,7 +18,8 @@
 namespace pcs {
 namespace skeleton {
 
-/// The shortest paths from a set of sources; unreached points have an infinite distance and are their own predecessor.
+/// The shortest paths from a set of sources; unreached points have an infinite distance and are
+/// their own predecessor.
 struct Shortest_paths
 {
   std::vector<double> distance;
@@ -28,8 +29,8 @@ struct Shortest_paths
 namespace internal {
 
 /*!
-  Points that wait for their turn, in buckets by distance: a ring of them, and what lies beyond it. Within a bucket they have no
-  order, so that the points to come are known and can be fetched.
+  Points that wait for their turn, in buckets by distance: a ring of them, and what lies beyond it.
+  Within a bucket they have no order, so that the points to come are known and can be fetched.
 */
 class Distance_buckets
 {
@@ -52,7 +53,8 @@ public:
       m_beyond.push_back({distance, point});
   }
 
-  /// What waits in the nearest bucket; what is pushed from there on may be nearer than the rest of it.
+  /// What waits in the nearest bucket; what is pushed from there on may be nearer than the rest of
+  /// it.
   bool pop(std::vector<Entry>& entries)
   {
     entries.clear();
@@ -73,7 +75,8 @@ public:
 private:
   static constexpr std::uint64_t number_of_buckets = 128;
 
-  /// Fills the ring from what lies beyond it, from its nearest point on if there is nothing before it.
+  /// Fills the ring from what lies beyond it, from its nearest point on if there is nothing before
+  /// it.
   void bring_in()
   {
     std::vector<Entry> beyond;
@@ -101,10 +104,11 @@ private:
 constexpr double path_bucket = 1;
 
 /*!
-  Dijkstra's distances, found by buckets: a point may be done more than once, and is when it was late, but none waits for the
-  order of a heap, and its neighbours are in the cache when it is its turn. The distances are those of
-  `boost::dijkstra_shortest_paths()` to the last bit: either way each is the least of the sums over its neighbours. Of
-  predecessors that give the same sum, the first one stays. O(edges) but for points that are done again.
+  Dijkstra's distances, found by buckets: a point may be done more than once, and is when it was
+  late, but none waits for the order of a heap, and its neighbours are in the cache when it is its
+  turn. The distances are those of `boost::dijkstra_shortest_paths()` to the last bit: either way
+  each is the least of the sums over its neighbours. Of predecessors that give the same sum, the
+  first one stays. O(edges) but for points that are done again.
 */
 inline Shortest_paths
 shortest_paths(const Scan& scan, const Neighbor_graph& graph, const std::vector<Index>& sources)
@@ -178,7 +182,8 @@ inline std::vector<Index> tips_first(const Shortest_paths& paths)
   return order;
 }
 
-/// How many paths lead through each point, its own with them, for points in the order of `tips_first()` [count]. O(points).
+/// How many paths lead through each point, its own with them, for points in the order of
+/// `tips_first()` [count]. O(points).
 inline std::vector<double> carried_paths(const Shortest_paths& paths,
                                          const std::vector<Index>& order)
 {

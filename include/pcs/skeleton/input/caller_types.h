@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What the caller's points, graphs and named parameters are: traits, and a given skeleton as arrays.
+// What the caller's points, graphs and named parameters are: traits, and a given skeleton as
+// arrays.
 
 #ifndef PCS_SKELETON_INPUT_CALLER_TYPES_H
 #define PCS_SKELETON_INPUT_CALLER_TYPES_H

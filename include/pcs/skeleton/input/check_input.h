@@ -36,7 +36,8 @@ inline bool is_coordinate(const Vec3& p)
   return p.allFinite() && p.cwiseAbs().maxCoeff() <= largest_coordinate;
 }
 
-/// The positions of a range. Throws `Invalid_input`, whose text begins with `function`, at one that is none.
+/// The positions of a range. Throws `Invalid_input`, whose text begins with `function`, at one that
+/// is none.
 template <class PointRange, class PointMap>
 std::vector<Vec3>
 read_input(const PointRange& points, const PointMap& point_map, const std::string& function)
@@ -68,7 +69,8 @@ inline void check_number_of_points(const std::vector<Vec3>& input, const std::st
                       std::to_string(lowest_number_of_scan_points));
 }
 
-/// Scanners that are farther away, in diagonals of the box of the points, stand in other coordinates [-].
+/// Scanners that are farther away, in diagonals of the box of the points, stand in other
+/// coordinates [-].
 constexpr double farthest_scanner = 500;
 
 /// A given skeleton has a length.
@@ -86,8 +88,9 @@ inline void check_given(const Given_skeleton& given, const std::string& function
 } // namespace internal
 
 /*!
-  Throws `Invalid_input`, whose text begins with `function`, if there are too few points, or if the root or all of the given
-  skeleton is farther away from them than they are wide, or a scanner far beyond that. O(n).
+  Throws `Invalid_input`, whose text begins with `function`, if there are too few points, or if the
+  root or all of the given skeleton is farther away from them than they are wide, or a scanner far
+  beyond that. O(n).
 */
 inline void
 check_input(const std::vector<Vec3>& input, const Session_hints& hints, const std::string& function)

@@ -87,8 +87,8 @@ void collect_nodes(const Scan& scan, Layer_tree& tree)
   });
 }
 
-/// The parent of a node is the one that most shortest paths of its points come from; among equals the one with more
-/// points, or the wider one.
+/// The parent of a node is the one that most shortest paths of its points come from; among equals
+/// the one with more points, or the wider one.
 template <class ConcurrencyTag>
 void vote_for_parents(const std::vector<Index>& predecessor, Layer_tree& tree)
 {

@@ -5,11 +5,11 @@
 #ifndef PCS_SKELETON_LAYERS_FIND_ROOT_H
 #define PCS_SKELETON_LAYERS_FIND_ROOT_H
 
-#include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/graph/Neighbor_graph.h>
 #include <pcs/skeleton/graph/shortest_paths.h>
 #include <pcs/skeleton/model/Layer_tree.h>
 #include <pcs/skeleton/model/Scan.h>
+#include <pcs/skeleton/model/Slab_shape.h>
 #include <pcs/skeleton/model/circle_fit.h>
 
 #include <Eigen/Core>
@@ -35,7 +35,8 @@ struct Root_options
   //! ... it is looked for in the first share then, or in the second, and taken if it is ...
   double wide_slab = 0.1, widest_slab = 0.2;
   double thicker =
-      3; ///< ... another stem with this many times the spread, in the second one with a round foot [-]
+      /// ... another stem with this many times the spread, in the second one with a round foot [-]
+      3;
   double band = 0.4;   ///< height of the points that are the root, in half widths of the stem [-]
   double rival = 0.03; ///< share of the lowest points of a stem that makes another one a rival [-]
   double smallest_component =
@@ -51,38 +52,6 @@ struct Root_options
 };
 
 namespace internal {
-
-/// Mean and spread across `up` of a set of points.
-struct Slab_shape
-{
-  Vec3 mean = Vec3::Zero();
-  Vec3 along = Vec3::UnitX();   ///< the direction of the largest spread, to where the points rise
-  double length = 0, width = 0; ///< standard deviations along and across it
-
-  Slab_shape(const Scan& scan, const std::vector<Index>& points, const Vec3& up)
-  {
-    for (const Index i : points)
-      mean += scan.points[i];
-    mean /= double(points.size());
-    const Vec3 e1 = up.unitOrthogonal(), e2 = up.cross(e1);
-    Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
-    for (const Index i : points) {
-      const Vec3 d = scan.points[i] - mean;
-      const Eigen::Vector2d q(d.dot(e1), d.dot(e2));
-      covariance += q * q.transpose();
-    }
-    const auto eigen = linear_algebra::symmetric_eigen<2>(covariance / double(points.size()));
-    const Eigen::Vector2d v = eigen.vectors.col(1);
-    along = v(0) * e1 + v(1) * e2;
-    double rise = 0;
-    for (const Index i : points)
-      rise += (scan.points[i] - mean).dot(along) * (scan.points[i] - mean).dot(up);
-    if (rise < 0)
-      along = -along;
-    width = std::sqrt(std::max(0.0, eigen.values(0)));
-    length = std::sqrt(std::max(0.0, eigen.values(1)));
-  }
-};
 
 /// Connected points near the lower end of their part.
 struct Stem
@@ -124,8 +93,8 @@ struct Stem
   }
 };
 
-/// Of all stems, that from which most of the points high up are nearest along the points; `first` if none has much more.
-/// `stem_of_point` tells those of the lowest points. O(points log points).
+/// Of all stems, that from which most of the points high up are nearest along the points; `first`
+/// if none has much more. `stem_of_point` tells those of the lowest points. O(points log points).
 inline Index stem_with_largest_catchment(const Scan& scan,
                                          const std::vector<double>& height,
                                          const Links& links,
@@ -278,7 +247,8 @@ private:
     const Index busiest =
         stem_with_largest_catchment(m_scan, m_height, m_links, low_parts.part, first);
     Stem other(m_scan, m_up, slab, m_parts, low_parts, busiest, m_rules);
-    // the foot of a trunk that is cut off from the crown leads to none of its points, a hanging twig to all
+    // the foot of a trunk that is cut off from the crown leads to none of its points, a hanging
+    // twig to all
     const double ring = stem.ring_radius(m_scan, m_up, m_rules);
     const bool is_foot = ring > m_rules.thicker * other.ring_radius(m_scan, m_up, m_rules);
     return is_foot ? stem : other;
@@ -296,9 +266,10 @@ private:
 } // namespace internal
 
 /*!
-  The lowest layer of points of the thickest thing that stands at the lower end of a large connected part, the tall ones
-  first. Of a stem that lies on its side, or of a flat cloud, one end. `links` are those between neighbours, without closed
-  gaps, `parts` what hangs together by them. Never empty if a point is used.
+  The lowest layer of points of the thickest thing that stands at the lower end of a large connected
+  part, the tall ones first. Of a stem that lies on its side, or of a flat cloud, one end. `links`
+  are those between neighbours, without closed gaps, `parts` what hangs together by them. Never
+  empty if a point is used.
 */
 template <class ConcurrencyTag>
 std::vector<Index> find_root(const Scan& scan,

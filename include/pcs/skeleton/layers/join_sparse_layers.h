@@ -162,10 +162,11 @@ private:
 } // namespace internal
 
 /*!
-  Layers are as thick as usual spacings ask for. Where the points of a thick stem are farther apart they fall to pieces; there,
-  layers are joined by twos until they hang together, if that makes rings: twigs, of which there are points one behind the
-  other, are left as they are. `layer` is that of each point, `sets` has the connected parts of the layers. O(links + p log p) with p points in
-  sparse layers.
+  Layers are as thick as usual spacings ask for. Where the points of a thick stem are farther apart
+  they fall to pieces; there, layers are joined by twos until they hang together, if that makes
+  rings: twigs, of which there are points one behind the other, are left as they are. `layer` is
+  that of each point, `sets` has the connected parts of the layers. O(links + p log p) with p points
+  in sparse layers.
 */
 template <class ConcurrencyTag>
 void join_sparse_layers(const Scan& scan,

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Joins the parts of a layer that are arcs of one ring: scanners see thick branches from a few sides only.
+// Joins the parts of a layer that are arcs of one ring: scanners see thick branches from a few
+// sides only.
 
 #ifndef PCS_SKELETON_LAYERS_MERGE_RING_ARCS_H
 #define PCS_SKELETON_LAYERS_MERGE_RING_ARCS_H
@@ -137,7 +138,8 @@ private:
     return first;
   }
 
-  /// Corrects the ring by the points of `v` and all that was merged into it, or looks for a new one.
+  /// Corrects the ring by the points of `v` and all that was merged into it, or looks for a new
+  /// one.
   void follow(Index v, const Ring& before)
   {
     Ring& ring = m_ring[v];

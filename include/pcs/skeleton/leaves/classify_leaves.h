@@ -6,7 +6,6 @@
 #define PCS_SKELETON_LEAVES_CLASSIFY_LEAVES_H
 
 #include <pcs/internal/parallel.h>
-#include <pcs/skeleton/axes/Chain_options.h>
 #include <pcs/skeleton/graph/shortest_paths.h>
 #include <pcs/skeleton/leaves/detect_linear_points.h>
 #include <pcs/skeleton/leaves/detect_planar_patches.h>
@@ -78,8 +77,9 @@ inline bool has_thick_wood(const std::vector<std::uint8_t>& is_used,
 }
 
 /*!
-  Whether the points that are neither thick wood nor lines are leaves. Twigs that a scan just about sees are no lines, too,
-  but are mixed with those that it sees well, and make no flat patches. O(points).
+  Whether the points that are neither thick wood nor lines are leaves. Twigs that a scan just about
+  sees are no lines, too, but are mixed with those that it sees well, and make no flat patches.
+  O(points).
 */
 inline bool are_leaves(const Scan& scan,
                        const std::vector<std::uint8_t>& is_used,
@@ -115,10 +115,11 @@ struct Found_wood
 };
 
 /*!
-  The points of thick wood, which is hollow, and of thin wood, by its surroundings and the paths that it carries: `paths` lead
-  over all points that are used. Without `is_sure`, which says that there are leaves, all points are wood where what is left when
-  all lines are taken for wood does not look like leaves, and where the points of thick wood lie in rows: each of these is a line,
-  and its surroundings are not those of a twig or of a leaf.
+  The points of thick wood, which is hollow, and of thin wood, by its surroundings and the paths
+  that it carries: `paths` lead over all points that are used. Without `is_sure`, which says that
+  there are leaves, all points are wood where what is left when all lines are taken for wood does
+  not look like leaves, and where the points of thick wood lie in rows: each of these is a line, and
+  its surroundings are not those of a twig or of a leaf.
 */
 template <class ConcurrencyTag>
 Found_wood classify_wood_points(const Scan& scan,
@@ -159,49 +160,6 @@ Found_wood classify_wood_points(const Scan& scan,
     result.is_wood[i] =
         is_used[i] && (is_thick[i] || double(result.wood_score[i]) >= rules.wood_score);
   return result;
-}
-
-/// Points that were taken for leaves but lie on the surfaces that were found are explained by these; returns how many.
-template <class ConcurrencyTag>
-std::size_t reassign_points(const Scan& scan,
-                            const Chain_options& rules,
-                            std::vector<std::uint8_t>& is_leaf,
-                            Axis_set& set)
-{
-  const std::size_t n = scan.size();
-  std::vector<Index> axis_of(n, none), segment_of(n, none);
-  pcs::internal::for_each_index<ConcurrencyTag>(
-      n,
-      [&](std::size_t i) {
-        const Vec3& p = scan.points[i];
-        if (!is_leaf[i])
-          return;
-        const auto near = scan.search->nearest_if(p, 4 * scan.spacing, [&](Index j) {
-          return set.is_covered(j);
-        });
-        if (!(near.squared_distance < 16 * scan.spacing * scan.spacing))
-          return;
-        const Index a = set.axis_of_point[near.index];
-        const Axis& axis = set.axes[a].axis;
-        const Axis_place place = nearest_place(axis, set.segment_of_point[near.index], p);
-        const double r = radius_at(axis, place);
-        if (place.distance >
-            r + std::max(rules.cover_offset * scan.spacing, rules.cover_factor * r))
-          return;
-        axis_of[i] = a;
-        segment_of[i] = place.segment;
-      },
-      256);
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < n; ++i)
-    if (axis_of[i] != none) {
-      set.axis_of_point[i] = axis_of[i];
-      set.segment_of_point[i] = segment_of[i];
-      ++set.axes[axis_of[i]].number_of_points;
-      is_leaf[i] = 0;
-      ++count;
-    }
-  return count;
 }
 
 } // namespace skeleton

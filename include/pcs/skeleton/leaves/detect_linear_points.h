@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Tells points of thin wood from those of leaves around it: wood has neighbours in a line, and few beside it.
+// Tells points of thin wood from those of leaves around it: wood has neighbours in a line, and few
+// beside it.
 
 #ifndef PCS_SKELETON_LEAVES_DETECT_LINEAR_POINTS_H
 #define PCS_SKELETON_LEAVES_DETECT_LINEAR_POINTS_H
@@ -190,10 +191,11 @@ struct Ignore_line_search
 };
 
 /*!
-  Which points lie on lines: around points that are used and not yet `is_sure`, tubes in several directions are tried. A tube is a
-  line if most of its pieces hold points and the ring around them few; then its points are marked. In leaves, a tube is as
-  crowded as what is around it. `visit(i, search, score)` is called for each of these
-  points, in any order, from any thread. O(open points * neighbours in reach * directions).
+  Which points lie on lines: around points that are used and not yet `is_sure`, tubes in several
+  directions are tried. A tube is a line if most of its pieces hold points and the ring around them
+  few; then its points are marked. In leaves, a tube is as crowded as what is around it. `visit(i,
+  search, score)` is called for each of these points, in any order, from any thread. O(open points *
+  neighbours in reach * directions).
 */
 template <class ConcurrencyTag, class Visit = Ignore_line_search>
 std::vector<std::uint8_t> points_on_lines(const Scan& scan,

@@ -28,8 +28,8 @@ struct Planar_patch_options
 };
 
 /*!
-  How many of the open points lie in patches: connected groups of them that are flat, wide, and not connected to thick wood,
-  whose surface is flat as well. O(points).
+  How many of the open points lie in patches: connected groups of them that are flat, wide, and not
+  connected to thick wood, whose surface is flat as well. O(points).
 */
 inline std::size_t count_patch_points(const Scan& scan,
                                       const std::vector<std::uint8_t>& is_open,

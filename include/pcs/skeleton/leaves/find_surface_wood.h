@@ -88,7 +88,8 @@ inline void add_carriers(const Axis_set& set,
 
 } // namespace internal
 
-/// Points of hollow sections, and of what lies between such sections and the base of their axis, or carries it. O(points).
+/// Points of hollow sections, and of what lies between such sections and the base of their axis, or
+/// carries it. O(points).
 template <class ConcurrencyTag>
 std::vector<std::uint8_t>
 points_on_hollow_sections(const Scan& scan, const Axis_set& set, const Surface_wood_options& rules)

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Whether points cover a surface evenly or lie in rows on it, by the dimension that their distances show.
+// Whether points cover a surface evenly or lie in rows on it, by the dimension that their distances
+// show.
 
 #ifndef PCS_SKELETON_LEAVES_SAMPLING_DIMENSION_H
 #define PCS_SKELETON_LEAVES_SAMPLING_DIMENSION_H
@@ -17,9 +18,10 @@ namespace pcs {
 namespace skeleton {
 
 /*!
-  The intrinsic dimension of the points of `is_part` by the distances to their neighbours, after Levina and Bickel (2004): the
-  number of neighbours within `r` grows with `r` to this power. 2 for random points of a surface, up to 3 with noise or where they
-  lie evenly, 1 in rows that are far from each other. Infinite where no point has two neighbours at different distances. O(n). [-]
+  The intrinsic dimension of the points of `is_part` by the distances to their neighbours, after
+  Levina and Bickel (2004): the number of neighbours within `r` grows with `r` to this power. 2 for
+  random points of a surface, up to 3 with noise or where they lie evenly, 1 in rows that are far
+  from each other. Infinite where no point has two neighbours at different distances. O(n). [-]
 */
 inline double sampling_dimension(const Scan& scan, const std::vector<std::uint8_t>& is_part)
 {

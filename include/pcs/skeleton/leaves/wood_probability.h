@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// How much the surroundings of a point look like those of thin wood: a small network, trained on virtual scans.
+// How much the surroundings of a point look like those of thin wood: a small network, trained on
+// virtual scans.
 
 #ifndef PCS_SKELETON_LEAVES_WOOD_PROBABILITY_H
 #define PCS_SKELETON_LEAVES_WOOD_PROBABILITY_H
@@ -22,8 +23,8 @@ struct Spread : Moments
 {
   static constexpr std::size_t number_of_features = 5;
 
-  /// Logarithm of the count, the deviations along the longest to the shortest axis, and how far the mean is from the
-  /// origin.
+  /// Logarithm of the count, the deviations along the longest to the shortest axis, and how far the
+  /// mean is from the origin.
   std::array<double, number_of_features> features() const
   {
     const Vec3 deviation =
@@ -32,7 +33,8 @@ struct Spread : Moments
   }
 };
 
-/// What the surroundings of a point are judged by: spreads within three distances, and the score of the best line.
+/// What the surroundings of a point are judged by: spreads within three distances, and the score of
+/// the best line.
 struct Surroundings
 {
   static constexpr std::size_t number_of_spreads = 3;

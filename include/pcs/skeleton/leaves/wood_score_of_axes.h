@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Whether an axis that was fitted to what is left is one of wood, or a stub that the fit made of a leaf.
+// Whether an axis that was fitted to what is left is one of wood, or a stub that the fit made of a
+// leaf.
 
 #ifndef PCS_SKELETON_LEAVES_WOOD_SCORE_OF_AXES_H
 #define PCS_SKELETON_LEAVES_WOOD_SCORE_OF_AXES_H
@@ -94,7 +95,8 @@ inline double wood_probability(const Axis_evidence& evidence)
   return internal::likeness_by_axis(evidence.features());
 }
 
-/// The evidence for every axis. `wood_score` is that of the points, `paths` lead over all that are used. O(points).
+/// The evidence for every axis. `wood_score` is that of the points, `paths` lead over all that are
+/// used. O(points).
 template <class ConcurrencyTag>
 std::vector<Axis_evidence> evidence_of_axes(const Scan& scan,
                                             const Axis_set& set,
@@ -169,9 +171,10 @@ std::vector<Axis_evidence> evidence_of_axes(const Scan& scan,
 }
 
 /*!
-  The points of the axes that are of wood, and such that no axis explains but that look like wood; others are parts of leaves, or
-  stray. An axis that carries one of wood is of wood, and so is the first. Parameters as of `evidence_of_axes()`; `least` is the
-  least likeness of an axis, `least_of_point` that of a point without one. O(points).
+  The points of the axes that are of wood, and such that no axis explains but that look like wood;
+  others are parts of leaves, or stray. An axis that carries one of wood is of wood, and so is the
+  first. Parameters as of `evidence_of_axes()`; `least` is the least likeness of an axis,
+  `least_of_point` that of a point without one. O(points).
 */
 template <class ConcurrencyTag>
 std::vector<std::uint8_t> wood_of_scored_axes(const Scan& scan,
@@ -200,7 +203,8 @@ std::vector<std::uint8_t> wood_of_scored_axes(const Scan& scan,
   return is_wood;
 }
 
-/// Adds the used points within `reach` radii of the nodes of an axis. O(points without wood x nodes).
+/// Adds the used points within `reach` radii of the nodes of an axis. O(points without wood x
+/// nodes).
 template <class ConcurrencyTag>
 void keep_around(const Scan& scan,
                  const Axis& axis,

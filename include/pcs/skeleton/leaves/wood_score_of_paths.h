@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// How much a point looks like one of thin wood by what lies along its path to the root: twigs carry the paths of their leaves.
+// How much a point looks like one of thin wood by what lies along its path to the root: twigs carry
+// the paths of their leaves.
 
 #ifndef PCS_SKELETON_LEAVES_WOOD_SCORE_OF_PATHS_H
 #define PCS_SKELETON_LEAVES_WOOD_SCORE_OF_PATHS_H
@@ -24,8 +25,8 @@ namespace pcs {
 namespace skeleton {
 
 /*!
-  What lies along the shortest path from a point to the root, and along those that lead through the point. What is farther along a
-  path counts less: `reach` is the distance at which it counts 1 / e.
+  What lies along the shortest path from a point to the root, and along those that lead through the
+  point. What is farther along a path counts less: `reach` is the distance at which it counts 1 / e.
 */
 struct Path_context
 {
@@ -37,7 +38,8 @@ struct Path_context
 };
 
 /*!
-  The same for all points; those without a path to any other have no context. Scores and paths are given by point. O(points).
+  The same for all points; those without a path to any other have no context. Scores and paths are
+  given by point. O(points).
 */
 inline std::vector<Path_context> path_contexts(const Scan& scan,
                                                const Shortest_paths& paths,
@@ -91,7 +93,8 @@ inline std::vector<Path_context> path_contexts(const Scan& scan,
   return result;
 }
 
-/// What a point is judged by: its score and path, and the points next to it. Lengths are in spacings.
+/// What a point is judged by: its score and path, and the points next to it. Lengths are in
+/// spacings.
 struct Wood_evidence
 {
   static constexpr std::size_t number_of_features = 12;
@@ -165,7 +168,8 @@ inline double wood_probability(const Wood_evidence& evidence)
   return internal::likeness_by_evidence(evidence.features());
 }
 
-/// The evidence for point `i`, which is used, by the points of `near` that are used; it is one of them.
+/// The evidence for point `i`, which is used, by the points of `near` that are used; it is one of
+/// them.
 inline Wood_evidence evidence_of_point(const Scan& scan,
                                        const std::vector<std::uint8_t>& is_used,
                                        const std::vector<float>& score,
@@ -199,7 +203,8 @@ inline Wood_evidence evidence_of_point(const Scan& scan,
   return e;
 }
 
-/// What `path_contexts()` sums up: the likeness by the surroundings, within limits, and that of thick wood.
+/// What `path_contexts()` sums up: the likeness by the surroundings, within limits, and that of
+/// thick wood.
 inline std::vector<float> scores_of_surroundings(const std::vector<std::uint8_t>& is_used,
                                                  const std::vector<std::uint8_t>& is_thick,
                                                  const std::vector<float>& wood_score)
@@ -214,8 +219,9 @@ inline std::vector<float> scores_of_surroundings(const std::vector<std::uint8_t>
 }
 
 /*!
-  The likeness for all points that are used and not of thick wood, which is certain; `wood_score` holds what their surroundings say
-  (`wood_probability(Surroundings)`), `paths` lead over all points that are used. O(points * neighbours).
+  The likeness for all points that are used and not of thick wood, which is certain; `wood_score`
+  holds what their surroundings say (`wood_probability(Surroundings)`), `paths` lead over all points
+  that are used. O(points * neighbours).
 */
 template <class ConcurrencyTag>
 std::vector<float> wood_score_of_paths(const Scan& scan,

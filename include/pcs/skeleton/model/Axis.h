@@ -32,7 +32,8 @@ struct Axis_place
 {
   Index segment = 0; ///< between nodes `segment` and `segment + 1`
   double share =
-      0; ///< position on the segment; outside of [0, 1] only before the first and behind the last node
+      /// position on the segment; outside of [0, 1] only before the first and behind the last node
+      0;
   double distance = 0; ///< from the place clamped to the axis [L]
 };
 
@@ -68,7 +69,8 @@ inline std::vector<Axis_segment> segments_of(const Axis& axis)
 
 namespace internal {
 
-/// Keeps the segment that is nearest to a point; `segment_at(s)` tells a segment, `last` is the last one.
+/// Keeps the segment that is nearest to a point; `segment_at(s)` tells a segment, `last` is the
+/// last one.
 template <class SegmentAt>
 class Place_search
 {
@@ -92,7 +94,8 @@ public:
     return true;
   }
 
-  /// Goes on from `s` until some segments in a row are not nearer, or one that is not leads away from the point.
+  /// Goes on from `s` until some segments in a row are not nearer, or one that is not leads away
+  /// from the point.
   template <bool IsForward>
   void walk(std::size_t s)
   {

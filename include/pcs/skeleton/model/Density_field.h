@@ -27,8 +27,9 @@ struct Density_sample
   Vec3 facing = Vec3::Zero(); ///< mean of the outward normals of its points
 };
 
-/// Places relative to the middle of samples, in their spread. Beyond the samples a field goes on as at the nearest place among
-/// them: a polynomial that was learned on a trunk says nothing of the crown.
+/// Places relative to the middle of samples, in their spread. Beyond the samples a field goes on as
+/// at the nearest place among them: a polynomial that was learned on a trunk says nothing of the
+/// crown.
 class Sample_frame
 {
 public:
@@ -53,9 +54,9 @@ private:
 };
 
 /*!
-  Points thin out with the distance from a station, and where a branch points to it: the logarithm of the density is a
-  polynomial of second degree of the place and of the direction. Robust least squares with a ridge; neither a place nor a
-  prediction leaves the range of the samples.
+  Points thin out with the distance from a station, and where a branch points to it: the logarithm
+  of the density is a polynomial of second degree of the place and of the direction. Robust least
+  squares with a ridge; neither a place nor a prediction leaves the range of the samples.
 */
 class Density_field
 {
@@ -66,7 +67,8 @@ public:
   /// Whether there were enough samples.
   bool is_known() const { return m_is_known; }
 
-  /// Fits the field to samples of positive density. O(samples). In learn_fields.h, as it takes long to compile.
+  /// Fits the field to samples of positive density. O(samples). In learn_fields.h, as it takes long
+  /// to compile.
   void learn(const std::vector<Density_sample>& all);
 
   /// Points per area of a branch at `place` that runs along the unit vector `along` [1/L^2].

@@ -24,7 +24,8 @@ struct Layer_tree
   std::vector<Vec3> center;         ///< mean of the points of a node
   std::vector<double> spread;       ///< root of the mean squared distance from it [L]
   std::vector<Index>
-      next_in_ring; ///< the child that continues a thick ring; itself: the ring ends here; `none`: no ring
+      /// the child that continues a thick ring; itself: the ring ends here; `none`: no ring
+      next_in_ring;
   std::vector<Index> first; ///< offsets into `point`
   std::vector<Index> point; ///< the points node by node
 

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The scan of a tree, prepared: distinct points about a local origin, their neighbours, spacing and outliers.
+// The scan of a tree, prepared: distinct points about a local origin, their neighbours, spacing and
+// outliers.
 
 #ifndef PCS_SKELETON_MODEL_SCAN_H
 #define PCS_SKELETON_MODEL_SCAN_H
@@ -30,8 +31,8 @@ constexpr std::size_t neighbors_per_point = 12;
 /// The neighbour whose distance measures the local spacing; the first is too noisy.
 constexpr std::size_t spacing_neighbor = 4;
 
-/// A scan ready for the stages. Points are distinct, in spatial order, in the coordinates of `frame`. It stays where it is: the
-/// search refers to its points.
+/// A scan ready for the stages. Points are distinct, in spatial order, in the coordinates of
+/// `frame`. It stays where it is: the search refers to its points.
 struct Scan
 {
   Scan() = default;

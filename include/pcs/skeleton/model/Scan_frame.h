@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Coordinates that belong to a scan, however it was moved, turned about the vertical, scaled or shuffled.
+// Coordinates that belong to a scan, however it was moved, turned about the vertical, scaled or
+// shuffled.
 
 #ifndef PCS_SKELETON_MODEL_SCAN_FRAME_H
 #define PCS_SKELETON_MODEL_SCAN_FRAME_H
@@ -13,9 +14,10 @@ namespace pcs {
 namespace skeleton {
 
 /*!
-  An origin in the middle of the points, the third axis upwards, the first to where most far points lie, a typical distance
-  of points from the origin as unit. All work is done in these coordinates, rounded to a grid: copies of a scan then
-  are the same scan bit by bit, and rounding decides nothing.
+  An origin in the middle of the points, the third axis upwards, the first to where most far points
+  lie, a typical distance of points from the origin as unit. All work is done in these coordinates,
+  rounded to a grid: copies of a scan then are the same scan bit by bit, and rounding decides
+  nothing.
 */
 struct Scan_frame
 {

@@ -19,9 +19,10 @@ namespace pcs {
 namespace skeleton {
 
 /*!
-  One station sees one side of every branch, and of outer branches several see the outside. The mean of the outward normals of
-  a section's points is, across the axis, a linear function of the place. Robust least squares with a ridge over sections
-  whose radius is certain; thin ones, whose points would fit circles on both sides, then are fitted on the right one.
+  One station sees one side of every branch, and of outer branches several see the outside. The mean
+  of the outward normals of a section's points is, across the axis, a linear function of the place.
+  Robust least squares with a ridge over sections whose radius is certain; thin ones, whose points
+  would fit circles on both sides, then are fitted on the right one.
 */
 class Visibility_field
 {
@@ -32,8 +33,8 @@ public:
   /// Fits the field. O(samples). In learn_fields.h.
   void learn(const std::vector<Density_sample>& all);
 
-  /// The mean outward normal of the points of a branch at `place` that runs along the unit vector `along`; short where
-  /// points lie on all sides.
+  /// The mean outward normal of the points of a branch at `place` that runs along the unit vector
+  /// `along`; short where points lie on all sides.
   Vec3 operator()(const Vec3& place, const Vec3& along) const
   {
     const Row r = row(place);

@@ -23,7 +23,8 @@ struct Circle
   double deviation = 0; ///< root of the mean squared distance of the points from it [L]
 };
 
-/// Taubin's fit (Newton's method on its characteristic polynomial): no bias on short arcs. At least 3 points.
+/// Taubin's fit (Newton's method on its characteristic polynomial): no bias on short arcs. At least
+/// 3 points.
 inline Circle fit_circle(const std::vector<Vec2>& points)
 {
   Circle circle;
@@ -81,8 +82,8 @@ inline Circle fit_circle(const std::vector<Vec2>& points)
 /// Sectors of a full turn that arcs are measured in [count].
 constexpr int number_of_sectors = 12;
 
-/// How many of the sectors around `center` hold a point. The first sector begins at the mean of the points, so that the
-/// count does not depend on the frame of the plane.
+/// How many of the sectors around `center` hold a point. The first sector begins at the mean of the
+/// points, so that the count does not depend on the frame of the plane.
 inline int covered_sectors(const std::vector<Vec2>& points, const Vec2& center)
 {
   Vec2 mean = Vec2::Zero();

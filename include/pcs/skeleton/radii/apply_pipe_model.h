@@ -120,7 +120,8 @@ private:
   using Passings = std::vector<Passing>; // per bin
   using Limits = std::vector<Limit>;     // per bin; empty: none
 
-  /// Calls `visit(v, passings)` for the nodes of a branch from its tip to its base, with all that `v` carries.
+  /// Calls `visit(v, passings)` for the nodes of a branch from its tip to its base, with all that
+  /// `v` carries.
   template <class Visit>
   Passings walk(Index b, const std::vector<Passings>& of_branch, const Visit& visit) const
   {
@@ -222,9 +223,10 @@ private:
 } // namespace internal
 
 /*!
-  Where leaves were taken for wood, the areas of all branches at one distance from the root add up to many times that of the
-  trunk. Wood does not do that: scales the radii down at such distances, for what each node carries. Scaled nodes count as
-  inferred. Returns how many there are. O((nodes + branches) * bins).
+  Where leaves were taken for wood, the areas of all branches at one distance from the root add up
+  to many times that of the trunk. Wood does not do that: scales the radii down at such distances,
+  for what each node carries. Scaled nodes count as inferred. Returns how many there are. O((nodes +
+  branches) * bins).
 */
 inline std::size_t apply_pipe_model(const std::vector<std::uint8_t>& is_proven,
                                     const Pipe_model_options& rules,

@@ -37,7 +37,8 @@ struct Support_options
   double proof_expected = 0.5; ///< ... this share of the expected ones on the surface,
   double proof_filled = 0.05;  ///< ... at most this share inside,
   double proof_error = 0.1;    ///< ... a standard error below this many radii [-];
-  //! with an error below this, and where something as thick is below, `expected` is enough: one side may be hidden
+  //! with an error below this, and where something as thick is below, `expected` is enough: one
+  //! side may be hidden
   double proof_precise = 0.03;
   double mostly = 0.7; ///< with this share of its volume proven a branch is no bush [-]
   double slack =
@@ -208,9 +209,11 @@ inline std::vector<double> ways_to_tips(const Branch_tree& tree)
 } // namespace internal
 
 /*!
-  Scanners see the surface of wood, not what is inside. Sections with points inside are bushes of leaves, with few points
-  anything: their radii are at most what is left, by the longest way to a tip, of the last radius below that the points
-  support, or the largest one that they support farther out on the branch. Such nodes count as inferred. Returns how many there are. O(points + nodes).
+  Scanners see the surface of wood, not what is inside. Sections with points inside are bushes of
+  leaves, with few points anything: their radii are at most what is left, by the longest way to a
+  tip, of the last radius below that the points support, or the largest one that they support
+  farther out on the branch. Such nodes count as inferred. Returns how many there are. O(points +
+  nodes).
 */
 inline std::size_t bound_radii(const Scan& scan,
                                const Section_support& support,

@@ -28,9 +28,10 @@ struct Beam_divergence_options
 };
 
 /*!
-  A beam of width w meets a branch of radius r also where its middle passes outside, up to w / 2: of all points the share
-  f = s w / (2 r + s w) lies outside of the branch, where s of such beams give a point. The fit takes that for bark:
-  it finds r + f w / 6. Inverts this with the distance of the nearest scanner. O(nodes * scanners).
+  A beam of width w meets a branch of radius r also where its middle passes outside, up to w / 2: of
+  all points the share f = s w / (2 r + s w) lies outside of the branch, where s of such beams give
+  a point. The fit takes that for bark: it finds r + f w / 6. Inverts this with the distance of the
+  nearest scanner. O(nodes * scanners).
 */
 inline void correct_beam_divergence(const std::vector<Vec3>& scanners,
                                     double beam_width,

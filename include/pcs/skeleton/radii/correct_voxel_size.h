@@ -28,8 +28,9 @@ struct Voxel_size_options
 };
 
 /*!
-  The step of a grid whose nodes the points are, as the centers of voxels are; 0: they are on none [L]. There the nearest point is
-  one step away nearly always, along one of three directions. The grid may be turned. O(1), from some ten thousand points.
+  The step of a grid whose nodes the points are, as the centers of voxels are; 0: they are on none
+  [L]. There the nearest point is one step away nearly always, along one of three directions. The
+  grid may be turned. O(1), from some ten thousand points.
 */
 inline double voxel_size(const Scan& scan, const Voxel_size_options& rules)
 {
@@ -63,9 +64,10 @@ inline double voxel_size(const Scan& scan, const Voxel_size_options& rules)
 }
 
 /*!
-  The centers of the voxels that a branch touches lie farther from its axis than its surface on the average: a cube of size h
-  reaches the surface from outside as from inside, and there is more room outside. The fit finds sqrt(r^2 + 0.3 h^2), nearly
-  (simulated: the mean distance is sqrt(r^2 + (0.22 to 0.39) h^2) for r up to 3 h). Inverts this. O(nodes).
+  The centers of the voxels that a branch touches lie farther from its axis than its surface on the
+  average: a cube of size h reaches the surface from outside as from inside, and there is more room
+  outside. The fit finds sqrt(r^2 + 0.3 h^2), nearly (simulated: the mean distance is sqrt(r^2 +
+  (0.22 to 0.39) h^2) for r up to 3 h). Inverts this. O(nodes).
 */
 inline void correct_voxel_size(double step, const Voxel_size_options& rules, Branch_tree& tree)
 {

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Oval sections: half axes and direction of the ellipse at every node that is seen from nearly all around.
+// Oval sections: half axes and direction of the ellipse at every node that is seen from nearly all
+// around.
 
 #ifndef PCS_SKELETON_RADII_FIT_SECTION_ELLIPSES_H
 #define PCS_SKELETON_RADII_FIT_SECTION_ELLIPSES_H
@@ -32,8 +33,9 @@ struct Section_ellipse_options
 };
 
 /*!
-  The first even harmonic of the distance from the axis: `r (1 + c cos 2a + s sin 2a)`. On arcs that are not nearly closed
-  the five unknowns of an ellipse have no answer; the section stays a circle there. The area stays that of the node's radius.
+  The first even harmonic of the distance from the axis: `r (1 + c cos 2a + s sin 2a)`. On arcs that
+  are not nearly closed the five unknowns of an ellipse have no answer; the section stays a circle
+  there. The area stays that of the node's radius.
 */
 template <class ConcurrencyTag>
 void fit_section_ellipses(const Scan& scan,

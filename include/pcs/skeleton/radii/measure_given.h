@@ -1,11 +1,12 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Radii along a skeleton that is given: those of the branches that were found there; elsewhere from the points of each edge.
+// Radii along a skeleton that is given: those of the branches that were found there; elsewhere from
+// the points of each edge.
 
 #ifndef PCS_SKELETON_RADII_MEASURE_GIVEN_H
 #define PCS_SKELETON_RADII_MEASURE_GIVEN_H
 
-#include <pcs/skeleton/branching/group_branches.h>
+#include <pcs/skeleton/model/Branch_grouper.h>
 #include <pcs/skeleton/model/Branch_tree.h>
 #include <pcs/skeleton/model/Given_skeleton.h>
 #include <pcs/skeleton/model/Scan.h>
@@ -34,7 +35,9 @@ struct Given_skeleton_options
   int sectors = 5; ///< of 12, that a circle must see
   double deviation = 0.25; ///< largest deviation of a circle, in radii
   double widening =
-      1.5; ///< largest radius of a circle, or of a branch that is found, in median distances from the edge
+      /// largest radius of a circle, or of a branch that is found, in median distances from the
+      /// edge
+      1.5;
   double inside =
       1.3; ///< nodes of a branch this near to its base, in radii of the parent, lie in the parent
   std::size_t lowest_count = 3; ///< points of an edge that tell its radius
@@ -100,7 +103,8 @@ private:
     return nodes;
   }
 
-  /// The base of a branch lies in its parent, whose points are no measure of it: its radius is that of the first node outside.
+  /// The base of a branch lies in its parent, whose points are no measure of it: its radius is that
+  /// of the first node outside.
   void leave_parents(Branch_tree& tree) const
   {
     for (const Branch& branch : tree.branches) {
@@ -131,8 +135,8 @@ private:
     return (p - a - t * d).norm();
   }
 
-  /// The nearest measured place on branches that were found and run along the edge to each node, inside of them or a spacing
-  /// away.
+  /// The nearest measured place on branches that were found and run along the edge to each node,
+  /// inside of them or a spacing away.
   void take_found()
   {
     const std::vector<Index> next = successors(m_found);
@@ -314,9 +318,9 @@ private:
   }
 
   /*!
-    Radii at the nodes from those of the edges. Where neither a branch nor a circle is found, branches taper with the way to their
-    tips from the last section below, but for one farther out; few points, which may be those of other branches, make them thicker
-    by `slack` at most.
+    Radii at the nodes from those of the edges. Where neither a branch nor a circle is found,
+    branches taper with the way to their tips from the last section below, but for one farther out;
+    few points, which may be those of other branches, make them thicker by `slack` at most.
   */
   void fill_gaps(std::vector<Branch_node>& nodes) const
   {
@@ -369,8 +373,8 @@ private:
 
 } // namespace internal
 
-/// Branches and radii along a skeleton whose positions stay; `found` is what was found in the same points, or empty. O(n log n)
-/// for edges that are about as long as thick.
+/// Branches and radii along a skeleton whose positions stay; `found` is what was found in the same
+/// points, or empty. O(n log n) for edges that are about as long as thick.
 inline Branch_tree measure_given(const Scan& scan,
                                  const std::vector<std::uint8_t>& is_used,
                                  const Given_skeleton& given,

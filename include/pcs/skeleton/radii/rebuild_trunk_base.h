@@ -53,7 +53,8 @@ public:
                                           m_distances.end(),
                                           [](const auto& d) { return !d.empty(); }));
   }
-  /// Of the circle with the area of the outline; what is not seen lies between its neighbours. At least one point.
+  /// Of the circle with the area of the outline; what is not seen lies between its neighbours. At
+  /// least one point.
   double radius()
   {
     constexpr std::size_t n = number_of_sectors;
@@ -79,7 +80,8 @@ private:
   std::array<std::vector<double>, number_of_sectors> m_distances;
 };
 
-/// The first node of the trunk from which on points prove its sections; the number of nodes if there is none.
+/// The first node of the trunk from which on points prove its sections; the number of nodes if
+/// there is none.
 inline std::size_t first_sound_node(const Branch_tree& tree,
                                     const Section_support& support,
                                     double density,
@@ -107,9 +109,9 @@ inline std::size_t first_sound_node(const Branch_tree& tree,
 } // namespace internal
 
 /*!
-  Below the first stretch of the trunk that points prove to be round, the axis goes straight on, and radii are those of
-  circles with the area of the outline around it: fits there follow one buttress or another. z is up. Returns the number of
-  nodes that were moved. O(points + nodes).
+  Below the first stretch of the trunk that points prove to be round, the axis goes straight on, and
+  radii are those of circles with the area of the outline around it: fits there follow one buttress
+  or another. z is up. Returns the number of nodes that were moved. O(points + nodes).
 */
 inline std::size_t rebuild_trunk_base(const Scan& scan,
                                       const std::vector<std::uint8_t>& is_used,

@@ -81,9 +81,9 @@ private:
 } // namespace internal
 
 /*!
-  Points on one side of a branch fit a circle through them that is much too large, whose center lies far behind them. Where
-  such a radius was bounded afterwards (`before` has those of the fit), the node goes back to its points. Returns how many
-  did. O(points).
+  Points on one side of a branch fit a circle through them that is much too large, whose center lies
+  far behind them. Where such a radius was bounded afterwards (`before` has those of the fit), the
+  node goes back to its points. Returns how many did. O(points).
 */
 inline std::size_t recenter_bounded_nodes(const Scan& scan,
                                           const std::vector<double>& before,

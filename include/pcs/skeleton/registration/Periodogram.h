@@ -27,13 +27,15 @@ struct Step_peak
 };
 
 /*!
-  For each hypothesis and each step, the mean cosine of the lengths in steps, less the mean of those of a shorter and a longer
-  step: what changes slowly with the step is the shape of the surface, not a grid.
+  For each hypothesis and each step, the mean cosine of the lengths in steps, less the mean of those
+  of a shorter and a longer step: what changes slowly with the step is the shape of the surface, not
+  a grid.
 */
 class Periodogram
 {
 public:
-  /// Steps from `shortest` to `longest`, each `ratio` times the one before; the contrast is with steps `beside` places away.
+  /// Steps from `shortest` to `longest`, each `ratio` times the one before; the contrast is with
+  /// steps `beside` places away.
   Periodogram(double shortest, double longest, double ratio, std::size_t beside, double reach)
     : m_beside(beside), m_reach(reach)
   {
@@ -49,7 +51,8 @@ public:
   }
 
   /*!
-    `lengths_of(hypothesis)(pair)` is a length, a `float` [L]; those beyond the reach do not count. O(hypotheses (pairs + steps)).
+    `lengths_of(hypothesis)(pair)` is a length, a `float` [L]; those beyond the reach do not count.
+    O(hypotheses (pairs + steps)).
   */
   template <class ConcurrencyTag, class LengthsOf>
   void compute(std::size_t number_of_hypotheses,
@@ -98,7 +101,8 @@ public:
     return best;
   }
 
-  /// What stands out by at least `evidence` from the other hypotheses, highest first; `are_alike(g, h)` tells hypotheses apart.
+  /// What stands out by at least `evidence` from the other hypotheses, highest first; `are_alike(g,
+  /// h)` tells hypotheses apart.
   template <class AreAlike>
   std::vector<Step_peak>
   outstanding(double evidence, std::size_t most, const AreAlike& are_alike) const

@@ -25,7 +25,8 @@ struct Point_pair
   Vec3 second() const { return middle + 0.5 * step; }
 };
 
-/// Draws pairs from points that are sorted along an octree: those that are near in this order are near in space.
+/// Draws pairs from points that are sorted along an octree: those that are near in this order are
+/// near in space.
 class Pair_source
 {
 public:
@@ -37,7 +38,8 @@ public:
   /// Median distance of points to the nearest of those around them in the order [L].
   double spacing() const { return m_spacing; }
 
-  /// Up to `most` pairs whose distances are in [`low`, `high`], evenly; the same ones on each call. O(most).
+  /// Up to `most` pairs whose distances are in [`low`, `high`], evenly; the same ones on each call.
+  /// O(most).
   template <class ConcurrencyTag>
   std::vector<Point_pair> draw(double low, double high, std::size_t most) const
   {

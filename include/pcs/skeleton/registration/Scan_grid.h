@@ -28,8 +28,9 @@ inline double beyond_whole(double x)
 }
 
 /*!
-  A scanner on a station turns by equal steps about its own vertical, and its beam rises by equal steps. Errors of ranges move
-  points along their beams, so that columns and rows stay whole numbers, whatever the noise.
+  A scanner on a station turns by equal steps about its own vertical, and its beam rises by equal
+  steps. Errors of ranges move points along their beams, so that columns and rows stay whole
+  numbers, whatever the noise.
 */
 struct Scan_grid
 {
@@ -48,7 +49,8 @@ struct Scan_grid
   }
   Grid_place place(const Vec3& p) const { return place_of_direction(axes * (p - position)); }
 
-  /// The larger distance of column and row from whole numbers, in [0, 1/2]; at least `most` where it is more than that [steps].
+  /// The larger distance of column and row from whole numbers, in [0, 1/2]; at least `most` where
+  /// it is more than that [steps].
   double misfit(const Vec3& p, double most = 0.5) const
   {
     const Vec3 q = axes * (p - position);

@@ -10,8 +10,8 @@
 #include <pcs/skeleton/model/Axis_set.h>
 #include <pcs/skeleton/model/Index_groups.h>
 #include <pcs/skeleton/model/Scan.h>
+#include <pcs/skeleton/registration/Registration_options.h>
 #include <pcs/skeleton/registration/Rigid_motion.h>
-#include <pcs/skeleton/registration/Station_alignment_options.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -35,10 +35,12 @@ struct Aligned_stations
 namespace internal {
 
 /*!
-  Gauss-Newton over the stations' motions. A point's distance from a straight piece of a branch comes from the motion of its station, and
-  from the shape of the piece: a bent axis, a radius that changes along it, an oval section. These ten unknowns of every piece are
-  eliminated; what is left tells the motions apart, since each station sees another side. Only where the pieces are is taken
-  from the axes that were fitted: their bends follow the points, and with them the motions that are looked for.
+  Gauss-Newton over the stations' motions. A point's distance from a straight piece of a branch
+  comes from the motion of its station, and from the shape of the piece: a bent axis, a radius that
+  changes along it, an oval section. These ten unknowns of every piece are eliminated; what is left
+  tells the motions apart, since each station sees another side. Only where the pieces are is taken
+  from the axes that were fitted: their bends follow the points, and with them the motions that are
+  looked for.
 */
 template <class ConcurrencyTag>
 class Station_alignment
@@ -59,8 +61,9 @@ public:
   }
 
   /*!
-    The motions by all axes. Every second axis and the others, each alone, tell how much less the points say than if nothing but noise
-    moved them: with that trust, what they cannot tell stays near the usual size of motions.
+    The motions by all axes. Every second axis and the others, each alone, tell how much less the
+    points say than if nothing but noise moved them: with that trust, what they cannot tell stays
+    near the usual size of motions.
   */
   Aligned_stations run()
   {
@@ -143,7 +146,8 @@ private:
     }
   }
 
-  /// Halves the points of segments [`begin`, `end`) as long as both halves have enough: one point more or less changes few pieces.
+  /// Halves the points of segments [`begin`, `end`) as long as both halves have enough: one point
+  /// more or less changes few pieces.
   void cut(Index axis,
            const std::vector<std::pair<Index, Index>>& sorted,
            const std::vector<std::size_t>& first,
@@ -189,7 +193,8 @@ private:
     m_pieces.push_back(std::move(piece));
   }
 
-  /// How far a point is from the surface, and how that changes with the motion of its station and with the piece.
+  /// How far a point is from the surface, and how that changes with the motion of its station and
+  /// with the piece.
   struct Sight
   {
     double height;
@@ -355,8 +360,8 @@ private:
 
 } // namespace internal
 
-/// The motions that bring the points of all stations onto the same branches, in coordinates of the scan. Points that are on no axis
-/// do not take part. O(points rounds).
+/// The motions that bring the points of all stations onto the same branches, in coordinates of the
+/// scan. Points that are on no axis do not take part. O(points rounds).
 template <class ConcurrencyTag>
 Aligned_stations align_stations(const Scan& scan,
                                 const Axis_set& axes,

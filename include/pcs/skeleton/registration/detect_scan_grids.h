@@ -9,8 +9,8 @@
 #include <pcs/skeleton/model/Scan.h>
 #include <pcs/skeleton/registration/Periodogram.h>
 #include <pcs/skeleton/registration/Point_pairs.h>
+#include <pcs/skeleton/registration/Registration_options.h>
 #include <pcs/skeleton/registration/Scan_grid.h>
-#include <pcs/skeleton/registration/Scan_grid_options.h>
 #include <pcs/skeleton/registration/fit_scan_grid.h>
 
 #include <Eigen/Core>
@@ -27,7 +27,8 @@ namespace skeleton {
 
 namespace internal {
 
-/// Looks for one station of points that are sorted along an octree, with the third axis upwards and the origin in the middle.
+/// Looks for one station of points that are sorted along an octree, with the third axis upwards and
+/// the origin in the middle.
 template <class ConcurrencyTag>
 class Scan_grid_search
 {
@@ -56,7 +57,8 @@ private:
   using Vec2 = Eigen::Vector2d;
   static constexpr double widening = 1.5; ///< of steps that are looked for together [-]
 
-  /// The direction of a station, and the length of a step between its columns or rows at the origin.
+  /// The direction of a station, and the length of a step between its columns or rows at the
+  /// origin.
   struct Guess
   {
     double angle = 0, step = 0;
@@ -222,8 +224,9 @@ private:
 } // namespace internal
 
 /*!
-  The stations from which a scan was made, where it still shows the grids of their beams. `points` are sorted along an octree, with
-  the third axis upwards and the origin in their middle. One station after the other is looked for among the points that have none.
+  The stations from which a scan was made, where it still shows the grids of their beams. `points`
+  are sorted along an octree, with the third axis upwards and the origin in their middle. One
+  station after the other is looked for among the points that have none.
 */
 template <class ConcurrencyTag>
 std::vector<Scan_grid> detect_scan_grids(std::vector<Vec3> points, const Scan_grid_options& rules)

@@ -7,8 +7,8 @@
 
 #include <pcs/internal/parallel.h>
 #include <pcs/skeleton/registration/Point_pairs.h>
+#include <pcs/skeleton/registration/Registration_options.h>
 #include <pcs/skeleton/registration/Scan_grid.h>
-#include <pcs/skeleton/registration/Scan_grid_options.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -40,8 +40,8 @@ public:
   {
   }
 
-  /// By pairs of points farther and farther from each other, then by single points. `false` if too few points are on the grid.
-  /// `step` is a distance between beams [L].
+  /// By pairs of points farther and farther from each other, then by single points. `false` if too
+  /// few points are on the grid. `step` is a distance between beams [L].
   bool run(double step)
   {
     Grid_place usual = Grid_place::Zero();
@@ -141,8 +141,9 @@ private:
     }
   };
 
-  /// One step of Newton's method for the sum of the cosines of columns and rows between points of pairs, of which only some
-  /// are of the station. Returns the mean cosines before it; `change` is how far it moves pairs, root mean square [steps].
+  /// One step of Newton's method for the sum of the cosines of columns and rows between points of
+  /// pairs, of which only some are of the station. Returns the mean cosines before it; `change` is
+  /// how far it moves pairs, root mean square [steps].
   Grid_place climb(const std::vector<Point_pair>& pairs, const Grid_place& usual, double& change)
   {
     Pair_sums all = sum_up<Pair_sums>(pairs.size(), [&](std::size_t k, Pair_sums& sums) {
@@ -265,7 +266,8 @@ private:
     }
   }
 
-  /// As wide as tells most from points that are there by chance. Returns the share of those that are not.
+  /// As wide as tells most from points that are there by chance. Returns the share of those that
+  /// are not.
   double find_tolerance()
   {
     std::vector<double> misfits(number_of_samples());

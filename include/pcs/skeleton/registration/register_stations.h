@@ -5,12 +5,12 @@
 #ifndef PCS_SKELETON_REGISTRATION_REGISTER_STATIONS_H
 #define PCS_SKELETON_REGISTRATION_REGISTER_STATIONS_H
 
-#include <pcs/core/Skeleton_options.h>
 #include <pcs/core/Skeleton_report.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
-#include <pcs/skeleton/Session_options.h>
+#include <pcs/skeleton/model/Axis_set.h>
 #include <pcs/skeleton/model/Scan.h>
+#include <pcs/skeleton/registration/Registration_options.h>
 #include <pcs/skeleton/registration/Rigid_motion.h>
 #include <pcs/skeleton/registration/align_stations.h>
 #include <pcs/skeleton/registration/detect_scan_grids.h>
@@ -29,29 +29,34 @@ namespace pcs {
 namespace skeleton {
 
 /*!
-  Stations that are registered with an error make branches too thick or too thin by as much. `Stages` fits axes to some of the
-  points; these tell how every station must move.
+  Finds the rigid motions of scanner stations after which all see the same branches. Errors of
+  registration make branches too thick or too thin by as much. `draft(points, is_wood, progress)`
+  fits axes to some of the points, and returns a pointer to something with `scan()` and `axes()`, or
+  null if `progress` stopped it.
 */
-template <class Stages>
+template <class ConcurrencyTag, class Draft>
 class Station_registration
 {
 public:
-  /// `scan` has its points, and nothing else yet; `is_wood` is empty or has one entry per point of the input.
+  /// `scan` has its points, and nothing else yet; `is_wood` is empty or has one entry per point of
+  /// the input.
   Station_registration(const Scan& scan,
                        const std::vector<std::uint8_t>& is_wood,
-                       const Session_options& options)
-    : m_scan(scan), m_is_wood(is_wood), m_options(options)
+                       const Registration_options& options,
+                       const Draft& draft)
+    : m_scan(scan), m_is_wood(is_wood), m_options(options), m_draft(draft)
   {
   }
 
-  /// Finds the motions. `false`: `progress` stopped it.
-  bool run(pcs::internal::Progress& progress)
+  /// Finds the motions. `stations` are the labels of the input points, or empty. Returns `false` if
+  /// `progress` stopped it.
+  bool run(const std::vector<long long>& stations, pcs::internal::Progress& progress)
   {
     if (!progress(0))
       return false;
-    read_stations(m_options.stations);
+    read_stations(stations);
     if (m_labels.size() < 2)
-      find_stations(m_options.beam_grids);
+      find_stations(m_options.scan_grids);
     if (m_labels.size() < 2)
       return progress(1);
     m_places = m_scan.points;
@@ -82,32 +87,32 @@ public:
 
 private:
   using Move = Eigen::Isometry3d; ///< in the frame
-  using ConcurrencyTag = typename Stages::Concurrency_tag;
 
-  /// Drafts the tree and moves the places. `size` is that of the motions, in noise; 0 if they are no better than none. `false` if
-  /// stopped.
+  /// Drafts the tree and moves the places. `size` is that of the motions, in noise; 0 if they are
+  /// no better than none. `false` if stopped.
   bool improve(pcs::internal::Progress& progress, double& size)
   {
     const Station_alignment_options& rules = m_options.alignment;
     // some points are enough on thick branches, and more are needed on thin ones
     for (m_stride = 1 + m_places.size() / enough;; m_stride = (m_stride + 3) / 4) {
-      Stages draft(chosen_places(), chosen_wood(), draft_options());
-      if (!draft.fit_axes(progress))
+      const auto draft = m_draft(chosen_places(), chosen_wood(), progress);
+      if (!draft)
         return false;
-      const Aligned_stations aligned = align(draft, rules);
-      const double noise = draft.axes().noise;
+      const Aligned_stations aligned = align(draft->scan(), draft->axes(), rules);
+      const double noise = draft->axes().noise;
       const bool is_sure =
           aligned.error < rules.agreement * aligned.size || aligned.size < rules.least * noise;
       if (!is_sure && m_stride > 1 && m_places.size() / m_stride <= 2 * enough)
         continue;
       size = aligned.error < aligned.size && noise > 0 ? aligned.size / noise : 0;
       if (size > 0)
-        add(aligned.motions, draft.scan().frame);
+        add(aligned.motions, draft->scan().frame);
       return true;
     }
   }
 
-  /// Labels with more values tell something else; the work grows with the cube of their number [count].
+  /// Labels with more values tell something else; the work grows with the cube of their number
+  /// [count].
   static constexpr std::size_t most_stations = 100;
   /// Points of the first draft, at most.
   static constexpr std::size_t enough = 40000;
@@ -186,31 +191,14 @@ private:
     return is_wood;
   }
 
-  Session_options draft_options() const
-  {
-    Session_options options = m_options;
-    options.do_register_stations = false;
-    options.stations.clear();
-    options.method = Skeleton_method::chains;
-    options.axes.passes = 1; // finds thick wood, in leaves as well
-    options.leaf_removal = Leaf_removal::never;
-    options.given.reset();
-    options.up = Vec3::UnitZ();
-    options.scanners.clear();
-    options.breast_height /= m_scan.frame.unit;
-    if (options.root)
-      options.root = m_scan.frame.to_local(*options.root);
-    return options;
-  }
-
   /// The motions of all stations by the axes of the draft, in its coordinates.
-  Aligned_stations align(const Stages& draft, const Station_alignment_options& rules) const
+  Aligned_stations
+  align(const Scan& scan, const Axis_set& axes, const Station_alignment_options& rules) const
   {
-    const Scan& scan = draft.scan();
     std::vector<Index> station(scan.size(), none);
     for (std::size_t k = 0; k * m_stride < m_station.size(); ++k)
       station[scan.point_of_input[k]] = m_station[k * m_stride];
-    return align_stations<ConcurrencyTag>(scan, draft.axes(), station, m_labels.size(), rules);
+    return align_stations<ConcurrencyTag>(scan, axes, station, m_labels.size(), rules);
   }
 
   /// Adds motions in the frame of a draft, and moves the places.
@@ -258,7 +246,8 @@ private:
 
   const Scan& m_scan;
   const std::vector<std::uint8_t>& m_is_wood; ///< of the input
-  const Session_options& m_options;
+  const Registration_options& m_options;
+  const Draft& m_draft;
   std::size_t m_stride = 1;
   bool m_is_moved = false;
   std::vector<Vec3> m_places;      ///< of the scan, moved
@@ -269,23 +258,26 @@ private:
 };
 
 /*!
-  Moves the points of all stations onto the same branches, if the options say so, there are several stations, and that can be told;
-  the report gets them. `scan` has its points, and nothing else yet; `is_wood` is empty or has one entry per point of the input.
-  `false`: `progress` stopped it, and nothing is moved.
+  Moves the points of each scanner station by a rigid motion so that all stations see the same
+  branches, if there are several stations and the motions can be estimated; the report gets them.
+  `stations` are the labels of the input points; if it is empty, stations are found by their scan
+  grids. `scan` has its points, and nothing else yet; `is_wood` is empty or has one entry per input
+  point. See `Station_registration` for `draft`. Returns `false` if `progress` stopped it; nothing
+  is moved then.
 */
-template <class Stages>
+template <class ConcurrencyTag, class Draft>
 bool register_stations(const std::vector<std::uint8_t>& is_wood,
-                       const Session_options& options,
+                       const std::vector<long long>& stations,
+                       const Registration_options& options,
+                       const Draft& draft,
                        Scan& scan,
                        Skeleton_report& report,
                        pcs::internal::Progress& progress)
 {
-  if (!options.do_register_stations)
-    return true;
-  constexpr double share = 0.2; // of all work
-  Station_registration<Stages> registration(scan, is_wood, options);
-  progress.stage(0, share);
-  const bool is_done = registration.run(progress);
+  constexpr double fraction = 0.2; // of all work
+  Station_registration<ConcurrencyTag, Draft> registration(scan, is_wood, options, draft);
+  progress.stage(0, fraction);
+  const bool is_done = registration.run(stations, progress);
   progress.stage(0, 1);
   if (is_done)
     registration.move(scan, report);

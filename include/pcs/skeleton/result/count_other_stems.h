@@ -5,9 +5,9 @@
 #ifndef PCS_SKELETON_RESULT_COUNT_OTHER_STEMS_H
 #define PCS_SKELETON_RESULT_COUNT_OTHER_STEMS_H
 
-#include <pcs/skeleton/branching/join_axes.h>
 #include <pcs/skeleton/model/Axis_set.h>
 #include <pcs/skeleton/model/Branch_tree.h>
+#include <pcs/skeleton/model/Joint.h>
 
 #include <algorithm>
 #include <cmath>
@@ -64,8 +64,9 @@ struct Axis_slope_summary
 } // namespace internal
 
 /*!
-  How many stems beside that of the root stand at its height: axes that the tree does not reach, and branches that come down
-  there and are thicker below, because another tree hangs on this one where the crowns touch. z is up. O(nodes).
+  How many stems beside that of the root stand at its height: axes that the tree does not reach, and
+  branches that come down there and are thicker below, because another tree hangs on this one where
+  the crowns touch. z is up. O(nodes).
 */
 inline std::size_t count_other_stems(const Axis_set& set,
                                      const std::vector<Joint>& joints,
@@ -95,7 +96,8 @@ inline std::size_t count_other_stems(const Axis_set& set,
     std::size_t low = 0;
     for (std::size_t k = 0; k < nodes.size(); ++k)
       low = z(k) <= z(low) ? k : low;
-    // from the lowest node back to where it is highest, before it falls by as much as a foot may be high
+    // from the lowest node back to where it is highest, before it falls by as much as a foot may be
+    // high
     std::size_t top = low;
     for (std::size_t k = low; k-- > 0 && z(k) >= z(top) - rules.foot * height;)
       top = z(k) > z(top) ? k : top;
@@ -103,7 +105,8 @@ inline std::size_t count_other_stems(const Axis_set& set,
       return tree.nodes[nodes[top + k]];
     };
     const internal::Axis_slope_summary standing(low + 1 - top, node_at);
-    // a branch becomes thinner, a stem on its head thicker than it is above, or than the branch that leads to it
+    // a branch becomes thinner, a stem on its head thicker than it is above, or than the branch
+    // that leads to it
     const double base = tree.nodes[nodes[std::min<std::size_t>(1, nodes.size() - 1)]].radius;
     count += standing.is_stem(ground, height, rules) &&
              standing.lower_radius >= rules.taper * std::min(base, standing.upper_radius);

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What the report says of a tree: height, diameter at breast height, length and volume by order and by size, and its points.
+// What the report says of a tree: height, diameter at breast height, length and volume by order and
+// by size, and its points.
 
 #ifndef PCS_SKELETON_RESULT_REPORT_SIZES_H
 #define PCS_SKELETON_RESULT_REPORT_SIZES_H
@@ -18,16 +19,18 @@
 namespace pcs {
 namespace skeleton {
 
-/// Upper bounds of the radius in the classes of the report, in breast heights: 5, 10, 20 and 50 mm in metres.
+/// Upper bounds of the radius in the classes of the report, in breast heights: 5, 10, 20 and 50 mm
+/// in metres.
 constexpr double size_bounds_by_breast_height[] = {0.005 / 1.3, 0.01 / 1.3, 0.02 / 1.3, 0.05 / 1.3};
 
-/// Half the length of the section whose radii tell the diameter at breast height, in breast heights: from 1.1 to 1.5 m.
+/// Half the length of the section whose radii tell the diameter at breast height, in breast
+/// heights: from 1.1 to 1.5 m.
 constexpr double half_section_by_breast_height = 0.2 / 1.3;
 
 /*!
-  The diameter of a branch on the piece that ends at node `v`, at `share` of it: a line through the radii within `half` along the
-  axis, on both sides, by least squares. Bark and noise change a radius within a hand's breadth. `v` is no base.
-  O(nodes of the branch).
+  The diameter of a branch on the piece that ends at node `v`, at `share` of it: a line through the
+  radii within `half` along the axis, on both sides, by least squares. Bark and noise change a
+  radius within a hand's breadth. `v` is no base. O(nodes of the branch).
 */
 inline double diameter_of_section(const Branch_tree& tree, Index v, double share, double half)
 {
@@ -79,7 +82,8 @@ inline double diameter_of_section(const Branch_tree& tree, Index v, double share
   return 2 * std::min(most, std::max(least, (s2 * r1 - s1 * sr) / determinant));
 }
 
-/// Fills in what depends on the tree alone, in the unit of the input: `unit` times that of the tree. O(nodes).
+/// Fills in what depends on the tree alone, in the unit of the input: `unit` times that of the
+/// tree. O(nodes).
 inline void report_sizes(const Branch_tree& tree,
                          double unit,
                          const Vec3& up,
@@ -134,7 +138,8 @@ inline void report_sizes(const Branch_tree& tree,
     r.diameter_at_breast_height = thickest;
 }
 
-/// Counts the points that no axis explains, and those of axes that are not part of the tree. O(points).
+/// Counts the points that no axis explains, and those of axes that are not part of the tree.
+/// O(points).
 inline void count_unexplained(const std::vector<std::uint8_t>& is_used,
                               const Axis_set& set,
                               const Branch_tree& tree,

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// How a point lies beside the branch that explains it: its distance from the surface, and the direction from the axis.
+// How a point lies beside the branch that explains it: its distance from the surface, and the
+// direction from the axis.
 
 #ifndef PCS_SKELETON_RESULT_RESIDUAL_OF_POINT_H
 #define PCS_SKELETON_RESULT_RESIDUAL_OF_POINT_H
@@ -16,7 +17,8 @@
 namespace pcs {
 namespace skeleton {
 
-/// The vector from the axis of its branch to point `p`, which has a node. `next` are the `successors()`.
+/// The vector from the axis of its branch to point `p`, which has a node. `next` are the
+/// `successors()`.
 inline Vec3
 offset_of_point(const Scan& scan, const Branch_tree& tree, const std::vector<Index>& next, Index p)
 {
@@ -24,7 +26,8 @@ offset_of_point(const Scan& scan, const Branch_tree& tree, const std::vector<Ind
       .offset;
 }
 
-/// Distance of point `p`, which has a node, from the surface of its branch, as cones between nodes; negative inside [L].
+/// Distance of point `p`, which has a node, from the surface of its branch, as cones between nodes;
+/// negative inside [L].
 inline double residual_of_point(const Scan& scan,
                                 const Branch_tree& tree,
                                 const std::vector<Index>& next,

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The branches that were found as a graph of the caller, in the coordinates and the unit of the input.
+// The branches that were found as a graph of the caller, in the coordinates and the unit of the
+// input.
 
 #ifndef PCS_SKELETON_RESULT_WRITE_RESULT_H
 #define PCS_SKELETON_RESULT_WRITE_RESULT_H
@@ -72,7 +73,8 @@ struct Has_clear<Graph, std::void_t<decltype(std::declval<Graph&>().clear())>> :
 {
 };
 
-/// Removes all vertices. Where the graph cannot do so at once, one after the other: in vectors each takes O(size).
+/// Removes all vertices. Where the graph cannot do so at once, one after the other: in vectors each
+/// takes O(size).
 template <class Graph>
 void clear_graph(Graph& graph)
 {

@@ -1,13 +1,12 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Which points of a scan are looked at, and which were left out as outliers, leaves, ground or walls.
+// Which points of a scan are looked at, and which were left out as outliers, leaves, ground or
+// walls.
 
 #ifndef PCS_SKELETON_SCAN_POINT_LABELS_H
 #define PCS_SKELETON_SCAN_POINT_LABELS_H
 
 #include <pcs/core/Skeleton_report.h>
-#include <pcs/skeleton/axes/Chain_options.h>
-#include <pcs/skeleton/leaves/classify_leaves.h>
 #include <pcs/skeleton/model/Scan.h>
 #include <pcs/skeleton/scan/prepare_scan.h>
 
@@ -20,19 +19,19 @@
 namespace pcs {
 namespace skeleton {
 
-/// The points of a scan that may be the tree. The others stay in the scan, for distances, and are outliers there. The report
-/// has their numbers.
+/// Labels of the points of a scan: tree, leaf, clutter or outlier. Points that are not part of the
+/// tree stay in the scan for distances, and are marked as outliers there. The report counts them.
 template <class ConcurrencyTag>
 class Point_labels
 {
 public:
   using Flags = std::vector<std::uint8_t>; ///< 1 or 0 for each point of the scan
 
-  /// Both stay where they are, and change with the points.
+  /// Keeps references to both, and updates them.
   Point_labels(Scan& scan, Skeleton_report& report) : m_scan(scan), m_report(report) {}
 
-  /// All but outliers and leaves; `is_wood` has an entry per point of the input, or is empty: all of them. The scan is
-  /// prepared.
+  /// Uses all points except outliers and leaves. `is_wood` has one entry per input point; if it is
+  /// empty, all points may be wood. The scan must be prepared.
   void start(const Flags& is_wood)
   {
     const std::size_t n = m_scan.size();
@@ -57,18 +56,18 @@ public:
 
   const Flags& flags() const { return m_is_used; }
   bool is_empty() const { return number_of(m_is_used) == 0; }
-  /// Whether a point is left out as a leaf.
+  /// Whether a point was removed as a leaf.
   bool is_leaf(Index i) const { return m_is_leaf[i] != 0; }
 
-  /// All points are ground.
-  void leave_out_all()
+  /// Removes all points as ground.
+  void remove_all()
   {
     m_report.number_of_ground_points = number_of(m_is_used);
     std::fill(m_is_used.begin(), m_is_used.end(), std::uint8_t(0));
   }
 
-  /// Keeps `is_left`; it has a spacing and more outliers of its own.
-  void leave_out_others(Flags is_left)
+  /// Keeps `is_left`, for which spacing and outliers are measured again.
+  void keep_only(Flags is_left)
   {
     measure_part<ConcurrencyTag>(is_left, m_scan);
     const std::size_t outliers = number_of(m_scan.is_outlier);
@@ -81,8 +80,8 @@ public:
     m_report.spacing = m_scan.frame.unit * m_scan.spacing;
   }
 
-  /// Keeps `is_wood`; the other used points are leaves.
-  void leave_out_leaves(const Flags& is_wood)
+  /// Keeps `is_wood`; all other used points become leaves.
+  void remove_leaves(const Flags& is_wood)
   {
     for (Index i = 0; i < m_scan.size(); ++i)
       if (m_is_used[i] && !is_wood[i]) {
@@ -92,20 +91,25 @@ public:
     use_only(is_wood);
   }
 
-  /// What was found to be a leaf, but lies on the surfaces of axes, is none.
-  void reassign_leaves(const Chain_options& rules, Axis_set& axes)
+  /// Leaves that were found, not given by the caller. Entries that are cleared become wood by
+  /// `restore_leaves()`.
+  Flags& found_leaves() { return m_is_found_leaf; }
+
+  /// Uses `count` points again whose entry of `found_leaves()` was cleared: those with
+  /// `is_covered(i)`.
+  template <class IsCovered>
+  void restore_leaves(std::size_t count, const IsCovered& is_covered)
   {
-    m_report.number_of_leaf_points -=
-        reassign_points<ConcurrencyTag>(m_scan, rules, m_is_found_leaf, axes);
+    m_report.number_of_leaf_points -= count;
     for (Index i = 0; i < m_scan.size(); ++i)
-      if (m_is_leaf[i] && axes.is_covered(i)) {
+      if (m_is_leaf[i] && is_covered(i)) {
         m_is_leaf[i] = 0;
         m_is_used[i] = 1;
         m_scan.is_outlier[i] = 0;
       }
   }
 
-  /// What was left out like leaves, but is none, is used again.
+  /// Uses all points again that were removed as leaves by the leaf-wood separation.
   void undo_leaf_removal()
   {
     for (Index i = 0; i < m_scan.size(); ++i)
@@ -117,7 +121,8 @@ public:
       }
   }
 
-  /// Height of the highest leaves that were found, but for one in a thousand; the lowest number without [L].
+  /// The 99.9th percentile of the heights of the leaves that were found; the lowest number without
+  /// leaves [L].
   double top_of_leaves(const Vec3& up) const
   {
     std::vector<double> heights;
@@ -147,7 +152,7 @@ private:
   Scan& m_scan;
   Skeleton_report& m_report;
   Flags m_is_used;
-  Flags m_is_leaf, m_is_found_leaf; ///< the second: not by the caller
+  Flags m_is_leaf, m_is_found_leaf; ///< the second: not labelled by the caller
 };
 
 } // namespace skeleton

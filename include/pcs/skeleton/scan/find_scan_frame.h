@@ -26,7 +26,8 @@ constexpr double least_asymmetry = 1e-6;
 
 namespace internal {
 
-/// Four sums of numbers of at most 1 that do not depend on their order: in integers. `terms(i)` gives the numbers.
+/// Four sums of numbers of at most 1 that do not depend on their order: in integers. `terms(i)`
+/// gives the numbers.
 template <class ConcurrencyTag, class Terms>
 std::array<double, 4> exact_sums(std::size_t n, const Terms& terms)
 {
@@ -53,7 +54,8 @@ std::array<double, 4> exact_sums(std::size_t n, const Terms& terms)
 
 } // namespace internal
 
-/// The frame of a scan. `input` is finite and not empty, `up` a unit vector. The order of the points does not matter. O(n).
+/// The frame of a scan. `input` is finite and not empty, `up` a unit vector. The order of the
+/// points does not matter. O(n).
 template <class ConcurrencyTag>
 Scan_frame find_scan_frame(const std::vector<Vec3>& input, const Vec3& up)
 {
@@ -68,7 +70,8 @@ Scan_frame find_scan_frame(const std::vector<Vec3>& input, const Vec3& up)
   const double extent = (high - low).maxCoeff();
   const bool is_extended = extent > 0 && std::isfinite(extent);
   const auto place = [&](const Vec3& p) { return Vec3((p - low) / extent); };
-  // robust against points far away: weights fall with the distance, smoothly, so that rounding does not matter
+  // robust against points far away: weights fall with the distance, smoothly, so that rounding does
+  // not matter
   constexpr int rounds = 3;
   Vec3 center = Vec3::Zero();
   double reach = 0;

@@ -31,8 +31,9 @@ constexpr double outlier_factor = 3;
 /// ... and than is usual in the cloud; or so far from all that nothing else matters.
 constexpr double outlier_global_factor = 2, outlier_far_factor = 20;
 
-/// Where the usual distances to one neighbour and to the next differ by this factor, those nearer are copies of the point; on
-/// surfaces the factor is 1.6 at most, on lines of random points 2.4; the less points the more by chance [-].
+/// Where the usual distances to one neighbour and to the next differ by this factor, those nearer
+/// are copies of the point; on surfaces the factor is 1.6 at most, on lines of random points 2.4;
+/// the less points the more by chance [-].
 constexpr double copy_factor = 2.5, copy_chance = 15;
 /// Copies of copies, at most [count].
 constexpr int copy_rounds = 3;
@@ -115,8 +116,9 @@ void find_neighbors(Scan& scan)
   scan.spacing = median(nearest);
 }
 
-/// The distance within which points are copies of each other: most of the scan is there several times, with other digits or
-/// other noise. 0: it is not. From some ten thousand points spread over all.
+/// The distance within which points are copies of each other: most of the scan is there several
+/// times, with other digits or other noise. 0: it is not. From some ten thousand points spread over
+/// all.
 inline double reach_of_copies(const Scan& scan)
 {
   constexpr std::size_t fewest = 200, enough = 20000;
@@ -135,7 +137,8 @@ inline double reach_of_copies(const Scan& scan)
   return 0;
 }
 
-/// Keeps one point of those that are copies. Returns whether there are any; the neighbours must be found again then.
+/// Keeps one point of those that are copies. Returns whether there are any; the neighbours must be
+/// found again then.
 inline bool merge_copies(Scan& scan)
 {
   const double reach = reach_of_copies(scan);
@@ -194,8 +197,8 @@ void mark_outliers(const std::vector<std::uint8_t>& is_part, Scan& scan)
 
 } // namespace internal
 
-/// Gives an empty scan the points of `input`, each place once; that is finite and not empty, `up` a unit vector. Neither the frame
-/// nor the order depends on duplicates. O(n log n).
+/// Gives an empty scan the points of `input`, each place once; that is finite and not empty, `up` a
+/// unit vector. Neither the frame nor the order depends on duplicates. O(n log n).
 template <class ConcurrencyTag>
 void take_points(std::vector<Vec3> input, const Vec3& up, Scan& scan)
 {
@@ -232,7 +235,8 @@ void prepare_scan(const std::vector<Vec3>& input, const Vec3& up, Scan& scan)
   measure_points<ConcurrencyTag>(scan);
 }
 
-/// Measures the spacing of those points alone, and tells which of them are outliers: the ground may have another density.
+/// Measures the spacing of those points alone, and tells which of them are outliers: the ground may
+/// have another density.
 template <class ConcurrencyTag>
 void measure_part(const std::vector<std::uint8_t>& is_part, Scan& scan)
 {

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Finds cross-sections of branches: a slice at each center candidate, an ellipse in it, its tilt, and whom it speaks for.
+// Finds cross-sections of branches: a slice at each center candidate, an ellipse in it, its tilt,
+// and whom it speaks for.
 
 #ifndef PCS_SKELETON_SLICES_DETECT_SECTIONS_H
 #define PCS_SKELETON_SLICES_DETECT_SECTIONS_H
@@ -160,8 +161,8 @@ private:
 
 } // namespace internal
 
-/// The sections of all points that no earlier one speaks for. The order of the points decides, not the threads. They are
-/// incomplete once `progress(share)` is `false`.
+/// The sections of all points that no earlier one speaks for. The order of the points decides, not
+/// the threads. They are incomplete once `progress(share)` is `false`.
 template <class Callback>
 std::vector<Found_section> detect_sections(const Scan& scan,
                                            const std::vector<std::uint8_t>& is_used,

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Ellipses through points of a plane: the general conic of the dissertation, a fit that only knows ellipses, a circle.
+// Ellipses through points of a plane: the general conic of the dissertation, a fit that only knows
+// ellipses, a circle.
 
 #ifndef PCS_SKELETON_SLICES_ELLIPSE_FIT_H
 #define PCS_SKELETON_SLICES_ELLIPSE_FIT_H
@@ -25,7 +26,8 @@ struct Ellipse
   double major = 0, minor = 0;    ///< half axes; 0: no ellipse
   Vec2 direction = Vec2::UnitX(); ///< of the major axis
   double deviation =
-      0; ///< root of the mean squared distance of the points, taken along the ray from the centre [L]
+      /// root of the mean squared distance of the points, taken along the ray from the centre [L]
+      0;
 };
 
 namespace internal {
@@ -69,8 +71,9 @@ inline Ellipse fit_conic(const std::vector<Vec2>& points)
              : Ellipse();
 }
 
-/// The least algebraic distance among ellipses: `v^T m v` for quadratic terms `v` with `4 a c - b^2 = 1`, where `m` is what
-/// the best linear terms leave. Halir and Flusser take eigenvectors of a matrix that is not symmetric; these are the same.
+/// The least algebraic distance among ellipses: `v^T m v` for quadratic terms `v` with `4 a c - b^2
+/// = 1`, where `m` is what the best linear terms leave. Halir and Flusser take eigenvectors of a
+/// matrix that is not symmetric; these are the same.
 inline Ellipse fit_direct(const std::vector<Vec2>& points)
 {
   Eigen::Matrix3d s1 = Eigen::Matrix3d::Zero(), s2 = s1, s3 = s1;
@@ -104,7 +107,8 @@ inline Ellipse fit_direct(const std::vector<Vec2>& points)
 /// Sectors of 12 from which an ellipse is trusted.
 constexpr int sectors_of_an_ellipse = 9;
 
-/// Fits as told; points are centred and scaled first, because none of the algebraic fits is invariant.
+/// Fits as told; points are centred and scaled first, because none of the algebraic fits is
+/// invariant.
 inline Ellipse fit_section(const std::vector<Vec2>& points, Section_fit how)
 {
   Ellipse result;

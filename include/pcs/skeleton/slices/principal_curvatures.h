@@ -52,9 +52,10 @@ inline Vec3 normal_of(const std::vector<Vec3>& points)
 } // namespace internal
 
 /*!
-  For every point: the third axis of a principal component analysis is the normal; the normal curvatures of the circles
-  through the point and each neighbour, tangent to the surface, give the Weingarten matrix by Euler's formula in the sense
-  of least squares. What is built on it, `point + normal / k1`, does not depend on the sign of the normal. O(n k log n).
+  For every point: the third axis of a principal component analysis is the normal; the normal
+  curvatures of the circles through the point and each neighbour, tangent to the surface, give the
+  Weingarten matrix by Euler's formula in the sense of least squares. What is built on it, `point +
+  normal / k1`, does not depend on the sign of the normal. O(n k log n).
 */
 template <class ConcurrencyTag>
 std::vector<Surface_frame> principal_curvatures(const Scan& scan)

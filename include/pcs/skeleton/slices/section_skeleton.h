@@ -1,12 +1,13 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The skeleton of the dissertation: sections joined in dense regions, spanning trees with allometric radii in sparse ones.
+// The skeleton of the dissertation: sections joined in dense regions, spanning trees with
+// allometric radii in sparse ones.
 
 #ifndef PCS_SKELETON_SLICES_SECTION_SKELETON_H
 #define PCS_SKELETON_SLICES_SECTION_SKELETON_H
 
-#include <pcs/skeleton/branching/group_branches.h>
 #include <pcs/skeleton/layers/cut_layers.h>
+#include <pcs/skeleton/model/Branch_grouper.h>
 #include <pcs/skeleton/model/Branch_tree.h>
 #include <pcs/skeleton/model/Layer_tree.h>
 #include <pcs/skeleton/slices/detect_sections.h>
@@ -236,7 +237,8 @@ private:
     }
   }
 
-  /// Spanning trees over the rest, contracted to layers; radii by importance from that of the joint.
+  /// Spanning trees over the rest, contracted to layers; radii by importance from that of the
+  /// joint.
   void add_sparse(const std::vector<Index>& root)
   {
     const std::size_t n = m_scan.size();

@@ -113,7 +113,8 @@ public:
     return best;
   }
 
-  /// The arc lengths that are needed to stay within the tolerance (Douglas and Peucker, radius included).
+  /// The arc lengths that are needed to stay within the tolerance (Douglas and Peucker, radius
+  /// included).
   std::vector<double> simplified(double tolerance) const
   {
     std::vector<std::uint8_t> is_kept(size(), !(tolerance > 0));

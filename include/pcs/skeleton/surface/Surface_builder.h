@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The surface of a tree as one closed mesh: tubes along the branches, joined at holes in their parents.
+// The surface of a tree as one closed mesh: tubes along the branches, joined at holes in their
+// parents.
 
 #ifndef PCS_SKELETON_SURFACE_SURFACE_BUILDER_H
 #define PCS_SKELETON_SURFACE_SURFACE_BUILDER_H
@@ -21,9 +22,10 @@ namespace pcs {
 namespace skeleton {
 
 /*!
-  A branch begins where its axis leaves the wood of its parent. There its tube is prolonged backwards to a loop on the surface
-  of the parent; the parent has rings just before and behind, so that a block of its quads holds the loop closely. The block is
-  taken out, and what is left of it around the loop is filled in the unrolled surface.
+  A branch begins where its axis leaves the wood of its parent. There its tube is prolonged
+  backwards to a loop on the surface of the parent; the parent has rings just before and behind, so
+  that a block of its quads holds the loop closely. The block is taken out, and what is left of it
+  around the loop is filled in the unrolled surface.
 */
 class Surface_builder
 {
@@ -138,7 +140,8 @@ inline void Surface_builder::make_tube(std::size_t b, std::vector<double> rings)
   tube.is_hole.assign((tube.rings.size() - 1) * tube.sides, 0);
 }
 
-/// The smallest free block that holds the place with some room; smaller ones where others are in the way.
+/// The smallest free block that holds the place with some room; smaller ones where others are in
+/// the way.
 inline bool Surface_builder::find_block(Surface_tube& parent,
                                         const Place& center,
                                         double du,
@@ -277,7 +280,8 @@ inline bool Surface_builder::join(std::size_t b)
   return true;
 }
 
-/// A branch for which there is no room is a tube of its own, whose first ring lies in the wood of its parent.
+/// A branch for which there is no room is a tube of its own, whose first ring lies in the wood of
+/// its parent.
 inline void Surface_builder::begin_inside(std::size_t b)
 {
   ++m_surface.number_of_separate;
@@ -291,8 +295,8 @@ inline void Surface_builder::begin_inside(std::size_t b)
     m_surface.points[tube.vertex(0, k)] += back;
 }
 
-/// Triangles between two loops that run the same way around the origin, one around the other: the shorter diagonal, as long
-/// as the one loop sees the other.
+/// Triangles between two loops that run the same way around the origin, one around the other: the
+/// shorter diagonal, as long as the one loop sees the other.
 inline void Surface_builder::sew(const Loop& outer,
                                  const std::vector<Place>& outer_places,
                                  const Loop& inner,

@@ -26,7 +26,8 @@ struct Branch_exit
   Vec3 point = Vec3::Zero(), direction = Vec3::Zero(), normal = Vec3::Zero();
 };
 
-/// Follows the axis of a branch to the surface of its parent, the line `below`; null: nothing to be joined with.
+/// Follows the axis of a branch to the surface of its parent, the line `below`; null: nothing to be
+/// joined with.
 inline Branch_exit
 find_branch_exit(const Section_line& line, const Section_line* below, const Surface_options& rules)
 {

@@ -52,7 +52,7 @@ inline Las_metadata make_las_metadata(const Point_schema& schema)
   return las;
 }
 
-//! appends a descriptor; type 0 stands for `size` bytes without a meaning
+//! appends a descriptor; type 0 means `size` bytes without a meaning
 inline void append_descriptor(std::vector<unsigned char>& to,
                               const std::string& name,
                               unsigned type,

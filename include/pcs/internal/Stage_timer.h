@@ -1,0 +1,31 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Wall-clock time of a stage, added to a report when the stage ends.
+
+#ifndef PCS_INTERNAL_STAGE_TIMER_H
+#define PCS_INTERNAL_STAGE_TIMER_H
+
+#include <pcs/internal/Stopwatch.h>
+
+namespace pcs {
+namespace internal {
+
+/// Adds the seconds between construction and destruction to `seconds`.
+class Stage_timer
+{
+public:
+  explicit Stage_timer(double& seconds) : m_seconds(seconds) {}
+  ~Stage_timer() { m_seconds += m_watch.lap(); }
+
+  Stage_timer(const Stage_timer&) = delete;
+  Stage_timer& operator=(const Stage_timer&) = delete;
+
+private:
+  double& m_seconds;
+  Stopwatch m_watch;
+};
+
+} // namespace internal
+} // namespace pcs
+
+#endif // PCS_INTERNAL_STAGE_TIMER_H

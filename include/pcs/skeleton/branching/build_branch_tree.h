@@ -1,0 +1,97 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// One rooted tree of branches from the fitted axes.
+
+#ifndef PCS_SKELETON_BRANCHING_BUILD_BRANCH_TREE_H
+#define PCS_SKELETON_BRANCHING_BUILD_BRANCH_TREE_H
+
+#include <pcs/skeleton/branching/fuse_axes.h>
+#include <pcs/skeleton/branching/group_branches.h>
+#include <pcs/skeleton/branching/join_axes.h>
+#include <pcs/skeleton/branching/prune_stubs.h>
+#include <pcs/skeleton/branching/regroup_axes.h>
+#include <pcs/skeleton/branching/root_axis.h>
+#include <pcs/skeleton/branching/split_unreachable_axes.h>
+#include <pcs/skeleton/model/Axis_set.h>
+#include <pcs/skeleton/model/Branch_tree.h>
+#include <pcs/skeleton/model/Joint.h>
+#include <pcs/skeleton/model/Scan.h>
+
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// Options of `build_branch_tree()`.
+struct Branching_options
+{
+  Fusion_options fusion;
+  Joint_options joints;
+  Stub_options stubs;
+};
+
+/// The tree of the axes, which a cancelled call has joined in part.
+struct Joined_axes
+{
+  int regroupings = 0; ///< rounds that are done
+  Index root = none;   ///< the axis of the root
+  std::vector<Joint> joints;
+  Branch_tree tree;
+};
+
+/// Joins the axes as they are into one tree from the axis at `root`.
+template <class ConcurrencyTag>
+void join_axes(const Scan& scan,
+               const Axis_set& axes,
+               const std::vector<Index>& root,
+               bool is_root_given,
+               const Joint_options& options,
+               Joined_axes& joined)
+{
+  joined.root = root_axis(scan, axes, root, is_root_given);
+  const Axis_joiner joiner(axes, scan.spacing, options);
+  joined.joints = joiner.template run<ConcurrencyTag>(joined.root);
+  joined.joints[joined.root].is_reversed =
+      is_root_reversed(scan, axes.axes[joined.root].axis, root);
+  joined.tree = branch_tree(axes, joined.joints, joined.root, scan.spacing);
+}
+
+/*!
+  Joins the axes; regroups and fuses them by the branches that result, for some rounds; splits axes
+  that nothing reaches; prunes stubs. `progress(f)` gets the fraction of the rounds. Returns `false`
+  if it stopped the work.
+*/
+template <class ConcurrencyTag, class Progress>
+bool build_branch_tree(const Scan& scan,
+                       const std::vector<Index>& root,
+                       bool is_root_given,
+                       const Branching_options& options,
+                       const Progress& progress,
+                       Axis_set& axes,
+                       Joined_axes& joined)
+{
+  const auto join = [&] {
+    join_axes<ConcurrencyTag>(scan, axes, root, is_root_given, options.joints, joined);
+  };
+  join();
+  while (joined.regroupings + 1 < options.joints.rounds) {
+    if (!progress(double(joined.regroupings + 1) / options.joints.rounds))
+      return false;
+    regroup_axes(joined.tree, axes);
+    fuse_axes<ConcurrencyTag>(scan.spacing, options.fusion, axes);
+    ++joined.regroupings;
+    join();
+  }
+  const double reach = options.joints.reach * scan.spacing;
+  if (split_unreachable_axes(scan, reach, joined.joints, joined.root, axes) > 0)
+    join();
+  if (!progress(1))
+    return false;
+  prune_stubs(scan.spacing, options.stubs, joined.tree);
+  return true;
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_BRANCHING_BUILD_BRANCH_TREE_H

@@ -1,0 +1,78 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Radii of all nodes: bounds, trunk base, re-centring, beam divergence and voxel size.
+
+#ifndef PCS_SKELETON_RADII_REFINE_RADII_H
+#define PCS_SKELETON_RADII_REFINE_RADII_H
+
+#include <pcs/skeleton/model/Axis_set.h>
+#include <pcs/skeleton/model/Branch_tree.h>
+#include <pcs/skeleton/model/Scan.h>
+#include <pcs/skeleton/radii/bound_radii.h>
+#include <pcs/skeleton/radii/correct_beam_divergence.h>
+#include <pcs/skeleton/radii/correct_voxel_size.h>
+#include <pcs/skeleton/radii/fit_section_ellipses.h>
+#include <pcs/skeleton/radii/measure_given.h>
+#include <pcs/skeleton/radii/rebuild_trunk_base.h>
+#include <pcs/skeleton/radii/recenter_bounded_nodes.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// Options of this stage.
+struct Radius_options
+{
+  Support_options support;
+  Recentering_options recentering;
+  Trunk_base_options trunk_base;
+  Section_ellipse_options sections;
+  Given_skeleton_options given;
+  Beam_divergence_options beam;
+  Voxel_size_options voxels;
+};
+
+/// Bounds radii without point support, rebuilds the trunk base, and re-centres the nodes that were
+/// bounded.
+template <class ConcurrencyTag>
+void refine_radii(const Scan& scan,
+                  const std::vector<std::uint8_t>& is_used,
+                  const Axis_set& axes,
+                  const Radius_options& options,
+                  Branch_tree& tree)
+{
+  const Section_support support =
+      support_of_sections<ConcurrencyTag>(scan, tree, axes.noise, options.support);
+  std::vector<double> fitted;
+  for (const Branch_node& node : tree.nodes)
+    fitted.push_back(node.radius);
+  bound_radii(scan, support, axes.density, options.support, tree);
+  rebuild_trunk_base(scan,
+                     is_used,
+                     support,
+                     axes.density,
+                     options.support,
+                     options.trunk_base,
+                     tree);
+  recenter_bounded_nodes(scan, fitted, axes.noise, options.recentering, tree);
+}
+
+/// Subtracts from the radii what beam divergence and voxels add. Returns the voxel size, or 0 [L].
+inline double correct_widening(const Scan& scan,
+                               const std::vector<Vec3>& scanners,
+                               double beam_width,
+                               const Radius_options& options,
+                               Branch_tree& tree)
+{
+  correct_beam_divergence(scanners, beam_width, options.beam, tree);
+  const double size = voxel_size(scan, options.voxels);
+  correct_voxel_size(size, options.voxels, tree);
+  return size;
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_RADII_REFINE_RADII_H

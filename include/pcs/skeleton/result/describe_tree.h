@@ -1,0 +1,51 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The report of a finished tree: counts, sizes, residuals.
+
+#ifndef PCS_SKELETON_RESULT_DESCRIBE_TREE_H
+#define PCS_SKELETON_RESULT_DESCRIBE_TREE_H
+
+#include <pcs/core/Skeleton_report.h>
+#include <pcs/core/Status.h>
+#include <pcs/skeleton/model/Axis_set.h>
+#include <pcs/skeleton/model/Branch_tree.h>
+#include <pcs/skeleton/model/Scan.h>
+#include <pcs/skeleton/result/count_other_stems.h>
+#include <pcs/skeleton/result/report_sizes.h>
+#include <pcs/skeleton/result/residual_of_point.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// Fills in all that depends on the tree. `top_of_leaves` is the height of the highest leaves, in
+/// coordinates of the scan [L].
+inline void describe_tree(const Scan& scan,
+                          const std::vector<std::uint8_t>& is_used,
+                          const Axis_set& axes,
+                          const Branch_tree& tree,
+                          const std::vector<Index>& successors,
+                          const Vec3& up,
+                          double breast_height,
+                          double top_of_leaves,
+                          Skeleton_report& r)
+{
+  const double unit = scan.frame.unit;
+  r.status = tree.nodes.empty() ? Status::nothing_to_do : Status::converged;
+  r.number_of_nodes = tree.nodes.size();
+  r.number_of_branches = tree.branches.size();
+  r.number_of_unreached_branches = tree.number_of_unreached_axes;
+  count_unexplained(is_used, axes, tree, r);
+  r.residual = unit * median_residual(scan, tree, successors);
+  report_sizes(tree, unit, up, breast_height, r);
+  if (!tree.nodes.empty())
+    r.height = std::max(r.height, unit * (top_of_leaves - up.dot(tree.nodes[0].point)));
+}
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_RESULT_DESCRIBE_TREE_H
