@@ -25,6 +25,14 @@
 
 namespace test_Orl_shape_space {
 
+using pcs::Branch_growth;
+using pcs::Matching_weights;
+using pcs::Orl_orientation;
+using pcs::Orl_metric;
+using pcs::Transport_options;
+using pcs::Point_path;
+using pcs::Branch_emergence;
+
 using namespace orl_test;
 using namespace pcs::shape_space;
 namespace np = pcs::parameters;

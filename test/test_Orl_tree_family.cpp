@@ -30,6 +30,14 @@
 
 namespace test_Orl_tree_family {
 
+using pcs::Matching_weights;
+using pcs::Orl_orientation;
+using pcs::Orl_metric;
+using pcs::Tree_mean;
+using pcs::Mode_inner_product;
+using pcs::Tree_sampling_options;
+using pcs::Change_limits;
+
 using namespace orl_test;
 using namespace pcs::shape_space;
 namespace np = pcs::parameters;

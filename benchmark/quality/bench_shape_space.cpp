@@ -31,6 +31,9 @@
 namespace {
 
 using Kernel = CGAL::Simple_cartesian<double>;
+using pcs::Orl_orientation;
+using pcs::Tree_mean;
+using pcs::Mode_inner_product;
 using Tree = pcs::Tree_skeleton<Kernel>;
 using Point = Kernel::Point_3;
 using Space = pcs::Orl_shape_space<Kernel>;

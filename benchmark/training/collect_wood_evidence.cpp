@@ -31,6 +31,7 @@ namespace {
 
 using namespace pcs::skeleton;
 using Kernel = CGAL::Simple_cartesian<double>;
+using pcs::Leaf_removal;
 using Tree = pcs::Tree_skeleton<Kernel>;
 using Scan_of_tree = pcs::Virtual_scan<Kernel>;
 using Tag = CGAL::Parallel_if_available_tag;

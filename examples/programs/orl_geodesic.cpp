@@ -28,6 +28,11 @@
 #include <system_error>
 #include <vector>
 
+using pcs::Orl_alignment;
+using pcs::Orl_orientation;
+using pcs::Point_transport;
+using pcs::Transport_options;
+
 namespace orl_program {
 
 void add(Space& space, const Tree_file& file)

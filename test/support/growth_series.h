@@ -339,7 +339,7 @@ inline Prediction predict(const Series& series)
   space.add(series.first.tree, series.first.scan);
   space.add(series.last.tree, series.last.scan);
   const pcs::Orl_report report =
-      space.build(pcs::parameters::alignment(pcs::Alignment::rotate_about_up)
+      space.build(pcs::parameters::alignment(pcs::Orl_alignment::rotate_about_up)
                       .up_direction(Kernel::Vector_3(series.up.x(), series.up.y(), series.up.z())));
   std::vector<Point> points, in_order;
   space.points(space.geodesic(0, 1, series.lambda), points);

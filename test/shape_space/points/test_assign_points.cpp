@@ -13,6 +13,8 @@
 
 namespace test_assign_points {
 
+using pcs::Point_assignment_options;
+
 using namespace pcs::shape_space;
 
 namespace {

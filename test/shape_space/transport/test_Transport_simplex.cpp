@@ -13,6 +13,11 @@
 
 namespace test_Transport_simplex {
 
+using pcs::Sinkhorn_options;
+using pcs::Point_transport;
+using pcs::Point_weights;
+using pcs::Transport_options;
+
 using namespace pcs::shape_space;
 
 namespace {

@@ -42,8 +42,7 @@ constexpr double coarse_share_of_tolerance = 0.5;
   the finer one, with weights of its own (`sample_graph()`). Deviations are prolonged linearly,
   `d_i = sum_s w_is d_s`, over the samples `s` near a finer node with the weights of `Sample_links`;
   they are the initial guess on the finer level. The scheme goes from coarse to fine once, without
-  residual correction; it replaces the one-level solve of the dissertation's equations (2.1) to
-  (2.3).
+  residual correction.
 
   One pass propagates a rotation over a few edges only, but a handle that is dragged without being
   turned needs rotations in the whole body. On a coarse network the same distance is a few edges.
