@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Laws of the shape space of trees: axioms, midpoints, ends, invariance, extrapolation, determinism, errors.
+// Laws of the shape space of trees: axioms, midpoints, ends, invariance, extrapolation,
+// determinism, errors.
 
 #include <pcs/IO/read_correspondences.h>
 #include <pcs/IO/write_correspondences.h>
@@ -25,13 +26,13 @@
 
 namespace test_Orl_shape_space {
 
+using pcs::Branch_emergence;
 using pcs::Branch_growth;
 using pcs::Matching_weights;
-using pcs::Orl_orientation;
 using pcs::Orl_metric;
-using pcs::Transport_options;
+using pcs::Orl_orientation;
 using pcs::Point_path;
-using pcs::Branch_emergence;
+using pcs::Transport_options;
 
 using namespace orl_test;
 using namespace pcs::shape_space;
@@ -456,7 +457,8 @@ BOOST_AUTO_TEST_CASE(a_branch_that_is_turned_keeps_its_lengths_and_costs_its_ang
       }
       BOOST_TEST(worst < 1e-12);
       BOOST_TEST(number_turned == 1u);
-      // control: linear interpolation of a vector across the axis would shorten it to cos(angle / 2)
+      // control: linear interpolation of a vector across the axis would shorten it to cos(angle /
+      // 2)
       const Vec3 across = turns[2].transpose() * Vec3(0.3, -1, 0);
       BOOST_TEST(std::abs((0.5 * (across + turns[2] * across)).norm() / across.norm() -
                           std::cos(0.5 * angle)) < 1e-12);
@@ -466,7 +468,8 @@ BOOST_AUTO_TEST_CASE(a_branch_that_is_turned_keeps_its_lengths_and_costs_its_ang
 
 BOOST_AUTO_TEST_CASE(noise_of_an_axis_does_not_turn_what_is_behind_it)
 {
-  // wiggles that have nothing to do with each other, then the same straight end: half-way it is upright, too
+  // wiggles that have nothing to do with each other, then the same straight end: half-way it is
+  // upright, too
   const auto wiggly = [](unsigned seed) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal;

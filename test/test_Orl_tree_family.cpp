@@ -30,13 +30,13 @@
 
 namespace test_Orl_tree_family {
 
-using pcs::Matching_weights;
-using pcs::Orl_orientation;
-using pcs::Orl_metric;
-using pcs::Tree_mean;
-using pcs::Mode_inner_product;
-using pcs::Tree_sampling_options;
 using pcs::Change_limits;
+using pcs::Matching_weights;
+using pcs::Mode_inner_product;
+using pcs::Orl_metric;
+using pcs::Orl_orientation;
+using pcs::Tree_mean;
+using pcs::Tree_sampling_options;
 
 using namespace orl_test;
 using namespace pcs::shape_space;
@@ -47,7 +47,8 @@ using pcs_test::message_has;
 
 namespace {
 
-/// Trees like each other: branches of one tree, turned, stretched, some cut; trunks lean and differ in height, too.
+/// Trees like each other: branches of one tree, turned, stretched, some cut; trunks lean and differ
+/// in height, too.
 std::vector<Tree>
 relatives(std::size_t n, unsigned seed, double sigma = 0.15, double cut = 0.15, int orders = 3)
 {
@@ -565,7 +566,8 @@ BOOST_AUTO_TEST_CASE(two_known_modes_are_found)
 
 BOOST_AUTO_TEST_CASE(age_and_crown_angle_of_trees_with_different_branches_are_found)
 {
-  // branches are born one after the other and grow from then on, some are lost, and all differ a little by themselves
+  // branches are born one after the other and grow from then on, some are lost, and all differ a
+  // little by themselves
   for (const unsigned seed : {31u, 131u, 231u, 331u}) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal;
@@ -657,7 +659,8 @@ BOOST_AUTO_TEST_CASE(left_out_trees_are_nearer_with_more_modes)
 
 BOOST_AUTO_TEST_CASE(a_tree_without_part_in_the_topology_is_nearer_with_more_modes)
 {
-  // lengths and angles of the branches follow two parameters, so that the other trees know something
+  // lengths and angles of the branches follow two parameters, so that the other trees know
+  // something
   std::mt19937 random(12);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -746,7 +749,8 @@ BOOST_AUTO_TEST_CASE(new_trees_are_different_and_within_the_inputs)
 
 BOOST_AUTO_TEST_CASE(new_trees_of_a_few_are_within_them_by_order)
 {
-  // three trees have narrow ranges, and many of them: numbers, mean angles and their deviations of each order
+  // three trees have narrow ranges, and many of them: numbers, mean angles and their deviations of
+  // each order
   for (const unsigned seed : {14u, 15u, 16u}) {
     const Space space = make_space(relatives(3, seed, 0.3, 0.3, 4));
     const auto distribution = space.distribution();
@@ -809,7 +813,8 @@ BOOST_AUTO_TEST_CASE(moments_are_limited_by_the_least_change)
 
 BOOST_AUTO_TEST_CASE(branches_keep_their_slant)
 {
-  // trees whose branches all stand at one slant, turned about a trunk that is upright: so do those of new trees
+  // trees whose branches all stand at one slant, turned about a trunk that is upright: so do those
+  // of new trees
   std::mt19937 random(8);
   std::normal_distribution<double> normal;
   std::vector<Tree> trees;
@@ -1079,7 +1084,8 @@ BOOST_AUTO_TEST_SUITE(orl_growth)
 
 BOOST_AUTO_TEST_CASE(archetypes_of_graph_range_key_map_and_value)
 {
-  // a graph without properties, a scan that makes its keys, maps that read by value: all that is asked for
+  // a graph without properties, a scan that makes its keys, maps that read by value: all that is
+  // asked for
   using Graph = boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS>;
   using Bare_point = pcs_test::Triple_archetype<double>;
   std::vector<std::vector<Bare_point>> nodes(3), scans(3);

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Memory that runs out at any allocation leaves the points untouched, and frames of a drag ask for none.
+// Memory that runs out at any allocation leaves the points untouched, and frames of a drag ask for
+// none.
 
 #include <pcs/Point_set_deformation.h>
 #include <pcs/deform_point_set.h>
@@ -15,8 +16,8 @@
 
 namespace {
 
-/// Lets one allocation fail, from the first to the last. Returns how many failures were tried. Sequential: TBB itself does
-/// not survive them.
+/// Lets one allocation fail, from the first to the last. Returns how many failures were tried.
+/// Sequential: TBB itself does not survive them.
 int fail_everywhere(int number_of_samples)
 {
   const auto rest = pcs_test::box(4, 4, 10, 0.25);
@@ -71,7 +72,8 @@ BOOST_AUTO_TEST_CASE(frames_allocate_nothing)
   const auto rest = pcs_test::box(6, 6, 24, 0.125);
   for (const int samples : {100, 100000}) {
     auto points = rest;
-    // With a tolerance of zero all frames make as many passes: memory for these comes with the first.
+    // With a tolerance of zero all frames make as many passes: memory for these comes with the
+    // first.
     const auto np =
         pcs::parameters::number_of_samples(samples).tolerance(0).number_of_iterations(8);
     pcs::Point_set_deformation<decltype(points), decltype(np), CGAL::Sequential_tag> session(points,

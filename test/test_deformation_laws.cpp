@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Laws of deform_point_set(): what rigid motions, scales, shifts, permutations and threads do to the result.
+// Laws of deform_point_set(): what rigid motions, scales, shifts, permutations and threads do to
+// the result.
 
 #include <support/deform_cloud.h>
 #include <support/threads.h>
@@ -232,7 +233,8 @@ BOOST_AUTO_TEST_CASE(the_order_of_the_handles_does_not_matter)
 
 BOOST_AUTO_TEST_CASE(a_rotated_edit_gives_the_rotated_result)
 {
-  // Random points: the samples of a rotated cloud differ, so only full resolution obeys to the last digits.
+  // Random points: the samples of a rotated cloud differ, so only full resolution obeys to the last
+  // digits.
   Points points = pcs_test::sphere(900);
   for (Vec3& p : points)
     p.z() *= 2;

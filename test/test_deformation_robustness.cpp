@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Hostile clouds, handles and parameters: a defined result or an error that names the culprit, never a NaN.
+// Hostile clouds, handles and parameters: a defined result or an error that names the culprit,
+// never a NaN.
 
 #include <support/deform_cloud.h>
 #include <support/exceptions.h>
@@ -173,7 +174,8 @@ BOOST_AUTO_TEST_CASE(a_far_outlier_does_not_spoil_the_rest)
       auto result = deform(points, edit.handles, with_samples(samples));
       BOOST_TEST(is_finite(result));
       result.points.pop_back();
-      // The links of the outlier hang on a corner of the bar; a spacing is 1/6, double precision keeps 1e-7 of 1e9.
+      // The links of the outlier hang on a corner of the bar; a spacing is 1/6, double precision
+      // keeps 1e-7 of 1e9.
       BOOST_TEST(pcs_test::largest_distance(result.points, expected.points) < 0.1,
                  "outlier at " << distance << ", " << samples << " samples: "
                                << pcs_test::largest_distance(result.points, expected.points));

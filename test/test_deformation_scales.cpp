@@ -112,7 +112,8 @@ BOOST_AUTO_TEST_CASE(a_body_with_room_grows_in_length)
   const auto handles = ends(points, length, pcs::scaling(2, Vec3::Zero()));
   const auto result = deform(points, handles);
   BOOST_TEST(largest_bow(points, result.points, length) < .02 * length);
-  // With scale 2^(z / length), z goes to length (2^(z / length) - 1) / log 2, and all of it to 2 length: nearly so.
+  // With scale 2^(z / length), z goes to length (2^(z / length) - 1) / log 2, and all of it to 2
+  // length: nearly so.
   double previous = 0;
   for (int k = 1; k < 9; ++k) {
     double sum = 0, count = 0;

@@ -60,8 +60,9 @@ Options at_1000_samples()
 
 } // namespace
 
-// The limits at full resolution are the goals of the project. The analytic shapes have, by the same measures:
-// T1 13.9 degrees of frame error (a best-fit rotation is biased by shear), T5 32; all others nearly none.
+// The limits at full resolution are the goals of the project. The analytic shapes have, by the same
+// measures: T1 13.9 degrees of frame error (a best-fit rotation is biased by shear), T5 32; all
+// others nearly none.
 BOOST_AUTO_TEST_SUITE(deformation_shapes)
 
 BOOST_AUTO_TEST_CASE(a_bar_twisted_by_135_degrees)
@@ -117,8 +118,8 @@ BOOST_AUTO_TEST_CASE(what_coarse_samples_find_of_a_drag_is_where_the_passes_star
 
 BOOST_AUTO_TEST_CASE(a_thousand_samples_come_near)
 {
-  // Regression guards, not goals. Measured when this was written: T1 14.5 deg, .0048 L, volume .997; T2 2.1 deg,
-  // .0035 L; T3 1.3 deg, .0012 L; T4 rms .021; T5 33.6 deg, .0072 L, volume 1.00.
+  // Regression guards, not goals. Measured when this was written: T1 14.5 deg, .0048 L, volume
+  // .997; T2 2.1 deg, .0035 L; T3 1.3 deg, .0012 L; T4 rms .021; T5 33.6 deg, .0072 L, volume 1.00.
   auto m = run(pcs_test::bar_135(), at_1000_samples());
   BOOST_TEST(m.frame_error <= 15.5);
   BOOST_TEST(m.position_error <= .0055);
@@ -211,8 +212,9 @@ BOOST_AUTO_TEST_CASE(a_sheet_near_by_does_not_follow)
                                   << " samples")
         {
           BOOST_TEST(is_upper_moved);
-          // Eight points that are blended together may belong to both sheets: single precision of the motion. With
-          // samples further apart than the sheets, the fold reaches one sample further.
+          // Eight points that are blended together may belong to both sheets: single precision of
+          // the motion. With samples further apart than the sheets, the fold reaches one sample
+          // further.
           BOOST_TEST(d < (is_folded && samples == 200 ? 0.03 : 2e-4));
         }
       }
@@ -328,8 +330,9 @@ BOOST_AUTO_TEST_CASE(denser_points_make_a_plate_no_softer)
   BOOST_TEST(difference < 0.006);
 }
 
-// A bottle whose lip is turned about its own middle: the field of the handles turns all of the body, the least energy
-// bends the neck. The springs through the inside must follow: held back, they take a hundred passes.
+// A bottle whose lip is turned about its own middle: the field of the handles turns all of the
+// body, the least energy bends the neck. The springs through the inside must follow: held back,
+// they take a hundred passes.
 BOOST_AUTO_TEST_CASE(a_few_passes_come_near_the_least_energy)
 {
   Points points;

@@ -58,7 +58,8 @@ bool are_equal(const Tree& a, const Tree& b)
   return true;
 }
 
-/// Largest distance from a node of `a` to the nearest node of `b`, and their radii, for those within `share` of all.
+/// Largest distance from a node of `a` to the nearest node of `b`, and their radii, for those
+/// within `share` of all.
 double distance_between(const Tree& a, const Tree& b, double share)
 {
   std::vector<double> distances;
@@ -562,9 +563,9 @@ BOOST_AUTO_TEST_CASE(the_order_of_the_points_does_not_matter)
 // What is turned, scaled or shuffled is the same scan.
 constexpr double rounding = 1e-9;
 
-// Coordinates far from the origin are rounded. Positions along an axis are hardly determined, so that moves nodes along
-// it, and now and then a twig differs: 98 of 100 nodes must have one of the other tree, of its radius, within two thirds of
-// the distance of the points, 1.4 cm here.
+// Coordinates far from the origin are rounded. Positions along an axis are hardly determined, so
+// that moves nodes along it, and now and then a twig differs: 98 of 100 nodes must have one of the
+// other tree, of its radius, within two thirds of the distance of the points, 1.4 cm here.
 constexpr double share_of_nodes = 0.98, largest_distance = 0.009;
 
 BOOST_AUTO_TEST_CASE(a_translation_moves_the_tree)
@@ -583,7 +584,8 @@ BOOST_AUTO_TEST_CASE(a_translation_moves_the_tree)
     BOOST_CHECK_SMALL(distance_between(b, a, share), distance);
   };
   check(false, share_of_nodes, largest_distance);
-  // stations are moved by a few hundredths of a millimetre more or less, which moves nodes along their axes
+  // stations are moved by a few hundredths of a millimetre more or less, which moves nodes along
+  // their axes
   check(true, 0.9, 0.014);
 }
 

@@ -138,8 +138,8 @@ BOOST_AUTO_TEST_CASE(single_branches_do_not_run_through_themselves)
   }
 }
 
-// Stems with a kink at the fork, branches as thick as their parents: solid, but rings near a kink run through each other, and
-// necks are narrower than the wood.
+// Stems with a kink at the fork, branches as thick as their parents: solid, but rings near a kink
+// run through each other, and necks are narrower than the wood.
 BOOST_AUTO_TEST_CASE(forks_are_one_solid)
 {
   for (const Exact_tree& tree : {pcs::make_fork_tree<Exact>(1, 0.1, 0.04, 1.0),

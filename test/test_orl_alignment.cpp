@@ -285,7 +285,8 @@ BOOST_AUTO_TEST_SUITE(orl_frames)
 
 BOOST_FIXTURE_TEST_CASE(short_edges_at_bases_turn_nothing, Nodes)
 {
-  // both trees are the same, but for short edges at bases that point anywhere and noise of all nodes
+  // both trees are the same, but for short edges at bases that point anywhere and noise of all
+  // nodes
   for (const bool is_trunk : {true, false}) {
     double turn = 0, residual = 0;
     const unsigned number = 20;

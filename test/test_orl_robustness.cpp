@@ -119,7 +119,8 @@ pcs::Orl_report morph(const Tree& a,
   return report;
 }
 
-/// A branch that leaves the trunk level and bends up at each of its edges; further on it carries a twig.
+/// A branch that leaves the trunk level and bends up at each of its edges; further on it carries a
+/// twig.
 Tree curled(double bend)
 {
   Tree tree;
@@ -137,7 +138,8 @@ Tree curled(double bend)
   return tree;
 }
 
-/// A trunk, a branch, a twig on it and another one on that, each turned by `turn` against what carries it, about one axis.
+/// A trunk, a branch, a twig on it and another one on that, each turned by `turn` against what
+/// carries it, about one axis.
 Tree chained(double turn)
 {
   Tree tree;
@@ -178,8 +180,8 @@ Tree with_blade(double turn, double width, double beside, unsigned seed, std::ve
   return tree;
 }
 
-/// A trunk that leans a little, differently for each `seed`, with a twig near its top. If `is_folded`, it turns back by a
-/// twentieth of an edge after every fourth node, and goes on.
+/// A trunk that leans a little, differently for each `seed`, with a twig near its top. If
+/// `is_folded`, it turns back by a twentieth of an edge after every fourth node, and goes on.
 Tree leaning(unsigned seed, bool is_folded)
 {
   std::mt19937 random(seed);
@@ -586,7 +588,8 @@ BOOST_AUTO_TEST_CASE(edges_without_length_change_nothing)
 
 BOOST_AUTO_TEST_CASE(nodes_that_stand_twice_say_nothing_of_the_branches_there)
 {
-  // thick trunk, thin branches: these do not begin as thick as the trunk because its nodes stand twice
+  // thick trunk, thin branches: these do not begin as thick as the trunk because its nodes stand
+  // twice
   const auto tree = [](bool is_doubled) {
     Tree result;
     const auto add = [&](const Point& p, double radius, std::size_t parent) {
@@ -860,7 +863,8 @@ BOOST_AUTO_TEST_CASE(the_end_of_a_trunk_is_the_end_whatever_twig_is_longest)
   BOOST_TEST(number_found == 1);
 }
 
-// A node of one tree may fall on the place of a node of the other, to rounding: that edge has no direction of its own.
+// A node of one tree may fall on the place of a node of the other, to rounding: that edge has no
+// direction of its own.
 BOOST_AUTO_TEST_CASE(nodes_in_one_place_of_the_other_tree_are_no_harm)
 {
   const Tree one = star(1, 0), two = star(1, 0.3);

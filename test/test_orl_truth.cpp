@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Correspondences against the truth of virtual trees, and predictions against plants that were seen.
+// Correspondences against the truth of virtual trees, and predictions against plants that were
+// seen.
 
 #include <support/growth_series.h>
 #include <support/material_places.h>
@@ -73,7 +74,8 @@ BOOST_AUTO_TEST_CASE(a_tree_that_did_not_grow_keeps_its_wood)
 
 BOOST_AUTO_TEST_CASE(the_trunk_of_a_growing_tree_goes_on_as_the_trunk)
 {
-  // the trunk of the young tree and one of its last twigs are as long; many paths of the old tree begin alike
+  // the trunk of the young tree and one of its last twigs are as long; many paths of the old tree
+  // begin alike
   Tree tree;
   pcs::grow_tree(tree, pcs::forked_habit(), pcs::parameters::random_seed(1));
   std::vector<std::size_t> old_nodes;

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// segment_trees(): stands of virtual trees whose crowns touch, with and without ground, and clouds without a stem.
+// segment_trees(): stands of virtual trees whose crowns touch, with and without ground, and clouds
+// without a stem.
 
 #include <pcs/core/errors.h>
 #include <pcs/extract_tree_skeleton.h>
@@ -112,7 +113,8 @@ nearest_tree(const pcs::Segmentation_report& report, const Point& foot, double& 
   return best;
 }
 
-/// The share of the points of trees that are given to their tree, and that of the others that are given to one.
+/// The share of the points of trees that are given to their tree, and that of the others that are
+/// given to one.
 std::pair<double, double>
 shares(const Stand& stand, const Labels& trees, const pcs::Segmentation_report& report)
 {

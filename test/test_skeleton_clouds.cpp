@@ -36,7 +36,8 @@ using Cloud = std::vector<Point>;
 
 namespace {
 
-/// `n` points of a rectangle that stands on the middle of its lower side, or lies if `up` is horizontal.
+/// `n` points of a rectangle that stands on the middle of its lower side, or lies if `up` is
+/// horizontal.
 Cloud sheet(std::size_t n, double width, const Vector& across, const Vector& up, double noise)
 {
   std::mt19937 random(5);
@@ -123,7 +124,8 @@ BOOST_AUTO_TEST_CASE(duplicates_change_nothing)
     BOOST_TEST((a[v].point == b[v].point && a[v].radius == b[v].radius));
 }
 
-// The same scan with other digits, or fired twice: no point has a new neighbour at the distance of the others.
+// The same scan with other digits, or fired twice: no point has a new neighbour at the distance of
+// the others.
 BOOST_AUTO_TEST_CASE(points_at_random_on_a_line_are_no_copies)
 {
   for (const std::size_t n : {200u, 500u, 2000u})
@@ -411,7 +413,8 @@ BOOST_AUTO_TEST_CASE(of_two_trees_the_thicker_one_is_taken)
   BOOST_CHECK(pcs::warnings(quiet).empty());
 }
 
-// A limb of the one touches the top of the other: all hangs together, and a stem comes down from above.
+// A limb of the one touches the top of the other: all hangs together, and a stem comes down from
+// above.
 BOOST_AUTO_TEST_CASE(a_tree_that_touches_another_one_is_reported)
 {
   Cloud points = cylinder(8000, 0.1, 3);
@@ -513,7 +516,8 @@ BOOST_AUTO_TEST_CASE(ground_is_left_out)
   BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.2, 3.0);
 }
 
-// Relief and slopes rise above the foot, and the points of ground are farther from each other than those of the tree.
+// Relief and slopes rise above the foot, and the points of ground are farther from each other than
+// those of the tree.
 BOOST_AUTO_TEST_CASE(ground_is_followed_up_slopes)
 {
   Tree bare, tree;

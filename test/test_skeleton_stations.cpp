@@ -95,7 +95,8 @@ std::vector<Element> shifted_scan(double jitter)
   return points;
 }
 
-/// The largest error of what stations were moved by [m]; `number_of` has their numbers among the shifts. The middle is free.
+/// The largest error of what stations were moved by [m]; `number_of` has their numbers among the
+/// shifts. The middle is free.
 double error_of(const std::vector<pcs::Scan_station>& stations,
                 const std::vector<std::size_t>& number_of)
 {

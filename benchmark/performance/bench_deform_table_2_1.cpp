@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Times of every stage beside the dissertation's Table 2.1, with ratios to yardsticks and the peak of memory.
+// Times of every stage beside the dissertation's Table 2.1, with ratios to yardsticks and the peak
+// of memory.
 
 #include <pcs/Point_set_deformation.h>
 #include <support/Table.h>

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Deformation without sampling beside CGAL::Surface_mesh_deformation, on the vertices of one large mesh.
+// Deformation without sampling beside CGAL::Surface_mesh_deformation, on the vertices of one large
+// mesh.
 
 #include <pcs/Point_set_deformation.h>
 #include <support/Table.h>

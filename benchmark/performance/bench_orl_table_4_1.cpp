@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The dissertation's pairs of trees of table 4.1: seconds for correspondences, milliseconds for an instance.
+// The dissertation's pairs of trees of table 4.1: seconds for correspondences, milliseconds for an
+// instance.
 
 #include <pcs/IO/read_txtskl.h>
 #include <pcs/IO/write_points.h>

@@ -45,7 +45,8 @@ pcs::Tree_habit beech()
   return h;
 }
 
-/// The beams of all stations through the tree of boxes, and nothing else: no noise, no labels, no points.
+/// The beams of all stations through the tree of boxes, and nothing else: no noise, no labels, no
+/// points.
 double bare_casts(const Tree& tree, const pcs::Virtual_scanner& scanner, std::size_t beams)
 {
   Eigen::Vector3d origin;

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Seconds of the stages of a skeleton and of its mesh, beside those of a query for 25 neighbours of every point.
+// Seconds of the stages of a skeleton and of its mesh, beside those of a query for 25 neighbours of
+// every point.
 
 #include <pcs/IO/read_points.h>
 #include <pcs/core/keep_memory.h>

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Bends, twists and drags with known answers, on grids and on irregular samplings, beside mesh methods of CGAL.
+// Bends, twists and drags with known answers, on grids and on irregular samplings, beside mesh
+// methods of CGAL.
 
 #include <pcs/deform_point_set.h>
 #include <pcs/neighborhood/Proximity_graph.h>

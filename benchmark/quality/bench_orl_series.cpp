@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Plants seen at three times: the middle predicted from the ends, against linear morphing and against no change.
+// Plants seen at three times: the middle predicted from the ends, against linear morphing and
+// against no change.
 
 #include <support/growth_series.h>
 #include <support/material_places.h>
@@ -53,7 +54,8 @@ void tomato(const std::string& data)
            false});
 }
 
-/// Axes of four plants on up to eleven days of March; radii are not known. Each day between its neighbours.
+/// Axes of four plants on up to eleven days of March; radii are not known. Each day between its
+/// neighbours.
 void axes_of_plants(const std::string& data)
 {
   const std::pair<std::string, std::vector<int>> plants[] = {

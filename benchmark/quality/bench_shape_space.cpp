@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Families of trees: seconds, modes against known parameters, new trees against the inputs, seconds per new tree.
+// Families of trees: seconds, modes against known parameters, new trees against the inputs, seconds
+// per new tree.
 
 #include <pcs/IO/read_txtskl.h>
 #include <pcs/IO/write_points.h>
@@ -31,9 +32,9 @@
 namespace {
 
 using Kernel = CGAL::Simple_cartesian<double>;
+using pcs::Mode_inner_product;
 using pcs::Orl_orientation;
 using pcs::Tree_mean;
-using pcs::Mode_inner_product;
 using Tree = pcs::Tree_skeleton<Kernel>;
 using Point = Kernel::Point_3;
 using Space = pcs::Orl_shape_space<Kernel>;

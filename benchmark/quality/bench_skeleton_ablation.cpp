@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Table: the dissertation's variant of each step of the skeleton beside ours, on the same virtual scans.
+// Table: the dissertation's variant of each step of the skeleton beside ours, on the same virtual
+// scans.
 
 #include "measure_skeleton.h"
 #include "support/Table.h"

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Largest jumps of displacement between neighbouring points: compact weights against the dissertation's.
+// Largest jumps of displacement between neighbouring points: compact weights against the
+// dissertation's.
 
 #include <pcs/Point_set_deformation.h>
 #include <pcs/neighborhood/Proximity_graph.h>

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Bars and tubes sampled the way scans are: random, blue noise, graded, noisy, shuffled; and the robustness cases.
+// Bars and tubes sampled the way scans are: random, blue noise, graded, noisy, shuffled; and the
+// robustness cases.
 
 #ifndef PCS_BENCHMARK_QUALITY_IRREGULAR_CASES_H
 #define PCS_BENCHMARK_QUALITY_IRREGULAR_CASES_H
@@ -161,7 +162,8 @@ private:
   std::unordered_map<std::int64_t, std::vector<Vec3>> m_cells;
 };
 
-/// The shape of `grid`, a case of a bar or tube along z, with as many points placed in another way. No triangles.
+/// The shape of `grid`, a case of a bar or tube along z, with as many points placed in another way.
+/// No triangles.
 inline Deformation_case resample(const Deformation_case& grid, Sampling_kind kind)
 {
   if (kind == Sampling_kind::grid)
@@ -230,8 +232,8 @@ inline Deformation_case rough_bar_bend_120()
   return c;
 }
 
-/// T6: two parallel sheets 1.5 spacings apart, joined along one end. The lower one is held at both ends, the free end of
-/// the upper one is lifted: exactly, the lower sheet does not move.
+/// T6: two parallel sheets 1.5 spacings apart, joined along one end. The lower one is held at both
+/// ends, the free end of the upper one is lifted: exactly, the lower sheet does not move.
 struct Sheets_case : Deformation_case
 {
   std::vector<char> is_lower; ///< per point

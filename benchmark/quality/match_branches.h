@@ -74,7 +74,8 @@ inline Order_class& class_of_order(std::vector<Order_class>& classes, int order)
   return classes[i];
 }
 
-/// For each branch of the result the true branch that most of its length follows; `npos`: a false branch.
+/// For each branch of the result the true branch that most of its length follows; `npos`: a false
+/// branch.
 inline std::vector<std::size_t> owners(const Measured_tree& truth,
                                        const Measured_tree& result,
                                        const Free_samples& samples,

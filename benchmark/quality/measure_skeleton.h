@@ -31,7 +31,8 @@ inline std::vector<Segment_tree::Hit> nearest_axes(const std::vector<Axis_sample
   return hits;
 }
 
-/// `limit(true radius)` is the distance at which axes still agree; only samples with `is_counted(radius)` count.
+/// `limit(true radius)` is the distance at which axes still agree; only samples with
+/// `is_counted(radius)` count.
 template <class Limit, class Counted>
 Agreement agreement(double tolerance,
                     const Measured_tree& truth,

@@ -26,7 +26,8 @@ struct Peer_result
   double seconds = 0;       ///< preprocessing and iterations [s]
 };
 
-/// Iterates from rest until `number_of_iterations` are done or `seconds` are over, but at least once.
+/// Iterates from rest until `number_of_iterations` are done or `seconds` are over, but at least
+/// once.
 template <CGAL::Deformation_algorithm_tag algorithm>
 Peer_result
 deform_mesh(const pcs_test::Deformation_case& c, std::size_t number_of_iterations, double seconds)

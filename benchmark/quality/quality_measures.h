@@ -114,9 +114,10 @@ measure(const Deformation_case& c, const Edges& edges, const std::vector<Vec3>& 
 }
 
 /*!
-  Smallest mean radius of a cross-section over its mean radius at rest, for bars and tubes along z; 1 is exact and
-  0 a collapse. Each of 24 slices between the clamps is turned back by the best rotation of the whole slice, so that
-  only its width counts. Free ends are not slices: for cases with handles at both ends of z.
+  Smallest mean radius of a cross-section over its mean radius at rest, for bars and tubes along z;
+  1 is exact and 0 a collapse. Each of 24 slices between the clamps is turned back by the best
+  rotation of the whole slice, so that only its width counts. Free ends are not slices: for cases
+  with handles at both ends of z.
 */
 inline double smallest_section(const Deformation_case& c, const std::vector<Vec3>& deformed)
 {

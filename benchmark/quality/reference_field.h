@@ -101,7 +101,8 @@ public:
     return field;
   }
 
-  /// The first handle at rest; the second in small turns, each extended harmonically over the body as it is by then.
+  /// The first handle at rest; the second in small turns, each extended harmonically over the body
+  /// as it is by then.
   std::vector<pcs::Quaternion> many_small_turns() const
   {
     std::vector<pcs::Quaternion> field(m_share.size(), pcs::Quaternion::Identity());

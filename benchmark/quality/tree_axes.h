@@ -142,7 +142,8 @@ private:
   double m_weight = 0;
 };
 
-/// Diameter of the trunk at a height, the first time its axis gets there; `no_value` if it does not.
+/// Diameter of the trunk at a height, the first time its axis gets there; `no_value` if it does
+/// not.
 template <class Kernel>
 double diameter_at_height(const pcs::Tree_skeleton<Kernel>& tree, double z)
 {

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Stability of skeletons: spread of height, diameter, length and volume over nearly identical copies of each scan.
+// Stability of skeletons: spread of height, diameter, length and volume over nearly identical
+// copies of each scan.
 
 #include "support/Table.h"
 #include <pcs/IO/read_points.h>
@@ -116,7 +117,8 @@ Measures measure(const Copy& copy)
   return m;
 }
 
-/// Largest difference of a copy from the scan as it is, as a fraction of the latter; 95 % of the points do not count.
+/// Largest difference of a copy from the scan as it is, as a fraction of the latter; 95 % of the
+/// points do not count.
 double spread(const std::vector<Measures>& all, double Measures::*member)
 {
   double largest = 0;

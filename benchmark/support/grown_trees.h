@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A tree taken apart into its branches, changed as by growth, and put together again; branches keep their names.
+// A tree taken apart into its branches, changed as by growth, and put together again; branches keep
+// their names.
 
 #ifndef PCS_BENCHMARK_SUPPORT_GROWN_TREES_H
 #define PCS_BENCHMARK_SUPPORT_GROWN_TREES_H

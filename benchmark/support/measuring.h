@@ -89,7 +89,8 @@ struct Neighbor_adaptor
   }
 };
 
-/// The `count` nearest points of every point, itself included, by nanoflann as it comes, in input order: tree and queries.
+/// The `count` nearest points of every point, itself included, by nanoflann as it comes, in input
+/// order: tree and queries.
 inline void query_neighbors(const std::vector<Vec3>& points, std::size_t count)
 {
   using Metric = nanoflann::L2_Simple_Adaptor<double, Neighbor_adaptor>;
@@ -106,8 +107,9 @@ inline void query_neighbors(const std::vector<Vec3>& points, std::size_t count)
   keep(sum);
 }
 
-/// Memory traffic of moving `n` points with normals and nothing else: reads two vectors per point and writes two, 96
-/// bytes; with links, reads 16 bytes more, which is what the samples of a point and their weights take.
+/// Memory traffic of moving `n` points with normals and nothing else: reads two vectors per point
+/// and writes two, 96 bytes; with links, reads 16 bytes more, which is what the samples of a point
+/// and their weights take.
 class Triad
 {
 public:

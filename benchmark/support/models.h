@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The models of the dissertation's Table 2.1, read from a folder or replaced by shapes of the same size.
+// The models of the dissertation's Table 2.1, read from a folder or replaced by shapes of the same
+// size.
 
 #ifndef PCS_BENCHMARK_SUPPORT_MODELS_H
 #define PCS_BENCHMARK_SUPPORT_MODELS_H
@@ -32,7 +33,8 @@ struct Model
   bool is_generated = true;
 };
 
-/// A closed surface with bumps, a neck and a head, longest along y: `n` points on a spiral from pole to pole.
+/// A closed surface with bumps, a neck and a head, longest along y: `n` points on a spiral from
+/// pole to pole.
 inline std::vector<Vec3> make_bumpy_figure(std::size_t n)
 {
   constexpr double pi = 3.14159265358979323846, golden_angle = 2.399963229728653;

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What the networks that tell wood from leaves are trained on: evidence about points and axes of virtual scans, with the truth.
+// What the networks that tell wood from leaves are trained on: evidence about points and axes of
+// virtual scans, with the truth.
 
 #include <pcs/core/errors.h>
 #include <pcs/generators/grow_tree.h>
@@ -38,7 +39,8 @@ using Tag = CGAL::Parallel_if_available_tag;
 
 enum class Label { leaf, wood, other };
 
-/// Rows of numbers in single precision: scan, weight, label, what the network of today says, features.
+/// Rows of numbers in single precision: scan, weight, label, what the network of today says,
+/// features.
 class Rows
 {
 public:

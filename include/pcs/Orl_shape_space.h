@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A space in which trees are points: distance, geodesic and extrapolation between trees, with their scans.
+// A space in which trees are points: distance, geodesic and extrapolation between trees, with their
+// scans.
 
 #ifndef PCS_ORL_SHAPE_SPACE_H
 #define PCS_ORL_SHAPE_SPACE_H
@@ -39,24 +40,27 @@ namespace pcs {
   \brief A shape space of two trees or more, with the points of their scans.
 
   Follows chapter 4 of \cite aiteanu2022: branches are matched by elastic curves, both trees get one
-  topology, points are matched by optimal transport along corresponding edges, and a tree is the list of orientations,
-  radii and lengths (ORL) of the edges of the topology. Distances are those of (4.7), geodesics interpolate the
-  coordinates; points follow their edges.
+  topology, points are matched by optimal transport along corresponding edges, and a tree is the
+  list of orientations, radii and lengths (ORL) of the edges of the topology. Distances are those of
+  (4.7), geodesics interpolate the coordinates; points follow their edges.
 
-  Trees of any Boost.Graph type are added, then `build()` finds the correspondences, then trees of the space are made by
-  `geodesic()` and turned into skeletons and points. Inputs are copied, nothing refers to them afterwards.
+  Trees of any Boost.Graph type are added, then `build()` finds the correspondences, then trees of
+  the space are made by `geodesic()` and turned into skeletons and points. Inputs are copied,
+  nothing refers to them afterwards.
 
-  Two trees are represented exactly. More trees share the nodes of their branches: axes are straightened between them, by
-  `shape_space::axis_tolerance` of the length of a branch at most. Each branch has as many points as in one scan, so that
-  points have the same order in all trees; each of them has a partner in every other scan of the branch, found by transport,
-  and lies between these. The order in which trees are added does not matter then, save for rounding. See
-  the base class for means, modes and new trees.
+  Two trees are represented exactly. More trees share the nodes of their branches: axes are
+  straightened between them, by `shape_space::axis_tolerance` of the length of a branch at most.
+  Each branch has as many points as in one scan, so that points have the same order in all trees;
+  each of them has a partner in every other scan of the branch, found by transport, and lies between
+  these. The order in which trees are added does not matter then, save for rounding. See the base
+  class for means, modes and new trees.
 
   \tparam Kernel a kernel of CGAL; computations are in double precision about a local origin
-  \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or `CGAL::Parallel_if_available_tag`
+  \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or
+      `CGAL::Parallel_if_available_tag`
   \par Determinism
-  Same bits for every number of threads and for the sequential tag. The order of vertices and edges in the graphs does not
-  matter, save for exact copies of branches.
+  Same bits for every number of threads and for the sequential tag. The order of vertices and edges
+  in the graphs does not matter, save for exact copies of branches.
 */
 template <class Kernel = CGAL::Simple_cartesian<double>,
           class ConcurrencyTag = CGAL::Parallel_if_available_tag>
@@ -81,8 +85,10 @@ public:
   /*!
     \brief adds a tree and the points of its scan.
 
-    \tparam TreeGraph a model of `boost::VertexListGraph` and `boost::IncidenceGraph`, edges from parent to child
-    \param tree with one root, at least 2 nodes, positions up to 1e100 from it and radii in [0, 1e100], branches that hang on
+    \tparam TreeGraph a model of `boost::VertexListGraph` and `boost::IncidenceGraph`, edges from
+        parent to child
+    \param tree with one root, at least 2 nodes, positions up to 1e100 from it and radii in [0,
+        1e100], branches that hang on
     others 250 times at most; nodes in the same place are joined
     \param scan a model of `RandomAccessRange`; may be empty; it should lie about the tree
     \npbegin
@@ -138,12 +144,13 @@ public:
         \npdefault changed energy; `is_published` gives the text's
       \np{assignment_options} of points to branches
         \nptype `Point_assignment_options`
-      \np{transport_options} of the correspondence of points: exact or by Sinkhorn's algorithm, how far mass
-        is carried, and sizes
+      \np{transport_options} of the correspondence of points: exact or by Sinkhorn's algorithm, how
+        far mass is carried, and sizes
         \nptype `Transport_options`
       \np{alignment} whether the second of two trees may stand turned about the vertical
         \nptype `Orl_alignment`
-        \npdefault `as_given`: both stand in the same axes; with `turns` the branches tell, and the report has the turn
+        \npdefault `as_given`: both stand in the same axes; with `turns` the branches tell, and the
+            report has the turn
       \np{up_direction} the vertical
         \nptype a vector with `x()`, `y()`, `z()`, finite and not null
         \npdefault `(0, 0, 1)`
@@ -156,11 +163,12 @@ public:
       \np{do_use_unit_weights} whether all weights of the metric are 1, as in the text
         \nptype `bool`
         \npdefault `false`: turns count with the length of the edge, so that distances are lengths
-      \np{number_of_rounds} for more than two trees: how often all are matched to a tree in their middle
+      \np{number_of_rounds} for more than two trees: how often all are matched to a tree in their
+          middle
         \nptype an integer, `>= 1`
         \npdefault `3`
-      \np{points_of} for more than two trees: the tree whose scan gives the points of the branches that it has, to which
-        those of other scans are matched
+      \np{points_of} for more than two trees: the tree whose scan gives the points of the branches
+        that it has, to which those of other scans are matched
         \nptype `Handle`
         \npdefault none: for each branch, the tree with most points there
       \np{callback} progress in [0, 1]; `false` cancels
@@ -169,8 +177,8 @@ public:
     \return a report; with `Status::cancelled` the space is as before
     \throws pcs::Invalid_input unless two trees were added at least
     \par Complexity
-    Branches: about the number of pairs of branches on the same level, for more than two trees once per tree and round.
-    Points: \f$O(n \log n)\f$ in practice.
+    Branches: about the number of pairs of branches on the same level, for more than two trees once
+    per tree and round. Points: \f$O(n \log n)\f$ in practice.
   */
   template <class NamedParameters = parameters::Default_named_parameters>
   Orl_report build(const NamedParameters& np = NamedParameters())
@@ -198,11 +206,13 @@ public:
   }
 
   /*!
-    \brief the same with correspondences that were computed before, for the same trees with the same points, or none.
+    \brief the same with correspondences that were computed before, for the same trees with the same
+        points, or none.
 
-    Reads `orientation`, `virtual_direction` and `do_use_unit_weights`, `matching_weights` for trees that are embedded later, and
-    `up_direction` for the sign of the turn.
-    \return a report in which `matching_energy` and `unexplained_share` are not numbers, and `is_grown_at_tips` is `false`: the
+    Reads `orientation`, `virtual_direction` and `do_use_unit_weights`, `matching_weights` for trees
+    that are embedded later, and `up_direction` for the sign of the turn.
+    \return a report in which `matching_energy` and `unexplained_share` are not numbers, and
+        `is_grown_at_tips` is `false`: the
     correspondences do not tell
     \throws pcs::Invalid_input when the correspondences do not fit the trees
   */
@@ -257,7 +267,8 @@ public:
   /*!
     \brief a tree that was not added, as a tree of the space.
 
-    It is matched to a tree in the middle of the added ones; its branches that find no partner are left out.
+    It is matched to a tree in the middle of the added ones; its branches that find no partner are
+    left out.
     \param tree, np as for `add()`
     \param share if not null: the share of its length that is represented [-]
   */
@@ -291,7 +302,8 @@ public:
   }
 
   /*!
-    \brief makes the space that `data()` was taken from; all but `correspondences()`, `add()` and `build()` works as before.
+    \brief makes the space that `data()` was taken from; all but `correspondences()`, `add()` and
+        `build()` works as before.
     \throws pcs::Invalid_input when the numbers do not make sense; the space is unchanged then
   */
   void restore(const Orl_space_data& stored)

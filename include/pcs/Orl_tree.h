@@ -18,7 +18,8 @@ namespace pcs {
 
 /*!
   \ingroup PkgPcsShapeSpaceRef
-  \brief A tree of an `Orl_shape_space`: orientations, radii and lengths of the edges of its topology, a value.
+  \brief A tree of an `Orl_shape_space`: orientations, radii and lengths of the edges of its
+      topology, a value.
 
   Kept and assigned to again, it keeps its memory.
 */

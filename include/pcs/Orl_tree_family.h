@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Trees of one topology: their means, their modes of variation, new trees like them, growth and changes.
+// Trees of one topology: their means, their modes of variation, new trees like them, growth and
+// changes.
 
 #ifndef PCS_ORL_TREE_FAMILY_H
 #define PCS_ORL_TREE_FAMILY_H
@@ -45,13 +46,16 @@ struct Sample_report
 
 /*!
   \ingroup PkgPcsShapeSpaceRef
-  \brief The trees of an `Orl_shape_space`, as points: means, modes of variation, new trees, growth, changes.
+  \brief The trees of an `Orl_shape_space`, as points: means, modes of variation, new trees, growth,
+      changes.
 
-  The base of `Orl_shape_space`; everything here needs a space that was built, and throws `pcs::Invalid_input` otherwise.
-  Means follow (4.16) and (4.17) of \cite aiteanu2022, modes and new trees the outlook in its section 5.2.
+  The base of `Orl_shape_space`; everything here needs a space that was built, and throws
+  `pcs::Invalid_input` otherwise. Means follow (4.16) and (4.17) of \cite aiteanu2022, modes and new
+  trees the outlook in its section 5.2.
 
   \par Determinism
-  Same bits for every number of threads. Of a built space nothing changes: all functions may run concurrently.
+  Same bits for every number of threads. Of a built space nothing changes: all functions may run
+  concurrently.
 */
 template <class ConcurrencyTag>
 class Orl_tree_family : public Orl_tree_set<ConcurrencyTag>
@@ -67,10 +71,11 @@ public:
   /*!
     \brief the mean of the added trees.
 
-    Of lengths, radii and attachments the median, of orientations the L1 mean (Weiszfeld's algorithm), so that the sum of
-    distances `Orl_metric::sum` is least; the middle of an interval of medians. A branch that less than half of the trees
-    have has the length 0 then. Or arithmetic means and Frechet means: squares of differences are least, and every
-    branch is there, as long as on average.
+    Of lengths, radii and attachments the median, of orientations the L1 mean (Weiszfeld's
+    algorithm), so that the sum of distances `Orl_metric::sum` is least; the middle of an interval
+    of medians. A branch that less than half of the trees have has the length 0 then. Or arithmetic
+    means and Frechet means: squares of differences are least, and every branch is there, as long as
+    on average.
 
     \npbegin
       \np{tree_mean} what is least
@@ -81,7 +86,8 @@ public:
         \npdefault all 1
     \npend
     \par Complexity
-    \f$O(n e)\f$ for `n` trees and `e` edges, and \f$O(n^2 e)\f$ angles for `median` up to 128 trees.
+    \f$O(n e)\f$ for `n` trees and `e` edges, and \f$O(n^2 e)\f$ angles for `median` up to 128
+        trees.
   */
   template <class NamedParameters = parameters::Default_named_parameters>
   Orl_tree mean(const NamedParameters& np = NamedParameters()) const
@@ -102,9 +108,9 @@ public:
   /*!
     \brief the combination of the added trees with given weights.
 
-    The weighted Frechet mean: for two trees the tree on their geodesic, for weights `>= 0` a tree between the inputs.
-    Weights below 0 lead beyond the inputs; lengths stop at 0, radii at a hundredth of the least one
-    among the inputs.
+    The weighted Frechet mean: for two trees the tree on their geodesic, for weights `>= 0` a tree
+    between the inputs. Weights below 0 lead beyond the inputs; lengths stop at 0, radii at a
+    hundredth of the least one among the inputs.
     \param weights one per tree; their sum is made 1 and must be positive
   */
   Orl_tree weighted_mean(const std::vector<double>& weights) const
@@ -122,8 +128,9 @@ public:
                 weights);
   }
 
-  //! `t`, changed by `step` times what leads from `a` to `b`: any tree, any direction [-]. Lengths end at 0, those of the trunk
-  //! and radii of what is there at a hundredth of what they are in `t`.
+  //! `t`, changed by `step` times what leads from `a` to `b`: any tree, any direction [-]. Lengths
+  //! end at 0, those of the trunk and radii of what is there at a hundredth of what they are in
+  //! `t`.
   Orl_tree
   parallel_displacement(const Orl_tree& t, const Orl_tree& a, const Orl_tree& b, double step) const
   {
@@ -137,11 +144,12 @@ public:
   /*!
     \brief the directions in which the added trees differ most from their least-squares mean.
 
-    Directions in the tangent space at the mean; where trees stand is left out. With all `number_of_trees() - 1` modes the
-    inputs are reproduced. What makes a mode large is how branches differ in the trees that have them, each branch with one
-    vote (Tyler's estimator; EM for branches that are not there), or the metric `Orl_metric::square`, where absent
-    branches and long edges prevail: the measure for trees that differ by which branches they have, and little else. Where
-    they differ by nothing else it is taken at once.
+    Directions in the tangent space at the mean; where trees stand is left out. With all
+    `number_of_trees() - 1` modes the inputs are reproduced. What makes a mode large is how branches
+    differ in the trees that have them, each branch with one vote (Tyler's estimator; EM for
+    branches that are not there), or the metric `Orl_metric::square`, where absent branches and long
+    edges prevail: the measure for trees that differ by which branches they have, and little else.
+    Where they differ by nothing else it is taken at once.
     \param most modes that are wanted; there are fewer if the trees do not differ in so many ways
     \param np
     \npbegin
@@ -150,7 +158,8 @@ public:
         \npdefault `branches`
     \npend
     \par Complexity
-    \f$O(n^4 b + n^2 e)\f$ for `n` trees, `b` branches and `e` edges, most of it for the errors of trees that are left out;
+    \f$O(n^4 b + n^2 e)\f$ for `n` trees, `b` branches and `e` edges, most of it for the errors of
+        trees that are left out;
     memory \f$O(n e)\f$, by each thread.
   */
   template <class NamedParameters = parameters::Default_named_parameters>
@@ -165,8 +174,9 @@ public:
                                                     Mode_inner_product::branches));
   }
 
-  //! the tree with given scores, in standard deviations of the modes; missing scores are 0. However large scores are, the
-  //! trunk keeps a hundredth of its lengths in the mean at least, and so do radii where there is length.
+  //! the tree with given scores, in standard deviations of the modes; missing scores are 0. However
+  //! large scores are, the trunk keeps a hundredth of its lengths in the mean at least, and so do
+  //! radii where there is length.
   Orl_tree tree(const shape_space::Modes_of_variation& modes,
                 const std::vector<double>& scores) const
   {
@@ -180,7 +190,8 @@ public:
     return make(Engine::tree_of_modes(m_family, modes, scores));
   }
 
-  //! where a tree lies in the space of the modes, and how far from it; branches that it lacks do not count
+  //! where a tree lies in the space of the modes, and how far from it; branches that it lacks do
+  //! not count
   shape_space::Mode_coordinates project(const shape_space::Modes_of_variation& modes,
                                         const Orl_tree& t) const
   {
@@ -202,7 +213,8 @@ public:
     return make(std::move(result.m_x), result.m_lambda, t.m_share);
   }
 
-  //! how unlike the added trees a tree is: about 1 for one like them, see `shape_space::outlier_score()` [-]
+  //! how unlike the added trees a tree is: about 1 for one like them, see
+  //! `shape_space::outlier_score()` [-]
   double outlier_score(const shape_space::Modes_of_variation& modes, const Orl_tree& t) const
   {
     return Engine::outlier_score(modes, project(modes, t));
@@ -221,8 +233,9 @@ public:
   /*!
     \brief draws a new tree like the added ones.
 
-    See `shape_space::Tree_distribution` for the model and `Tree_sampling_options` for what can be asked of the
-    trees. Lengths and radii are positive. Trees of one family have the same topology and the same order of points.
+    See `shape_space::Tree_distribution` for the model and `Tree_sampling_options` for what can be
+    asked of the trees. Lengths and radii are positive. Trees of one family have the same topology
+    and the same order of points.
 
     \param from what `distribution()` returned
     \param seed of the family
@@ -254,7 +267,8 @@ public:
     Tree_sampling_options nearer = o;
     const std::vector<double> share = draw_shares(seed, index);
     for (std::size_t k = 0; k < trials; ++k) {
-      // the second half of the trials comes nearer and nearer to the middle tree, and is stretched to the inputs
+      // the second half of the trials comes nearer and nearer to the middle tree, and is stretched
+      // to the inputs
       nearer.spread =
           o.spread * std::min(1.0, 1.5 - static_cast<double>(k) / static_cast<double>(trials));
       // a trial is a stream of its own
@@ -300,7 +314,8 @@ public:
     \param trees at least 2
     \param times increasing, one per tree
     \npbegin
-      \np{is_monotone} whether lengths and radii must not fall; they are changed as little as possible for it
+      \np{is_monotone} whether lengths and radii must not fall; they are changed as little as
+          possible for it
         \nptype `bool`
         \npdefault `false`: they do not fall where they rise in the data
     \npend

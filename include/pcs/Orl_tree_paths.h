@@ -36,12 +36,15 @@ namespace pcs {
 
 /*!
   \ingroup PkgPcsShapeSpaceRef
-  \brief The trees of an `Orl_shape_space`, as points: paths between them, and what trees on these look like.
+  \brief The trees of an `Orl_shape_space`, as points: paths between them, and what trees on these
+      look like.
 
-  The base of `Orl_shape_space`; everything here needs a space that was built, and throws `pcs::Invalid_input` otherwise.
+  The base of `Orl_shape_space`; everything here needs a space that was built, and throws
+  `pcs::Invalid_input` otherwise.
 
   \par Determinism
-  Same bits for every number of threads. Of a built space nothing changes: all functions may run concurrently.
+  Same bits for every number of threads. Of a built space nothing changes: all functions may run
+  concurrently.
 */
 template <class ConcurrencyTag>
 class Orl_tree_paths : public Orl_tree_family<ConcurrencyTag>
@@ -54,9 +57,10 @@ public:
   /*!
     \brief returns the tree at `lambda` on the geodesic from `a` (0) to `b` (1), or beyond its ends.
 
-    Beyond the ends lengths and radii stay positive, and edges turn by at most `maximal_turn`: against what they grow from, and
-    in space. Nothing grows below the base, against the direction of growth, unless it does at one of the ends: where it would,
-    branches stay closer to what they are at the end.
+    Beyond the ends lengths and radii stay positive, and edges turn by at most `maximal_turn`:
+    against what they grow from, and in space. Nothing grows below the base, against the direction
+    of growth, unless it does at one of the ends: where it would, branches stay closer to what they
+    are at the end.
 
     \npbegin
       \np{maximal_turn} how far an edge turns beyond an end of the path [rad]
@@ -67,10 +71,12 @@ public:
         \npdefault `false`: real trees break that rule
       \np{birth_order} how branches that only one of the trees has come into being
         \nptype `Branch_emergence`
-        \npdefault `simultaneous`: coordinates are linear. `sequential` for trees that grow at their tips: it predicts the tree
+        \npdefault `simultaneous`: coordinates are linear. `sequential` for trees that grow at their
+            tips: it predicts the tree
         between better, and is as short in `Orl_metric::sum`, with constant speed there
     \npend
-    \throws pcs::Invalid_input when `lambda` is not finite, or so large that coordinates are not, or a handle is wrong
+    \throws pcs::Invalid_input when `lambda` is not finite, or so large that coordinates are not, or
+        a handle is wrong
   */
   template <class NamedParameters = parameters::Default_named_parameters>
   Orl_tree
@@ -149,12 +155,13 @@ public:
   /*!
     \brief writes the points of a tree of the space.
 
-    Pairs come by edge; at `lambda` 0 and 1 the points are those of the scans, as often as they have partners, and points
-    of branches that the tree lacks are left out. Where a branch of both trees has points in one scan only, these are
-    there all along the path.
+    Pairs come by edge; at `lambda` 0 and 1 the points are those of the scans, as often as they have
+    partners, and points of branches that the tree lacks are left out. Where a branch of both trees
+    has points in one scan only, these are there all along the path.
 
-    \param result a random access range; a container with `resize()` gets the size `t.number_of_points()`, which
-           allocates nothing if its capacity suffices; another range must have that size at least
+    \param result a random access range; a container with `resize()` gets the size
+           `t.number_of_points()`, which allocates nothing if its capacity suffices; another range
+           must have that size at least
     \npbegin
       \np{point_map} where a position is written
         \nptype model of `WritablePropertyMap`, key: element of `result`, value: `Kernel::Point_3`
@@ -236,10 +243,12 @@ public:
   }
 
   /*!
-    \brief calls `f(i, a, b, w)` for every point of a tree of the space: `a` and `b` are the numbers of the points it comes
+    \brief calls `f(i, a, b, w)` for every point of a tree of the space: `a` and `b` are the numbers
+        of the points it comes
     from in the two scans, `npos` where there is none, `w` is the share of the second, in [0, 1].
 
-    Attributes are blended with it: `result[i] = (1 - w) * one[a] + w * two[b]`. `f` may be called concurrently.
+    Attributes are blended with it: `result[i] = (1 - w) * one[a] + w * two[b]`. `f` may be called
+    concurrently.
   */
   template <class F>
   void for_each_point(const Orl_tree& t, const F& f) const
@@ -263,10 +272,13 @@ public:
   }
 
   /*!
-    \brief calls `f(i, h, k, w)` for every point of a tree of a space of more than two trees and every point it is made
-    from: point `k` of the scan of tree `h`, with a weight `w` in (0, 1]; weights of a point add up to 1.
+    \brief calls `f(i, h, k, w)` for every point of a tree of a space of more than two trees and
+        every point it is made
+    from: point `k` of the scan of tree `h`, with a weight `w` in (0, 1]; weights of a point add up
+    to 1.
 
-    Attributes are blended with it: `result[i] += w * scan[h][k]`. `f` may be called concurrently, but not for one `i`.
+    Attributes are blended with it: `result[i] += w * scan[h][k]`. `f` may be called concurrently,
+    but not for one `i`.
   */
   template <class F>
   void for_each_source(const Orl_tree& t, const F& f) const

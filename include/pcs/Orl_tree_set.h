@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Trees of one topology: what they are, how far they are from each other, and what became of their branches.
+// Trees of one topology: what they are, how far they are from each other, and what became of their
+// branches.
 
 #ifndef PCS_ORL_TREE_SET_H
 #define PCS_ORL_TREE_SET_H
@@ -29,7 +30,8 @@ namespace pcs {
   \ingroup PkgPcsShapeSpaceRef
   \brief The trees of an `Orl_shape_space`, as points: distances, figures, changes.
 
-  The base of `Orl_tree_family`; everything here needs a space that was built, and throws `pcs::Invalid_input` otherwise.
+  The base of `Orl_tree_family`; everything here needs a space that was built, and throws
+  `pcs::Invalid_input` otherwise.
 */
 template <class ConcurrencyTag>
 class Orl_tree_set
@@ -57,7 +59,8 @@ public:
     return b < m_family.has[h].size() && m_family.has[h][b] != 0;
   }
 
-  //! the number of the vertex at the tip of branch `b` in the graph of tree `h`, `npos` if it does not have it
+  //! the number of the vertex at the tip of branch `b` in the graph of tree `h`, `npos` if it does
+  //! not have it
   std::size_t tip_of_branch(Handle h, std::size_t b) const
   {
     return has_branch(h, b) ? m_family.tip[h][b] : npos;
@@ -90,7 +93,8 @@ public:
     return distance_of(m_family.x[a], m_family.x[b], np);
   }
 
-  //! distances of all pairs of added trees, row by row: that of `a` and `b` is at `a * number_of_trees() + b` [L]
+  //! distances of all pairs of added trees, row by row: that of `a` and `b` is at `a *
+  //! number_of_trees() + b` [L]
   template <class NamedParameters = parameters::Default_named_parameters>
   std::vector<double> distances(const NamedParameters& np = NamedParameters()) const
   {
@@ -132,7 +136,8 @@ public:
     return Engine::find_changes(m_family, m_family.x[a], m_family.x[b], limits);
   }
 
-  //! length, height, width, branches and angles of a tree; height is measured along `growth_direction()`
+  //! length, height, width, branches and angles of a tree; height is measured along
+  //! `growth_direction()`
   shape_space::Tree_descriptors figures(const Orl_tree& t) const
   {
     check_tree(t, "figures");

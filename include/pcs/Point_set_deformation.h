@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A session of non-linear deformation of a point cloud: handles come and go, the sampling and the factors stay.
+// A session of non-linear deformation of a point cloud: handles come and go, the sampling and the
+// factors stay.
 
 #ifndef PCS_POINT_SET_DEFORMATION_H
 #define PCS_POINT_SET_DEFORMATION_H
@@ -33,23 +34,26 @@ namespace pcs {
   \ingroup PkgPcsDeformationRef
   \brief deforms a point cloud again and again while handles are dragged.
 
-  Implements chapter 2 of \cite aiteanu2022 (\cite adk2010): local rotations and positions are solved on samples of the
-  cloud with matrices that are factorised once per set of handles, and carried to all points by blended affine maps.
-  Neighbours come from the points alone; no mesh is needed.
+  Implements chapter 2 of \cite aiteanu2022 (\cite adk2010): local rotations and positions are
+  solved on samples of the cloud with matrices that are factorised once per set of handles, and
+  carried to all points by blended affine maps. Neighbours come from the points alone; no mesh is
+  needed.
 
-  Work is done as late as possible and never twice: the constructor finds neighbours and samples; adding or removing a
-  handle makes the next `deform()` (or `preprocess()`) factorise again, which takes milliseconds; setting
-  transformations costs nothing until `deform()`.
+  Work is done as late as possible and never twice: the constructor finds neighbours and samples;
+  adding or removing a handle makes the next `deform()` (or `preprocess()`) factorise again, which
+  takes milliseconds; setting transformations costs nothing until `deform()`.
 
-  \tparam PointRange a model of `RandomAccessRange`. The points stay the caller's: the class keeps a reference, writes
-          through the point map in `deform()`, `restore()` and `reset()`, and reads it again only in `accept()`
+  \tparam PointRange a model of `RandomAccessRange`. The points stay the caller's: the class keeps a
+          reference, writes through the point map in `deform()`, `restore()` and `reset()`, and
+          reads it again only in `accept()`
   \tparam NamedParameters the type of the chain given to the constructor (deduced)
-  \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or `CGAL::Parallel_if_available_tag`. With a
-          parallel tag, `put()` of the maps is called from several threads, for different elements
+  \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or
+          `CGAL::Parallel_if_available_tag`. With a parallel tag, `put()` of the maps is called from
+          several threads, for different elements
 
   \par Memory
-  About 150 bytes per point with normals, and some 300 at the peak of the construction. After the first frames, `deform()`
-  allocates nothing.
+  About 150 bytes per point with normals, and some 300 at the peak of the construction. After the
+  first frames, `deform()` allocates nothing.
 
   \par Thread safety
   Different objects may be used at the same time. One object may be used by one thread at a time.
@@ -102,9 +106,11 @@ public:
         \nptype model of `ReadWritePropertyMap`, key: element of `points`, value: a vector type
         \npdefault none
       \np{tensor_map} tensors that are carried by it: `G T G^T`, like the covariances of splats
-        \nptype model of `ReadWritePropertyMap`, key: element of `points`, value: `Eigen::Matrix<FT, 3, 3>`
+        \nptype model of `ReadWritePropertyMap`, key: element of `points`, value: `Eigen::Matrix<FT,
+            3, 3>`
         \npdefault none
-      \np{number_of_samples} nodes of the non-linear problem [count]; as many as points, or more: no sampling
+      \np{number_of_samples} nodes of the non-linear problem [count]; as many as points, or more: no
+          sampling
         \nptype integer, `> 0`
         \npdefault `default_number_of_samples`
       \np{number_of_neighbors} nearest neighbours that a point is linked to [count]
@@ -128,19 +134,21 @@ public:
       \np{tolerance} passes end when the energy falls by less than this share [-]
         \nptype floating point, `>= 0`
         \npdefault `deformation::default_tolerance`
-      \np{stiffness} resistance against bending relative to stretching; the same for any number of points, and of
-        samples from 2,000 on [-]
+      \np{stiffness} resistance against bending relative to stretching; the same for any number of
+        points, and of samples from 2,000 on [-]
         \nptype floating point, 0.001 to 1000
         \npdefault 1
-      \np{poisson_ratio} transverse contraction under stretch [-]: 0.5 like rubber, 0 like cork, negative auxetic
+      \np{poisson_ratio} transverse contraction under stretch [-]: 0.5 like rubber, 0 like cork,
+          negative auxetic
         \nptype floating point, -1 to 0.5
         \npdefault 0
-      \np{do_preserve_volume} whether closed surfaces get springs through their inside; with more than 20,000 samples
-          only their coarser levels do, and the finer ones make a single pass from there
+      \np{do_preserve_volume} whether closed surfaces get springs through their inside; with more
+          than 20,000 samples only their coarser levels do, and the finer ones make a single pass
+          from there
         \nptype `bool`
         \npdefault `true`
-      \np{region_of_interest} numbers of the points that may move; all others stay bit for bit, and so do points at the
-        same place as one of these
+      \np{region_of_interest} numbers of the points that may move; all others stay bit for bit, and
+        so do points at the same place as one of these
         \nptype range of integers (copied; use `std::cref` for large ones)
         \npdefault all points
       \np{callback} called on this thread with a value that grows from 0 to 1; `false` stops
@@ -148,8 +156,8 @@ public:
         \npdefault none
     \npend
 
-    \throws Invalid_input if there are no points, a coordinate or normal is not finite, all points coincide, or a
-            parameter is out of range
+    \throws Invalid_input if there are no points, a coordinate or normal is not finite, all points
+            coincide, or a parameter is out of range
   */
   explicit Point_set_deformation(PointRange& points, const NamedParameters& np = NamedParameters())
     : m_access(points, np)
@@ -180,8 +188,8 @@ public:
     }
   }
 
-  /// Of an object that was moved from, only assignment, destruction and `number_of_samples()` are allowed; all other
-  /// calls throw `Invalid_input`.
+  /// Of an object that was moved from, only assignment, destruction and `number_of_samples()` are
+  /// allowed; all other calls throw `Invalid_input`.
   Point_set_deformation(Point_set_deformation&&) = default;
   Point_set_deformation& operator=(Point_set_deformation&&) = default;
 
@@ -192,10 +200,10 @@ public:
   /*!
     Adds a handle, which stays where it is until told otherwise.
     \param indices the numbers of its points, in any order, not necessarily connected
-    \param softness 0: its points reach their targets exactly; otherwise they are drawn to them by springs, the weaker
-           the larger the value (1: as strong as the neighbours of a point) [-]
-    \throws Invalid_input if there is no index, one is out of range, belongs to another handle, or lies outside the
-            region of interest; nothing is changed then
+    \param softness 0: its points reach their targets exactly; otherwise they are drawn to them by
+           springs, the weaker the larger the value (1: as strong as the neighbours of a point) [-]
+    \throws Invalid_input if there is no index, one is out of range, belongs to another handle, or
+            lies outside the region of interest; nothing is changed then
   */
   template <class IndexRange>
   Handle add_handle(const IndexRange& indices, double softness = 0)
@@ -222,7 +230,8 @@ public:
     m_motion[handle] = Motion();
   }
 
-  /// Sets the rotation by `angle` [rad] about `axis` through `center`, from rest. Any number of turns.
+  /// Sets the rotation by `angle` [rad] about `axis` through `center`, from rest. Any number of
+  /// turns.
   template <class Vector_3, class Point_3>
   void set_rotation(Handle handle, const Vector_3& axis, double angle, const Point_3& center)
   {
@@ -249,8 +258,9 @@ public:
     set_motion(handle, motion);
   }
 
-  /// Sets the scale `factor` > 0 about the centroid of the handle at rest; it precedes the rotation. What lies between
-  /// handles of different scale gets thicker or thinner, and longer or shorter as far as they make room for it.
+  /// Sets the scale `factor` > 0 about the centroid of the handle at rest; it precedes the
+  /// rotation. What lies between handles of different scale gets thicker or thinner, and longer or
+  /// shorter as far as they make room for it.
   void set_scale(Handle handle, double factor)
   {
     require_handle("pcs::Point_set_deformation::set_scale()", handle);
@@ -259,8 +269,9 @@ public:
     set_motion(handle, motion);
   }
 
-  /// Sets the whole motion from rest: a `Similarity`, or a `CGAL::Aff_transformation_3` that is one. To the calls above
-  /// it is the rotation: the next `set_rotation()` replaces it, a translation follows it, a scale precedes it.
+  /// Sets the whole motion from rest: a `Similarity`, or a `CGAL::Aff_transformation_3` that is
+  /// one. To the calls above it is the rotation: the next `set_rotation()` replaces it, a
+  /// translation follows it, a scale precedes it.
   template <class Transformation>
   void set_transformation(Handle handle, const Transformation& transformation)
   {
@@ -296,16 +307,18 @@ public:
   }
 
   /*!
-    Solves for the present motions of the handles, from rest, and writes points and normals. Points that no handle
-    reaches, those outside the region of interest, and those of handles that have not moved are not written.
+    Solves for the present motions of the handles, from rest, and writes points and normals. Points
+    that no handle reaches, those outside the region of interest, and those of handles that have not
+    moved are not written.
 
     If the report says `cancelled` or `numerical_failure`, nothing was written.
 
-    \param start `Solver_start::cold`: the result depends on the rest shape and the motions only, not on what was done before.
-    `Solver_start::warm`: for the frames of a drag. The passes go on from the last result, so that one to three are enough; the
-    energy was at most a tenth above that of cold starts, and a quarter of it where these end early. A large step, new
-    handles, a snapshot that was restored, and full resolution of more than 20,000 points with interior springs begin
-    cold in any case.
+    \param start `Solver_start::cold`: the result depends on the rest shape and the motions only,
+        not on what was done before.
+    `Solver_start::warm`: for the frames of a drag. The passes go on from the last result, so that
+    one to three are enough; the energy was at most a tenth above that of cold starts, and a quarter
+    of it where these end early. A large step, new handles, a snapshot that was restored, and full
+    resolution of more than 20,000 points with interior springs begin cold in any case.
   */
   Deformation_report deform(Solver_start start = Solver_start::cold)
   {
@@ -328,16 +341,16 @@ public:
   }
 
   /*!
-    Moves other points, and their normals, as the last `deform()` moved the points around them: a cloud that does not fit
-    into memory is deformed through a sample of it, then chunk by chunk. Each point follows its nearest point of this
-    object: rigidly if that is in a handle, not at all if that stays; between them it is blended from the samples like
-    a point of this object (the same to rounding if it is one, with `Sample_search::regions`, as long as no shape was
-    accepted).
+    Moves other points, and their normals, as the last `deform()` moved the points around them: a
+    cloud that does not fit into memory is deformed through a sample of it, then chunk by chunk.
+    Each point follows its nearest point of this object: rigidly if that is in a handle, not at all
+    if that stays; between them it is blended from the samples like a point of this object (the same
+    to rounding if it is one, with `Sample_search::regions`, as long as no shape was accepted).
 
     \param points a model of `RandomAccessRange` at rest, modified in place
     \param np `point_map` and `normal_map` as in the constructor, for `points`
-    \throws Invalid_input if a point or normal is not finite, or constraints were made for other handles since the last
-            `deform()`; nothing is changed then
+    \throws Invalid_input if a point or normal is not finite, or constraints were made for other
+            handles since the last `deform()`; nothing is changed then
     \par Complexity
     O(n log n) once per rest shape, then O(log n) per point.
   */
@@ -372,8 +385,9 @@ public:
     }
   }
 
-  /// The present points and the motions that gave them, at the cost of the samples only: motions that were set since the
-  /// last `deform()` are not part of it. \throws Invalid_input if handles were added or removed since then
+  /// The present points and the motions that gave them, at the cost of the samples only: motions
+  /// that were set since the last `deform()` are not part of it. \throws Invalid_input if handles
+  /// were added or removed since then
   Snapshot snapshot() const
   {
     const char* function = "pcs::Point_set_deformation::snapshot()";
@@ -387,8 +401,8 @@ public:
     return result;
   }
 
-  /// Brings back the points of a snapshot, and the motions. \throws Invalid_input if it was not taken of this object,
-  /// with the same handles and the same rest shape; nothing is changed then
+  /// Brings back the points of a snapshot, and the motions. \throws Invalid_input if it was not
+  /// taken of this object, with the same handles and the same rest shape; nothing is changed then
   void restore(const Snapshot& snapshot)
   {
     const char* function = "pcs::Point_set_deformation::restore()";
@@ -417,9 +431,9 @@ public:
     write_points();
   }
 
-  /// The present shape, as the point map gives it, becomes the rest shape; motions end, handles and samples stay;
-  /// the next `deform()` factorises again. \throws Invalid_input if a point, normal, vector or tensor is not finite;
-  /// nothing is changed then
+  /// The present shape, as the point map gives it, becomes the rest shape; motions end, handles and
+  /// samples stay; the next `deform()` factorises again. \throws Invalid_input if a point, normal,
+  /// vector or tensor is not finite; nothing is changed then
   void accept()
   {
     const char* function = "pcs::Point_set_deformation::accept()";
@@ -481,7 +495,8 @@ private:
     m_shape_motions = m_motion;
   }
 
-  /// The points as they are, finite, and as many as there may be. `function` begins the text of errors.
+  /// The points as they are, finite, and as many as there may be. `function` begins the text of
+  /// errors.
   std::vector<deformation::Vec3> read_points(const char* function) const
   {
     const std::size_t n = m_access.size();

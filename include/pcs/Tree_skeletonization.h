@@ -36,16 +36,19 @@ namespace pcs {
   \ingroup PkgPcsSkeletonRef
   \brief finds branches, radii and their connection in the scan of a tree, one stage at a time.
 
-  After chapter 3 of \cite aiteanu2022 (\cite ak2014), with the sections of a branch fitted together: paths from the root
-  over the neighbour graph are cut into layers, the layers form chains, and every chain becomes one axis whose positions and
-  radii are a robust least-squares fit to all of its points; where the points do not decide a radius, their number does.
+  After chapter 3 of \cite aiteanu2022 (\cite ak2014), with the sections of a branch fitted
+  together: paths from the root over the neighbour graph are cut into layers, the layers form
+  chains, and every chain becomes one axis whose positions and radii are a robust least-squares fit
+  to all of its points; where the points do not decide a radius, their number does.
 
-  Each stage runs those before it, once; `extract()` runs them all. What a stage found can be inspected in between.
+  Each stage runs those before it, once; `extract()` runs them all. What a stage found can be
+  inspected in between.
 
-  \tparam PointRange a model of `RandomAccessRange`; points are read by the constructor only, and `extract()` passes
-          their elements to the maps of points
+  \tparam PointRange a model of `RandomAccessRange`; points are read by the constructor only, and
+          `extract()` passes their elements to the maps of points
   \tparam NamedParameters the type of the chain given to the constructor (deduced)
-  \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or `CGAL::Parallel_if_available_tag`
+  \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or
+      `CGAL::Parallel_if_available_tag`
 
   \par Memory
   About 350 bytes per point at the peak.
@@ -103,27 +106,31 @@ public:
       \np{root_position} a place near the foot of the trunk [L]
         \nptype a point with `x()`, `y()`, `z()`
         \npdefault none: the lower end of the thickest part near the lower end of the cloud
-      \np{do_register_stations} whether stations of the scanner are moved, by millimetres, so that all see the same branches:
-          errors of registration make branches too thick or too thin by as much. The stations are those of `station_map`, or
-          those whose regular beams are found: a scanner turns by equal steps, which its points show until they are thinned or
-          rounded to less than a tenth of their distance. Of one station, or where none are found, nothing is moved. The
-          result lies in the middle of the stations; `Skeleton_report::stations` has what was moved
+      \np{do_register_stations} whether stations of the scanner are moved, by millimetres, so that
+          all see the same branches: errors of registration make branches too thick or too thin by
+          as much. The stations are those of `station_map`, or those whose regular beams are found:
+          a scanner turns by equal steps, which its points show until they are thinned or rounded to
+          less than a tenth of their distance. Of one station, or where none are found, nothing is
+          moved. The result lies in the middle of the stations; `Skeleton_report::stations` has what
+          was moved
         \nptype `bool`
         \npdefault `true`
-      \np{station_map} which station has measured a point; negative: not known. If less than two are told apart, or more than 100, stations are
-          looked for
+      \np{station_map} which station has measured a point; negative: not known. If less than two are
+          told apart, or more than 100, stations are looked for
         \nptype model of `ReadablePropertyMap`, key: element of `points`, value: an integer type
         \npdefault none
-      \np{scanner_positions} where the scanners stood; with `beam_width` they tell how much a beam widens thin branches
+      \np{scanner_positions} where the scanners stood; with `beam_width` they tell how much a beam
+          widens thin branches
         \nptype range of points with `x()`, `y()`, `z()`
         \npdefault none
-      \np{beam_width} angle of the scanner's beam; 0: radii are left as they are. Read with `scanner_positions` [rad]
+      \np{beam_width} angle of the scanner's beam; 0: radii are left as they are. Read with
+          `scanner_positions` [rad]
         \nptype floating point, `>= 0`
         \npdefault `default_beam_width`
       \np{given_skeleton} a skeleton that is measured: its positions stay, radii, sections and the
           branches of points come from the scan
-        \nptype model of `VertexListGraph` and `IncidenceGraph` of Boost, a tree with edges from parent to child
-            (`std::cref()` of one saves the copy)
+        \nptype model of `VertexListGraph` and `IncidenceGraph` of Boost, a tree with edges from
+            parent to child (`std::cref()` of one saves the copy)
         \npdefault none
       \np{given_point_map} the positions of its vertices
         \nptype model of `ReadablePropertyMap`, key: vertex descriptor, value: a point type
@@ -131,11 +138,13 @@ public:
       \np{skeleton_method} how branches are found
         \nptype `Skeleton_method`: `chains`, or `sections` for the dissertation's own way
         \npdefault `chains`
-      \np{slice_rules} the steps of the method `sections`: how slices are cut, fitted, tilted, and which points they spare
+      \np{slice_rules} the steps of the method `sections`: how slices are cut, fitted, tilted, and
+          which points they spare
         \nptype `Slice_options`
         \npdefault the dissertation's, with which nothing is replaced
-      \np{do_remove_ground} whether ground around the foot is looked for and left out, and flat faces, such as walls and
-          roofs, with what stands within one cell (a twelfth of the root mean square radius of the scan) beside them
+      \np{do_remove_ground} whether ground around the foot is looked for and left out, and flat
+          faces, such as walls and roofs, with what stands within one cell (a twelfth of the root
+          mean square radius of the scan) beside them
         \nptype `bool`
         \npdefault `true`
       \np{breast_height} height of the diameter in the report, and unit of its size classes [L]
@@ -144,32 +153,39 @@ public:
       \np{wood_map} whether a point may belong to a branch; others (leaves) are left out
         \nptype model of `ReadablePropertyMap`, key: element of `points`, value: `bool`
         \npdefault all points
-      \np{do_remove_leaves} whether points of leaves are looked for and left out. After the first fit, points of hollow
-          sections are wood, and such whose surroundings and paths to the root are those of twigs; the rest is leaves. Wood is
-          fitted again, twice, each time without the axes that look like leaves and what no axis explains. `true`: always;
-          `false`: never; `Leaf_removal::where_found`: if 2.5 % of the points are not explained by the first fit,
-          5 % are thick wood, and of the others 3.5 % lie in flat patches, or 16 % of all points lie deep among such that are
-          neither thick wood nor lines, unless the points lie in rows (`Skeleton_report::is_in_rows`). If only the third is
-          missing, there are no leaves, and one more fit goes without what strays from the wood: axes that do not look like
-          it, and points that no axis explains and that do not, either, away from the trunk; all are used again after it. For the
-          method `chains`
+      \np{do_remove_leaves} whether points of leaves are looked for and left out. After the first
+          fit, points of hollow sections are wood, and such whose surroundings and paths to the root
+          are those of twigs; the rest is leaves. Wood is fitted again, twice, each time without the
+          axes that look like leaves and what no axis explains. `true`: always; `false`: never;
+          `Leaf_removal::where_found`: if 2.5 % of the points are not explained by the first fit, 5
+          % are thick wood, and of the others 3.5 % lie in flat patches, or 16 % of all points lie
+          deep among such that are neither thick wood nor lines, unless the points lie in rows
+          (`Skeleton_report::is_in_rows`). If only the third is missing, there are no leaves, and
+          one more fit goes without what strays from the wood: axes that do not look like it, and
+          points that no axis explains and that do not, either, away from the trunk; all are used
+          again after it. For the method `chains`
         \nptype `bool` or `Leaf_removal`
         \npdefault `Leaf_removal::where_found`; with `wood_map` `false`
-      \np{point_branch_map} written by `extract()`: the branch of a point, an index in the result, or `npos`
+      \np{point_branch_map} written by `extract()`: the branch of a point, an index in the result,
+          or `npos`
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: `std::size_t`
         \npdefault none
-      \np{point_residual_map} written by `extract()`: distance from the surface of the branch, negative inside, 0 for points
-          without a branch; where stations are moved, of the moved point [L]
+      \np{point_residual_map} written by `extract()`: distance from the surface of the branch,
+          negative inside, 0 for points without a branch; where stations are moved, of the moved
+          point [L]
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: floating point
         \npdefault none
-      \np{point_is_dense_map} written by `extract()`: whether the point lies where the section of its branch was measured
+      \np{point_is_dense_map} written by `extract()`: whether the point lies where the section of
+          its branch was measured
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: `bool`
         \npdefault none
-      \np{point_is_leaf_map} written by `extract()`: whether the point was left out as a leaf, by `wood_map` or `do_remove_leaves`
+      \np{point_is_leaf_map} written by `extract()`: whether the point was left out as a leaf, by
+          `wood_map` or `do_remove_leaves`
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: `bool`
         \npdefault none
-      \np{normal_map} written by `extract()`: the unit vector from the axis of its branch to the point, which is the outward
-          normal of the branch; the null vector for points without a branch
+      \np{normal_map} written by `extract()`: the unit vector from the axis of its branch to the
+          point, which is the outward normal of the branch; the null vector for points without a
+          branch
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: a vector type
         \npdefault none
       \np{node_point_map} where the position of a vertex of the result is written
@@ -183,8 +199,9 @@ public:
         \npdefault none
     \npend
 
-    \throws Invalid_input if there are too few points, a coordinate is not finite or beyond 1e100, a parameter is out of
-            range, or the root or the given skeleton is farther from the points than these are from each other
+    \throws Invalid_input if there are too few points, a coordinate is not finite or beyond 1e100, a
+            parameter is out of range, or the root or the given skeleton is farther from the points
+            than these are from each other
   */
   explicit Tree_skeletonization(const PointRange& points,
                                 const NamedParameters& np = NamedParameters())
@@ -233,8 +250,9 @@ public:
   /*!
     Runs the stages that have not run, and writes the result.
 
-    \tparam Graph `Tree_skeleton<Kernel>`, or any model of `MutableGraph` of Boost with `node_point_map` and
-            `node_radius_map` given. It becomes a tree with edges from parent to child; the first vertex is the root
+    \tparam Graph `Tree_skeleton<Kernel>`, or any model of `MutableGraph` of Boost with
+            `node_point_map` and `node_radius_map` given. It becomes a tree with edges from parent
+            to child; the first vertex is the root
     \param tree replaced by the result; untouched if there is none or the callback stopped the work
   */
   template <class Graph>
@@ -275,7 +293,8 @@ public:
   /// @}
 
   /// \name What was found
-  /// Coordinates and lengths of the stages are those of `scan().frame`; the report is in the unit of the input.
+  /// Coordinates and lengths of the stages are those of `scan().frame`; the report is in the unit
+  /// of the input.
   /// @{
   const skeleton::Scan& scan() const { return m_session->scan(); }
   const skeleton::Layer_tree& layers() const { return m_session->layers(); }
@@ -357,7 +376,8 @@ private:
     return stations;
   }
 
-  /// Calls `f(i)` for every input point that a branch explains, side by side where the tag allows it.
+  /// Calls `f(i)` for every input point that a branch explains, side by side where the tag allows
+  /// it.
   template <class F>
   void for_each_explained(const F& f) const
   {
@@ -370,8 +390,8 @@ private:
                                              });
   }
 
-  /// Writes the maps over the points; nothing is there to write if there is no tree. Maps of the caller are written one point
-  /// after the other.
+  /// Writes the maps over the points; nothing is there to write if there is no tree. Maps of the
+  /// caller are written one point after the other.
   void write_points() const
   {
     const skeleton::Branch_tree& found = m_session->tree();

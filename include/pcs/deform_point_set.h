@@ -27,12 +27,13 @@ struct Deformation_handle
 
 namespace internal {
 
-/// Share of the callback's range for finding neighbours and samples; the rest is for the deformation.
+/// Share of the callback's range for finding neighbours and samples; the rest is for the
+/// deformation.
 constexpr double construction_share = 0.6;
 
 /*!
-  One session for one edit: `edit(session)` adds and moves the handles. The callback sees construction and deformation as
-  one task.
+  One session for one edit: `edit(session)` adds and moves the handles. The callback sees
+  construction and deformation as one task.
 */
 template <class ConcurrencyTag, class PointRange, class NamedParameters, class Edit>
 Deformation_report deform_once(PointRange& points, const NamedParameters& np, const Edit& edit)
@@ -63,12 +64,14 @@ Deformation_report deform_once(PointRange& points, const NamedParameters& np, co
 
 /*!
   \ingroup PkgPcsDeformationRef
-  \brief moves `points` so that the handles reach their targets while neighbourhoods keep their shape.
+  \brief moves `points` so that the handles reach their targets while neighbourhoods keep their
+      shape.
 
-  Same as one `Point_set_deformation` with one `deform()`: see there for the model, the named parameters, errors, cost
-  and determinism.
+  Same as one `Point_set_deformation` with one `deform()`: see there for the model, the named
+  parameters, errors, cost and determinism.
 
-  \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or `CGAL::Parallel_if_available_tag`
+  \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or
+      `CGAL::Parallel_if_available_tag`
   \param points a model of `RandomAccessRange`, modified in place through `point_map`
   \param handles range of `Deformation_handle`, at least one
   \return a `Deformation_report`: status, counts, energies, seconds per stage

@@ -11,24 +11,30 @@ namespace pcs {
 
 /*!
   \ingroup PkgPcsSkeletonRef
-  \brief finds the skeleton of a tree in a scan: nodes with radii, connected from the root to the tips.
+  \brief finds the skeleton of a tree in a scan: nodes with radii, connected from the root to the
+      tips.
 
-  Same as one `Tree_skeletonization` with one `extract()`: see there for the model, the named parameters, errors, cost and
-  determinism. The result is always one tree: connected, rooted, without cycles. What cannot be connected is counted in the
-  report and left out.
+  Same as one `Tree_skeletonization` with one `extract()`: see there for the model, the named
+  parameters, errors, cost and determinism. The result is always one tree: connected, rooted,
+  without cycles. What cannot be connected is counted in the report and left out.
 
   | scan | result |
   |---|---|
-  | fewer than `lowest_number_of_scan_points` different points, or one that is not finite | `Invalid_input` |
-  | a thin filled sheet (ground alone, a wall), unless `do_remove_ground(false)` | `Status::nothing_to_do`, `tree` untouched |
+  | fewer than `lowest_number_of_scan_points` different points, or one that is not finite |
+    `Invalid_input` |
+  | a thin filled sheet (ground alone, a wall), unless `do_remove_ground(false)` |
+    `Status::nothing_to_do`, `tree` untouched |
   | a lamp post, a stick | the post is the trunk |
   | a bush | its thickest stem is the root; other stems within reach are branches of it |
-  | two trees in one cloud | the one with more points at its foot, for its height; the other is counted as out of reach |
+  | two trees in one cloud | the one with more points at its foot, for its height; the other is
+    counted as out of reach |
   | a body that is no tree, such as a sphere | some tree within it |
 
-  \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or `CGAL::Parallel_if_available_tag`
+  \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or
+      `CGAL::Parallel_if_available_tag`
   \param points a model of `RandomAccessRange`
-  \param tree a `Tree_skeleton`, or a mutable graph of Boost with `node_point_map` and `node_radius_map`; replaced
+  \param tree a `Tree_skeleton`, or a mutable graph of Boost with `node_point_map` and
+      `node_radius_map`; replaced
   \return a `Skeleton_report`: status, counts, sizes of the tree, seconds per stage
 */
 template <class ConcurrencyTag = CGAL::Parallel_if_available_tag,

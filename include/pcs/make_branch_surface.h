@@ -40,24 +40,28 @@ struct Branch_surface_report
 
 /*!
   \ingroup PkgPcsSkeletonRef
-  \brief makes the surface of a tree: generalized cylinders along the branches, joined to one closed mesh.
+  \brief makes the surface of a tree: generalized cylinders along the branches, joined to one closed
+      mesh.
 
-  Every branch is a tube through its sections, whose frames do not twist; the polygon of a ring has the area of its section,
-  and tubes end in a lid at the tip. Where the axis of a branch leaves the wood of its parent, its tube is prolonged backwards
-  to a loop on the parent's surface and sewn into a hole there, so that there are no walls inside. Every edge has two triangles,
-  which run through it in opposite directions. Branches that stay in the wood of their parent have no surface. Where siblings
-  leave no room for a hole, a branch is a closed tube that begins inside of its parent. Thin tubes that touch or bend sharply
-  may run through themselves or each other.
+  Every branch is a tube through its sections, whose frames do not twist; the polygon of a ring has
+  the area of its section, and tubes end in a lid at the tip. Where the axis of a branch leaves the
+  wood of its parent, its tube is prolonged backwards to a loop on the parent's surface and sewn
+  into a hole there, so that there are no walls inside. Every edge has two triangles, which run
+  through it in opposite directions. Branches that stay in the wood of their parent have no surface.
+  Where siblings leave no room for a hole, a branch is a closed tube that begins inside of its
+  parent. Thin tubes that touch or bend sharply may run through themselves or each other.
 
   \param tree a tree; positions and radii are finite
   \param points replaced by the vertices
   \param triangles replaced by triples of indices into `points`, counter-clockwise seen from outside
   \param np
   \npbegin
-    \np{tolerance} largest distance of the mesh from the sections [L]; larger values give fewer triangles
+    \np{tolerance} largest distance of the mesh from the sections [L]; larger values give fewer
+        triangles
       \nptype floating point, `>= 0`
       \npdefault `default_surface_tolerance` times the largest radius
-    \np{do_join} whether branches are joined to their parents; else each is a closed tube that begins inside its parent
+    \np{do_join} whether branches are joined to their parents; else each is a closed tube that
+        begins inside its parent
       \nptype `bool`
       \npdefault `true`
   \npend

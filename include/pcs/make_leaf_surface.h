@@ -33,10 +33,12 @@ constexpr double default_leaf_share = 0.008;
 
 /*!
   \ingroup PkgPcsSkeletonRef
-  \brief makes leaves, which the scan does not show one by one, with random orientations on the fine branches.
+  \brief makes leaves, which the scan does not show one by one, with random orientations on the fine
+      branches.
 
-  The last step of chapter 3 of \cite aiteanu2022: for the eye only. A leaf is a rhombus of two triangles, half as wide as long,
-  that begins on the bark. Nothing else of pcs makes leaves, so a tree has none unless this function is called.
+  The last step of chapter 3 of \cite aiteanu2022: for the eye only. A leaf is a rhombus of two
+  triangles, half as wide as long, that begins on the bark. Nothing else of pcs makes leaves, so a
+  tree has none unless this function is called.
 
   \param tree a tree; positions and radii are finite
   \param points replaced by the vertices, four for each leaf

@@ -16,12 +16,15 @@ namespace pcs {
 
 /*!
   \ingroup PkgPcsShapeSpaceRef
-  \brief computes the tree at `lambda` on the geodesic from tree `a` (0) to tree `b` (1), or beyond, with its points.
+  \brief computes the tree at `lambda` on the geodesic from tree `a` (0) to tree `b` (1), or beyond,
+      with its points.
 
-  Same as one `Orl_shape_space` with two `add()`, `build()`, `geodesic()`, `skeleton()` and `points()`: see there for the
-  model, errors, cost and determinism. For more than one `lambda` use the class: nearly all time goes into `build()`.
+  Same as one `Orl_shape_space` with two `add()`, `build()`, `geodesic()`, `skeleton()` and
+  `points()`: see there for the model, errors, cost and determinism. For more than one `lambda` use
+  the class: nearly all time goes into `build()`.
 
-  \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or `CGAL::Parallel_if_available_tag`
+  \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or
+      `CGAL::Parallel_if_available_tag`
   \param tree_a, tree_b graphs, see `Orl_shape_space::add()`
   \param scan_a, scan_b points of the trees; may be empty
   \param lambda place on the path, finite [-]
@@ -29,7 +32,8 @@ namespace pcs {
   \param out_points a container with `resize()`, replaced
   \param np named parameters of `build()`, `geodesic()` and `points()`
   \param np_a, np_b named parameters of `add()` for the trees
-  \return the report of `build()`; unless its status is `Status::converged`, the outputs are unchanged
+  \return the report of `build()`; unless its status is `Status::converged`, the outputs are
+      unchanged
 */
 template <class ConcurrencyTag = CGAL::Parallel_if_available_tag,
           class TreeGraphA,

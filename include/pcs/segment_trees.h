@@ -75,22 +75,26 @@ inline std::vector<std::string> warnings(const Segmentation_report& r)
   \ingroup PkgPcsSkeletonRef
   \brief finds the trees in the scan of a stand, and tells for every point whose it is.
 
-  A stem is an axis that begins near the ground, is not much thinner there, and rises steeply by half the breast height at
-  least. Stems whose feet are nearer than three radii, a tenth of the breast height and as much as one of them is above the
-  ground are one tree. Where crowns touch, the points of an axis belong to the tree whose branch it most likely prolongs, by
-  the same odds of distance, direction and radius that `extract_tree_skeleton()` joins axes by; points without an axis to the
-  tree whose foot is nearest along the points. Ground, walls and outliers are left out as there, but for the ground's part of
-  the stems. One point is looked at in every cube of a 65th of the breast height, and decides for the others. Trees of which the
-  points are farther apart than those of others are looked for once more in cubes three times as large; they get what they
-  have there of such points, and of those that are nobody's.
+  A stem is an axis that begins near the ground, is not much thinner there, and rises steeply by
+  half the breast height at least. Stems whose feet are nearer than three radii, a tenth of the
+  breast height and as much as one of them is above the ground are one tree. Where crowns touch, the
+  points of an axis belong to the tree whose branch it most likely prolongs, by the same odds of
+  distance, direction and radius that `extract_tree_skeleton()` joins axes by; points without an
+  axis to the tree whose foot is nearest along the points. Ground, walls and outliers are left out
+  as there, but for the ground's part of the stems. One point is looked at in every cube of a 65th
+  of the breast height, and decides for the others. Trees of which the points are farther apart than
+  those of others are looked for once more in cubes three times as large; they get what they have
+  there of such points, and of those that are nobody's.
 
   The points of one tree are a scan for `extract_tree_skeleton()`.
 
-  \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or `CGAL::Parallel_if_available_tag`
-  \param points a model of `RandomAccessRange`; at least `lowest_number_of_scan_points` different ones,
-         whose elements may take their trees
-  \param point_tree_map a model of `WritablePropertyMap`, key: element of `points`, value: a type that `std::size_t` converts to.
-         Takes the index of the tree in the report, or `npos`; untouched if the callback stopped the work
+  \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or
+      `CGAL::Parallel_if_available_tag`
+  \param points a model of `RandomAccessRange`; at least `lowest_number_of_scan_points` different
+         ones, whose elements may take their trees
+  \param point_tree_map a model of `WritablePropertyMap`, key: element of `points`, value: a type
+         that `std::size_t` converts to. Takes the index of the tree in the report, or `npos`;
+         untouched if the callback stopped the work
   \param np
   \npbegin
     \np{point_map} where a position is read
@@ -111,9 +115,11 @@ inline std::vector<std::string> warnings(const Segmentation_report& r)
   \npend
   \return a `Segmentation_report`
 
-  \throws Invalid_input if there are too few points, a coordinate is not finite or beyond 1e100, or a parameter is out of range
+  \throws Invalid_input if there are too few points, a coordinate is not finite or beyond 1e100, or
+      a parameter is out of range
   \par Complexity
-  \f$O(n \log n)\f$ in time, 350 bytes per point that is looked at, and some 70 bytes per other point.
+  \f$O(n \log n)\f$ in time, 350 bytes per point that is looked at, and some 70 bytes per other
+      point.
   \par Determinism
   Same result for every number of threads and for the sequential tag.
 */

@@ -77,7 +77,8 @@ BOOST_AUTO_TEST_CASE(a_tree_comes_back_bit_by_bit)
 
 BOOST_AUTO_TEST_CASE(types_tell_branches_where_they_are_orders)
 {
-  // node, parent, type: node 2 continues the trunk, though 3 is thicker; parents stand behind their children
+  // node, parent, type: node 2 continues the trunk, though 3 is thicker; parents stand behind their
+  // children
   const auto branches = [&](const std::string& types) {
     const char* const rows[] = {"3 ", "2 ", "1 ", "4 "};
     const char* const places[] = {" 1 0 1 0.3 1\n",

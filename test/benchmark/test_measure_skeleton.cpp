@@ -26,7 +26,8 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 const auto near = boost::test_tools::tolerance(1e-9);
 
-/// A trunk of radius 0.1 from z = 0 to 2 with a branch of radius 0.03 and length 1 at z = 1, along x.
+/// A trunk of radius 0.1 from z = 0 to 2 with a branch of radius 0.03 and length 1 at z = 1, along
+/// x.
 Tree make_cross()
 {
   return pcs_test::make_tree<Kernel>({{pcs::npos, 0, 0, 0, 0, 0.1},

@@ -31,8 +31,8 @@ using Table = pcs::IO::Point_table;
 
 constexpr std::size_t number_of_pillar_points = 2000, number_of_far_points = 100;
 
-/// A pillar of radius 1 and height 10 with its foot at (1000.1, -20.3, 5.7), then a lump that nothing connects to it.
-/// `status` is the tenth of the height, 0 to 9; 10 in the lump.
+/// A pillar of radius 1 and height 10 with its foot at (1000.1, -20.3, 5.7), then a lump that
+/// nothing connects to it. `status` is the tenth of the height, 0 to 9; 10 in the lump.
 inline Table make_cloud()
 {
   std::vector<Table::Point_3> points;

@@ -97,9 +97,11 @@ BOOST_FIXTURE_TEST_CASE(every_selector_and_every_motion_reaches_its_target, Prog
   const Table result = deform(parse(R"({"handles": [
     {"select": {"box": [[990, -30, 6.7], [1010, -10, 0]]}, "fixed": true},
     {"select": {"sphere": {"center": [1000.1, -20.3, 15.7], "radius": 1.5}},
-     "rotate": {"axis": [0, 2, 1], "degrees": 50, "center": [1001, -20, 12]}, "translate": [0.5, 1, -0.25],
+     "rotate": {"axis": [0, 2, 1], "degrees": 50, "center": [1001, -20, 12]},
+"translate": [0.5, 1, -0.25],
      "scale": 1.25},
-    {"select": {"property": "status", "equals": 5}, "matrix": [0, -1, 0, 980, 1, 0, 0, -1020, 0, 0, 1, 0.5,
+    {"select": {"property": "status", "equals": 5},
+"matrix": [0, -1, 0, 980, 1, 0, 0, -1020, 0, 0, 1, 0.5,
                                                                0, 0, 0, 1]},
     {"select": {"indices": [700, 701, 702, 703, 703, 700]}, "translate": [0, 0.25, 0]}]})"));
   std::vector<std::size_t> box, sphere;

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The program deform_point_set on invalid input: exit code 1, a message that helps, no file touched.
+// The program deform_point_set on invalid input: exit code 1, a message that helps, no file
+// touched.
 
 #include <boost/test/unit_test.hpp>
 
@@ -18,7 +19,8 @@ namespace {
 const std::string arguments =
     "--input in.ply --edit edit.json --output out.ply --report report.json";
 
-/// Runs `arguments`, which must fail and say so in one or two lines with these words, and must leave files alone.
+/// Runs `arguments`, which must fail and say so in one or two lines with these words, and must
+/// leave files alone.
 void refuses(Program_run& program,
              const std::string& args,
              const std::vector<std::string>& words,
@@ -198,7 +200,8 @@ BOOST_FIXTURE_TEST_CASE(overlapping_handles_are_named_with_the_number_of_points,
       {"/handles/0 and /handles/1 overlap: both select 2 points, the first is number 150"});
   refuses_handle(
       *this,
-      R"({"select": {"indices": [199]}, "fixed": true}, {"select": {"indices": [199]}, "scale": 2})",
+      R"({"select": {"indices": [199]}, "fixed": true}, {"select": {"indices": [199]},
+"scale": 2})",
       {"/handles/0 and /handles/1 overlap: both select 1 point, number 199", "1 more pair"});
 }
 
@@ -219,7 +222,8 @@ BOOST_FIXTURE_TEST_CASE(mutated_edits_end_with_success_or_one_message, Program_r
       Table(std::vector<Table::Point_3>(input.points().begin(), input.points().begin() + 60)));
   const std::string edit =
       R"({"handles":[{"select":{"indices":[0,1,2]},"fixed":true,"softness":1},{"select":{"box":[[0,0,5],[2e3,9,7]]},)"
-      R"("rotate":{"axis":[0,1,0],"degrees":30,"center":[1,2,3]},"translate":[1,0,0],"scale":1.5}]})";
+      R"("rotate":{"axis":[0,1,0],"degrees":30,"center":[1,2,3]},"translate":[1,0,0],
+"scale":1.5}]})";
   const std::vector<std::string> pieces =
       {"-1", "1e308", "-1e308", "1e-320", "null", "[]", "{}", "\"\"", "0", "true", ",", "}", "]"};
   std::mt19937 random(7);

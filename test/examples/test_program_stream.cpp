@@ -168,7 +168,8 @@ BOOST_FIXTURE_TEST_CASE(a_large_file_is_close_to_the_memory_mode, Large_run)
   BOOST_TEST_MESSAGE("largest distance " << error << ", of normals " << normal_error << ", mean "
                                          << std::sqrt(squared_normal_error));
   BOOST_TEST(error < 0.012 * object_size);
-  // The crease beside the turned handle is not sampled alike: a few hundred normals there differ by more than 0.1.
+  // The crease beside the turned handle is not sampled alike: a few hundred normals there differ by
+  // more than 0.1.
   BOOST_TEST(normal_error < 0.3);
   BOOST_TEST(squared_normal_error < 0.04 * 0.04);
 

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The program extract_tree_skeleton: its files agree with each other, bad input is refused, a batch goes on.
+// The program extract_tree_skeleton: its files agree with each other, bad input is refused, a batch
+// goes on.
 
 #include <pcs/IO/read_swc.h>
 
@@ -30,7 +31,8 @@ namespace {
 /// Far from the origin, as maps have it: only doubles hold millimetres there.
 constexpr double far_x = 5e5, far_y = 5e6;
 
-/// A stem of radius 0.1 and height 2.5 with a branch of radius 0.03 to the side, as text with 17 digits.
+/// A stem of radius 0.1 and height 2.5 with a branch of radius 0.03 to the side, as text with 17
+/// digits.
 std::string fork_text(double scale = 1)
 {
   std::string text;

@@ -95,8 +95,9 @@ BOOST_AUTO_TEST_CASE(noise_on_the_trunk_is_as_specified_and_the_radius_has_no_bi
   scanner.range_noise = 0.003;
   pcs::scan_tree(trunk, scan, scanner, np::random_seed(5));
   const Moments noisy = radial_error(scan, 0.2, 3);
-  // Across the stem the cosine of the angle of incidence is 1 - s^2, s even in [0, 1]: mean square 2/3. At 10 m the noise is
-  // 1.2 times as large. What moves along the surface adds (noise sin)^2 / 2r outwards.
+  // Across the stem the cosine of the angle of incidence is 1 - s^2, s even in [0, 1]: mean square
+  // 2/3. At 10 m the noise is 1.2 times as large. What moves along the surface adds (noise sin)^2 /
+  // 2r outwards.
   const double sigma = 0.003 * (1 + 9.8 / 50);
   BOOST_TEST(noisy.deviation == sigma * std::sqrt(2.0 / 3), boost::test_tools::tolerance(0.03));
   const double expected = sigma * sigma / 3 / (2 * 0.2);
@@ -199,8 +200,8 @@ BOOST_AUTO_TEST_CASE(no_point_lies_behind_a_nearer_surface)
     const Eigen::Vector3d ray = p - o;
     const double length = ray.norm();
     for (std::size_t v = 1; v < num_vertices(tree); ++v) {
-      // the nearest point of the ray to the middle of an edge, and that of the edge to it; a core of half the radius is
-      // surely inside the wood
+      // the nearest point of the ray to the middle of an edge, and that of the edge to it; a core
+      // of half the radius is surely inside the wood
       const std::size_t parent = pcs::parent_node(v, tree);
       const Eigen::Vector3d a = vector(tree[parent].point), b = vector(tree[v].point);
       const Eigen::Vector3d middle = 0.5 * (a + b);
@@ -259,8 +260,9 @@ BOOST_AUTO_TEST_CASE(wide_beams_thicken_twigs_and_make_ghosts)
     radius[is_wide] = radial_error(scan, 0, 2).mean;
   }
   BOOST_TEST(radius[0] == 0.004, boost::test_tools::tolerance(0.02));
-  // Rays beside the middle are w = 3 mm |cos(roll)| off, at 10 m. A beam whose middle passes at y from the axis, r < y < r + w,
-  // gives a point with the chance 1/2, at the distance sqrt(y^2 + r^2 - (y - w)^2): on average over y and roll 4.36 mm.
+  // Rays beside the middle are w = 3 mm |cos(roll)| off, at 10 m. A beam whose middle passes at y
+  // from the axis, r < y < r + w, gives a point with the chance 1/2, at the distance sqrt(y^2 + r^2
+  // - (y - w)^2): on average over y and roll 4.36 mm.
   BOOST_TEST(radius[1] == 0.00436, boost::test_tools::tolerance(0.01));
 
   Tree tree;

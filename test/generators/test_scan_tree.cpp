@@ -291,7 +291,8 @@ BOOST_AUTO_TEST_CASE(any_kernel_will_do)
 
 BOOST_AUTO_TEST_CASE(a_tree_without_nodes_at_the_joints_is_whole)
 {
-  // the branch begins 0.6 away from the node that carries it; a point half way is labelled with its first node
+  // the branch begins 0.6 away from the node that carries it; a point half way is labelled with its
+  // first node
   const Tree tree = pcs_test::make_tree<Kernel>({{pcs::npos, 0, 0, 0, 0, 0.1},
                                                  {0, 0, 0, 0, 1, 0.1},
                                                  {1, 0, 0, 0, 2, 0.1},

@@ -35,7 +35,8 @@ pcs::Virtual_scanner perfect()
   return s;
 }
 
-/// Checks that all points but few lie within `tolerance` of where `distance` is 0, on average closer, and unbiased.
+/// Checks that all points but few lie within `tolerance` of where `distance` is 0, on average
+/// closer, and unbiased.
 void check_surface(const Tree& tree,
                    double tolerance,
                    const std::function<double(const Point_3&)>& distance)

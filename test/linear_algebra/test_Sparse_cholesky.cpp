@@ -46,7 +46,8 @@ Eigen::MatrixXd random_spd(Eigen::Index n, unsigned seed)
   return a;
 }
 
-/// Laplacian of a square grid, one corner held: supernodes of several columns, fill between distant ones.
+/// Laplacian of a square grid, one corner held: supernodes of several columns, fill between distant
+/// ones.
 Eigen::MatrixXd grid_laplacian(Eigen::Index side)
 {
   const Eigen::Index n = side * side;

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Small symmetric matrices: the residual of their eigenvectors, singular systems, matrices that are not finite.
+// Small symmetric matrices: the residual of their eigenvectors, singular systems, matrices that are
+// not finite.
 
 #include <pcs/linear_algebra/small_symmetric.h>
 #include <support/point_clouds.h>

@@ -51,8 +51,9 @@ std::vector<std::pair<double, std::size_t>> others(const Points& points, std::si
   return result;
 }
 
-/// Every edge is wanted by one of its ends, and every end has what it wants. With `ties` the choice among points at
-/// the same distance is free, but points strictly nearer than the k-th must be there.
+/// Every edge is wanted by one of its ends, and every end has what it wants. With `ties` the choice
+/// among points at the same distance is free, but points strictly nearer than the k-th must be
+/// there.
 void check_against_brute_force(const Points& points, std::size_t k)
 {
   const auto g = nearest_neighbor_graph<Any_tag>(points, k);

@@ -8,7 +8,8 @@
 #include <new>
 
 #if defined(__GNUC__) && !defined(__clang__)
-// GCC 12 takes an inlined operator delete for a call of free() on memory of the operator new that it replaces.
+// GCC 12 takes an inlined operator delete for a call of free() on memory of the operator new that
+// it replaces.
 #pragma GCC diagnostic ignored "-Wmismatched-new-delete"
 #endif
 

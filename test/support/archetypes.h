@@ -13,7 +13,8 @@
 
 namespace pcs_test {
 
-/// Three coordinates and no more: no default constructor, no comparison, no assignment of a coordinate.
+/// Three coordinates and no more: no default constructor, no comparison, no assignment of a
+/// coordinate.
 template <class FT_>
 class Triple_archetype
 {
@@ -39,7 +40,8 @@ private:
   std::size_t m_index;
 };
 
-/// Reads by value, writes through `put`; not default constructible, not assignable, no `operator[]`.
+/// Reads by value, writes through `put`; not default constructible, not assignable, no
+/// `operator[]`.
 template <class Value>
 class Map_archetype
 {

@@ -30,7 +30,8 @@ using Vec3 = Eigen::Vector3d;
 using Triangle = std::array<std::uint32_t, 3>;
 constexpr double pi = 3.14159265358979323846;
 
-/// A shape with two or more handles; `exact` and `exact_rotation` give the closed-form deformation where there is one.
+/// A shape with two or more handles; `exact` and `exact_rotation` give the closed-form deformation
+/// where there is one.
 struct Deformation_case
 {
   std::string name;

@@ -7,7 +7,8 @@
 
 namespace pcs_test {
 
-/// Three draws, the third coordinate first. As arguments of one call they come in an order that compilers choose.
+/// Three draws, the third coordinate first. As arguments of one call they come in an order that
+/// compilers choose.
 template <class Vector, class Draw>
 Vector drawn(const Draw& draw)
 {

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A tree with nothing to spare: what compiles with it compiles with every model of the concepts of Boost.Graph.
+// A tree with nothing to spare: what compiles with it compiles with every model of the concepts of
+// Boost.Graph.
 
 #ifndef PCS_TEST_SUPPORT_GRAPH_ARCHETYPES_H
 #define PCS_TEST_SUPPORT_GRAPH_ARCHETYPES_H
@@ -14,7 +15,8 @@
 
 namespace pcs_test {
 
-/// A model of `VertexListGraph` and `IncidenceGraph`, and of no other concept; descriptors are no integers.
+/// A model of `VertexListGraph` and `IncidenceGraph`, and of no other concept; descriptors are no
+/// integers.
 class Tree_archetype
 {
 public:

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A plant seen at three times: how well the middle is predicted from the ends, by the space of trees and by simpler means.
+// A plant seen at three times: how well the middle is predicted from the ends, by the space of
+// trees and by simpler means.
 
 #ifndef PCS_TEST_SUPPORT_GROWTH_SERIES_H
 #define PCS_TEST_SUPPORT_GROWTH_SERIES_H
@@ -76,8 +77,8 @@ inline Tree read_plant_graph(const std::string& path)
   return tree;
 }
 
-/// A scan with its graph, thinned evenly in the order of the file. Graphs of some days end before the tips of leaves: all are
-/// drawn out.
+/// A scan with its graph, thinned evenly in the order of the file. Graphs of some days end before
+/// the tips of leaves: all are drawn out.
 inline Seen_plant
 read_plant(const std::string& scan, const std::string& graph, std::size_t most_points)
 {
@@ -199,7 +200,8 @@ inline std::vector<Vec3> thinned(const std::vector<Vec3>& points, std::size_t mo
   return result;
 }
 
-/// The first point in each cell of a grid: neither dense places nor points that stand twice count more than others.
+/// The first point in each cell of a grid: neither dense places nor points that stand twice count
+/// more than others.
 inline std::vector<Vec3> evened(const std::vector<Vec3>& points, double cell)
 {
   std::set<std::array<long, 3>> taken;
@@ -213,8 +215,8 @@ inline std::vector<Vec3> evened(const std::vector<Vec3>& points, double cell)
   return result;
 }
 
-/// Nearest points both ways lay `points` on `target`, again and again from a pose that is near; if `up` is not null, by turns
-/// about it only.
+/// Nearest points both ways lay `points` on `target`, again and again from a pose that is near; if
+/// `up` is not null, by turns about it only.
 inline Pose improve_pose(Pose pose,
                          const std::vector<Vec3>& points,
                          const std::vector<Vec3>& target,
@@ -257,9 +259,9 @@ inline Pose improve_pose(Pose pose,
   return pose;
 }
 
-/// The pose that lays `points` on `target`: from all turns about `up`, and unless plants are known to stand upright from
-/// tilts of 30 degrees as well, with both centers in one place. The best of the improved ones; where the search begins does
-/// not depend on how `points` lie.
+/// The pose that lays `points` on `target`: from all turns about `up`, and unless plants are known
+/// to stand upright from tilts of 30 degrees as well, with both centers in one place. The best of
+/// the improved ones; where the search begins does not depend on how `points` lie.
 inline Pose align(const std::vector<Vec3>& points,
                   const std::vector<Vec3>& target,
                   const Vec3& up,
@@ -326,9 +328,10 @@ struct Prediction
   double turn;           ///< likewise [rad]
 };
 
-/// Pots are put down anew every day: the ends are aligned before, by their points for linear morphing and by the space itself
-/// for the geodesic, and each prediction before it is measured. Scans are dense in some places and the points of a prediction stand
-/// twice in some: all clouds are evened first. All alike.
+/// Pots are put down anew every day: the ends are aligned before, by their points for linear
+/// morphing and by the space itself for the geodesic, and each prediction before it is measured.
+/// Scans are dense in some places and the points of a prediction stand twice in some: all clouds
+/// are evened first. All alike.
 inline Prediction predict(const Series& series)
 {
   const std::vector<Vec3> one = to_eigen(series.first.scan), seen = to_eigen(series.middle.scan),

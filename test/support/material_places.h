@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Points of two scans of a virtual tree at two ages: whether partners lie on the same branch, and on the same wood.
+// Points of two scans of a virtual tree at two ages: whether partners lie on the same branch, and
+// on the same wood.
 
 #ifndef PCS_TEST_SUPPORT_MATERIAL_PLACES_H
 #define PCS_TEST_SUPPORT_MATERIAL_PLACES_H
@@ -90,8 +91,9 @@ private:
   std::vector<std::size_t> m_next, m_previous;
 };
 
-/// Shares of the points of the young tree. Its wood stays where it is, so the truth is the distance from the base of the
-/// branch; a branch that stretches evenly would keep the share of its length instead.
+/// Shares of the points of the young tree. Its wood stays where it is, so the truth is the distance
+/// from the base of the branch; a branch that stretches evenly would keep the share of its length
+/// instead.
 struct Material_accuracy
 {
   std::size_t number_of_points = 0;

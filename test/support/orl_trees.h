@@ -147,8 +147,8 @@ inline Tree random_tree(unsigned seed, int children = 6, int orders = 3)
   return make_tree(random_branches(seed, children, orders));
 }
 
-/// `place(u, v, s, off)` at random shares `s` of edges, at `off` from their axes, evenly over the tubes of all edges that
-/// have a length.
+/// `place(u, v, s, off)` at random shares `s` of edges, at `off` from their axes, evenly over the
+/// tubes of all edges that have a length.
 template <class Place>
 std::vector<Point> sample_tubes(const Tree& tree, std::size_t n, unsigned seed, const Place& place)
 {
@@ -192,8 +192,8 @@ inline std::vector<Point> tube_points(const Tree& tree, std::size_t n, unsigned 
   });
 }
 
-/// Where one edge goes on as another, both tubes end at the plane that halves the angle between them: the surface is
-/// whole on the outer side of bends, and overlaps on the inner side.
+/// Where one edge goes on as another, both tubes end at the plane that halves the angle between
+/// them: the surface is whole on the outer side of bends, and overlaps on the inner side.
 inline std::vector<Point> whole_tube_points(const Tree& tree, std::size_t n, unsigned seed)
 {
   std::vector<std::vector<Vec3>> into(num_vertices(tree)), out_of(num_vertices(tree));

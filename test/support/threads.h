@@ -14,7 +14,8 @@
 
 namespace pcs_test {
 
-/// Without TBB the work simply runs. More threads than cores are really started: races do not wait for cores.
+/// Without TBB the work simply runs. More threads than cores are really started: races do not wait
+/// for cores.
 template <class Work>
 void with_threads(int number_of_threads, const Work& work)
 {

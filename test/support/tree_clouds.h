@@ -96,8 +96,8 @@ private:
   std::normal_distribution<double> m_normal;
 };
 
-/// What is wrong with a skeleton; empty if nothing is. One root, one parent for all others, finite numbers, branches that
-/// hold every node once.
+/// What is wrong with a skeleton; empty if nothing is. One root, one parent for all others, finite
+/// numbers, branches that hold every node once.
 inline std::string fault_of(const Tree& tree)
 {
   const pcs::Tree_bundle& bundle = tree[boost::graph_bundle];

@@ -47,7 +47,8 @@ struct Row
   double x, y, z, radius;
 };
 
-/// The tree of these rows, with round sections; orders and parents of the branches follow from the rows.
+/// The tree of these rows, with round sections; orders and parents of the branches follow from the
+/// rows.
 template <class Kernel>
 pcs::Tree_skeleton<Kernel> make_tree(const std::vector<Row>& rows)
 {
@@ -77,7 +78,8 @@ pcs::Tree_skeleton<Kernel> make_tree(const std::vector<Row>& rows)
   return tree;
 }
 
-/// A trunk of 3 nodes with a branch of 3 nodes at its middle, and a twig of 2 nodes at that branch's middle.
+/// A trunk of 3 nodes with a branch of 3 nodes at its middle, and a twig of 2 nodes at that
+/// branch's middle.
 template <class Kernel>
 pcs::Tree_skeleton<Kernel> make_small_tree()
 {

@@ -31,8 +31,8 @@ struct Trees_of_parameters
   Eigen::MatrixXd known; ///< age, by the share of the height, and the other, per tree
 };
 
-/// Of each tree 5 % of the branches are lost; the others are turned by 0.05 rad about each axis, and 5 % longer or
-/// shorter.
+/// Of each tree 5 % of the branches are lost; the others are turned by 0.05 rad about each axis,
+/// and 5 % longer or shorter.
 inline Trees_of_parameters
 grow_trees(pcs::Tree_habit habit, Second_parameter second, std::uint64_t seed, int n)
 {

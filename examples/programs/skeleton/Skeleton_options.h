@@ -82,8 +82,8 @@ and `leaf` (1: left out as a leaf).
 Several scans with --folder DIR: each gives DIR/NAME.swc, the results of --also (DIR/NAME_mesh.ply,
 DIR/NAME_cylinders.csv, DIR/NAME_edges.ply, DIR/NAME_points.ply), and a line of JSON in
 DIR/batch.jsonl. A failed scan gets a line with its error, and the batch continues. When it is
-started again, the batch skips scans that have succeeded; it replaces the results of scans or options
-that have changed.
+started again, the batch skips scans that have succeeded; it replaces the results of scans or
+options that have changed.
 
 Exit codes: 0 success, 1 bad input or usage, or a scan of several failed, 2 internal error.)";
 }

@@ -19,7 +19,8 @@ namespace IO {
 
 /*!
   \ingroup PkgPcsIORef
-  \brief writes the correspondences of two trees as text; `read_correspondences()` gives them back unchanged.
+  \brief writes the correspondences of two trees as text; `read_correspondences()` gives them back
+      unchanged.
 
   The file is complete or absent.
   \throws pcs::IO_error when the file cannot be written

@@ -90,7 +90,8 @@ void write_cylinders(const std::string& path, const Tree_skeleton<Kernel>& tree)
 
 /*!
   \ingroup PkgPcsIORef
-  \brief writes the nodes of a tree skeleton as vertices with `radius`, `branch` and `order`, and its edges as edges of a PLY file.
+  \brief writes the nodes of a tree skeleton as vertices with `radius`, `branch` and `order`, and
+      its edges as edges of a PLY file.
 
   \throws pcs::IO_error when the file cannot be written
   \throws pcs::Invalid_input when the graph is not a tree below its root, or a number is not finite

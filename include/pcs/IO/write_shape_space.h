@@ -169,7 +169,8 @@ private:
 
 /*!
   \ingroup PkgPcsIORef
-  \brief writes what `Orl_shape_space::data()` gives as text; `read_shape_space()` gives it back unchanged.
+  \brief writes what `Orl_shape_space::data()` gives as text; `read_shape_space()` gives it back
+      unchanged.
 
   The file is complete or absent.
   \throws pcs::IO_error when the file cannot be written

@@ -10,18 +10,21 @@ namespace pcs {
 /// How the handles' rotations are blended over the points between them.
 enum class Rotation_field {
   geodesic, ///< evenly along the rotation group, any number of turns (default)
-  quaternion ///< the dissertation's: unit quaternions blended linearly, then normalised; up to 360 degrees
+  /// the dissertation's: unit quaternions blended linearly, then normalised; up to 360 degrees
+  quaternion
 };
 
 /// How the nearest samples of a point are found.
 enum class Sample_search {
-  regions, ///< the nearest among the samples whose regions touch that of the point, or touch those (default)
+  /// the nearest among the samples whose regions touch that of the point, or touch those (default)
+  regions,
   breadth_first_hops ///< the dissertation's Algorithm 1: by number of hops on the neighbour graph
 };
 
 /// How much a sample moves a point.
 enum class Sample_weights {
-  compact, ///< (1 - (d / d_{K+1})^2)^2: zero where a sample leaves the K nearest, hence continuous (default)
+  /// (1 - (d / d_{K+1})^2)^2: zero where a sample leaves the K nearest, hence continuous (default)
+  compact,
   inverse_square ///< the dissertation's (2.6): 1 / d^2, which jumps there
 };
 

@@ -16,7 +16,8 @@ namespace pcs {
 
 /*!
   \ingroup PkgPcsShapeSpaceRef
-  \brief The correspondences of an `Orl_shape_space`; they only make sense with the trees they were computed for.
+  \brief The correspondences of an `Orl_shape_space`; they only make sense with the trees they were
+      computed for.
 */
 struct Orl_correspondences
 {

@@ -13,15 +13,18 @@ namespace pcs {
 enum class Branch_growth {
   any,            ///< along branches, unless growth at tips explains clearly more
   along_branches, ///< everywhere: a branch is stretched, and what hangs on it moves along
-  at_tips ///< what is there stays; the two trees are measured in the same unit, and the shorter of two branches is the
-          ///< beginning of the longer one
+  /// what is there stays; the two trees are measured in the same unit, and the shorter of two
+  /// branches is the
+  at_tips
+  ///< beginning of the longer one
 };
 
-/// At a fork, a child whose continuation has at least this share of the longest one may continue the branch.
+/// At a fork, a child whose continuation has at least this share of the longest one may continue
+/// the branch.
 constexpr double default_fork_ratio = 0.8;
 
-/// Weights of the energy of a matching. All terms are lengths in units of the longest path of each tree, so
-/// that size does not matter.
+/// Weights of the energy of a matching. All terms are lengths in units of the longest path of each
+/// tree, so that size does not matter.
 struct Matching_weights
 {
   Branch_growth growth = Branch_growth::any; ///< for two trees; spaces of more stretch branches
@@ -35,7 +38,8 @@ struct Matching_weights
   double carried = 0.1; ///< of the parents' turn in that of their children [-]
   bool is_carried = true; ///< whether turns of parents are carried to their children
   bool is_published =
-      false; ///< the text's energy: no turns, `single` is 1, positions in units of the parent's length
+      /// the text's energy: no turns, `single` is 1, positions in units of the parent's length
+      false;
   double fork_ratio = default_fork_ratio;       ///< see `Branch_paths`
   double trunk_fork_ratio = default_fork_ratio; ///< the same for the trunk, if it is less
   std::size_t number_of_paths = 6; ///< candidates for the main path of a branch; 1: the longest
@@ -57,10 +61,13 @@ enum class Virtual_direction {
 
 /// How the orientation of an edge is measured.
 enum class Orl_orientation {
-  gauge_fixed, ///< in the frame of the first edge of the branch, and that in the frame of an edge of the parent; twists are
-               ///< chosen so that trees differ as little as possible
+  /// in the frame of the first edge of the branch, and that in the frame of an edge of the parent;
+  /// twists are
+  gauge_fixed,
+  ///< chosen so that trees differ as little as possible
   transported, ///< in the frame of the edge before, transported from the root without twist
-  world_axes ///< in the axes of the input, as in the text: turning a parent does not carry its children
+  /// in the axes of the input, as in the text: turning a parent does not carry its children
+  world_axes
 };
 
 /// Ways to join the differences of all coordinates.
@@ -101,8 +108,9 @@ struct Transport_options
   Point_weights weights = Point_weights::area;
   bool is_squared =
       true; ///< cost is the squared distance, as a 2-Wasserstein distance wants; the text's is not
-  /// Mass goes at most that many times the median distance between nearest points of the two trees. What finds no room within it, as
-  /// opposite of a gap of the other scan, shifts nothing: its partner is the nearest point. Infinite: all is carried, as in the text.
+  /// Mass goes at most that many times the median distance between nearest points of the two trees.
+  /// What finds no room within it, as opposite of a gap of the other scan, shifts nothing: its
+  /// partner is the nearest point. Infinite: all is carried, as in the text.
   double reach = 2;
   std::size_t number_of_neighbors = 16; ///< candidates of each point in the other tree
   std::size_t largest_window =
@@ -114,13 +122,16 @@ struct Transport_options
 /// How the points of a pair are joined.
 enum class Point_path {
   cylindrical, ///< along, around and away from the edge: sections keep their size
-  virtual_edges ///< as edges from the beginning of the edge, by slerp, as in the text: sections shrink
+  /// as edges from the beginning of the edge, by slerp, as in the text: sections shrink
+  virtual_edges
 };
 
 /// How branches that only one end of a path has come into being.
 enum class Branch_emergence {
   simultaneous, ///< all at once, as small copies of what they become: all coordinates are linear
-  sequential ///< tips move on and what is behind them stays, as wood does; each branch when the tip of its parent passes its base
+  /// tips move on and what is behind them stays, as wood does; each branch when the tip of its
+  /// parent passes its base
+  sequential
 };
 
 /// What a mean makes least.
@@ -140,19 +151,20 @@ struct Tree_sampling_options
 {
   double truncation = 2.5; ///< no score is further from 0, in standard deviations [-]
   double spread = 1;       ///< factor of all standard deviations; 0 gives middle trees only [-]
-  /// share of the variance that is drawn for each branch by itself, and not for all branches together as they vary in the
-  /// inputs, in [0, 1]; negative: as estimated from the inputs
+  /// share of the variance that is drawn for each branch by itself, and not for all branches
+  /// together as they vary in the inputs, in [0, 1]; negative: as estimated from the inputs
   double shrinkage = -1;
   bool do_draw_presence = true; ///< else all trees have the branches that most of the inputs have
-  /// whether trees keep to the range of the inputs: branches sit on those parts of others where they do in the inputs,
-  /// numbers and angles of branches of an order are brought into their range by the least change, and trees that are beyond
-  /// them in other figures are drawn again
+  /// whether trees keep to the range of the inputs: branches sit on those parts of others where
+  /// they do in the inputs, numbers and angles of branches of an order are brought into their range
+  /// by the least change, and trees that are beyond them in other figures are drawn again
   bool do_keep_in_range = true;
   std::size_t number_of_trials =
       100; ///< for that; from the middle on, nearer and nearer to the middle tree
   bool do_limit_radii = false; ///< no branch thicker than where it grows from
   double pipe_exponent =
-      0; ///< > 0: radii to this power do not add up to more than that of the parent; 2 to 2.5 in nature
+      /// > 0: radii to this power do not add up to more than that of the parent; 2 to 2.5 in nature
+      0;
 };
 
 /// When a difference counts as a change.

@@ -30,11 +30,15 @@ struct Orl_report
   std::size_t number_of_edges = 0;                        ///< of the common topology [count]
   double matching_energy = 0; ///< of the branches, in units of the longest paths [-]
   double unexplained_share =
-      0; ///< of two trees: 0 if the smaller one is all found in the other, 1 if nothing of it is [-]
+      /// of two trees: 0 if the smaller one is all found in the other, 1 if nothing of it is [-]
+      0;
   bool is_grown_at_tips =
-      false; ///< of two trees: whether the branches of one are beginnings of those of the other, rather than shrunken
+      /// of two trees: whether the branches of one are beginnings of those of the other, rather
+      /// than shrunken
+      false;
   double turn =
-      0; ///< of two trees: angle about the vertical after which the second stands like the first [rad]
+      /// of two trees: angle about the vertical after which the second stands like the first [rad]
+      0;
   double distance = 0; ///< between the trees, (4.7) [L]
 
   std::array<std::size_t, 2> number_of_points = {0, 0}; ///< of the scans [count]

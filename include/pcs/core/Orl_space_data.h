@@ -16,7 +16,8 @@ namespace pcs {
 
 /*!
   \ingroup PkgPcsShapeSpaceRef
-  \brief What an `Orl_shape_space` has built; `Orl_shape_space::restore()` makes the space again, without the inputs.
+  \brief What an `Orl_shape_space` has built; `Orl_shape_space::restore()` makes the space again,
+      without the inputs.
 */
 struct Orl_space_data
 {
@@ -59,7 +60,8 @@ struct Orl_space_data
   int orientation = 0; ///< as in `Orl_orientation`
   std::array<double, 3> origin = {0, 0, 0};
   std::vector<Branch> branches;
-  //! edges whose frame is not carried on from the one before on their branch, but from an earlier one: behind folds
+  //! edges whose frame is not carried on from the one before on their branch, but from an earlier
+  //! one: behind folds
   std::vector<std::array<std::size_t, 2>> references;
   std::vector<Tree> trees;
   Tree reference;

@@ -252,7 +252,8 @@ Similarity to_similarity(const Transformation& t)
 
 /*!
   \ingroup PkgPcsCoreRef
-  \brief rotation by `angle` [rad] about `axis` through `center`; any number of turns, of either sign.
+  \brief rotation by `angle` [rad] about `axis` through `center`; any number of turns, of either
+      sign.
   \throws Invalid_input if `axis` is zero or a value is not finite
 */
 template <class Vector_3, class Point_3>

@@ -12,7 +12,8 @@ namespace pcs {
 /// How branches are found.
 enum class Skeleton_method {
   chains, ///< whole axes are fitted to the layers of the paths from the root
-  sections ///< the dissertation: sections at centers of curvature, spanning trees where there are none
+  /// the dissertation: sections at centers of curvature, spanning trees where there are none
+  sections
 };
 
 /// Whether points of leaves are looked for and left out.

@@ -30,7 +30,8 @@ struct Branch_totals
 };
 
 //! \ingroup PkgPcsSkeletonRef
-//! a station of the scanner, and how its points were moved so that all stations see the same branches
+//! a station of the scanner, and how its points were moved so that all stations see the same
+//! branches
 struct Scan_station
 {
   long long label = 0;              ///< by `station_map`; else the number of the station, from 0
@@ -51,7 +52,8 @@ struct Skeleton_report
   Status status = Status::nothing_to_do;
 
   std::size_t number_of_points = 0; ///< of the input [count]
-  //! points at the place of another one, or so near to it, beside all others, that they are copies [count]
+  //! points at the place of another one, or so near to it, beside all others, that they are copies
+  //! [count]
   std::size_t number_of_duplicates = 0;
   std::size_t number_of_outliers =
       0; ///< points left out because they are far from all others [count]
@@ -63,9 +65,11 @@ struct Skeleton_report
   std::size_t number_of_unreached_points =
       0; ///< points of branches too far from the tree; these are not part of the result [count]
   std::size_t number_of_unreached_branches = 0; ///< [count]
-  //! stems beside that of the root that stand at its height, out of reach or hanging by a branch: other trees [count]
+  //! stems beside that of the root that stand at its height, out of reach or hanging by a branch:
+  //! other trees [count]
   std::size_t number_of_other_stems = 0;
-  //! the points lie in rows that are far from each other, and were all kept, as leaves look like wood there
+  //! the points lie in rows that are far from each other, and were all kept, as leaves look like
+  //! wood there
   bool is_in_rows = false;
   //! stations whose points were moved; empty if none were told apart
   std::vector<Scan_station> stations;
@@ -73,18 +77,20 @@ struct Skeleton_report
   std::size_t number_of_branches = 0; ///< [count]
 
   double spacing = 0; ///< median distance to the nearest neighbour [L]
-  //! size of the voxels whose centers the points are, and which was taken out of the radii; 0: they are not [L]
+  //! size of the voxels whose centers the points are, and which was taken out of the radii; 0: they
+  //! are not [L]
   double voxel_size = 0;
   double noise = 0; ///< standard deviation of the points from the surface [L]
-  //! median distance of the points from the surface of their branches; several times `noise`: something is wrong [L]
+  //! median distance of the points from the surface of their branches; several times `noise`:
+  //! something is wrong [L]
   double residual = 0;
   double density = 0; ///< points per area of the surface of branches; 0: not known [1/L^2]
 
   double height =
       0; ///< from the root to the highest node or leaf that was found, along the up direction [L]
   double reach = 0; ///< from the root to the farthest node [L]
-  //! of the trunk, by a line through its radii from 1.1 to 1.5 m, say: bark and noise change single ones; where it ends below,
-  //! of the thickest branch there; 0: nothing is that high [L]
+  //! of the trunk, by a line through its radii from 1.1 to 1.5 m, say: bark and noise change single
+  //! ones; where it ends below, of the thickest branch there; 0: nothing is that high [L]
   double diameter_at_breast_height = 0;
   double breast_height = 0; ///< of that diameter, above the root [L]
   Branch_totals total;
@@ -114,10 +120,11 @@ inline std::vector<std::string> warnings(const Skeleton_report& r)
   // diameter of the trunk per length: trees 0.01 to 0.1, spheres more than 0.2 [-]
   constexpr double thickest_trunk = 0.2;
   constexpr double thinnest_trunk = 0.002; // by the height [-]
-  // volume by the cube of the reach: trees up to 0.003, a post of ten diameters 0.008, spheres that are taken for many thin
-  // branches 0.03 and more [-]
+  // volume by the cube of the reach: trees up to 0.003, a post of ten diameters 0.008, spheres that
+  // are taken for many thin branches 0.03 and more [-]
   constexpr double most_wood = 0.015;
-  // by the diameter of the trunk: beyond, volumes are up to several times too large; real scans up to 0.2 [-]
+  // by the diameter of the trunk: beyond, volumes are up to several times too large; real scans up
+  // to 0.2 [-]
   constexpr double widest_spacing = 1.0 / 3;
   constexpr double many = 0.5; // leaves, of the points that are neither ground nor walls [-]
   std::vector<std::string> sentences;

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Handles, constraints and frames of one editing session, on plain coordinates, without a look at how.
+// Handles, constraints and frames of one editing session, on plain coordinates, without a look at
+// how.
 
 #ifndef PCS_DEFORMATION_SESSION_H
 #define PCS_DEFORMATION_SESSION_H
@@ -54,8 +55,8 @@ template <class ConcurrencyTag>
 class Session_core;
 
 /*!
-  What `Point_set_deformation` does, without its point types. Indices are the caller's; transformations are in the
-  caller's coordinates; errors are thrown before anything changes.
+  What `Point_set_deformation` does, without its point types. Indices are the caller's;
+  transformations are in the caller's coordinates; errors are thrown before anything changes.
 */
 template <class ConcurrencyTag>
 class Session
@@ -74,7 +75,8 @@ public:
   const Similarity& transform(std::size_t handle) const;
   std::size_t number_of_samples() const;
 
-  /// Adds a handle that stays where it is. \param weight 0: exact; positive: soft, see `Node_constraints`
+  /// Adds a handle that stays where it is. \param weight 0: exact; positive: soft, see
+  /// `Node_constraints`
   std::size_t
   add_handle(const std::vector<std::uint32_t>& indices, double weight, const char* function);
 
@@ -98,7 +100,8 @@ public:
 
   /// Whether the present shape was solved with the present handles, or is the rest shape.
   bool has_shape_of_handles() const;
-  /// Whether constraints were made for other handles than those that the present shape was solved with.
+  /// Whether constraints were made for other handles than those that the present shape was solved
+  /// with.
   bool is_ahead_of_shape() const;
   /// Whether a snapshot is of this session, its rest shape and its present handles.
   bool is_of_setting(const Session_snapshot& s) const;
@@ -112,10 +115,10 @@ public:
   void reset();
 
   /*!
-    Writes every point that the deformation may move to `output`, an `Output` of `Moved_point_writer`, side by side: not
-    points outside the region of interest, nor those that no handle reaches, nor those of handles that have not moved.
-    Positions are in the caller's coordinates; the gradient is set if `HasGradients`: the linear part of the map of the
-    point.
+    Writes every point that the deformation may move to `output`, an `Output` of
+    `Moved_point_writer`, side by side: not points outside the region of interest, nor those that no
+    handle reaches, nor those of handles that have not moved. Positions are in the caller's
+    coordinates; the gradient is set if `HasGradients`: the linear part of the map of the point.
   */
   template <bool HasGradients, class Output>
   void write(Output& output)
@@ -148,8 +151,9 @@ public:
   }
 
   /*!
-    Where the present deformation takes a point that need not belong to the session, and the normal there: like the
-    points around it. Points whose nearest point stays, stay bit for bit. `prepare_carrying()` comes first.
+    Where the present deformation takes a point that need not belong to the session, and the normal
+    there: like the points around it. Points whose nearest point stays, stay bit for bit.
+    `prepare_carrying()` comes first.
   */
   void carry(Vec3& point, Vec3& normal) const;
 
@@ -161,7 +165,8 @@ public:
   /// `normal(input index)` gives the normals at rest. [-]
   void set_normals(const std::function<Vec3(std::size_t)>& normal);
 
-  /// The present shape becomes the rest shape. `position(input index)` reads it in the caller's coordinates.
+  /// The present shape becomes the rest shape. `position(input index)` reads it in the caller's
+  /// coordinates.
   void accept(const std::function<Vec3(std::size_t)>& position);
 
 private:

@@ -75,7 +75,8 @@ public:
   const Similarity& transform(std::size_t handle) const { return m_handles.transforms()[handle]; }
   std::size_t number_of_samples() const { return m_maps.size(); }
 
-  /// Adds a handle that stays where it is. \param weight 0: exact; positive: soft, see `Node_constraints`
+  /// Adds a handle that stays where it is. \param weight 0: exact; positive: soft, see
+  /// `Node_constraints`
   std::size_t
   add_handle(const std::vector<std::uint32_t>& indices, double weight, const char* function)
   {
@@ -215,7 +216,8 @@ public:
 
   /// Whether the present shape was solved with the present handles, or is the rest shape.
   bool has_shape_of_handles() const { return m_setting_of_shape == m_setting; }
-  /// Whether constraints were made for other handles than those that the present shape was solved with.
+  /// Whether constraints were made for other handles than those that the present shape was solved
+  /// with.
   bool is_ahead_of_shape() const
   {
     return !m_is_at_rest && m_setting_of_sites != m_setting_of_shape;
@@ -275,8 +277,9 @@ public:
   void end_writing(double seconds) { m_report.seconds.upsampling = seconds; }
 
   /*!
-    Where the present deformation takes a point that need not belong to the session, and the normal there: like the
-    points around it. Points whose nearest point stays, stay bit for bit. `prepare_carrying()` comes first.
+    Where the present deformation takes a point that need not belong to the session, and the normal
+    there: like the points around it. Points whose nearest point stays, stay bit for bit.
+    `prepare_carrying()` comes first.
   */
   void carry(Vec3& point, Vec3& normal) const
   {
@@ -352,7 +355,8 @@ public:
   }
 
 private:
-  /// Handles or the rest shape are others: snapshots of before cannot be brought back. No two sessions share a number.
+  /// Handles or the rest shape are others: snapshots of before cannot be brought back. No two
+  /// sessions share a number.
   void begin_setting()
   {
     static std::atomic<std::uint64_t> last{0};
@@ -379,7 +383,8 @@ private:
                                              m_body.options.do_preserve_volume);
   }
 
-  /// Handles that were added since the last solve have moved nothing yet. The outside of the region stays the last.
+  /// Handles that were added since the last solve have moved nothing yet. The outside of the region
+  /// stays the last.
   void complete_transforms()
   {
     const std::size_t outside_count = m_handles.has_outside() ? 1 : 0;

@@ -116,7 +116,8 @@ Tree_skeleton<Kernel> make_cylinder_tree(double height, double radius)
   \ingroup PkgPcsGeneratorsRef
   \brief an arc of a torus that begins upright at the origin and bends towards +x.
 
-  \param bend_radius of the axis, which is a circle around `(bend_radius, 0, 0)`; larger than `radius`
+  \param bend_radius of the axis, which is a circle around `(bend_radius, 0, 0)`; larger than
+      `radius`
   \param angle of the arc, in (0, pi] [rad]
 */
 template <class Kernel>

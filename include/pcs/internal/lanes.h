@@ -302,8 +302,9 @@ inline constexpr double reciprocal_root_series[] = {1, 0.5, 0.375, 0.3125};
 /*!
   `1 / sqrt(x)` to one or two units in the last place, from a guess on the bits of `x`: neither a
   division nor a root, which take longer than all else in a kernel. `x` must be positive. With `d =
-  1 - x y^2`, the series `1 / sqrt(x) = y (1 + d / 2 + 3 d^2 / 8 + 5 d^3 / 16 + ...)` is cut after `d^3`, then once more after `d^2`: from an
-  error of 3.5 % to 7e-6 and to 1e-15, in a shorter chain than four steps of Newton.
+  1 - x y^2`, the series `1 / sqrt(x) = y (1 + d / 2 + 3 d^2 / 8 + 5 d^3 / 16 + ...)` is cut after
+  `d^3`, then once more after `d^2`: from an error of 3.5 % to 7e-6 and to 1e-15, in a shorter chain
+  than four steps of Newton.
 */
 template <class Arithmetic>
 PCS_ALWAYS_INLINE void reciprocal_root(const typename Arithmetic::Doubles& x,

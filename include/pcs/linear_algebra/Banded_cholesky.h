@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Symmetric positive definite systems of small bandwidth: assembled, factorised and solved in place.
+// Symmetric positive definite systems of small bandwidth: assembled, factorised and solved in
+// place.
 
 #ifndef PCS_LINEAR_ALGEBRA_BANDED_CHOLESKY_H
 #define PCS_LINEAR_ALGEBRA_BANDED_CHOLESKY_H
@@ -15,7 +16,8 @@
 namespace pcs {
 namespace linear_algebra {
 
-/// A symmetric matrix with `Bandwidth` diagonals below the main one, kept as rows of the lower half.
+/// A symmetric matrix with `Bandwidth` diagonals below the main one, kept as rows of the lower
+/// half.
 template <std::size_t Bandwidth>
 class Banded_cholesky
 {
@@ -33,8 +35,8 @@ public:
   double& operator()(std::size_t i, std::size_t j) { return m_columns[j * width + (i - j)]; }
   double operator()(std::size_t i, std::size_t j) const { return m_columns[j * width + (i - j)]; }
 
-  /// Replaces the matrix by its factors, L D L^T: columns of L, and inverses of D in place of their ones. `false` if it is not
-  /// positive definite.
+  /// Replaces the matrix by its factors, L D L^T: columns of L, and inverses of D in place of their
+  /// ones. `false` if it is not positive definite.
   bool factorize()
   {
     for (std::size_t j = 0; j < m_size; ++j) {
@@ -73,8 +75,8 @@ public:
   }
 
   /*!
-    The diagonal of the inverse, after `factorize()`. O(size Bandwidth^2): of the inverse only the band is computed, from
-    the last row upwards (Takahashi's recurrence).
+    The diagonal of the inverse, after `factorize()`. O(size Bandwidth^2): of the inverse only the
+    band is computed, from the last row upwards (Takahashi's recurrence).
   */
   std::vector<double> inverse_diagonal() const
   {

@@ -21,12 +21,13 @@ namespace pcs {
 namespace linear_algebra {
 
 /*!
-  The symbolic half of a Cholesky factorisation. Columns of the factor with (almost) the same rows are kept side by
-  side as one dense *panel*, a supernode: its own `w` rows first, then `m` rows below, which lie in its ancestors.
-  Panels are stored column by column, `(w + m) w` values each.
+  The symbolic half of a Cholesky factorisation. Columns of the factor with (almost) the same rows
+  are kept side by side as one dense *panel*, a supernode: its own `w` rows first, then `m` rows
+  below, which lie in its ancestors. Panels are stored column by column, `(w + m) w` values each.
 
-  Order: minimum degree (Amestoy, Davis, Duff 1996) or the caller's, then postorder of the elimination tree (Liu 1990). Column counts:
-  Gilbert, Ng, Peyton 1994. Linear in the entries of the matrix but for the order, and in the rows of the supernodes.
+  Order: minimum degree (Amestoy, Davis, Duff 1996) or the caller's, then postorder of the
+  elimination tree (Liu 1990). Column counts: Gilbert, Ng, Peyton 1994. Linear in the entries of the
+  matrix but for the order, and in the rows of the supernodes.
 */
 class Cholesky_pattern
 {
@@ -51,7 +52,8 @@ public:
   Cholesky_pattern() = default;
 
   /// \param a square; what stands above its diagonal is ignored
-  /// \param rank one number per row, all different: rows are eliminated by increasing rank, where the entries leave a
+  /// \param rank one number per row, all different: rows are eliminated by increasing rank, where
+  /// the entries leave a
   ///        choice. If empty, by minimum degree.
   explicit Cholesky_pattern(const Matrix& a, const std::vector<std::uint32_t>& rank = {})
   {
@@ -67,7 +69,8 @@ public:
     subtrees.find(*this);
   }
 
-  /// The place of each row in the order of elimination. A part of the rows in that order has no entries that all have not.
+  /// The place of each row in the order of elimination. A part of the rows in that order has no
+  /// entries that all have not.
   static std::vector<std::uint32_t> minimum_degree_order(const Matrix& a)
   {
     Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> old_of_new;
@@ -171,7 +174,8 @@ private:
     return tree;
   }
 
-  /// New number of each column: children before parents, subtrees together; the child with the largest `count` last.
+  /// New number of each column: children before parents, subtrees together; the child with the
+  /// largest `count` last.
   static std::vector<std::uint32_t> postorder(const std::vector<std::uint32_t>& tree,
                                               const std::vector<std::uint32_t>& count)
   {
@@ -269,7 +273,8 @@ private:
     return result;
   }
 
-  /// Whether a supernode of `width` columns may hold `zeros` among its `values`: wide ones are worth some.
+  /// Whether a supernode of `width` columns may hold `zeros` among its `values`: wide ones are
+  /// worth some.
   static bool is_worth(std::size_t width, std::size_t zeros, std::size_t values)
   {
     const double share = static_cast<double>(zeros) / static_cast<double>(values);
@@ -291,7 +296,8 @@ private:
     };
     for (std::uint32_t j = 0; j < n; ++j) {
       groups.push_back({j, 0});
-      // The group before ends with column j - 1. It may become part of this one if j is the parent of that.
+      // The group before ends with column j - 1. It may become part of this one if j is the parent
+      // of that.
       while (groups.size() > 1) {
         const Group own = groups.back(), before = groups[groups.size() - 2];
         if (own.first == 0 || tree[own.first - 1] == none || tree[own.first - 1] > j)

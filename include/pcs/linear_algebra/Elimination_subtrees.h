@@ -14,11 +14,12 @@ namespace pcs {
 namespace linear_algebra {
 
 /*!
-  Disjoint subtrees of the supernodes of a `Cholesky_pattern`, none with more than a small share of the values. They do
-  not depend on the number of threads, so that sums over them do not either.
+  Disjoint subtrees of the supernodes of a `Cholesky_pattern`, none with more than a small share of
+  the values. They do not depend on the number of threads, so that sums over them do not either.
 
-  What a subtree adds to the rows above it is gathered apart: every subtree has places of its own, behind those of the
-  unknowns in the work array of a solve, for the rows below its root, of which those below all its supernodes are part.
+  What a subtree adds to the rows above it is gathered apart: every subtree has places of its own,
+  behind those of the unknowns in the work array of a solve, for the rows below its root, of which
+  those below all its supernodes are part.
 */
 class Elimination_subtrees
 {

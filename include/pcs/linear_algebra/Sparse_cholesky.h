@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Sparse Cholesky factor L D L^T by supernodes, with triangular solves for several right-hand sides at once.
+// Sparse Cholesky factor L D L^T by supernodes, with triangular solves for several right-hand sides
+// at once.
 
 #ifndef PCS_LINEAR_ALGEBRA_SPARSE_CHOLESKY_H
 #define PCS_LINEAR_ALGEBRA_SPARSE_CHOLESKY_H
@@ -23,18 +24,18 @@ namespace pcs {
 namespace linear_algebra {
 
 /*!
-  Factor of a symmetric positive definite sparse matrix, by the multifrontal method (Duff and Reid 1983) on the panels
-  of a `Cholesky_pattern`. Factors of matrices with the same entries may share the pattern, which takes half of the
-  time of a small one. `solve()` is const, allocates nothing once the caller's work vector has grown, and may run
-  concurrently with other solves.
+  Factor of a symmetric positive definite sparse matrix, by the multifrontal method (Duff and Reid
+  1983) on the panels of a `Cholesky_pattern`. Factors of matrices with the same entries may share
+  the pattern, which takes half of the time of a small one. `solve()` is const, allocates nothing
+  once the caller's work vector has grown, and may run concurrently with other solves.
 */
 class Sparse_cholesky
 {
 public:
   using Matrix = Cholesky_pattern::Matrix;
 
-  /// Factorises `a`, of which only the lower triangle is read, with rows in the order of `rank`, if it is not empty.
-  /// Returns `false` if `a` is not positive definite.
+  /// Factorises `a`, of which only the lower triangle is read, with rows in the order of `rank`, if
+  /// it is not empty. Returns `false` if `a` is not positive definite.
   bool factorize(const Matrix& a, const std::vector<std::uint32_t>& rank = {})
   {
     return factorize(a, std::make_shared<const Cholesky_pattern>(a, rank));
@@ -75,8 +76,9 @@ public:
     return sum;
   }
 
-  /// Solves `A x = b` for right-hand sides stored row by row: `Row` is a fixed-size Eigen vector. The subtrees of a large
-  /// factor are worked through side by side if the tag allows it, with the same result for every number of threads.
+  /// Solves `A x = b` for right-hand sides stored row by row: `Row` is a fixed-size Eigen vector.
+  /// The subtrees of a large factor are worked through side by side if the tag allows it, with the
+  /// same result for every number of threads.
   template <class ConcurrencyTag = CGAL::Sequential_tag, class Row>
   void solve(std::vector<Row>& b, std::vector<Row>& work) const
   {

@@ -26,8 +26,9 @@ struct Dense_columns
 /*!
   A panel of `width` columns and `height` rows on its way through a factorisation.
 
-  The diagonal is kept apart: updates of updates would first be added up, and lose what is small beside them. One
-  difference at a time keeps the pivots of Laplacians positive, however far apart the weights lie.
+  The diagonal is kept apart: updates of updates would first be added up, and lose what is small
+  beside them. One difference at a time keeps the pivots of Laplacians positive, however far apart
+  the weights lie.
 */
 struct Front
 {
@@ -36,7 +37,8 @@ struct Front
   /// Gets `L D`.
   Dense_columns scaled;
   std::size_t height, width;
-  /// `height - width` square. What the panel leaves to the rows below is subtracted from its lower triangle.
+  /// `height - width` square. What the panel leaves to the rows below is subtracted from its lower
+  /// triangle.
   Dense_columns rest;
   /// Present values for the panel's own rows, and for the rows below.
   double *diagonal, *diagonal_below;
@@ -63,8 +65,9 @@ struct Dense_product
   Dense_columns left, right;
 };
 
-/// `c -= left(rows) right(columns)^T` for `Vectors` registers of rows from `row` on and `Columns` columns of `c`, of
-/// which the first belongs to row `column` of the right matrix; over `count` columns of both.
+/// `c -= left(rows) right(columns)^T` for `Vectors` registers of rows from `row` on and `Columns`
+/// columns of `c`, of which the first belongs to row `column` of the right matrix; over `count`
+/// columns of both.
 template <class Arithmetic, class Lanes, std::size_t Vectors, std::size_t Columns>
 PCS_ALWAYS_INLINE void subtract_tile(const Dense_product& l,
                                      std::size_t row,
@@ -95,7 +98,8 @@ PCS_ALWAYS_INLINE void subtract_tile(const Dense_product& l,
   });
 }
 
-/// The same for the rows from `row` to `end`: large tiles, then smaller ones. Every entry is summed in the same order.
+/// The same for the rows from `row` to `end`: large tiles, then smaller ones. Every entry is summed
+/// in the same order.
 template <class Arithmetic, std::size_t Columns>
 PCS_ALWAYS_INLINE void subtract_strip(const Dense_product& l,
                                       std::size_t row,
@@ -120,7 +124,8 @@ PCS_ALWAYS_INLINE void subtract_strip(const Dense_product& l,
     }
 }
 
-/// Factorises a panel in place, and subtracts what it leaves to the rows below. `false` if a pivot is not positive.
+/// Factorises a panel in place, and subtracts what it leaves to the rows below. `false` if a pivot
+/// is not positive.
 template <class Arithmetic>
 PCS_ALWAYS_INLINE bool factorize_front(const Front& front)
 {

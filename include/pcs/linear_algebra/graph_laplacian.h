@@ -19,8 +19,9 @@ namespace linear_algebra {
 constexpr std::uint32_t not_free = ~std::uint32_t(0);
 
 /*!
-  Lower triangle of `L_ff + diag(extra)`: `L` is the Laplacian of the sum of the given weighted graphs, `f` the
-  nodes with a row. A graph offers `first`, `neighbor` (rows increasing) and `weight`, as `Weighted_graph` does.
+  Lower triangle of `L_ff + diag(extra)`: `L` is the Laplacian of the sum of the given weighted
+  graphs, `f` the nodes with a row. A graph offers `first`, `neighbor` (rows increasing) and
+  `weight`, as `Weighted_graph` does.
   \param row_of_node the row of each node, increasing with the node, or `not_free`
   \param node_of_row its inverse
   \param extra one value per row, or empty

@@ -1,7 +1,8 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Eigenvectors and solutions of small dense symmetric systems, in loops over numbers: Eigen's decompositions work by
-// blocks, and to instantiate them took half the time of compiling these headers.
+// Eigenvectors and solutions of small dense symmetric systems, in loops over numbers: Eigen's
+// decompositions work by blocks, and to instantiate them took half the time of compiling these
+// headers.
 
 #ifndef PCS_LINEAR_ALGEBRA_SMALL_SYMMETRIC_H
 #define PCS_LINEAR_ALGEBRA_SMALL_SYMMETRIC_H
@@ -24,9 +25,10 @@ struct Symmetric_eigen
 };
 
 /*!
-  Eigenvalues and eigenvectors of a symmetric matrix by cyclic rotations of Jacobi, accurate to rounding relative to the
-  largest eigenvalue, and for equal eigenvalues as well. Both halves of `a` are expected. A matrix that is not finite has
-  eigenvalues that are not finite. `N` may be `Eigen::Dynamic`; O(n^3), some eight sweeps: meant for n up to a few hundred.
+  Eigenvalues and eigenvectors of a symmetric matrix by cyclic rotations of Jacobi, accurate to
+  rounding relative to the largest eigenvalue, and for equal eigenvalues as well. Both halves of `a`
+  are expected. A matrix that is not finite has eigenvalues that are not finite. `N` may be
+  `Eigen::Dynamic`; O(n^3), some eight sweeps: meant for n up to a few hundred.
 */
 template <int N>
 Symmetric_eigen<N> symmetric_eigen(const Eigen::Matrix<double, N, N>& matrix)
@@ -94,9 +96,9 @@ Symmetric_eigen<N> symmetric_eigen(const Eigen::Matrix<double, N, N>& matrix)
 }
 
 /*!
-  Solves `a x = b` for a symmetric positive semi-definite `a` by `L D L^T` with the largest pivot first. Directions in which
-  `a` vanishes, to rounding, get the value 0. `false` if a pivot is negative beyond rounding or something is not finite;
-  `x` is 0 then. O(n^3).
+  Solves `a x = b` for a symmetric positive semi-definite `a` by `L D L^T` with the largest pivot
+  first. Directions in which `a` vanishes, to rounding, get the value 0. `false` if a pivot is
+  negative beyond rounding or something is not finite; `x` is 0 then. O(n^3).
 */
 template <int N, int Columns>
 bool solve_symmetric(const Eigen::Matrix<double, N, N>& matrix,

@@ -41,7 +41,8 @@ public:
   Nearest_neighbors(const Nearest_neighbors&) = delete;
   Nearest_neighbors& operator=(const Nearest_neighbors&) = delete;
 
-  /// Writes the `k` nearest points of `query` to `result`, nearest first; fewer if there are fewer points.
+  /// Writes the `k` nearest points of `query` to `result`, nearest first; fewer if there are fewer
+  /// points.
   void operator()(const Vec3& query, std::size_t k, std::vector<Neighbor>& result) const
   {
     k = std::min(k, m_adaptor.points.size());
@@ -84,8 +85,8 @@ public:
   }
 
   /*!
-    The nearest point among those for which `is_wanted(index)` holds and that is closer than `radius`; ties by coordinates.
-    `squared_distance` is infinite if there is none.
+    The nearest point among those for which `is_wanted(index)` holds and that is closer than
+    `radius`; ties by coordinates. `squared_distance` is infinite if there is none.
   */
   template <class Predicate>
   Neighbor nearest_if(const Vec3& query, double radius, const Predicate& is_wanted) const
@@ -166,7 +167,8 @@ private:
                                                    3,
                                                    std::uint32_t>;
 
-  /// Hands points to `results`. The options are nanoflann's defaults, which have another name since version 1.5.
+  /// Hands points to `results`. The options are nanoflann's defaults, which have another name since
+  /// version 1.5.
   template <class Results>
   void search(const Vec3& query, Results& results) const
   {

@@ -17,7 +17,8 @@
 namespace pcs {
 namespace neighborhood {
 
-/// Undirected graph over `[0, n)`: row `i` lists the neighbours of `i` in increasing order, each edge twice.
+/// Undirected graph over `[0, n)`: row `i` lists the neighbours of `i` in increasing order, each
+/// edge twice.
 struct Proximity_graph
 {
   std::vector<std::uint32_t> first{0}; ///< n + 1 offsets into `neighbor`
@@ -51,8 +52,8 @@ inline Proximity_graph graph_from_edges(std::size_t n,
   return graph;
 }
 
-/// Neighbours whose distance exceeds that of the k-th by no more than this factor belong to the row as well:
-/// on a grid the k nearest are otherwise an arbitrary, lopsided choice among equals.
+/// Neighbours whose distance exceeds that of the k-th by no more than this factor belong to the row
+/// as well: on a grid the k nearest are otherwise an arbitrary, lopsided choice among equals.
 constexpr double distance_tie_factor = 1.01;
 /// ... but no more than this many of them.
 constexpr std::size_t maximal_number_of_ties = 4;
@@ -61,7 +62,8 @@ constexpr std::size_t maximal_number_of_neighbors = 64 - maximal_number_of_ties;
 
 /*!
   Links every point to its `k` nearest (ties included), then adds the missing reverse links.
-  `points` must be distinct, `k <= maximal_number_of_neighbors`. Every row holds at least `min(k, n - 1)` neighbours. O(n log n + n k).
+  `points` must be distinct, `k <= maximal_number_of_neighbors`. Every row holds at least `min(k, n
+  - 1)` neighbours. O(n log n + n k).
 */
 template <class ConcurrencyTag>
 Proximity_graph nearest_neighbor_graph(const std::vector<Vec3>& points, std::size_t k)
@@ -128,7 +130,8 @@ Proximity_graph nearest_neighbor_graph(const std::vector<Vec3>& points, std::siz
   return graph;
 }
 
-/// Component of every vertex, numbered by their smallest vertex; `count` receives the number of components.
+/// Component of every vertex, numbered by their smallest vertex; `count` receives the number of
+/// components.
 inline std::vector<std::uint32_t> connected_components(const Proximity_graph& graph,
                                                        std::size_t& count)
 {

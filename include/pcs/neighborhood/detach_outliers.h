@@ -20,8 +20,9 @@
 namespace pcs {
 namespace neighborhood {
 
-/// A point is an outlier if its shortest link is longer than this many spacings of the points it is linked to. Six
-/// nearest neighbours of uniformly random points on a surface reach that with a probability below 1e-15.
+/// A point is an outlier if its shortest link is longer than this many spacings of the points it is
+/// linked to. Six nearest neighbours of uniformly random points on a surface reach that with a
+/// probability below 1e-15.
 constexpr double smallest_outlier_gap = 3;
 
 /// A point far from all others, and the nearest one that is not.
@@ -43,10 +44,11 @@ inline double take_median(std::vector<double>& values)
 } // namespace internal
 
 /*!
-  Drops the links of every outlier but the shortest, so that it hangs on one point and pulls on nothing.
+  Drops the links of every outlier but the shortest, so that it hangs on one point and pulls on
+  nothing.
 
-  Outliers are judged by the spacings of their neighbours, so dense and sparse parts each have their own measure.
-  Links never leave a point without any. O(n k).
+  Outliers are judged by the spacings of their neighbours, so dense and sparse parts each have their
+  own measure. Links never leave a point without any. O(n k).
   \return the outliers, increasing by point
 */
 template <class ConcurrencyTag>

@@ -22,17 +22,18 @@
 namespace pcs {
 namespace neighborhood {
 
-/// A link is suspected if it makes at least this sine with the tangent planes of both its ends. Measured on sheets 1.5
-/// spacings apart with jitter up to 0.3: 0.45 and 0.6 leave some links, 0.5 none, of 2,720; bars and scans lose at most
-/// 0.2 % of theirs.
+/// A link is suspected if it makes at least this sine with the tangent planes of both its ends.
+/// Measured on sheets 1.5 spacings apart with jitter up to 0.3: 0.45 and 0.6 leave some links, 0.5
+/// none, of 2,720; bars and scans lose at most 0.2 % of theirs.
 constexpr double smallest_short_cut_sine = 0.5;
-/// A point keeps suspected links if fewer than this many others are left: it is an outlier, and follows what is near.
+/// A point keeps suspected links if fewer than this many others are left: it is an outlier, and
+/// follows what is near.
 constexpr std::size_t smallest_remaining_degree = 2;
-/// A part of at most this many points that only dropped links join to the rest is no sheet but a clump of outliers: it
-/// keeps the shortest of them. [count]
+/// A part of at most this many points that only dropped links join to the rest is no sheet but a
+/// clump of outliers: it keeps the shortest of them. [count]
 constexpr std::size_t largest_clump = 12;
-/// Neighbourhoods are flat enough to have a normal if the smallest eigenvalue is below this share of the middle one,
-/// and wide enough if the middle one is above `smallest_width` of the largest.
+/// Neighbourhoods are flat enough to have a normal if the smallest eigenvalue is below this share
+/// of the middle one, and wide enough if the middle one is above `smallest_width` of the largest.
 constexpr double largest_thickness = 0.7;
 constexpr double smallest_width = 0.02;
 
@@ -52,8 +53,8 @@ inline Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen_system(const Eigen::
   return eigen;
 }
 
-/// Count, sum and second moments of a point and its neighbours, about the point. Differences, so single precision
-/// is enough; it halves the largest array of the construction.
+/// Count, sum and second moments of a point and its neighbours, about the point. Differences, so
+/// single precision is enough; it halves the largest array of the construction.
 struct Ring_moments
 {
   float count = 0;
@@ -70,8 +71,8 @@ struct Ring_moments
   }
 };
 
-/// Normals from two rings; a point counts as often as there are ways to it. Two parallel sheets share one normal, so
-/// links between them do little harm.
+/// Normals from two rings; a point counts as often as there are ways to it. Two parallel sheets
+/// share one normal, so links between them do little harm.
 template <class ConcurrencyTag>
 std::vector<Surface_normal> surface_normals(const std::vector<Vec3>& points,
                                             const Proximity_graph& graph)
@@ -113,8 +114,8 @@ std::vector<Surface_normal> surface_normals(const std::vector<Vec3>& points,
   return normal;
 }
 
-/// Each normal becomes the mean of those around it by confidence, up to sign: at the rim of a sheet half the
-/// neighbourhood is missing, and the estimate there may lie in the sheet.
+/// Each normal becomes the mean of those around it by confidence, up to sign: at the rim of a sheet
+/// half the neighbourhood is missing, and the estimate there may lie in the sheet.
 template <class ConcurrencyTag>
 std::vector<Surface_normal> settled_normals(const Proximity_graph& graph,
                                             const std::vector<Surface_normal>& normal)
@@ -225,10 +226,12 @@ inline void keep_clumps(const std::vector<Vec3>& points,
 } // namespace internal
 
 /*!
-  Drops links that leave the surface at both ends and have no common neighbour to go by: where two sheets are hardly
-  further apart than the points on them, the nearest points of one include points of the other.
+  Drops links that leave the surface at both ends and have no common neighbour to go by: where two
+  sheets are hardly further apart than the points on them, the nearest points of one include points
+  of the other.
 
-  Volumes, lines and outliers have no surface to leave: their links stay. No point loses its last links. O(n k).
+  Volumes, lines and outliers have no surface to leave: their links stay. No point loses its last
+  links. O(n k).
   \return the number of links dropped [count]
 */
 template <class ConcurrencyTag>

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Orders points along an octree of tight boxes, so that neighbours in space are neighbours in memory.
+// Orders points along an octree of tight boxes, so that neighbours in space are neighbours in
+// memory.
 
 #ifndef PCS_NEIGHBORHOOD_SPATIAL_ORDER_H
 #define PCS_NEIGHBORHOOD_SPATIAL_ORDER_H
@@ -28,12 +29,13 @@ inline bool lexicographically_less(const Vec3& a, const Vec3& b)
   return std::make_tuple(a.x(), a.y(), a.z()) < std::make_tuple(b.x(), b.y(), b.z());
 }
 
-/// Where a cell is cut, as a share of its box. Not the middle: on grids whole planes of points would lie exactly
-/// there, and rounding (a translated copy of the cloud) would decide on which side.
+/// Where a cell is cut, as a share of its box. Not the middle: on grids whole planes of points
+/// would lie exactly there, and rounding (a translated copy of the cloud) would decide on which
+/// side.
 constexpr double octree_cut = 0.49371;
 
-/// A cell of the octree: the octants around a point near the centre of the *tight* box of its points. Tight boxes
-/// keep the depth small however far away a single outlier lies.
+/// A cell of the octree: the octants around a point near the centre of the *tight* box of its
+/// points. Tight boxes keep the depth small however far away a single outlier lies.
 struct Octree_cell
 {
   Vec3 center = Vec3::Zero();
@@ -58,7 +60,8 @@ struct Octree_cell
   }
 };
 
-/// Cells of at most this many points are not split further by `spatial_order()`; it sorts them by coordinates.
+/// Cells of at most this many points are not split further by `spatial_order()`; it sorts them by
+/// coordinates.
 constexpr std::size_t octree_leaf_size = 16;
 
 struct Order_entry
@@ -125,8 +128,9 @@ void order_cell(pcs::internal::Huge_vector<Order_entry>& entries,
 } // namespace internal
 
 /*!
-  The points `point_at(i)` of `[0, n)` with their indices, in octree order. Exact duplicates are consecutive, the smaller index
-  first. Apart from duplicates the sequence of positions does not depend on the order of the input. O(n log n).
+  The points `point_at(i)` of `[0, n)` with their indices, in octree order. Exact duplicates are
+  consecutive, the smaller index first. Apart from duplicates the sequence of positions does not
+  depend on the order of the input. O(n log n).
 */
 template <class ConcurrencyTag, class PointAt>
 pcs::internal::Huge_vector<Order_entry> ordered_entries(std::size_t n, const PointAt& point_at)

@@ -44,8 +44,8 @@ struct Path_options
 };
 
 /*!
-  Each function is that of the same name, or the one named, in another header of this folder. `caller` begins the texts of
-  errors.
+  Each function is that of the same name, or the one named, in another header of this folder.
+  `caller` begins the texts of errors.
 */
 template <class ConcurrencyTag>
 struct Space_engine
@@ -60,7 +60,8 @@ struct Space_engine
                                    Embedded_pair& built,
                                    std::vector<Point_pair>& pairs,
                                    Orl_report& report);
-  /// Topology and coordinates from correspondences that were stored; throws `Invalid_input` if they do not fit.
+  /// Topology and coordinates from correspondences that were stored; throws `Invalid_input` if they
+  /// do not fit.
   static void embed_stored(const Orl_correspondences& stored,
                            const Inputs& inputs,
                            const std::string& caller,

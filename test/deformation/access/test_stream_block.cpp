@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Writing past the caches: the values that `write()` gives where memory allows it, nothing elsewhere.
+// Writing past the caches: the values that `write()` gives where memory allows it, nothing
+// elsewhere.
 
 #include <pcs/Named_function_parameters.h>
 #include <pcs/deformation/access/Point_access.h>

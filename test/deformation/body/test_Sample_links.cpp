@@ -208,7 +208,8 @@ BOOST_AUTO_TEST_CASE(a_sample_is_moved_by_itself_alone_or_nearly_so)
 
 BOOST_AUTO_TEST_CASE(compact_weights_are_continuous_and_the_texts_jump)
 {
-  // A cloud of four times the density: between neighbours, a continuous function changes by a quarter.
+  // A cloud of four times the density: between neighbours, a continuous function changes by a
+  // quarter.
   double compact[2], inverse[2];
   for (int level = 0; level < 2; ++level) {
     const int n = level == 0 ? 60 : 240;

@@ -166,8 +166,8 @@ BOOST_AUTO_TEST_CASE(degenerate_clouds_get_none_and_no_harm)
 
 BOOST_AUTO_TEST_CASE(rounding_does_not_choose_the_links)
 {
-  // On a regular box rays from the edges pass equally near to two nodes; a shifted or scaled copy, whose coordinates
-  // are rounded differently, must make the same choice.
+  // On a regular box rays from the edges pass equally near to two nodes; a shifted or scaled copy,
+  // whose coordinates are rounded differently, must make the same choice.
   const Points points = pcs_test::box(6, 6, 24, 1. / 6);
   const auto network = pcs_test::network_of(points);
   const auto expected = links_of(network);

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Weights from Voronoi cells: linear functions are harmonic, components stay, both halves of an edge agree.
+// Weights from Voronoi cells: linear functions are harmonic, components stay, both halves of an
+// edge agree.
 
 #include <pcs/deformation/body/voronoi_graph.h>
 #include <support/networks.h>
@@ -37,8 +38,8 @@ Weighted_graph weights(const Points& points)
   return pcs::deformation::voronoi_graph<Tag>(points, proximity(points));
 }
 
-/// Uniform random points on a square of side `size`, one for each unit of area; as a cylinder of radius `radius`, if
-/// positive.
+/// Uniform random points on a square of side `size`, one for each unit of area; as a cylinder of
+/// radius `radius`, if positive.
 Points random_sheet(double size, double radius = 0, unsigned seed = 1)
 {
   std::mt19937 random(seed);
@@ -53,7 +54,8 @@ Points random_sheet(double size, double radius = 0, unsigned seed = 1)
   return points;
 }
 
-/// Root mean square over inner points of `|sum w (x_j - x_i)| / sum w |x_j - x_i|`, along z or in the plane.
+/// Root mean square over inner points of `|sum w (x_j - x_i)| / sum w |x_j - x_i|`, along z or in
+/// the plane.
 double imbalance(const Points& points,
                  const Weighted_graph& graph,
                  double margin,

@@ -86,7 +86,8 @@ BOOST_AUTO_TEST_CASE(the_border_runs_along_the_outermost_points)
   BOOST_TEST_REQUIRE(result.size() > n);
   BOOST_TEST_REQUIRE(constraints.handle_of_node.size() == result.size());
 
-  // Where fields are held: on average at the new nodes, nearer to the limit than the handle's own points.
+  // Where fields are held: on average at the new nodes, nearer to the limit than the handle's own
+  // points.
   double held = 0, count = 0, straight = 0, straight_count = 0;
   for (std::uint32_t i = 0; i < n; ++i) {
     if (before.is_prescribed(i) || network.rest[i].y() < 4 || network.rest[i].y() > 25)
@@ -121,7 +122,8 @@ BOOST_AUTO_TEST_CASE(edges_keep_their_slope_and_stay_symmetric)
           result.surface.weight[std::size_t(back - result.surface.neighbor.data())] ==
           result.surface.weight[e]);
     }
-  // A new node lies on an edge to its handle, whose weight it takes over at the length that is left.
+  // A new node lies on an edge to its handle, whose weight it takes over at the length that is
+  // left.
   for (std::size_t b = network.size(); b < result.size(); ++b) {
     BOOST_TEST_REQUIRE(result.surface.degree(b) == 1u);
     const std::uint32_t i = *result.surface.begin(b);

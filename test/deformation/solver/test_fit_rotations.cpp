@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Energies and covariances of edges, and the rotations that fit them: the kernels against the formulas, one by one.
+// Energies and covariances of edges, and the rotations that fit them: the kernels against the
+// formulas, one by one.
 
 #include <pcs/core/rotations.h>
 #include <pcs/deformation/solver/fit_rotations.h>

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The rotation field: the dissertation's own system, evenness along a path, turns beyond 180 degrees.
+// The rotation field: the dissertation's own system, evenness along a path, turns beyond 180
+// degrees.
 
 #include <pcs/deformation/solver/rotation_field.h>
 #include <support/networks.h>
@@ -76,7 +77,8 @@ Eigen::Matrix4d right_product(const Quaternion& r)
   return m;
 }
 
-/// Equation (2.1) taken literally: minimise sum w_ij |q_i q_ij - q_j|^2 over the free frames, handles given.
+/// Equation (2.1) taken literally: minimise sum w_ij |q_i q_ij - q_j|^2 over the free frames,
+/// handles given.
 std::vector<Quaternion> solve_frames(const Weighted_graph& graph,
                                      const Node_constraints& constraints,
                                      const std::vector<Quaternion>& rest,

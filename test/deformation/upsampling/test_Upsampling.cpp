@@ -173,8 +173,8 @@ BOOST_AUTO_TEST_CASE(points_normals_and_gradients_follow_the_plain_formula)
       normal_error =
           std::max(normal_error, (n[i] - s.normals[i].norm() * expected.normalized()).norm());
     }
-    // Weights are kept in 16 bits: up to five of them off by half a step of 1/65535 each, times the difference of
-    // neighbouring maps, which is up to four sizes here.
+    // Weights are kept in 16 bits: up to five of them off by half a step of 1/65535 each, times the
+    // difference of neighbouring maps, which is up to four sizes here.
     BOOST_TEST(error < 2.5 / 65535 * 4 * size);
     BOOST_TEST(gradient_error < 2.5 / 65535 * 4 * size);
     BOOST_TEST(normal_error < 1e-3 * size);

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Borders of handles against a search through all edges, and the bands around them against Bellman's equations.
+// Borders of handles against a search through all edges, and the bands around them against
+// Bellman's equations.
 
 #include <pcs/deformation/handles/Border_finder.h>
 #include <pcs/deformation/upsampling/border_fade.h>
@@ -90,8 +91,8 @@ BOOST_AUTO_TEST_CASE(one_site_and_none_have_no_borders)
   BOOST_TEST(Border_finder(one).find<Tag>(one, inside).empty());
 }
 
-/// What the fades of a site, one after the other, leave of each handle, by handle; the last is what is left of the
-/// samples.
+/// What the fades of a site, one after the other, leave of each handle, by handle; the last is what
+/// is left of the samples.
 std::array<double, 3> parts(const std::vector<Border_fade>& fades, std::size_t site)
 {
   std::array<double, 3> part{0, 0, 1};
@@ -104,7 +105,8 @@ std::array<double, 3> parts(const std::vector<Border_fade>& fades, std::size_t s
   return part;
 }
 
-/// Sweeps until nothing changes: distances of all sites to one handle, in spacings; infinite beyond 1.
+/// Sweeps until nothing changes: distances of all sites to one handle, in spacings; infinite beyond
+/// 1.
 std::vector<double> distances(const Cloud& cloud, Node_constraint handle)
 {
   const auto rate = [&](std::size_t i) { return 1 / cloud.spacing[cloud.sample_of_site[i]]; };
@@ -177,7 +179,8 @@ BOOST_AUTO_TEST_CASE(between_two_handles_the_shares_pass_from_one_to_the_other)
     far += part[2] > 0.3 ? 1 : 0;
     BOOST_TEST(part[0] + part[1] + part[2] == 1, boost::test_tools::tolerance(1e-12));
     BOOST_TEST(*std::min_element(part.begin(), part.end()) >= 0);
-    // All of a handle at its border, and never less than what the handle would get if the other's part were its.
+    // All of a handle at its border, and never less than what the handle would get if the other's
+    // part were its.
     BOOST_TEST(part[0] + part[1] >= std::pow(1 - std::min(a, b), 2) - 1e-12);
     BOOST_TEST(part[a < b ? 0 : 1] >= part[a < b ? 1 : 0]);
     for (auto j = cloud.graph.begin(i); j != cloud.graph.end(i); ++j) {
@@ -191,7 +194,8 @@ BOOST_AUTO_TEST_CASE(between_two_handles_the_shares_pass_from_one_to_the_other)
   }
   BOOST_TEST(shared > 100u);
   BOOST_TEST(far > 10u);
-  // With one handle the slope is 2. The nearest handle only, as if the other were not there, jumps in the middle.
+  // With one handle the slope is 2. The nearest handle only, as if the other were not there, jumps
+  // in the middle.
   BOOST_TEST(steepest < 2.5);
 }
 

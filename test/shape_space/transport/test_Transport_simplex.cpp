@@ -13,9 +13,9 @@
 
 namespace test_Transport_simplex {
 
-using pcs::Sinkhorn_options;
 using pcs::Point_transport;
 using pcs::Point_weights;
+using pcs::Sinkhorn_options;
 using pcs::Transport_options;
 
 using namespace pcs::shape_space;
@@ -273,7 +273,8 @@ BOOST_AUTO_TEST_CASE(points_in_one_place_share_its_partners)
     BOOST_TEST(std::count(partners_1.begin(), partners_1.end(), 0) == 0);
     BOOST_TEST(std::count(partners_2.begin(), partners_2.end(), 0) == 0);
     BOOST_TEST(found.pairs.size() <= one.size() + two.size() - 1);
-    // as one surface element the 200 draw no others to themselves; as 200 points they do, but nobody gets many
+    // as one surface element the 200 draw no others to themselves; as 200 points they do, but
+    // nobody gets many
     const auto most = *std::max_element(partners_1.begin() + 300, partners_1.end());
     BOOST_TEST(most <= 3u);
   }

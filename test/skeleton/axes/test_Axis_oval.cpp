@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Ovals of axes: found from half of the sections, carried along bends, small where nothing tells them.
+// Ovals of axes: found from half of the sections, carried along bends, small where nothing tells
+// them.
 
 #include <pcs/extract_tree_skeleton.h>
 #include <pcs/skeleton/axes/Axis_oval.h>
@@ -27,7 +28,8 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846, radius = 0.1, noise = 0.002;
 
-/// Points within `arc` of a side of a pipe, bent with a radius of 3 in the plane x z, that is an oval of `coefficients`.
+/// Points within `arc` of a side of a pipe, bent with a radius of 3 in the plane x z, that is an
+/// oval of `coefficients`.
 struct Oval_pipe
 {
   Axis axis;

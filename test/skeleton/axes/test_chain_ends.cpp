@@ -19,7 +19,8 @@ namespace {
 
 constexpr double radius = 0.1, height = 2;
 
-/// An axis along z from -0.5 to `height`, with the radius `base` below 0, and a stem around the rest.
+/// An axis along z from -0.5 to `height`, with the radius `base` below 0, and a stem around the
+/// rest.
 struct Stem
 {
   Scan scan;

@@ -36,7 +36,8 @@ void scan_of(const std::vector<Vec3>& points, Scan& scan, Layer_tree& tree)
   internal::collect_nodes<CGAL::Sequential_tag>(scan, tree);
 }
 
-/// A trunk in layers of two arcs each, as paths on both sides of it give them, with limbs that leave the smaller arc.
+/// A trunk in layers of two arcs each, as paths on both sides of it give them, with limbs that
+/// leave the smaller arc.
 struct Two_arcs
 {
   Scan scan;
@@ -84,7 +85,8 @@ private:
 class Layered_tubes
 {
 public:
-  /// Adds an arc of a tube from angle `a0` to `a1`, with its layers above `below`. Returns the last of those.
+  /// Adds an arc of a tube from angle `a0` to `a1`, with its layers above `below`. Returns the last
+  /// of those.
   Index add(Index below, const Vec3& base, const Vec3& step, double r, double a0, double a1)
   {
     const double length = step.norm(), thickness = layer_thickness * spacing;
@@ -127,7 +129,8 @@ axes_of(const Scan& scan, const Layer_tree& tree, const Axis_options& rules = Ax
 
 BOOST_AUTO_TEST_SUITE(axes_of_chains)
 
-// Paths run along two sides of a limb, each into a twig of its own; both chains are fitted without seeing each other.
+// Paths run along two sides of a limb, each into a twig of its own; both chains are fitted without
+// seeing each other.
 BOOST_AUTO_TEST_CASE(two_chains_of_one_wave_do_not_keep_the_same_wood)
 {
   Layered_tubes tubes;

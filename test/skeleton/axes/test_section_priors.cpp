@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Radii by counting points: right where all of them can be seen, raised where something hides an axis, and never too sure.
+// Radii by counting points: right where all of them can be seen, raised where something hides an
+// axis, and never too sure.
 
 #include <pcs/skeleton/axes/section_priors.h>
 #include <support/axes.h>
@@ -20,7 +21,8 @@ namespace {
 constexpr double pi = 3.14159265358979323846, spacing = 0.01, length = 1;
 constexpr std::size_t number_of_nodes = 41;
 
-/// A cylinder along z of radius `radius`, on which there is `share` of the points that the density makes expect.
+/// A cylinder along z of radius `radius`, on which there is `share` of the points that the density
+/// makes expect.
 struct Cylinder
 {
   Scan scan;
@@ -116,7 +118,8 @@ BOOST_AUTO_TEST_CASE(an_axis_between_twigs_is_not_sure_of_its_radius)
   }
 }
 
-// Line from the radius of the lower third to half of it, for what is thicker; the more points, the less it says.
+// Line from the radius of the lower third to half of it, for what is thicker; the more points, the
+// less it says.
 BOOST_AUTO_TEST_CASE(axes_are_expected_to_taper_until_points_can_be_counted)
 {
   for (const double share : {0.005, 1.0}) {

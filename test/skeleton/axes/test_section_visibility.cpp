@@ -71,7 +71,8 @@ struct Seen_twig
     return priors;
   }
 
-  /// The radius in the middle after iterations with the prior of a density that is three times too low.
+  /// The radius in the middle after iterations with the prior of a density that is three times too
+  /// low.
   double fitted_radius(bool has_width) const
   {
     Axis_fit fit = this->fit(3 * radius);

@@ -82,7 +82,8 @@ BOOST_AUTO_TEST_CASE(of_two_branches_as_near_the_thicker_one_is_the_parent)
 
 BOOST_AUTO_TEST_CASE(a_branch_leaves_its_parent_towards_the_tip)
 {
-  // two branches cross in front of the base: it leaves one at 40 degrees and would turn back on the other
+  // two branches cross in front of the base: it leaves one at 40 degrees and would turn back on the
+  // other
   const Axis_set set = set_of({straight({0, 0, -0.5}, {0, 0, 0}, 0.05, 0.04),
                                straight({0, 0, 0}, {0.5, 0.006, 0.5}, 0.01, 0.01),
                                straight({0.5, -0.006, 0}, {0, -0.006, 0.5}, 0.01, 0.01),

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The places of a scan, the links between them, and the shortest paths over these, against plain ways to find them.
+// The places of a scan, the links between them, and the shortest paths over these, against plain
+// ways to find them.
 
 #include <pcs/skeleton/graph/Neighbor_graph.h>
 #include <pcs/skeleton/graph/shortest_paths.h>
@@ -37,7 +38,8 @@ using pcs::skeleton::none;
 using pcs::skeleton::Scan;
 using pcs::skeleton::Vec3;
 
-/// Sheets of `count` points each, one above the other, so far apart that only gaps are closed between them.
+/// Sheets of `count` points each, one above the other, so far apart that only gaps are closed
+/// between them.
 struct Sheets
 {
   Scan scan;
@@ -218,7 +220,8 @@ BOOST_AUTO_TEST_CASE(shortest_paths_are_those_of_boost)
 
 BOOST_AUTO_TEST_CASE(gaps_are_closed_by_the_shortest_links)
 {
-  // few large parts, and many small ones: in the first case only points that have others about search
+  // few large parts, and many small ones: in the first case only points that have others about
+  // search
   for (const auto& [number, size] : {std::make_pair(4, 600), std::make_pair(30, 25)}) {
     const Sheets s(number, size, 20);
     for (const double gap : {30.0, 60.0}) {

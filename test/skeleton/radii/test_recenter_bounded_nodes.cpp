@@ -22,8 +22,9 @@ namespace {
 constexpr double radius = 0.01, fitted = 0.03, noise = 0.001;
 
 /*!
-  A branch along x about the line z = 0, seen from below over an arc of +-`half_arc` radians. Its axis lies higher, where a circle of
-  radius `fitted` through the lowest points has its center; its radius was bounded. A twig sits on it.
+  A branch along x about the line z = 0, seen from below over an arc of +-`half_arc` radians. Its
+  axis lies higher, where a circle of radius `fitted` through the lowest points has its center; its
+  radius was bounded. A twig sits on it.
 */
 struct Bounded_branch
 {

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Rounding of coordinates: the step is found for decimals and for 32-bit floats, and exact coordinates have none.
+// Rounding of coordinates: the step is found for decimals and for 32-bit floats, and exact
+// coordinates have none.
 
 #include <pcs/skeleton/scan/measure_coordinate_step.h>
 

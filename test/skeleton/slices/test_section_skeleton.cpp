@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The pieces of a skeletonization: banded systems, circles and ellipses, curvatures, axes and their fit.
+// The pieces of a skeletonization: banded systems, circles and ellipses, curvatures, axes and their
+// fit.
 
 #include <pcs/Tree_skeletonization.h>
 #include <pcs/linear_algebra/Banded_cholesky.h>
@@ -219,8 +220,8 @@ BOOST_AUTO_TEST_CASE(a_wrong_start_finds_the_axis_of_half_a_tube)
   }
 }
 
-// Seven points about a twig that is much thinner than the noise: without the curvature of the distances the steps swing from
-// one side of the points to the other.
+// Seven points about a twig that is much thinner than the noise: without the curvature of the
+// distances the steps swing from one side of the points to the other.
 BOOST_AUTO_TEST_CASE(fits_of_thin_twigs_settle)
 {
   constexpr double noise = 0.003;
@@ -247,7 +248,8 @@ BOOST_AUTO_TEST_CASE(fits_of_thin_twigs_settle)
   }
 }
 
-// The front of a twig: an axis in the middle of its points stays there unless the fit knows on which side they lie.
+// The front of a twig: an axis in the middle of its points stays there unless the fit knows on
+// which side they lie.
 BOOST_AUTO_TEST_CASE(the_side_of_the_points_finds_the_axis_behind_them)
 {
   namespace sk = pcs::skeleton;
@@ -304,7 +306,8 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(section_counts)
 
-// A branch of radius 0.03 from the axis of a stem of radius 0.1; what lies on the stem is the stem's.
+// A branch of radius 0.03 from the axis of a stem of radius 0.1; what lies on the stem is the
+// stem's.
 BOOST_AUTO_TEST_CASE(radii_are_counted_where_the_parent_hides_a_part)
 {
   namespace sk = pcs::skeleton;

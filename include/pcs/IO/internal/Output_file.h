@@ -27,9 +27,10 @@ namespace IO {
 namespace internal {
 
 /*
-  Writes go to a temporary file in the directory of the target, which `commit()` renames. Where the system can do it, that
-  file has no name before, so that nothing is left when the program is killed. A target that exists but is no regular file
-  (a device, a pipe) is written to directly: renaming would replace the device itself.
+  Writes go to a temporary file in the directory of the target, which `commit()` renames. Where the
+  system can do it, that file has no name before, so that nothing is left when the program is
+  killed. A target that exists but is no regular file (a device, a pipe) is written to directly:
+  renaming would replace the device itself.
 */
 class Output_file
 {

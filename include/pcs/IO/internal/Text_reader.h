@@ -25,8 +25,8 @@ namespace internal {
   columns. It may be a header line with names, among them x, y and z, of which the first may be
   empty, as tables of pandas have it; so may the comment before it, as CloudCompare writes it.
   Without one, the first three columns are x, y and z and the others are called column_4,
-  column_5, ...: whether six columns hold normals or colours cannot be known. A single integer on the first line is the number of
-  points of a PTS file.
+  column_5, ...: whether six columns hold normals or colours cannot be known. A single integer on
+  the first line is the number of points of a PTS file.
 */
 class Text_reader : public Format_reader
 {

@@ -42,8 +42,8 @@ struct No_map
 } // namespace internal
 
 /*!
-  What a range of points and a chain of named parameters stand for. Checks the concepts of both; where `is_ok` is false,
-  a message was given, and nothing else should be instantiated.
+  What a range of points and a chain of named parameters stand for. Checks the concepts of both;
+  where `is_ok` is false, a message was given, and nothing else should be instantiated.
 */
 template <class PointRange, class NamedParameters>
 class Point_access
@@ -252,8 +252,8 @@ public:
       return false;
   }
 
-  /// The same as `write()` for the elements of a block from `first` on, past the caches, if their coordinates lie one
-  /// after the other in memory; otherwise writes nothing and returns `false`.
+  /// The same as `write()` for the elements of a block from `first` on, past the caches, if their
+  /// coordinates lie one after the other in memory; otherwise writes nothing and returns `false`.
   PCS_ALWAYS_INLINE bool stream([[maybe_unused]] std::size_t first,
                                 [[maybe_unused]] const Lane_vectors& positions,
                                 [[maybe_unused]] const Lane_vectors& normals) const
@@ -330,7 +330,8 @@ private:
     return {};
   }
 
-  /// Where the values of the block that begins at `first` lie, if they are `stride` doubles apart; else null.
+  /// Where the values of the block that begins at `first` lie, if they are `stride` doubles apart;
+  /// else null.
   template <class Map, class Iterator>
   static PCS_ALWAYS_INLINE double* run(const Map& map, const Iterator& first, std::size_t stride)
   {

@@ -80,7 +80,8 @@ checked_indices(const char* function, const IndexRange& indices, std::size_t n)
 
 } // namespace internal
 
-/// How a cloud is sampled. Throws `Invalid_input`, whose text begins with `function`, if a parameter is out of range.
+/// How a cloud is sampled. Throws `Invalid_input`, whose text begins with `function`, if a
+/// parameter is out of range.
 template <class NamedParameters>
 Sampling_options read_sampling_options(const NamedParameters& np, const char* function)
 {

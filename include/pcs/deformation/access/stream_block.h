@@ -25,7 +25,8 @@ namespace deformation {
 /// Bytes that must be written at least: what fits into a last level of cache is better left there.
 constexpr std::size_t smallest_stream = std::size_t(32) << 20;
 
-/// Whether a `Triple` may be written as three doubles; `is_triple()` tells whether it is just its coordinates in order.
+/// Whether a `Triple` may be written as three doubles; `is_triple()` tells whether it is just its
+/// coordinates in order.
 template <class Triple>
 constexpr bool has_size_of_triple()
 {
@@ -42,8 +43,8 @@ bool is_triple()
   return value[0] == 1 && value[1] == 2 && value[2] == 3;
 }
 
-/// Whether `get()` of the map returns the memory that `put()` writes, and this does not lie in the key: elements of the
-/// range may live no longer than an iterator looks at them.
+/// Whether `get()` of the map returns the memory that `put()` writes, and this does not lie in the
+/// key: elements of the range may live no longer than an iterator looks at them.
 template <class Map, class ElementReference>
 constexpr bool is_memory_map()
 {
@@ -56,7 +57,8 @@ constexpr bool is_memory_map()
           sizeof(std::decay_t<ElementReference>) < sizeof(Value));
 }
 
-/// Where `value(0)` lies, if `value(l)` lies `l * stride` doubles behind it for all points of a block; otherwise null.
+/// Where `value(0)` lies, if `value(l)` lies `l * stride` doubles behind it for all points of a
+/// block; otherwise null.
 template <class Value>
 PCS_ALWAYS_INLINE double* find_run(const Value& value, std::size_t stride)
 {

@@ -32,7 +32,8 @@ struct Sample_links
 
 namespace internal {
 
-/// Candidate samples of one point, nearest first, and the distance at which a sample no longer counts.
+/// Candidate samples of one point, nearest first, and the distance at which a sample no longer
+/// counts.
 struct Sample_candidate
 {
   double distance;
@@ -89,7 +90,8 @@ inline void write_links(const std::vector<Sample_candidate>& nearest,
   }
 }
 
-/// For every sample: itself, the samples whose regions touch its own, and those that touch these. Increasing.
+/// For every sample: itself, the samples whose regions touch its own, and those that touch these.
+/// Increasing.
 template <class ConcurrencyTag>
 std::vector<std::vector<std::uint32_t>> sample_rings(const Weighted_graph& graph)
 {
@@ -132,11 +134,12 @@ inline void nearest_samples(const Vec3& point,
 } // namespace internal
 
 /*!
-  Nearest samples among the two rings of touching regions around the point's own, by distance in space.
+  Nearest samples among the two rings of touching regions around the point's own, by distance in
+  space.
 
-  On a smooth surface distances within two regions are all but geodesic, and unlike sums of edges they are smooth
-  functions of the point; that the rings follow the surface keeps out what is near in space only. Every point is
-  independent of all others. O(n ring).
+  On a smooth surface distances within two regions are all but geodesic, and unlike sums of edges
+  they are smooth functions of the point; that the rings follow the surface keeps out what is near
+  in space only. Every point is independent of all others. O(n ring).
 */
 template <class ConcurrencyTag>
 Sample_links link_by_regions(const std::vector<Vec3>& points,

@@ -21,21 +21,23 @@ namespace deformation {
 
 constexpr std::uint32_t no_sample = ~std::uint32_t(0);
 
-/// The sample that is nearest along the graph, for every point; `no_sample` in components without samples.
+/// The sample that is nearest along the graph, for every point; `no_sample` in components without
+/// samples.
 struct Sample_regions
 {
   std::vector<std::uint32_t> sample_of_point;
 };
 
-/// Edge lengths are counted in this fraction of `typical_edge()`: whole numbers make ties exact, so that rounding (a
-/// translated copy of the cloud) cannot decide them, and need no heap.
+/// Edge lengths are counted in this fraction of `typical_edge()`: whole numbers make ties exact, so
+/// that rounding (a translated copy of the cloud) cannot decide them, and need no heap.
 constexpr double steps_per_edge = 64;
 /// Longer edges count as this long. Only outliers have such edges.
 constexpr std::uint32_t largest_edge_steps = 4096;
 
 /*!
-  Grows all samples at once over the edges, by length (Dijkstra with buckets). Ties go to the sample with the smaller
-  number. O(n degree), whatever the number of samples; the dissertation's Algorithm 1 searches from every point.
+  Grows all samples at once over the edges, by length (Dijkstra with buckets). Ties go to the sample
+  with the smaller number. O(n degree), whatever the number of samples; the dissertation's Algorithm
+  1 searches from every point.
 */
 inline Sample_regions grow_regions(const std::vector<Vec3>& points,
                                    const neighborhood::Proximity_graph& graph,
@@ -54,7 +56,8 @@ inline Sample_regions grow_regions(const std::vector<Vec3>& points,
     regions.sample_of_point[samples[s]] = static_cast<std::uint32_t>(s);
     bucket[0].push_back(samples[s]);
   }
-  // Every edge takes at least one step: what a bucket holds is final when its turn comes, in any order.
+  // Every edge takes at least one step: what a bucket holds is final when its turn comes, in any
+  // order.
   for (std::uint64_t d = 0; number_of_waiting > 0; ++d) {
     auto& now = bucket[d % bucket.size()];
     number_of_waiting -= now.size();
@@ -84,7 +87,8 @@ inline Sample_regions grow_regions(const std::vector<Vec3>& points,
   return regions;
 }
 
-/// What an edge adds to the length of a border it crosses: no more than the spacing, so that outliers count little. [L]
+/// What an edge adds to the length of a border it crosses: no more than the spacing, so that
+/// outliers count little. [L]
 inline double crossing_length(const std::vector<Vec3>& points,
                               const neighborhood::Proximity_graph& graph,
                               std::size_t i,
@@ -95,8 +99,9 @@ inline double crossing_length(const std::vector<Vec3>& points,
                    local_spacing(points, graph, j)});
 }
 
-/// Edges to outliers get weights that fall with the square of their length: fits weigh an edge by its weight times its
-/// squared length, which must not grow without bound. Returns the sum of the weights.
+/// Edges to outliers get weights that fall with the square of their length: fits weigh an edge by
+/// its weight times its squared length, which must not grow without bound. Returns the sum of the
+/// weights.
 inline double damp_long_edges(const std::vector<Vec3>& points,
                               const std::vector<std::uint32_t>& samples,
                               Weighted_graph& graph)
@@ -125,11 +130,13 @@ inline double damp_long_edges(const std::vector<Vec3>& points,
 }
 
 /*!
-  Links samples whose regions touch. Parts that are near in space but not along the graph stay unlinked.
+  Links samples whose regions touch. Parts that are near in space but not along the graph stay
+  unlinked.
 
-  The weight is that of a Voronoi cell Laplacian, length of the common border over distance of the samples, scaled to
-  mean 1; the border is as long as the sum of the edges that cross it, each counted for at most the spacing there. `weight_unit` receives the weight of an edge
-  whose border is as long as itself.
+  The weight is that of a Voronoi cell Laplacian, length of the common border over distance of the
+  samples, scaled to mean 1; the border is as long as the sum of the edges that cross it, each
+  counted for at most the spacing there. `weight_unit` receives the weight of an edge whose border
+  is as long as itself.
 */
 inline Weighted_graph sample_graph(const std::vector<Vec3>& points,
                                    const neighborhood::Proximity_graph& graph,

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The part of a deformation that depends on the points only: order, neighbours, samples, links to the samples.
+// The part of a deformation that depends on the points only: order, neighbours, samples, links to
+// the samples.
 
 #ifndef PCS_DEFORMATION_BODY_SAMPLED_BODY_H
 #define PCS_DEFORMATION_BODY_SAMPLED_BODY_H
@@ -44,7 +45,8 @@ struct Sampling_options
   bool do_preserve_volume = true;
 };
 
-/// From the caller's coordinates to ours and back: the middle of the points, and a power of two, which loses no bits.
+/// From the caller's coordinates to ours and back: the middle of the points, and a power of two,
+/// which loses no bits.
 struct Local_frame
 {
   Vec3 origin = Vec3::Zero();
@@ -55,9 +57,10 @@ struct Local_frame
 };
 
 /*!
-  Points are numbered three ways. An *input* index is the caller's. A *site* stands for all points at the same
-  coordinates, in spatial order; graphs and components are over sites. A *place* is the position in the order in which
-  points are upsampled: the spatial order, all points included, or the caller's where that is as coherent.
+  Points are numbered three ways. An *input* index is the caller's. A *site* stands for all points
+  at the same coordinates, in spatial order; graphs and components are over sites. A *place* is the
+  position in the order in which points are upsampled: the spatial order, all points included, or
+  the caller's where that is as coherent.
 */
 template <class ConcurrencyTag>
 struct Sampled_body
@@ -95,7 +98,8 @@ struct Sampled_body
   }
   Vec3 rest_of_site(std::size_t site) const { return upsampling.rest(first_place(site)); }
 
-  /// Builds everything from finite points in the caller's coordinates. Returns `false` if cancelled.
+  /// Builds everything from finite points in the caller's coordinates. Returns `false` if
+  /// cancelled.
   bool build(std::vector<Vec3> points,
              const Sampling_options& sampling,
              Deformation_report::Seconds& seconds,

@@ -19,8 +19,9 @@ namespace deformation {
 using Vec2 = Eigen::Vector2d;
 
 /*!
-  The Voronoi cell of the origin. It starts as a square, and is cut by the bisectors to its neighbours, near ones
-  first for speed. Sides that are left of the square are *open*: no neighbour lies there.
+  The Voronoi cell of the origin. It starts as a square, and is cut by the bisectors to its
+  neighbours, near ones first for speed. Sides that are left of the square are *open*: no neighbour
+  lies there.
 */
 class Voronoi_cell
 {
@@ -61,7 +62,8 @@ public:
       if ((m_side[k] > 0) == (m_side[l] > 0))
         continue;
       const double t = m_side[k] / (m_side[k] - m_side[l]);
-      // What begins here: the bisector where the old outline is left, else the rest of the old side.
+      // What begins here: the bisector where the old outline is left, else the rest of the old
+      // side.
       m_next.push_back({m_corners[k].point + t * (m_corners[l].point - m_corners[k].point),
                         m_side[k] > 0 ? m_corners[k].neighbor : neighbor});
     }
@@ -70,8 +72,9 @@ public:
   }
 
   /*!
-    Calls `use(neighbor, p, length)` for every side: the neighbour across it at `p = position(neighbor)`, and its
-    length [L]. Beside an open side, it ends where it meets the segment to `p`, as at the border of a sheet.
+    Calls `use(neighbor, p, length)` for every side: the neighbour across it at `p =
+    position(neighbor)`, and its length [L]. Beside an open side, it ends where it meets the segment
+    to `p`, as at the border of a sheet.
   */
   template <class Position, class Use>
   void for_each_side(const Position& position, const Use& use) const

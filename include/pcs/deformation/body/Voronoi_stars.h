@@ -27,7 +27,8 @@ namespace internal {
 /// Rows of the proximity graph that are longer do not help to fit planes.
 constexpr std::size_t most_patch_edges = 64;
 
-/// The sides of the Voronoi cells of all points: which neighbours, and length of the side over their distance.
+/// The sides of the Voronoi cells of all points: which neighbours, and length of the side over
+/// their distance.
 struct Voronoi_stars
 {
   struct Side
@@ -66,8 +67,8 @@ struct Tangent_plane
   double spacing = 0;          ///< [L]
 };
 
-/// The planes of all points, fitted to the neighbours of their neighbours in the proximity graph: other sheets have no
-/// say.
+/// The planes of all points, fitted to the neighbours of their neighbours in the proximity graph:
+/// other sheets have no say.
 template <class ConcurrencyTag>
 std::vector<Tangent_plane> tangent_planes(const std::vector<Vec3>& points,
                                           const neighborhood::Proximity_graph& proximity)
@@ -102,7 +103,8 @@ std::vector<Tangent_plane> tangent_planes(const std::vector<Vec3>& points,
   return planes;
 }
 
-/// Cuts the Voronoi cell of one point after the other in its tangent plane; lengths are relative to its spacing.
+/// Cuts the Voronoi cell of one point after the other in its tangent plane; lengths are relative to
+/// its spacing.
 class Voronoi_star_maker
 {
 public:
@@ -111,8 +113,8 @@ public:
   {
   }
 
-  /// Appends the star of point `i` to `out`; returns whether its cell is large or open. The neighbours are sought
-  /// among those of `i` in `graph` and their neighbours.
+  /// Appends the star of point `i` to `out`; returns whether its cell is large or open. The
+  /// neighbours are sought among those of `i` in `graph` and their neighbours.
   template <class Graph>
   bool operator()(std::size_t i, const Graph& graph, std::vector<Voronoi_stars::Side>& out)
   {
@@ -171,7 +173,8 @@ private:
       m_candidates.push_back({offset, squared, Vec2::Zero(), j});
   }
 
-  /// Lays the candidates into the tangent plane without shortening the edges to them, across creases above all.
+  /// Lays the candidates into the tangent plane without shortening the edges to them, across
+  /// creases above all.
   void flatten(const Vec3& normal)
   {
     const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u);

@@ -16,16 +16,17 @@
 namespace pcs {
 namespace deformation {
 
-/// A block of the caller's order may be so many times as long as one of the spatial order. A row of a grid is twice as
-/// long; with rows of another twice that length, and 50 points per sample, what is saved and what is lost are equal.
+/// A block of the caller's order may be so many times as long as one of the spatial order. A row of
+/// a grid is twice as long; with rows of another twice that length, and 50 points per sample, what
+/// is saved and what is lost are equal.
 constexpr double largest_coherent_ratio = 4;
 /// Share of the blocks that may be longer: ends of scan lines, outliers.
 constexpr double largest_incoherent_share = 0.1;
 
 /*!
-  Results are written to the caller's memory. In the caller's own order that is one stream, which costs a sixth of the
-  upsampling less than spots all over; grids and scan lines allow it, shuffled points do not: their blocks would need
-  too many samples.
+  Results are written to the caller's memory. In the caller's own order that is one stream, which
+  costs a sixth of the upsampling less than spots all over; grids and scan lines allow it, shuffled
+  points do not: their blocks would need too many samples.
   \param points in the caller's order
   \param spatial_order places of neighbours are near in it
 */

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Springs through the inside of a closed surface, against the loss of volume under strong twist and bending.
+// Springs through the inside of a closed surface, against the loss of volume under strong twist and
+// bending.
 
 #ifndef PCS_DEFORMATION_BODY_INTERIOR_LINKS_H
 #define PCS_DEFORMATION_BODY_INTERIOR_LINKS_H
@@ -28,8 +29,8 @@ namespace deformation {
   The links of `interior_links()`. Lengths are relative to the spacing `h`, see `typical_edge()`.
 
   A link from a node along its inward normal to the opposite side, of length `d`, gets the weight
-  `strength (h / d)^2`: then the energy of a relative compression does not depend on the sampling, like that of
-  the surface edges.
+  `strength (h / d)^2`: then the energy of a relative compression does not depend on the sampling,
+  like that of the surface edges.
 */
 struct Interior_link_options
 {
@@ -44,13 +45,14 @@ struct Interior_link_options
   int largest_number_of_steps = 128; ///< of one ray
 };
 
-/// Larger networks get no links; their coarser levels do. Links turn the factor of a surface into that of a volume:
-/// at 40,000 nodes factorising takes fifty times as long as at 5,000. [count]
+/// Larger networks get no links; their coarser levels do. Links turn the factor of a surface into
+/// that of a volume: at 40,000 nodes factorising takes fifty times as long as at 5,000. [count]
 constexpr std::size_t largest_linked_network = 20000;
 
 namespace internal {
 
-/// Normals by principal components of the edges, oriented consistently along a spanning tree per component.
+/// Normals by principal components of the edges, oriented consistently along a spanning tree per
+/// component.
 template <class ConcurrencyTag>
 std::vector<Vec3> oriented_normals(const Elastic_network& network)
 {
@@ -132,9 +134,9 @@ public:
   }
 
   /*!
-    Whether the surface closes around the link: of rays from its middle at right angles to it, some two opposite
-    ones both hit. That holds inside a box or an open tube, and fails between two sheets joined along one edge,
-    which must stay independent.
+    Whether the surface closes around the link: of rays from its middle at right angles to it, some
+    two opposite ones both hit. That holds inside a box or an open tube, and fails between two
+    sheets joined along one edge, which must stay independent.
   */
   bool is_enclosed(std::uint32_t i, std::uint32_t j) const
   {
@@ -152,7 +154,8 @@ public:
   }
 
 private:
-  /// On grids a ray may pass between nodes that are equally near; rounding must not choose among them.
+  /// On grids a ray may pass between nodes that are equally near; rounding must not choose among
+  /// them.
   static constexpr std::size_t number_of_equals = 4;
 
   static std::uint32_t
@@ -230,8 +233,8 @@ inline void drop_long_links(const Elastic_network& network, double factor, std::
 } // namespace internal
 
 /*!
-  Links nodes of closed (or nearly closed) surfaces to the opposite side. Open surfaces, and parts whose inward rays
-  do not hit, get none: the result is then empty. O(n log n).
+  Links nodes of closed (or nearly closed) surfaces to the opposite side. Open surfaces, and parts
+  whose inward rays do not hit, get none: the result is then empty. O(n log n).
   \param component the component of every node; links never join two components
 */
 template <class ConcurrencyTag>

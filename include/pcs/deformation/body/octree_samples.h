@@ -31,7 +31,8 @@ struct Octree_range
   std::size_t size() const { return end - begin; }
 };
 
-/// The non-empty children of a cell, read off the spatial order; halves where the order has no octants.
+/// The non-empty children of a cell, read off the spatial order; halves where the order has no
+/// octants.
 inline std::vector<Octree_range> split_range(const std::vector<Eigen::Vector3d>& points,
                                              const Octree_range& range)
 {
@@ -56,8 +57,9 @@ inline std::vector<Octree_range> split_range(const std::vector<Eigen::Vector3d>&
 } // namespace internal
 
 /*!
-  Indices of exactly `min(number_of_samples, n)` points, increasing. The fullest leaf is split until there are
-  enough leaves, so dense parts get more samples; each leaf gives the point nearest to its centroid.
+  Indices of exactly `min(number_of_samples, n)` points, increasing. The fullest leaf is split until
+  there are enough leaves, so dense parts get more samples; each leaf gives the point nearest to its
+  centroid.
   \param points distinct, in the order of `neighborhood::spatial_order()`
   Deterministic; depends on the positions only. O(n log n).
 */

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Edges and weights from the Voronoi cells of the points in their tangent planes: exact on irregular samplings.
+// Edges and weights from the Voronoi cells of the points in their tangent planes: exact on
+// irregular samplings.
 
 #ifndef PCS_DEFORMATION_BODY_VORONOI_GRAPH_H
 #define PCS_DEFORMATION_BODY_VORONOI_GRAPH_H
@@ -27,20 +28,21 @@ namespace deformation {
 
 /// Share of the proximity weights where there are no cells to speak of. [-]
 constexpr double proximity_share = 0.05;
-/// Sides that weigh less than this in total do not hold a point: it lies on a wire, at a corner, or is an outlier. [-]
+/// Sides that weigh less than this in total do not hold a point: it lies on a wire, at a corner, or
+/// is an outlier. [-]
 constexpr double least_star = 1.5;
 /// Lighter edges do not hold two parts together. [-]
 constexpr double least_link = 0.02;
-/// Clouds with edges that are lighter still are no sampled surface, but points at ever smaller distances; their factors
-/// need all edges there are. [-]
+/// Clouds with edges that are lighter still are no sampled surface, but points at ever smaller
+/// distances; their factors need all edges there are. [-]
 constexpr double least_surface_weight = 1e-14;
 /// Weights of the edges at a point, on average. [-]
 constexpr double mean_degree = 6.5;
 
 namespace internal {
 
-/// The two cells of an edge have a say in its weight each. Proximity edges come in where the stars are weak, and where
-/// components would fall apart.
+/// The two cells of an edge have a say in its weight each. Proximity edges come in where the stars
+/// are weak, and where components would fall apart.
 template <class ConcurrencyTag>
 Weighted_graph star_graph(const Voronoi_stars& stars,
                           const neighborhood::Proximity_graph& neighbors,
@@ -164,14 +166,15 @@ Weighted_graph star_graph(const Voronoi_stars& stars,
 } // namespace internal
 
 /*!
-  The graph of the points whose Voronoi cells touch along the surface, weighted by the length of the common side over
-  the distance: the cotangent Laplacian of a Delaunay triangulation, without one.
+  The graph of the points whose Voronoi cells touch along the surface, weighted by the length of the
+  common side over the distance: the cotangent Laplacian of a Delaunay triangulation, without one.
 
-  On a plane, linear functions are harmonic for these weights, however irregular the points; for those of
-  `set_edge_weights()` they are only on average. Every cell is cut in the tangent plane of its point, among the
-  neighbours of neighbours; cells that are large or open look again among those of the cells around them. Where no
-  cell can be cut (wires, outliers), a share of the proximity weights takes over. Of clouds without any typical
-  spacing, the proximity graph is returned as it is.
+  On a plane, linear functions are harmonic for these weights, however irregular the points; for
+  those of `set_edge_weights()` they are only on average. Every cell is cut in the tangent plane of
+  its point, among the neighbours of neighbours; cells that are large or open look again among those
+  of the cells around them. Where no cell can be cut (wires, outliers), a share of the proximity
+  weights takes over. Of clouds without any typical spacing, the proximity graph is returned as it
+  is.
 
   \param proximity weighted by `set_edge_weights()`; the result has the same components
 

@@ -23,8 +23,9 @@ struct Border_edge
 };
 
 /*!
-  Remembers which blocks of consecutive sites have edges between them. Where sites are numbered in spatial order, most
-  blocks lie, with all blocks around them, either in handles or outside, and their edges need not be read.
+  Remembers which blocks of consecutive sites have edges between them. Where sites are numbered in
+  spatial order, most blocks lie, with all blocks around them, either in handles or outside, and
+  their edges need not be read.
 */
 class Border_finder
 {
@@ -49,8 +50,8 @@ public:
     }
   }
 
-  /// The edges of `graph`, the one given before, from sites where `is_inside` to sites where it is not; in the order of
-  /// the graph's rows. O(n) calls of `is_inside`, and the blocks at borders.
+  /// The edges of `graph`, the one given before, from sites where `is_inside` to sites where it is
+  /// not; in the order of the graph's rows. O(n) calls of `is_inside`, and the blocks at borders.
   template <class ConcurrencyTag, class IsInside>
   std::vector<Border_edge> find(const neighborhood::Proximity_graph& graph,
                                 const IsInside& is_inside) const

@@ -18,11 +18,11 @@ class Dirty_handles
 {
 public:
   /*!
-    Of each handle, whether its points are written: those that move, or did so the last time. Allocates nothing while the
-    number of handles stays.
+    Of each handle, whether its points are written: those that move, or did so the last time.
+    Allocates nothing while the number of handles stays.
 
-    \param transforms of the handles, in local coordinates; the outside of the region of interest, which never moves, comes
-           last if there is one
+    \param transforms of the handles, in local coordinates; the outside of the region of interest,
+           which never moves, comes last if there is one
     \param followed handles that points elsewhere have come to follow
     \param is_at_rest whether the samples are
   */

@@ -26,11 +26,13 @@ namespace deformation {
 /// Of a site that is not in the region of interest.
 constexpr Node_constraint outside_region = -3;
 
-/// Transformations are in the caller's coordinates. The number of a handle that was removed is not used again.
+/// Transformations are in the caller's coordinates. The number of a handle that was removed is not
+/// used again.
 class Handle_set
 {
 public:
-  /// \param region indices of the region of interest, or null for all points. A place is in it with all of its points
+  /// \param region indices of the region of interest, or null for all points. A place is in it with
+  /// all of its points
   template <class ConcurrencyTag>
   void start(const Sampled_body<ConcurrencyTag>& body, const std::vector<std::uint32_t>* region)
   {
@@ -51,7 +53,8 @@ public:
   bool contains(std::size_t handle) const { return handle < m_is_used.size() && m_is_used[handle]; }
   bool empty() const { return std::find(m_is_used.begin(), m_is_used.end(), 1) == m_is_used.end(); }
 
-  /// Whether there are points outside the region of interest, which a handle after all others holds.
+  /// Whether there are points outside the region of interest, which a handle after all others
+  /// holds.
   bool has_outside() const { return m_has_outside; }
   Node_constraint outside_handle() const { return static_cast<Node_constraint>(size()); }
 
@@ -101,7 +104,8 @@ public:
     return is_reached;
   }
 
-  /// Adds a handle that stays where it is. \param weight 0: exact; positive: soft, see `Node_constraints`
+  /// Adds a handle that stays where it is. \param weight 0: exact; positive: soft, see
+  /// `Node_constraints`
   template <class ConcurrencyTag>
   std::size_t add(const Sampled_body<ConcurrencyTag>& body,
                   const std::vector<std::uint32_t>& indices,
@@ -178,7 +182,8 @@ public:
 
   void put_at_rest() { m_transforms.assign(size(), Similarity()); }
 
-  /// In local coordinates: `x -> sR x + (sR c + t - c) / unit`; the outside of the region comes last.
+  /// In local coordinates: `x -> sR x + (sR c + t - c) / unit`; the outside of the region comes
+  /// last.
   void local_transforms(const Local_frame& frame, std::vector<Similarity>& local) const
   {
     local.clear();

@@ -30,15 +30,17 @@ class Site_constraints
 public:
   /// Before the first `find()`.
   bool empty() const { return m_of_site.empty(); }
-  /// How a site is written: with a handle, `free_node`, `unreached_node`, `outlier_site` or `returning_site`.
+  /// How a site is written: with a handle, `free_node`, `unreached_node`, `outlier_site` or
+  /// `returning_site`.
   Node_constraint operator[](std::size_t site) const { return m_of_site[site]; }
   /// One bit per place, `lanes` of them in a byte: whether it is blended from samples.
   const std::vector<std::uint8_t>& is_blended() const { return m_is_blended; }
-  /// Of a block of places: the handle that holds all of them, `still_block` if nothing moves any of them, else
-  /// `mixed_block`.
+  /// Of a block of places: the handle that holds all of them, `still_block` if nothing moves any of
+  /// them, else `mixed_block`.
   const std::vector<std::int32_t>& holder() const { return m_holder; }
 
-  /// Finds what becomes of every site, and counts it; returns which samples are held by which handle.
+  /// Finds what becomes of every site, and counts it; returns which samples are held by which
+  /// handle.
   template <class ConcurrencyTag>
   Node_constraints find(const Sampled_body<ConcurrencyTag>& body,
                         const Handle_set& handles,
@@ -51,7 +53,8 @@ public:
     return of_samples(body, handles, is_reached);
   }
 
-  /// Handles that fragments without a sample have come to follow since the last call: these are elsewhere.
+  /// Handles that fragments without a sample have come to follow since the last call: these are
+  /// elsewhere.
   std::vector<Node_constraint> take_followed_handles() { return std::exchange(m_followed, {}); }
 
   /// The present shape is the rest shape: nothing has to go back.
@@ -93,8 +96,8 @@ private:
         has_sample.emplace(h, body.component_of_site[site]);
       }
     }
-    // A soft handle between the samples draws those in whose regions its points lie; an exact one has nodes on its
-    // border.
+    // A soft handle between the samples draws those in whose regions its points lie; an exact one
+    // has nodes on its border.
     const bool has_soft_handles = handles.has_soft_handles();
     for (std::size_t site = 0; has_soft_handles && site < body.number_of_sites(); ++site) {
       const Node_constraint h = handles.of_site(site);

@@ -24,7 +24,8 @@ namespace deformation {
 /// A boundary node is taken to lie at least this far from its sample, in units of `typical_edge()`.
 constexpr double shortest_boundary_edge = 0.1;
 
-/// What `add_boundary_nodes()` reads. `handle_of_site(site)` is the handle that prescribes a site on a border.
+/// What `add_boundary_nodes()` reads. `handle_of_site(site)` is the handle that prescribes a site
+/// on a border.
 template <class HandleOfSite, class SitePosition>
 struct Boundary_input
 {
@@ -38,7 +39,8 @@ struct Boundary_input
 
 namespace internal {
 
-/// A place where the region of a sample meets a handle; several edges of the site graph join in one.
+/// A place where the region of a sample meets a handle; several edges of the site graph join in
+/// one.
 struct Border_crossing
 {
   std::uint32_t sample; ///< whose region lies outside the handle there
@@ -51,11 +53,13 @@ struct Border_crossing
 } // namespace internal
 
 /*!
-  Returns the network with nodes added on the borders of exact handles, and extends `constraints` to them.
+  Returns the network with nodes added on the borders of exact handles, and extends `constraints` to
+  them.
 
-  With few samples the nearest sample in a handle lies well inside it, and the body would yield as if the handle ended
-  there. A boundary node sits at the handle's point that is nearest to the free sample, is prescribed like the handle,
-  and takes over the border between the two regions at its true distance. Costs one pass over the border.
+  With few samples the nearest sample in a handle lies well inside it, and the body would yield as
+  if the handle ended there. A boundary node sits at the handle's point that is nearest to the free
+  sample, is prescribed like the handle, and takes over the border between the two regions at its
+  true distance. Costs one pass over the border.
 */
 template <class HandleOfSite, class SitePosition>
 Elastic_network add_boundary_nodes(const Boundary_input<HandleOfSite, SitePosition>& in,
@@ -128,7 +132,8 @@ Elastic_network add_boundary_nodes(const Boundary_input<HandleOfSite, SitePositi
       add_node(key.sample, site, key.handle, border);
     c = end;
   }
-  // Edges of the sample graph; those into a handle end at its border if it runs through the region over there.
+  // Edges of the sample graph; those into a handle end at its border if it runs through the region
+  // over there.
   for (std::size_t s = 0; s < number_of_samples; ++s)
     for (std::size_t e = base.first[s]; e < base.first[s + 1]; ++e) {
       const std::uint32_t t = base.neighbor[e];

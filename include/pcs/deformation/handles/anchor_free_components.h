@@ -17,12 +17,13 @@ namespace pcs {
 namespace deformation {
 
 /*!
-  In components of a network that no node holds, the nodes become those of the handles in whose regions they lie: without
-  any, its matrices are singular. O(nodes + finer nodes).
+  In components of a network that no node holds, the nodes become those of the handles in whose
+  regions they lie: without any, its matrices are singular. O(nodes + finer nodes).
 
   \param component_of `component_of(node)`
   \param node_of_finer the node in whose region each finer node lies, or `no_sample`
-  \param handle_of_finer `handle_of_finer(i)`: the handle that holds finer node `i`, negative if there is none
+  \param handle_of_finer `handle_of_finer(i)`: the handle that holds finer node `i`, negative if
+      there is none
 */
 template <class ComponentOf, class HandleOfFiner>
 void anchor_free_components(const ComponentOf& component_of,

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Where a handle ends on an irregular sampling: along its outermost points, not along each of its points.
+// Where a handle ends on an irregular sampling: along its outermost points, not along each of its
+// points.
 
 #ifndef PCS_DEFORMATION_HANDLES_STRAIGHTEN_BORDERS_H
 #define PCS_DEFORMATION_HANDLES_STRAIGHTEN_BORDERS_H
@@ -84,13 +85,15 @@ border_advance(const Elastic_network& network, const Node_constraints& constrain
 } // namespace internal
 
 /*!
-  Gives the edges between free nodes and exact handles their true length up to the border of the handle.
+  Gives the edges between free nodes and exact handles their true length up to the border of the
+  handle.
 
-  Points that are picked by a region of space end on average half a spacing before its border, and fields that are
-  held at each of them alone yield as if the handle were that much shorter. Here the border runs through the outermost
-  points of the handle around each of them (on a grid: through all). Where it crosses an edge at a share `t` of its
-  length, a node that is prescribed like the handle is added to `result`, with the edge's weight over `1 - t`.
-  Constraints are extended to the new nodes.
+  Points that are picked by a region of space end on average half a spacing before its border, and
+  fields that are held at each of them alone yield as if the handle were that much shorter. Here the
+  border runs through the outermost points of the handle around each of them (on a grid: through
+  all). Where it crosses an edge at a share `t` of its length, a node that is prescribed like the
+  handle is added to `result`, with the edge's weight over `1 - t`. Constraints are extended to the
+  new nodes.
 
   Returns `false`, with `result` untouched, if no border leaves its nodes. O(n).
 */

@@ -92,7 +92,8 @@ struct Deviation_guess
   bool is_far_from_field =
       false; ///< clearly better than the field there, which need not be tried again
   std::vector<Vec3>
-      link_offsets; ///< what the interior links of coarser networks add to the positions; may be empty
+      /// what the interior links of coarser networks add to the positions; may be empty
+      link_offsets;
 };
 
 } // namespace deformation

@@ -33,8 +33,8 @@ namespace deformation {
 
   1. fits the rotation of every node to its edges (`fit_rotations.h`), as a deviation `d_i` from the
      rotation field of the handles (`rotation_field.h`);
-  2. smooths: minimises `sum_ij w_ij |d'_i - d'_j|^2 + sum_i mu_i D_i |d'_i - d_i|^2` over `d'`, which
-     is zero at the handles, with `D_i = sum_j w_ij` and `mu_i` from stiffness and area
+  2. smooths: minimises `sum_ij w_ij |d'_i - d'_j|^2 + sum_i mu_i D_i |d'_i - d_i|^2` over `d'`,
+     which is zero at the handles, with `D_i = sum_j w_ij` and `mu_i` from stiffness and area
      (`Elastic_factors::fit_weight()`); soft nodes add their spring towards zero;
   3. solves for the positions with `R_i = exp(d'_i) B_i` fixed.
 

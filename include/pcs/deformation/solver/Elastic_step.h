@@ -73,7 +73,8 @@ public:
   /*!
     New motions of the handles; rotations are those of their field.
     \param is_further whether the stretch of the material is kept
-    \param link_offsets what links that this network lacks add to the positions of the first nodes; may be null
+    \param link_offsets what links that this network lacks add to the positions of the first nodes;
+        may be null
   */
   void begin(const std::vector<Similarity>& transforms,
              const Elastic_options& options,

@@ -31,8 +31,8 @@ namespace deformation {
   unevenly and cannot count turns; `Rotation_field::geodesic` therefore
 
   1. blends rotation vectors where all turns share one axis (exact for any angle);
-  2. otherwise, where the handles are less than `widest_lifted_angle` apart, blends quaternions and follows with
-     three steps of the harmonic map, `L s = sum w log(q_j q_i^-1)`, `q <- exp(s) q`;
+  2. otherwise, where the handles are less than `widest_lifted_angle` apart, blends quaternions and
+     follows with three steps of the harmonic map, `L s = sum w log(q_j q_i^-1)`, `q <- exp(s) q`;
   3. otherwise blends the handles' turns one after another, each as rotation vectors in space.
 */
 template <class ConcurrencyTag>

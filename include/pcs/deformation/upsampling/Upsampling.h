@@ -41,7 +41,8 @@ class Upsampling
 public:
   Upsampling() = default;
 
-  /// \param point `point(i)` is the position of point `i` in `[0, n)`; neighbours in this order should be near
+  /// \param point `point(i)` is the position of point `i` in `[0, n)`; neighbours in this order
+  /// should be near
   /// \param row `row(i)` is the row of `links` that holds for point `i`
   template <class Point_at, class Row_at>
   Upsampling(std::size_t n,
@@ -131,9 +132,12 @@ public:
 
     | call | meaning |
     |---|---|
-    | `write(i, position, normal, gradient)` | for all that the samples or the holder of a block move; `normal` is zero without normals, `gradient` only set if `HasGradients` |
-    | `does_stream()`, `stream(i, block_output)` | whether, and now do, the same for eight points from `i` on, past the caches; may decline by `false` |
-    | `expect(i)` | if not `does_stream()`: some time before, for what `write` will touch to be asked for |
+    | `write(i, position, normal, gradient)` | for all that the samples or the holder of a block
+      move; `normal` is zero without normals, `gradient` only set if `HasGradients` |
+    | `does_stream()`, `stream(i, block_output)` | whether, and now do, the same for eight points
+      from `i` on, past the caches; may decline by `false` |
+    | `expect(i)` | if not `does_stream()`: some time before, for what `write` will touch to be
+      asked for |
     | `write_other(i)` | for the points of a mixed block that are not blended |
   */
   template <class ConcurrencyTag, bool HasGradients, class Writer>

@@ -185,7 +185,8 @@ private:
       return mask_of_at_most(enter, leave * Ray_lanes::of(1.000001f)) != 0;
     }
 
-    /// Möller and Trumbore 1997; a little of the neighbours belongs to each triangle, so that no ray slips between.
+    /// Möller and Trumbore 1997; a little of the neighbours belongs to each triangle, so that no
+    /// ray slips between.
     void hit(const Triangle& triangle, std::uint32_t index, Beam_hits& hits)
     {
       constexpr float margin = 1e-5f;

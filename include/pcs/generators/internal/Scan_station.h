@@ -117,7 +117,8 @@ private:
           right = std::max(right, azimuth);
           is_ahead = is_ahead && ahead > 0;
         }
-      if (!is_ahead) { // beside or around the station: the azimuths of the corners need not enclose it
+      // beside or around the station: the azimuths of the corners need not enclose it
+      if (!is_ahead) {
         left = -pi;
         right = pi;
       }

@@ -115,7 +115,8 @@ public:
     close(high, Eigen::Vector3d(post.x, post.y, post.height), p);
   }
 
-  //! the node of a wooden triangle that is nearest to a point along the axis, or the label of another
+  //! the node of a wooden triangle that is nearest to a point along the axis, or the label of
+  //! another
   int label(std::uint32_t triangle, const Eigen::Vector3d& point) const
   {
     const Piece& p = m_pieces[m_piece_of[triangle]];

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// How each branch of one tree is turned to be that of another, and frames that differ by these turns.
+// How each branch of one tree is turned to be that of another, and frames that differ by these
+// turns.
 
 #ifndef PCS_SHAPE_SPACE_EMBEDDING_BRANCH_TURNS_H
 #define PCS_SHAPE_SPACE_EMBEDDING_BRANCH_TURNS_H
@@ -28,10 +29,11 @@ struct Direction_pair
 };
 
 /*!
-  The rotation of least sum of weighted angles to pairs of directions and to `known`, which counts as `share` of all pairs.
+  The rotation of least sum of weighted angles to pairs of directions and to `known`, which counts
+  as `share` of all pairs.
 
-  By means with weights of one over the angle, from blunt to sharp: what most of the pairs agree in is met exactly, whatever
-  the others do, and what they do not determine is as in `known`.
+  By means with weights of one over the angle, from blunt to sharp: what most of the pairs agree in
+  is met exactly, whatever the others do, and what they do not determine is as in `known`.
 */
 inline Quaternion
 turn_of_directions(const std::vector<Direction_pair>& pairs, const Quaternion& known, double share)
@@ -63,8 +65,9 @@ turn_of_directions(const std::vector<Direction_pair>& pairs, const Quaternion& k
 }
 
 /*!
-  The rotation of each branch that both trees have from tree 1 to tree 2, from its edges, the branches on it, each as a
-  whole, and the rotation of its parent; `root` is that of the whole tree. What only one tree has turns with its parent.
+  The rotation of each branch that both trees have from tree 1 to tree 2, from its edges, the
+  branches on it, each as a whole, and the rotation of its parent; `root` is that of the whole tree.
+  What only one tree has turns with its parent.
 */
 inline std::vector<Quaternion> turns_of_branches(const Orl_layout& layout,
                                                  const Embedding& one,
@@ -112,10 +115,11 @@ inline std::vector<Quaternion> turns_of_branches(const Orl_layout& layout,
 }
 
 /*!
-  The twist of the frames of tree 2 about its edges is free. The frame of an edge is that of tree 1 turned as its branch, and
-  then the shortest way to the direction that the edge has: a branch that is turned as a whole costs what it was turned by,
-  once, and what single edges do, noise of short ones above all, twists nothing behind them. Edges that tree 1 does not have
-  carry on the frame before.
+  The twist of the frames of tree 2 about its edges is free. The frame of an edge is that of tree 1
+  turned as its branch, and then the shortest way to the direction that the edge has: a branch that
+  is turned as a whole costs what it was turned by, once, and what single edges do, noise of short
+  ones above all, twists nothing behind them. Edges that tree 1 does not have carry on the frame
+  before.
 */
 inline void
 turn_frames(const Orl_layout& layout, const Embedding& one, const Quaternion& root, Embedding& two)

@@ -16,7 +16,8 @@ namespace pcs {
 namespace shape_space {
 namespace internal {
 
-/// Lengths, radii, attachments and directions of a tree; nothing for branches that it does not have.
+/// Lengths, radii, attachments and directions of a tree; nothing for branches that it does not
+/// have.
 struct Embedding
 {
   std::vector<Vec3> direction;   ///< per edge; null for edges that do not exist
@@ -41,8 +42,9 @@ inline Embedding empty_embedding(const Orl_layout& layout, const Vec3& root)
   return result;
 }
 
-/// Length and direction of an edge. A path that comes back to where it was, or a node of the other tree beside one of its own,
-/// still has an edge there, without a direction: see `lend_directions()`.
+/// Length and direction of an edge. A path that comes back to where it was, or a node of the other
+/// tree beside one of its own, still has an edge there, without a direction: see
+/// `lend_directions()`.
 inline void set_edge(const Vec3& way, double shortest, double& length, Vec3& direction)
 {
   const double norm = way.norm();
@@ -50,7 +52,8 @@ inline void set_edge(const Vec3& way, double shortest, double& length, Vec3& dir
   direction = norm > shortest ? Vec3(way / norm) : Vec3(Vec3::Zero());
 }
 
-/// Edges without a direction point like the one before on their branch, or like the first that has one.
+/// Edges without a direction point like the one before on their branch, or like the first that has
+/// one.
 inline void lend_directions(const Orl_layout::Branch& branch, std::vector<Vec3>& direction)
 {
   const auto begin = direction.begin() + static_cast<std::ptrdiff_t>(branch.first_edge);
@@ -61,7 +64,8 @@ inline void lend_directions(const Orl_layout::Branch& branch, std::vector<Vec3>&
     last = *d = *d != Vec3::Zero() ? *d : last;
 }
 
-/// Carries frames along the edges that exist without twist, from `root` at the beginning of the trunk.
+/// Carries frames along the edges that exist without twist, from `root` at the beginning of the
+/// trunk.
 inline void set_frames(const Orl_layout& layout, const Quaternion& root, Embedding& tree)
 {
   for (std::size_t e = 0; e < layout.number_of_edges(); ++e)

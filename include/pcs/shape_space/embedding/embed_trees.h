@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Coordinates of two trees on their common topology, with frames whose twist does not count as a difference.
+// Coordinates of two trees on their common topology, with frames whose twist does not count as a
+// difference.
 
 #ifndef PCS_SHAPE_SPACE_EMBEDDING_EMBED_TREES_H
 #define PCS_SHAPE_SPACE_EMBEDDING_EMBED_TREES_H
@@ -21,7 +22,8 @@
 namespace pcs {
 namespace shape_space {
 
-/// Edges of the common topology. Orientations at a fork refer to the edge before the mean attachment.
+/// Edges of the common topology. Orientations at a fork refer to the edge before the mean
+/// attachment.
 inline Orl_layout make_layout(const std::vector<Common_branch>& branches)
 {
   Orl_layout layout;
@@ -147,7 +149,8 @@ inline std::array<Orl_coordinates, 2> embed_trees(const Orl_layout& layout,
   Embedding one = embed(layout, branches, *trees[0], paths[0], 0, Vec3::Zero());
   Embedding two = embed(layout, branches, *trees[1], paths[1], 1, shift);
   if (kind == Orl_orientation::world_axes) {
-    // v_c = q v_p q^-1 with the shortest turn q in the axes of the input; the frame is the product of these
+    // v_c = q v_p q^-1 with the shortest turn q in the axes of the input; the frame is the product
+    // of these
     for (Embedding* tree : {&one, &two})
       for (std::size_t e = 0; e < layout.number_of_edges(); ++e)
         if (tree->x.length[e] > 0) {
@@ -157,7 +160,8 @@ inline std::array<Orl_coordinates, 2> embed_trees(const Orl_layout& layout,
           tree->frame[e].normalize();
         }
   } else {
-    // the trunk of tree 2 refers to that of tree 1: how both stand in the axes of the input does not matter
+    // the trunk of tree 2 refers to that of tree 1: how both stand in the axes of the input does
+    // not matter
     set_frames(layout, Quaternion::Identity(), one);
     set_frames(layout, turn.conjugate() * one.frame[0], two);
     if (kind == Orl_orientation::gauge_fixed)
@@ -168,8 +172,8 @@ inline std::array<Orl_coordinates, 2> embed_trees(const Orl_layout& layout,
   return {std::move(one.x), std::move(two.x)};
 }
 
-/// Weights in units of length: turns count with the mean length of the edge, all others 1; or all 1, as in the text.
-/// `trees`: a range of `Orl_coordinates`.
+/// Weights in units of length: turns count with the mean length of the edge, all others 1; or all
+/// 1, as in the text. `trees`: a range of `Orl_coordinates`.
 template <class Trees>
 Orl_weights make_weights(const Orl_layout& layout, const Trees& trees, bool is_text)
 {

@@ -19,7 +19,8 @@ namespace pcs {
 namespace shape_space {
 namespace internal {
 
-/// Minimises the sum of squared chords: a start for both means, whatever the signs of the quaternions.
+/// Minimises the sum of squared chords: a start for both means, whatever the signs of the
+/// quaternions.
 inline Quaternion chordal_mean(const std::vector<Quaternion>& q, const std::vector<double>& w)
 {
   Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
@@ -43,7 +44,8 @@ sum_of_angles(const Quaternion& at, const std::vector<Quaternion>& q, const std:
   return sum;
 }
 
-/// One step towards the L1 mean from a place that is none of the data: Newton's, or else Weiszfeld's.
+/// One step towards the L1 mean from a place that is none of the data: Newton's, or else
+/// Weiszfeld's.
 struct L1_step
 {
   Vec3 newton = Vec3::Zero(), weiszfeld = Vec3::Zero();
@@ -83,10 +85,11 @@ l1_step(const Quaternion& at, const std::vector<Quaternion>& q, const std::vecto
 } // namespace internal
 
 /*!
-  The rotation with the least sum of weighted angles to others (R. Hartley, K. Aftab, J. Trumpf 2011), unique if they lie
-  within a ball of radius pi/2. A data point is taken if the pull of all others does not exceed its weight; else steps of
-  Weiszfeld, or of Newton where they do better. Where a whole arc has the least sum, its middle. Weights of 0 do not vote;
-  `q` has one element at least.
+  The rotation with the least sum of weighted angles to others (R. Hartley, K. Aftab, J. Trumpf
+  2011), unique if they lie within a ball of radius pi/2. A data point is taken if the pull of all
+  others does not exceed its weight; else steps of Weiszfeld, or of Newton where they do better.
+  Where a whole arc has the least sum, its middle. Weights of 0 do not vote; `q` has one element at
+  least.
 */
 inline Quaternion l1_mean_rotation(const std::vector<Quaternion>& q, const std::vector<double>& w)
 {
@@ -157,7 +160,8 @@ inline Quaternion l1_mean_rotation(const std::vector<Quaternion>& q, const std::
   return best;
 }
 
-/// The rotation with the least sum of weighted squared angles; weights may be negative if their sum is positive.
+/// The rotation with the least sum of weighted squared angles; weights may be negative if their sum
+/// is positive.
 inline Quaternion l2_mean_rotation(const std::vector<Quaternion>& q, const std::vector<double>& w)
 {
   double total = 0;

@@ -21,10 +21,12 @@ namespace pcs {
 namespace shape_space {
 
 /*!
-  The angle near `turn` by which tree 2 stands like tree 1: the median of what azimuths of common edges differ by. [rad]
+  The angle near `turn` by which tree 2 stands like tree 1: the median of what azimuths of common
+  edges differ by. [rad]
 
-  Edges count with their length and with how far they are from upright. Wood that stays where it is agrees exactly; what
-  bent, grew or was matched by chance does not move the median as long as it is the smaller part.
+  Edges count with their length and with how far they are from upright. Wood that stays where it is
+  agrees exactly; what bent, grew or was matched by chance does not move the median as long as it is
+  the smaller part.
 */
 inline double refine_yaw(const std::array<const Rooted_tree*, 2>& trees,
                          const Common_topology& topology,

@@ -14,8 +14,9 @@ namespace pcs {
 namespace shape_space {
 namespace internal {
 
-/// Marks the edges of a branch, from `first` to before `last`, that lie between two turns by more than a right angle, the
-/// second of which undoes the first: skeletons have them where two pieces overlap.
+/// Marks the edges of a branch, from `first` to before `last`, that lie between two turns by more
+/// than a right angle, the second of which undoes the first: skeletons have them where two pieces
+/// overlap.
 inline void mark_folds(const std::vector<Vec3>& direction,
                        std::size_t first,
                        std::size_t last,
@@ -37,11 +38,12 @@ inline void mark_folds(const std::vector<Vec3>& direction,
 } // namespace internal
 
 /*!
-  Lets the frames of edges and branches behind a fold of their branch be carried on from the last edge before it.
-  `directions`: of the edges, for each tree; null for those that it does not have.
+  Lets the frames of edges and branches behind a fold of their branch be carried on from the last
+  edge before it. `directions`: of the edges, for each tree; null for those that it does not have.
 
-  A fold that only one tree has is half a turn there and back. Which way is rounding, or noise, and half of it, twice, may
-  be anything: without this, what is behind a fold of a millimetre would point anywhere on the path between the trees.
+  A fold that only one tree has is half a turn there and back. Which way is rounding, or noise, and
+  half of it, twice, may be anything: without this, what is behind a fold of a millimetre would
+  point anywhere on the path between the trees.
 */
 inline void skip_fold_edges(const std::vector<std::vector<Vec3>>& directions, Orl_layout& layout)
 {

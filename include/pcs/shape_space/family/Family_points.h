@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The points of a family of trees: those of one scan on each branch, and their partners in all other scans.
+// The points of a family of trees: those of one scan on each branch, and their partners in all
+// other scans.
 
 #ifndef PCS_SHAPE_SPACE_FAMILY_FAMILY_POINTS_H
 #define PCS_SHAPE_SPACE_FAMILY_FAMILY_POINTS_H
@@ -27,9 +28,9 @@ struct Family_source
 };
 
 /*!
-  Points in the frames of their edges, each with partners in other scans. In a tree of the space a point lies at the mean of
-  the places of itself and its partners, weighted by the shares of their scans: along, around and away from the edge. The
-  order of points is the same for all trees.
+  Points in the frames of their edges, each with partners in other scans. In a tree of the space a
+  point lies at the mean of the places of itself and its partners, weighted by the shares of their
+  scans: along, around and away from the edge. The order of points is the same for all trees.
 */
 class Family_points
 {
@@ -41,7 +42,8 @@ public:
   const std::vector<std::size_t>& first() const { return m_first; }
   bool has_normals() const { return m_has_normals; }
 
-  /// Points by edge and partners by point, in the coordinates of the space; `geometry[t]`: of the tree with scan t.
+  /// Points by edge and partners by point, in the coordinates of the space; `geometry[t]`: of the
+  /// tree with scan t.
   template <class ConcurrencyTag>
   void set(const Orl_layout& layout,
            const std::vector<Orl_geometry>& geometry,
@@ -50,8 +52,8 @@ public:
            bool has_normals,
            ConcurrencyTag);
 
-  /// Calls `put(i, point, normal, k)` for all points of a tree: `i` counts those of branches that it has, `k` all.
-  /// `share`: of each scan, `>= 0`; empty: all alike.
+  /// Calls `put(i, point, normal, k)` for all points of a tree: `i` counts those of branches that
+  /// it has, `k` all. `share`: of each scan, `>= 0`; empty: all alike.
   template <class ConcurrencyTag, class Put>
   void write(const Orl_layout& layout,
              const Orl_coordinates& x,
@@ -98,7 +100,8 @@ public:
         64);
   }
 
-  /// Calls `f(tree, point, weight)` for a point and its partners that have a share; weights add up to 1.
+  /// Calls `f(tree, point, weight)` for a point and its partners that have a share; weights add up
+  /// to 1.
   template <class F>
   void for_each_source(std::size_t k, const std::vector<double>& share, const F& f) const
   {
@@ -125,7 +128,8 @@ private:
     return Vec3(cosine * v.x() - sine * v.y(), sine * v.x() + cosine * v.y(), v.z());
   }
 
-  /// Calls `f(none, w)` for the point and `f(j, w)` for partner j. If no scan of these has a share, it is the point's.
+  /// Calls `f(none, w)` for the point and `f(j, w)` for partner j. If no scan of these has a share,
+  /// it is the point's.
   template <class F>
   void for_each_share(std::size_t k, const std::vector<double>& share, const F& f) const
   {
@@ -159,7 +163,8 @@ private:
   /// Outwards, around and along.
   static Vec3 local_normal(const Edge_cone& cone, const std::array<double, 3>& v, double angle);
 
-  /// Whether the radius is known and the point is not so far off that a thicker branch must not carry it further.
+  /// Whether the radius is known and the point is not so far off that a thicker branch must not
+  /// carry it further.
   static bool is_near(const Edge_cone& cone, const Vec3& position);
 
   std::vector<Family_source> m_source; // by edge

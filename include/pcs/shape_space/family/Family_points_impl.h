@@ -20,8 +20,8 @@
 namespace pcs {
 namespace shape_space {
 
-/// Of every branch the points of the scan that has most there, or of a preferred scan, by edge. `edge[t][i]`: of point i of
-/// scan t, `none`: left out. `preferred`: a scan, or `none`.
+/// Of every branch the points of the scan that has most there, or of a preferred scan, by edge.
+/// `edge[t][i]`: of point i of scan t, `none`: left out. `preferred`: a scan, or `none`.
 inline std::vector<Family_source> choose_points(const Orl_layout& layout,
                                                 const std::vector<std::vector<std::size_t>>& edge,
                                                 std::size_t preferred)

@@ -22,8 +22,8 @@
 namespace pcs {
 namespace shape_space {
 
-/// A branch of the topology of many trees. Its nodes divide it in parts that are alike in all trees; between
-/// them branches are straight, so that a bend has one place, not one in each tree.
+/// A branch of the topology of many trees. Its nodes divide it in parts that are alike in all
+/// trees; between them branches are straight, so that a bend has one place, not one in each tree.
 struct Shared_branch
 {
   std::size_t parent = none; ///< index of a branch that comes before, or `none`
@@ -40,7 +40,8 @@ struct Shared_branch
   }
 };
 
-/// Largest distance of an axis from the straight edges between its nodes, as a share of the branch. [-]
+/// Largest distance of an axis from the straight edges between its nodes, as a share of the branch.
+/// [-]
 constexpr double axis_tolerance = 0.01;
 
 /// Edges of a branch: as many as the most winding of its members needs, out of these.
@@ -93,7 +94,8 @@ inline std::size_t edge_before(double attachment, std::size_t number_of_edges)
   return std::min(number_of_edges - 1, static_cast<std::size_t>(t));
 }
 
-/// Lengths, radii, attachments and directions of tree `t`; nothing for branches that it does not have.
+/// Lengths, radii, attachments and directions of tree `t`; nothing for branches that it does not
+/// have.
 inline Embedding embed(const Orl_layout& layout,
                        const std::vector<Shared_branch>& branches,
                        const Rooted_tree& tree,
@@ -179,8 +181,8 @@ inline double median(std::vector<double> values)
 }
 
 /*!
-  Values of a tree in the middle of those that have each branch: medians of lengths, radii and attachments, L1 means of
-  orientations. Trees that lack a branch do not count there.
+  Values of a tree in the middle of those that have each branch: medians of lengths, radii and
+  attachments, L1 means of orientations. Trees that lack a branch do not count there.
 */
 template <class ConcurrencyTag>
 Orl_coordinates middle_of_members(const Orl_layout& layout,
@@ -233,9 +235,9 @@ struct Embedded_trees
 };
 
 /*!
-  Coordinates of all trees. Twists of frames follow those of a tree in their middle, so that they do not count as a
-  difference; a branch that a tree lacks has the length 0 there, and the orientation and attachment of the middle tree: a
-  median is not moved by it.
+  Coordinates of all trees. Twists of frames follow those of a tree in their middle, so that they do
+  not count as a difference; a branch that a tree lacks has the length 0 there, and the orientation
+  and attachment of the middle tree: a median is not moved by it.
 */
 template <class ConcurrencyTag>
 Embedded_trees embed_trees(const Orl_layout& layout,

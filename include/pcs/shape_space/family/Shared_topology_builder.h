@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Finds one topology for any number of trees, by matching each to a tree in their middle, several times.
+// Finds one topology for any number of trees, by matching each to a tree in their middle, several
+// times.
 
 #ifndef PCS_SHAPE_SPACE_FAMILY_SHARED_TOPOLOGY_BUILDER_H
 #define PCS_SHAPE_SPACE_FAMILY_SHARED_TOPOLOGY_BUILDER_H
@@ -21,9 +22,10 @@
 namespace pcs {
 namespace shape_space {
 /*!
-  The first round begins with the branches of the most ordinary tree. Each further tree is matched to the middle of those
-  before it and adds the branches that found no partner. In further rounds all trees are matched anew to the middle tree
-  of the last round. The order in which trees are added plays no part: they are taken in an order of their own.
+  The first round begins with the branches of the most ordinary tree. Each further tree is matched
+  to the middle of those before it and adds the branches that found no partner. In further rounds
+  all trees are matched anew to the middle tree of the last round. The order in which trees are
+  added plays no part: they are taken in an order of their own.
 */
 template <class ConcurrencyTag>
 class Shared_topology_builder
@@ -71,8 +73,8 @@ public:
     return !progress.is_cancelled();
   }
 
-  /// Matches one more tree to the middle tree; branches of it that find no partner are left out. Returns the share of its
-  /// length that is represented. [-]
+  /// Matches one more tree to the middle tree; branches of it that find no partner are left out.
+  /// Returns the share of its length that is represented. [-]
   double project(const Rooted_tree& tree,
                  const Reference_tree& reference,
                  std::vector<Shared_branch>& branches,
@@ -169,7 +171,8 @@ private:
   static constexpr std::size_t batch = 16;  // trees that are matched to the same middle tree ...
   static constexpr std::size_t at_once = 4; // ... between calls of the callback
 
-  /// Pairs of trunks that are looked into: with all that two trees are given, most of the time would go there.
+  /// Pairs of trunks that are looked into: with all that two trees are given, most of the time
+  /// would go there.
   static constexpr std::size_t number_of_trunk_trials = 4;
 
   /// Never null: the trunks are always matched. `is_trunk_known`: it is that of the last round.

@@ -32,7 +32,8 @@ inline std::vector<std::size_t> canonical_nodes(const Rooted_tree& tree)
   return order;
 }
 
-/// A total order of trees that does not depend on the order they were added in, save for equal trees.
+/// A total order of trees that does not depend on the order they were added in, save for equal
+/// trees.
 inline bool is_tree_before(const Rooted_tree& a, const Rooted_tree& b)
 {
   if (a.weights[0] != b.weights[0])
@@ -52,7 +53,8 @@ inline bool is_tree_before(const Rooted_tree& a, const Rooted_tree& b)
   return false;
 }
 
-/// The tree that is least unlike all others in its length, its size and its number of nodes, then the others.
+/// The tree that is least unlike all others in its length, its size and its number of nodes, then
+/// the others.
 inline std::vector<std::size_t> canonical_order(const std::vector<const Rooted_tree*>& trees)
 {
   std::vector<std::size_t> order(trees.size());

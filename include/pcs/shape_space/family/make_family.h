@@ -36,7 +36,8 @@ inline void find_growth_direction(Tree_family& family)
   family.up = sum.norm() > 0 ? Vec3(sum.normalized()) : Vec3(Vec3::UnitZ());
 }
 
-/// The same tree, of which orientations were in frames or in world axes, in the other ones: those of `kind`.
+/// The same tree, of which orientations were in frames or in world axes, in the other ones: those
+/// of `kind`.
 inline void measure_as(Orl_orientation kind, const Orl_layout& layout, Orl_coordinates& x)
 {
   Orl_geometry geometry;
@@ -150,7 +151,8 @@ inline std::vector<std::size_t> first_of_edges(const std::vector<Point_pair>& pa
   return first;
 }
 
-/// A further tree on the topology of a family. `share`, if not null: of its length that is represented. [-]
+/// A further tree on the topology of a family. `share`, if not null: of its length that is
+/// represented. [-]
 template <class ConcurrencyTag>
 Orl_coordinates embed_tree(const Tree_family& family, const Rooted_tree& tree, double* share)
 {

@@ -95,7 +95,8 @@ inline Orl_space_data store_family(const Tree_family& family)
   return result;
 }
 
-/// Throws `pcs::Invalid_input` with a message that begins with `caller` unless the numbers make sense together.
+/// Throws `pcs::Invalid_input` with a message that begins with `caller` unless the numbers make
+/// sense together.
 inline Tree_family restore_family(const Orl_space_data& stored, const std::string& caller)
 {
   const auto check = [&](bool is_right, const char* what) {

@@ -33,9 +33,10 @@ inline std::vector<Vec3> points_in_family(const Tree_family& family, const Tree_
 }
 
 /*!
-  The sampling that all trees share has, of each branch, the points of one scan. It is transported to each other scan that
-  has points there, branch by branch as between two trees. Partners of each point, by tree; `edge[t][i]` as for
-  `choose_points()`. `is_stopped(done)` is asked now and then; the result means nothing if it says so.
+  The sampling that all trees share has, of each branch, the points of one scan. It is transported
+  to each other scan that has points there, branch by branch as between two trees. Partners of each
+  point, by tree; `edge[t][i]` as for `choose_points()`. `is_stopped(done)` is asked now and then;
+  the result means nothing if it says so.
 */
 template <class ConcurrencyTag, class IsStopped>
 std::vector<Orl_space_data::Partner>

@@ -26,7 +26,8 @@ namespace shape_space {
 
 namespace internal {
 
-/// How far from `end` the points behind it go, and where to; null if they do not go farther than sideways.
+/// How far from `end` the points behind it go, and where to; null if they do not go farther than
+/// sideways.
 inline Vec3 extension(const Vec3& end, double radius, const std::vector<Vec3>& points)
 {
   constexpr std::size_t least_number = 8;
@@ -57,11 +58,13 @@ inline Vec3 extension(const Vec3& end, double radius, const std::vector<Vec3>& p
 } // namespace internal
 
 /*!
-  Moves the tips of a tree, and its root if one branch begins there, to where the points of its scan end; returns how many.
+  Moves the tips of a tree, and its root if one branch begins there, to where the points of its scan
+  end; returns how many.
 
-  The length of a branch is that of its axis. Where the axes of one scan go to the tips of its leaves and those of another one
-  do not, a leaf seems to shrink. The points that an end is nearest to and that lie beyond it say how far the end moves, if
-  there are eight of them and they go farther than they are wide. \f$O(n \log m)\f$ for n points and m nodes.
+  The length of a branch is that of its axis. Where the axes of one scan go to the tips of its
+  leaves and those of another one do not, a leaf seems to shrink. The points that an end is nearest
+  to and that lie beyond it say how far the end moves, if there are eight of them and they go
+  farther than they are wide. \f$O(n \log m)\f$ for n points and m nodes.
 */
 template <class Kernel, class PointRange>
 std::size_t extend_axes(Tree_skeleton<Kernel>& tree, const PointRange& scan)

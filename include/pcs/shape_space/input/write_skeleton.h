@@ -49,8 +49,8 @@ inline std::vector<std::vector<double>> seats_of_children(const Orl_layout& layo
 
 } // namespace internal
 
-/// A tree of the space as a skeleton. An edge that carries a branch is divided there. Branches without length, and what
-/// hangs on them, are left out.
+/// A tree of the space as a skeleton. An edge that carries a branch is divided there. Branches
+/// without length, and what hangs on them, are left out.
 template <class Kernel>
 void write_skeleton(const Orl_layout& layout,
                     const Orl_coordinates& x,

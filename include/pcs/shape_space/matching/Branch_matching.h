@@ -34,9 +34,10 @@ namespace shape_space {
 /*!
   The search for the matching of least energy.
 
-  Two branches are tried with several ways to continue each; below each try, children are assigned to each other at least
-  cost, which asks the same question for every pair of children. All ways of the trunks are looked at with one try for
-  each pair below first, and the best of these again with more.
+  Two branches are tried with several ways to continue each; below each try, children are assigned
+  to each other at least cost, which asks the same question for every pair of children. All ways of
+  the trunks are looked at with one try for each pair below first, and the best of these again with
+  more.
 */
 template <class ConcurrencyTag>
 class Branch_matching
@@ -67,7 +68,8 @@ public:
   const Branch_paths& paths(int t) const { return m_energy.paths(t); }
   const Matching_energy& energy() const { return m_energy; }
 
-  /// Pairs of trunks that are matched with all their children; less than the default saves most of the time.
+  /// Pairs of trunks that are matched with all their children; less than the default saves most of
+  /// the time.
   void set_number_of_trunk_trials(std::size_t n) { m_most_trunk_trials = n; }
   /// The trunk of tree 2 is known: a path of `paths(1)`.
   void set_second_trunk(std::size_t path) { m_energy.set_second_trunk(path); }
@@ -96,8 +98,8 @@ public:
     return match_children(find_trials(0, 0, m_turn, any, 1).front(), m_turn, any)->cost;
   }
 
-  /// Null when `progress` asks to stop, and when the cost is not below `most_cost`; what is only looked at with few ways may
-  /// cost a little more.
+  /// Null when `progress` asks to stop, and when the cost is not below `most_cost`; what is only
+  /// looked at with few ways may cost a little more.
   std::shared_ptr<const Matched_branch>
   run(pcs::internal::Progress& progress,
       const double most_cost = std::numeric_limits<double>::infinity())
@@ -185,8 +187,8 @@ private:
             nodes_2[std::min(last[1] + 1, nodes_2.size() - 1)]};
   }
 
-  /// Pairs of paths that may continue two branches, the most promising first, judged without looking below their
-  /// children; those that cost at least `limit` by themselves are left out.
+  /// Pairs of paths that may continue two branches, the most promising first, judged without
+  /// looking below their children; those that cost at least `limit` by themselves are left out.
   std::vector<Trial> find_trials(std::size_t start_1,
                                  std::size_t start_2,
                                  const Eigen::Matrix3d& rotation,
@@ -250,7 +252,8 @@ private:
     return chosen;
   }
 
-  /// Everything that hangs on two curves. Null as soon as it is known that the cost is not below `limit`.
+  /// Everything that hangs on two curves. Null as soon as it is known that the cost is not below
+  /// `limit`.
   Result match_children(Trial trial, const Eigen::Matrix3d& rotation, double limit)
   {
     const Branch_path &path_1 = m_energy.path(0, trial.path_1),
@@ -288,8 +291,9 @@ private:
     return result;
   }
 
-  /// Adds the pairs of children, and what they cost less than alone; false if the cost is not below `limit`. Very many
-  /// children are assigned in turn, the heaviest first: time and memory grow as their number, not as its cube.
+  /// Adds the pairs of children, and what they cost less than alone; false if the cost is not below
+  /// `limit`. Very many children are assigned in turn, the heaviest first: time and memory grow as
+  /// their number, not as its cube.
   bool assign_children(const Branch_path& path_1,
                        const Branch_path& path_2,
                        const Children& a,
@@ -346,8 +350,8 @@ private:
     values.erase(std::find(values.begin(), values.end(), value));
   }
 
-  /// The same for some children of both. Bounds first; what the assignment asks for is made exact until it asks for nothing
-  /// more.
+  /// The same for some children of both. Bounds first; what the assignment asks for is made exact
+  /// until it asks for nothing more.
   bool assign_some(const Branch_path& path_1,
                    const Branch_path& path_2,
                    const Children& a,

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What it costs to make one branch another: bending, stretching, turning, moving along the parent, or growing alone.
+// What it costs to make one branch another: bending, stretching, turning, moving along the parent,
+// or growing alone.
 
 #ifndef PCS_SHAPE_SPACE_MATCHING_MATCHING_ENERGY_H
 #define PCS_SHAPE_SPACE_MATCHING_MATCHING_ENERGY_H
@@ -82,7 +83,8 @@ public:
     return single_term(length);
   }
 
-  /// A bound for the elastic energy: no pair of tangents is closer than the cones around the mean directions allow.
+  /// A bound for the elastic energy: no pair of tangents is closer than the cones around the mean
+  /// directions allow.
   double least_energy(std::size_t p1, std::size_t p2, const Eigen::Matrix3d& rotation) const
   {
     const Sampled_curve &a = curves(0)[p1], &b = curves(1)[p2];
@@ -116,7 +118,8 @@ public:
                        : 0;
   }
 
-  /// The energy of two branches that turn with their parents by `carried`, and by themselves to `rotation`.
+  /// The energy of two branches that turn with their parents by `carried`, and by themselves to
+  /// `rotation`.
   double turned_energy(const Trial& trial,
                        const Eigen::Matrix3d& carried,
                        const Eigen::Matrix3d& rotation) const
@@ -196,8 +199,8 @@ public:
     return assign_rows(a.s.size(), b.s.size(), quick_gains(a, b, rotation, parent_length));
   }
 
-  /// What two paths cost, judged without looking below their children; infinity where it is seen at once that it is more
-  /// than `most`.
+  /// What two paths cost, judged without looking below their children; infinity where it is seen at
+  /// once that it is more than `most`.
   double quick_cost_of_paths(std::size_t p1,
                              std::size_t p2,
                              const Eigen::Matrix3d& rotation,
@@ -225,8 +228,8 @@ public:
                 passes);
   }
 
-  /// What it leaves; infinity where it is seen at once that it is more than `most`. Of very many children, what the light ones
-  /// have more in one tree than in the other counts as single.
+  /// What it leaves; infinity where it is seen at once that it is more than `most`. Of very many
+  /// children, what the light ones have more in one tree than in the other counts as single.
   double quick_cost_of_children(const Children& all_1,
                                 const Children& all_2,
                                 const Eigen::Matrix3d& rotation,
@@ -261,7 +264,8 @@ public:
     return total;
   }
 
-  /// The turn that carries branch 2 to branch 1, from the curves, the children, and what the parents say.
+  /// The turn that carries branch 2 to branch 1, from the curves, the children, and what the
+  /// parents say.
   Eigen::Matrix3d turn(const Trial& trial,
                        const Children& all_1,
                        const Children& all_2,
@@ -321,8 +325,9 @@ public:
   }
 
 private:
-  /// Of curves whose tangents agree by `agreement`. Where lengths have a term of their own, it does not count what they differ
-  /// by: a branch that grew to four times its length would be single even if nothing else had changed.
+  /// Of curves whose tangents agree by `agreement`. Where lengths have a term of their own, it does
+  /// not count what they differ by: a branch that grew to four times its length would be single
+  /// even if nothing else had changed.
   double elastic_energy(double a, double b, double agreement) const
   {
     const double mean = 2 * std::sqrt(a * b);
@@ -334,8 +339,8 @@ private:
     return m_weights.length * m_weights.single * std::abs(a - b);
   }
 
-  /// All children if they are not too many, else the heaviest in the same order, kept in `few`; `light` is the weight of the
-  /// rest.
+  /// All children if they are not too many, else the heaviest in the same order, kept in `few`;
+  /// `light` is the weight of the rest.
   static const Children& heaviest(const Children& all, Children& few, double& light)
   {
     light = 0;
@@ -377,7 +382,8 @@ private:
     return gain;
   }
 
-  /// Cost of two subtrees of given weights as if each were one straight branch, at an angle of given cosine.
+  /// Cost of two subtrees of given weights as if each were one straight branch, at an angle of
+  /// given cosine.
   double quick_cost(double weight_1, double weight_2, double dot) const
   {
     double cosine = std::max(0.0, dot);

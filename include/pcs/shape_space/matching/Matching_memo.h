@@ -20,8 +20,9 @@
 namespace pcs {
 namespace shape_space {
 
-/// Two branches below any parents: the same question comes up for each way to continue the parents. Turns are rounded
-/// before use, so that it is the same question, and so that it does not matter who asks first.
+/// Two branches below any parents: the same question comes up for each way to continue the parents.
+/// Turns are rounded before use, so that it is the same question, and so that it does not matter
+/// who asks first.
 class Matching_key
 {
 public:

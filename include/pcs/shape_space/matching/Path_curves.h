@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The paths of two trees as curves that can be compared: in one unit, in one frame, up to where both have grown.
+// The paths of two trees as curves that can be compared: in one unit, in one frame, up to where
+// both have grown.
 
 #ifndef PCS_SHAPE_SPACE_MATCHING_PATH_CURVES_H
 #define PCS_SHAPE_SPACE_MATCHING_PATH_CURVES_H
@@ -21,8 +22,8 @@
 namespace pcs {
 namespace shape_space {
 
-/// All paths of two trees, sampled. Lengths are in units of the longest path of each tree; where growth is at tips, in units
-/// of the longest of both.
+/// All paths of two trees, sampled. Lengths are in units of the longest path of each tree; where
+/// growth is at tips, in units of the longest of both.
 class Path_curves
 {
 public:
@@ -85,8 +86,8 @@ public:
            m_unit[static_cast<std::size_t>(t)];
   }
 
-  /// Nodes that two branches end with, if they are matched: their tips, or where growth is at tips the tip of the shorter one
-  /// and the node of the longer one that is as far from the base.
+  /// Nodes that two branches end with, if they are matched: their tips, or where growth is at tips
+  /// the tip of the shorter one and the node of the longer one that is as far from the base.
   std::array<std::size_t, 2> last_nodes(std::size_t p1, std::size_t p2) const
   {
     std::array<std::size_t, 2> last = {path(0, p1).nodes.size() - 1, path(1, p2).nodes.size() - 1};
@@ -137,7 +138,8 @@ private:
   static constexpr double longest_cut = 0.950001; // branches whose lengths differ less end together
   static constexpr double nearer = 0.999999; // of two nodes that are about as far, the one behind
 
-  /// To the axes of tree 1: turns are rounded in these, so that it does not matter how the trees stand.
+  /// To the axes of tree 1: turns are rounded in these, so that it does not matter how the trees
+  /// stand.
   void turn_curve(Sampled_curve& curve) const
   {
     curve.tangents = (m_frame.transpose() * curve.tangents).eval();

@@ -16,10 +16,12 @@ namespace pcs {
 namespace shape_space {
 
 /*!
-  The maximiser of `trace(R^T covariance)`, uphill from `q`; what the bundle does not determine stays as in `q`.
+  The maximiser of `trace(R^T covariance)`, uphill from `q`; what the bundle does not determine
+  stays as in `q`.
 
-  Newton's method where the trace is concave: three or four steps do for what `improve_rotation()` needs dozens, as its
-  steps converge linearly when the bundle is narrow. Elsewhere its step is taken.
+  Newton's method where the trace is concave: three or four steps do for what `improve_rotation()`
+  needs dozens, as its steps converge linearly when the bundle is narrow. Elsewhere its step is
+  taken.
 */
 inline Quaternion align_vectors(Eigen::Matrix3d covariance, Quaternion q)
 {

@@ -19,9 +19,11 @@ namespace pcs {
 namespace shape_space {
 
 /// Nodes of the two trees closer than this share of a branch become one.
-/// Here and below the numbers are not round, so that rounding does not decide where trees are made of round numbers.
+/// Here and below the numbers are not round, so that rounding does not decide where trees are made
+/// of round numbers.
 constexpr double node_tolerance = 0.010001;
-/// Forks that correspond may bend the elastic correspondence of their parents by this share of the branch.
+/// Forks that correspond may bend the elastic correspondence of their parents by this share of the
+/// branch.
 constexpr double fork_tolerance = 0.100001;
 /// Between two such forks the shares of the branch may differ by this factor.
 constexpr double steepest_forks = 5.00001;
@@ -108,7 +110,8 @@ private:
   std::vector<Place_pair> m_anchors;
 };
 
-/// All nodes of both branches and the anchors, with their counterparts; neighbours of different trees are joined.
+/// All nodes of both branches and the anchors, with their counterparts; neighbours of different
+/// trees are joined.
 inline std::vector<Place_pair>
 common_nodes(const Branch_path& one, const Branch_path& two, const Warp& warp)
 {
@@ -199,7 +202,8 @@ private:
     return m_paths[static_cast<std::size_t>(t)].paths[i];
   }
 
-  /// The beginning of a path up to its node `last` as a path of its own; the rest becomes a branch that grows from its end.
+  /// The beginning of a path up to its node `last` as a path of its own; the rest becomes a branch
+  /// that grows from its end.
   std::size_t cut(std::size_t t, std::size_t p, std::size_t last)
   {
     Branch_path head = m_paths[t].paths[p];

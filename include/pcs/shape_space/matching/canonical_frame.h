@@ -16,8 +16,8 @@
 namespace pcs {
 namespace shape_space {
 
-/// Columns are the axes: z from the root to the tip of the longest path, x to the heavier side. Where the sides weigh the
-/// same, x leads to the node that is farthest off the z axis.
+/// Columns are the axes: z from the root to the tip of the longest path, x to the heavier side.
+/// Where the sides weigh the same, x leads to the node that is farthest off the z axis.
 inline Eigen::Matrix3d canonical_frame(const Rooted_tree& tree)
 {
   constexpr double least = 1e-6; // of the extent: less is rounding

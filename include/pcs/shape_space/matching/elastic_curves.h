@@ -22,8 +22,8 @@
 namespace pcs {
 namespace shape_space {
 
-/// Unit tangents of a curve at N places of equal distance along it, column by column, and its length. The square-root
-/// velocity is the tangent times the root of the length.
+/// Unit tangents of a curve at N places of equal distance along it, column by column, and its
+/// length. The square-root velocity is the tangent times the root of the length.
 struct Sampled_curve
 {
   Eigen::Matrix3Xd tangents;
@@ -43,8 +43,8 @@ inline Vec3 point_at(const Rooted_tree& tree, const Branch_path& path, double s)
   return (1 - f) * tree.points[path.nodes[k - 1]] + f * tree.points[path.nodes[k]];
 }
 
-/// Tangents by differences over two steps: kinks shorter than the step are smoothed, as by the text's spline.
-/// The curve goes up to the node `last` of the path.
+/// Tangents by differences over two steps: kinks shorter than the step are smoothed, as by the
+/// text's spline. The curve goes up to the node `last` of the path.
 inline Sampled_curve
 sample_curve(const Rooted_tree& tree, const Branch_path& path, std::size_t n, std::size_t last)
 {
@@ -95,9 +95,9 @@ inline Slopes make_slopes(int largest)
 }
 
 /*!
-  Matches curve 2 to curve 1. With unit tangents u and lengths L the energy of a reparametrisation g is
-  `L1 + L2 - 2 sqrt(L1 L2) M(g)` with `M(g)` the integral of `sqrt(g') <u1, u2 o g>`; `M` is at most 1, so
-  `(sqrt L1 - sqrt L2)^2` bounds the energy from below whatever the grid.
+  Matches curve 2 to curve 1. With unit tangents u and lengths L the energy of a reparametrisation g
+  is `L1 + L2 - 2 sqrt(L1 L2) M(g)` with `M(g)` the integral of `sqrt(g') <u1, u2 o g>`; `M` is at
+  most 1, so `(sqrt L1 - sqrt L2)^2` bounds the energy from below whatever the grid.
 */
 class Elastic_matcher
 {
@@ -125,7 +125,8 @@ public:
 
   std::size_t number_of_samples() const { return m_size; }
 
-  /// A step that is better by less is not: rounding must not decide between equal ways along straight pieces.
+  /// A step that is better by less is not: rounding must not decide between equal ways along
+  /// straight pieces.
   static constexpr double least_gain = 1e-9;
 
   /// Returns the largest `M`, at least 0, where `rotation` is applied to curve 2 first.
@@ -146,7 +147,8 @@ public:
     return std::max(0.0, m_best[(n - 1) * m_stride + margin + n - 1] / static_cast<double>(n - 1));
   }
 
-  /// After a match: where the places of curve 1 are on curve 2, both as shares of the length, increasing from 0 to 1.
+  /// After a match: where the places of curve 1 are on curve 2, both as shares of the length,
+  /// increasing from 0 to 1.
   const std::vector<double>& gamma()
   {
     const std::size_t n = m_size;
@@ -165,8 +167,8 @@ public:
   }
 
 private:
-  /// Offers the cells of row `i` the step `k`; inner loops run along rows of the tables. Cells that no path from one
-  /// corner to the other passes, for the steps are not steep enough, are left out.
+  /// Offers the cells of row `i` the step `k`; inner loops run along rows of the tables. Cells that
+  /// no path from one corner to the other passes, for the steps are not steep enough, are left out.
   void take_step(std::size_t i, std::size_t k)
   {
     const std::size_t n = m_size, a = m_slopes[k].a, b = m_slopes[k].b, rest = n - 1 - i;
@@ -210,7 +212,8 @@ private:
     }
   }
 
-  /// The step passes at most `Most` rows, for up to 3 exactly so many: what it gains stays in registers then.
+  /// The step passes at most `Most` rows, for up to 3 exactly so many: what it gains stays in
+  /// registers then.
   template <std::size_t Most>
   void take_step(const Span& span, std::size_t k)
   {

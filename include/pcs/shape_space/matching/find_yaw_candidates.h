@@ -75,9 +75,9 @@ settle_turn(const Matching_energy& energy, const Vec3& axis, double angle, int p
 /*!
   Angles about the vertical by which branches fit, the most promising first. [rad]
 
-  From 24 angles each turn goes on to where the branches at the trunks stand, seen without what hangs on them. Turns of less
-  than a step are none: what trees that stand alike differ by is left to their branches. Nothing is found if
-  `progress` asks to stop.
+  From 24 angles each turn goes on to where the branches at the trunks stand, seen without what
+  hangs on them. Turns of less than a step are none: what trees that stand alike differ by is left
+  to their branches. Nothing is found if `progress` asks to stop.
 */
 template <class ConcurrencyTag>
 std::vector<double> find_yaw_candidates(const Matching_energy& energy,

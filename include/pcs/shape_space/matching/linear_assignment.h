@@ -16,17 +16,19 @@ namespace pcs {
 namespace shape_space {
 
 /*!
-  Minimises the sum of `gain[i * m + j]` over pairs, each row and column at most once; rows and columns may stay single.
-  Entries that are not negative are never used.
+  Minimises the sum of `gain[i * m + j]` over pairs, each row and column at most once; rows and
+  columns may stay single. Entries that are not negative are never used.
 
-  Shortest augmenting paths (Jonker, Volgenant 1987); O(n^2 m) at first. When entries grow, only the pairs that they belong
-  to are solved again: what is known of all others stays true. Ties: the lowest index first.
+  Shortest augmenting paths (Jonker, Volgenant 1987); O(n^2 m) at first. When entries grow, only the
+  pairs that they belong to are solved again: what is known of all others stays true. Ties: the
+  lowest index first.
 */
 class Assignment
 {
 public:
-  /// `gain` is kept by reference; it may change between calls, as `raise()` says. `prices` of columns, not positive, are those
-  /// of a similar problem, or empty: the nearer they are, the less there is to do.
+  /// `gain` is kept by reference; it may change between calls, as `raise()` says. `prices` of
+  /// columns, not positive, are those of a similar problem, or empty: the nearer they are, the less
+  /// there is to do.
   Assignment(std::size_t n,
              std::size_t m,
              const std::vector<double>& gain,
@@ -56,7 +58,8 @@ public:
   /// What all pairs together cost at least, as far as is known; after `solve()` what they cost.
   double bound() const { return m_bound; }
 
-  /// Finds the pairs of least cost; false as soon as it is known that they cost more than `most` together.
+  /// Finds the pairs of least cost; false as soon as it is known that they cost more than `most`
+  /// together.
   bool solve(double most = std::numeric_limits<double>::infinity())
   {
     for (std::size_t r = 0; r < m_rows.partner.size() && m_bound <= most; ++r)
@@ -99,7 +102,8 @@ private:
     std::size_t stride; ///< in the table
   };
 
-  /// Gives `r` a partner, or leaves it or another one of its side single; what is single has no price.
+  /// Gives `r` a partner, or leaves it or another one of its side single; what is single has no
+  /// price.
   void augment(Side& own, Side& other, std::size_t r)
   {
     if (own.partner[r] != none || !(own.price[r] < 0))

@@ -38,7 +38,8 @@ struct Tree_descriptors
   }
 };
 
-/// From the root to the middle of all branches: upwards, if trees grow that way. Not normalised. [L]
+/// From the root to the middle of all branches: upwards, if trees grow that way. Not normalised.
+/// [L]
 inline Vec3
 growth_direction(const Orl_layout& layout, const Orl_coordinates& x, const Orl_geometry& geometry)
 {
@@ -126,8 +127,9 @@ constexpr double figure_tolerance = 1e-4;
 /// Trees may lean by this share of their width further than all others. [-]
 constexpr double upright_tolerance = 0.05;
 
-/// How far figures lie outside of what is between the least and the largest of others, as shares of these, added. By
-/// order, if wanted, those of orders that all of the others have. A tree may lean or hang down less than all others.
+/// How far figures lie outside of what is between the least and the largest of others, as shares of
+/// these, added. By order, if wanted, those of orders that all of the others have. A tree may lean
+/// or hang down less than all others.
 inline double range_violation(const Tree_descriptors& x,
                               const std::vector<Tree_descriptors>& others,
                               bool has_orders = true)

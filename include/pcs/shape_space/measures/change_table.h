@@ -31,7 +31,8 @@ struct Branch_change
   double angle = 0; ///< by which it turned against its parent, at its base; 0 if new or lost [rad]
 };
 
-/// Every branch that one of two trees has, parents first. The trunk turns against the axes of the input.
+/// Every branch that one of two trees has, parents first. The trunk turns against the axes of the
+/// input.
 inline std::vector<Branch_change> find_changes(const Orl_layout& layout,
                                                const Orl_coordinates& before,
                                                const Orl_coordinates& after,

@@ -15,18 +15,20 @@
 namespace pcs {
 namespace shape_space {
 
-/// So may a child that shortens the branch by this share of its length at most: which twig is the tip is a matter of chance,
-/// and all twigs beyond the fork hang on that choice.
+/// So may a child that shortens the branch by this share of its length at most: which twig is the
+/// tip is a matter of chance, and all twigs beyond the fork hang on that choice.
 constexpr double tip_share = 0.05;
 
 /// All else depends on the trunk: so many times more candidates are looked at.
 constexpr std::size_t trunk_factor = 6;
 
-/// Below so many branches that hang on each other, there is one way to continue: what may continue one of them begins another,
-/// and the number of questions would grow as the square of their number.
+/// Below so many branches that hang on each other, there is one way to continue: what may continue
+/// one of them begins another, and the number of questions would grow as the square of their
+/// number.
 constexpr std::size_t levels_of_choice = 24;
 
-/// A branch begins with an edge; the node at its end names the place. Several paths may begin there.
+/// A branch begins with an edge; the node at its end names the place. Several paths may begin
+/// there.
 struct Branch_path
 {
   std::vector<std::size_t> nodes; ///< from the node on the parent branch to the tip
@@ -44,8 +46,8 @@ struct Branch_path
   std::size_t tip() const { return nodes.back(); }
 };
 
-/// All paths that a matching may choose from. `paths_of[v]`: those that begin with the edge to `v`, longest first; for the
-/// root, the trunks.
+/// All paths that a matching may choose from. `paths_of[v]`: those that begin with the edge to `v`,
+/// longest first; for the root, the trunks.
 struct Branch_paths
 {
   std::vector<Branch_path> paths;
@@ -125,8 +127,8 @@ inline std::vector<std::vector<std::size_t>> candidate_paths(const Rooted_tree& 
 
 } // namespace internal
 
-/// `maximal_number` 1 gives the decomposition by longest paths alone. `trunk_ratio` is the fork ratio of the trunk,
-/// if it is less; `other_ratio`, if it is less than both, that of other trunks.
+/// `maximal_number` 1 gives the decomposition by longest paths alone. `trunk_ratio` is the fork
+/// ratio of the trunk, if it is less; `other_ratio`, if it is less than both, that of other trunks.
 inline Branch_paths find_branch_paths(const Rooted_tree& tree,
                                       double fork_ratio,
                                       std::size_t maximal_number,

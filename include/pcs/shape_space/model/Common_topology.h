@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// One set of branches and nodes for two trees: every node of either tree, with its counterpart on the other.
+// One set of branches and nodes for two trees: every node of either tree, with its counterpart on
+// the other.
 
 #ifndef PCS_SHAPE_SPACE_MODEL_COMMON_TOPOLOGY_H
 #define PCS_SHAPE_SPACE_MODEL_COMMON_TOPOLOGY_H
@@ -15,7 +16,8 @@
 namespace pcs {
 namespace shape_space {
 
-/// A branch of the common topology. Its nodes stand at shares of the length of either branch, increasing from 0 to 1.
+/// A branch of the common topology. Its nodes stand at shares of the length of either branch,
+/// increasing from 0 to 1.
 struct Common_branch
 {
   std::size_t parent = none; ///< index of a branch that comes before, or `none`

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Orientations, radii and lengths of the edges of a topology, and the tree in space that they stand for.
+// Orientations, radii and lengths of the edges of a topology, and the tree in space that they stand
+// for.
 
 #ifndef PCS_SHAPE_SPACE_MODEL_ORL_COORDINATES_H
 #define PCS_SHAPE_SPACE_MODEL_ORL_COORDINATES_H
@@ -17,8 +18,8 @@
 namespace pcs {
 namespace shape_space {
 
-/// Edges and branches of a topology. Edges of a branch are consecutive, parents come first. Node 0 of branch `b` is at
-/// `first_edge + b` in lists of nodes.
+/// Edges and branches of a topology. Edges of a branch are consecutive, parents come first. Node 0
+/// of branch `b` is at `first_edge + b` in lists of nodes.
 struct Orl_layout
 {
   struct Branch
@@ -32,7 +33,8 @@ struct Orl_layout
   std::vector<std::size_t>
       edge_before; ///< that frames are carried on from: on the branch, or the reference edge
   std::vector<std::size_t>
-      parent_edge; ///< that the orientation refers to, see `set_parent_edges()`; `none`: the axes of the input
+      /// that the orientation refers to, see `set_parent_edges()`; `none`: the axes of the input
+      parent_edge;
 
   std::size_t number_of_edges() const { return edge_before.size(); }
   std::size_t number_of_nodes() const { return edge_before.size() + branches.size(); }
@@ -40,9 +42,10 @@ struct Orl_layout
 };
 
 /*!
-  What orientations refer to. An edge refers to the first one of its branch: where each refers to the one before, as in the
-  text, half of each of many small turns about all kinds of axes is not half of what they make together, so that noise of an
-  axis turns all that is behind it. A branch that is turned as a whole differs by the turn of its first edge either way.
+  What orientations refer to. An edge refers to the first one of its branch: where each refers to
+  the one before, as in the text, half of each of many small turns about all kinds of axes is not
+  half of what they make together, so that noise of an axis turns all that is behind it. A branch
+  that is turned as a whole differs by the turn of its first edge either way.
 */
 inline void set_parent_edges(Orl_layout& layout, Orl_orientation kind)
 {
@@ -77,7 +80,8 @@ inline Quaternion turn_about_z(double angle)
   return Quaternion(std::cos(0.5 * angle), 0, 0, std::sin(0.5 * angle));
 }
 
-/// The shortest turn from one unit vector to another; about an axis near x or y if they are opposite.
+/// The shortest turn from one unit vector to another; about an axis near x or y if they are
+/// opposite.
 inline Quaternion shortest_turn(const Vec3& from, const Vec3& to)
 {
   const double c = from.dot(to);
@@ -143,7 +147,8 @@ inline void build_geometry(const Orl_layout& layout,
   }
 }
 
-/// Orders of the branches of a tree, the trunk's is 0; `none` for branches without length, and for what hangs on them.
+/// Orders of the branches of a tree, the trunk's is 0; `none` for branches without length, and for
+/// what hangs on them.
 inline std::vector<std::size_t> orders_of_branches(const Orl_layout& layout,
                                                    const Orl_coordinates& x)
 {
@@ -161,7 +166,8 @@ inline std::vector<std::size_t> orders_of_branches(const Orl_layout& layout,
   return order;
 }
 
-/// Angle of the rotation between two orientations: in [0, pi], whatever the signs of the quaternions. [rad]
+/// Angle of the rotation between two orientations: in [0, pi], whatever the signs of the
+/// quaternions. [rad]
 inline double angle_between(const Quaternion& a, const Quaternion& b)
 {
   const Quaternion d = a.conjugate() * b; // atan2 keeps small angles, acos would not
@@ -200,12 +206,13 @@ inline double distance(const Orl_coordinates& x,
   return metric == Orl_metric::square ? std::sqrt(total) : total;
 }
 
-/// What shrinks beyond an end of the path keeps this share of what it is there: where some edges of a branch all but
-/// vanish, everything that grows on these gathers in one place.
+/// What shrinks beyond an end of the path keeps this share of what it is there: where some edges of
+/// a branch all but vanish, everything that grows on these gathers in one place.
 constexpr double least_beyond_end = 0.5;
 
-/// The value at `t` of a quantity that is not negative: linear between `x` and `y`, and beyond an end where it grows;
-/// where it shrinks beyond an end it decays with the same slope at that end, and nears its least share.
+/// The value at `t` of a quantity that is not negative: linear between `x` and `y`, and beyond an
+/// end where it grows; where it shrinks beyond an end it decays with the same slope at that end,
+/// and nears its least share.
 inline double positive_value(double x, double y, double t)
 {
   if (t >= 0 && t <= 1)
@@ -217,8 +224,9 @@ inline double positive_value(double x, double y, double t)
   return end * (least_beyond_end + rest * std::exp(beyond * step / (rest * end)));
 }
 
-/// The same for a quantity in [0, `last`]; beyond an end it nears a place on the way to the bound that it moves to, and never
-/// reaches the bound: branches that move along their parent do not gather at its end.
+/// The same for a quantity in [0, `last`]; beyond an end it nears a place on the way to the bound
+/// that it moves to, and never reaches the bound: branches that move along their parent do not
+/// gather at its end.
 inline double bounded_value(double x, double y, double t, double last)
 {
   if (t >= 0 && t <= 1)

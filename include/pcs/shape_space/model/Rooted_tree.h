@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A rooted tree of any Boost.Graph type, copied to arrays: parents before children, coincident nodes joined.
+// A rooted tree of any Boost.Graph type, copied to arrays: parents before children, coincident
+// nodes joined.
 
 #ifndef PCS_SHAPE_SPACE_MODEL_ROOTED_TREE_H
 #define PCS_SHAPE_SPACE_MODEL_ROOTED_TREE_H
@@ -34,8 +35,9 @@ constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 /// Edges shorter than this share of the tree's extent join their ends: they have no direction.
 constexpr double shortest_edge = 1e-9;
 
-/// Coordinates relative to the root, lengths and radii beyond this are refused, as if they were not finite: squares of them
-/// must be finite, and sums of these, far beyond the ends of a path, too. [L]
+/// Coordinates relative to the root, lengths and radii beyond this are refused, as if they were not
+/// finite: squares of them must be finite, and sums of these, far beyond the ends of a path, too.
+/// [L]
 constexpr double most_length = 1e100;
 
 inline bool is_length(double value)
@@ -70,8 +72,8 @@ struct Rooted_tree
 
 namespace internal {
 
-/// A total order that does not depend on how the nodes are numbered, nor on rounding, nor on how the tree stands, save for
-/// copies of a branch that are turned against each other.
+/// A total order that does not depend on how the nodes are numbered, nor on rounding, nor on how
+/// the tree stands, save for copies of a branch that are turned against each other.
 inline bool is_before(const Rooted_tree& tree, std::size_t v, std::size_t w)
 {
   const double step = 1e-9 * tree.extent; // lengths that differ by less are the same
@@ -121,7 +123,8 @@ inline void connect(Rooted_tree& tree)
   }
 }
 
-/// For each node, how many branches the one that carries it hangs on, where every branch goes on along the longest path.
+/// For each node, how many branches the one that carries it hangs on, where every branch goes on
+/// along the longest path.
 inline std::vector<std::size_t> levels_of_branches(const Rooted_tree& tree)
 {
   std::vector<std::size_t> level(tree.size(), 0);
@@ -131,12 +134,14 @@ inline std::vector<std::size_t> levels_of_branches(const Rooted_tree& tree)
   return level;
 }
 
-/// A node this close to the axis of an edge, as a share of the radius there, begins a branch on that axis.
+/// A node this close to the axis of an edge, as a share of the radius there, begins a branch on
+/// that axis.
 constexpr double on_axis = 1e-3;
 
 /*!
-  For each child of `p`, that whose edge runs through it, the longest one first of equals, or `none`. Children are looked at by
-  the x coordinates of their directions: O(n log n) for `n` of them in all directions.
+  For each child of `p`, that whose edge runs through it, the longest one first of equals, or
+  `none`. Children are looked at by the x coordinates of their directions: O(n log n) for `n` of
+  them in all directions.
 */
 inline std::vector<std::size_t>
 axes_through(const Rooted_tree& tree, std::size_t p, const std::vector<std::size_t>& children)
@@ -182,8 +187,9 @@ axes_through(const Rooted_tree& tree, std::size_t p, const std::vector<std::size
 }
 
 /*!
-  Where the first node of a branch lies on the axis of its parent, between two nodes of that, the axis gets a node there.
-  Without it the branch would seem to begin at the node before, and to run along its parent.
+  Where the first node of a branch lies on the axis of its parent, between two nodes of that, the
+  axis gets a node there. Without it the branch would seem to begin at the node before, and to run
+  along its parent.
 */
 inline Rooted_tree with_nodes_at_bases(const Rooted_tree& all)
 {
@@ -278,9 +284,10 @@ inline Rooted_tree without_coincident_nodes(const Rooted_tree& all, std::size_t 
 } // namespace internal
 
 /*!
-  Copies `graph`. The rules for the caller's data are checked here: one root, every other vertex has one parent and is
-  reached from the root, coordinates and radii are finite and not beyond `most_length`, radii are not negative.
-  Throws `pcs::Invalid_input` with a message that begins with `caller`.
+  Copies `graph`. The rules for the caller's data are checked here: one root, every other vertex has
+  one parent and is reached from the root, coordinates and radii are finite and not beyond
+  `most_length`, radii are not negative. Throws `pcs::Invalid_input` with a message that begins with
+  `caller`.
 */
 template <class TreeGraph, class NodePointMap, class RadiusMap, class VertexIndexMap>
 Rooted_tree make_rooted_tree(const TreeGraph& graph,

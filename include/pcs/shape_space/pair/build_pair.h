@@ -27,7 +27,8 @@
 namespace pcs {
 namespace shape_space {
 
-/// `false` when `progress` asks to stop. Reads the form of `built`, fills all of it but the instances.
+/// `false` when `progress` asks to stop. Reads the form of `built`, fills all of it but the
+/// instances.
 template <class ConcurrencyTag>
 bool find_correspondences(const std::array<const Tree_input*, 2>& inputs,
                           const Build_options& options,

@@ -31,7 +31,9 @@ struct Matching_cost
 {
   double energy = 0; ///< in units of the kind of growth [-]
   double share =
-      0; ///< of what it could cost: 0 if the smaller tree is all found in the other, 1 if nothing is [-]
+      /// of what it could cost: 0 if the smaller tree is all found in the other, 1 if nothing is
+      /// [-]
+      0;
   bool is_at_tips = false; ///< which kind of growth it is
   double turn = 0;         ///< angle about the vertical by which tree 2 stands like tree 1 [rad]
 };
@@ -39,9 +41,10 @@ struct Matching_cost
 /*!
   Matches the branches of two trees; the result has no branches when `progress` asks to stop.
 
-  The energies of the two kinds of growth are in units of their own. What the greater tree has more costs in any case, and
-  what is above that is compared with what it would be if nothing were matched; growth at tips must leave clearly less of it.
-  So must other trunks than the longest paths, or nearly as long ones, for trees that grow along their branches.
+  The energies of the two kinds of growth are in units of their own. What the greater tree has more
+  costs in any case, and what is above that is compared with what it would be if nothing were
+  matched; growth at tips must leave clearly less of it. So must other trunks than the longest
+  paths, or nearly as long ones, for trees that grow along their branches.
 */
 template <class ConcurrencyTag>
 class Tree_matching
@@ -74,11 +77,12 @@ private:
   using Matching = Branch_matching<ConcurrencyTag>;
   using Result = std::shared_ptr<const Matched_branch>;
 
-  // virtual trees that grew at their tips leave less than 0.6 of it; of plants whose leaves stretch most leave 0.7 and more,
-  // and the days between others are predicted better by stretched branches then
+  // virtual trees that grew at their tips leave less than 0.6 of it; of plants whose leaves stretch
+  // most leave 0.7 and more, and the days between others are predicted better by stretched branches
+  // then
   static constexpr double clearly = 2. / 3;
-  // the longest path through a tomato is its stem and one of its leaves, on every day another one; but of all paths some
-  // other one matches at a little less cost by chance
+  // the longest path through a tomato is its stem and one of its leaves, on every day another one;
+  // but of all paths some other one matches at a little less cost by chance
   static constexpr double wide_fork_ratio = 0.3;
 
   static constexpr double any_cost = std::numeric_limits<double>::infinity();
@@ -114,13 +118,14 @@ private:
             Matching::find_paths(*m_trees[1], m_weights, other_ratio)};
   }
 
-  /// A matching with trunks that are the longest paths, or nearly so, unless others leave clearly less. Nothing is looked for
-  /// that costs `most` or more.
+  /// A matching with trunks that are the longest paths, or nearly so, unless others leave clearly
+  /// less. Nothing is looked for that costs `most` or more.
   Result match_trunks(Matching& matching, const Range& from, double most)
   {
     const auto share_of = [&](double cost) { return std::max(0.0, cost - from.least); };
     matching.use_other_trunks(false);
-    // where it is known that others that cost less than `most` leave clearly less, it does not matter how much
+    // where it is known that others that cost less than `most` leave clearly less, it does not
+    // matter how much
     const Result longest = matching.run(m_progress, from.least + share_of(most) / clearly);
     const double least = longest ? from.least + clearly * share_of(longest->cost) : most;
     if (m_progress.is_cancelled() || !matching.has_other_trunks())
@@ -213,7 +218,8 @@ private:
   }
 
   static constexpr std::size_t number_of_looks = 8, number_of_turns = 2;
-  // of what is left without a turn, that with a turn leaves: copies with noise that stand right seem to be turned by chance
+  // of what is left without a turn, that with a turn leaves: copies with noise that stand right
+  // seem to be turned by chance
   static constexpr double turned_share = 0.95;
 
   std::array<const Rooted_tree*, 2> m_trees;
@@ -235,8 +241,8 @@ inline double second_moment(const Rooted_tree& tree)
   return sum;
 }
 
-/// Whether a tree comes first where two are matched: the shorter one, of equally long ones the more compact one, if that can
-/// be told in spite of rounding.
+/// Whether a tree comes first where two are matched: the shorter one, of equally long ones the more
+/// compact one, if that can be told in spite of rounding.
 inline bool is_clearly_shorter(const Rooted_tree& one, const Rooted_tree& two)
 {
   constexpr double rounding = 1e-9;
@@ -251,8 +257,9 @@ inline bool is_clearly_shorter(const Rooted_tree& one, const Rooted_tree& two)
 } // namespace internal
 
 /*!
-  Matches the branches of two trees, in an order of their own: the way back has the same matching. Where it cannot be told
-  which tree comes first, both orders are tried, and the matching is that which leaves less of what the trees differ by.
+  Matches the branches of two trees, in an order of their own: the way back has the same matching.
+  Where it cannot be told which tree comes first, both orders are tried, and the matching is that
+  which leaves less of what the trees differ by.
 */
 template <class ConcurrencyTag>
 Matching_cost match_trees(const std::array<const Rooted_tree*, 2>& trees,

@@ -25,13 +25,15 @@ struct Extrapolation_buffers
 /*!
   Changes a tree that lies beyond the end of a path.
 
-  Every turn goes on at its own rate, and those of an edge and of all that it hangs on add up, about whatever axes. So each
-  edge is limited twice: alone, and by how far it stands, in space, from where it stands at the end.
+  Every turn goes on at its own rate, and those of an edge and of all that it hangs on add up, about
+  whatever axes. So each edge is limited twice: alone, and by how far it stands, in space, from
+  where it stands at the end.
 
-  Branches that become longer or hang lower would also reach below the base. There is a floor: the base, or the lowest part
-  of the trees at both ends. A branch that would break through it, or take there what hangs on it, stays closer to what it is
-  at the end, as far as needed: a share between 0 and 1 of the way from its edges there to those wanted. Heights are linear
-  in the share, so it follows from one pass. What hangs on a place that came nearer to the floor hangs less steeply.
+  Branches that become longer or hang lower would also reach below the base. There is a floor: the
+  base, or the lowest part of the trees at both ends. A branch that would break through it, or take
+  there what hangs on it, stays closer to what it is at the end, as far as needed: a share between 0
+  and 1 of the way from its edges there to those wanted. Heights are linear in the share, so it
+  follows from one pass. What hangs on a place that came nearer to the floor hangs less steeply.
 
   Everything is continuous in the place on the path. Linear in the number of edges.
 */
@@ -63,7 +65,8 @@ private:
   double height(const Vec3& p, const Orl_coordinates& x) const { return m_up.dot(p - x.root); }
   Vec3 axis(const Quaternion& frame) const { return frame * Vec3::UnitZ(); }
 
-  /// Finds the lowest part of what hangs on each node, but for the branch itself, and returns the lowest of all.
+  /// Finds the lowest part of what hangs on each node, but for the branch itself, and returns the
+  /// lowest of all.
   double find_lowest(const Orl_coordinates& x, const Orl_geometry& geometry)
   {
     std::vector<double>& low = m_buffers.low;

@@ -18,8 +18,8 @@ namespace pcs {
 namespace shape_space {
 namespace internal {
 
-/// The slopes of F. Fritsch and J. Butland (1984): the cubic pieces between values that rise do nowhere fall, and do not
-/// leave what is between the values.
+/// The slopes of F. Fritsch and J. Butland (1984): the cubic pieces between values that rise do
+/// nowhere fall, and do not leave what is between the values.
 inline std::vector<double> monotone_slopes(const std::vector<double>& time,
                                            const std::vector<double>& value)
 {
@@ -82,18 +82,20 @@ inline void make_rising(std::vector<double>& values)
 } // namespace internal
 
 /*!
-  A path through trees at given times, with continuous speed. Lengths, radii and attachments are cubic, without
-  overshoot: what rises in all trees rises all the way, and nothing becomes negative. Orientations are cubic Bezier curves
-  on the rotations (K. Shoemake 1985), by repeated slerp. A branch has the orientation of the nearest time when it is
-  there, so that it grows in its own direction.
+  A path through trees at given times, with continuous speed. Lengths, radii and attachments are
+  cubic, without overshoot: what rises in all trees rises all the way, and nothing becomes negative.
+  Orientations are cubic Bezier curves on the rotations (K. Shoemake 1985), by repeated slerp. A
+  branch has the orientation of the nearest time when it is there, so that it grows in its own
+  direction.
 */
 class Growth_spline
 {
 public:
   Growth_spline() = default;
 
-  /// Increasing times, one tree for each, at least 2. `has[i][b]`: whether tree `i` has branch `b`. If `is_monotone`, lengths
-  /// and radii are changed as little as possible so that none falls. `scans`: names of the trees, for the caller.
+  /// Increasing times, one tree for each, at least 2. `has[i][b]`: whether tree `i` has branch `b`.
+  /// If `is_monotone`, lengths and radii are changed as little as possible so that none falls.
+  /// `scans`: names of the trees, for the caller.
   Growth_spline(const Orl_layout& layout,
                 std::vector<double> times,
                 std::vector<Orl_coordinates> trees,
@@ -230,7 +232,8 @@ private:
           rotation_log(m_trees[k].orientation[e].conjugate() * m_trees[k + 1].orientation[e]) /
           (m_times[k + 1] - m_times[k]);
     for (std::size_t k = 0; k < n; ++k) {
-      // turns in the frame of the edge itself; the turn between k and k + 1 is the same seen from both
+      // turns in the frame of the edge itself; the turn between k and k + 1 is the same seen from
+      // both
       Vec3 speed = Vec3::Zero();
       if (k == 0)
         speed = rate[0];

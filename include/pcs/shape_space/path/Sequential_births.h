@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Branches that only one end of a path has, born one after the other: a branch when the tip of its parent passes its base.
+// Branches that only one end of a path has, born one after the other: a branch when the tip of its
+// parent passes its base.
 
 #ifndef PCS_SHAPE_SPACE_PATH_SEQUENTIAL_BIRTHS_H
 #define PCS_SHAPE_SPACE_PATH_SEQUENTIAL_BIRTHS_H
@@ -23,9 +24,9 @@ struct Sequential_births_buffers
 /*!
   Changes the lengths of branches that only one end of a path has.
 
-  Tips move evenly from the birth of their branch to the end of the path. In total as much length is born in any part of the path
-  as if all were born together, so the path has constant speed in `Orl_metric::sum`, where it is one of the shortest paths:
-  no length ever turns back.
+  Tips move evenly from the birth of their branch to the end of the path. In total as much length is
+  born in any part of the path as if all were born together, so the path has constant speed in
+  `Orl_metric::sum`, where it is one of the shortest paths: no length ever turns back.
 */
 class Sequential_births
 {
@@ -35,8 +36,8 @@ public:
   {
   }
 
-  /// `x` is the tree at `t`, in [0, 1], of the path from `a` to `b`. Linear in the number of edges and, per step of a search
-  /// that ends after a few dozen, of branches.
+  /// `x` is the tree at `t`, in [0, 1], of the path from `a` to `b`. Linear in the number of edges
+  /// and, per step of a search that ends after a few dozen, of branches.
   void operator()(const Orl_coordinates& a, const Orl_coordinates& b, double t, Orl_coordinates& x)
   {
     grow(a, b, t, x);
@@ -93,8 +94,9 @@ private:
     }
   }
 
-  /// The time before the end when as much is born as wanted. What is born falls with it, in pieces that are linear and ever
-  /// flatter, so that Newton's steps from 0 never go too far and end on the right piece.
+  /// The time before the end when as much is born as wanted. What is born falls with it, in pieces
+  /// that are linear and ever flatter, so that Newton's steps from 0 never go too far and end on
+  /// the right piece.
   double rest_of_time(double wanted, double total) const
   {
     const std::vector<double>&life = m_buffers.life, &length = m_buffers.length;

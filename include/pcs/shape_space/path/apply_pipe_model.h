@@ -15,7 +15,8 @@
 namespace pcs {
 namespace shape_space {
 
-/// Makes radii fit at forks: those of branches, to a power, do not add up to more than that of the parent below them.
+/// Makes radii fit at forks: those of branches, to a power, do not add up to more than that of the
+/// parent below them.
 inline void apply_pipe_model(const Orl_layout& layout, double exponent, Orl_coordinates& x)
 {
   std::vector<std::vector<std::size_t>> children(layout.branches.size());

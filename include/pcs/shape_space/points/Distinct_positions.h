@@ -21,8 +21,9 @@ namespace shape_space {
 /*!
   The different positions of points, in the order of the first points there, and who stands where.
 
-  Points of one place have the same neighbours and the same costs. One by one they would make all pivots of a transport
-  degenerate, and their nearest neighbours, as many as are asked for, would be any few of those in a place.
+  Points of one place have the same neighbours and the same costs. One by one they would make all
+  pivots of a transport degenerate, and their nearest neighbours, as many as are asked for, would be
+  any few of those in a place.
 */
 class Distinct_positions
 {
@@ -75,7 +76,8 @@ private:
 
 namespace internal {
 
-/// The points of a place, shared out between its partners by how many points these have: at least one for each.
+/// The points of a place, shared out between its partners by how many points these have: at least
+/// one for each.
 class Proportional_shares
 {
 public:
@@ -89,7 +91,8 @@ public:
     m_wanted[place] += number_of_points;
   }
 
-  /// The points for the next partner: the first and the one after the last. To be asked once for each, after all were added.
+  /// The points for the next partner: the first and the one after the last. To be asked once for
+  /// each, after all were added.
   std::array<std::size_t, 2> next(std::size_t place, std::size_t number_of_points)
   {
     const auto bound = [&] { return m_places.size(place) * m_given[place] / m_wanted[place]; };
@@ -105,7 +108,8 @@ private:
 
 } // namespace internal
 
-/// Pairs of places as pairs of points: all points of both have a partner, and those of one place share its partners.
+/// Pairs of places as pairs of points: all points of both have a partner, and those of one place
+/// share its partners.
 inline std::vector<std::pair<std::uint32_t, std::uint32_t>>
 pairs_of_points(const Distinct_positions& one,
                 const Distinct_positions& two,

@@ -21,7 +21,8 @@
 namespace pcs {
 namespace shape_space {
 
-/// Sine and cosine of |x| <= 2 pi and somewhat more, within 1e-15, without branches, so that loops are vectorised.
+/// Sine and cosine of |x| <= 2 pi and somewhat more, within 1e-15, without branches, so that loops
+/// are vectorised.
 inline void sine_cosine(double x, double& sine, double& cosine)
 {
   // quadrants, then Taylor sums that are exact to the last bit but one on [-pi/4, pi/4]
@@ -58,8 +59,9 @@ inline void sine_cosine(double x, double& sine, double& cosine)
 class Point_instances
 {
 public:
-  /// A pair as a line in tube coordinates: value + t * change. On edges whose sections are flat, `angle` and `distance` are places
-  /// in the section: about an axis beside them, blades would be mixed to something thick.
+  /// A pair as a line in tube coordinates: value + t * change. On edges whose sections are flat,
+  /// `angle` and `distance` are places in the section: about an axis beside them, blades would be
+  /// mixed to something thick.
   struct Line
   {
     double t, dt, overshoot, d_overshoot, angle, d_angle, distance, d_distance;
@@ -80,7 +82,8 @@ public:
   bool has_normals() const { return m_has_normals; }
   bool is_relative(std::size_t edge) const { return m_is_relative[edge] != 0; }
 
-  /// First pair of each edge that exists in `x`, in the output; the last element is the number of points there.
+  /// First pair of each edge that exists in `x`, in the output; the last element is the number of
+  /// points there.
   void find_offsets(const Orl_coordinates& x, std::vector<std::size_t>& offset) const
   {
     offset.resize(m_first.size());
@@ -92,7 +95,8 @@ public:
     offset.back() = sum;
   }
 
-  /// Calls `put(i, point, normal, pair)` for all points of a tree, `i` being their place in the output.
+  /// Calls `put(i, point, normal, pair)` for all points of a tree, `i` being their place in the
+  /// output.
   template <class ConcurrencyTag, class Put>
   void write(const Orl_layout& layout,
              const Orl_coordinates& x,
@@ -131,7 +135,8 @@ public:
   }
 
 private:
-  /// Whether no point is so far off that a thicker branch must not carry it further: scans of thin twigs are noise.
+  /// Whether no point is so far off that a thicker branch must not carry it further: scans of thin
+  /// twigs are noise.
   bool are_near(std::size_t e,
                 const std::array<Edge_cone, 2>& cone,
                 const std::array<std::vector<Vec3>, 2>& points) const;
@@ -205,7 +210,8 @@ private:
                              local.z());
   }
 
-  /// The text's way: the edge from the beginning of the edge to the point is turned by slerp, its length is linear.
+  /// The text's way: the edge from the beginning of the edge to the point is turned by slerp, its
+  /// length is linear.
   static Vec3
   on_virtual_edge(const Edge_cone& edge, const Line& line, bool is_relative, bool is_flat, double s)
   {

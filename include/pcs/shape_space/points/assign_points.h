@@ -46,7 +46,8 @@ public:
       build(0, tubes.size());
   }
 
-  /// Squared distance from the surface of a tube in units of the noise, and the direction from its axis.
+  /// Squared distance from the surface of a tube in units of the noise, and the direction from its
+  /// axis.
   double misfit(std::size_t tube, const Vec3& p, Vec3* radial = nullptr) const
   {
     const Tube& t = m_tubes[tube];
@@ -60,7 +61,8 @@ public:
     return x * x;
   }
 
-  /// Calls `visit(tube, misfit)` for all tubes whose misfit can be below the bound that `visit` returns.
+  /// Calls `visit(tube, misfit)` for all tubes whose misfit can be below the bound that `visit`
+  /// returns.
   template <class Visit>
   void search(const Vec3& p, const Visit& visit) const
   {
@@ -165,8 +167,9 @@ inline Vec3 estimate_normal(const std::vector<Vec3>& points,
 
 } // namespace internal
 
-/// Beyond the end of a piece and before the next of its branch, on the outer side of a bend, both are as near: there the plane
-/// that halves the angle between them decides. `tube` is either of them.
+/// Beyond the end of a piece and before the next of its branch, on the outer side of a bend, both
+/// are as near: there the plane that halves the angle between them decides. `tube` is either of
+/// them.
 inline std::size_t side_of_bend(const std::vector<Tube>& tubes, std::size_t tube, const Vec3& p)
 {
   const auto is_next = [&](std::size_t k) {
@@ -184,9 +187,10 @@ inline std::size_t side_of_bend(const std::vector<Tube>& tubes, std::size_t tube
 }
 
 /*!
-  The tube of each point. A point belongs to the branch whose surface it is nearest to, in units of the noise; where
-  several branches are about as near, at forks, the deviation of the point's normal from the direction away from the axis
-  decides as well. `normals` may be empty: then they are estimated, at forks only.
+  The tube of each point. A point belongs to the branch whose surface it is nearest to, in units of
+  the noise; where several branches are about as near, at forks, the deviation of the point's normal
+  from the direction away from the axis decides as well. `normals` may be empty: then they are
+  estimated, at forks only.
 */
 template <class ConcurrencyTag>
 std::vector<std::size_t> assign_points(const std::vector<Vec3>& points,

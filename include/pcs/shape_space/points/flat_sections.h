@@ -53,7 +53,8 @@ inline Section section_across(const Edge_cone& edge, const std::vector<Vec3>& po
   return result;
 }
 
-/// A place in one flat section, turned the shorter way, stretched along and across, and moved to another one.
+/// A place in one flat section, turned the shorter way, stretched along and across, and moved to
+/// another one.
 inline Eigen::Vector2d
 carried_across(const Section& from, const Section& to, const Eigen::Vector2d& place)
 {

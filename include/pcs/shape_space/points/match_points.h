@@ -34,8 +34,9 @@ inline double upper_median(std::vector<double> values)
   return *middle;
 }
 
-/// Squared distance to the fifth neighbour, within limits: the surface that a point stands for, up to a factor. What is alone
-/// beside a surface stands for next to nothing: it would draw all that are near to itself.
+/// Squared distance to the fifth neighbour, within limits: the surface that a point stands for, up
+/// to a factor. What is alone beside a surface stands for next to nothing: it would draw all that
+/// are near to itself.
 inline std::vector<double> area_weights(const std::vector<Vec3>& points,
                                         const neighborhood::Nearest_neighbors& search)
 {
@@ -88,8 +89,9 @@ weights_of(const Distinct_positions& places, const std::vector<double>& areas, P
   return to_shares(std::move(numbers));
 }
 
-/// How far the points of two trees are from each other: the median of the distances to nearest ones, but at least a quarter of
-/// the spacing, since most points may be the same. Distances are squared.
+/// How far the points of two trees are from each other: the median of the distances to nearest
+/// ones, but at least a quarter of the spacing, since most points may be the same. Distances are
+/// squared.
 inline double usual_distance(const std::vector<double>& squared, const std::vector<double>& areas)
 {
   constexpr double least = 1. / 4;
@@ -108,7 +110,8 @@ inline double extent(const std::vector<Vec3>& one, const std::vector<Vec3>& two)
   return (high - low).norm();
 }
 
-/// Sources that keep mass although a target within `reach` does, too. Had there been an arc between these, it would have carried.
+/// Sources that keep mass although a target within `reach` does, too. Had there been an arc between
+/// these, it would have carried.
 inline std::vector<std::size_t> sources_that_lack_arcs(const std::vector<Vec3>& one,
                                                        const std::vector<Vec3>& two,
                                                        const Transport_plan& plan,
@@ -136,8 +139,9 @@ inline std::vector<std::size_t> sources_that_lack_arcs(const std::vector<Vec3>& 
 
 } // namespace internal
 
-/// The arcs that carry most of what leaves a source or reaches a target, and where nothing does the cheapest: every point keeps
-/// a partner, and few have two. By sources; of each, the one that carries most comes first.
+/// The arcs that carry most of what leaves a source or reaches a target, and where nothing does the
+/// cheapest: every point keeps a partner, and few have two. By sources; of each, the one that
+/// carries most comes first.
 inline std::vector<std::uint32_t> main_arcs(const Transport_problem& problem,
                                             const Transport_plan& plan)
 {
@@ -173,8 +177,9 @@ inline std::vector<std::uint32_t> main_arcs(const Transport_problem& problem,
   return arcs;
 }
 
-/// Transport between two sets of places where points are. What goes no farther than the reach is carried, and the rest stays.
-/// Candidates are nearest neighbours both ways; for sources that keep mass although they could reach more, more are taken.
+/// Transport between two sets of places where points are. What goes no farther than the reach is
+/// carried, and the rest stays. Candidates are nearest neighbours both ways; for sources that keep
+/// mass although they could reach more, more are taken.
 inline Transport_plan match_places(const Distinct_positions& places_1,
                                    const Distinct_positions& places_2,
                                    const Transport_options& options,

@@ -50,7 +50,8 @@ public:
         m_branch_of[layout.branches[b].first_edge + j] = b;
   }
 
-  /// Pairs by edge. `is_stopped(done)` is asked between batches of windows; the result is empty if it says so.
+  /// Pairs by edge. `is_stopped(done)` is asked between batches of windows; the result is empty if
+  /// it says so.
   template <class IsStopped>
   std::vector<Point_pair>
   run(const Transport_options& options, Transport_summary& summary, const IsStopped& is_stopped)
@@ -171,8 +172,8 @@ private:
     return windows;
   }
 
-  /// Cuts a long edge across, at places that leave about as many points of both trees between them; points of
-  /// one place stay together.
+  /// Cuts a long edge across, at places that leave about as many points of both trees between them;
+  /// points of one place stay together.
   std::vector<Window> cut(std::size_t e, const Transport_options& options) const
   {
     struct Place
@@ -239,7 +240,8 @@ private:
         }
         return {};
       }
-    // tree 1 is laid on tree 2: turned, stretched along and across, and moved, edge by edge; blades also within their sections
+    // tree 1 is laid on tree 2: turned, stretched along and across, and moved, edge by edge; blades
+    // also within their sections
     std::vector<Vec3> one, two;
     for (const Placed& p : window.point[0]) {
       const std::size_t b = m_branch_of[p.edge];

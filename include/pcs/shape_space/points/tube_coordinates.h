@@ -15,10 +15,10 @@ namespace pcs {
 namespace shape_space {
 
 /*!
-  An edge as a cone around the z axis of a frame. It ends where it meets the edges before and behind it on the branch: at
-  planes that halve the angle between them. So a surface that runs past a bend does not tear when the bend grows, and
-  sections across the axis keep their size. On the inner side of a bend tubes overlap; there the planes end before the
-  middle of the edge.
+  An edge as a cone around the z axis of a frame. It ends where it meets the edges before and behind
+  it on the branch: at planes that halve the angle between them. So a surface that runs past a bend
+  does not tear when the bend grows, and sections across the axis keep their size. On the inner side
+  of a bend tubes overlap; there the planes end before the middle of the edge.
 */
 struct Edge_cone
 {
@@ -41,7 +41,8 @@ struct Edge_cone
   }
 };
 
-/// The slope, in the frame of an edge, of the plane that halves the angle between it and a neighbour along `other`.
+/// The slope, in the frame of an edge, of the plane that halves the angle between it and a
+/// neighbour along `other`.
 inline Eigen::Vector2d joint_slope(const Eigen::Matrix3d& frame, const Vec3& other)
 {
   const Vec3 local = frame.transpose() * other; // of unit length, as the edge's own direction
@@ -71,8 +72,9 @@ inline Edge_cone edge_cone(const Orl_layout& layout,
   return result;
 }
 
-/// A point relative to an edge: the share of the way between its ends, how far it lies before or behind it, angle and distance from the
-/// axis. Lengths off the axis are shares of the radius if `is_relative`, so that detail grows with the branch.
+/// A point relative to an edge: the share of the way between its ends, how far it lies before or
+/// behind it, angle and distance from the axis. Lengths off the axis are shares of the radius if
+/// `is_relative`, so that detail grows with the branch.
 struct Tube_coordinates
 {
   double t, overshoot, angle, distance;

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Directions of the edges of many trees as numbers that can be averaged and drawn: slant and azimuth.
+// Directions of the edges of many trees as numbers that can be averaged and drawn: slant and
+// azimuth.
 
 #ifndef PCS_SHAPE_SPACE_STATISTICS_DIRECTION_CHART_H
 #define PCS_SHAPE_SPACE_STATISTICS_DIRECTION_CHART_H
@@ -18,14 +19,17 @@ namespace pcs {
 namespace shape_space {
 
 /*!
-  Two numbers per edge. Usually the angle to the direction of growth, and the azimuth about it against that of the parent:
-  a branch that is turned about the trunk carries what hangs on it, one that hangs lower need not, as branches find their
-  way upwards by themselves. How far they follow the slant of their parent is learned from the trees, for each order.
-  Upright edges have no azimuth; for them, how far they lean to two sides. Where branches of an order clearly stand about
-  their parents as if they were rigid, how far they lean against these. All numbers are 0 in the middle of the trees.
+  Two numbers per edge. Usually the angle to the direction of growth, and the azimuth about it
+  against that of the parent: a branch that is turned about the trunk carries what hangs on it, one
+  that hangs lower need not, as branches find their way upwards by themselves. How far they follow
+  the slant of their parent is learned from the trees, for each order. Upright edges have no
+  azimuth; for them, how far they lean to two sides. Where branches of an order clearly stand about
+  their parents as if they were rigid, how far they lean against these. All numbers are 0 in the
+  middle of the trees.
 
-  Turns against the parent alone, one after the other, would add up: trees whose every branch is turned as much as in the
-  inputs would not grow upwards. Frames are not twisted against the direction of growth: what hangs down goes on to.
+  Turns against the parent alone, one after the other, would add up: trees whose every branch is
+  turned as much as in the inputs would not grow upwards. Frames are not twisted against the
+  direction of growth: what hangs down goes on to.
 */
 class Direction_chart
 {
@@ -34,8 +38,8 @@ public:
 
   Direction_chart() = default;
 
-  /// `middle[e]`: frames of the middle tree; `frame[t][e]`: of the trees; `has[t][b]`: whether tree `t` has branch `b`;
-  /// `weight[e]` of the edges.
+  /// `middle[e]`: frames of the middle tree; `frame[t][e]`: of the trees; `has[t][b]`: whether tree
+  /// `t` has branch `b`; `weight[e]` of the edges.
   Direction_chart(const Orl_layout& layout,
                   const Vec3& up,
                   const std::vector<Quaternion>& middle,
@@ -358,8 +362,8 @@ private:
                                           : 0);
   }
 
-  /// Orders whose branches are much better told from where they stand on their parents than from the slant and azimuth of
-  /// these. Not those of the trunk, which is upright itself.
+  /// Orders whose branches are much better told from where they stand on their parents than from
+  /// the slant and azimuth of these. Not those of the trunk, which is upright itself.
   void find_rigid_orders(const std::vector<std::vector<Vec3>>& direction,
                          const std::vector<std::vector<char>>& has,
                          const std::vector<double>& weight)

@@ -32,8 +32,8 @@ struct Mode_features
 struct Mode_coordinates
 {
   Eigen::VectorXd scores; ///< in standard deviations [-]
-  /// From the space of the modes: root of the mean square over the branches of the tree, each in units of how much it
-  /// varies; the inputs are 1 from their mean. [-]
+  /// From the space of the modes: root of the mean square over the branches of the tree, each in
+  /// units of how much it varies; the inputs are 1 from their mean. [-]
   double distance = 0;
 };
 

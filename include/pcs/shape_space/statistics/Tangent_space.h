@@ -17,10 +17,10 @@ namespace pcs {
 namespace shape_space {
 
 /*!
-  The tangent space at a tree. A vector has three coordinates per edge for its turn, one for its length and one for its
-  radius, then per branch the radius at the base and the attachment, each times its weight in the metric: its length is
-  the distance `Orl_metric::square` from the base, but for the root, which has no part: where a tree stands is not its
-  shape.
+  The tangent space at a tree. A vector has three coordinates per edge for its turn, one for its
+  length and one for its radius, then per branch the radius at the base and the attachment, each
+  times its weight in the metric: its length is the distance `Orl_metric::square` from the base, but
+  for the root, which has no part: where a tree stands is not its shape.
 */
 class Tangent_space
 {
@@ -57,9 +57,9 @@ public:
   }
 
   /*!
-    The tree at the end of a tangent vector. Turns end at pi, attachments on the parent, and lengths at 0; what is left of a
-    length by rounding is 0. What cannot vanish ends at a share of what it is at the base: lengths of the trunk, and
-    radii where there is length.
+    The tree at the end of a tangent vector. Turns end at pi, attachments on the parent, and lengths
+    at 0; what is left of a length by rounding is 0. What cannot vanish ends at a share of what it
+    is at the base: lengths of the trunk, and radii where there is length.
   */
   Orl_coordinates exp(const Eigen::VectorXd& z) const
   {

@@ -41,12 +41,13 @@ inline Eigen::MatrixXd inverse_of_symmetric(Eigen::MatrixXd a)
 } // namespace internal
 
 /*!
-  Covariance between trees. Each number of a tree is a draw from a Gaussian over the trees with one covariance, which is
-  the same for all numbers of all blocks up to a factor for each block. The covariance is where the mean over all blocks of
-  products of deviations, each block divided by its size under that covariance, is the covariance itself: one block has one
-  vote, however much it varies, and a block where trees were mistaken for each other has no more (D. E. Tyler 1987).
-  Blocks that a tree lacks are unknown; their products are those that are expected (A. P. Dempster, N. M. Laird,
-  D. B. Rubin 1977), and the block has the share of a vote that is known.
+  Covariance between trees. Each number of a tree is a draw from a Gaussian over the trees with one
+  covariance, which is the same for all numbers of all blocks up to a factor for each block. The
+  covariance is where the mean over all blocks of products of deviations, each block divided by its
+  size under that covariance, is the covariance itself: one block has one vote, however much it
+  varies, and a block where trees were mistaken for each other has no more (D. E. Tyler 1987).
+  Blocks that a tree lacks are unknown; their products are those that are expected (A. P. Dempster,
+  N. M. Laird, D. B. Rubin 1977), and the block has the share of a vote that is known.
 */
 class Tree_covariance
 {
@@ -89,7 +90,8 @@ public:
   const Eigen::MatrixXd& covariance() const { return m_covariance; }
   /// Of all trees, as far as known. [L]
   const Eigen::VectorXd& mean() const { return m_mean; }
-  /// Sum of the variances of the numbers of a block; 0: it does not vary, or less than two trees have it. [L^2]
+  /// Sum of the variances of the numbers of a block; 0: it does not vary, or less than two trees
+  /// have it. [L^2]
   double variance(std::size_t block) const { return m_variance[block]; }
   /// What squares of deviations of a block count. [1/L^2]
   double weight(std::size_t block) const { return m_weight[block]; }
@@ -100,7 +102,8 @@ public:
 private:
   static constexpr int number_of_steps = 60;
   static constexpr double tolerance = 1e-4, rounding = 1e-6;
-  /// What no block shares with others, at least; else a block that follows the others to rounding would have all votes.
+  /// What no block shares with others, at least; else a block that follows the others to rounding
+  /// would have all votes.
   static constexpr double own_share = 0.02;
 
   struct Completed_block

@@ -22,14 +22,17 @@ namespace pcs {
 namespace shape_space {
 
 /*!
-  A Gaussian in a space where lengths and radii are logarithms, so that they stay positive, and directions those of a
-  `Direction_chart`, so that branches keep their slant; and a chance for each branch to be there if its parent is.
+  A Gaussian in a space where lengths and radii are logarithms, so that they stay positive, and
+  directions those of a `Direction_chart`, so that branches keep their slant; and a chance for each
+  branch to be there if its parent is.
 
-  A sum of the deviations of the inputs with normal weights has their covariance. For few trees this is shrunk towards one
-  where branches vary by themselves, but each as a whole, in the ways in which that branch varies in the inputs (O. Ledoit,
-  M. Wolf 2003; J. Schaefer, K. Strimmer 2005; their target has blocks here, not numbers). Branches that few trees have
-  are turned, stretched and thickened as a whole as those of their order are. Values of branches that an input lacks are
-  unknown, not 0: they count as those of the middle, and the deviations of the others are scaled up for it.
+  A sum of the deviations of the inputs with normal weights has their covariance. For few trees this
+  is shrunk towards one where branches vary by themselves, but each as a whole, in the ways in which
+  that branch varies in the inputs (O. Ledoit, M. Wolf 2003; J. Schaefer, K. Strimmer 2005; their
+  target has blocks here, not numbers). Branches that few trees have are turned, stretched and
+  thickened as a whole as those of their order are. Values of branches that an input lacks are
+  unknown, not 0: they count as those of the middle, and the deviations of the others are scaled up
+  for it.
 */
 class Tree_distribution
 {
@@ -122,8 +125,8 @@ private:
     return static_cast<Eigen::Index>(4 * m_layout.branches[b].number_of_edges + 2);
   }
 
-  /// Which branches are there, order by order. Where there are more or fewer than in all inputs, the branches change that
-  /// were drawn with the least odds.
+  /// Which branches are there, order by order. Where there are more or fewer than in all inputs,
+  /// the branches change that were drawn with the least odds.
   template <class Uniform>
   std::vector<char> draw_presence(const Tree_sampling_options& o, const Uniform& uniform) const
   {
@@ -329,7 +332,8 @@ private:
       m_pool[k] = (m_pool[k] / std::max(1.0, weight[k])).cwiseSqrt();
   }
 
-  /// The share that makes the expected error of the covariance least, from products of the data only.
+  /// The share that makes the expected error of the covariance least, from products of the data
+  /// only.
   void estimate_shrinkage()
   {
     // units: a turn counts with the length it carries, a logarithm with the length or radius itself
@@ -364,7 +368,8 @@ private:
   }
 
   static constexpr double prior = 2; // further members of each branch that vary like its order
-  // two numbers of direction, logarithms of length and radius, of the radius at the base, attachment
+  // two numbers of direction, logarithms of length and radius, of the radius at the base,
+  // attachment
   using Pool = Eigen::Matrix<double, 6, 1>;
 
   Orl_layout m_layout;

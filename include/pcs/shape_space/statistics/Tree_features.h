@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Trees as numbers by which they are compared: what each branch looks like, seen from where it grows.
+// Trees as numbers by which they are compared: what each branch looks like, seen from where it
+// grows.
 
 #ifndef PCS_SHAPE_SPACE_STATISTICS_TREE_FEATURES_H
 #define PCS_SHAPE_SPACE_STATISTICS_TREE_FEATURES_H
@@ -21,10 +22,11 @@ namespace shape_space {
 /*!
   Numbers of a tree in blocks; a tree either has all numbers of a block, or none.
 
-  `Mode_inner_product::branches`: one block per branch. Directions of its edges in the frame of the edge of its parent that it
-  grows from, ways from its base to its nodes, radii, and its place on the parent, all in units of length. Sums of squares
-  over edges are integrals along the branch, whatever number of edges it has: directions weigh as the length that they
-  carry. Directions of the trunk are seen in the axes of the input, turned about the trunk as the tree is.
+  `Mode_inner_product::branches`: one block per branch. Directions of its edges in the frame of the
+  edge of its parent that it grows from, ways from its base to its nodes, radii, and its place on
+  the parent, all in units of length. Sums of squares over edges are integrals along the branch,
+  whatever number of edges it has: directions weigh as the length that they carry. Directions of the
+  trunk are seen in the axes of the input, turned about the trunk as the tree is.
 
   `Mode_inner_product::metric`: one block, the tangent vector at the mean.
 */

@@ -33,7 +33,8 @@ struct Principal_scores
   Eigen::VectorXd shares;  ///< k, of the trace
 };
 
-/// Eigenvectors of a covariance of trees about their mean that belong to eigenvalues above rounding, largest first.
+/// Eigenvectors of a covariance of trees about their mean that belong to eigenvalues above
+/// rounding, largest first.
 inline Principal_scores principal_scores(const Eigen::MatrixXd& covariance)
 {
   const Eigen::Index n = covariance.rows();
@@ -57,7 +58,8 @@ struct Mode_fit
   std::vector<double> distance;
 };
 
-/// Weighted least squares over the blocks that the tree has, by modified Gram-Schmidt, so that k modes come before k + 1.
+/// Weighted least squares over the blocks that the tree has, by modified Gram-Schmidt, so that k
+/// modes come before k + 1.
 inline Mode_fit fit_modes(const Tree_features& features,
                           const Mode_features& modes,
                           const Eigen::VectorXd& values,
@@ -139,13 +141,14 @@ inline void set_features(const Tree_features& features,
 } // namespace internal
 
 /*!
-  At most `most` modes; fewer if the trees do not differ in so many ways. The sign of a mode is such that its largest
-  coordinate is positive.
+  At most `most` modes; fewer if the trees do not differ in so many ways. The sign of a mode is such
+  that its largest coordinate is positive.
 
-  Scores are the principal components of the `Tree_covariance` of `Tree_features`: what trees show of the branches that
-  they have. A mode is the change of tangent vectors with its score, by least squares: lengths of branches that come and
-  go change with it, too. All modes together give all trees. Where no branch differs between the trees that have it, all
-  that is left is which trees have it: the modes are those of `Mode_inner_product::metric`, as `features` tell.
+  Scores are the principal components of the `Tree_covariance` of `Tree_features`: what trees show
+  of the branches that they have. A mode is the change of tangent vectors with its score, by least
+  squares: lengths of branches that come and go change with it, too. All modes together give all
+  trees. Where no branch differs between the trees that have it, all that is left is which trees
+  have it: the modes are those of `Mode_inner_product::metric`, as `features` tell.
 */
 template <class ConcurrencyTag>
 Modes_of_variation find_modes(const Orl_layout& layout,
@@ -294,9 +297,10 @@ inline Orl_coordinates tree_of_modes(const Orl_layout& layout,
 }
 
 /*!
-  How unlike the trees of the modes a tree is: the root of the mean of two squares, of its scores and of its distance from
-  the space of the modes, over the middle one of the trees themselves when left out. About 1 for a tree of the same
-  kind; without modes or spread, 0 for the mean and infinite for all others. [-]
+  How unlike the trees of the modes a tree is: the root of the mean of two squares, of its scores
+  and of its distance from the space of the modes, over the middle one of the trees themselves when
+  left out. About 1 for a tree of the same kind; without modes or spread, 0 for the mean and
+  infinite for all others. [-]
 */
 inline double outlier_score(const Modes_of_variation& modes, const Mode_coordinates& at)
 {

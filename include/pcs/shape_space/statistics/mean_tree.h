@@ -20,7 +20,8 @@ namespace shape_space {
 
 namespace internal {
 
-/// The place with the least sum of weighted distances (Weiszfeld 1937; Vardi, Zhang 2000 at the data points).
+/// The place with the least sum of weighted distances (Weiszfeld 1937; Vardi, Zhang 2000 at the
+/// data points).
 inline Vec3 l1_mean_place(const std::vector<Vec3>& p, const std::vector<double>& w)
 {
   Vec3 mean = Vec3::Zero();
@@ -60,9 +61,9 @@ inline Vec3 l1_mean_place(const std::vector<Vec3>& p, const std::vector<double>&
 } // namespace internal
 
 /*!
-  The mean of trees with weights, coordinate by coordinate. `median` wants weights `>= 0`; of an interval of medians
-  it takes the middle. With `frechet` weights may be negative as long as their sum is positive: lengths stay at
-  least 0, radii a hundredth of the least one.
+  The mean of trees with weights, coordinate by coordinate. `median` wants weights `>= 0`; of an
+  interval of medians it takes the middle. With `frechet` weights may be negative as long as their
+  sum is positive: lengths stay at least 0, radii a hundredth of the least one.
 */
 template <class ConcurrencyTag>
 Orl_coordinates mean_tree(const Orl_layout& layout,
@@ -84,7 +85,8 @@ Orl_coordinates mean_tree(const Orl_layout& layout,
     return sum / total;
   };
   const bool is_within = *std::min_element(weights.begin(), weights.end()) >= 0;
-  // of an edge or branch that is there; beyond the trees it keeps a share of the least radius that it has in one
+  // of an edge or branch that is there; beyond the trees it keeps a share of the least radius that
+  // it has in one
   const auto mean_radius = [&](const std::vector<double>& values, bool is_there) {
     constexpr double least_share = 0.01;
     double least = 0;

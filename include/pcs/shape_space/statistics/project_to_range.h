@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Brings a tree that was drawn into the range of others in angles of branches and in size, by the least change.
+// Brings a tree that was drawn into the range of others in angles of branches and in size, by the
+// least change.
 
 #ifndef PCS_SHAPE_SPACE_STATISTICS_PROJECT_TO_RANGE_H
 #define PCS_SHAPE_SPACE_STATISTICS_PROJECT_TO_RANGE_H
@@ -32,8 +33,8 @@ struct Figure_range
 };
 
 /*!
-  Changes angles in [0, pi] so that their mean and standard deviation are in ranges: a shift and a factor, which change the
-  sum of squares least; what would leave [0, pi] stops there.
+  Changes angles in [0, pi] so that their mean and standard deviation are in ranges: a shift and a
+  factor, which change the sum of squares least; what would leave [0, pi] stops there.
 */
 inline void
 limit_moments(const Figure_range& mean, const Figure_range& deviation, std::vector<double>& angles)
@@ -57,8 +58,8 @@ limit_moments(const Figure_range& mean, const Figure_range& deviation, std::vect
 
 } // namespace internal
 
-/// Brings mean and standard deviation of the angles of branches, by order, into the range of others: turns each branch, with
-/// all that hangs on it, towards its parent or away from it.
+/// Brings mean and standard deviation of the angles of branches, by order, into the range of
+/// others: turns each branch, with all that hangs on it, towards its parent or away from it.
 inline void limit_angles(const Orl_layout& layout,
                          Orl_orientation kind,
                          const std::vector<Tree_descriptors>& others,
@@ -106,8 +107,9 @@ inline void limit_angles(const Orl_layout& layout,
   }
 }
 
-/// Brings height, width of the crown and total length into the range of others, as far as they can be had together:
-/// stretches the trunk to the height, the branches on it to the width of the crown, and all others to the total length.
+/// Brings height, width of the crown and total length into the range of others, as far as they can
+/// be had together: stretches the trunk to the height, the branches on it to the width of the
+/// crown, and all others to the total length.
 inline void limit_lengths(const Orl_layout& layout,
                           Orl_orientation kind,
                           const Vec3& up,

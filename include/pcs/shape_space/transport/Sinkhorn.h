@@ -19,8 +19,9 @@ namespace pcs {
 namespace shape_space {
 
 /*!
-  Alternating projections (M. Cuturi, 2013) with potentials; epsilon is halved from the largest cost down. All arcs have a
-  flow. With arcs that cannot carry the marginals, the violation stays large: it is reported.
+  Alternating projections (M. Cuturi, 2013) with potentials; epsilon is halved from the largest cost
+  down. All arcs have a flow. With arcs that cannot carry the marginals, the violation stays large:
+  it is reported.
 */
 inline Transport_plan sinkhorn(const Transport_problem& problem, const Sinkhorn_options& options)
 {

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Exact transport between two weighted sets over a sparse list of arcs: the network simplex method in integers.
+// Exact transport between two weighted sets over a sparse list of arcs: the network simplex method
+// in integers.
 
 #ifndef PCS_SHAPE_SPACE_TRANSPORT_TRANSPORT_SIMPLEX_H
 #define PCS_SHAPE_SPACE_TRANSPORT_TRANSPORT_SIMPLEX_H
@@ -46,9 +47,10 @@ struct Transport_plan
 };
 
 /*!
-  Primal network simplex with block search, on strongly feasible trees, so that it ends. Weights and costs are rounded to
-  integers (2^-50 of the mass, 2^-32 of the largest cost): pivots are exact, and the same on every machine. Mass that the
-  arcs cannot carry goes over an artificial node and is reported. At most n + m - 1 flows.
+  Primal network simplex with block search, on strongly feasible trees, so that it ends. Weights and
+  costs are rounded to integers (2^-50 of the mass, 2^-32 of the largest cost): pivots are exact,
+  and the same on every machine. Mass that the arcs cannot carry goes over an artificial node and is
+  reported. At most n + m - 1 flows.
 */
 class Transport_simplex
 {
@@ -152,7 +154,8 @@ private:
     const std::size_t number = m_arcs.size();
     const std::size_t block =
         std::max<std::size_t>(10, static_cast<std::size_t>(std::sqrt(static_cast<double>(number))));
-    // never reached on strongly feasible trees in practice; an endless loop is worse than a reported failure
+    // never reached on strongly feasible trees in practice; an endless loop is worse than a
+    // reported failure
     const std::size_t most_pivots = 1000 + 50 * (number + m_root);
     std::size_t position = 0;
     for (m_number_of_pivots = 0; m_number_of_pivots < most_pivots; ++m_number_of_pivots) {

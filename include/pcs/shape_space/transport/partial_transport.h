@@ -26,9 +26,10 @@ inline Transport_plan solve_transport(const Transport_problem& problem,
 }
 
 /*!
-  Partial transport (L. Caffarelli and R. McCann, 2010): a unit of mass of either side may stay where it is at `price`, so that
-  none goes where it costs twice the price. One more source and one more target, with room for all, take what stays; with
-  these the marginals hold as always. `price` > 0; `problem` needs no arcs.
+  Partial transport (L. Caffarelli and R. McCann, 2010): a unit of mass of either side may stay
+  where it is at `price`, so that none goes where it costs twice the price. One more source and one
+  more target, with room for all, take what stays; with these the marginals hold as always. `price`
+  > 0; `problem` needs no arcs.
 */
 inline Transport_plan
 solve_partially(const Transport_problem& problem, double price, const Transport_options& options)
