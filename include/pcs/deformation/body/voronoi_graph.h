@@ -41,14 +41,17 @@ constexpr double mean_degree = 6.5;
 
 namespace internal {
 
-/// The two cells of an edge have a say in its weight each. Proximity edges come in where the stars
-/// are weak, and where components would fall apart.
-template <class ConcurrencyTag>
-Weighted_graph star_graph(const Voronoi_stars& stars,
-                          const neighborhood::Proximity_graph& neighbors,
-                          const Weighted_graph& proximity)
+/// Half-edges of the neighbour graph with weights from the Voronoi cells of both ends.
+struct Star_edges
 {
-  const std::size_t n = stars.size();
+  std::vector<double> weight;   ///< by half-edge [-]
+  std::vector<double> weakness; ///< of points: 0 with enough sides, up to 1 without any [-]
+};
+
+template <class ConcurrencyTag>
+Star_edges weigh_star_edges(const Voronoi_stars& stars,
+                            const neighborhood::Proximity_graph& neighbors)
+{
   const auto half_weight = [&](std::size_t i, std::uint32_t j) {
     double weight = 0;
     for (std::size_t e = stars.first[i]; e < stars.first[i + 1]; ++e)
@@ -56,107 +59,137 @@ Weighted_graph star_graph(const Voronoi_stars& stars,
         weight += 0.5 * static_cast<double>(stars.side[e].weight);
     return weight;
   };
-  std::vector<double> weight(neighbors.neighbor.size()), weakness(n);
+  const std::size_t n = stars.size();
+  Star_edges edges;
+  edges.weight.resize(neighbors.neighbor.size());
+  edges.weakness.resize(n);
   pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
     double sum = 0;
     for (std::size_t e = neighbors.first[i]; e < neighbors.first[i + 1]; ++e) {
       const auto k = static_cast<std::uint32_t>(i);
       const std::uint32_t j = neighbors.neighbor[e];
-      weight[e] = half_weight(std::min(j, k), std::max(j, k)) +
-                  half_weight(std::max(j, k), std::min(j, k)); // the same bits for both half-edges
-      sum += weight[e];
+      edges.weight[e] =
+          half_weight(std::min(j, k), std::max(j, k)) +
+          half_weight(std::max(j, k), std::min(j, k)); // the same bits for both half-edges
+      sum += edges.weight[e];
     }
-    weakness[i] = std::max(0.0, 1 - sum / least_star);
+    edges.weakness[i] = std::max(0.0, 1 - sum / least_star);
   });
+  return edges;
+}
 
-  // Weak edges hold nothing together: there, the heaviest proximity edges stay as they are.
+/// Fraction of the weight of a proximity edge that is added where the cells of its ends are weak.
+inline double proximity_fraction(const Star_edges& edges, std::uint32_t i, std::uint32_t j)
+{
+  return 0.5 * proximity_share * (edges.weakness[i] + edges.weakness[j]);
+}
+
+/// Half-edges of the proximity graph, sorted.
+using Bridges = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+/// The heaviest proximity edges without which components would fall apart; weak edges do not
+/// connect.
+inline Bridges find_bridges(const Star_edges& edges,
+                            const neighborhood::Proximity_graph& neighbors,
+                            const Weighted_graph& proximity)
+{
   using Index_map = boost::typed_identity_property_map<std::uint32_t>;
+  const auto n = static_cast<std::uint32_t>(edges.weakness.size());
   std::vector<std::uint32_t> rank(n, 0), parent(n);
   std::iota(parent.begin(), parent.end(), std::uint32_t(0));
   boost::disjoint_sets parts(boost::make_iterator_property_map(rank.begin(), Index_map()),
                              boost::make_iterator_property_map(parent.begin(), Index_map()));
-  const auto share = [&](std::uint32_t i, std::uint32_t j) {
-    return 0.5 * proximity_share * (weakness[i] + weakness[j]);
-  };
   for (std::uint32_t i = 0; i < n; ++i) {
     for (std::size_t e = neighbors.first[i]; e < neighbors.first[i + 1]; ++e)
-      if (weight[e] > least_link)
+      if (edges.weight[e] > least_link)
         parts.union_set(i, neighbors.neighbor[e]);
     for (std::size_t e = proximity.first[i]; e < proximity.first[i + 1]; ++e)
-      if (share(i, proximity.neighbor[e]) * proximity.weight[e] > least_link)
+      if (proximity_fraction(edges, i, proximity.neighbor[e]) * proximity.weight[e] > least_link)
         parts.union_set(i, proximity.neighbor[e]);
   }
-  struct Bridge
-  {
-    double weight;
-    std::uint32_t from, to;
-  };
+  using Bridge = std::tuple<double, std::uint32_t, std::uint32_t>; // negative weight, from, to
   std::vector<Bridge> candidates;
   for (std::uint32_t i = 0; i < n; ++i)
     for (std::size_t e = proximity.first[i]; e < proximity.first[i + 1]; ++e)
       if (i < proximity.neighbor[e] && parts.find_set(i) != parts.find_set(proximity.neighbor[e]))
-        candidates.push_back({proximity.weight[e], i, proximity.neighbor[e]});
-  std::sort(candidates.begin(), candidates.end(), [](const Bridge& a, const Bridge& b) {
-    return std::make_tuple(-a.weight, a.from, a.to) < std::make_tuple(-b.weight, b.from, b.to);
-  });
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> bridges; // both half-edges
-  for (const Bridge& b : candidates)
-    if (parts.find_set(b.from) != parts.find_set(b.to)) {
-      parts.union_set(b.from, b.to);
-      bridges.emplace_back(b.from, b.to);
-      bridges.emplace_back(b.to, b.from);
+        candidates.emplace_back(-proximity.weight[e], i, proximity.neighbor[e]);
+  std::sort(candidates.begin(), candidates.end());
+  Bridges bridges;
+  for (const auto& [weight, from, to] : candidates)
+    if (parts.find_set(from) != parts.find_set(to)) {
+      parts.union_set(from, to);
+      bridges.emplace_back(from, to);
+      bridges.emplace_back(to, from);
     }
   std::sort(bridges.begin(), bridges.end());
+  return bridges;
+}
 
+/// Rows of a block of points.
+struct Star_rows
+{
+  std::vector<std::uint32_t> neighbor;
+  std::vector<double> weight;
+
+  /// Appends a row; adds up entries of the same neighbour. Returns the number of neighbours.
+  std::uint32_t append(std::vector<std::pair<std::uint32_t, double>>& row)
+  {
+    std::sort(row.begin(), row.end());
+    const std::size_t before = neighbor.size();
+    for (const auto& [j, w] : row)
+      if (neighbor.size() > before && neighbor.back() == j)
+        weight.back() += w;
+      else {
+        neighbor.push_back(j);
+        weight.push_back(w);
+      }
+    for (std::size_t e = before; e < weight.size(); ++e)
+      weight[e] = representable_weight(weight[e]);
+    return static_cast<std::uint32_t>(neighbor.size() - before);
+  }
+};
+
+/// The weight of an edge is half the sum of those of the two cells. Proximity edges are added where
+/// the stars are weak, and where components would fall apart.
+template <class ConcurrencyTag>
+Weighted_graph star_graph(const Voronoi_stars& stars,
+                          const neighborhood::Proximity_graph& neighbors,
+                          const Weighted_graph& proximity)
+{
+  const std::size_t n = stars.size();
+  const Star_edges edges = weigh_star_edges<ConcurrencyTag>(stars, neighbors);
+  const Bridges bridges = find_bridges(edges, neighbors, proximity);
+  const auto added_weight = [&](std::uint32_t i, std::size_t e) { // of a proximity edge
+    const std::uint32_t j = proximity.neighbor[e];
+    const bool is_bridge = !bridges.empty() &&
+                           std::binary_search(bridges.begin(), bridges.end(), std::make_pair(i, j));
+    return (is_bridge ? 1 : proximity_fraction(edges, std::min(j, i), std::max(j, i))) *
+           proximity.weight[e];
+  };
   Weighted_graph graph;
   graph.first.resize(n + 1);
   constexpr std::size_t block_size = 512;
-  struct Rows
-  {
-    std::vector<std::uint32_t> neighbor;
-    std::vector<double> weight;
-  };
-  std::vector<Rows> blocks((n + block_size - 1) / block_size);
+  std::vector<Star_rows> blocks((n + block_size - 1) / block_size);
   pcs::internal::for_each_block<ConcurrencyTag>(
       n,
       block_size,
       [&](std::size_t begin, std::size_t end) {
-        Rows& rows = blocks[begin / block_size];
         std::vector<std::pair<std::uint32_t, double>> row;
         for (std::size_t i = begin; i < end; ++i) {
           row.clear();
           for (std::size_t e = neighbors.first[i]; e < neighbors.first[i + 1]; ++e)
-            row.emplace_back(neighbors.neighbor[e], weight[e]);
-          for (std::size_t e = proximity.first[i]; e < proximity.first[i + 1]; ++e) {
-            const std::uint32_t j = proximity.neighbor[e];
-            const auto k = static_cast<std::uint32_t>(i);
-            const bool is_bridge =
-                !bridges.empty() &&
-                std::binary_search(bridges.begin(), bridges.end(), std::make_pair(k, j));
-            const double added =
-                (is_bridge ? 1 : share(std::min(j, k), std::max(j, k))) * proximity.weight[e];
-            if (added > 0)
-              row.emplace_back(j, added);
-          }
-          std::sort(row.begin(), row.end());
-          const std::size_t before = rows.neighbor.size();
-          for (const auto& [j, w] : row)
-            if (rows.neighbor.size() > before && rows.neighbor.back() == j)
-              rows.weight.back() += w;
-            else {
-              rows.neighbor.push_back(j);
-              rows.weight.push_back(w);
-            }
-          for (std::size_t e = before; e < rows.weight.size(); ++e)
-            rows.weight[e] = representable_weight(rows.weight[e]);
-          graph.first[i + 1] = static_cast<std::uint32_t>(rows.neighbor.size() - before);
+            row.emplace_back(neighbors.neighbor[e], edges.weight[e]);
+          for (std::size_t e = proximity.first[i]; e < proximity.first[i + 1]; ++e)
+            if (const double added = added_weight(static_cast<std::uint32_t>(i), e); added > 0)
+              row.emplace_back(proximity.neighbor[e], added);
+          graph.first[i + 1] = blocks[begin / block_size].append(row);
         }
       });
   for (std::size_t i = 0; i < n; ++i)
     graph.first[i + 1] += graph.first[i];
   graph.neighbor.reserve(graph.first.back());
   graph.weight.reserve(graph.first.back());
-  for (const Rows& rows : blocks) {
+  for (const Star_rows& rows : blocks) {
     graph.neighbor.insert(graph.neighbor.end(), rows.neighbor.begin(), rows.neighbor.end());
     graph.weight.insert(graph.weight.end(), rows.weight.begin(), rows.weight.end());
   }

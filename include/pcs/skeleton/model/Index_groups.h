@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_MODEL_INDEX_GROUPS_H
 #define PCS_SKELETON_MODEL_INDEX_GROUPS_H
 
+#include <pcs/core/compress_rows.h>
 #include <pcs/skeleton/model/Scan.h>
 
 #include <boost/range/iterator_range.hpp>
@@ -21,18 +22,13 @@ class Index_groups
 public:
   /// `group_of_member` has the group of each member, or `none`. O(members + groups).
   Index_groups(std::size_t number_of_groups, const std::vector<Index>& group_of_member)
-    : m_first(number_of_groups + 1, 0)
+    : m_first(pcs::internal::compress_rows<Index>(
+          number_of_groups,
+          group_of_member.size(),
+          [&](std::size_t i) { return std::size_t(group_of_member[i]); }, // `none` is left out
+          [&](std::size_t n) { m_members.resize(n); },
+          [&](std::size_t i, std::size_t k) { m_members[k] = static_cast<Index>(i); }))
   {
-    for (const Index g : group_of_member)
-      if (g != none)
-        ++m_first[g + 1];
-    for (std::size_t g = 0; g < number_of_groups; ++g)
-      m_first[g + 1] += m_first[g];
-    m_members.resize(m_first.back());
-    std::vector<Index> place(m_first.begin(), m_first.end() - 1);
-    for (Index i = 0; i < group_of_member.size(); ++i)
-      if (group_of_member[i] != none)
-        m_members[place[group_of_member[i]]++] = i;
   }
 
   boost::iterator_range<const Index*> operator[](std::size_t group) const
@@ -41,7 +37,7 @@ public:
   }
 
 private:
-  std::vector<Index> m_first, m_members;
+  std::vector<Index> m_members, m_first; // the first is filled by the second
 };
 
 } // namespace skeleton
