@@ -10,10 +10,10 @@
 #include <pcs/core/Status.h>
 #include <pcs/core/Tree_skeleton.h>
 #include <pcs/core/errors.h>
-#include <pcs/core/unit_of_height.h>
 #include <pcs/internal/Stopwatch.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
+#include <pcs/internal/unit_of_height.h>
 #include <pcs/skeleton/forest/Stand.h>
 #include <pcs/skeleton/input/Session_hints.h>
 #include <pcs/skeleton/input/caller_types.h>

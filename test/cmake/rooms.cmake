@@ -4,3 +4,162 @@
 # A header in include/pcs/<algorithm>/<room>/ may include its own room, <algorithm>/model/, the levels below, and the
 # doors that are listed here for its room, as <room>/<header> or as <room> for all headers of a room. Headers directly
 # in <algorithm>/ (the session) and the public headers at the top may include what `<algorithm>_session` and `root` list.
+
+
+# ---- deformation: deform_point_set
+set(root_deformation Session.h access/Point_access.h access/read_options.h)
+set(deformation_session
+  body/Sampled_body.h
+  body/Sampled_body_impl.h
+  handles/Dirty_handles.h
+  handles/Handle_set.h
+  handles/Site_constraints.h
+  handles/add_boundary_nodes.h
+  handles/anchor_free_components.h
+  handles/straighten_borders.h
+  multigrid/Coarse_levels.h
+  solver/Elastic_solver.h
+  upsampling/Handle_fades.h
+  upsampling/Moved_point_writer.h
+  upsampling/Outlier_maps.h
+  upsampling/Point_carrier.h
+  upsampling/Upsampling.h
+  upsampling/read_maps.h)
+set(deformation_access body/Sampled_body.h upsampling/blend_block.h)
+set(deformation_body handles/Border_finder.h upsampling/Upsampling.h upsampling/blend_block.h)
+set(deformation_handles body/Sample_regions.h body/Sampled_body.h)
+set(deformation_multigrid
+  body/Sample_links.h
+  body/Sample_regions.h
+  body/interior_links.h
+  body/octree_samples.h
+  handles/add_boundary_nodes.h
+  handles/anchor_free_components.h
+  solver/Elastic_solver.h)
+set(deformation_upsampling
+  body/Sample_links.h
+  body/Sample_regions.h
+  body/Sampled_body.h
+  handles/Border_finder.h
+  handles/Site_constraints.h
+  solver/Elastic_state.h)
+set(deformation_model solver/rotation_field.h upsampling/blend_block.h)
+
+# ---- skeleton: extract_tree_skeleton, segment_trees
+set(root_skeleton
+  Session.h
+  forest/Stand.h
+  input/Session_hints.h
+  input/caller_types.h
+  input/check_input.h
+  input/read_options.h
+  result/write_result.h
+  surface/Surface_builder.h)
+set(skeleton_session
+  axes/fit_axes.h
+  axes/reassign_points.h
+  branching/build_branch_tree.h
+  clutter/remove_clutter.h
+  input/Session_hints.h
+  layers/trace_layers.h
+  leaves/separate_leaves.h
+  radii/refine_radii.h
+  registration/register_stations.h
+  result/describe_tree.h
+  scan/Point_labels.h
+  scan/prepare_scan.h
+  slices/section_skeleton.h)
+set(skeleton_clutter graph/Neighbor_graph.h scan/Point_labels.h)
+set(skeleton_layers graph/Neighbor_graph.h graph/shortest_paths.h)
+set(skeleton_axes graph/Neighbor_graph.h layers/cut_layers.h)
+set(skeleton_leaves graph/Neighbor_graph.h graph/shortest_paths.h)
+set(skeleton_slices layers/cut_layers.h)
+set(skeleton_forest
+  Session.h
+  Session_options.h
+  axes/fit_axes.h
+  branching/build_branch_tree.h
+  graph/Neighbor_graph.h
+  graph/shortest_paths.h
+  input/Session_hints.h
+  layers/trace_layers.h
+  result/describe_tree.h)
+
+# ---- shape_space: orl_geodesic, Orl_shape_space
+set(root_shape_space
+  Space_engine.h
+  family/Family_points.h
+  family/Tree_family.h
+  input/check_sampling.h
+  input/read_options.h
+  input/tree_input.h
+  input/write_skeleton.h
+  measures/Tree_descriptors.h
+  measures/change_table.h
+  model/Build_options.h
+  model/Orl_coordinates.h
+  pair/Embedded_pair.h
+  path/Extrapolation_limits.h
+  path/Growth_spline.h
+  path/Sequential_births.h
+  points/Point_instances.h
+  statistics/Modes_of_variation.h)
+set(shape_space_session
+  family/Family_points.h
+  family/Family_points_impl.h
+  family/Tree_family.h
+  family/build_family.h
+  family/make_family.h
+  family/serialize_family.h
+  input/tree_input.h
+  measures/Tree_descriptors.h
+  measures/change_table.h
+  pair/Embedded_pair.h
+  pair/build_pair.h
+  pair/embed_pair.h
+  pair/serialize_topology.h
+  path/Extrapolation_limits.h
+  path/Sequential_births.h
+  path/apply_pipe_model.h
+  points/Point_instances_impl.h
+  statistics/Modes_of_variation.h
+  statistics/Tangent_space.h
+  statistics/Tree_distribution.h
+  statistics/find_modes.h
+  statistics/mean_tree.h
+  statistics/project_to_range.h)
+set(shape_space_input matching/Matched_branch.h pair/Embedded_pair.h)
+set(shape_space_embedding matching/align_vectors.h)
+set(shape_space_points transport/partial_transport.h)
+set(shape_space_pair
+  embedding/embed_trees.h
+  embedding/refine_yaw.h
+  embedding/skip_fold_edges.h
+  family/build_family.h
+  input/tree_input.h
+  matching/Branch_matching.h
+  matching/build_topology.h
+  matching/find_yaw_candidates.h
+  points/Point_instances.h
+  points/assign_points.h
+  points/point_correspondences.h
+  points/surface_patches.h)
+set(shape_space_family
+  embedding/embed_trees.h
+  embedding/mean_rotation.h
+  input/tree_input.h
+  matching/Matched_branch.h
+  matching/build_topology.h
+  matching/elastic_curves.h
+  matching/find_yaw_candidates.h
+  measures/Tree_descriptors.h
+  pair/Embedded_pair.h
+  pair/serialize_topology.h
+  points/Point_instances.h
+  points/Point_instances_impl.h
+  points/assign_points.h
+  points/point_correspondences.h
+  points/surface_patches.h
+  points/tube_coordinates.h)
+set(shape_space_statistics embedding/mean_rotation.h measures/Tree_descriptors.h)
+set(shape_space_model family/Tree_family.h matching/Matched_branch.h)

@@ -6,7 +6,7 @@
 #define PCS_CORE_SKELETON_REPORT_H
 
 #include <pcs/core/Status.h>
-#include <pcs/core/unit_of_height.h>
+#include <pcs/internal/unit_of_height.h>
 
 #include <Eigen/Core>
 

@@ -5,11 +5,11 @@
 #ifndef PCS_DEFORMATION_HANDLES_ADD_BOUNDARY_NODES_H
 #define PCS_DEFORMATION_HANDLES_ADD_BOUNDARY_NODES_H
 
-#include <pcs/core/compress_rows.h>
 #include <pcs/deformation/body/Sample_regions.h>
 #include <pcs/deformation/handles/Border_finder.h>
 #include <pcs/deformation/model/Elastic_network.h>
 #include <pcs/deformation/model/Harmonic_system.h>
+#include <pcs/internal/compress_rows.h>
 
 #include <algorithm>
 #include <cstddef>

@@ -10,17 +10,15 @@
 #include <pcs/neighborhood/Nearest_neighbors.h>
 #include <pcs/skeleton/Session_options.h>
 #include <pcs/skeleton/axes/fit_axes.h>
-#include <pcs/skeleton/branching/fuse_axes.h>
-#include <pcs/skeleton/branching/join_axes.h>
+#include <pcs/skeleton/branching/build_branch_tree.h>
 #include <pcs/skeleton/forest/Stand_options.h>
 #include <pcs/skeleton/graph/Neighbor_graph.h>
 #include <pcs/skeleton/graph/shortest_paths.h>
-#include <pcs/skeleton/layers/cut_layers.h>
-#include <pcs/skeleton/layers/merge_ring_arcs.h>
+#include <pcs/skeleton/layers/trace_layers.h>
 #include <pcs/skeleton/model/Axis.h>
 #include <pcs/skeleton/model/Axis_set.h>
 #include <pcs/skeleton/model/Scan.h>
-#include <pcs/skeleton/result/count_other_stems.h>
+#include <pcs/skeleton/result/describe_tree.h>
 
 #include <algorithm>
 #include <cmath>

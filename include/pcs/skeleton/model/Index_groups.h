@@ -5,7 +5,7 @@
 #ifndef PCS_SKELETON_MODEL_INDEX_GROUPS_H
 #define PCS_SKELETON_MODEL_INDEX_GROUPS_H
 
-#include <pcs/core/compress_rows.h>
+#include <pcs/internal/compress_rows.h>
 #include <pcs/skeleton/model/Scan.h>
 
 #include <boost/range/iterator_range.hpp>

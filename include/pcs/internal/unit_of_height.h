@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSL-1.0
 // Whether a tree is so high that its coordinates must be in another unit than the breast height.
 
-#ifndef PCS_CORE_UNIT_OF_HEIGHT_H
-#define PCS_CORE_UNIT_OF_HEIGHT_H
+#ifndef PCS_INTERNAL_UNIT_OF_HEIGHT_H
+#define PCS_INTERNAL_UNIT_OF_HEIGHT_H
 
 #include <sstream>
 #include <string>
@@ -33,4 +33,4 @@ inline void warn_of_unit(const std::string& subject,
 } // namespace internal
 } // namespace pcs
 
-#endif // PCS_CORE_UNIT_OF_HEIGHT_H
+#endif // PCS_INTERNAL_UNIT_OF_HEIGHT_H

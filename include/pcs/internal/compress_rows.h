@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSL-1.0
 // Compressed rows (CSR) by counting: entries of a graph or of groups, sorted by row.
 
-#ifndef PCS_CORE_COMPRESS_ROWS_H
-#define PCS_CORE_COMPRESS_ROWS_H
+#ifndef PCS_INTERNAL_COMPRESS_ROWS_H
+#define PCS_INTERNAL_COMPRESS_ROWS_H
 
 #include <cstddef>
 #include <vector>
@@ -49,4 +49,4 @@ std::vector<Size> compress_rows(std::size_t number_of_rows,
 } // namespace internal
 } // namespace pcs
 
-#endif // PCS_CORE_COMPRESS_ROWS_H
+#endif // PCS_INTERNAL_COMPRESS_ROWS_H
