@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // Thin wood is a line, thick wood is hollow, and leaves are neither.
 
+#include <pcs/skeleton/axes/reassign_points.h>
 #include <pcs/skeleton/graph/Neighbor_graph.h>
 #include <pcs/skeleton/graph/shortest_paths.h>
 #include <pcs/skeleton/leaves/classify_leaves.h>
