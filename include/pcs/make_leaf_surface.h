@@ -31,6 +31,73 @@ namespace pcs {
 //! default length of a leaf, in distances from the root to the farthest node [-]
 constexpr double default_leaf_share = 0.008;
 
+namespace internal {
+
+/// The nodes of a tree as `make_leaf_surface()` needs them.
+struct Leaf_nodes
+{
+  std::vector<Eigen::Vector3d> position;
+  double extent = 0;     ///< largest distance of a node from the root [L]
+  double tip_radius = 0; ///< median radius of the tips [L]
+};
+
+template <class Kernel>
+Leaf_nodes read_leaf_nodes(const Tree_skeleton<Kernel>& tree)
+{
+  const std::size_t n = num_vertices(tree);
+  Leaf_nodes nodes;
+  nodes.position.resize(n);
+  std::vector<double> tips;
+  for (std::size_t v = 0; v < n; ++v) {
+    const auto& p = tree[v].point;
+    Eigen::Vector3d& position = nodes.position[v];
+    position = {CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())};
+    const double radius = CGAL::to_double(tree[v].radius);
+    if (!position.allFinite() || !std::isfinite(radius) || radius < 0)
+      throw Invalid_input("pcs::make_leaf_surface(): position or radius of node " +
+                          std::to_string(v) + " is not finite, or the radius is negative");
+    nodes.extent = std::max(nodes.extent, (position - nodes.position[0]).norm());
+    if (out_degree(v, tree) == 0)
+      tips.push_back(radius);
+  }
+  const auto middle = tips.begin() + static_cast<std::ptrdiff_t>(tips.size() / 2);
+  std::nth_element(tips.begin(), middle, tips.end());
+  nodes.tip_radius = tips.empty() ? 0 : *middle;
+  return nodes;
+}
+
+/// The named parameters of `make_leaf_surface()`.
+struct Leaf_surface_options
+{
+  double length;        ///< of a leaf [L]
+  double density;       ///< leaves per length of branch [1/L]
+  double branch_radius; ///< of the thickest branch with leaves [L]
+  std::uint64_t seed;
+};
+
+template <class NamedParameters>
+Leaf_surface_options read_leaf_surface_options(const NamedParameters& np, const Leaf_nodes& nodes)
+{
+  const auto choose = [&](auto tag, double otherwise, bool is_zero_fine, const char* name) {
+    const double value = static_cast<double>(internal::choose(np, tag, otherwise));
+    if (!std::isfinite(value) || value < 0 || (value == 0 && !is_zero_fine))
+      throw Invalid_input(std::string("pcs::make_leaf_surface(): ") + name + " is " +
+                          internal::to_text(value) + "; it must " +
+                          (is_zero_fine ? "not be negative" : "be positive"));
+    return value;
+  };
+  Leaf_surface_options o;
+  const double one = nodes.extent > 0 ? default_leaf_share * nodes.extent : 1;
+  o.length = choose(internal_np::leaf_length, one, false, "leaf_length");
+  o.density = choose(internal_np::leaves_per_length, 2 / o.length, true, "leaves_per_length");
+  o.branch_radius =
+      choose(internal_np::leaf_branch_radius, 2 * nodes.tip_radius, true, "leaf_branch_radius");
+  o.seed = static_cast<std::uint64_t>(internal::choose(np, CGAL::internal_np::random_seed, 0));
+  return o;
+}
+
+} // namespace internal
+
 /*!
   \ingroup PkgPcsSkeletonRef
   \brief makes leaves, which the scan does not show one by one, with random orientations on the fine
@@ -73,67 +140,36 @@ std::size_t make_leaf_surface(const Tree_skeleton<Kernel>& tree,
 {
   using FT = typename Kernel::FT;
   using Vec3 = Eigen::Vector3d;
-  const std::size_t n = num_vertices(tree);
-  std::vector<Vec3> place(n);
-  double extent = 0;
-  std::vector<double> tips;
-  for (std::size_t v = 0; v < n; ++v) {
-    const auto& p = tree[v].point;
-    place[v] = {CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())};
-    const double radius = CGAL::to_double(tree[v].radius);
-    if (!place[v].allFinite() || !std::isfinite(radius) || radius < 0)
-      throw Invalid_input("pcs::make_leaf_surface(): position or radius of node " +
-                          std::to_string(v) + " is not finite, or the radius is negative");
-    extent = std::max(extent, (place[v] - place[0]).norm());
-    if (out_degree(v, tree) == 0)
-      tips.push_back(radius);
-  }
-  std::nth_element(tips.begin(),
-                   tips.begin() + static_cast<std::ptrdiff_t>(tips.size() / 2),
-                   tips.end());
-  const double usual = tips.empty() ? 0 : tips[tips.size() / 2];
-  const auto choose = [&](auto tag, double otherwise, bool is_zero_fine, const char* name) {
-    const double value = static_cast<double>(internal::choose(np, tag, otherwise));
-    if (!std::isfinite(value) || value < 0 || (value == 0 && !is_zero_fine))
-      throw Invalid_input(std::string("pcs::make_leaf_surface(): ") + name + " is " +
-                          internal::to_text(value) + "; it must " +
-                          (is_zero_fine ? "not be negative" : "be positive"));
-    return value;
-  };
-  const double one = extent > 0 ? default_leaf_share * extent : 1;
-  const double length = choose(internal_np::leaf_length, one, false, "leaf_length");
-  const double density =
-      choose(internal_np::leaves_per_length, 2 / length, true, "leaves_per_length");
-  const double thickest =
-      choose(internal_np::leaf_branch_radius, 2 * usual, true, "leaf_branch_radius");
-  std::mt19937_64 random(
-      static_cast<std::uint64_t>(internal::choose(np, CGAL::internal_np::random_seed, 0)));
-  const auto share = [&] { return double(random() >> 11) * 0x1p-53; };
+  const internal::Leaf_nodes nodes = internal::read_leaf_nodes(tree);
+  const internal::Leaf_surface_options o = internal::read_leaf_surface_options(np, nodes);
+  std::mt19937_64 random(o.seed);
+  const auto uniform = [&] { return double(random() >> 11) * 0x1p-53; };
   const auto direction = [&] {
-    const double z = 2 * share() - 1, angle = 6.283185307179586 * share();
+    const double z = 2 * uniform() - 1, angle = 6.283185307179586 * uniform();
     const double across = std::sqrt(std::max(0.0, 1 - z * z));
     return Vec3(across * std::cos(angle), across * std::sin(angle), z);
   };
   std::vector<typename Kernel::Point_3> vertices;
   std::vector<std::array<std::size_t, 3>> faces;
   const auto add = [&](const Vec3& p) { vertices.emplace_back(FT(p.x()), FT(p.y()), FT(p.z())); };
-  for (std::size_t v = 0; v < n; ++v) {
+  for (std::size_t v = 0; v < nodes.position.size(); ++v) {
     const std::size_t p = parent_node<Kernel>(v, tree);
-    if (p == npos || tree[p].branch != tree[v].branch || CGAL::to_double(tree[v].radius) > thickest)
+    const double radius = CGAL::to_double(tree[v].radius);
+    if (p == npos || tree[p].branch != tree[v].branch || radius > o.branch_radius)
       continue;
-    const Vec3 d = place[v] - place[p];
-    const double expected = density * d.norm(), whole = std::floor(expected);
-    const double count = whole + (share() < expected - whole ? 1 : 0);
+    const Vec3 d = nodes.position[v] - nodes.position[p];
+    const double expected = o.density * d.norm(), whole = std::floor(expected);
+    const double count = whole + (uniform() < expected - whole ? 1 : 0);
     for (double k = 0; k < count; ++k) {
       const Vec3 along = direction();
       Vec3 side = along.cross(direction());
       side = side.norm() > 1e-6 ? Vec3(side.normalized()) : Vec3(along.unitOrthogonal());
-      const Vec3 base = place[p] + share() * d + CGAL::to_double(tree[v].radius) * along;
+      const Vec3 base = nodes.position[p] + uniform() * d + radius * along;
       const std::size_t first = vertices.size();
       add(base);
-      add(base + 0.5 * length * along + 0.25 * length * side);
-      add(base + length * along);
-      add(base + 0.5 * length * along - 0.25 * length * side);
+      add(base + 0.5 * o.length * along + 0.25 * o.length * side);
+      add(base + o.length * along);
+      add(base + 0.5 * o.length * along - 0.25 * o.length * side);
       faces.push_back({first, first + 1, first + 2});
       faces.push_back({first, first + 2, first + 3});
     }

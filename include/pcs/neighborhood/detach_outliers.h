@@ -41,19 +41,10 @@ inline double take_median(std::vector<double>& values)
   return *middle;
 }
 
-} // namespace internal
-
-/*!
-  Drops the links of every outlier but the shortest, so that it hangs on one point and pulls on
-  nothing.
-
-  Outliers are judged by the spacings of their neighbours, so dense and sparse parts each have their
-  own measure. Links never leave a point without any. O(n k).
-  \return the outliers, increasing by point
-*/
+/// 1 for points whose shortest link is much longer than the usual spacing of their neighbours.
 template <class ConcurrencyTag>
-std::vector<Outlier> detach_outliers(const std::vector<Eigen::Vector3d>& points,
-                                     Proximity_graph& graph)
+std::vector<char> mark_outliers(const std::vector<Eigen::Vector3d>& points,
+                                const Proximity_graph& graph)
 {
   const std::size_t n = points.size();
   std::vector<double> shortest(n, 0), spacing(n, 0);
@@ -66,7 +57,7 @@ std::vector<Outlier> detach_outliers(const std::vector<Eigen::Vector3d>& points,
       if (lengths.empty())
         continue;
       shortest[i] = *std::min_element(lengths.begin(), lengths.end());
-      spacing[i] = internal::take_median(lengths);
+      spacing[i] = take_median(lengths);
     }
   });
   std::vector<char> is_outlier(n, 0);
@@ -77,14 +68,19 @@ std::vector<Outlier> detach_outliers(const std::vector<Eigen::Vector3d>& points,
       for (auto j = graph.begin(i); j != graph.end(i); ++j)
         spacings.push_back(spacing[*j]);
       is_outlier[i] =
-          !spacings.empty() && shortest[i] > smallest_outlier_gap * internal::take_median(spacings)
-              ? 1
-              : 0;
+          !spacings.empty() && shortest[i] > smallest_outlier_gap * take_median(spacings) ? 1 : 0;
     }
   });
+  return is_outlier;
+}
 
+/// The outliers with a host: the nearest neighbour that is no outlier and has other neighbours.
+inline std::vector<Outlier> find_hosts(const std::vector<Eigen::Vector3d>& points,
+                                       const Proximity_graph& graph,
+                                       const std::vector<char>& is_outlier)
+{
   std::vector<Outlier> outliers;
-  for (std::size_t i = 0; i < n; ++i) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
     if (!is_outlier[i])
       continue;
     double nearest = std::numeric_limits<double>::infinity();
@@ -102,10 +98,14 @@ std::vector<Outlier> detach_outliers(const std::vector<Eigen::Vector3d>& points,
     if (nearest < std::numeric_limits<double>::infinity())
       outliers.push_back(outlier);
   }
-  if (outliers.empty())
-    return outliers;
+  return outliers;
+}
 
-  std::fill(is_outlier.begin(), is_outlier.end(), 0);
+/// Drops all links of outliers except those to their hosts.
+inline void drop_links_of_outliers(const std::vector<Outlier>& outliers, Proximity_graph& graph)
+{
+  const std::size_t n = graph.first.size() - 1;
+  std::vector<char> is_outlier(n, 0);
   std::vector<std::uint32_t> host(n, 0);
   for (const Outlier& o : outliers) {
     is_outlier[o.point] = 1;
@@ -124,6 +124,26 @@ std::vector<Outlier> detach_outliers(const std::vector<Eigen::Vector3d>& points,
   }
   graph.first[n] = static_cast<std::uint32_t>(kept);
   graph.neighbor.resize(kept);
+}
+
+} // namespace internal
+
+/*!
+  Drops all links of every outlier except the shortest, so that it follows one point and does not
+  affect others.
+
+  Outliers are judged by the spacings of their neighbours, so dense and sparse parts are each
+  compared with themselves. No point loses all of its links. O(n k).
+  \return the outliers, increasing by point
+*/
+template <class ConcurrencyTag>
+std::vector<Outlier> detach_outliers(const std::vector<Eigen::Vector3d>& points,
+                                     Proximity_graph& graph)
+{
+  const std::vector<char> is_outlier = internal::mark_outliers<ConcurrencyTag>(points, graph);
+  std::vector<Outlier> outliers = internal::find_hosts(points, graph, is_outlier);
+  if (!outliers.empty())
+    internal::drop_links_of_outliers(outliers, graph);
   return outliers;
 }
 

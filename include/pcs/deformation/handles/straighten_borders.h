@@ -84,6 +84,98 @@ border_advance(const Elastic_network& network, const Node_constraints& constrain
 
 } // namespace internal
 
+namespace internal {
+
+/// An edge from a free node to a handle that is cut at the border.
+struct Held_edge
+{
+  std::size_t free, held; ///< half-edges, by index
+  std::uint32_t node, handle_node;
+  double fraction; ///< of the edge that lies inside the handle [-]
+};
+
+/// The edges that lead over a border, by node of the handle.
+inline std::vector<Held_edge> find_held_edges(const Elastic_network& network,
+                                              const Node_constraints& constraints)
+{
+  const Weighted_graph& graph = network.surface;
+  std::vector<Held_edge> edges;
+  for (std::uint32_t j = 0; j < network.size(); ++j) {
+    if (!constraints.is_prescribed(j))
+      continue;
+    Border_advance advance;
+    bool is_known = false;
+    for (std::size_t e = graph.first[j]; e < graph.first[j + 1]; ++e) {
+      const std::uint32_t i = graph.neighbor[e];
+      if (constraints.is_prescribed(i) || constraints.handle_of_node[i] == unreached_node)
+        continue;
+      if (!is_known)
+        advance = border_advance(network, constraints, j);
+      is_known = true;
+      const double ahead = (network.rest[i] - network.rest[j]).dot(advance.direction);
+      if (!(ahead > 0) || !(advance.distance > negligible_advance * ahead))
+        continue;
+      const double fraction = std::min(1 - least_free_share, advance.distance / ahead);
+      const auto back = std::lower_bound(graph.begin(i), graph.end(i), j);
+      edges.push_back({static_cast<std::size_t>(back - graph.neighbor.data()), e, i, j, fraction});
+    }
+  }
+  return edges;
+}
+
+/// The network in which the rows of the free nodes lead to the new nodes, and the held halves of
+/// the edges are gone. `edges` are sorted by `free`.
+inline Elastic_network cut_held_edges(const Elastic_network& network,
+                                      const std::vector<Held_edge>& edges,
+                                      Node_constraints& constraints)
+{
+  const Weighted_graph& graph = network.surface;
+  std::vector<char> is_dropped(graph.neighbor.size(), 0);
+  for (const Held_edge& b : edges)
+    is_dropped[b.free] = is_dropped[b.held] = 1;
+  Elastic_network result;
+  result.rest = network.rest;
+  result.links = network.links;
+  result.area = network.area;
+  result.surface_rank = network.surface_rank;
+  result.rank = network.rank;
+  Weighted_graph& surface = result.surface;
+  surface.neighbor.reserve(graph.neighbor.size());
+  surface.weight.reserve(graph.neighbor.size());
+  const auto add = [&](std::uint32_t neighbor, double weight) {
+    surface.neighbor.push_back(neighbor);
+    surface.weight.push_back(weight);
+  };
+  const auto end_row = [&] {
+    surface.first.push_back(static_cast<std::uint32_t>(surface.neighbor.size()));
+  };
+  const auto new_weight = [&](const Held_edge& b) {
+    return representable_weight(graph.weight[b.free] / (1 - b.fraction));
+  };
+  auto next = edges.begin();
+  for (std::size_t i = 0; i < network.size(); ++i) {
+    for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e)
+      if (!is_dropped[e])
+        add(graph.neighbor[e], graph.weight[e]);
+    for (; next != edges.end() && next->node == i; ++next) {
+      add(static_cast<std::uint32_t>(result.rest.size()), new_weight(*next));
+      const Vec3& held = network.rest[next->handle_node];
+      result.rest.push_back(held + next->fraction * (network.rest[i] - held));
+      constraints.handle_of_node.push_back(constraints.handle_of_node[next->handle_node]);
+    }
+    end_row();
+  }
+  for (const Held_edge& b : edges) {
+    add(b.node, new_weight(b));
+    end_row();
+  }
+  if (result.links.size() > 0)
+    result.links.first.resize(result.rest.size() + 1, result.links.first.back());
+  return result;
+}
+
+} // namespace internal
+
 /*!
   Gives the edges between free nodes and exact handles their true length up to the border of the
   handle.
@@ -101,80 +193,13 @@ inline bool straighten_borders(const Elastic_network& network,
                                Node_constraints& constraints,
                                Elastic_network& result)
 {
-  const Weighted_graph& graph = network.surface;
-  const std::size_t n = network.size();
-  struct Held_edge
-  {
-    std::size_t free, held; ///< half-edges, by number
-    std::uint32_t node, handle_node;
-    double share;
-  };
-  std::vector<Held_edge> edges;
-  for (std::uint32_t j = 0; j < n; ++j) {
-    if (!constraints.is_prescribed(j))
-      continue;
-    internal::Border_advance advance;
-    bool is_known = false;
-    for (std::size_t e = graph.first[j]; e < graph.first[j + 1]; ++e) {
-      const std::uint32_t i = graph.neighbor[e];
-      if (constraints.is_prescribed(i) || constraints.handle_of_node[i] == unreached_node)
-        continue;
-      if (!is_known)
-        advance = internal::border_advance(network, constraints, j);
-      is_known = true;
-      const double ahead = (network.rest[i] - network.rest[j]).dot(advance.direction);
-      if (!(ahead > 0) || !(advance.distance > internal::negligible_advance * ahead))
-        continue;
-      const double share = std::min(1 - internal::least_free_share, advance.distance / ahead);
-      const auto back = std::lower_bound(graph.begin(i), graph.end(i), j);
-      edges.push_back({static_cast<std::size_t>(back - graph.neighbor.data()), e, i, j, share});
-    }
-  }
+  std::vector<internal::Held_edge> edges = internal::find_held_edges(network, constraints);
   if (edges.empty())
     return false;
-
-  // The rows of the free nodes lead to the new nodes; the held halves of the edges go.
-  std::sort(edges.begin(), edges.end(), [](const Held_edge& a, const Held_edge& b) {
+  std::sort(edges.begin(), edges.end(), [](const auto& a, const auto& b) {
     return a.free < b.free;
   });
-  std::vector<char> is_dropped(graph.neighbor.size(), 0);
-  for (const Held_edge& b : edges)
-    is_dropped[b.free] = is_dropped[b.held] = 1;
-  result = Elastic_network();
-  result.rest = network.rest;
-  result.links = network.links;
-  result.area = network.area;
-  result.surface_rank = network.surface_rank;
-  result.rank = network.rank;
-  Weighted_graph& surface = result.surface;
-  surface.neighbor.reserve(graph.neighbor.size());
-  surface.weight.reserve(graph.neighbor.size());
-  auto next = edges.begin();
-  const auto new_weight = [&](const Held_edge& b) {
-    return representable_weight(graph.weight[b.free] / (1 - b.share));
-  };
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t e = graph.first[i]; e < graph.first[i + 1]; ++e)
-      if (!is_dropped[e]) {
-        surface.neighbor.push_back(graph.neighbor[e]);
-        surface.weight.push_back(graph.weight[e]);
-      }
-    for (; next != edges.end() && next->node == i; ++next) {
-      surface.neighbor.push_back(static_cast<std::uint32_t>(result.rest.size()));
-      surface.weight.push_back(new_weight(*next));
-      const Vec3& held = network.rest[next->handle_node];
-      result.rest.push_back(held + next->share * (network.rest[i] - held));
-      constraints.handle_of_node.push_back(constraints.handle_of_node[next->handle_node]);
-    }
-    surface.first.push_back(static_cast<std::uint32_t>(surface.neighbor.size()));
-  }
-  for (const Held_edge& b : edges) {
-    surface.neighbor.push_back(b.node);
-    surface.weight.push_back(new_weight(b));
-    surface.first.push_back(static_cast<std::uint32_t>(surface.neighbor.size()));
-  }
-  if (result.links.size() > 0)
-    result.links.first.resize(result.rest.size() + 1, result.links.first.back());
+  result = internal::cut_held_edges(network, edges, constraints);
   return true;
 }
 

@@ -64,50 +64,32 @@ inline Vec3 direction_to(const Layer_tree& tree, Index node)
   return length > 0 ? Vec3(d / length) : Vec3(Vec3::Zero());
 }
 
-} // namespace internal
-
-/// The chains: the longest that begins at a source, then the others, longest first. A chain begins
-/// with the first node that is not its parent's. O(n log n).
-inline std::vector<Chain> decompose_chains(const Scan& scan, const Layer_tree& tree)
+/// Chooses the child of a node that continues the same branch.
+class Main_child
 {
-  const std::size_t m = tree.size();
-  const std::vector<double> height = internal::heights(tree);
-  const Index_groups children(m, tree.parent);
-  // A short way on from a node towards the farthest tip.
-  const auto way_ahead = [&](Index v) {
-    for (int step = 0; step < ahead_reach && !children[v].empty(); ++step)
-      v = *std::max_element(children[v].begin(), children[v].end(), [&](Index a, Index b) {
-        return height[a] < height[b];
-      });
-    return v;
-  };
-  // Where points are missing on the way to a child, only what lies straight ahead may belong to the
-  // same branch.
-  const auto is_crooked_gap = [&](Index v, Index c, const Vec3& along) {
-    const Vec3 jump = tree.center[c] - tree.center[v];
-    const double length = jump.norm();
-    if (length <= gap_layers * layer_thickness * scan.spacing + tree.spread[v] + tree.spread[c])
-      return false;
-    const Index far = way_ahead(c);
-    const Vec3 behind = tree.center[far] - tree.center[c];
-    return along.dot(jump) < gap_cosine * length ||
-           behind.dot(jump) < gap_cosine * length * behind.norm();
-  };
-  const auto main_child = [&](Index v) {
-    const Index in_ring = tree.next_in_ring[v];
+public:
+  Main_child(const Scan& scan, const Layer_tree& tree)
+    : m_scan(scan), m_tree(tree), m_height(heights(tree)), m_children(tree.size(), tree.parent)
+  {
+  }
+
+  /// `none` where the branch ends.
+  Index operator()(Index v) const
+  {
+    const Index in_ring = m_tree.next_in_ring[v];
     if (in_ring != none)
       return in_ring == v ? none : in_ring;
-    const Vec3 along = internal::direction_to(tree, v);
+    const Vec3 along = direction_to(m_tree, v);
     Index best = none;
     double best_score = 0;
-    for (const Index c : children[v]) {
-      const Vec3 d = tree.center[way_ahead(c)] - tree.center[v];
+    for (const Index c : m_children[v]) {
+      const Vec3 d = m_tree.center[ahead(c)] - m_tree.center[v];
       const double norm = d.norm(), cosine = norm > 0 ? along.dot(d) / norm : 0;
       if (is_crooked_gap(v, c, along))
         continue;
-      const double u = scan.spacing;
-      const double score = 0.5 * std::log(height[c] / u + layer_thickness) +
-                           std::log(tree.spread[c] / u + spread_offset) +
+      const double u = m_scan.spacing;
+      const double score = 0.5 * std::log(m_height[c] / u + layer_thickness) +
+                           std::log(m_tree.spread[c] / u + spread_offset) +
                            chain_straightness * cosine;
       if (best == none || score > best_score) {
         best_score = score;
@@ -115,23 +97,44 @@ inline std::vector<Chain> decompose_chains(const Scan& scan, const Layer_tree& t
       }
     }
     return best;
-  };
-  std::vector<Chain> chains;
-  std::vector<std::uint8_t> is_taken(m, 0);
-  for (Index v = 0; v < m; ++v) { // parents come before their children
-    if (is_taken[v])
-      continue;
-    Chain chain;
-    chain.parent_node = tree.parent[v];
-    for (Index w = v; w != none; w = main_child(w)) {
-      is_taken[w] = 1;
-      if (!chain.nodes.empty())
-        chain.length += (tree.center[w] - tree.center[chain.nodes.back()]).norm();
-      chain.nodes.push_back(w);
-    }
-    chains.push_back(std::move(chain));
   }
-  // Ties are decided by what does not change when the scan is turned.
+
+private:
+  /// A few layers from a node towards its farthest tip.
+  Index ahead(Index v) const
+  {
+    for (int step = 0; step < ahead_reach && !m_children[v].empty(); ++step)
+      v = *std::max_element(m_children[v].begin(), m_children[v].end(), [&](Index a, Index b) {
+        return m_height[a] < m_height[b];
+      });
+    return v;
+  }
+
+  /// Where points are missing between a node and its child, only a child straight ahead may belong
+  /// to the same branch.
+  bool is_crooked_gap(Index v, Index c, const Vec3& along) const
+  {
+    const Vec3 jump = m_tree.center[c] - m_tree.center[v];
+    const double length = jump.norm();
+    if (length <=
+        gap_layers * layer_thickness * m_scan.spacing + m_tree.spread[v] + m_tree.spread[c])
+      return false;
+    const Index far = ahead(c);
+    const Vec3 behind = m_tree.center[far] - m_tree.center[c];
+    return along.dot(jump) < gap_cosine * length ||
+           behind.dot(jump) < gap_cosine * length * behind.norm();
+  }
+
+  const Scan& m_scan;
+  const Layer_tree& m_tree;
+  std::vector<double> m_height;
+  Index_groups m_children;
+};
+
+/// Sorts chains by decreasing length, the first chain from a source to the front. Ties are decided
+/// by what does not change when the scan is rotated.
+inline void sort_chains(const Layer_tree& tree, std::vector<Chain>& chains)
+{
   const auto key = [&](const Chain& c) {
     std::size_t points = 0;
     for (const Index v : c.nodes)
@@ -146,6 +149,32 @@ inline std::vector<Chain> decompose_chains(const Scan& scan, const Layer_tree& t
   });
   if (trunk != chains.end())
     std::rotate(chains.begin(), trunk, trunk + 1);
+}
+
+} // namespace internal
+
+/// Decomposes the tree of layers into chains: the longest that begins at a source, then the others
+/// by decreasing length. A chain begins with the first node that does not continue its parent's
+/// chain. O(n log n).
+inline std::vector<Chain> decompose_chains(const Scan& scan, const Layer_tree& tree)
+{
+  const internal::Main_child main_child(scan, tree);
+  std::vector<Chain> chains;
+  std::vector<std::uint8_t> is_taken(tree.size(), 0);
+  for (Index v = 0; v < tree.size(); ++v) { // parents come before their children
+    if (is_taken[v])
+      continue;
+    Chain chain;
+    chain.parent_node = tree.parent[v];
+    for (Index w = v; w != none; w = main_child(w)) {
+      is_taken[w] = 1;
+      if (!chain.nodes.empty())
+        chain.length += (tree.center[w] - tree.center[chain.nodes.back()]).norm();
+      chain.nodes.push_back(w);
+    }
+    chains.push_back(std::move(chain));
+  }
+  internal::sort_chains(tree, chains);
   return chains;
 }
 

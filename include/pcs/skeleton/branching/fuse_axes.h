@@ -224,72 +224,73 @@ private:
   std::vector<std::pair<Index, Index>> m_place_of_node;
 };
 
-} // namespace internal
+/// Where an axis went when it was fused.
+struct Fused_piece
+{
+  Index axis = none;        ///< the new axis
+  Index first = 0;          ///< its first segment there
+  bool is_reversed = false; ///< whether it runs backwards there
+};
 
-/*!
-  Replaces axes that continue each other by one. Ends are paired by how far each lies off the line
-  of the other, the bend, the change of the radius and the gap, the best pairs first. Returns how
-  many axes there are less. O(axes log axes).
-*/
-template <class ConcurrencyTag>
-std::size_t fuse_axes(double spacing, const Fusion_options& rules, Axis_set& set)
+/// The ends through which the row of pieces with axis `a` is entered, in the sense in which most of
+/// its length was found. `forward` and `total` are the lengths of pieces that run forward there,
+/// and of all.
+inline std::vector<Index> row_of_pieces(const Axis_set& set,
+                                        const std::vector<Index>& partner,
+                                        Index a,
+                                        double& forward,
+                                        double& total)
+{
+  Index start = 2 * a;
+  while (partner[start] != none) // back to a free end
+    start = partner[start] ^ 1u;
+  std::vector<Index> entries;
+  forward = total = 0;
+  for (Index e = start; e != none; e = partner[e ^ 1u]) {
+    entries.push_back(e);
+    const double length = length_of(set.axes[e / 2].axis);
+    forward += e % 2 == 0 ? length : 0;
+    total += length;
+  }
+  if (2 * forward < total) {
+    std::reverse(entries.begin(), entries.end());
+    for (Index& e : entries)
+      e ^= 1u;
+  }
+  return entries;
+}
+
+/// Appends the pieces to one axis with the number `number`, and records where they went.
+inline Fitted_axis fuse_pieces(const std::vector<Index>& entries,
+                               Index number,
+                               Axis_set& set,
+                               std::vector<Fused_piece>& pieces)
+{
+  Fitted_axis row;
+  row.parent = set.axes[entries.front() / 2].parent;
+  bool is_reversed = false; // the piece before
+  for (const Index e : entries) {
+    Fitted_axis& piece = set.axes[e / 2];
+    pieces[e / 2] = {number, static_cast<Index>(row.axis.size()), e % 2 == 1};
+    if (e % 2 == 1) {
+      std::reverse(piece.axis.begin(), piece.axis.end());
+      piece.meeting = piece.meeting > 0 ? piece.axis.size() - piece.meeting : 0;
+    }
+    if (piece.meeting > 0)
+      row.meeting = row.axis.size() + piece.meeting;
+    else if (is_reversed && e % 2 == 0)
+      row.meeting = row.axis.size();
+    is_reversed = e % 2 == 1;
+    row.axis.insert(row.axis.end(), piece.axis.begin(), piece.axis.end());
+    row.number_of_points += piece.number_of_points;
+  }
+  return row;
+}
+
+/// Moves the points of all axes to the fused axes.
+inline void move_points(const std::vector<Fused_piece>& pieces, Axis_set& set)
 {
   const std::size_t n = set.axes.size();
-  if (n < 2 || !(rules.limit > 0))
-    return 0;
-  const std::vector<Index> partner =
-      internal::Axis_fuser(set, spacing, rules).partners<ConcurrencyTag>();
-  struct Part
-  {
-    Index axis;
-    Index first; ///< place of its first segment in the new axis
-    bool is_reversed;
-  };
-  std::vector<Part> part(n, {none, 0, false});
-  std::vector<Fitted_axis> fused;
-  for (Index a = 0; a < n; ++a) {
-    if (part[a].axis != none)
-      continue;
-    // back to a free end of the row of pieces, then along it
-    Index start = 2 * a;
-    while (partner[start] != none)
-      start = partner[start] ^ 1u;
-    std::vector<Index> entries; // ends through which a walk enters the pieces
-    double forward = 0, total = 0;
-    for (Index e = start; e != none; e = partner[e ^ 1u]) {
-      entries.push_back(e);
-      const double length = length_of(set.axes[e / 2].axis);
-      forward += e % 2 == 0 ? length : 0;
-      total += length;
-    }
-    if (2 * forward < total) {
-      std::reverse(entries.begin(), entries.end());
-      for (Index& e : entries)
-        e ^= 1u;
-    }
-    Fitted_axis row;
-    row.parent = set.axes[entries.front() / 2].parent;
-    row.direction = total > 0 ? std::abs(2 * forward / total - 1) : 1;
-    bool is_reversed = false; // the piece before
-    for (const Index e : entries) {
-      Fitted_axis& piece = set.axes[e / 2];
-      part[e / 2] = {static_cast<Index>(fused.size()),
-                     static_cast<Index>(row.axis.size()),
-                     e % 2 == 1};
-      if (e % 2 == 1) {
-        std::reverse(piece.axis.begin(), piece.axis.end());
-        piece.meeting = piece.meeting > 0 ? piece.axis.size() - piece.meeting : 0;
-      }
-      if (piece.meeting > 0)
-        row.meeting = row.axis.size() + piece.meeting;
-      else if (is_reversed && e % 2 == 0)
-        row.meeting = row.axis.size();
-      is_reversed = e % 2 == 1;
-      row.axis.insert(row.axis.end(), piece.axis.begin(), piece.axis.end());
-      row.number_of_points += piece.number_of_points;
-    }
-    fused.push_back(std::move(row));
-  }
   std::vector<Index> last_segment(n);
   for (Index a = 0; a < n; ++a)
     last_segment[a] = static_cast<Index>(set.axes[a].axis.size() - 2);
@@ -298,12 +299,41 @@ std::size_t fuse_axes(double spacing, const Fusion_options& rules, Axis_set& set
     if (a == none)
       continue;
     Index& s = set.segment_of_point[i];
-    s = part[a].first + (part[a].is_reversed ? last_segment[a] - std::min(s, last_segment[a]) : s);
-    set.axis_of_point[i] = part[a].axis;
+    s = pieces[a].first +
+        (pieces[a].is_reversed ? last_segment[a] - std::min(s, last_segment[a]) : s);
+    set.axis_of_point[i] = pieces[a].axis;
   }
+}
+
+} // namespace internal
+
+/*!
+  Replaces axes that continue each other by one. Ends are paired by how far each lies off the line
+  of the other, by the bend, the change of the radius and the gap, best pairs first. Returns by how
+  many the number of axes fell. O(axes log axes).
+*/
+template <class ConcurrencyTag>
+std::size_t fuse_axes(double spacing, const Fusion_options& options, Axis_set& set)
+{
+  const std::size_t n = set.axes.size();
+  if (n < 2 || !(options.limit > 0))
+    return 0;
+  const std::vector<Index> partner =
+      internal::Axis_fuser(set, spacing, options).partners<ConcurrencyTag>();
+  std::vector<internal::Fused_piece> pieces(n);
+  std::vector<Fitted_axis> fused;
+  for (Index a = 0; a < n; ++a) {
+    if (pieces[a].axis != none)
+      continue;
+    double forward, total;
+    const std::vector<Index> entries = internal::row_of_pieces(set, partner, a, forward, total);
+    fused.push_back(internal::fuse_pieces(entries, static_cast<Index>(fused.size()), set, pieces));
+    fused.back().direction = total > 0 ? std::abs(2 * forward / total - 1) : 1;
+  }
+  internal::move_points(pieces, set);
   for (Index k = 0; k < fused.size(); ++k)
     if (fused[k].parent != none) {
-      const Index parent = part[fused[k].parent].axis;
+      const Index parent = pieces[fused[k].parent].axis;
       fused[k].parent = parent != k ? parent : none; // found on another piece of itself
     }
   const std::size_t fewer = n - fused.size();
