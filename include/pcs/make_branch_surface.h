@@ -38,6 +38,88 @@ struct Branch_surface_report
       0; ///< branches for which there was no room: closed tubes of their own [count]
 };
 
+namespace internal {
+
+/// The sections of all branches relative to the root, parents first.
+struct Surface_input
+{
+  skeleton::Vec3 origin = skeleton::Vec3::Zero();
+  std::vector<skeleton::Surface_branch> branches;
+  double max_radius = 0; ///< [L]
+};
+
+/// Throws `Invalid_input` if a position or radius is not finite, or a radius is negative.
+template <class Kernel>
+skeleton::Section
+read_section(const Tree_skeleton<Kernel>& tree, std::size_t v, const skeleton::Vec3& origin)
+{
+  using skeleton::Vec3;
+  const Tree_node<Kernel>& node = tree[v];
+  skeleton::Section s;
+  s.center = Vec3(CGAL::to_double(node.point.x()),
+                  CGAL::to_double(node.point.y()),
+                  CGAL::to_double(node.point.z())) -
+             origin;
+  s.radius = CGAL::to_double(node.radius);
+  if (!s.center.allFinite() || !std::isfinite(s.radius) || s.radius < 0)
+    throw Invalid_input("pcs::make_branch_surface(): position or radius of node " +
+                        std::to_string(v) + " is not finite, or the radius is negative");
+  s.major_radius = CGAL::to_double(node.major_radius);
+  s.minor_radius = CGAL::to_double(node.minor_radius);
+  s.major_axis = Vec3(CGAL::to_double(node.major_axis.x()),
+                      CGAL::to_double(node.major_axis.y()),
+                      CGAL::to_double(node.major_axis.z()));
+  if (!(s.major_axis.squaredNorm() > 0))
+    s.major_radius = s.minor_radius = 0;
+  return s;
+}
+
+template <class Kernel>
+Surface_input read_surface_input(const Tree_skeleton<Kernel>& tree)
+{
+  const auto lists = nodes_by_branch<Kernel>(tree);
+  const Tree_bundle& bundle = tree[boost::graph_bundle];
+  Surface_input input;
+  if (bundle.root != npos) {
+    const auto& p = tree[bundle.root].point;
+    input.origin = {CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())};
+  }
+  std::vector<std::size_t> order(lists.size()), number(lists.size());
+  for (std::size_t b = 0; b < lists.size(); ++b)
+    order[b] = b;
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return bundle.branches[a].order < bundle.branches[b].order;
+  });
+  for (std::size_t k = 0; k < order.size(); ++k)
+    number[order[k]] = k;
+  input.branches.resize(lists.size());
+  for (std::size_t b = 0; b < lists.size(); ++b) {
+    skeleton::Surface_branch& branch = input.branches[number[b]];
+    if (bundle.branches[b].parent != npos)
+      branch.parent = number[bundle.branches[b].parent];
+    for (const std::size_t v : lists[b]) {
+      branch.sections.push_back(read_section(tree, v, input.origin));
+      input.max_radius = std::max(input.max_radius, branch.sections.back().radius);
+    }
+  }
+  return input;
+}
+
+template <class NamedParameters>
+skeleton::Surface_options read_surface_options(const NamedParameters& np, double max_radius)
+{
+  skeleton::Surface_options options;
+  options.do_join = choose(np, internal_np::do_join, true);
+  options.tolerance = static_cast<double>(
+      choose(np, internal_np::tolerance, default_surface_tolerance * max_radius));
+  if (!std::isfinite(options.tolerance) || options.tolerance < 0)
+    throw Invalid_input("pcs::make_branch_surface(): tolerance is " + to_text(options.tolerance) +
+                        "; it must not be negative");
+  return options;
+}
+
+} // namespace internal
+
 /*!
   \ingroup PkgPcsSkeletonRef
   \brief makes the surface of a tree: generalized cylinders along the branches, joined to one closed
@@ -76,62 +158,13 @@ Branch_surface_report make_branch_surface(const Tree_skeleton<Kernel>& tree,
                                           const NamedParameters& np = NamedParameters())
 {
   using FT = typename Kernel::FT;
-  using skeleton::Vec3;
-  const auto lists = nodes_by_branch<Kernel>(tree);
-  const Tree_bundle& bundle = tree[boost::graph_bundle];
-  Vec3 origin = Vec3::Zero();
-  if (bundle.root != npos) {
-    const auto& p = tree[bundle.root].point;
-    origin = {CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())};
-  }
-  std::vector<std::size_t> order(lists.size()), number(lists.size());
-  for (std::size_t b = 0; b < lists.size(); ++b)
-    order[b] = b;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return bundle.branches[a].order < bundle.branches[b].order;
-  });
-  for (std::size_t k = 0; k < order.size(); ++k)
-    number[order[k]] = k;
-  double thickest = 0;
-  std::vector<skeleton::Surface_branch> branches(lists.size());
-  for (std::size_t b = 0; b < lists.size(); ++b) {
-    skeleton::Surface_branch& branch = branches[number[b]];
-    if (bundle.branches[b].parent != npos)
-      branch.parent = number[bundle.branches[b].parent];
-    for (const std::size_t v : lists[b]) {
-      const Tree_node<Kernel>& node = tree[v];
-      skeleton::Section s;
-      s.center = Vec3(CGAL::to_double(node.point.x()),
-                      CGAL::to_double(node.point.y()),
-                      CGAL::to_double(node.point.z())) -
-                 origin;
-      s.radius = CGAL::to_double(node.radius);
-      if (!s.center.allFinite() || !std::isfinite(s.radius) || s.radius < 0)
-        throw Invalid_input("pcs::make_branch_surface(): position or radius of node " +
-                            std::to_string(v) + " is not finite, or the radius is negative");
-      s.major_radius = CGAL::to_double(node.major_radius);
-      s.minor_radius = CGAL::to_double(node.minor_radius);
-      s.major_axis = Vec3(CGAL::to_double(node.major_axis.x()),
-                          CGAL::to_double(node.major_axis.y()),
-                          CGAL::to_double(node.major_axis.z()));
-      if (!(s.major_axis.squaredNorm() > 0))
-        s.major_radius = s.minor_radius = 0;
-      thickest = std::max(thickest, s.radius);
-      branch.sections.push_back(s);
-    }
-  }
-  skeleton::Surface_options rules;
-  rules.do_join = internal::choose(np, internal_np::do_join, true);
-  rules.tolerance = static_cast<double>(
-      internal::choose(np, internal_np::tolerance, default_surface_tolerance * thickest));
-  if (!std::isfinite(rules.tolerance) || rules.tolerance < 0)
-    throw Invalid_input("pcs::make_branch_surface(): tolerance is " +
-                        internal::to_text(rules.tolerance) + "; it must not be negative");
-  skeleton::Branch_surface surface = skeleton::Surface_builder(branches, rules)();
+  const internal::Surface_input input = internal::read_surface_input(tree);
+  const skeleton::Surface_options options = internal::read_surface_options(np, input.max_radius);
+  skeleton::Branch_surface surface = skeleton::Surface_builder(input.branches, options)();
   std::vector<typename Kernel::Point_3> result;
   result.reserve(surface.points.size());
-  for (const Vec3& q : surface.points) {
-    const Vec3 p = q + origin;
+  for (const skeleton::Vec3& q : surface.points) {
+    const skeleton::Vec3 p = q + input.origin;
     result.emplace_back(FT(p.x()), FT(p.y()), FT(p.z()));
   }
   points = std::move(result);

@@ -207,27 +207,44 @@ inline std::vector<std::pair<std::string, Tree_habit>> tree_habits()
 
 namespace internal {
 
-//! throws unless every value makes sense
-inline void check_habit(const Tree_habit& h)
+/// Checks of single values of a habit; each throws `Invalid_input`.
+struct Habit_checks
 {
-  const auto check = [](bool is_fine, const char* name, double value, const char* rule) {
+  static void check(bool is_fine, const char* name, double value, const char* rule)
+  {
     if (!is_fine || !std::isfinite(value))
       throw Invalid_input(std::string("pcs::Tree_habit: `") + name + "` must be " + rule +
                           ", found " + to_text(value));
-  };
-  const auto positive = [&](double value, const char* name) {
+  }
+
+  static void positive(double value, const char* name)
+  {
     check(value > 0, name, value, "positive");
-  };
-  const auto not_negative = [&](double value, const char* name) {
+  }
+
+  static void not_negative(double value, const char* name)
+  {
     check(value >= 0, name, value, "0 or more");
-  };
-  const auto share = [&](double value, const char* name) {
+  }
+
+  static void share(double value, const char* name)
+  {
     check(value >= 0 && value < 1, name, value, "in [0, 1)");
-  };
-  const auto range = [&](const Value_range& r, const char* name) {
+  }
+
+  static void range(const Value_range& r, const char* name)
+  {
     check(r.least > 0, name, r.least, "positive");
     check(r.largest >= r.least, name, r.largest, "a range from the least to the largest value");
-  };
+  }
+
+  static void axes(const Tree_habit& h);
+  static void branching(const Tree_habit& h);
+};
+
+/// Trunk, steps and bends.
+inline void Habit_checks::axes(const Tree_habit& h)
+{
   positive(h.height, "height");
   positive(h.trunk_radius, "trunk_radius");
   not_negative(h.flare, "flare");
@@ -251,6 +268,11 @@ inline void check_habit(const Tree_habit& h)
     share(h.bare[i], "bare");
   }
   check(std::isfinite(h.sag), "sag", h.sag, "finite");
+}
+
+/// Branches on branches, forks, stubs and sections.
+inline void Habit_checks::branching(const Tree_habit& h)
+{
   for (std::size_t i = 0; i < 2; ++i) {
     positive(h.taper[i], "taper");
     share(h.tip_share[i], "tip_share");
@@ -278,6 +300,13 @@ inline void check_habit(const Tree_habit& h)
         "flattest_section",
         h.flattest_section,
         "in (0, 1]");
+}
+
+/// Throws `Invalid_input` unless every value is in its range.
+inline void check_habit(const Tree_habit& h)
+{
+  Habit_checks::axes(h);
+  Habit_checks::branching(h);
 }
 
 } // namespace internal

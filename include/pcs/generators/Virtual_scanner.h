@@ -97,26 +97,43 @@ struct Virtual_scanner
 
 namespace internal {
 
-//! throws unless every value makes sense
-inline void check_scanner(const Virtual_scanner& s)
+/// Checks of single values of a scanner; each throws `Invalid_input`.
+struct Scanner_checks
 {
-  const auto check = [](bool is_fine, const char* name, double value, const char* rule) {
+  static void check(bool is_fine, const char* name, double value, const char* rule)
+  {
     if (!is_fine)
       throw Invalid_input(std::string("pcs::Virtual_scanner: `") + name + "` must be " + rule +
                           ", found " + to_text(value));
-  };
-  const auto positive = [&](double value, const char* name) {
+  }
+
+  static void positive(double value, const char* name)
+  {
     check(value > 0 && std::isfinite(value), name, value, "positive");
-  };
-  const auto not_negative = [&](double value, const char* name) {
+  }
+
+  static void not_negative(double value, const char* name)
+  {
     check(value >= 0 && std::isfinite(value), name, value, "0 or more");
-  };
-  const auto share = [&](double value, const char* name) {
+  }
+
+  static void share(double value, const char* name)
+  {
     check(value >= 0 && value <= 1, name, value, "in [0, 1]");
-  };
-  const auto finite = [&](double value, const char* name) {
+  }
+
+  static void finite(double value, const char* name)
+  {
     check(std::isfinite(value), name, value, "finite");
-  };
+  }
+
+  static void stations(const Virtual_scanner& s);
+  static void beams(const Virtual_scanner& s);
+  static void surroundings(const Virtual_scanner& s);
+};
+
+inline void Scanner_checks::stations(const Virtual_scanner& s)
+{
   if (s.positions.empty()) {
     check(s.number_of_stations >= 1 && s.number_of_stations <= 10000,
           "number_of_stations",
@@ -137,6 +154,10 @@ inline void check_scanner(const Virtual_scanner& s)
   for (const auto& position : s.positions)
     for (const double x : position)
       finite(x, "positions");
+}
+
+inline void Scanner_checks::beams(const Virtual_scanner& s)
+{
   check(s.angular_step >= 1e-6 && s.angular_step <= 1,
         "angular_step",
         s.angular_step,
@@ -151,6 +172,10 @@ inline void check_scanner(const Virtual_scanner& s)
   share(s.outlier_share, "outlier_share");
   check(s.largest_range > 0, "largest_range", s.largest_range, "positive");
   not_negative(s.voxel_size, "voxel_size");
+}
+
+inline void Scanner_checks::surroundings(const Virtual_scanner& s)
+{
   not_negative(s.bark_depth, "bark_depth");
   check(s.bark_share >= 0 && s.bark_share <= 0.5, "bark_share", s.bark_share, "in [0, 0.5]");
   not_negative(s.wind, "wind");
@@ -165,6 +190,14 @@ inline void check_scanner(const Virtual_scanner& s)
     positive(post.radius, "posts");
     positive(post.height, "posts");
   }
+}
+
+/// Throws `Invalid_input` unless every value is in its range.
+inline void check_scanner(const Virtual_scanner& s)
+{
+  Scanner_checks::stations(s);
+  Scanner_checks::beams(s);
+  Scanner_checks::surroundings(s);
 }
 
 } // namespace internal

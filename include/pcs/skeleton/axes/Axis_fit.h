@@ -159,6 +159,7 @@ private:
   void assemble(double widening);
   void hold_along_axis();
   void add_points(double widening);
+  void add_segment_sums();
   void add_smoothness();
   void add_priors();
   void add_center_priors();
@@ -260,6 +261,11 @@ inline void Axis_fit::add_points(double widening)
     sums.weight[0] += w0;
     sums.weight[1] += w1;
   }
+  add_segment_sums();
+}
+
+inline void Axis_fit::add_segment_sums()
+{
   for (std::size_t s = 0; s + 1 < m_axis.size(); ++s) {
     const Segment_sums& sums = m_sums[s];
     const std::size_t first = 4 * s, second = first + 4;

@@ -81,6 +81,7 @@ private:
   void place_own_points(const Chain_start& start, Axis_fit& fit) const;
   void start_at_circles(Axis_fit& fit) const;
   bool run(Axis_fit& fit, double widening, double length) const;
+  std::vector<std::pair<Index, Index>> find_points_near(const Axis& axis) const;
   std::vector<Index> gather(Axis_fit& fit) const;
   Axis tail_with_piece(const Axis& axis, std::size_t first) const;
   Axis piece_ahead(const Axis& axis, std::size_t first, double skip) const;
@@ -205,10 +206,9 @@ inline bool Chain_fit::run(Axis_fit& fit, double widening, double length) const
   return true;
 }
 
-inline std::vector<Index> Chain_fit::gather(Axis_fit& fit) const
+/// Free points near the axis, each with the middle nodes of the stretches that found it, sorted.
+inline std::vector<std::pair<Index, Index>> Chain_fit::find_points_near(const Axis& axis) const
 {
-  fit.axis() = resample(fit.axis(), m_spacing);
-  const Axis& axis = fit.axis();
   const double u = m_scan.spacing;
   // Stretches of the axis as long as it is thick: nodes of a trunk alone would find every point ten
   // times.
@@ -244,6 +244,15 @@ inline std::vector<Index> Chain_fit::gather(Axis_fit& fit) const
         found.emplace_back(i, static_cast<Index>(middle));
   }
   std::sort(found.begin(), found.end());
+  return found;
+}
+
+inline std::vector<Index> Chain_fit::gather(Axis_fit& fit) const
+{
+  fit.axis() = resample(fit.axis(), m_spacing);
+  const Axis& axis = fit.axis();
+  const double u = m_scan.spacing;
+  const std::vector<std::pair<Index, Index>> found = find_points_near(axis);
   const std::vector<Axis_segment> lines = segments_of(axis);
   std::vector<Index> points, segments;
   std::vector<Vec3> positions;

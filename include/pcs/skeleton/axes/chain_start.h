@@ -28,10 +28,76 @@ struct Chain_start
   std::vector<std::size_t> place; ///< node of `axis` that a point belongs to
 };
 
+namespace internal {
+
+/// Replaces the only node of a chain by the ends of a line through its points, of the length of a
+/// layer.
+inline void
+make_line(const Chain_view& view, const Layer_tree& tree, const Chain& chain, Chain_start& start)
+{
+  Axis& axis = start.axis;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (const Index i : start.points) {
+    const Vec3 d = view.scan.points[i] - axis[0].point;
+    covariance += d * d.transpose();
+  }
+  const auto eigen = linear_algebra::symmetric_eigen<3>(covariance);
+  Vec3 along = eigen.vectors.col(2);
+  const Vec3 from = chain.parent_node != none ? Vec3(axis[0].point - tree.center[chain.parent_node])
+                                              : Vec3(Vec3::UnitZ());
+  if (along.dot(from) < 0)
+    along = -along;
+  const double half = 0.5 * layer_thickness * view.scan.spacing;
+  Axis_node tip = axis[0];
+  axis[0].point -= half * along;
+  tip.point += half * along;
+  axis.push_back(tip);
+  std::fill(start.place.begin(), start.place.end(), 0);
+}
+
+/// Smooths the centers of ragged layers, and extends both ends by half a layer.
+inline void smooth_centers(double spacing, Axis& axis)
+{
+  for (int pass = 0; pass < 2; ++pass) {
+    Axis smooth = axis;
+    for (std::size_t k = 1; k + 1 < axis.size(); ++k)
+      smooth[k].point = 0.25 * axis[k - 1].point + 0.5 * axis[k].point + 0.25 * axis[k + 1].point;
+    axis = smooth;
+  }
+  const auto extend = [&](Axis_node& end, const Axis_node& inner) {
+    const Vec3 d = end.point - inner.point;
+    const double length = d.norm();
+    if (length > 0)
+      end.point += 0.5 * layer_thickness * spacing * d / length;
+  };
+  const Axis_node second = axis[1], last = axis[axis.size() - 2];
+  extend(axis.front(), second);
+  extend(axis.back(), last);
+}
+
+/// First radii: root mean square distance of the points from the axis.
+inline void guess_radii(const Scan& scan, Chain_start& start)
+{
+  Axis& axis = start.axis;
+  const double u = scan.spacing;
+  std::vector<double> sum(axis.size(), 0), count(axis.size(), 0);
+  for (std::size_t i = 0; i < start.points.size(); ++i) {
+    const std::size_t k = start.place[i];
+    const Axis_place foot = nearest_place(axis, k, scan.points[start.points[i]]);
+    sum[k] += foot.distance * foot.distance;
+    count[k] += 1;
+  }
+  for (std::size_t k = 0; k < axis.size(); ++k)
+    axis[k].radius = count[k] > 0 ? std::max(0.2 * u, std::sqrt(sum[k] / count[k]))
+                                  : (k > 0 ? axis[k - 1].radius : 0.2 * u);
+}
+
+} // namespace internal
+
+/// The start of the fit of a chain: the centers of its layers, smoothed, with first radii.
 inline Chain_start start_of(const Chain_view& view, const Layer_tree& tree, const Chain& chain)
 {
   Chain_start start;
-  const double u = view.scan.spacing;
   for (const Index v : chain.nodes) {
     Vec3 center = Vec3::Zero();
     const std::size_t before = start.points.size();
@@ -49,55 +115,11 @@ inline Chain_start start_of(const Chain_view& view, const Layer_tree& tree, cons
   }
   if (start.points.size() < view.rules.lowest_count)
     return start;
-  Axis& axis = start.axis;
-  if (axis.size() == 1) { // a line through its points
-    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-    for (const Index i : start.points) {
-      const Vec3 d = view.scan.points[i] - axis[0].point;
-      covariance += d * d.transpose();
-    }
-    const auto eigen = linear_algebra::symmetric_eigen<3>(covariance);
-    Vec3 along = eigen.vectors.col(2);
-    const Vec3 from = chain.parent_node != none
-                          ? Vec3(axis[0].point - tree.center[chain.parent_node])
-                          : Vec3(Vec3::UnitZ());
-    if (along.dot(from) < 0)
-      along = -along;
-    const double half = 0.5 * layer_thickness * u;
-    Axis_node tip = axis[0];
-    axis[0].point -= half * along;
-    tip.point += half * along;
-    axis.push_back(tip);
-    std::fill(start.place.begin(), start.place.end(), 0);
-  } else {
-    for (int pass = 0; pass < 2; ++pass) { // the layers are ragged
-      Axis smooth = axis;
-      for (std::size_t k = 1; k + 1 < axis.size(); ++k)
-        smooth[k].point = 0.25 * axis[k - 1].point + 0.5 * axis[k].point + 0.25 * axis[k + 1].point;
-      axis = smooth;
-    }
-    // the centres of the outermost layers lie half a layer inside
-    const auto extend = [&](Axis_node& end, const Axis_node& inner) {
-      const Vec3 d = end.point - inner.point;
-      const double length = d.norm();
-      if (length > 0)
-        end.point += 0.5 * layer_thickness * u * d / length;
-    };
-    const Axis_node second = axis[1], last = axis[axis.size() - 2];
-    extend(axis.front(), second);
-    extend(axis.back(), last);
-  }
-  // mean squared distance across the axis as a first radius
-  std::vector<double> sum(axis.size(), 0), count(axis.size(), 0);
-  for (std::size_t i = 0; i < start.points.size(); ++i) {
-    const std::size_t k = start.place[i];
-    const Axis_place foot = nearest_place(axis, k, view.scan.points[start.points[i]]);
-    sum[k] += foot.distance * foot.distance;
-    count[k] += 1;
-  }
-  for (std::size_t k = 0; k < axis.size(); ++k)
-    axis[k].radius = count[k] > 0 ? std::max(0.2 * u, std::sqrt(sum[k] / count[k]))
-                                  : (k > 0 ? axis[k - 1].radius : 0.2 * u);
+  if (start.axis.size() == 1)
+    internal::make_line(view, tree, chain, start);
+  else
+    internal::smooth_centers(view.scan.spacing, start.axis);
+  internal::guess_radii(view.scan, start);
   return start;
 }
 

@@ -101,6 +101,64 @@ inline double wood_probability(const Axis_evidence& evidence)
   return internal::likeness_by_axis(evidence.features());
 }
 
+namespace internal {
+
+/// Adds the evidence of the points of an axis. `carried` are the paths through each point.
+template <class Points>
+void add_evidence_of_points(const Scan& scan,
+                            const Axis_set& set,
+                            const std::vector<std::uint8_t>& is_used,
+                            const std::vector<float>& wood_score,
+                            const std::vector<double>& carried,
+                            const Axis& axis,
+                            const Points& points,
+                            Axis_evidence& e)
+{
+  Vec3 mean = Vec3::Zero();
+  double neighbors = 0;
+  std::vector<float> of_points;
+  std::vector<Index> segments;
+  for (const Index i : points) {
+    mean += scan.points[i];
+    of_points.push_back(wood_score[i]);
+    segments.push_back(set.segment_of_point[i]);
+    e.mean_likeness +=
+        std::min(surest, std::max(-surest, double(wood_score[i])));
+    e.residual += std::abs(set.height_above(i, scan.points[i]));
+    e.local_spacing += scan.local_spacing[i];
+    e.carried = std::max(e.carried, carried[i]);
+    for (const Index j : scan.neighbors[i])
+      if (j != none) {
+        neighbors += 1;
+        e.leaves += !is_used[j];
+      }
+  }
+  const auto count = double(of_points.size());
+  mean /= count;
+  e.mean_likeness /= count;
+  e.residual /= count * scan.spacing;
+  e.local_spacing /= count * scan.spacing;
+  e.leaves /= std::max(1.0, neighbors);
+  const auto high = of_points.begin() + static_cast<std::ptrdiff_t>(of_points.size() * 4 / 5);
+  std::nth_element(of_points.begin(), high, of_points.end());
+  e.high_likeness = double(*high);
+  std::sort(segments.begin(), segments.end());
+  segments.erase(std::unique(segments.begin(), segments.end()), segments.end());
+  e.seen = double(segments.size()) / std::max(1.0, double(axis.size()) - 1);
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (const Index i : points) {
+    const Vec3 d = scan.points[i] - mean;
+    covariance += d * d.transpose();
+  }
+  const Vec3 spread = linear_algebra::symmetric_eigen<3>(covariance).values.cwiseMax(0);
+  if (spread(2) > 0) {
+    e.depth = std::sqrt(spread(0) / spread(2));
+    e.width = std::sqrt(spread(1) / spread(2));
+  }
+}
+
+} // namespace internal
+
 /// The evidence for every axis. `wood_score` is that of the points, `paths` lead over all that are
 /// used. O(points).
 template <class ConcurrencyTag>
@@ -128,49 +186,15 @@ std::vector<Axis_evidence> evidence_of_axes(const Scan& scan,
         if (fitted.parent != none)
           e.parent_length = length[fitted.parent] / scan.spacing;
         const auto points = points_of_axis[a];
-        if (points.empty())
-          return;
-        Vec3 mean = Vec3::Zero();
-        double neighbors = 0;
-        std::vector<float> of_points;
-        std::vector<Index> segments;
-        for (const Index i : points) {
-          mean += scan.points[i];
-          of_points.push_back(wood_score[i]);
-          segments.push_back(set.segment_of_point[i]);
-          e.mean_likeness +=
-              std::min(internal::surest, std::max(-internal::surest, double(wood_score[i])));
-          e.residual += std::abs(set.height_above(i, scan.points[i]));
-          e.local_spacing += scan.local_spacing[i];
-          e.carried = std::max(e.carried, carried[i]);
-          for (const Index j : scan.neighbors[i])
-            if (j != none) {
-              neighbors += 1;
-              e.leaves += !is_used[j];
-            }
-        }
-        const auto count = double(of_points.size());
-        mean /= count;
-        e.mean_likeness /= count;
-        e.residual /= count * scan.spacing;
-        e.local_spacing /= count * scan.spacing;
-        e.leaves /= std::max(1.0, neighbors);
-        const auto high = of_points.begin() + static_cast<std::ptrdiff_t>(of_points.size() * 4 / 5);
-        std::nth_element(of_points.begin(), high, of_points.end());
-        e.high_likeness = double(*high);
-        std::sort(segments.begin(), segments.end());
-        segments.erase(std::unique(segments.begin(), segments.end()), segments.end());
-        e.seen = double(segments.size()) / std::max(1.0, double(fitted.axis.size()) - 1);
-        Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-        for (const Index i : points) {
-          const Vec3 d = scan.points[i] - mean;
-          covariance += d * d.transpose();
-        }
-        const Vec3 spread = linear_algebra::symmetric_eigen<3>(covariance).values.cwiseMax(0);
-        if (spread(2) > 0) {
-          e.depth = std::sqrt(spread(0) / spread(2));
-          e.width = std::sqrt(spread(1) / spread(2));
-        }
+        if (!points.empty())
+          internal::add_evidence_of_points(scan,
+                                           set,
+                                           is_used,
+                                           wood_score,
+                                           carried,
+                                           fitted.axis,
+                                           points,
+                                           e);
       },
       64);
   return result;
