@@ -167,8 +167,7 @@ public:
       const deformation::Sampling_options sampling =
           deformation::read_sampling_options(np, function);
       m_elastic = deformation::read_elastic_options(np, function);
-      if constexpr (internal::is_given_v<NamedParameters, CGAL::internal_np::callback_t>)
-        m_callback = CGAL::parameters::get_parameter(np, CGAL::internal_np::callback);
+      deformation::read_callback(np, m_callback);
       std::vector<deformation::Vec3> coordinates = read_points(function);
       std::vector<std::uint32_t> region;
       constexpr bool has_region =
@@ -276,9 +275,14 @@ public:
   void set_transformation(Handle handle, const Transformation& transformation)
   {
     require_handle("pcs::Point_set_deformation::set_transformation()", handle);
-    Motion motion;
-    motion.rotation = to_similarity(transformation);
-    set_motion(handle, motion);
+    static_assert(is_similarity_like_v<Transformation>,
+                  "pcs: a transformation must be a pcs::Similarity or a "
+                  "CGAL::Aff_transformation_3");
+    if constexpr (is_similarity_like_v<Transformation>) {
+      Motion motion;
+      motion.rotation = to_similarity(transformation);
+      set_motion(handle, motion);
+    }
   }
 
   /// The whole motion from rest: scale, then rotation, then translation.

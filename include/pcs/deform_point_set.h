@@ -6,12 +6,15 @@
 #define PCS_DEFORM_POINT_SET_H
 
 #include <pcs/Point_set_deformation.h>
+#include <pcs/concepts.h>
+#include <pcs/deformation/access/read_options.h>
 
 #include <cstddef>
 #include <functional>
 #include <iterator>
 #include <memory>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace pcs {
@@ -26,6 +29,20 @@ struct Deformation_handle
 };
 
 namespace internal {
+
+template <class T, class = void>
+struct Is_handle_range : std::false_type
+{
+};
+template <class T>
+struct Is_handle_range<T, std::enable_if_t<!std::is_void_v<typename Iterator_of<const T>::type>>>
+  : std::is_convertible<decltype(*std::begin(std::declval<const T&>())), const Deformation_handle&>
+{
+};
+
+/// Whether `T` is a range of `Deformation_handle`.
+template <class T>
+constexpr bool is_handle_range_v = Is_handle_range<T>::value;
 
 /// Share of the callback's range for finding neighbours and samples; the rest is for the
 /// deformation.
@@ -46,8 +63,8 @@ Deformation_report deform_once(PointRange& points, const NamedParameters& np, co
     return session;
   };
   if constexpr (is_given_v<NamedParameters, CGAL::internal_np::callback_t>) {
-    const std::function<bool(double)> user =
-        CGAL::parameters::get_parameter(np, CGAL::internal_np::callback);
+    std::function<bool(double)> user;
+    deformation::read_callback(np, user);
     const auto done = std::make_shared<double>(0); // share of the work before the present stage
     const std::function<bool(double)> callback = [user, done](double f) {
       const double share = *done == 0 ? construction_share : 1 - construction_share;
@@ -79,18 +96,24 @@ Deformation_report deform_once(PointRange& points, const NamedParameters& np, co
 template <class ConcurrencyTag = CGAL::Parallel_if_available_tag,
           class PointRange,
           class HandleRange,
-          class NamedParameters = parameters::Default_named_parameters,
-          class = std::enable_if_t<!is_index_range_v<HandleRange>>>
+          class NamedParameters = parameters::Default_named_parameters>
 Deformation_report deform_point_set(PointRange& points,
                                     const HandleRange& handles,
                                     const NamedParameters& np = NamedParameters())
 {
-  if (std::begin(handles) == std::end(handles))
-    throw Invalid_input("pcs::deform_point_set(): there is no handle");
-  return internal::deform_once<ConcurrencyTag>(points, np, [&](auto& session) {
-    for (const Deformation_handle& h : handles)
-      session.set_transformation(session.add_handle(h.indices, h.softness), h.transformation);
-  });
+  constexpr bool is_ok = internal::is_handle_range_v<HandleRange>;
+  static_assert(is_ok,
+                "pcs::deform_point_set(): `handles` must be a range of pcs::Deformation_handle; "
+                "ranges of fixed and moved points need a transformation behind them");
+  if constexpr (is_ok) {
+    if (std::begin(handles) == std::end(handles))
+      throw Invalid_input("pcs::deform_point_set(): there is no handle");
+    return internal::deform_once<ConcurrencyTag>(points, np, [&](auto& session) {
+      for (const Deformation_handle& h : handles)
+        session.set_transformation(session.add_handle(h.indices, h.softness), h.transformation);
+    });
+  } else
+    return Deformation_report();
 }
 
 /*!
@@ -107,20 +130,26 @@ template <class ConcurrencyTag = CGAL::Parallel_if_available_tag,
           class FixedRange,
           class MovedRange,
           class Transformation,
-          class NamedParameters = parameters::Default_named_parameters,
-          class = std::enable_if_t<is_similarity_like_v<Transformation>>>
+          class NamedParameters = parameters::Default_named_parameters>
 Deformation_report deform_point_set(PointRange& points,
                                     const FixedRange& fixed,
                                     const MovedRange& moved,
                                     const Transformation& transformation,
                                     const NamedParameters& np = NamedParameters())
 {
-  const Similarity motion = to_similarity(transformation);
-  return internal::deform_once<ConcurrencyTag>(points, np, [&](auto& session) {
-    if (std::begin(fixed) != std::end(fixed))
-      session.add_handle(fixed);
-    session.set_transformation(session.add_handle(moved), motion);
-  });
+  constexpr bool is_ok = is_similarity_like_v<Transformation>;
+  static_assert(is_ok,
+                "pcs::deform_point_set(): a transformation must be a pcs::Similarity or a "
+                "CGAL::Aff_transformation_3");
+  if constexpr (is_ok) {
+    const Similarity motion = to_similarity(transformation);
+    return internal::deform_once<ConcurrencyTag>(points, np, [&](auto& session) {
+      if (std::begin(fixed) != std::end(fixed))
+        session.add_handle(fixed);
+      session.set_transformation(session.add_handle(moved), motion);
+    });
+  } else
+    return Deformation_report();
 }
 
 } // namespace pcs

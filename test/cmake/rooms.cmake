@@ -7,6 +7,9 @@
 
 
 # ---- deformation: deform_point_set
+
+
+# ---- deformation: deform_point_set
 set(root_deformation Session.h access/Point_access.h access/read_options.h)
 set(deformation_session
   body/Sampled_body.h
@@ -25,8 +28,8 @@ set(deformation_session
   upsampling/Point_carrier.h
   upsampling/Upsampling.h
   upsampling/read_maps.h)
-set(deformation_access body/Sampled_body.h upsampling/blend_block.h)
-set(deformation_body handles/Border_finder.h upsampling/Upsampling.h upsampling/blend_block.h)
+set(deformation_access body/Sampled_body.h)
+set(deformation_body handles/Border_finder.h upsampling/Upsampling.h)
 set(deformation_handles body/Sample_regions.h body/Sampled_body.h)
 set(deformation_multigrid
   body/Sample_links.h
@@ -43,7 +46,7 @@ set(deformation_upsampling
   handles/Border_finder.h
   handles/Site_constraints.h
   solver/Elastic_state.h)
-set(deformation_model solver/rotation_field.h upsampling/blend_block.h)
+set(deformation_model solver/rotation_field.h)
 
 # ---- skeleton: extract_tree_skeleton, segment_trees
 set(root_skeleton
@@ -67,6 +70,7 @@ set(skeleton_session
   registration/register_stations.h
   result/describe_tree.h
   scan/Point_labels.h
+  scan/measure_coordinate_step.h
   scan/prepare_scan.h
   slices/section_skeleton.h)
 set(skeleton_clutter graph/Neighbor_graph.h scan/Point_labels.h)

@@ -64,6 +64,7 @@ inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skele
                     {"unreachable", r.number_of_unreached_points}};
   json["spacing"] = r.spacing;
   json["voxel_size"] = r.voxel_size;
+  json["coordinate_step"] = r.coordinate_step;
   json["noise"] = r.noise;
   json["residual"] = r.residual;
   json["nodes"] = r.number_of_nodes;
@@ -78,11 +79,13 @@ inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skele
   for (const std::string& sentence : pcs::warnings(r))
     json["warnings"].push_back(in_options(sentence));
   json["height"] = r.height;
-  json["max_root_distance"] = r.reach;
+  json["root_elevation"] = r.root_elevation;
+  json["max_root_distance"] = r.max_root_distance;
   json["breast_height"] = r.breast_height;
   json["diameter_at_breast_height"] = nullptr;
   if (r.diameter_at_breast_height > 0) // 0 if the tree is lower
     json["diameter_at_breast_height"] = r.diameter_at_breast_height;
+  json["stem_diameters"] = r.stem_diameters;
   json["total"] = to_json(r.total);
   json["by_order"] = nlohmann::ordered_json::array();
   for (const pcs::Branch_totals& wood : r.by_order)

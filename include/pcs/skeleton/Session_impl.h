@@ -12,6 +12,7 @@
 #include <pcs/skeleton/Session_options.h>
 #include <pcs/skeleton/axes/reassign_points.h>
 #include <pcs/skeleton/scan/Point_labels.h>
+#include <pcs/skeleton/scan/measure_coordinate_step.h>
 #include <pcs/skeleton/scan/prepare_scan.h>
 
 #include <algorithm>
@@ -74,6 +75,16 @@ bool finish(Session_state<Tag>& s, Stage stage, double end, pcs::internal::Progr
 }
 
 // ---- neighbours
+
+/// Moves the points of the input to the scan.
+template <class Tag>
+void take_points(Session_state<Tag>& s)
+{
+  const Coordinate_step rounding = measure_coordinate_step(s.input);
+  s.report.coordinate_step = rounding.step;
+  s.report.is_single_precision = rounding.is_single_precision;
+  skeleton::take_points<Tag>(std::move(s.input), s.options.up, s.scan);
+}
 
 /// The options of a draft of the tree, from some of the points, by which stations are registered.
 inline Session_options draft_options(Session_options options, const Scan_frame& frame)
@@ -352,9 +363,11 @@ template <class Tag>
 void describe_tree(Session_state<Tag>& s)
 {
   const Session_options& o = s.options;
+  const auto is_tree = [&s](Index i) { return s.is_used()[i] != 0 || s.labels.is_leaf(i); };
   s.successors = successors(s.joined.tree);
   skeleton::describe_tree(s.scan,
                           s.is_used(),
+                          is_tree,
                           s.axes,
                           s.joined.tree,
                           s.successors,
@@ -422,7 +435,7 @@ bool Session<ConcurrencyTag>::find_neighbors(pcs::internal::Progress& progress)
   if (!progress(0))
     return false;
   if (s.scan.points.empty())
-    take_points<ConcurrencyTag>(std::move(s.input), s.options.up, s.scan);
+    internal::take_points(s);
   if (!internal::register_stations(s, progress))
     return false;
   measure_points<ConcurrencyTag>(s.scan);

@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <string>
 
 namespace test_report_sizes {
 
@@ -82,12 +83,79 @@ BOOST_AUTO_TEST_CASE(branches_of_the_trunk_do_not_count)
   BOOST_TEST(diameter_of(trunk_to(Vec3(0, 0, 1), 10, 0.1, 0.1)) == 0);
 }
 
+BOOST_AUTO_TEST_CASE(a_tree_that_forks_below_breast_height_has_several_stems)
+{
+  Branch_tree tree = trunk_to(Vec3(0, 0, 0.8), 8, 0.15, 0.15);
+  const double radii[] = {0.06, 0.1, 0.08, 0.02};
+  for (const double r : radii) // the last is a twig
+    pcs_test::add_branch(tree,
+                         8,
+                         pcs_test::straight_axis(Vec3(r, 0, 0.8), Vec3(10 * r, 0, 6), 20, r, r));
+  pcs::Skeleton_report report;
+  report_sizes(tree, 1, Vec3::UnitZ(), 1.3, report);
+  BOOST_REQUIRE(report.stem_diameters.size() == 3u);
+  BOOST_TEST(std::abs(report.stem_diameters[0] - 0.2) < 1e-9);
+  BOOST_TEST(std::abs(report.stem_diameters[1] - 0.16) < 1e-9);
+  BOOST_TEST(std::abs(report.stem_diameters[2] - 0.12) < 1e-9);
+  BOOST_TEST(report.diameter_at_breast_height == report.stem_diameters[0]);
+  // a single trunk has one stem, whatever thick branch hangs down to breast height
+  pcs::Skeleton_report single;
+  report_sizes(trunk_to(Vec3(0, 0, 4), 40, 0.1, 0.1), 1, Vec3::UnitZ(), 1.3, single);
+  BOOST_TEST(single.stem_diameters.size() == 1u);
+}
+
+/// A plausible tree of 10 m, without any warning.
+pcs::Skeleton_report plausible_tree()
+{
+  pcs::Skeleton_report report;
+  report.status = pcs::Status::converged;
+  report.height = report.max_root_distance = 10;
+  report.breast_height = 1.3;
+  report.spacing = 0.01;
+  report.noise = report.residual = 0.001;
+  report.by_order.resize(1);
+  report.by_order[0].length = 10;
+  report.by_order[0].volume = report.total.volume = 10 * 3.14159265358979323846 * 0.1 * 0.1;
+  report.stem_diameters = {0.2};
+  return report;
+}
+
+bool warns_of(const pcs::Skeleton_report& report, const std::string& words)
+{
+  for (const std::string& sentence : pcs::warnings(report))
+    if (sentence.find(words) != std::string::npos)
+      return true;
+  return false;
+}
+
+BOOST_AUTO_TEST_CASE(implausible_results_say_so)
+{
+  pcs::Skeleton_report report = plausible_tree();
+  BOOST_TEST(pcs::warnings(report).empty());
+  report.root_elevation = 1;
+  BOOST_TEST(pcs::warnings(report).empty()); // a tenth of what is seen is usual on slopes
+  report.root_elevation = 4.6;
+  BOOST_TEST(warns_of(report, "the root is 4.6 above the lowest points"));
+  report = plausible_tree();
+  report.stem_diameters = {0.2, 0.15};
+  BOOST_TEST(warns_of(report, "2 stems with diameters of 0.2, 0.15"));
+  report = plausible_tree();
+  report.coordinate_step = 0.004;
+  BOOST_TEST(pcs::warnings(report).empty());
+  report.coordinate_step = 0.5;
+  BOOST_TEST(warns_of(report, "rounded to steps of 0.5; branches"));
+  report.is_single_precision = true;
+  BOOST_TEST(warns_of(report, "32-bit floating-point"));
+  report.voxel_size = 0.5; // is the cause then
+  BOOST_TEST(!warns_of(report, "32-bit floating-point"));
+}
+
 BOOST_AUTO_TEST_CASE(reach_is_the_way_to_the_farthest_node)
 {
   for (const Vec3& tip : {Vec3(0, 0, 4), Vec3(3, 0, 0), Vec3(0, 2, -1)}) {
     pcs::Skeleton_report report;
     report_sizes(trunk_to(tip, 7, 0.1, 0.1), 10, Vec3::UnitZ(), 1.3, report);
-    BOOST_TEST(std::abs(report.reach - 10 * tip.norm()) < 1e-9);
+    BOOST_TEST(std::abs(report.max_root_distance - 10 * tip.norm()) < 1e-9);
   }
 }
 
@@ -98,12 +166,12 @@ BOOST_AUTO_TEST_CASE(wood_that_fills_the_space_is_doubted_and_no_tree)
   report.status = pcs::Status::converged;
   report.noise = report.residual = 0.001;
   report.spacing = 0.01;
-  report.height = report.reach = 2;
+  report.height = report.max_root_distance = 2;
   report.by_order.resize(1);
   report.by_order[0].length = 13;
   report.by_order[0].volume = report.total.volume = 0.35; // a diameter of 0.19
   BOOST_TEST(pcs::warnings(report).size() == 1u);
-  report.height = report.reach = report.by_order[0].length = 13;
+  report.height = report.max_root_distance = report.by_order[0].length = 13;
   BOOST_TEST(pcs::warnings(report).empty());
   report.height = 1; // it lies on the ground
   BOOST_TEST(pcs::warnings(report).empty());
@@ -113,7 +181,7 @@ BOOST_AUTO_TEST_CASE(points_as_far_apart_as_the_trunk_is_thick_are_doubted)
 {
   pcs::Skeleton_report report;
   report.status = pcs::Status::converged;
-  report.height = report.reach = 4;
+  report.height = report.max_root_distance = 4;
   report.by_order.resize(1);
   report.by_order[0].length = 4;
   report.by_order[0].volume = report.total.volume = 4 * 3.14159265358979323846 * 0.05 * 0.05;

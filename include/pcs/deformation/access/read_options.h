@@ -7,6 +7,7 @@
 
 #include <pcs/Named_function_parameters.h>
 #include <pcs/concepts.h>
+#include <pcs/core/Deformation_options.h>
 #include <pcs/core/errors.h>
 #include <pcs/deformation/body/Sampled_body.h>
 #include <pcs/deformation/model/Elastic_options.h>
@@ -14,9 +15,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace pcs {
@@ -39,6 +42,23 @@ Value checked(const char* function, const char* name, Value value, bool is_valid
   return value;
 }
 
+/// Whether `tag` is not in the chain, or was given a value that converts to `Option`.
+template <class Option, class NamedParameters, class Tag>
+constexpr bool is_option_v =
+    std::is_convertible_v<decltype(pcs::internal::choose(std::declval<const NamedParameters&>(),
+                                                         std::declval<Tag>(),
+                                                         std::declval<const Option&>())),
+                          Option>;
+
+/// Replaces `value` by the value given for `tag`, if there is one. A value of a wrong type is
+/// ignored: a sentence of the caller rejects it.
+template <class Option, class NamedParameters, class Tag>
+void read_option(const NamedParameters& np, Tag tag, Option& value)
+{
+  if constexpr (is_option_v<Option, NamedParameters, Tag>)
+    value = pcs::internal::choose(np, tag, value);
+}
+
 /// Reads a count that may have been given as any integer type; negative ones must not wrap around.
 template <class NamedParameters, class Tag>
 std::size_t count_parameter(const char* function,
@@ -50,13 +70,18 @@ std::size_t count_parameter(const char* function,
                             std::size_t highest)
 {
   const auto value = pcs::internal::choose(np, tag, fallback);
-  static_assert(std::is_integral_v<std::decay_t<decltype(value)>>,
+  constexpr bool is_integer = std::is_integral_v<std::decay_t<decltype(value)>>;
+  static_assert(is_integer,
                 "pcs: number_of_samples, number_of_neighbors, number_of_sample_neighbors and "
                 "number_of_iterations must be integers");
-  const bool is_valid = !(value < 0) && static_cast<std::size_t>(value) >= lowest &&
-                        static_cast<std::size_t>(value) <= highest;
-  const std::string rule = "between " + std::to_string(lowest) + " and " + std::to_string(highest);
-  return static_cast<std::size_t>(checked(function, name, value, is_valid, rule.c_str()));
+  if constexpr (is_integer) {
+    const bool is_valid = !(value < 0) && static_cast<std::size_t>(value) >= lowest &&
+                          static_cast<std::size_t>(value) <= highest;
+    const std::string rule =
+        "between " + std::to_string(lowest) + " and " + std::to_string(highest);
+    return static_cast<std::size_t>(checked(function, name, value, is_valid, rule.c_str()));
+  } else
+    return fallback;
 }
 
 /// Indices as 32 bit numbers, each checked against the number of points.
@@ -85,7 +110,6 @@ checked_indices(const char* function, const IndexRange& indices, std::size_t n)
 template <class NamedParameters>
 Sampling_options read_sampling_options(const NamedParameters& np, const char* function)
 {
-  using pcs::internal::choose;
   const auto count =
       [&](const char* name, auto tag, std::size_t& value, std::size_t lowest, std::size_t highest) {
         value = internal::count_parameter(function, name, np, tag, value, lowest, highest);
@@ -107,30 +131,55 @@ Sampling_options read_sampling_options(const NamedParameters& np, const char* fu
         options.number_of_sample_neighbors,
         1,
         32);
-  options.sample_search = choose(np, tags::sample_search, options.sample_search);
-  options.sample_weights = choose(np, tags::sample_weights, options.sample_weights);
-  options.do_preserve_volume = choose(np, tags::do_preserve_volume, options.do_preserve_volume);
+  static_assert(internal::is_option_v<Sample_search, NamedParameters, tags::sample_search_t>,
+                "pcs: named parameter `sample_search` must be a pcs::Sample_search");
+  static_assert(internal::is_option_v<Sample_weights, NamedParameters, tags::sample_weights_t>,
+                "pcs: named parameter `sample_weights` must be a pcs::Sample_weights");
+  static_assert(internal::is_option_v<bool, NamedParameters, tags::do_preserve_volume_t>,
+                "pcs: named parameter `do_preserve_volume` must be a bool");
+  internal::read_option(np, tags::sample_search, options.sample_search);
+  internal::read_option(np, tags::sample_weights, options.sample_weights);
+  internal::read_option(np, tags::do_preserve_volume, options.do_preserve_volume);
   return options;
+}
+
+/// Sets `callback` to the one given in `np`, if there is one.
+template <class NamedParameters>
+void read_callback([[maybe_unused]] const NamedParameters& np,
+                   [[maybe_unused]] std::function<bool(double)>& callback)
+{
+  using Tag = CGAL::internal_np::callback_t;
+  if constexpr (pcs::internal::is_given_v<NamedParameters, Tag>) {
+    using Given = std::decay_t<decltype(CGAL::parameters::get_parameter(np, Tag()))>;
+    constexpr bool is_callback = is_progress_callback_v<Given>;
+    static_assert(is_callback,
+                  "pcs: named parameter `callback` must take a double and return a bool");
+    if constexpr (is_callback)
+      callback = CGAL::parameters::get_parameter(np, Tag());
+  }
 }
 
 /// How its samples resist. Throws like `read_sampling_options()`.
 template <class NamedParameters>
 Elastic_options read_elastic_options(const NamedParameters& np, const char* function)
 {
-  using pcs::internal::choose;
   const auto real = [&](const char* name,
                         auto tag,
                         double& value,
                         double lowest,
                         double highest,
                         const char* rule) {
-    value = choose(np, tag, value);
+    static_assert(internal::is_option_v<double, NamedParameters, decltype(tag)>,
+                  "pcs: tolerance, stiffness and poisson_ratio must be numbers");
+    internal::read_option(np, tag, value);
     internal::checked(function, name, value, value >= lowest && value <= highest, rule);
   };
   namespace tags = pcs::internal_np;
   constexpr double finite = std::numeric_limits<double>::max();
   Elastic_options options;
-  options.rotation_field = choose(np, tags::rotation_field, options.rotation_field);
+  static_assert(internal::is_option_v<Rotation_field, NamedParameters, tags::rotation_field_t>,
+                "pcs: named parameter `rotation_field` must be a pcs::Rotation_field");
+  internal::read_option(np, tags::rotation_field, options.rotation_field);
   options.maximal_number_of_passes = static_cast<int>(
       internal::count_parameter(function,
                                 "number_of_iterations",

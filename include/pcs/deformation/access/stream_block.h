@@ -6,7 +6,7 @@
 #define PCS_DEFORMATION_ACCESS_STREAM_BLOCK_H
 
 #include <pcs/concepts.h>
-#include <pcs/deformation/upsampling/blend_block.h>
+#include <pcs/deformation/model/Point_blocks.h>
 #include <pcs/internal/lanes.h>
 #include <pcs/internal/streaming_stores.h>
 

@@ -7,7 +7,7 @@
 
 #include <pcs/core/Deformation_options.h>
 #include <pcs/deformation/body/Sample_regions.h>
-#include <pcs/deformation/upsampling/blend_block.h>
+#include <pcs/deformation/model/Point_blocks.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/neighborhood/Proximity_graph.h>
 

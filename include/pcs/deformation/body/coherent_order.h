@@ -6,7 +6,7 @@
 #define PCS_DEFORMATION_BODY_COHERENT_ORDER_H
 
 #include <pcs/deformation/model/Elastic_network.h>
-#include <pcs/deformation/upsampling/blend_block.h>
+#include <pcs/deformation/model/Point_blocks.h>
 
 #include <algorithm>
 #include <cstddef>

@@ -1,12 +1,11 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Affine maps of samples: the identity, their rotations, what they do to normals.
+// Affine maps of samples and handles: nearest rotation, transformation of normals.
 
 #ifndef PCS_DEFORMATION_MODEL_AFFINE_MAP_H
 #define PCS_DEFORMATION_MODEL_AFFINE_MAP_H
 
 #include <pcs/core/rotations.h>
-#include <pcs/deformation/upsampling/blend_block.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -14,6 +13,19 @@
 
 namespace pcs {
 namespace deformation {
+
+/// The affine map `x -> a x + t` of one sample; `a` row by row.
+struct Affine_map
+{
+  double a[9], t[3];
+};
+
+/// The affine map of the points around a handle; `turn`, row by row, maps their normals.
+struct Handle_map
+{
+  Affine_map map;
+  double turn[9];
+};
 
 using Vec3 = Eigen::Vector3d;
 using Row_major_matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;

@@ -5,29 +5,15 @@
 #ifndef PCS_DEFORMATION_UPSAMPLING_BLEND_BLOCK_H
 #define PCS_DEFORMATION_UPSAMPLING_BLEND_BLOCK_H
 
+#include <pcs/deformation/model/Affine_map.h>
+#include <pcs/deformation/model/Point_blocks.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
 namespace pcs {
 namespace deformation {
-
-/// The affine map `x -> a x + t` of one sample; `a` row by row.
-struct Affine_map
-{
-  double a[9], t[3];
-};
-
-constexpr std::size_t lanes = 8;
-
-/// Coordinates of eight points: x of all, y of all, z of all.
-struct Lane_vectors
-{
-  double value[3][lanes];
-};
-
-/// Weights are stored in 16 bits, in steps of one over this.
-constexpr double weight_steps = 65535;
 
 /// What a kernel computes for every point.
 enum class Blend_outputs {
@@ -60,13 +46,6 @@ struct Block_entry
 {
   std::uint32_t pair;
   std::uint16_t weight[lanes];
-};
-
-/// Where a handle takes the points around it, and `turn`, row by row, their normals.
-struct Handle_map
-{
-  Affine_map map;
-  double turn[9];
 };
 
 /// How far the points of a block are drawn to one handle; zero for those that are not.

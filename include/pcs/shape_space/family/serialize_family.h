@@ -95,112 +95,168 @@ inline Orl_space_data store_family(const Tree_family& family)
   return result;
 }
 
-/// Throws `pcs::Invalid_input` with a message that begins with `caller` unless the numbers make
-/// sense together.
-inline Tree_family restore_family(const Orl_space_data& stored, const std::string& caller)
+namespace internal {
+
+/// Restores a family part by part, and checks every number.
+class Family_restorer
 {
-  const auto check = [&](bool is_right, const char* what) {
+public:
+  Family_restorer(const Orl_space_data& stored, const std::string& caller)
+    : m_stored(stored), m_caller(caller)
+  {
+  }
+
+  Tree_family operator()()
+  {
+    check(m_stored.orientation >= 0 && m_stored.orientation <= 2, "there is no such orientation");
+    m_family.orientation = static_cast<Orl_orientation>(m_stored.orientation);
+    m_family.origin = to_vector(m_stored.origin);
+    check(is_place(m_family.origin), "the origin is not finite, or beyond 1e100");
+    check(!m_stored.branches.empty() && m_stored.trees.size() > 1, "there are not two trees");
+    restore_layout();
+    restore_trees();
+    restore_weights();
+    restore_matching();
+    find_growth_direction(m_family);
+    return std::move(m_family);
+  }
+
+private:
+  void check(bool is_right, const char* what) const
+  {
     if (!is_right)
-      throw Invalid_input(caller + ": " + what);
-  };
-  Tree_family family;
-  check(stored.orientation >= 0 && stored.orientation <= 2, "there is no such orientation");
-  family.orientation = static_cast<Orl_orientation>(stored.orientation);
-  family.origin = internal::to_vector(stored.origin);
-  check(is_place(family.origin), "the origin is not finite, or beyond 1e100");
-  check(!stored.branches.empty() && stored.trees.size() > 1, "there are not two trees");
-  for (std::size_t i = 0; i < stored.branches.size(); ++i) {
-    const Orl_space_data::Branch& b = stored.branches[i];
+      throw Invalid_input(m_caller + ": " + what);
+  }
+
+  std::size_t number_of_edges() const { return m_family.layout.number_of_edges(); }
+  std::size_t number_of_branches() const { return m_family.layout.branches.size(); }
+
+  void restore_layout()
+  {
+    Orl_layout& layout = m_family.layout;
+    for (std::size_t i = 0; i < m_stored.branches.size(); ++i)
+      add_branch(i);
+    for (const auto& [edge, earlier] : m_stored.references) {
+      const auto last = std::upper_bound(
+          layout.branches.begin(),
+          layout.branches.end(),
+          edge,
+          [](std::size_t e, const Orl_layout::Branch& b) { return e < b.first_edge; });
+      check(edge < number_of_edges() && earlier < edge && earlier >= std::prev(last)->first_edge,
+            "an edge refers to one that is not before it on its branch");
+      layout.edge_before[edge] = earlier;
+    }
+    set_parent_edges(layout, m_family.orientation);
+  }
+
+  void add_branch(std::size_t i)
+  {
+    Orl_layout& layout = m_family.layout;
+    const Orl_space_data::Branch& b = m_stored.branches[i];
     Orl_layout::Branch branch;
     branch.parent = b.parent;
-    branch.first_edge = family.layout.number_of_edges();
+    branch.first_edge = layout.number_of_edges();
     branch.number_of_edges = b.number_of_edges;
     branch.reference_edge = b.reference_edge;
     check(i == 0 ? b.parent == none && b.reference_edge == none : b.parent < i,
           "a branch comes before its parent");
     check(b.number_of_edges > 0 && b.number_of_edges < 1000000, "a branch has no edge");
     if (i > 0) {
-      const Orl_layout::Branch& parent = family.layout.branches[b.parent];
+      const Orl_layout::Branch& parent = layout.branches[b.parent];
       check(b.reference_edge >= parent.first_edge &&
                 b.reference_edge < parent.first_edge + parent.number_of_edges,
             "a branch refers to an edge that is not of its parent");
     }
     for (std::size_t j = 0; j < branch.number_of_edges; ++j)
-      family.layout.edge_before.push_back(j == 0 ? branch.reference_edge
-                                                 : branch.first_edge + j - 1);
-    family.layout.branches.push_back(branch);
+      layout.edge_before.push_back(j == 0 ? branch.reference_edge : branch.first_edge + j - 1);
+    layout.branches.push_back(branch);
   }
-  const std::size_t n = family.layout.number_of_edges(), m = family.layout.branches.size();
-  for (const auto& [edge, earlier] : stored.references) {
-    const auto last = std::upper_bound(
-        family.layout.branches.begin(),
-        family.layout.branches.end(),
-        edge,
-        [](std::size_t e, const Orl_layout::Branch& b) { return e < b.first_edge; });
-    check(edge < n && earlier < edge && earlier >= std::prev(last)->first_edge,
-          "an edge refers to one that is not before it on its branch");
-    family.layout.edge_before[edge] = earlier;
-  }
-  set_parent_edges(family.layout, family.orientation);
-  const auto check_tree = [&](const Orl_space_data::Tree& t) {
+
+  void check_tree(const Orl_space_data::Tree& t) const
+  {
+    const std::size_t n = number_of_edges(), m = number_of_branches();
     check(t.orientation.size() == n && t.length.size() == n && t.radius.size() == n &&
               t.base_radius.size() == m && t.attachment.size() == m,
           "a tree has another number of edges or branches than the topology");
-    check(is_place(internal::to_vector(t.root)), "a root is not finite, or beyond 1e100");
+    check(is_place(to_vector(t.root)), "a root is not finite, or beyond 1e100");
     for (const auto& q : t.orientation)
       check(std::abs(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1) < 1e-6,
             "an orientation is not of unit length");
     for (const auto* values : {&t.length, &t.radius, &t.base_radius, &t.attachment})
       for (const double v : *values)
         check(is_length(v), "a length, radius or attachment is not from 0 to 1e100");
+    const std::vector<Orl_layout::Branch>& branches = m_family.layout.branches;
     for (std::size_t b = 1; b < m; ++b)
-      check(t.attachment[b] <=
-                static_cast<double>(
-                    family.layout.branches[family.layout.branches[b].parent].number_of_edges),
+      check(t.attachment[b] <= static_cast<double>(branches[branches[b].parent].number_of_edges),
             "a branch is attached beyond its parent");
-  };
-  for (const Orl_space_data::Tree& t : stored.trees) {
-    check_tree(t);
-    check(t.tip.size() == m && t.has.size() == m && t.has[0], "a tree has no trunk");
-    for (std::size_t b = 1; b < m; ++b)
-      check(!t.has[b] || t.has[stored.branches[b].parent],
-            "a tree has a branch without its parent");
-    family.x.push_back(internal::restore(t));
-    family.has.push_back(t.has);
-    family.tip.push_back(t.tip);
   }
-  check_tree(stored.reference);
-  family.reference = internal::restore(stored.reference);
-  const Orl_space_data::Weights& w = stored.weights;
-  check(w.orientation.size() == n && w.length.size() == n && w.radius.size() == n &&
-            w.base_radius.size() == m && w.attachment.size() == m && is_length(w.root),
-        "the weights do not fit the topology");
-  for (const auto* values : {&w.orientation, &w.length, &w.radius, &w.base_radius, &w.attachment})
-    for (const double v : *values)
-      check(is_length(v), "a weight is not from 0 to 1e100");
-  family.weights = {w.orientation, w.length, w.radius, w.base_radius, w.attachment, w.root};
-  for (const double v : stored.matching)
-    check(is_length(v), "a weight of the matching is not from 0 to 1e100");
-  for (const std::size_t i : {8u, 9u})
-    check(stored.matching[i] >= 1 && stored.matching[i] <= 1e15,
-          "a number of paths or trials is out of range");
-  Matching_weights& weights = family.matching;
-  weights.curve = stored.matching[0];
-  weights.position = stored.matching[1];
-  weights.single = stored.matching[2];
-  weights.children = stored.matching[3];
-  weights.carried = stored.matching[4];
-  weights.is_carried = stored.matching[5] != 0;
-  weights.is_published = stored.matching[6] != 0;
-  weights.fork_ratio = stored.matching[7];
-  weights.number_of_paths = static_cast<std::size_t>(stored.matching[8]);
-  weights.number_of_trials = static_cast<std::size_t>(stored.matching[9]);
-  weights.length = stored.matching[10];
-  weights.turn = stored.matching[11];
-  weights.far = stored.matching[12];
-  weights.trunk_fork_ratio = stored.matching[13];
-  internal::find_growth_direction(family);
-  return family;
+
+  void restore_trees()
+  {
+    const std::size_t m = number_of_branches();
+    for (const Orl_space_data::Tree& t : m_stored.trees) {
+      check_tree(t);
+      check(t.tip.size() == m && t.has.size() == m && t.has[0], "a tree has no trunk");
+      for (std::size_t b = 1; b < m; ++b)
+        check(!t.has[b] || t.has[m_stored.branches[b].parent],
+              "a tree has a branch without its parent");
+      m_family.x.push_back(restore(t));
+      m_family.has.push_back(t.has);
+      m_family.tip.push_back(t.tip);
+    }
+    check_tree(m_stored.reference);
+    m_family.reference = restore(m_stored.reference);
+  }
+
+  void restore_weights()
+  {
+    const std::size_t n = number_of_edges(), m = number_of_branches();
+    const Orl_space_data::Weights& w = m_stored.weights;
+    check(w.orientation.size() == n && w.length.size() == n && w.radius.size() == n &&
+              w.base_radius.size() == m && w.attachment.size() == m && is_length(w.root),
+          "the weights do not fit the topology");
+    for (const auto* values : {&w.orientation, &w.length, &w.radius, &w.base_radius, &w.attachment})
+      for (const double v : *values)
+        check(is_length(v), "a weight is not from 0 to 1e100");
+    m_family.weights = {w.orientation, w.length, w.radius, w.base_radius, w.attachment, w.root};
+  }
+
+  void restore_matching()
+  {
+    const auto& stored = m_stored.matching;
+    for (const double v : stored)
+      check(is_length(v), "a weight of the matching is not from 0 to 1e100");
+    for (const std::size_t i : {8u, 9u})
+      check(stored[i] >= 1 && stored[i] <= 1e15, "a number of paths or trials is out of range");
+    Matching_weights& weights = m_family.matching;
+    weights.curve = stored[0];
+    weights.position = stored[1];
+    weights.single = stored[2];
+    weights.children = stored[3];
+    weights.carried = stored[4];
+    weights.is_carried = stored[5] != 0;
+    weights.is_published = stored[6] != 0;
+    weights.fork_ratio = stored[7];
+    weights.number_of_paths = static_cast<std::size_t>(stored[8]);
+    weights.number_of_trials = static_cast<std::size_t>(stored[9]);
+    weights.length = stored[10];
+    weights.turn = stored[11];
+    weights.far = stored[12];
+    weights.trunk_fork_ratio = stored[13];
+  }
+
+  const Orl_space_data& m_stored;
+  const std::string& m_caller;
+  Tree_family m_family;
+};
+
+} // namespace internal
+
+/// Throws `pcs::Invalid_input` with a message that begins with `caller` unless the numbers are
+/// consistent.
+inline Tree_family restore_family(const Orl_space_data& stored, const std::string& caller)
+{
+  return internal::Family_restorer(stored, caller)();
 }
 
 inline std::vector<Vec3> points_of_stored(const std::vector<std::array<double, 3>>& stored,

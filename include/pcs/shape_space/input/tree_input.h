@@ -130,6 +130,92 @@ Vec3 to_vector(const Point& p)
   return Vec3(CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z()));
 }
 
+/// Copies the graph, and checks the depth of its branches.
+template <class TreeGraph, class PointMap, class RadiusMap, class IndexMap>
+void read_tree(const TreeGraph& graph,
+               const PointMap& point_map,
+               const RadiusMap& radius_map,
+               const IndexMap& index_map,
+               const std::string& caller,
+               Tree_input& result)
+{
+  result.tree = make_rooted_tree(graph, point_map, radius_map, index_map, caller);
+  const std::vector<std::size_t> levels = levels_of_branches(result.tree);
+  const std::size_t most = *std::max_element(levels.begin(), levels.end());
+  if (most > most_levels_of_branches)
+    throw Invalid_input(caller + ": branches hang on branches " + std::to_string(most) +
+                        " times, at most " + std::to_string(most_levels_of_branches) +
+                        " are supported");
+  result.fingerprint = hash_of_nothing;
+  for (std::size_t v = 0; v < result.tree.size(); ++v) {
+    for (int i = 0; i < 3; ++i)
+      mix(result.fingerprint, result.tree.points[v][i]);
+    mix(result.fingerprint, result.tree.radii[v]);
+  }
+}
+
+/// Copies the points relative to the origin of the tree, and the normals if there are any.
+template <class PointRange, class PointMap, class NamedParameters>
+void read_scan(const PointRange& scan,
+               const PointMap& point_map,
+               const NamedParameters& np,
+               const std::string& caller,
+               Tree_input& result)
+{
+  constexpr bool has_normals =
+      pcs::internal::is_given_v<NamedParameters, CGAL::internal_np::normal_t>;
+  const auto n = static_cast<std::size_t>(std::end(scan) - std::begin(scan));
+  if (n >= Orl_correspondences::no_point)
+    throw Invalid_input(caller + ": a scan has " + std::to_string(n) +
+                        " points, at most 4294967294 are supported");
+  result.fingerprint_of_points = n > 0 ? hash_of_nothing : 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    auto&& element = *(std::begin(scan) + static_cast<std::ptrdiff_t>(i));
+    const Vec3 p = to_vector(get(point_map, element)) - result.tree.origin;
+    if (!is_place(p))
+      throw Invalid_input(caller + ": the coordinates of point " + std::to_string(i) +
+                          " are not finite, or beyond 1e100");
+    result.points.push_back(p);
+    for (int k = 0; k < 3; ++k)
+      mix(result.fingerprint_of_points, p[k]);
+    if constexpr (has_normals) {
+      const Vec3 normal = to_vector(
+          get(CGAL::parameters::get_parameter(np, CGAL::internal_np::normal_map), element));
+      const double length = normal.norm();
+      if (!(length > 0) || !std::isfinite(length))
+        throw Invalid_input(caller + ": the normal of point " + std::to_string(i) +
+                            " is null or not finite");
+      result.normals.push_back(normal / length);
+    }
+  }
+}
+
+/// The maps of positions and radii: those of the caller, or the bundled properties of a
+/// `Tree_skeleton`.
+template <class TreeGraph, class NamedParameters>
+auto node_maps(const TreeGraph& graph, const NamedParameters& np)
+{
+  namespace tags = pcs::internal_np;
+  if constexpr (pcs::internal::is_given_v<NamedParameters, tags::node_point_map_t> &&
+                pcs::internal::is_given_v<NamedParameters, tags::node_radius_map_t>)
+    return std::make_pair(CGAL::parameters::get_parameter(np, tags::node_point_map),
+                          CGAL::parameters::get_parameter(np, tags::node_radius_map));
+  else {
+    using Node = typename TreeGraph::vertex_bundled;
+    return std::make_pair(get(&Node::point, graph), get(&Node::radius, graph));
+  }
+}
+
+template <class TreeGraph, class NamedParameters>
+auto node_index_map(const TreeGraph& graph, const NamedParameters& np)
+{
+  namespace tags = pcs::internal_np;
+  if constexpr (pcs::internal::is_given_v<NamedParameters, tags::node_index_map_t>)
+    return CGAL::parameters::get_parameter(np, tags::node_index_map);
+  else
+    return get(boost::vertex_index, graph);
+}
+
 } // namespace internal
 
 /// Copies and checks what the caller gives.
@@ -158,33 +244,20 @@ Tree_input make_tree_input(const TreeGraph& graph,
       "`node_radius_map`");
   if constexpr (is_graph && is_range && has_maps) {
     using Vertex = typename boost::graph_traits<TreeGraph>::vertex_descriptor;
-    const auto node_maps = [&] {
-      if constexpr (has_own_maps)
-        return std::make_pair(CGAL::parameters::get_parameter(np, tags::node_point_map),
-                              CGAL::parameters::get_parameter(np, tags::node_radius_map));
-      else {
-        using Node = typename TreeGraph::vertex_bundled;
-        return std::make_pair(get(&Node::point, graph), get(&Node::radius, graph));
-      }
-    }();
-    const auto index_map = [&] {
-      if constexpr (pcs::internal::is_given_v<NamedParameters, tags::node_index_map_t>)
-        return CGAL::parameters::get_parameter(np, tags::node_index_map);
-      else
-        return get(boost::vertex_index, graph);
-    }();
+    const auto maps = internal::node_maps(graph, np);
+    const auto index_map = internal::node_index_map(graph, np);
     using Element = Element_reference<const PointRange>;
     const auto point_map =
         pcs::internal::choose(np,
                               CGAL::internal_np::point_map,
                               CGAL::Identity_property_map<std::decay_t<Element>>());
     constexpr bool are_node_points =
-        internal::Is_point_valued<std::decay_t<decltype(node_maps.first)>, Vertex>::value;
+        internal::Is_point_valued<std::decay_t<decltype(maps.first)>, Vertex>::value;
     static_assert(are_node_points,
                   "pcs: `node_point_map` must be a readable property map from vertices to points "
                   "with x(), y(), z()");
     constexpr bool are_node_radii =
-        internal::Is_number_valued<std::decay_t<decltype(node_maps.second)>, Vertex>::value;
+        internal::Is_number_valued<std::decay_t<decltype(maps.second)>, Vertex>::value;
     static_assert(
         are_node_radii,
         "pcs: `node_radius_map` must be a readable property map from vertices to numbers");
@@ -196,45 +269,8 @@ Tree_input make_tree_input(const TreeGraph& graph,
     if constexpr (are_node_points && are_node_radii && are_points) {
       BOOST_CONCEPT_ASSERT((boost::VertexListGraphConcept<TreeGraph>));
       BOOST_CONCEPT_ASSERT((boost::IncidenceGraphConcept<TreeGraph>));
-      result.tree = make_rooted_tree(graph, node_maps.first, node_maps.second, index_map, caller);
-      const std::vector<std::size_t> levels = internal::levels_of_branches(result.tree);
-      if (const std::size_t most = *std::max_element(levels.begin(), levels.end());
-          most > most_levels_of_branches)
-        throw Invalid_input(caller + ": branches hang on branches " + std::to_string(most) +
-                            " times, at most " + std::to_string(most_levels_of_branches) +
-                            " are supported");
-      const auto n = static_cast<std::size_t>(std::end(scan) - std::begin(scan));
-      if (n >= Orl_correspondences::no_point)
-        throw Invalid_input(caller + ": a scan has " + std::to_string(n) +
-                            " points, at most 4294967294 are supported");
-      constexpr bool has_normals =
-          pcs::internal::is_given_v<NamedParameters, CGAL::internal_np::normal_t>;
-      result.fingerprint = internal::hash_of_nothing;
-      for (std::size_t v = 0; v < result.tree.size(); ++v) {
-        for (int i = 0; i < 3; ++i)
-          internal::mix(result.fingerprint, result.tree.points[v][i]);
-        internal::mix(result.fingerprint, result.tree.radii[v]);
-      }
-      result.fingerprint_of_points = n > 0 ? internal::hash_of_nothing : 0;
-      for (std::size_t i = 0; i < n; ++i) {
-        auto&& element = *(std::begin(scan) + static_cast<std::ptrdiff_t>(i));
-        const Vec3 p = internal::to_vector(get(point_map, element)) - result.tree.origin;
-        if (!is_place(p))
-          throw Invalid_input(caller + ": the coordinates of point " + std::to_string(i) +
-                              " are not finite, or beyond 1e100");
-        result.points.push_back(p);
-        for (int k = 0; k < 3; ++k)
-          internal::mix(result.fingerprint_of_points, p[k]);
-        if constexpr (has_normals) {
-          const Vec3 normal = internal::to_vector(
-              get(CGAL::parameters::get_parameter(np, CGAL::internal_np::normal_map), element));
-          const double length = normal.norm();
-          if (!(length > 0) || !std::isfinite(length))
-            throw Invalid_input(caller + ": the normal of point " + std::to_string(i) +
-                                " is null or not finite");
-          result.normals.push_back(normal / length);
-        }
-      }
+      internal::read_tree(graph, maps.first, maps.second, index_map, caller, result);
+      internal::read_scan(scan, point_map, np, caller, result);
     }
   }
   return result;

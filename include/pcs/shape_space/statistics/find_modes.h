@@ -138,61 +138,54 @@ inline void set_features(const Tree_features& features,
   }
 }
 
-} // namespace internal
-
-/*!
-  At most `most` modes; fewer if the trees do not differ in so many ways. The sign of a mode is such
-  that its largest coordinate is positive.
-
-  Scores are the principal components of the `Tree_covariance` of `Tree_features`: what trees show
-  of the branches that they have. A mode is the change of tangent vectors with its score, by least
-  squares: lengths of branches that come and go change with it, too. All modes together give all
-  trees. Where no branch differs between the trees that have it, all that is left is which trees
-  have it: the modes are those of `Mode_inner_product::metric`, as `features` tell.
-*/
-template <class ConcurrencyTag>
-Modes_of_variation find_modes(const Orl_layout& layout,
-                              const std::vector<const Orl_coordinates*>& trees,
-                              const Orl_weights& weights,
-                              Orl_orientation orientation,
-                              const Orl_coordinates& mean,
-                              std::size_t most,
-                              Mode_inner_product measure = Mode_inner_product::branches)
+/// Trees as columns of tangent vectors and of features.
+struct Mode_inputs
 {
-  const Tangent_space tangent(layout, mean, weights);
-  const Tree_features features(layout, weights, orientation, mean, measure);
+  Eigen::MatrixXd tangents; ///< centered
+  Eigen::VectorXd center;
+  Eigen::MatrixXd values;             ///< of the features
+  std::vector<std::vector<char>> has; ///< which branches each tree has
+};
+
+template <class ConcurrencyTag>
+Mode_inputs mode_inputs(const std::vector<const Orl_coordinates*>& trees,
+                        const Tangent_space& tangent,
+                        const Tree_features& features)
+{
   const auto n = static_cast<Eigen::Index>(trees.size());
-  Eigen::MatrixXd z(tangent.dimension(), n), values(features.dimension(), n);
-  std::vector<std::vector<char>> has(trees.size());
+  Mode_inputs in;
+  in.tangents.resize(tangent.dimension(), n);
+  in.values.resize(features.dimension(), n);
+  in.has.resize(trees.size());
   pcs::internal::for_each_index<ConcurrencyTag>(
       trees.size(),
       [&](std::size_t t) {
-        z.col(static_cast<Eigen::Index>(t)) = tangent.log(*trees[t]);
-        values.col(static_cast<Eigen::Index>(t)) = features(*trees[t], has[t]);
+        in.tangents.col(static_cast<Eigen::Index>(t)) = tangent.log(*trees[t]);
+        in.values.col(static_cast<Eigen::Index>(t)) = features(*trees[t], in.has[t]);
       },
       1);
-  Modes_of_variation result;
-  result.mean = mean;
-  result.center = z.rowwise().mean();
-  z.colwise() -= result.center;
-  double size = 0;
-  for (const double length : mean.length)
-    size += length;
-  const double least = 1e-9 * size; // of equal trees
-  const Tree_covariance covariance(features,
-                                   values,
-                                   has,
-                                   least,
-                                   Eigen::MatrixXd(),
-                                   ConcurrencyTag());
-  const internal::Principal_scores principal = internal::principal_scores(covariance.covariance());
+  in.center = in.tangents.rowwise().mean();
+  in.tangents.colwise() -= in.center;
+  return in;
+}
+
+/// Fills in directions, deviations, scores and shares of at most `most` modes: the changes of
+/// tangent vectors with the principal scores, by least squares. Modes with a deviation of at most
+/// `least` are left out.
+inline void set_directions(const Eigen::MatrixXd& tangents,
+                           const Principal_scores& principal,
+                           std::size_t most,
+                           double least,
+                           Modes_of_variation& result)
+{
+  const Eigen::Index n = tangents.cols();
   const double divisor = std::sqrt(std::max(1.0, static_cast<double>(n - 1)));
-  Eigen::MatrixXd directions(tangent.dimension(), 0);
+  Eigen::MatrixXd directions(tangents.rows(), 0);
   std::vector<double> deviations, shares;
   result.scores.resize(n, 0);
   for (Eigen::Index k = 0; k < principal.shares.size() && deviations.size() < most; ++k) {
     Eigen::VectorXd score = principal.vectors.col(k) * divisor;
-    Eigen::VectorXd u = z * score / (divisor * divisor);
+    Eigen::VectorXd u = tangents * score / (divisor * divisor);
     const double deviation = u.norm();
     if (!(deviation > least))
       continue;
@@ -211,7 +204,91 @@ Modes_of_variation find_modes(const Orl_layout& layout,
     deviations.push_back(deviation);
     shares.push_back(principal.shares[k]);
   }
-  if (deviations.empty() && most > 0 && measure == Mode_inner_product::branches)
+  result.directions = std::move(directions);
+  result.deviations =
+      Eigen::Map<Eigen::VectorXd>(deviations.data(), static_cast<Eigen::Index>(deviations.size()));
+  result.shares =
+      Eigen::Map<Eigen::VectorXd>(shares.data(), static_cast<Eigen::Index>(shares.size()));
+}
+
+/// Distances of tree `t` from the modes of all other trees, by number of modes.
+inline std::vector<double> left_out_distances(const Tree_features& features,
+                                              const Tree_covariance& covariance,
+                                              const Mode_inputs& in,
+                                              std::size_t t,
+                                              std::size_t most,
+                                              double least)
+{
+  const Eigen::Index n = in.values.cols();
+  std::vector<Eigen::Index> others;
+  std::vector<std::vector<char>> of_others;
+  for (std::size_t i = 0; i < in.has.size(); ++i)
+    if (i != t) {
+      others.push_back(static_cast<Eigen::Index>(i));
+      of_others.push_back(in.has[i]);
+    }
+  Eigen::MatrixXd x(in.values.rows(), n - 1), start(n - 1, n - 1);
+  for (Eigen::Index i = 0; i < n - 1; ++i) {
+    x.col(i) = in.values.col(others[static_cast<std::size_t>(i)]);
+    for (Eigen::Index j = 0; j < n - 1; ++j)
+      start(i, j) = covariance.covariance()(others[static_cast<std::size_t>(i)],
+                                            others[static_cast<std::size_t>(j)]);
+  }
+  const Tree_covariance rest(features, x, of_others, least, start, CGAL::Sequential_tag());
+  const Principal_scores p = principal_scores(rest.covariance());
+  const Eigen::Index k = std::min(p.vectors.cols(), static_cast<Eigen::Index>(most));
+  Mode_features modes;
+  set_features(features,
+               rest,
+               p.vectors.leftCols(k) * std::sqrt(static_cast<double>(n - 2)),
+               least,
+               modes);
+  return fit_modes(features, modes, in.values.col(static_cast<Eigen::Index>(t)), in.has[t])
+      .distance;
+}
+
+} // namespace internal
+
+/*!
+  Principal modes of variation: at most `most`, fewer if the trees differ in fewer directions. The
+  sign of a mode is such that its largest coordinate is positive.
+
+  Scores are the principal components of the `Tree_covariance` of `Tree_features`, which compare
+  trees by the branches that they have. With the centered tangent vectors `z_t` and the scores
+  `s_tk` of `n` trees, a mode is the regression `u_k = sum_t s_tk z_t / (n - 1)` of tangent vectors
+  on scores, so lengths of branches that come and go change with it, too. All modes together
+  reproduce all trees. If no branch differs between the trees that have it, trees differ only by
+  which branches they have; the modes are then those of `Mode_inner_product::metric`, as
+  `features.measure` says.
+*/
+template <class ConcurrencyTag>
+Modes_of_variation find_modes(const Orl_layout& layout,
+                              const std::vector<const Orl_coordinates*>& trees,
+                              const Orl_weights& weights,
+                              Orl_orientation orientation,
+                              const Orl_coordinates& mean,
+                              std::size_t most,
+                              Mode_inner_product measure = Mode_inner_product::branches)
+{
+  const Tangent_space tangent(layout, mean, weights);
+  const Tree_features features(layout, weights, orientation, mean, measure);
+  const internal::Mode_inputs in = internal::mode_inputs<ConcurrencyTag>(trees, tangent, features);
+  double size = 0;
+  for (const double length : mean.length)
+    size += length;
+  const double least = 1e-9 * size; // of equal trees
+  const Tree_covariance covariance(features,
+                                   in.values,
+                                   in.has,
+                                   least,
+                                   Eigen::MatrixXd(),
+                                   ConcurrencyTag());
+  const internal::Principal_scores principal = internal::principal_scores(covariance.covariance());
+  Modes_of_variation result;
+  result.mean = mean;
+  result.center = in.center;
+  internal::set_directions(in.tangents, principal, most, least, result);
+  if (result.deviations.size() == 0 && most > 0 && measure == Mode_inner_product::branches)
     return find_modes<ConcurrencyTag>(layout,
                                       trees,
                                       weights,
@@ -219,44 +296,15 @@ Modes_of_variation find_modes(const Orl_layout& layout,
                                       mean,
                                       most,
                                       Mode_inner_product::metric);
-  result.directions = std::move(directions);
-  result.deviations =
-      Eigen::Map<Eigen::VectorXd>(deviations.data(), static_cast<Eigen::Index>(deviations.size()));
-  result.shares =
-      Eigen::Map<Eigen::VectorXd>(shares.data(), static_cast<Eigen::Index>(shares.size()));
   result.features.measure = measure;
   internal::set_features(features, covariance, result.scores, least, result.features);
-  if (n > 2) {
+  if (trees.size() > 2) {
     result.left_out.resize(trees.size());
     pcs::internal::for_each_index<ConcurrencyTag>(
         trees.size(),
         [&](std::size_t t) {
-          std::vector<Eigen::Index> others;
-          std::vector<std::vector<char>> of_others;
-          for (std::size_t i = 0; i < trees.size(); ++i)
-            if (i != t) {
-              others.push_back(static_cast<Eigen::Index>(i));
-              of_others.push_back(has[i]);
-            }
-          Eigen::MatrixXd x(values.rows(), n - 1), start(n - 1, n - 1);
-          for (Eigen::Index i = 0; i < n - 1; ++i) {
-            x.col(i) = values.col(others[static_cast<std::size_t>(i)]);
-            for (Eigen::Index j = 0; j < n - 1; ++j)
-              start(i, j) = covariance.covariance()(others[static_cast<std::size_t>(i)],
-                                                    others[static_cast<std::size_t>(j)]);
-          }
-          const Tree_covariance rest(features, x, of_others, least, start, CGAL::Sequential_tag());
-          const internal::Principal_scores p = internal::principal_scores(rest.covariance());
-          const Eigen::Index k = std::min(p.vectors.cols(), static_cast<Eigen::Index>(most));
-          Mode_features modes;
-          internal::set_features(features,
-                                 rest,
-                                 p.vectors.leftCols(k) * std::sqrt(static_cast<double>(n - 2)),
-                                 least,
-                                 modes);
           result.left_out[t] =
-              internal::fit_modes(features, modes, values.col(static_cast<Eigen::Index>(t)), has[t])
-                  .distance;
+              internal::left_out_distances(features, covariance, in, t, most, least);
         },
         1);
   }

@@ -15,23 +15,45 @@
 #include <pcs/skeleton/result/residual_of_point.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace pcs {
 namespace skeleton {
 
-/// Fills in all that depends on the tree. `top_of_leaves` is the height of the highest leaves, in
-/// coordinates of the scan [L].
-inline void describe_tree(const Scan& scan,
-                          const std::vector<std::uint8_t>& is_used,
-                          const Axis_set& axes,
-                          const Branch_tree& tree,
-                          const std::vector<Index>& successors,
-                          const Vec3& up,
-                          double breast_height,
-                          double top_of_leaves,
-                          Skeleton_report& r)
+/// Height of the root above the lowest points of the tree: those for which `is_tree(i)` holds,
+/// without one in 500 [L].
+template <class IsTree>
+double
+elevation_of_root(const Scan& scan, const Branch_tree& tree, const Vec3& up, const IsTree& is_tree)
+{
+  std::vector<double> heights;
+  for (Index i = 0; i < scan.size(); ++i)
+    if (is_tree(i))
+      heights.push_back(up.dot(scan.points[i]));
+  if (heights.empty() || tree.nodes.empty())
+    return 0;
+  const auto low = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 500);
+  std::nth_element(heights.begin(), low, heights.end());
+  return std::max(0.0, up.dot(tree.nodes[0].point) - *low);
+}
+
+/*!
+  Fills in all that depends on the tree. `is_tree(i)` holds for the points of wood and leaves, and
+  `top_of_leaves` is the height of the highest leaves, in coordinates of the scan [L].
+*/
+template <class IsTree>
+void describe_tree(const Scan& scan,
+                   const std::vector<std::uint8_t>& is_used,
+                   const IsTree& is_tree,
+                   const Axis_set& axes,
+                   const Branch_tree& tree,
+                   const std::vector<Index>& successors,
+                   const Vec3& up,
+                   double breast_height,
+                   double top_of_leaves,
+                   Skeleton_report& r)
 {
   const double unit = scan.frame.unit;
   r.status = tree.nodes.empty() ? Status::nothing_to_do : Status::converged;
@@ -43,6 +65,7 @@ inline void describe_tree(const Scan& scan,
   report_sizes(tree, unit, up, breast_height, r);
   if (!tree.nodes.empty())
     r.height = std::max(r.height, unit * (top_of_leaves - up.dot(tree.nodes[0].point)));
+  r.root_elevation = unit * elevation_of_root(scan, tree, up, is_tree);
 }
 
 } // namespace skeleton

@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace pcs {
@@ -82,6 +83,50 @@ inline double diameter_of_section(const Branch_tree& tree, Index v, double share
   return 2 * std::min(most, std::max(least, (s2 * r1 - s1 * sr) / determinant));
 }
 
+namespace internal {
+
+/// A branch at breast height.
+struct Stem_crossing
+{
+  double diameter; ///< in the unit of the input [L]
+  Index branch;
+};
+
+/// Diameters of the stems: of the branches that rise to half of the height of the tree, the
+/// thickest and those at least half as thick. Without such a branch, the thickest one counts.
+/// `ground` is the height of the root.
+inline void report_stems(const Branch_tree& tree,
+                         const Vec3& up,
+                         double ground,
+                         std::vector<Stem_crossing> crossings,
+                         Skeleton_report& r)
+{
+  constexpr double min_rise = 0.5, min_ratio = 0.5; // of the height, of the thickest stem [-]
+  const auto top_of = [&](Index branch) {
+    double top = 0;
+    for (const Index v : tree.branches[branch].nodes)
+      top = std::max(top, up.dot(tree.nodes[v].point) - ground);
+    return top;
+  };
+  std::vector<double> tops(tree.branches.size(), 0);
+  double highest = 0;
+  for (Index b = 0; b < tree.branches.size(); ++b)
+    highest = std::max(highest, tops[b] = top_of(b));
+  std::sort(crossings.begin(), crossings.end(), [](const auto& a, const auto& b) {
+    return a.diameter != b.diameter ? a.diameter > b.diameter : a.branch < b.branch;
+  });
+  r.stem_diameters.clear();
+  for (const Stem_crossing& c : crossings)
+    if (tops[c.branch] >= min_rise * highest &&
+        (r.stem_diameters.empty() || c.diameter >= min_ratio * r.stem_diameters.front()))
+      r.stem_diameters.push_back(c.diameter);
+  if (r.stem_diameters.empty() && !crossings.empty())
+    r.stem_diameters.push_back(crossings.front().diameter);
+  r.diameter_at_breast_height = r.stem_diameters.empty() ? 0 : r.stem_diameters.front();
+}
+
+} // namespace internal
+
 /// Fills in what depends on the tree alone, in the unit of the input: `unit` times that of the
 /// tree. O(nodes).
 inline void report_sizes(const Branch_tree& tree,
@@ -104,11 +149,12 @@ inline void report_sizes(const Branch_tree& tree,
   if (tree.nodes.empty())
     return;
   const double ground = up.dot(tree.nodes[0].point);
-  double thickest = 0; // of all that crosses breast height
+  std::vector<internal::Stem_crossing> crossings;
   for (Index v = 0; v < tree.nodes.size(); ++v) {
     const Branch_node& node = tree.nodes[v];
     r.height = std::max(r.height, unit * (up.dot(node.point) - ground));
-    r.reach = std::max(r.reach, unit * (node.point - tree.nodes[0].point).norm());
+    r.max_root_distance =
+        std::max(r.max_root_distance, unit * (node.point - tree.nodes[0].point).norm());
     if (tree.is_base(v))
       continue;
     const Branch_node& below = tree.nodes[node.parent];
@@ -130,12 +176,9 @@ inline void report_sizes(const Branch_tree& tree,
     const double diameter =
         unit *
         diameter_of_section(tree, v, h0 / (h0 - h1), half_section_by_breast_height * breast_height);
-    if (order == 0 && r.diameter_at_breast_height == 0)
-      r.diameter_at_breast_height = diameter;
-    thickest = std::max(thickest, diameter);
+    crossings.push_back({diameter, node.branch});
   }
-  if (r.diameter_at_breast_height == 0) // the trunk was lost below, among buttresses for example
-    r.diameter_at_breast_height = thickest;
+  internal::report_stems(tree, up, ground, std::move(crossings), r);
 }
 
 /// Counts the points that no axis explains, and those of axes that are not part of the tree.
