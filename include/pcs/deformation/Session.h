@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Handles, constraints and frames of one editing session, on plain coordinates, without a look at
-// how.
+// Editing session on plain coordinates: the compiled part of `Point_set_deformation`.
 
 #ifndef PCS_DEFORMATION_SESSION_H
 #define PCS_DEFORMATION_SESSION_H

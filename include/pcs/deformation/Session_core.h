@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Handles, constraints and frames of one editing session, on plain coordinates; behind Session.h.
+// Editing session: handles, constraints, solving and writing.
 
 #ifndef PCS_DEFORMATION_SESSION_CORE_H
 #define PCS_DEFORMATION_SESSION_CORE_H

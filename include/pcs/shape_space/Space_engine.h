@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What a space of trees computes, without the types of the caller, and without a look at how.
+// Compiled part of the shape space: construction, geodesics, statistics and storage.
 
 #ifndef PCS_SHAPE_SPACE_SPACE_ENGINE_H
 #define PCS_SHAPE_SPACE_SPACE_ENGINE_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The caller's points, normals, vectors and tensors, read and written through property maps.
+// Access to the caller's points, normals, vectors and tensors through property maps.
 
 #ifndef PCS_DEFORMATION_ACCESS_POINT_ACCESS_H
 #define PCS_DEFORMATION_ACCESS_POINT_ACCESS_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The named parameters of a deformation as options of its session.
+// Named parameters of a deformation as options of its session.
 
 #ifndef PCS_DEFORMATION_ACCESS_READ_OPTIONS_H
 #define PCS_DEFORMATION_ACCESS_READ_OPTIONS_H

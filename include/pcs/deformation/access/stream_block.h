@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Writes the vectors of a block past the caches, where they are to lie one after the other.
+// Non-temporal stores of a block of vectors.
 
 #ifndef PCS_DEFORMATION_ACCESS_STREAM_BLOCK_H
 #define PCS_DEFORMATION_ACCESS_STREAM_BLOCK_H

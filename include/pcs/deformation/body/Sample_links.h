@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Which samples move a point, and how much: geodesic nearest samples and their weights.
+// Weights of the geodesically nearest samples of every point.
 
 #ifndef PCS_DEFORMATION_BODY_SAMPLE_LINKS_H
 #define PCS_DEFORMATION_BODY_SAMPLE_LINKS_H

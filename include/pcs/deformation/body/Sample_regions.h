@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Geodesic regions of the samples on the neighbour graph, and which regions touch.
+// Geodesic regions of the samples on the neighbour graph, and their adjacency.
 
 #ifndef PCS_DEFORMATION_BODY_SAMPLE_REGIONS_H
 #define PCS_DEFORMATION_BODY_SAMPLE_REGIONS_H

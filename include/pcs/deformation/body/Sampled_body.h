@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The part of a deformation that depends on the points only: order, neighbours, samples, links to
-// the samples.
+// The part of a deformation that depends on the points only: order, neighbours, samples, links.
 
 #ifndef PCS_DEFORMATION_BODY_SAMPLED_BODY_H
 #define PCS_DEFORMATION_BODY_SAMPLED_BODY_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Definitions of Sampled_body.h: builds everything from the points.
+// Definitions of Sampled_body.h.
 
 #ifndef PCS_DEFORMATION_BODY_SAMPLED_BODY_IMPL_H
 #define PCS_DEFORMATION_BODY_SAMPLED_BODY_IMPL_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The Voronoi cell of one point in the plane, cut out by its neighbours one after the other.
+// Voronoi cell of a point in the plane, clipped by its neighbours.
 
 #ifndef PCS_DEFORMATION_BODY_VORONOI_CELL_H
 #define PCS_DEFORMATION_BODY_VORONOI_CELL_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The Voronoi cells of points on a surface, each in the tangent plane of its point.
+// Voronoi cells of surface points in their tangent planes.
 
 #ifndef PCS_DEFORMATION_BODY_VORONOI_STARS_H
 #define PCS_DEFORMATION_BODY_VORONOI_STARS_H

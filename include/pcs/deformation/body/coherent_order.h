@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Whether the caller's order keeps neighbours together well enough to upsample the points in it.
+// Test whether the caller's order of points is spatially coherent.
 
 #ifndef PCS_DEFORMATION_BODY_COHERENT_ORDER_H
 #define PCS_DEFORMATION_BODY_COHERENT_ORDER_H

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Springs through the inside of a closed surface, against the loss of volume under strong twist and
-// bending.
+// Interior springs of a closed surface, which preserve volume under twist and bending.
 
 #ifndef PCS_DEFORMATION_BODY_INTERIOR_LINKS_H
 #define PCS_DEFORMATION_BODY_INTERIOR_LINKS_H

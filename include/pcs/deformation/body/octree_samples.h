@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Chooses samples from the leaves of an octree that is refined where most points are.
+// Sampling by an adaptive octree.
 
 #ifndef PCS_DEFORMATION_BODY_OCTREE_SAMPLES_H
 #define PCS_DEFORMATION_BODY_OCTREE_SAMPLES_H

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Edges and weights from the Voronoi cells of the points in their tangent planes: exact on
-// irregular samplings.
+// Cotangent weights of point sets from Voronoi cells in tangent planes.
 
 #ifndef PCS_DEFORMATION_BODY_VORONOI_GRAPH_H
 #define PCS_DEFORMATION_BODY_VORONOI_GRAPH_H

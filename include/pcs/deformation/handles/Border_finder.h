@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Finds the edges of a graph that lead out of the handles, without reading the whole graph.
+// Edges that leave the handles, found without a pass over the whole graph.
 
 #ifndef PCS_DEFORMATION_HANDLES_BORDER_FINDER_H
 #define PCS_DEFORMATION_HANDLES_BORDER_FINDER_H

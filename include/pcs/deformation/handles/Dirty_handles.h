@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Tells whose points have to be written, so that handles that do not move keep every bit.
+// Dirty flags of handles: points of unmoved handles keep every bit.
 
 #ifndef PCS_DEFORMATION_HANDLES_DIRTY_HANDLES_H
 #define PCS_DEFORMATION_HANDLES_DIRTY_HANDLES_H

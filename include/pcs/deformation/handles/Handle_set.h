@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The handles of an editing session: which sites they hold, how strongly, and how they move.
+// Handles of an editing session: their points, softness and motion.
 
 #ifndef PCS_DEFORMATION_HANDLES_HANDLE_SET_H
 #define PCS_DEFORMATION_HANDLES_HANDLE_SET_H

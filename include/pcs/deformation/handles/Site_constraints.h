@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What the handles of a session mean for its samples and for every site.
+// Constraints on samples and points that follow from the handles.
 
 #ifndef PCS_DEFORMATION_HANDLES_SITE_CONSTRAINTS_H
 #define PCS_DEFORMATION_HANDLES_SITE_CONSTRAINTS_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Ties samples to the border of a handle where it runs, not to the nearest sample inside.
+// Boundary nodes: samples tied to the border of a handle at its true distance.
 
 #ifndef PCS_DEFORMATION_HANDLES_ADD_BOUNDARY_NODES_H
 #define PCS_DEFORMATION_HANDLES_ADD_BOUNDARY_NODES_H

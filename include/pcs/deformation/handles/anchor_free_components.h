@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Handles that lie between the nodes of a network, and yet are all that holds it.
+// Anchoring of components that only handles between their nodes hold.
 
 #ifndef PCS_DEFORMATION_HANDLES_ANCHOR_FREE_COMPONENTS_H
 #define PCS_DEFORMATION_HANDLES_ANCHOR_FREE_COMPONENTS_H

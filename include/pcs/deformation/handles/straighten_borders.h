@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Where a handle ends on an irregular sampling: along its outermost points, not along each of its
-// points.
+// Straight borders of handles on irregular samplings.
 
 #ifndef PCS_DEFORMATION_HANDLES_STRAIGHTEN_BORDERS_H
 #define PCS_DEFORMATION_HANDLES_STRAIGHTEN_BORDERS_H

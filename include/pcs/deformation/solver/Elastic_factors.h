@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The constant matrices of an elastic network under handles, factorised.
+// Factorised constant matrices of an elastic network under handles.
 
 #ifndef PCS_DEFORMATION_SOLVER_ELASTIC_FACTORS_H
 #define PCS_DEFORMATION_SOLVER_ELASTIC_FACTORS_H

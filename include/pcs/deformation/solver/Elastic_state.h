@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What a node of an elastic network sees of its edges: right sides, energies and best maps.
+// Per-node state of an elastic network: right-hand sides, energies and best maps.
 
 #ifndef PCS_DEFORMATION_SOLVER_ELASTIC_STATE_H
 #define PCS_DEFORMATION_SOLVER_ELASTIC_STATE_H

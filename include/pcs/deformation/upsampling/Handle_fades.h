@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The points around the handles that are drawn towards the motion of the handle, ready for the
-// blocks of the upsampling.
+// Blend weights of the points around handles, in blocks of the upsampling.
 
 #ifndef PCS_DEFORMATION_UPSAMPLING_HANDLE_FADES_H
 #define PCS_DEFORMATION_UPSAMPLING_HANDLE_FADES_H

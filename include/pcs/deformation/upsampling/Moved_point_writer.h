@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Takes what the upsampling computes to the caller, and computes the points that it does not.
+// Output of upsampled points, and of points that are not upsampled.
 
 #ifndef PCS_DEFORMATION_UPSAMPLING_MOVED_POINT_WRITER_H
 #define PCS_DEFORMATION_UPSAMPLING_MOVED_POINT_WRITER_H

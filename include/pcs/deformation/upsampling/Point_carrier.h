@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Moves points that are not part of a session like the session's points around them.
+// Deformation of points outside the session by the samples around them.
 
 #ifndef PCS_DEFORMATION_UPSAMPLING_POINT_CARRIER_H
 #define PCS_DEFORMATION_UPSAMPLING_POINT_CARRIER_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Carries the motion of the samples to all points: blended affine maps, eight points at a time.
+// Upsampling: affine maps of samples blended over all points, eight points at a time.
 
 #ifndef PCS_DEFORMATION_UPSAMPLING_UPSAMPLING_H
 #define PCS_DEFORMATION_UPSAMPLING_UPSAMPLING_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Fades the exact motion of a handle into the blended motion of the points around it.
+// Blend of the exact motion of a handle into the motion of the points around it.
 
 #ifndef PCS_DEFORMATION_UPSAMPLING_BORDER_FADE_H
 #define PCS_DEFORMATION_UPSAMPLING_BORDER_FADE_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The affine maps of the samples, from the solved network, and of the handles.
+// Affine maps of samples from the solved network, and of handles.
 
 #ifndef PCS_DEFORMATION_UPSAMPLING_READ_MAPS_H
 #define PCS_DEFORMATION_UPSAMPLING_READ_MAPS_H

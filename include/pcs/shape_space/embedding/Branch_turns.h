@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// How each branch of one tree is turned to be that of another, and frames that differ by these
-// turns.
+// Rotations of the branches of one tree to those of another, and the frames that they define.
 
 #ifndef PCS_SHAPE_SPACE_EMBEDDING_BRANCH_TURNS_H
 #define PCS_SHAPE_SPACE_EMBEDDING_BRANCH_TURNS_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A tree on a topology, as lengths, directions and frames of its edges.
+// A tree on a topology: lengths, directions and frames of its edges.
 
 #ifndef PCS_SHAPE_SPACE_EMBEDDING_EMBEDDING_H
 #define PCS_SHAPE_SPACE_EMBEDDING_EMBEDDING_H

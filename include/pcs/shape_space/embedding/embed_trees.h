@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Coordinates of two trees on their common topology, with frames whose twist does not count as a
-// difference.
+// Coordinates of two trees on their common topology, with the twist of frames minimised.
 
 #ifndef PCS_SHAPE_SPACE_EMBEDDING_EMBED_TREES_H
 #define PCS_SHAPE_SPACE_EMBEDDING_EMBED_TREES_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Rotations in the middle of others: least sum of angles, or of their squares.
+// Geometric median and Frechet mean of rotations.
 
 #ifndef PCS_SHAPE_SPACE_EMBEDDING_MEAN_ROTATION_H
 #define PCS_SHAPE_SPACE_EMBEDDING_MEAN_ROTATION_H

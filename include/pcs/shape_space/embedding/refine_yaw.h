@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The turn of a tree about the vertical, from all edges that it has in common with another one.
+// Yaw between two trees from all edges that they have in common.
 
 #ifndef PCS_SHAPE_SPACE_EMBEDDING_REFINE_YAW_H
 #define PCS_SHAPE_SPACE_EMBEDDING_REFINE_YAW_H

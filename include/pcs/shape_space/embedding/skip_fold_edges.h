@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Axes that turn back and go on again: frames behind such a fold are carried on from before it.
+// Frames across folds of an axis, where edges reverse their direction.
 
 #ifndef PCS_SHAPE_SPACE_EMBEDDING_SKIP_FOLD_EDGES_H
 #define PCS_SHAPE_SPACE_EMBEDDING_SKIP_FOLD_EDGES_H

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The points of a family of trees: those of one scan on each branch, and their partners in all
-// other scans.
+// Points of a family: those of one scan per branch, with correspondences in all other scans.
 
 #ifndef PCS_SHAPE_SPACE_FAMILY_FAMILY_POINTS_H
 #define PCS_SHAPE_SPACE_FAMILY_FAMILY_POINTS_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Definitions of Family_points.h: what is done once; and which points these are.
+// Definitions of Family_points.h.
 
 #ifndef PCS_SHAPE_SPACE_FAMILY_FAMILY_POINTS_IMPL_H
 #define PCS_SHAPE_SPACE_FAMILY_FAMILY_POINTS_IMPL_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A tree of the space as a tree that others are matched to: its branches are those of the topology.
+// A tree of the space as the target of a matching.
 
 #ifndef PCS_SHAPE_SPACE_FAMILY_REFERENCE_TREE_H
 #define PCS_SHAPE_SPACE_FAMILY_REFERENCE_TREE_H

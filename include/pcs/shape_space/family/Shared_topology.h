@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// One set of branches and nodes for any number of trees, and the coordinates of the trees on it.
+// Common topology of any number of trees, and their coordinates on it.
 
 #ifndef PCS_SHAPE_SPACE_FAMILY_SHARED_TOPOLOGY_H
 #define PCS_SHAPE_SPACE_FAMILY_SHARED_TOPOLOGY_H

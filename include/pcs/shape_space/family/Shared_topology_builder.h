@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Finds one topology for any number of trees, by matching each to a tree in their middle, several
-// times.
+// Common topology of any number of trees, by repeated matching to a mean tree.
 
 #ifndef PCS_SHAPE_SPACE_FAMILY_SHARED_TOPOLOGY_BUILDER_H
 #define PCS_SHAPE_SPACE_FAMILY_SHARED_TOPOLOGY_BUILDER_H

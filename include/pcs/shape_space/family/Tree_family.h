@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Trees on one topology: all that means, modes and new trees are made from.
+// A family of trees on one topology: input of means, modes and samples.
 
 #ifndef PCS_SHAPE_SPACE_FAMILY_TREE_FAMILY_H
 #define PCS_SHAPE_SPACE_FAMILY_TREE_FAMILY_H

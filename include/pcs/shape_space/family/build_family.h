@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// From any number of trees and scans to a family with points.
+// Construction of a family with points from any number of trees and scans.
 
 #ifndef PCS_SHAPE_SPACE_FAMILY_BUILD_FAMILY_H
 #define PCS_SHAPE_SPACE_FAMILY_BUILD_FAMILY_H

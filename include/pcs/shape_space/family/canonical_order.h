@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// An order of trees that does not depend on how they were given.
+// Canonical order of trees, independent of the order of input.
 
 #ifndef PCS_SHAPE_SPACE_FAMILY_CANONICAL_ORDER_H
 #define PCS_SHAPE_SPACE_FAMILY_CANONICAL_ORDER_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Families of trees from their topology, and further trees on it.
+// Families of trees from their topology, and embedding of further trees.
 
 #ifndef PCS_SHAPE_SPACE_FAMILY_MAKE_FAMILY_H
 #define PCS_SHAPE_SPACE_FAMILY_MAKE_FAMILY_H

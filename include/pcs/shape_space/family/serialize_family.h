@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A family of trees as plain numbers, and back; numbers may come from a file and are checked.
+// Serialisation of a family, with checks of numbers that come from a file.
 
 #ifndef PCS_SHAPE_SPACE_FAMILY_SERIALIZE_FAMILY_H
 #define PCS_SHAPE_SPACE_FAMILY_SERIALIZE_FAMILY_H

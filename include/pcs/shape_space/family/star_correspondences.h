@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Points of many scans that belong together: transport from one sampling to each scan.
+// Point correspondences of many scans: transport from one sampling to each scan.
 
 #ifndef PCS_SHAPE_SPACE_FAMILY_STAR_CORRESPONDENCES_H
 #define PCS_SHAPE_SPACE_FAMILY_STAR_CORRESPONDENCES_H

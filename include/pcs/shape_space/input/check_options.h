@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The rules for the options of correspondences.
+// Checks of the options of correspondences.
 
 #ifndef PCS_SHAPE_SPACE_INPUT_CHECK_OPTIONS_H
 #define PCS_SHAPE_SPACE_INPUT_CHECK_OPTIONS_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The rules for the options of new trees and for weights of trees.
+// Checks of the options of sampling and of tree weights.
 
 #ifndef PCS_SHAPE_SPACE_INPUT_CHECK_SAMPLING_H
 #define PCS_SHAPE_SPACE_INPUT_CHECK_SAMPLING_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Skeletons that end before their scans do: ends are drawn out to where the points end.
+// Extension of skeletons to the ends of their scans.
 
 #ifndef PCS_SHAPE_SPACE_INPUT_EXTEND_AXES_H
 #define PCS_SHAPE_SPACE_INPUT_EXTEND_AXES_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The named parameters of a space of trees as options of its stages.
+// Named parameters of a shape space as options of its stages.
 
 #ifndef PCS_SHAPE_SPACE_INPUT_READ_OPTIONS_H
 #define PCS_SHAPE_SPACE_INPUT_READ_OPTIONS_H

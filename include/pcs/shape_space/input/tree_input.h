@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// From the caller's graphs and ranges to arrays.
+// Copy of the caller's graphs and ranges to arrays, with all checks.
 
 #ifndef PCS_SHAPE_SPACE_INPUT_TREE_INPUT_H
 #define PCS_SHAPE_SPACE_INPUT_TREE_INPUT_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Which branch of one tree is which of another, level by level below matched parents.
+// Top-down matching of the branches of two trees: children are assigned below matched parents.
 
 #ifndef PCS_SHAPE_SPACE_MATCHING_BRANCH_MATCHING_H
 #define PCS_SHAPE_SPACE_MATCHING_BRANCH_MATCHING_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Branches that correspond, and the weights of the energy that decides.
+// A pair of corresponding branches.
 
 #ifndef PCS_SHAPE_SPACE_MATCHING_MATCHED_BRANCH_H
 #define PCS_SHAPE_SPACE_MATCHING_MATCHED_BRANCH_H

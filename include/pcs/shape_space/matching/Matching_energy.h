@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What it costs to make one branch another: bending, stretching, turning, moving along the parent,
-// or growing alone.
+// Energy of a pair of branches: bending, stretching, rotation, attachment, and unmatched subtrees.
 
 #ifndef PCS_SHAPE_SPACE_MATCHING_MATCHING_ENERGY_H
 #define PCS_SHAPE_SPACE_MATCHING_MATCHING_ENERGY_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What is known already of pairs of branches below any parents.
+// Memoisation of the matching of branch pairs below any parents.
 
 #ifndef PCS_SHAPE_SPACE_MATCHING_MATCHING_MEMO_H
 #define PCS_SHAPE_SPACE_MATCHING_MATCHING_MEMO_H

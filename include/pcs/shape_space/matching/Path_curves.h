@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The paths of two trees as curves that can be compared: in one unit, in one frame, up to where
-// both have grown.
+// Branch paths of two trees as curves in common units and frames.
 
 #ifndef PCS_SHAPE_SPACE_MATCHING_PATH_CURVES_H
 #define PCS_SHAPE_SPACE_MATCHING_PATH_CURVES_H

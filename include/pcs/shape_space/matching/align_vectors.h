@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The rotation that lays one bundle of vectors on another, from a rotation that is near.
+// Rotation that aligns two sets of vectors (Wahba's problem), from an initial guess.
 
 #ifndef PCS_SHAPE_SPACE_MATCHING_ALIGN_VECTORS_H
 #define PCS_SHAPE_SPACE_MATCHING_ALIGN_VECTORS_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// One set of branches and nodes for two trees, from branches that were matched.
+// Common topology of two trees from matched branches.
 
 #ifndef PCS_SHAPE_SPACE_MATCHING_BUILD_TOPOLOGY_H
 #define PCS_SHAPE_SPACE_MATCHING_BUILD_TOPOLOGY_H

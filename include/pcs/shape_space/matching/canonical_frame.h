@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Axes that turn with a tree, so that nothing depends on how it stands in the caller's axes.
+// Canonical frame of a tree, for results independent of its pose.
 
 #ifndef PCS_SHAPE_SPACE_MATCHING_CANONICAL_FRAME_H
 #define PCS_SHAPE_SPACE_MATCHING_CANONICAL_FRAME_H

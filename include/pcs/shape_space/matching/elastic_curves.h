@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Elastic matching of two curves by square-root velocities and dynamic programming.
+// Elastic matching of curves by square-root velocities and dynamic programming.
 
 #ifndef PCS_SHAPE_SPACE_MATCHING_ELASTIC_CURVES_H
 #define PCS_SHAPE_SPACE_MATCHING_ELASTIC_CURVES_H

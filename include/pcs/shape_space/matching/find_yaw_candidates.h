@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Turns of a tree about the vertical after which its branches may fit those of another one better.
+// Candidates for the yaw between two trees.
 
 #ifndef PCS_SHAPE_SPACE_MATCHING_FIND_YAW_CANDIDATES_H
 #define PCS_SHAPE_SPACE_MATCHING_FIND_YAW_CANDIDATES_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Assignment of rows to columns at least cost, where leaving both alone is free.
+// Linear assignment with optional pairs: shortest augmenting paths.
 
 #ifndef PCS_SHAPE_SPACE_MATCHING_LINEAR_ASSIGNMENT_H
 #define PCS_SHAPE_SPACE_MATCHING_LINEAR_ASSIGNMENT_H

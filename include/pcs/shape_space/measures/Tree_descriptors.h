@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A tree in a few figures: length, height, width of the crown, branches and their angles by order.
+// Shape descriptors of a tree: length, height, crown width, branch counts and angles by order.
 
 #ifndef PCS_SHAPE_SPACE_MEASURES_TREE_DESCRIPTORS_H
 #define PCS_SHAPE_SPACE_MEASURES_TREE_DESCRIPTORS_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What became of each branch between two dates.
+// Changes of each branch between two dates.
 
 #ifndef PCS_SHAPE_SPACE_MEASURES_CHANGE_TABLE_H
 #define PCS_SHAPE_SPACE_MEASURES_CHANGE_TABLE_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// How two trees stand to each other.
+// Pose of two trees: up direction, and whether yaw is free.
 
 #ifndef PCS_SHAPE_SPACE_MODEL_ALIGNMENT_OPTIONS_H
 #define PCS_SHAPE_SPACE_MODEL_ALIGNMENT_OPTIONS_H

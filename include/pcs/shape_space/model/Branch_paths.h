@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The branches that a tree may be taken apart into: longest continuations, and nearly as long ones.
+// Decompositions of a tree into branch paths: longest continuations and alternatives.
 
 #ifndef PCS_SHAPE_SPACE_MODEL_BRANCH_PATHS_H
 #define PCS_SHAPE_SPACE_MODEL_BRANCH_PATHS_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What the building of a space is told, and what it finds for more than two trees.
+// Options of the construction of a space.
 
 #ifndef PCS_SHAPE_SPACE_MODEL_BUILD_OPTIONS_H
 #define PCS_SHAPE_SPACE_MODEL_BUILD_OPTIONS_H

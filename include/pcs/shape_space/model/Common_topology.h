@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// One set of branches and nodes for two trees: every node of either tree, with its counterpart on
-// the other.
+// Common topology of two trees, with the counterpart of every node.
 
 #ifndef PCS_SHAPE_SPACE_MODEL_COMMON_TOPOLOGY_H
 #define PCS_SHAPE_SPACE_MODEL_COMMON_TOPOLOGY_H

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Orientations, radii and lengths of the edges of a topology, and the tree in space that they stand
-// for.
+// Orientation-radius-length coordinates of a tree, its metric, and its geometry in space.
 
 #ifndef PCS_SHAPE_SPACE_MODEL_ORL_COORDINATES_H
 #define PCS_SHAPE_SPACE_MODEL_ORL_COORDINATES_H

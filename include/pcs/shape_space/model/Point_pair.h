@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Points of two trees that correspond.
+// Corresponding points of two trees.
 
 #ifndef PCS_SHAPE_SPACE_MODEL_POINT_PAIR_H
 #define PCS_SHAPE_SPACE_MODEL_POINT_PAIR_H

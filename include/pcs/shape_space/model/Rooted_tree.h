@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A rooted tree of any Boost.Graph type, copied to arrays: parents before children, coincident
-// nodes joined.
+// A rooted tree of any Boost.Graph type as arrays: parents first, coincident nodes merged.
 
 #ifndef PCS_SHAPE_SPACE_MODEL_ROOTED_TREE_H
 #define PCS_SHAPE_SPACE_MODEL_ROOTED_TREE_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Two trees on their common topology: all that a shape space of them keeps.
+// Two trees on their common topology, with corresponding points.
 
 #ifndef PCS_SHAPE_SPACE_PAIR_EMBEDDED_PAIR_H
 #define PCS_SHAPE_SPACE_PAIR_EMBEDDED_PAIR_H

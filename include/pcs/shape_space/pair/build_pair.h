@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// From two trees and their scans to corresponding branches, edges and points.
+// Correspondences of branches, edges and points of two trees.
 
 #ifndef PCS_SHAPE_SPACE_PAIR_BUILD_PAIR_H
 #define PCS_SHAPE_SPACE_PAIR_BUILD_PAIR_H

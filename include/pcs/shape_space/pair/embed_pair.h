@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Two trees on their common topology, and the edges of their points.
+// Embedding of two trees on their common topology, and assignment of their points.
 
 #ifndef PCS_SHAPE_SPACE_PAIR_EMBED_PAIR_H
 #define PCS_SHAPE_SPACE_PAIR_EMBED_PAIR_H

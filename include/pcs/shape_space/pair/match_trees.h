@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The common topology of two trees, for the kind of growth that explains more of what differs.
+// Common topology of two trees under the growth hypothesis that explains them better.
 
 #ifndef PCS_SHAPE_SPACE_PAIR_MATCH_TREES_H
 #define PCS_SHAPE_SPACE_PAIR_MATCH_TREES_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The common topology of two trees, to be kept and found again.
+// Serialisation of the common topology of two trees.
 
 #ifndef PCS_SHAPE_SPACE_PAIR_SERIALIZE_TOPOLOGY_H
 #define PCS_SHAPE_SPACE_PAIR_SERIALIZE_TOPOLOGY_H

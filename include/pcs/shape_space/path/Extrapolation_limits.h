@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Beyond an end of a path: turns do not add up along branches, and nothing grows into the ground.
+// Limits of extrapolation beyond the ends of a geodesic.
 
 #ifndef PCS_SHAPE_SPACE_PATH_EXTRAPOLATION_LIMITS_H
 #define PCS_SHAPE_SPACE_PATH_EXTRAPOLATION_LIMITS_H

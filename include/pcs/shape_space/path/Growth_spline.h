@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A smooth path through several trees in the order of time.
+// Monotone spline through several trees in the order of time.
 
 #ifndef PCS_SHAPE_SPACE_PATH_GROWTH_SPLINE_H
 #define PCS_SHAPE_SPACE_PATH_GROWTH_SPLINE_H

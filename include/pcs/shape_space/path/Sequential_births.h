@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Branches that only one end of a path has, born one after the other: a branch when the tip of its
-// parent passes its base.
+// Sequential emergence of branches along a geodesic.
 
 #ifndef PCS_SHAPE_SPACE_PATH_SEQUENTIAL_BIRTHS_H
 #define PCS_SHAPE_SPACE_PATH_SEQUENTIAL_BIRTHS_H

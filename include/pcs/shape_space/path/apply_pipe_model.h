@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Radii at forks by the pipe model: branches together carry no more than what they grow from.
+// Pipe model at forks of trees of a space.
 
 #ifndef PCS_SHAPE_SPACE_PATH_APPLY_PIPE_MODEL_H
 #define PCS_SHAPE_SPACE_PATH_APPLY_PIPE_MODEL_H

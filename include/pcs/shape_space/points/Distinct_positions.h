@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Points that stand in the same place, as one.
+// Groups of coincident points.
 
 #ifndef PCS_SHAPE_SPACE_POINTS_DISTINCT_POSITIONS_H
 #define PCS_SHAPE_SPACE_POINTS_DISTINCT_POSITIONS_H

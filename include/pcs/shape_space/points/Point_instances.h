@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Points of any tree on the path between two, from pairs of points in tube coordinates.
+// Points of trees on a geodesic, from pairs of points in tube coordinates.
 
 #ifndef PCS_SHAPE_SPACE_POINTS_POINT_INSTANCES_H
 #define PCS_SHAPE_SPACE_POINTS_POINT_INSTANCES_H

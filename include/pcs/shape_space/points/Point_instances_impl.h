@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Definitions of Point_instances.h: what is done once.
+// Definitions of Point_instances.h.
 
 #ifndef PCS_SHAPE_SPACE_POINTS_POINT_INSTANCES_IMPL_H
 #define PCS_SHAPE_SPACE_POINTS_POINT_INSTANCES_IMPL_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Which edge of a tree each point of its scan lies on, by distance and normals.
+// Assignment of scan points to the edges of a tree by distance and normals.
 
 #ifndef PCS_SHAPE_SPACE_POINTS_ASSIGN_POINTS_H
 #define PCS_SHAPE_SPACE_POINTS_ASSIGN_POINTS_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Blades of leaves: edges whose sections are flat, not round.
+// Edges with flat cross-sections: blades of leaves.
 
 #ifndef PCS_SHAPE_SPACE_POINTS_FLAT_SECTIONS_H
 #define PCS_SHAPE_SPACE_POINTS_FLAT_SECTIONS_H

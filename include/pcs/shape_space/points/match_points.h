@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Transport between two sets of points in the same place; every point gets a partner.
+// Optimal transport between two sets of points, with a nearest-neighbour fallback.
 
 #ifndef PCS_SHAPE_SPACE_POINTS_MATCH_POINTS_H
 #define PCS_SHAPE_SPACE_POINTS_MATCH_POINTS_H

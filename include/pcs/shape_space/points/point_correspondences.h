@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Which point of one tree becomes which of another: transport along corresponding edges.
+// Point correspondences of two trees by transport along corresponding edges.
 
 #ifndef PCS_SHAPE_SPACE_POINTS_POINT_CORRESPONDENCES_H
 #define PCS_SHAPE_SPACE_POINTS_POINT_CORRESPONDENCES_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Edges of the common topology as pieces of the surface of a tree.
+// Surface patches of the edges of the common topology.
 
 #ifndef PCS_SHAPE_SPACE_POINTS_SURFACE_PATCHES_H
 #define PCS_SHAPE_SPACE_POINTS_SURFACE_PATCHES_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Points in the frame of an edge: along, around and away from it.
+// Tube coordinates of points: along, around and away from an edge.
 
 #ifndef PCS_SHAPE_SPACE_POINTS_TUBE_COORDINATES_H
 #define PCS_SHAPE_SPACE_POINTS_TUBE_COORDINATES_H

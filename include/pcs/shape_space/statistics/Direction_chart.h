@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Directions of the edges of many trees as numbers that can be averaged and drawn: slant and
-// azimuth.
+// Slant and azimuth chart: edge directions as numbers for averages and random draws.
 
 #ifndef PCS_SHAPE_SPACE_STATISTICS_DIRECTION_CHART_H
 #define PCS_SHAPE_SPACE_STATISTICS_DIRECTION_CHART_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// How trees differ from their mean.
+// Modes of variation of a family, and scores of its trees.
 
 #ifndef PCS_SHAPE_SPACE_STATISTICS_MODES_OF_VARIATION_H
 #define PCS_SHAPE_SPACE_STATISTICS_MODES_OF_VARIATION_H

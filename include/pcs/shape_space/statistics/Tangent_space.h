@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Trees near a tree, as vectors.
+// Tangent space of the shape space at a tree.
 
 #ifndef PCS_SHAPE_SPACE_STATISTICS_TANGENT_SPACE_H
 #define PCS_SHAPE_SPACE_STATISTICS_TANGENT_SPACE_H

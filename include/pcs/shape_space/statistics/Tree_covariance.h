@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// How alike trees are, from what their branches show, where some of them lack some branches.
+// Covariance of trees of which some lack branches, by expectation maximisation.
 
 #ifndef PCS_SHAPE_SPACE_STATISTICS_TREE_COVARIANCE_H
 #define PCS_SHAPE_SPACE_STATISTICS_TREE_COVARIANCE_H

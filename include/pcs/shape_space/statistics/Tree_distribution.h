@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A distribution of trees, learned from a few, and new trees drawn from it.
+// Distribution of trees, estimated from a family, and random trees drawn from it.
 
 #ifndef PCS_SHAPE_SPACE_STATISTICS_TREE_DISTRIBUTION_H
 #define PCS_SHAPE_SPACE_STATISTICS_TREE_DISTRIBUTION_H

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Trees as numbers by which they are compared: what each branch looks like, seen from where it
-// grows.
+// Feature vectors of trees: the shape of each branch relative to its base.
 
 #ifndef PCS_SHAPE_SPACE_STATISTICS_TREE_FEATURES_H
 #define PCS_SHAPE_SPACE_STATISTICS_TREE_FEATURES_H

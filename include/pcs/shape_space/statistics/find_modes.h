@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// How trees differ from their mean: principal directions in the tangent space there.
+// Principal modes of variation in the tangent space at the mean.
 
 #ifndef PCS_SHAPE_SPACE_STATISTICS_FIND_MODES_H
 #define PCS_SHAPE_SPACE_STATISTICS_FIND_MODES_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Trees in the middle of others: least sum of distances, or of their squares.
+// Geometric median and Frechet mean of trees.
 
 #ifndef PCS_SHAPE_SPACE_STATISTICS_MEAN_TREE_H
 #define PCS_SHAPE_SPACE_STATISTICS_MEAN_TREE_H

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Brings a tree that was drawn into the range of others in angles of branches and in size, by the
-// least change.
+// Projection of a random tree to the range of the family in branch angles and size.
 
 #ifndef PCS_SHAPE_SPACE_STATISTICS_PROJECT_TO_RANGE_H
 #define PCS_SHAPE_SPACE_STATISTICS_PROJECT_TO_RANGE_H

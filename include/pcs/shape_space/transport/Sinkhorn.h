@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Regularised transport over a sparse list of arcs, as in the text, in logarithms.
+// Entropic optimal transport (Sinkhorn) on a sparse list of arcs, in the log domain.
 
 #ifndef PCS_SHAPE_SPACE_TRANSPORT_SINKHORN_H
 #define PCS_SHAPE_SPACE_TRANSPORT_SINKHORN_H

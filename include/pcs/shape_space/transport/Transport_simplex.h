@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Exact transport between two weighted sets over a sparse list of arcs: the network simplex method
-// in integers.
+// Exact optimal transport on a sparse list of arcs: integer network simplex.
 
 #ifndef PCS_SHAPE_SPACE_TRANSPORT_TRANSPORT_SIMPLEX_H
 #define PCS_SHAPE_SPACE_TRANSPORT_TRANSPORT_SIMPLEX_H

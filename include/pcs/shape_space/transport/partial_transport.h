@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Transport of what is near, while the rest of the mass stays where it is.
+// Partial optimal transport within a limited distance.
 
 #ifndef PCS_SHAPE_SPACE_TRANSPORT_PARTIAL_TRANSPORT_H
 #define PCS_SHAPE_SPACE_TRANSPORT_PARTIAL_TRANSPORT_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Fits the positions and radii of a whole axis to its points at once.
+// Robust least-squares fit of a whole axis: positions and radii of all nodes to all points.
 
 #ifndef PCS_SKELETON_AXES_AXIS_FIT_H
 #define PCS_SKELETON_AXES_AXIS_FIT_H

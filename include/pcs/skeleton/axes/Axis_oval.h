@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The oval of an axis that is seen from one side: what its shape alone does to the distances of the
-// points.
+// Common oval cross-section of an axis that is seen from one side.
 
 #ifndef PCS_SKELETON_AXES_AXIS_OVAL_H
 #define PCS_SKELETON_AXES_AXIS_OVAL_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// From a chain of layer parts to a fitted axis: start, fit, gather again, fit again, judge.
+// Fit of one chain of layers: start, fit, gather points, fit again, accept or reject.
 
 #ifndef PCS_SKELETON_AXES_CHAIN_FIT_H
 #define PCS_SKELETON_AXES_CHAIN_FIT_H

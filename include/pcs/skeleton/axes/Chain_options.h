@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Rules of the fit of one chain, what it works on, and what comes out of it.
+// Options, input and output of the fit of one chain.
 
 #ifndef PCS_SKELETON_AXES_CHAIN_OPTIONS_H
 #define PCS_SKELETON_AXES_CHAIN_OPTIONS_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What fits say about the scan: noise, density and facing, learned as they come.
+// Noise, point density and visibility of a scan, learned from fitted axes.
 
 #ifndef PCS_SKELETON_AXES_NOISE_AND_DENSITY_MODEL_H
 #define PCS_SKELETON_AXES_NOISE_AND_DENSITY_MODEL_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Where an axis ends: trial pieces beyond it, points that end, points inside of it.
+// Ends of axes: extension by trial pieces, and trimming where points end or lie inside.
 
 #ifndef PCS_SKELETON_AXES_CHAIN_ENDS_H
 #define PCS_SKELETON_AXES_CHAIN_ENDS_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The first guess of an axis: the centres of the layers of a chain.
+// Initial guess of an axis from the centers of the layers of a chain.
 
 #ifndef PCS_SKELETON_AXES_CHAIN_START_H
 #define PCS_SKELETON_AXES_CHAIN_START_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Decomposes a layer tree into chains: at every fork one child continues, the others begin a chain.
+// Path decomposition of a layer tree: one child continues the chain at every fork.
 
 #ifndef PCS_SKELETON_AXES_DECOMPOSE_CHAINS_H
 #define PCS_SKELETON_AXES_DECOMPOSE_CHAINS_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Drops axes of two points where they are not what remains of thin branches.
+// Removal of axes of two points that are not parts of thin branches.
 
 #ifndef PCS_SKELETON_AXES_DROP_TWO_POINT_AXES_H
 #define PCS_SKELETON_AXES_DROP_TWO_POINT_AXES_H

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Finds all axes of a scan: chains of layers, long ones first, in passes over what is not explained
-// yet.
+// Fit of all axes of a scan: chains by decreasing length, in passes over unexplained points.
 
 #ifndef PCS_SKELETON_AXES_FIT_AXES_H
 #define PCS_SKELETON_AXES_FIT_AXES_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Fits the fields of density and of sides seen to samples.
+// Regression of the density and visibility fields on samples.
 
 #ifndef PCS_SKELETON_AXES_FIT_FIELDS_H
 #define PCS_SKELETON_AXES_FIT_FIELDS_H

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Radii by counting points: how many lie on an axis at each node, and how much of the section there
-// can have any.
+// Point counts of the sections of an axis, and how much of each section can have points.
 
 #ifndef PCS_SKELETON_AXES_SECTION_COUNTS_H
 #define PCS_SKELETON_AXES_SECTION_COUNTS_H

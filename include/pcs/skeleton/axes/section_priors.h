@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What a fit expects of each section before it looks at the shape: radii by counting points and by
-// their width, and places.
+// Priors of radii and positions of sections: point counts, widths, visibility and taper.
 
 #ifndef PCS_SKELETON_AXES_SECTION_PRIORS_H
 #define PCS_SKELETON_AXES_SECTION_PRIORS_H

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// On which side of the sections of an axis its points lie, and what that tells of its place and
-// radius.
+// One-sided visibility of sections: view direction, and bounds on position and radius.
 
 #ifndef PCS_SKELETON_AXES_SECTION_VISIBILITY_H
 #define PCS_SKELETON_AXES_SECTION_VISIBILITY_H

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Joins axes end to end that are pieces of one branch: paths from the root lose a branch where
-// another one crosses it.
+// Fusion of collinear axes that are pieces of one branch.
 
 #ifndef PCS_SKELETON_BRANCHING_FUSE_AXES_H
 #define PCS_SKELETON_BRANCHING_FUSE_AXES_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Joined axes as one rooted tree of nodes, grouped in branches.
+// Joined axes as one rooted tree of nodes, grouped into branches.
 
 #ifndef PCS_SKELETON_BRANCHING_GROUP_BRANCHES_H
 #define PCS_SKELETON_BRANCHING_GROUP_BRANCHES_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Decides for every axis on which other one it sits, and where: one rooted tree of branches.
+// Choice of the parent of every axis by log-odds: one rooted tree of branches.
 
 #ifndef PCS_SKELETON_BRANCHING_JOIN_AXES_H
 #define PCS_SKELETON_BRANCHING_JOIN_AXES_H

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Drops branches that are too short to be told from a bump, a bend or the ragged end of the one
-// that they sit on.
+// Pruning of branches that are too short to be distinguished from bumps and bends.
 
 #ifndef PCS_SKELETON_BRANCHING_PRUNE_STUBS_H
 #define PCS_SKELETON_BRANCHING_PRUNE_STUBS_H

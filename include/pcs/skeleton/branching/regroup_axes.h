@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Makes the branches of a tree its axes, so that they can be joined once more.
+// Branches of a tree as new axes, for another round of joining.
 
 #ifndef PCS_SKELETON_BRANCHING_REGROUP_AXES_H
 #define PCS_SKELETON_BRANCHING_REGROUP_AXES_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Which axis stands on the root, and which of its ends.
+// The axis at the root, and its end there.
 
 #ifndef PCS_SKELETON_BRANCHING_ROOT_AXIS_H
 #define PCS_SKELETON_BRANCHING_ROOT_AXIS_H

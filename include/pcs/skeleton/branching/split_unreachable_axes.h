@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Takes axes apart that were fused by their bases and that nothing reaches.
+// Splitting of fused axes that cannot be reached from the root.
 
 #ifndef PCS_SKELETON_BRANCHING_SPLIT_UNREACHABLE_AXES_H
 #define PCS_SKELETON_BRANCHING_SPLIT_UNREACHABLE_AXES_H

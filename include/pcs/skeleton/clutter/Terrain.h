@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The surface of the ground below a tree, on slopes and with relief, as heights over a level grid.
+// Digital terrain model: the ground below a tree as heights on a grid.
 
 #ifndef PCS_SKELETON_CLUTTER_TERRAIN_H
 #define PCS_SKELETON_CLUTTER_TERRAIN_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Leaves walls, other flat faces and what stands beside them out of a scan, step by step.
+// Removal of walls, other flat faces, and objects beside them, in rounds.
 
 #ifndef PCS_SKELETON_CLUTTER_WALL_REMOVAL_H
 #define PCS_SKELETON_CLUTTER_WALL_REMOVAL_H

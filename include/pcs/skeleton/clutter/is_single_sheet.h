@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Recognises points that fill a sheet, and scans that are nothing else.
+// Thin-sheet test for groups of points and whole scans.
 
 #ifndef PCS_SKELETON_CLUTTER_IS_SINGLE_SHEET_H
 #define PCS_SKELETON_CLUTTER_IS_SINGLE_SHEET_H

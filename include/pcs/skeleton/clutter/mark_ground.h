@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Recognises a slice of ground below a tree, so that it is not taken for roots.
+// Ground classification below a tree.
 
 #ifndef PCS_SKELETON_CLUTTER_MARK_GROUND_H
 #define PCS_SKELETON_CLUTTER_MARK_GROUND_H

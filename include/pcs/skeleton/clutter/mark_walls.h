@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Recognises walls, roofs and other flat faces of things that are no tree.
+// Detection of walls, roofs and other flat faces.
 
 #ifndef PCS_SKELETON_CLUTTER_MARK_WALLS_H
 #define PCS_SKELETON_CLUTTER_MARK_WALLS_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The trees of a scan of several: where they stand, and whose every point is.
+// Individual tree segmentation of a stand: positions, and the tree label of every point.
 
 #ifndef PCS_SKELETON_FOREST_STAND_H
 #define PCS_SKELETON_FOREST_STAND_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Definitions of Forest.h.
+// Definitions of Stand.h.
 
 #ifndef PCS_SKELETON_FOREST_STAND_IMPL_H
 #define PCS_SKELETON_FOREST_STAND_IMPL_H

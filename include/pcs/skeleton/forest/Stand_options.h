@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What a stem is, and which points are looked at for it.
+// Options of stem detection and tree segmentation.
 
 #ifndef PCS_SKELETON_FOREST_STAND_OPTIONS_H
 #define PCS_SKELETON_FOREST_STAND_OPTIONS_H

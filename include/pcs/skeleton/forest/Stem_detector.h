@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Finds the stems in a scan, and whose its points are.
+// Stem detection in a stand, and assignment of axes and points to trees.
 
 #ifndef PCS_SKELETON_FOREST_STEM_DETECTOR_H
 #define PCS_SKELETON_FOREST_STEM_DETECTOR_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// One point of every cube of a scan.
+// Voxel thinning: one point per cube.
 
 #ifndef PCS_SKELETON_FOREST_THINNED_POINTS_H
 #define PCS_SKELETON_FOREST_THINNED_POINTS_H

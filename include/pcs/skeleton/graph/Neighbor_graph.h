@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The neighbour graph of a scan for Boost.Graph, with links that close gaps of occlusion.
+// Neighbour graph of a scan for Boost.Graph, with links that close occlusion gaps.
 
 #ifndef PCS_SKELETON_GRAPH_NEIGHBOR_GRAPH_H
 #define PCS_SKELETON_GRAPH_NEIGHBOR_GRAPH_H

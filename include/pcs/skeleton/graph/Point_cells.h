@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Cubes of points, and what is the same in all cubes about one.
+// Cubic cells of points, with neighbour queries shared by the points of a cell.
 
 #ifndef PCS_SKELETON_GRAPH_POINT_CELLS_H
 #define PCS_SKELETON_GRAPH_POINT_CELLS_H

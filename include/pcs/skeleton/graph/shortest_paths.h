@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The shortest paths over the neighbour graph of a scan.
+// Shortest paths on the neighbour graph from several sources.
 
 #ifndef PCS_SKELETON_GRAPH_SHORTEST_PATHS_H
 #define PCS_SKELETON_GRAPH_SHORTEST_PATHS_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What the caller may tell a skeletonization.
+// Hints of the caller: directions, root, scanners, labels and switches.
 
 #ifndef PCS_SKELETON_INPUT_SESSION_HINTS_H
 #define PCS_SKELETON_INPUT_SESSION_HINTS_H

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What the caller's points, graphs and named parameters are: traits, and a given skeleton as
-// arrays.
+// Traits of the caller's points, graphs and named parameters; copy of a given skeleton.
 
 #ifndef PCS_SKELETON_INPUT_CALLER_TYPES_H
 #define PCS_SKELETON_INPUT_CALLER_TYPES_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Refuses scans that are none, and hints that belong to another scan.
+// Checks of the input points and of the hints that belong to them.
 
 #ifndef PCS_SKELETON_INPUT_CHECK_INPUT_H
 #define PCS_SKELETON_INPUT_CHECK_INPUT_H

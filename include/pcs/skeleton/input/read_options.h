@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The named parameters of a skeletonization as hints of its session.
+// Named parameters of a skeletonization as hints of its session.
 
 #ifndef PCS_SKELETON_INPUT_READ_OPTIONS_H
 #define PCS_SKELETON_INPUT_READ_OPTIONS_H

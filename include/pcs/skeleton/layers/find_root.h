@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Finds the points where the tree leaves the ground.
+// Search for the root: the points of the foot of the trunk.
 
 #ifndef PCS_SKELETON_LAYERS_FIND_ROOT_H
 #define PCS_SKELETON_LAYERS_FIND_ROOT_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Layers of stems whose points are farther apart than layers are thick.
+// Coarser layers for stems whose points are farther apart than layers are thick.
 
 #ifndef PCS_SKELETON_LAYERS_JOIN_SPARSE_LAYERS_H
 #define PCS_SKELETON_LAYERS_JOIN_SPARSE_LAYERS_H

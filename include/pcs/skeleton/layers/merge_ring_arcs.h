@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Joins the parts of a layer that are arcs of one ring: scanners see thick branches from a few
-// sides only.
+// Merging of level-set components that are arcs of one cross-section.
 
 #ifndef PCS_SKELETON_LAYERS_MERGE_RING_ARCS_H
 #define PCS_SKELETON_LAYERS_MERGE_RING_ARCS_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A small neural network with one output.
+// Multilayer perceptron with one hidden layer of rectified units and one output.
 
 #ifndef PCS_SKELETON_LEAVES_MULTILAYER_PERCEPTRON_H
 #define PCS_SKELETON_LEAVES_MULTILAYER_PERCEPTRON_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Tells the points of leaves from those of wood, by lines, surfaces and paths.
+// Leaf-wood classification of points by lines, surfaces and paths.
 
 #ifndef PCS_SKELETON_LEAVES_CLASSIFY_LEAVES_H
 #define PCS_SKELETON_LEAVES_CLASSIFY_LEAVES_H

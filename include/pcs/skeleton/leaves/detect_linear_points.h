@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Tells points of thin wood from those of leaves around it: wood has neighbours in a line, and few
-// beside it.
+// Linearity of points: detection of thin wood among leaves.
 
 #ifndef PCS_SKELETON_LEAVES_DETECT_LINEAR_POINTS_H
 #define PCS_SKELETON_LEAVES_DETECT_LINEAR_POINTS_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Counts the points of small flat groups away from thick wood: single leaves that a scan sees well.
+// Planar patches away from thick wood: single leaves that are well resolved.
 
 #ifndef PCS_SKELETON_LEAVES_DETECT_PLANAR_PATCHES_H
 #define PCS_SKELETON_LEAVES_DETECT_PLANAR_PATCHES_H

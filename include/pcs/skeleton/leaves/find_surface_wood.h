@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Which points lie on the surface of thick wood, by the fitted axes: scanners do not see inside.
+// Points on the surface of thick wood, whose sections are empty inside.
 
 #ifndef PCS_SKELETON_LEAVES_FIND_SURFACE_WOOD_H
 #define PCS_SKELETON_LEAVES_FIND_SURFACE_WOOD_H

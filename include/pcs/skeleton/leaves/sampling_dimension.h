@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Whether points cover a surface evenly or lie in rows on it, by the dimension that their distances
-// show.
+// Dimension of the sampling of a surface: even coverage or sparse rows.
 
 #ifndef PCS_SKELETON_LEAVES_SAMPLING_DIMENSION_H
 #define PCS_SKELETON_LEAVES_SAMPLING_DIMENSION_H

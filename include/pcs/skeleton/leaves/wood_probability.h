@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// How much the surroundings of a point look like those of thin wood: a small network, trained on
-// virtual scans.
+// Wood score of a point from its surroundings: a multilayer perceptron trained on virtual scans.
 
 #ifndef PCS_SKELETON_LEAVES_WOOD_PROBABILITY_H
 #define PCS_SKELETON_LEAVES_WOOD_PROBABILITY_H

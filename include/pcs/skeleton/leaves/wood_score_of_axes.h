@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Whether an axis that was fitted to what is left is one of wood, or a stub that the fit made of a
-// leaf.
+// Wood score of an axis: a branch, or an artefact fitted to leaves.
 
 #ifndef PCS_SKELETON_LEAVES_WOOD_SCORE_OF_AXES_H
 #define PCS_SKELETON_LEAVES_WOOD_SCORE_OF_AXES_H

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// How much a point looks like one of thin wood by what lies along its path to the root: twigs carry
-// the paths of their leaves.
+// Wood score of a point from its path to the root: twigs carry the paths of their leaves.
 
 #ifndef PCS_SKELETON_LEAVES_WOOD_SCORE_OF_PATHS_H
 #define PCS_SKELETON_LEAVES_WOOD_SCORE_OF_PATHS_H

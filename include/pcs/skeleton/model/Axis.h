@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The axis of a branch: a polyline with radii, and where a point lies relative to it.
+// Branch axis (centerline): a polyline with radii, and coordinates of points relative to it.
 
 #ifndef PCS_SKELETON_MODEL_AXIS_H
 #define PCS_SKELETON_MODEL_AXIS_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The axes found so far, which points they explain, and what was learned from them about the scan.
+// All fitted axes, the points that they explain, and the scan statistics learned from them.
 
 #ifndef PCS_SKELETON_MODEL_AXIS_SET_H
 #define PCS_SKELETON_MODEL_AXIS_SET_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A rooted tree of nodes, grouped in branches.
+// Rooted tree of nodes, grouped into branches.
 
 #ifndef PCS_SKELETON_MODEL_BRANCH_TREE_H
 #define PCS_SKELETON_MODEL_BRANCH_TREE_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// How many points per area a branch has, by where it is and where it points to.
+// Point density on branches as a function of position and surface direction.
 
 #ifndef PCS_SKELETON_MODEL_DENSITY_FIELD_H
 #define PCS_SKELETON_MODEL_DENSITY_FIELD_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A skeleton that the caller gives.
+// A skeleton given by the caller, as arrays.
 
 #ifndef PCS_SKELETON_MODEL_GIVEN_SKELETON_H
 #define PCS_SKELETON_MODEL_GIVEN_SKELETON_H

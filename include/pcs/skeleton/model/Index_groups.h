@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What belongs to each of some groups: points to axes or nodes, children to parents.
+// Members of groups in compressed rows: points of axes, children of parents.
 
 #ifndef PCS_SKELETON_MODEL_INDEX_GROUPS_H
 #define PCS_SKELETON_MODEL_INDEX_GROUPS_H

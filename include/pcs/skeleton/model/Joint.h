@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Where an axis sits on its parent.
+// The joint of an axis with its parent.
 
 #ifndef PCS_SKELETON_MODEL_JOINT_H
 #define PCS_SKELETON_MODEL_JOINT_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Layers of equal path length from the root, their connected parts, and the tree that these form.
+// Tree of geodesic level-set components.
 
 #ifndef PCS_SKELETON_MODEL_LAYER_TREE_H
 #define PCS_SKELETON_MODEL_LAYER_TREE_H

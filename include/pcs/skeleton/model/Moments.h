@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Sums over points, from which their mean and covariance follow.
+// First and second moments of points.
 
 #ifndef PCS_SKELETON_MODEL_MOMENTS_H
 #define PCS_SKELETON_MODEL_MOMENTS_H

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The scan of a tree, prepared: distinct points about a local origin, their neighbours, spacing and
-// outliers.
+// A prepared scan: distinct points in a local frame, neighbours, spacing and outliers.
 
 #ifndef PCS_SKELETON_MODEL_SCAN_H
 #define PCS_SKELETON_MODEL_SCAN_H

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Coordinates that belong to a scan, however it was moved, turned about the vertical, scaled or
-// shuffled.
+// Canonical frame of a scan, independent of position, yaw, scale and order of the points.
 
 #ifndef PCS_SKELETON_MODEL_SCAN_FRAME_H
 #define PCS_SKELETON_MODEL_SCAN_FRAME_H

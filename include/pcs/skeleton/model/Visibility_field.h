@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// On which side of branches the points lie, by place.
+// Direction from which branches are seen, as a function of position.
 
 #ifndef PCS_SKELETON_MODEL_VISIBILITY_FIELD_H
 #define PCS_SKELETON_MODEL_VISIBILITY_FIELD_H

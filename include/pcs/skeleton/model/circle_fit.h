@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A circle through points of a plane by Taubin's method, and how much of it they cover.
+// Circle fit by Taubin's method, and the arc that the points cover.
 
 #ifndef PCS_SKELETON_MODEL_CIRCLE_FIT_H
 #define PCS_SKELETON_MODEL_CIRCLE_FIT_H

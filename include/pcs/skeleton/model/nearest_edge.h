@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Where on its branch a point lies: the nearest place on the edges at its node.
+// Nearest position on the edges at the node of a point.
 
 #ifndef PCS_SKELETON_MODEL_NEAREST_EDGE_H
 #define PCS_SKELETON_MODEL_NEAREST_EDGE_H

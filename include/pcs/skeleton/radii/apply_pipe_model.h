@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// All branches that a section carries have, side by side, not much more area than the section.
+// Pipe model: bound on the total cross-section area of the branches beyond a section.
 
 #ifndef PCS_SKELETON_RADII_APPLY_PIPE_MODEL_H
 #define PCS_SKELETON_RADII_APPLY_PIPE_MODEL_H

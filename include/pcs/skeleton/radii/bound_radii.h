@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Radii that the points do not support are bounded by those below, which they do.
+// Bounds of radii without point support by the nearest supported radius towards the root.
 
 #ifndef PCS_SKELETON_RADII_BOUND_RADII_H
 #define PCS_SKELETON_RADII_BOUND_RADII_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Takes the width of the laser beam out of the radii of thin branches.
+// Correction of the radii of thin branches for beam divergence.
 
 #ifndef PCS_SKELETON_RADII_CORRECT_BEAM_DIVERGENCE_H
 #define PCS_SKELETON_RADII_CORRECT_BEAM_DIVERGENCE_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Notices points at the centers of voxels, and takes the size of these out of the radii.
+// Detection of voxel-thinned scans, and correction of radii for the voxel size.
 
 #ifndef PCS_SKELETON_RADII_CORRECT_VOXEL_SIZE_H
 #define PCS_SKELETON_RADII_CORRECT_VOXEL_SIZE_H

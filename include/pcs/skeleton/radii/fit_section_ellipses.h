@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Oval sections: half axes and direction of the ellipse at every node that is seen from nearly all
-// around.
+// Ellipse fit of cross-sections that are seen from nearly all sides.
 
 #ifndef PCS_SKELETON_RADII_FIT_SECTION_ELLIPSES_H
 #define PCS_SKELETON_RADII_FIT_SECTION_ELLIPSES_H

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Radii along a skeleton that is given: those of the branches that were found there; elsewhere from
-// the points of each edge.
+// Radii along a given skeleton.
 
 #ifndef PCS_SKELETON_RADII_MEASURE_GIVEN_H
 #define PCS_SKELETON_RADII_MEASURE_GIVEN_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The foot of the trunk, where buttresses and roots make sections of any shape.
+// Trunk base with buttresses and root flare: sections from their outlines.
 
 #ifndef PCS_SKELETON_RADII_REBUILD_TRUNK_BASE_H
 #define PCS_SKELETON_RADII_REBUILD_TRUNK_BASE_H

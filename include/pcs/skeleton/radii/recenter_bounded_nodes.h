@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Where a radius was bounded, the axis follows: the points of one side stay on the surface.
+// Re-centring of axis nodes whose radius was bounded.
 
 #ifndef PCS_SKELETON_RADII_RECENTER_BOUNDED_NODES_H
 #define PCS_SKELETON_RADII_RECENTER_BOUNDED_NODES_H

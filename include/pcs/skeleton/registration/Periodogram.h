@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Whether lengths are multiples of a step, for many steps and many hypotheses about the lengths.
+// Periodogram: search for a step of which many lengths are multiples.
 
 #ifndef PCS_SKELETON_REGISTRATION_PERIODOGRAM_H
 #define PCS_SKELETON_REGISTRATION_PERIODOGRAM_H

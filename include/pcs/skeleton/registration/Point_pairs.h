@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Pairs of points at given distances, without a search structure.
+// Random pairs of points at given distances, without a search structure.
 
 #ifndef PCS_SKELETON_REGISTRATION_POINT_PAIRS_H
 #define PCS_SKELETON_REGISTRATION_POINT_PAIRS_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// By how much the points of a station are moved.
+// Rigid motion of the points of a scanner station.
 
 #ifndef PCS_SKELETON_REGISTRATION_RIGID_MOTION_H
 #define PCS_SKELETON_REGISTRATION_RIGID_MOTION_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The grid of directions in which a scanner measures.
+// Angular grid of a terrestrial laser scanner.
 
 #ifndef PCS_SKELETON_REGISTRATION_SCAN_GRID_H
 #define PCS_SKELETON_REGISTRATION_SCAN_GRID_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// How stations must move so that all see the same branches.
+// Rigid motions after which all stations see the same branches, by robust least squares.
 
 #ifndef PCS_SKELETON_REGISTRATION_ALIGN_STATIONS_H
 #define PCS_SKELETON_REGISTRATION_ALIGN_STATIONS_H

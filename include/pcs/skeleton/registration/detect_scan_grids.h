@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Finds the stations of a scan by the grids of directions in which they have measured.
+// Detection of scanner stations by their angular grids.
 
 #ifndef PCS_SKELETON_REGISTRATION_DETECT_SCAN_GRIDS_H
 #define PCS_SKELETON_REGISTRATION_DETECT_SCAN_GRIDS_H

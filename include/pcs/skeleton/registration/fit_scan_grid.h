@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// From a rough guess of a station to the grid that its points are on.
+// Refinement of a scan grid: position and angular steps of a station.
 
 #ifndef PCS_SKELETON_REGISTRATION_FIT_SCAN_GRID_H
 #define PCS_SKELETON_REGISTRATION_FIT_SCAN_GRID_H

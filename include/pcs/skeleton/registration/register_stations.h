@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Puts the points of all stations of a scan onto the same branches.
+// Fine registration of scanner stations on the branches of a tree.
 
 #ifndef PCS_SKELETON_REGISTRATION_REGISTER_STATIONS_H
 #define PCS_SKELETON_REGISTRATION_REGISTER_STATIONS_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Other trees in the cloud: stems that stand at the height of the root.
+// Count of further stems at the height of the root.
 
 #ifndef PCS_SKELETON_RESULT_COUNT_OTHER_STEMS_H
 #define PCS_SKELETON_RESULT_COUNT_OTHER_STEMS_H

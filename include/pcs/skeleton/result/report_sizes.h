@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What the report says of a tree: height, diameter at breast height, length and volume by order and
-// by size, and its points.
+// Tree measures of the report: height, diameters, length and volume by order and size.
 
 #ifndef PCS_SKELETON_RESULT_REPORT_SIZES_H
 #define PCS_SKELETON_RESULT_REPORT_SIZES_H

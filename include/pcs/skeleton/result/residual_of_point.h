@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// How a point lies beside the branch that explains it: its distance from the surface, and the
-// direction from the axis.
+// Residual of a point: distance from the surface of its branch, and direction from the axis.
 
 #ifndef PCS_SKELETON_RESULT_RESIDUAL_OF_POINT_H
 #define PCS_SKELETON_RESULT_RESIDUAL_OF_POINT_H

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The branches that were found as a graph of the caller, in the coordinates and the unit of the
-// input.
+// Result as a graph of the caller, in coordinates and units of the input.
 
 #ifndef PCS_SKELETON_RESULT_WRITE_RESULT_H
 #define PCS_SKELETON_RESULT_WRITE_RESULT_H

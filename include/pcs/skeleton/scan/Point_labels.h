@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Which points of a scan are looked at, and which were left out as outliers, leaves, ground or
-// walls.
+// Labels of the points of a scan: used, outlier, leaf, ground or wall.
 
 #ifndef PCS_SKELETON_SCAN_POINT_LABELS_H
 #define PCS_SKELETON_SCAN_POINT_LABELS_H

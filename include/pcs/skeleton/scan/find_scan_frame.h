@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The frame of a scan, from its points.
+// Search for the canonical frame of a scan.
 
 #ifndef PCS_SKELETON_SCAN_FIND_SCAN_FRAME_H
 #define PCS_SKELETON_SCAN_FIND_SCAN_FRAME_H

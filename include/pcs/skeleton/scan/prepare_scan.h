@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// From the points of the caller to a scan: copies merged, neighbours, spacing, outliers.
+// Preparation of a scan: duplicates, neighbours, spacing, outliers.
 
 #ifndef PCS_SKELETON_SCAN_PREPARE_SCAN_H
 #define PCS_SKELETON_SCAN_PREPARE_SCAN_H

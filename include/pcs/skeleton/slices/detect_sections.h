@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Finds cross-sections of branches: a slice at each center candidate, an ellipse in it, its tilt,
-// and whom it speaks for.
+// Detection of cross-sections: slices at center candidates, ellipse fit, tilt and support.
 
 #ifndef PCS_SKELETON_SLICES_DETECT_SECTIONS_H
 #define PCS_SKELETON_SLICES_DETECT_SECTIONS_H

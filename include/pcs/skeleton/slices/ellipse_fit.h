@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Ellipses through points of a plane: the general conic of the dissertation, a fit that only knows
-// ellipses, a circle.
+// Ellipse fits: general conic, direct ellipse, and circle.
 
 #ifndef PCS_SKELETON_SLICES_ELLIPSE_FIT_H
 #define PCS_SKELETON_SLICES_ELLIPSE_FIT_H

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The skeleton of the dissertation: sections joined in dense regions, spanning trees with
-// allometric radii in sparse ones.
+// Skeleton by cross-sections in dense regions and spanning trees in sparse ones, as published.
 
 #ifndef PCS_SKELETON_SLICES_SECTION_SKELETON_H
 #define PCS_SKELETON_SLICES_SECTION_SKELETON_H

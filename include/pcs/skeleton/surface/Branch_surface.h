@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What the surface of a tree is made of: sections of branches, tubes of rings, a mesh.
+// Data of a branch surface: sections, tubes of rings, and the mesh.
 
 #ifndef PCS_SKELETON_SURFACE_BRANCH_SURFACE_H
 #define PCS_SKELETON_SURFACE_BRANCH_SURFACE_H

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The surface of a tree as one closed mesh: tubes along the branches, joined at holes in their
-// parents.
+// Closed mesh of a tree: tubes along the branches, joined at holes in their parents.
 
 #ifndef PCS_SKELETON_SURFACE_SURFACE_BUILDER_H
 #define PCS_SKELETON_SURFACE_SURFACE_BUILDER_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Where a branch comes out of the wood of its parent.
+// The position where a branch leaves the wood of its parent.
 
 #ifndef PCS_SKELETON_SURFACE_FIND_BRANCH_EXIT_H
 #define PCS_SKELETON_SURFACE_FIND_BRANCH_EXIT_H
