@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Options of `Orl_shape_space`: all types that a caller passes as named parameters.
+// Options of `Orl_shape_space`: all types that a caller passes as named
+// parameters.
 
 #ifndef PCS_CORE_ORL_OPTIONS_H
 #define PCS_CORE_ORL_OPTIONS_H
@@ -9,169 +10,219 @@
 
 namespace pcs {
 
-/// How branches of a tree become longer.
+//! \ingroup PkgPcsShapeSpaceRef
+//! how branches of a tree become longer
 enum class Branch_growth {
-  any,            ///< along branches, unless growth at tips explains clearly more
-  along_branches, ///< everywhere: a branch is stretched, and what hangs on it moves along
-  /// what is there stays; the two trees are measured in the same unit, and the shorter of two
-  /// branches is the
+  any, ///< along branches, unless growth at tips explains the trees clearly
+       ///< better
+  along_branches, ///< everywhere: a branch is stretched, and its children move
+                  ///< along
+  //! old wood stays where it is: both trees are measured in the same unit, and
+  //! the shorter of two branches is the beginning of the longer one
   at_tips
-  ///< beginning of the longer one
 };
 
-/// At a fork, a child whose continuation has at least this share of the longest one may continue
-/// the branch.
+/// A fork continues one branch only if the longest path is at least this many
+/// times the second [-].
 constexpr double default_fork_ratio = 0.8;
 
-/// Weights of the energy of a matching. All terms are lengths in units of the longest path of each
-/// tree, so that size does not matter.
-struct Matching_weights
-{
-  Branch_growth growth = Branch_growth::any; ///< for two trees; spaces of more stretch branches
-  double curve = 1;                          ///< of the elastic energy of two branches [-]
-  double position = 1;  ///< of the distance of attachments, in units of the branches' lengths [-]
-  double far = 1;       ///< attachments so far apart, of the parent's length, cost half of that [-]
-  double single = 0.5;  ///< of the length of a subtree without partner [-]
-  double length = 1;    ///< of a difference of lengths, in units of `single` [-]
-  double turn = 0.2;    ///< of the turn of a branch against its parents [-]
-  double children = 1;  ///< of the children's shares in the turn that is carried on [-]
-  double carried = 0.1; ///< of the parents' turn in that of their children [-]
-  bool is_carried = true; ///< whether turns of parents are carried to their children
-  bool is_published =
-      /// the text's energy: no turns, `single` is 1, positions in units of the parent's length
-      false;
-  double fork_ratio = default_fork_ratio;       ///< see `Branch_paths`
-  double trunk_fork_ratio = default_fork_ratio; ///< the same for the trunk, if it is less
-  std::size_t number_of_paths = 6; ///< candidates for the main path of a branch; 1: the longest
-  std::size_t number_of_trials =
-      3; ///< pairs of candidates that are matched with all their children
+/*!
+  \ingroup PkgPcsShapeSpaceRef
+  \brief weights of the energy of a matching of branches.
+
+  All terms are lengths in units of the longest path of each tree, so that size
+  does not matter.
+*/
+struct Matching_weights {
+  Branch_growth growth =
+      Branch_growth::any; ///< for two trees; larger families stretch branches
+  double curve = 1;       ///< of the elastic energy of two branches [-]
+  double position = 1;    ///< of the distance of attachments, in units of the
+                          ///< branches' lengths [-]
+  double far = 1; ///< attachments this far apart, of the parent's length, cost
+                  ///< half of that [-]
+  double single = 0.5; ///< of the length of an unmatched subtree [-]
+  double length = 1;   ///< of a difference of lengths, in units of `single` [-]
+  double turn =
+      0.2; ///< of the rotation of a branch relative to its parents [-]
+  double children =
+      1; ///< of the children's part in the rotation that is passed on [-]
+  double carried =
+      0.1; ///< of the parents' rotation in that of their children [-]
+  bool is_carried =
+      true; ///< whether rotations of parents are passed on to their children
+  //! the published energy: no rotations, `single` is 1, positions in units of
+  //! the parent's length
+  bool is_published = false;
+  double fork_ratio = default_fork_ratio; ///< see `default_fork_ratio` [-]
+  double trunk_fork_ratio =
+      default_fork_ratio; ///< the same for the trunk, if it is smaller [-]
+  //! candidates for the main path of a branch; 1: the longest path only [count]
+  std::size_t number_of_paths = 6;
+  //! pairs of candidates that are matched with all their children [count]
+  std::size_t number_of_trials = 3;
 };
 
-/// Whether the second of two trees may stand turned as a whole.
+//! \ingroup PkgPcsShapeSpaceRef
+//! whether the second of two trees may be rotated as a whole
 enum class Orl_alignment {
-  as_given,       ///< both stand in the same axes
-  rotate_about_up ///< about the vertical, by any angle: pots are put down anew
+  as_given,       ///< both trees are in the same axes
+  rotate_about_up ///< by any yaw about the up direction, for pots that were
+                  ///< moved
 };
 
-/// Where a branch without partner points in the tree that does not have it.
+//! \ingroup PkgPcsShapeSpaceRef
+//! direction of a branch in the tree that does not have it
 enum class Virtual_direction {
   of_partner,  ///< as in the other tree: it grows in its direction
-  along_parent ///< along its parent: it grows upwards, then bends, as in the text
+  along_parent ///< along its parent: it grows upwards, then bends, as published
+               ///< (figure 4.11)
 };
 
-/// How the orientation of an edge is measured.
+//! \ingroup PkgPcsShapeSpaceRef
+//! how the orientation of an edge is measured
 enum class Orl_orientation {
-  /// in the frame of the first edge of the branch, and that in the frame of an edge of the parent;
-  /// twists are
+  //! relative to the first edge of the branch, which is measured relative to an
+  //! edge of the parent;
+  //! the twist of frames is chosen so that trees differ as little as possible
   gauge_fixed,
-  ///< chosen so that trees differ as little as possible
-  transported, ///< in the frame of the edge before, transported from the root without twist
-  /// in the axes of the input, as in the text: turning a parent does not carry its children
-  world_axes
+  transported, ///< relative to the previous edge, in frames transported from
+               ///< the root without twist
+  world_axes   ///< in the axes of the input, as published: rotating a parent
+               ///< leaves its children
 };
 
-/// Ways to join the differences of all coordinates.
+//! \ingroup PkgPcsShapeSpaceRef
+//! how the differences of all coordinates are combined to a distance
 enum class Orl_metric {
-  sum,    ///< of absolute differences: (4.7)
-  square, ///< root of the sum of squares: the geodesic is unique
-  cone ///< an edge is a vector: turning it costs in proportion to its length, nothing at length 0
+  sum,    ///< sum of absolute differences: (4.7)
+  square, ///< root of the sum of squares: geodesics are unique
+  cone ///< an edge is a vector: rotating it costs in proportion to its length
 };
 
-struct Point_assignment_options
-{
-  double noise =
-      0.1; ///< points lie off the surface by this share of the radius; the text's factor 1.1 [-]
-  double normal_angle = 0.5; ///< deviation of normals that counts as much as the noise [rad]
-  std::size_t number_of_neighbors = 12; ///< for normals, where none are given
+//! \ingroup PkgPcsShapeSpaceRef
+//! how the points of a scan are assigned to the edges of its tree
+struct Point_assignment_options {
+  //! deviation of points from the surface, as a fraction of the radius; 1.1 as
+  //! published allows that much [-]
+  double noise = 0.1;
+  double normal_angle =
+      0.5; ///< deviation of normals that counts as much as the noise [rad]
+  std::size_t number_of_neighbors =
+      12; ///< for normals, if none are given [count]
 };
 
-struct Sinkhorn_options
-{
-  double regularization = 0.02;  ///< final epsilon, as a share of the largest cost
-  std::size_t iterations = 1000; ///< at the final epsilon
-  double tolerance = 1e-6;       ///< stops at this violation of the marginals
+//! \ingroup PkgPcsShapeSpaceRef
+//! options of `Point_transport::sinkhorn`
+struct Sinkhorn_options {
+  double regularization =
+      0.02; ///< final epsilon, as a fraction of the largest cost [-]
+  std::size_t iterations = 1000; ///< at the final epsilon, at most [count]
+  double tolerance =
+      1e-6; ///< violation of the marginals at which iterations stop [-]
 };
 
+//! \ingroup PkgPcsShapeSpaceRef
+//! method of optimal transport
 enum class Point_transport {
   exact,   ///< network simplex
-  sinkhorn ///< regularised, as in the text
+  sinkhorn ///< entropic regularisation, as published
 };
 
+//! \ingroup PkgPcsShapeSpaceRef
+//! mass of a point
 enum class Point_weights {
-  area, ///< a point stands for the surface around it
-  equal ///< all points alike, as in the text
+  area, ///< the area of surface that the point represents
+  equal ///< the same for all points, as published
 };
 
-struct Transport_options
-{
+//! \ingroup PkgPcsShapeSpaceRef
+//! how points of one tree are matched to points of another
+struct Transport_options {
   Point_transport method = Point_transport::exact;
   Point_weights weights = Point_weights::area;
-  bool is_squared =
-      true; ///< cost is the squared distance, as a 2-Wasserstein distance wants; the text's is not
-  /// Mass goes at most that many times the median distance between nearest points of the two trees.
-  /// What finds no room within it, as opposite of a gap of the other scan, shifts nothing: its
-  /// partner is the nearest point. Infinite: all is carried, as in the text.
+  //! whether the cost is the squared distance (2-Wasserstein); as published it
+  //! is the distance
+  bool is_squared = true;
+  //! largest distance of transport, in median distances between nearest points
+  //! of the two trees. Points without room within it, opposite to a gap of the
+  //! other scan, take their nearest neighbour. Infinite: all mass is
+  //! transported, as published [-]
   double reach = 2;
-  std::size_t number_of_neighbors = 16; ///< candidates of each point in the other tree
-  std::size_t largest_window =
-      1000; ///< points of a tree that are transported together, at most twice as many
-  std::size_t least_window = 24; ///< edges are joined until both trees have as many points
+  std::size_t number_of_neighbors =
+      16; ///< candidates of each point in the other tree [count]
+  //! points of a tree that are transported together; at most twice as many
+  //! [count]
+  std::size_t largest_window = 1000;
+  //! edges are merged until both trees have as many points [count]
+  std::size_t least_window = 24;
   Sinkhorn_options sinkhorn;
 };
 
-/// How the points of a pair are joined.
+//! \ingroup PkgPcsShapeSpaceRef
+//! how corresponding points are interpolated
 enum class Point_path {
-  cylindrical, ///< along, around and away from the edge: sections keep their size
-  /// as edges from the beginning of the edge, by slerp, as in the text: sections shrink
-  virtual_edges
+  cylindrical,  ///< along, around and away from the edge: sections keep their
+                ///< size
+  virtual_edges ///< as edges from the beginning of the edge, by slerp, as
+                ///< published: sections shrink
 };
 
-/// How branches that only one end of a path has come into being.
+//! \ingroup PkgPcsShapeSpaceRef
+//! how branches emerge that only one end of a geodesic has
 enum class Branch_emergence {
-  simultaneous, ///< all at once, as small copies of what they become: all coordinates are linear
-  /// tips move on and what is behind them stays, as wood does; each branch when the tip of its
-  /// parent passes its base
+  simultaneous, ///< all at once, as small copies: all coordinates are linear
+  //! tips move on and old wood stays; each branch emerges when the tip of its
+  //! parent passes its base
   sequential
 };
 
-/// What a mean makes least.
+//! \ingroup PkgPcsShapeSpaceRef
+//! kind of mean
 enum class Tree_mean {
-  median, ///< of distances, (4.16): medians; trees unlike all others have no say
-  frechet ///< of squared distances, each coordinate apart
+  median, ///< least sum of distances, (4.16): unusual trees have no influence
+  frechet ///< least sum of squared distances, by coordinate
 };
 
-/// What modes of variation explain.
+//! \ingroup PkgPcsShapeSpaceRef
+//! inner product by which modes of variation are found
 enum class Mode_inner_product {
-  branches, ///< how branches differ where trees have them; each branch has one vote
-  metric    ///< the distance `Orl_metric::square`: a branch that is not there has the length 0
+  branches, ///< how branches differ between the trees that have them; each
+            ///< branch has one vote
+  metric ///< the distance `Orl_metric::square`: a missing branch has length 0
 };
 
-/// How new trees are drawn.
-struct Tree_sampling_options
-{
-  double truncation = 2.5; ///< no score is further from 0, in standard deviations [-]
-  double spread = 1;       ///< factor of all standard deviations; 0 gives middle trees only [-]
-  /// share of the variance that is drawn for each branch by itself, and not for all branches
-  /// together as they vary in the inputs, in [0, 1]; negative: as estimated from the inputs
+//! \ingroup PkgPcsShapeSpaceRef
+//! how new trees are drawn
+struct Tree_sampling_options {
+  double truncation = 2.5; ///< largest score, in standard deviations [-]
+  double spread =
+      1; ///< factor of all standard deviations; 0 gives middle trees only [-]
+  //! fraction of the variance, in [0, 1], that is drawn for each branch
+  //! independently instead of for all branches together; negative: as estimated
+  //! from the inputs [-]
   double shrinkage = -1;
-  bool do_draw_presence = true; ///< else all trees have the branches that most of the inputs have
-  /// whether trees keep to the range of the inputs: branches sit on those parts of others where
-  /// they do in the inputs, numbers and angles of branches of an order are brought into their range
-  /// by the least change, and trees that are beyond them in other figures are drawn again
+  //! whether branches are present at random; otherwise trees have the branches
+  //! of most inputs
+  bool do_draw_presence = true;
+  //! whether trees stay in the range of the inputs: attachments, numbers and
+  //! angles of branches of an order change as little as possible, and trees
+  //! with other descriptors out of range are drawn again
   bool do_keep_in_range = true;
-  std::size_t number_of_trials =
-      100; ///< for that; from the middle on, nearer and nearer to the middle tree
-  bool do_limit_radii = false; ///< no branch thicker than where it grows from
-  double pipe_exponent =
-      /// > 0: radii to this power do not add up to more than that of the parent; 2 to 2.5 in nature
-      0;
+  //! for that; the later half moves towards the middle tree [count]
+  std::size_t number_of_trials = 100;
+  bool do_limit_radii =
+      false; ///< whether no branch is thicker than its parent at the attachment
+  //! exponent of the pipe model: radii to this power add up to at most that of
+  //! the parent; 2 to 2.5 in nature, 0: no such limit [-]
+  double pipe_exponent = 0;
 };
 
-/// When a difference counts as a change.
-struct Change_limits
-{
-  double length = 0.05; ///< of the longer of both [-]
-  double radius = 0.05; ///< of the thicker of both [-]
+//! \ingroup PkgPcsShapeSpaceRef
+//! differences that count as changes between two dates
+struct Change_limits {
+  double length = 0.05; ///< of the longer one [-]
+  double radius = 0.05; ///< of the thicker one [-]
   double angle = 0.1;   ///< [rad]
 };
 
