@@ -21,6 +21,7 @@
 #include <limits>
 #include <numeric>
 #include <random>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -198,6 +199,26 @@ void check_counts(const pcs::Segmentation_report& report, const Labels& trees)
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(segment_trees)
+
+BOOST_AUTO_TEST_CASE(implausible_trees_are_named)
+{
+  pcs::Segmentation_report report;
+  report.breast_height = 1.3;
+  report.trees.resize(3);
+  for (pcs::Segmented_tree& tree : report.trees) {
+    tree.radius = 0.2;
+    tree.height = 15;
+  }
+  BOOST_TEST(pcs::warnings(report).empty());
+  report.trees[1].radius = 4.7;
+  report.trees[2].height = 0.9;
+  const std::vector<std::string> sentences = pcs::warnings(report);
+  BOOST_REQUIRE(sentences.size() == 2u);
+  BOOST_TEST(sentences[0].find("1 tree(s) lower than breast height") == 0u);
+  BOOST_TEST(sentences[0].find("number 2") != std::string::npos);
+  BOOST_TEST(sentences[1].find("too thick for the height") != std::string::npos);
+  BOOST_TEST(sentences[1].find("number 1") != std::string::npos);
+}
 
 BOOST_AUTO_TEST_CASE(touching_trees_are_told_apart)
 {

@@ -35,63 +35,92 @@
 namespace pcs {
 
 //! \ingroup PkgPcsSkeletonRef
-//! one of the trees that `segment_trees()` found
+//! a tree of `segment_trees()`
 struct Segmented_tree
 {
-  std::array<double, 3>
-      foot{}; ///< where the axis of its thickest stem begins, in the coordinates of the input
-  double radius = 0; ///< of that stem, the largest up to half the breast height above the foot [L]
+  //! base of the axis of its thickest stem, in coordinates of the input [L]
+  std::array<double, 3> foot{};
+  double radius = 0; ///< largest radius of that stem up to half the breast height [L]
   std::size_t number_of_points = 0; ///< [count]
   double height = 0;                ///< of its highest point above the foot [L]
 };
 
 //! \ingroup PkgPcsSkeletonRef
-//! what `segment_trees()` found
+//! the result of `segment_trees()` in numbers
 struct Segmentation_report
 {
   //! `converged`; `nothing_to_do` if there is no stem; `cancelled`
   Status status = Status::nothing_to_do;
   std::size_t number_of_points = 0; ///< of the input [count]
-  std::size_t number_of_unassigned_points =
-      0;                             ///< ground, walls, outliers, and what no tree reaches [count]
-  std::vector<Segmented_tree> trees; ///< the thick ones first
-  double breast_height = 0;          ///< as it was given [L]
-  double seconds = 0;                ///< wall time [s]
+  //! ground, walls, outliers, and points that are not connected to a tree [count]
+  std::size_t number_of_unassigned_points = 0;
+  std::vector<Segmented_tree> trees; ///< by decreasing radius
+  double breast_height = 0;          ///< as given [L]
+  double seconds = 0;                ///< wall-clock time [s]
 };
 
+namespace internal {
+
+/// A sentence about the trees that `is_doubtful(tree)` holds for, with the first few numbers.
+template <class IsDoubtful>
+void warn_of_trees(const Segmentation_report& r,
+                   const IsDoubtful& is_doubtful,
+                   const std::string& what,
+                   std::vector<std::string>& sentences)
+{
+  constexpr std::size_t max_listed = 8;
+  std::size_t count = 0;
+  std::string list;
+  for (std::size_t t = 0; t < r.trees.size(); ++t)
+    if (is_doubtful(r.trees[t]) && ++count <= max_listed)
+      list += (list.empty() ? "" : ", ") + std::to_string(t);
+  if (count > 0)
+    sentences.push_back(std::to_string(count) + " tree(s) " + what + ": number " + list +
+                        (count > max_listed ? ", ..." : ""));
+}
+
+} // namespace internal
+
 //! \ingroup PkgPcsSkeletonRef
-//! what makes a segmentation doubtful, a sentence each; empty for most
+//! what makes a segmentation implausible, one sentence each; empty for most stands
 inline std::vector<std::string> warnings(const Segmentation_report& r)
 {
+  constexpr double max_diameter = 0.1; // of a stem, by the height; trees have 0.01 to 0.05 [-]
   double height = 0;
   for (const Segmented_tree& tree : r.trees)
     height = std::max(height, tree.height);
   std::vector<std::string> sentences;
   internal::warn_of_unit("a tree", height, r.breast_height, sentences);
+  const auto is_low = [&](const Segmented_tree& t) { return t.height < r.breast_height; };
+  internal::warn_of_trees(r, is_low, "lower than breast height, perhaps shrubs", sentences);
+  internal::warn_of_trees(
+      r,
+      [&](const Segmented_tree& t) { return !is_low(t) && 2 * t.radius > max_diameter * t.height; },
+      "with a stem too thick for the height, perhaps several stems or ground in one",
+      sentences);
   return sentences;
 }
 
 /*!
   \ingroup PkgPcsSkeletonRef
-  \brief finds the trees in the scan of a stand, and tells for every point whose it is.
+  \brief segments the scan of a stand into individual trees.
 
-  A stem is an axis that begins near the ground, is not much thinner there, and rises steeply by
-  half the breast height at least. Stems whose feet are nearer than three radii, a tenth of the
-  breast height and as much as one of them is above the ground are one tree. Where crowns touch, the
-  points of an axis belong to the tree whose branch it most likely prolongs, by the same odds of
-  distance, direction and radius that `extract_tree_skeleton()` joins axes by; points without an
-  axis to the tree whose foot is nearest along the points. Ground, walls and outliers are left out
-  as there, but for the ground's part of the stems. One point is looked at in every cube of a 65th
-  of the breast height, and decides for the others. Trees of which the points are farther apart than
-  those of others are looked for once more in cubes three times as large; they get what they have
-  there of such points, and of those that are nobody's.
+  A stem is an axis that begins near the ground, keeps its thickness there, and rises steeply by at
+  least half the breast height. Stems belong to one tree if their feet are closer than three radii,
+  plus a tenth of the breast height, plus the height of the higher foot above the ground. An axis of
+  touching crowns belongs to the tree that it most likely continues, by the odds of distance,
+  direction and radius that `extract_tree_skeleton()` joins axes by. A point without an axis belongs
+  to the tree with the nearest foot along the points. Ground, walls and outliers belong to no tree,
+  except for the ground part of stems. The scan is thinned to cubes of a 65th of the breast height;
+  the point of a cube decides for all others in it. Trees with sparse points are searched again in
+  cubes three times as large.
 
   The points of one tree are a scan for `extract_tree_skeleton()`.
 
   \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or
       `CGAL::Parallel_if_available_tag`
-  \param points a model of `RandomAccessRange`; at least `lowest_number_of_scan_points` different
-         ones, whose elements may take their trees
+  \param points a model of `RandomAccessRange` with at least `lowest_number_of_scan_points`
+         different points
   \param point_tree_map a model of `WritablePropertyMap`, key: element of `points`, value: a type
          that `std::size_t` converts to. Takes the index of the tree in the report, or `npos`;
          untouched if the callback stopped the work
@@ -100,13 +129,13 @@ inline std::vector<std::string> warnings(const Segmentation_report& r)
     \np{point_map} where a position is read
       \nptype model of `ReadablePropertyMap`, key: element of `points`, value: a point type
       \npdefault `CGAL::Identity_property_map`
-    \np{up_direction} where trees grow to
+    \np{up_direction} the direction in which trees grow
       \nptype a vector with `x()`, `y()`, `z()`, not null
       \npdefault the z-axis
-    \np{breast_height} unit of all sizes that a stem must have [L]
+    \np{breast_height} height of the diameter of stems; all size limits are relative to it [L]
       \nptype floating point, `> 0`
       \npdefault `default_breast_height`, for scans in metres
-    \np{do_remove_ground} whether ground and flat faces are looked for and left out
+    \np{do_remove_ground} whether ground and flat faces are removed
       \nptype `bool`
       \npdefault `true`
     \np{callback} called on this thread with a value that grows from 0 to 1; `false` stops

@@ -10,6 +10,9 @@
 
 
 # ---- deformation: deform_point_set
+
+
+# ---- deformation: deform_point_set
 set(root_deformation Session.h access/Point_access.h access/read_options.h)
 set(deformation_session
   body/Sampled_body.h

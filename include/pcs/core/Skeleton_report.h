@@ -70,6 +70,9 @@ struct Skeleton_report
   bool is_in_rows = false;
   //! stations whose points were moved; empty if no stations were found
   std::vector<Scan_station> stations;
+  //! largest shift of stations that was found but not applied, since it is too large for an error of
+  //! registration, or a station has too few points; 0: none [L]
+  double rejected_station_shift = 0;
   std::size_t number_of_nodes = 0;    ///< [count]
   std::size_t number_of_branches = 0; ///< [count]
 
@@ -145,6 +148,11 @@ inline void warn_of_points(const Skeleton_report& r, std::vector<std::string>& s
   if (double(r.number_of_leaf_points) > max_leaves * tree)
     sentences.push_back("most of the points are classified as leaves, which hide wood: radii and "
                         "volume may differ much between scans of the same tree");
+  if (r.rejected_station_shift > 0)
+    sentences.push_back("the stations would have to move by up to " +
+                        short_text(r.rejected_station_shift) +
+                        ", which is no error of registration, or have few points: nothing was "
+                        "moved; are they flight lines or other numbers?");
   if (r.is_in_rows)
     sentences.push_back("the points lie in sparse rows, in which leaves cannot be separated from "
                         "wood; all points are kept (do_remove_leaves(true) removes leaves)");

@@ -103,6 +103,10 @@ inline Session_options draft_options(Session_options options, const Scan_frame& 
   return options;
 }
 
+/// Errors of registration are millimetres; flight lines of a drone differ by decimetres. 2 cm for
+/// scans in metres.
+constexpr double max_shift_by_breast_height = 0.02 / 1.3;
+
 template <class Tag>
 bool register_stations(Session_state<Tag>& s, pcs::internal::Progress& progress)
 {
@@ -121,6 +125,7 @@ bool register_stations(Session_state<Tag>& s, pcs::internal::Progress& progress)
   return skeleton::register_stations<Tag>(s.is_wood,
                                           s.options.stations,
                                           s.options.registration,
+                                          max_shift_by_breast_height * s.options.breast_height,
                                           draft,
                                           s.scan,
                                           s.report,

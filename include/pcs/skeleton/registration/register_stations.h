@@ -73,12 +73,25 @@ public:
     return progress(1);
   }
 
-  /// After `run()`: moves the points if that helps, and tells of the stations.
-  void move(Scan& scan, Skeleton_report& report)
+  /// After `run()`: moves the points if that helps, and reports the stations. Motions of more than
+  /// `max_shift` or stations of few points cannot be errors of registration: nothing is moved then,
+  /// and the report has the largest shift.
+  void move(double max_shift, Scan& scan, Skeleton_report& report)
   {
     if (!m_is_moved)
       return;
-    report.stations = stations();
+    std::vector<Scan_station> found = stations();
+    double largest = 0;
+    bool is_plausible = true;
+    for (const Scan_station& station : found) {
+      largest = std::max(largest, station.shift.norm());
+      is_plausible = is_plausible && station.number_of_points >= min_points_of_station;
+    }
+    if (!is_plausible || largest > max_shift) {
+      report.rejected_station_shift = largest;
+      return;
+    }
+    report.stations = std::move(found);
     pcs::internal::for_each_index<ConcurrencyTag>(m_places.size(), [&](std::size_t k) {
       m_places[k] = Scan_frame::rounded(m_places[k]);
     });
@@ -114,6 +127,8 @@ private:
   /// Labels with more values tell something else; the work grows with the cube of their number
   /// [count].
   static constexpr std::size_t most_stations = 100;
+  /// Fewer points cannot estimate a motion [count].
+  static constexpr std::size_t min_points_of_station = 100;
   /// Points of the first draft, at most.
   static constexpr std::size_t enough = 40000;
 
@@ -262,13 +277,15 @@ private:
   branches, if there are several stations and the motions can be estimated; the report gets them.
   `stations` are the labels of the input points; if it is empty, stations are found by their scan
   grids. `scan` has its points, and nothing else yet; `is_wood` is empty or has one entry per input
-  point. See `Station_registration` for `draft`. Returns `false` if `progress` stopped it; nothing
-  is moved then.
+  point. `max_shift` is the largest plausible shift of a station, in the unit of the input. See
+  `Station_registration` for `draft`. Returns `false` if `progress` stopped it; nothing is moved
+  then.
 */
 template <class ConcurrencyTag, class Draft>
 bool register_stations(const std::vector<std::uint8_t>& is_wood,
                        const std::vector<long long>& stations,
                        const Registration_options& options,
+                       double max_shift,
                        const Draft& draft,
                        Scan& scan,
                        Skeleton_report& report,
@@ -280,7 +297,7 @@ bool register_stations(const std::vector<std::uint8_t>& is_wood,
   const bool is_done = registration.run(stations, progress);
   progress.stage(0, 1);
   if (is_done)
-    registration.move(scan, report);
+    registration.move(max_shift, scan, report);
   return is_done;
 }
 
