@@ -19,8 +19,8 @@ enum class Rotation_field {
 //! \ingroup PkgPcsDeformationRef
 //! how the nearest samples of a point are found
 enum class Sample_search {
-  regions, ///< nearest samples among the adjacent geodesic regions and their
-           ///< neighbours
+  regions,           ///< nearest samples among the adjacent geodesic regions and their
+                     ///< neighbours
   breadth_first_hops ///< by number of hops on the neighbour graph, as published
                      ///< (Algorithm 1)
 };
@@ -28,8 +28,8 @@ enum class Sample_search {
 //! \ingroup PkgPcsDeformationRef
 //! weights of the samples of a point
 enum class Sample_weights {
-  compact, ///< (1 - (d / d_{K+1})^2)^2: 0 where a sample leaves the K nearest,
-           ///< so continuous
+  compact,       ///< (1 - (d / d_{K+1})^2)^2: 0 where a sample leaves the K nearest,
+                 ///< so continuous
   inverse_square ///< 1 / d^2, as published (2.6), which jumps there
 };
 

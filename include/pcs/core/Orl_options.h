@@ -13,8 +13,8 @@ namespace pcs {
 //! \ingroup PkgPcsShapeSpaceRef
 //! how branches of a tree become longer
 enum class Branch_growth {
-  any, ///< along branches, unless growth at tips explains the trees clearly
-       ///< better
+  any,            ///< along branches, unless growth at tips explains the trees clearly
+                  ///< better
   along_branches, ///< everywhere: a branch is stretched, and its children move
                   ///< along
   //! old wood stays where it is: both trees are measured in the same unit, and
@@ -33,30 +33,25 @@ constexpr double default_fork_ratio = 0.8;
   All terms are lengths in units of the longest path of each tree, so that size
   does not matter.
 */
-struct Matching_weights {
-  Branch_growth growth =
-      Branch_growth::any; ///< for two trees; larger families stretch branches
-  double curve = 1;       ///< of the elastic energy of two branches [-]
-  double position = 1;    ///< of the distance of attachments, in units of the
-                          ///< branches' lengths [-]
-  double far = 1; ///< attachments this far apart, of the parent's length, cost
-                  ///< half of that [-]
-  double single = 0.5; ///< of the length of an unmatched subtree [-]
-  double length = 1;   ///< of a difference of lengths, in units of `single` [-]
-  double turn =
-      0.2; ///< of the rotation of a branch relative to its parents [-]
-  double children =
-      1; ///< of the children's part in the rotation that is passed on [-]
-  double carried =
-      0.1; ///< of the parents' rotation in that of their children [-]
-  bool is_carried =
-      true; ///< whether rotations of parents are passed on to their children
+struct Matching_weights
+{
+  Branch_growth growth = Branch_growth::any; ///< for two trees; larger families stretch branches
+  double curve = 1;                          ///< of the elastic energy of two branches [-]
+  double position = 1;                       ///< of the distance of attachments, in units of the
+                                             ///< branches' lengths [-]
+  double far = 1;         ///< attachments this far apart, of the parent's length, cost
+                          ///< half of that [-]
+  double single = 0.5;    ///< of the length of an unmatched subtree [-]
+  double length = 1;      ///< of a difference of lengths, in units of `single` [-]
+  double turn = 0.2;      ///< of the rotation of a branch relative to its parents [-]
+  double children = 1;    ///< of the children's part in the rotation that is passed on [-]
+  double carried = 0.1;   ///< of the parents' rotation in that of their children [-]
+  bool is_carried = true; ///< whether rotations of parents are passed on to their children
   //! the published energy: no rotations, `single` is 1, positions in units of
   //! the parent's length
   bool is_published = false;
-  double fork_ratio = default_fork_ratio; ///< see `default_fork_ratio` [-]
-  double trunk_fork_ratio =
-      default_fork_ratio; ///< the same for the trunk, if it is smaller [-]
+  double fork_ratio = default_fork_ratio;       ///< see `default_fork_ratio` [-]
+  double trunk_fork_ratio = default_fork_ratio; ///< the same for the trunk, if it is smaller [-]
   //! candidates for the main path of a branch; 1: the longest path only [count]
   std::size_t number_of_paths = 6;
   //! pairs of candidates that are matched with all their children [count]
@@ -97,29 +92,27 @@ enum class Orl_orientation {
 enum class Orl_metric {
   sum,    ///< sum of absolute differences: (4.7)
   square, ///< root of the sum of squares: geodesics are unique
-  cone ///< an edge is a vector: rotating it costs in proportion to its length
+  cone    ///< an edge is a vector: rotating it costs in proportion to its length
 };
 
 //! \ingroup PkgPcsShapeSpaceRef
 //! how the points of a scan are assigned to the edges of its tree
-struct Point_assignment_options {
+struct Point_assignment_options
+{
   //! deviation of points from the surface, as a fraction of the radius; 1.1 as
   //! published allows that much [-]
   double noise = 0.1;
-  double normal_angle =
-      0.5; ///< deviation of normals that counts as much as the noise [rad]
-  std::size_t number_of_neighbors =
-      12; ///< for normals, if none are given [count]
+  double normal_angle = 0.5; ///< deviation of normals that counts as much as the noise [rad]
+  std::size_t number_of_neighbors = 12; ///< for normals, if none are given [count]
 };
 
 //! \ingroup PkgPcsShapeSpaceRef
 //! options of `Point_transport::sinkhorn`
-struct Sinkhorn_options {
-  double regularization =
-      0.02; ///< final epsilon, as a fraction of the largest cost [-]
+struct Sinkhorn_options
+{
+  double regularization = 0.02;  ///< final epsilon, as a fraction of the largest cost [-]
   std::size_t iterations = 1000; ///< at the final epsilon, at most [count]
-  double tolerance =
-      1e-6; ///< violation of the marginals at which iterations stop [-]
+  double tolerance = 1e-6;       ///< violation of the marginals at which iterations stop [-]
 };
 
 //! \ingroup PkgPcsShapeSpaceRef
@@ -138,7 +131,8 @@ enum class Point_weights {
 
 //! \ingroup PkgPcsShapeSpaceRef
 //! how points of one tree are matched to points of another
-struct Transport_options {
+struct Transport_options
+{
   Point_transport method = Point_transport::exact;
   Point_weights weights = Point_weights::area;
   //! whether the cost is the squared distance (2-Wasserstein); as published it
@@ -149,8 +143,7 @@ struct Transport_options {
   //! other scan, take their nearest neighbour. Infinite: all mass is
   //! transported, as published [-]
   double reach = 2;
-  std::size_t number_of_neighbors =
-      16; ///< candidates of each point in the other tree [count]
+  std::size_t number_of_neighbors = 16; ///< candidates of each point in the other tree [count]
   //! points of a tree that are transported together; at most twice as many
   //! [count]
   std::size_t largest_window = 1000;
@@ -189,15 +182,15 @@ enum class Tree_mean {
 enum class Mode_inner_product {
   branches, ///< how branches differ between the trees that have them; each
             ///< branch has one vote
-  metric ///< the distance `Orl_metric::square`: a missing branch has length 0
+  metric    ///< the distance `Orl_metric::square`: a missing branch has length 0
 };
 
 //! \ingroup PkgPcsShapeSpaceRef
 //! how new trees are drawn
-struct Tree_sampling_options {
+struct Tree_sampling_options
+{
   double truncation = 2.5; ///< largest score, in standard deviations [-]
-  double spread =
-      1; ///< factor of all standard deviations; 0 gives middle trees only [-]
+  double spread = 1;       ///< factor of all standard deviations; 0 gives middle trees only [-]
   //! fraction of the variance, in [0, 1], that is drawn for each branch
   //! independently instead of for all branches together; negative: as estimated
   //! from the inputs [-]
@@ -211,8 +204,7 @@ struct Tree_sampling_options {
   bool do_keep_in_range = true;
   //! for that; the later half moves towards the middle tree [count]
   std::size_t number_of_trials = 100;
-  bool do_limit_radii =
-      false; ///< whether no branch is thicker than its parent at the attachment
+  bool do_limit_radii = false; ///< whether no branch is thicker than its parent at the attachment
   //! exponent of the pipe model: radii to this power add up to at most that of
   //! the parent; 2 to 2.5 in nature, 0: no such limit [-]
   double pipe_exponent = 0;
@@ -220,7 +212,8 @@ struct Tree_sampling_options {
 
 //! \ingroup PkgPcsShapeSpaceRef
 //! differences that count as changes between two dates
-struct Change_limits {
+struct Change_limits
+{
   double length = 0.05; ///< of the longer one [-]
   double radius = 0.05; ///< of the thicker one [-]
   double angle = 0.1;   ///< [rad]

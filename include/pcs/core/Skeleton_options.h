@@ -32,7 +32,7 @@ enum class Section_fit {
   conic,   ///< least squares for the conic with constant term 1, as published
   ellipse, ///< the direct fit of Halir and Flusser; never a hyperbola
   circle,  ///< Taubin's circle; accurate on short arcs
-  by_arc ///< an ellipse if nearly the whole section is seen, otherwise a circle
+  by_arc   ///< an ellipse if nearly the whole section is seen, otherwise a circle
 };
 
 /// A conic has five degrees of freedom [count].
@@ -44,26 +44,20 @@ constexpr std::size_t fewest_points_of_section = 6;
 
   The defaults are those of section 3.7 of \cite aiteanu2022.
 */
-struct Slice_options {
+struct Slice_options
+{
   Section_fit fit = Section_fit::conic;
-  double height = 5; ///< of a slice, in spacings [-]
-  bool is_height_local =
-      false; ///< in local spacings instead of the median spacing
-  std::size_t lowest_count =
-      10; ///< smallest number of points of a slice [count]
-  std::size_t highest_count =
-      20; ///< more are sampled at random; 0: all are used [count]
-  double upright =
-      0.9;       ///< ratio of the half axes below which a slice is tilted [-]
-  int tilts = 5; ///< largest number of tilts [count]
-  bool do_mark_support =
-      true; ///< points that agree with a section get none of their own
-  double support_radius =
-      0.35; ///< relative difference of the radii that counts as agreement [-]
-  double support_cosine =
-      0.9; ///< cosine of the angle between the axes, likewise [-]
-  double largest_radius = 200; ///< of a center candidate, in spacings [-]
-  unsigned seed = 0;           ///< of the random sample
+  double height = 5;              ///< of a slice, in spacings [-]
+  bool is_height_local = false;   ///< in local spacings instead of the median spacing
+  std::size_t lowest_count = 10;  ///< smallest number of points of a slice [count]
+  std::size_t highest_count = 20; ///< more are sampled at random; 0: all are used [count]
+  double upright = 0.9;           ///< ratio of the half axes below which a slice is tilted [-]
+  int tilts = 5;                  ///< largest number of tilts [count]
+  bool do_mark_support = true;    ///< points that agree with a section get none of their own
+  double support_radius = 0.35;   ///< relative difference of the radii that counts as agreement [-]
+  double support_cosine = 0.9;    ///< cosine of the angle between the axes, likewise [-]
+  double largest_radius = 200;    ///< of a center candidate, in spacings [-]
+  unsigned seed = 0;              ///< of the random sample
 };
 
 } // namespace pcs

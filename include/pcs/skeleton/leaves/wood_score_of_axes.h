@@ -121,8 +121,7 @@ void add_evidence_of_points(const Scan& scan,
     mean += scan.points[i];
     of_points.push_back(wood_score[i]);
     segments.push_back(set.segment_of_point[i]);
-    e.mean_likeness +=
-        std::min(surest, std::max(-surest, double(wood_score[i])));
+    e.mean_likeness += std::min(surest, std::max(-surest, double(wood_score[i])));
     e.residual += std::abs(set.height_above(i, scan.points[i]));
     e.local_spacing += scan.local_spacing[i];
     e.carried = std::max(e.carried, carried[i]);
