@@ -22,8 +22,8 @@ enum class Branch_growth {
   at_tips
 };
 
-/// A fork continues one branch only if the longest path is at least this many
-/// times the second [-].
+//! At a fork, a child may continue the branch if its continuation has at least this fraction of the
+//! longest one [-].
 constexpr double default_fork_ratio = 0.8;
 
 /*!
