@@ -264,7 +264,7 @@ BOOST_AUTO_TEST_CASE(options_change_what_they_say)
 
 /// The points of the fork with more columns: `names`, and what `values(is_branch)` gives.
 template <class Values>
-std::string fork_table(const std::string& names, const Values& values)
+std::string fork_table(const std::string& names, Values values)
 {
   std::string table = "x,y,z," + names + "\n";
   std::istringstream in(fork_text());
@@ -319,7 +319,7 @@ BOOST_AUTO_TEST_CASE(rays_without_return_are_left_out)
 BOOST_AUTO_TEST_CASE(flight_lines_are_no_stations)
 {
   // a different line every second point: as stations, the halves of each branch would be registered
-  const auto lines = [k = 0](bool) mutable { return k++ % 2 ? "7" : "8"; };
+  auto lines = [k = 0](bool) mutable { return k++ % 2 ? "7" : "8"; };
   write("lines.csv", fork_table("point_source_id", lines));
   int code = run("--quiet --input lines.csv --swc a.swc --report a.json");
   BOOST_REQUIRE_MESSAGE(code == 0, err);
