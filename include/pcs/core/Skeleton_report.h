@@ -70,7 +70,7 @@ struct Skeleton_report
   bool is_in_rows = false;
   //! stations whose points were moved; empty if no stations were found
   std::vector<Scan_station> stations;
-  //! largest shift of stations that was found but not applied, since it is too large for an error of
+  //! largest shift of stations that was found but not applied: too large for an error of
   //! registration, or a station has too few points; 0: none [L]
   double rejected_station_shift = 0;
   std::size_t number_of_nodes = 0;    ///< [count]
