@@ -150,7 +150,7 @@ BOOST_AUTO_TEST_CASE(a_tree_of_voxels_has_the_volume_of_its_scan)
       BOOST_CHECK_LT(std::abs(report.total.volume / volume - 1), 0.03); // 14 % at 2 cm without
       const auto sentences = pcs::warnings(report);
       BOOST_REQUIRE_EQUAL(sentences.size(), 1u);
-      BOOST_CHECK_NE(sentences[0].find("grid of step"), std::string::npos);
+      BOOST_CHECK_NE(sentences[0].find("voxel centers of size"), std::string::npos);
     }
   }
 }

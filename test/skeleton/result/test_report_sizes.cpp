@@ -86,8 +86,8 @@ BOOST_AUTO_TEST_CASE(branches_of_the_trunk_do_not_count)
 BOOST_AUTO_TEST_CASE(a_tree_that_forks_below_breast_height_has_several_stems)
 {
   Branch_tree tree = trunk_to(Vec3(0, 0, 0.8), 8, 0.15, 0.15);
-  const double radii[] = {0.06, 0.1, 0.08, 0.02};
-  for (const double r : radii) // the last is a twig
+  const double radii[] = {0.08, 0.1, 0.09, 0.05};
+  for (const double r : radii) // the last is a limb
     pcs_test::add_branch(tree,
                          8,
                          pcs_test::straight_axis(Vec3(r, 0, 0.8), Vec3(10 * r, 0, 6), 20, r, r));
@@ -95,8 +95,8 @@ BOOST_AUTO_TEST_CASE(a_tree_that_forks_below_breast_height_has_several_stems)
   report_sizes(tree, 1, Vec3::UnitZ(), 1.3, report);
   BOOST_REQUIRE(report.stem_diameters.size() == 3u);
   BOOST_TEST(std::abs(report.stem_diameters[0] - 0.2) < 1e-9);
-  BOOST_TEST(std::abs(report.stem_diameters[1] - 0.16) < 1e-9);
-  BOOST_TEST(std::abs(report.stem_diameters[2] - 0.12) < 1e-9);
+  BOOST_TEST(std::abs(report.stem_diameters[1] - 0.18) < 1e-9);
+  BOOST_TEST(std::abs(report.stem_diameters[2] - 0.16) < 1e-9);
   BOOST_TEST(report.diameter_at_breast_height == report.stem_diameters[0]);
   // a single trunk has one stem, whatever thick branch hangs down to breast height
   pcs::Skeleton_report single;

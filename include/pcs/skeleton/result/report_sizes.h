@@ -100,7 +100,7 @@ inline void report_stems(const Branch_tree& tree,
                          std::vector<Stem_crossing> crossings,
                          Skeleton_report& r)
 {
-  constexpr double min_rise = 0.5, min_ratio = 0.5; // of the height, of the thickest stem [-]
+  constexpr double min_rise = 0.5, min_ratio = 0.7; // of the height, of the thickest stem [-]
   const auto top_of = [&](Index branch) {
     double top = 0;
     for (const Index v : tree.branches[branch].nodes)
