@@ -55,6 +55,18 @@ struct Is_point<T,
 };
 
 template <class T, class = void>
+struct Is_coordinate_triple : std::false_type
+{
+};
+template <class T>
+struct Is_coordinate_triple<T,
+                            std::void_t<decltype(std::declval<const T&>().x()),
+                                        decltype(std::declval<const T&>().y()),
+                                        decltype(std::declval<const T&>().z())>> : std::true_type
+{
+};
+
+template <class T, class = void>
 struct Is_matrix_3 : std::false_type
 {
 };
@@ -119,6 +131,10 @@ using Element_reference = decltype(*std::begin(std::declval<Range&>()));
 //! `Vector_3` of CGAL, `Eigen::Vector3d`, or a user-defined type
 template <class T>
 constexpr bool is_point_or_vector_v = internal::Is_point<T>::value;
+
+//! whether `T` has `x()`, `y()`, `z()`: what is only read needs no constructor
+template <class T>
+constexpr bool is_coordinate_triple_v = internal::Is_coordinate_triple<T>::value;
 
 //! whether `T` is a 3 x 3 matrix of Eigen
 template <class T>

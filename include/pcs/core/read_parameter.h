@@ -1,0 +1,90 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Reading of named parameters into typed options.
+
+#ifndef PCS_CORE_READ_PARAMETER_H
+#define PCS_CORE_READ_PARAMETER_H
+
+#include <pcs/Named_function_parameters.h>
+#include <pcs/concepts.h>
+#include <pcs/core/check_value.h>
+
+#include <CGAL/number_utils.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+namespace pcs {
+namespace internal {
+
+/// Whether `tag` is not in the chain, or was given a value that converts to `Option`.
+template <class Option, class NamedParameters, class Tag>
+constexpr bool is_parameter_v =
+    std::is_convertible_v<decltype(choose(std::declval<const NamedParameters&>(),
+                                          std::declval<Tag>(),
+                                          std::declval<const Option&>())),
+                          Option>;
+
+/// Replaces `value` by the value given for `tag`, if there is one. A value of a wrong type is
+/// ignored: the caller rejects it with a `static_assert` that names the parameter.
+template <class Option, class NamedParameters, class Tag>
+void read_parameter(const NamedParameters& np, Tag tag, Option& value)
+{
+  if constexpr (is_parameter_v<Option, NamedParameters, Tag>)
+    value = static_cast<Option>(choose(np, tag, value));
+}
+
+/// Sets `callback` to the one given in `np`, if there is one.
+template <class NamedParameters>
+void read_callback([[maybe_unused]] const NamedParameters& np,
+                   [[maybe_unused]] std::function<bool(double)>& callback)
+{
+  using Tag = CGAL::internal_np::callback_t;
+  if constexpr (is_given_v<NamedParameters, Tag>) {
+    using Given = std::decay_t<decltype(CGAL::parameters::get_parameter(np, Tag()))>;
+    constexpr bool is_callback = is_progress_callback_v<Given>;
+    static_assert(is_callback,
+                  "pcs: named parameter `callback` must take a double and return a bool");
+    if constexpr (is_callback)
+      callback = CGAL::parameters::get_parameter(np, Tag());
+  }
+}
+
+/// The vertical as a unit vector, `(0, 0, 1)` if none is given. Throws `Invalid_input` with a
+/// message that begins with `caller` if it is null or not finite.
+template <class NamedParameters>
+std::array<double, 3> read_up_direction([[maybe_unused]] const NamedParameters& np,
+                                        [[maybe_unused]] const std::string& caller)
+{
+  std::array<double, 3> up = {0, 0, 1};
+  using Tag = internal_np::up_direction_t;
+  if constexpr (is_given_v<NamedParameters, Tag>) {
+    const auto given = CGAL::parameters::get_parameter(np, Tag());
+    constexpr bool is_vector = is_coordinate_triple_v<std::decay_t<decltype(given)>>;
+    static_assert(is_vector,
+                  "pcs: named parameter `up_direction` must be a vector with x(), y(), z()");
+    if constexpr (is_vector) {
+      up = {CGAL::to_double(given.x()), CGAL::to_double(given.y()), CGAL::to_double(given.z())};
+      const double largest = std::max({std::abs(up[0]), std::abs(up[1]), std::abs(up[2])});
+      check(largest > 0 && std::isfinite(largest) && !std::isnan(up[0] + up[1] + up[2]),
+            caller,
+            "`up_direction` must be finite and not the null vector");
+      for (double& x : up)
+        x /= largest; // squares may overflow
+      const double length = std::sqrt(up[0] * up[0] + up[1] * up[1] + up[2] * up[2]);
+      for (double& x : up)
+        x /= length;
+    }
+  }
+  return up;
+}
+
+} // namespace internal
+} // namespace pcs
+
+#endif // PCS_CORE_READ_PARAMETER_H
