@@ -335,12 +335,12 @@ public:
     }
     require_all_points(function);
     internal::Progress progress(m_callback);
-    const Deformation_report report = m_session->solve(m_elastic, start, progress);
-    if (report.status == Status::cancelled || report.status == Status::numerical_failure)
-      return report;
-    m_shape_motions = m_motion;
-    write_points();
-    progress.finish();
+    const Status status = m_session->solve(m_elastic, start, progress);
+    if (status != Status::cancelled && status != Status::numerical_failure) {
+      m_shape_motions = m_motion;
+      write_points();
+      progress.finish();
+    }
     return m_session->report();
   }
 

@@ -18,11 +18,8 @@ set(deformation_session
   body/Sampled_body.h
   body/Sampled_body_impl.h
   handles/Dirty_handles.h
-  handles/Handle_set.h
   handles/Site_constraints.h
-  handles/add_boundary_nodes.h
-  handles/anchor_free_components.h
-  handles/straighten_borders.h
+  handles/constrain_body.h
   multigrid/Coarse_levels.h
   solver/Elastic_solver.h
   upsampling/Handle_fades.h

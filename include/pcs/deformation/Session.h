@@ -8,6 +8,7 @@
 #include <pcs/core/Deformation_options.h>
 #include <pcs/core/Deformation_report.h>
 #include <pcs/core/Similarity.h>
+#include <pcs/core/Status.h>
 #include <pcs/deformation/body/Sampled_body.h>
 #include <pcs/deformation/handles/Site_constraints.h>
 #include <pcs/deformation/model/Affine_map.h>
@@ -15,7 +16,7 @@
 #include <pcs/deformation/upsampling/Moved_point_writer.h>
 #include <pcs/deformation/upsampling/Outlier_maps.h>
 #include <pcs/deformation/upsampling/Upsampling.h>
-#include <pcs/internal/Stopwatch.h>
+#include <pcs/internal/Stage_timer.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
 
@@ -48,10 +49,11 @@ struct Writing
   const std::vector<Similarity>& transforms; ///< of the handles, in local coordinates
   const std::vector<char>& is_written;       ///< of each handle
   Upsampling::Block_motions motions;         ///< if the body is sampled
+  double& seconds;                           ///< of the report
 };
 
 template <class ConcurrencyTag>
-class Session_core;
+struct Session_state;
 
 /*!
   What `Point_set_deformation` does, without its point types. Indices are the caller's;
@@ -93,8 +95,9 @@ public:
   /// Factorises if handles changed since the last time. Returns `false` if a matrix is singular.
   bool constrain(double stiffness);
 
-  /// Solves for the present transformations. The points are not written: see `write()`.
-  Deformation_report
+  /// Solves for the present transformations. The points are not written: see `write()`. The last
+  /// shape is kept if the status is `cancelled` or `numerical_failure`.
+  Status
   solve(const Elastic_options& options, Solver_start start, pcs::internal::Progress& progress);
 
   /// Whether the present shape was solved with the present handles, or is the rest shape.
@@ -122,8 +125,8 @@ public:
   template <bool HasGradients, class Output>
   void write(Output& output)
   {
-    pcs::internal::Stopwatch watch;
     const Writing<ConcurrencyTag> w = start_writing();
+    const pcs::internal::Stage_timer timer(w.seconds);
     const Moved_point_writer<ConcurrencyTag, Output> writer(w.body,
                                                             w.sites,
                                                             w.outlier_maps,
@@ -146,7 +149,6 @@ public:
                                                       else
                                                         writer.write_other(place);
                                                     });
-    end_writing(watch.lap());
   }
 
   /*!
@@ -170,9 +172,8 @@ public:
 
 private:
   Writing<ConcurrencyTag> start_writing();
-  void end_writing(double seconds);
 
-  std::unique_ptr<Session_core<ConcurrencyTag>> m_core;
+  std::unique_ptr<Session_state<ConcurrencyTag>> m_state;
 };
 
 } // namespace deformation

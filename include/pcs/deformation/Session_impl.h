@@ -1,14 +1,33 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Definitions of Session.h.
+// Handles, constraints, solving and writing of an editing session: definitions of Session.h.
 
 #ifndef PCS_DEFORMATION_SESSION_IMPL_H
 #define PCS_DEFORMATION_SESSION_IMPL_H
 
 #include <pcs/core/Deformation_options.h>
+#include <pcs/core/Deformation_report.h>
+#include <pcs/core/Similarity.h>
+#include <pcs/core/Status.h>
 #include <pcs/deformation/Session.h>
-#include <pcs/deformation/Session_core.h>
+#include <pcs/deformation/body/Sampled_body.h>
+#include <pcs/deformation/body/Sampled_body_impl.h>
+#include <pcs/deformation/handles/Dirty_handles.h>
+#include <pcs/deformation/handles/constrain_body.h>
+#include <pcs/deformation/model/Affine_map.h>
+#include <pcs/deformation/multigrid/Coarse_levels.h>
+#include <pcs/deformation/solver/Elastic_solver.h>
+#include <pcs/deformation/upsampling/Handle_fades.h>
+#include <pcs/deformation/upsampling/Outlier_maps.h>
+#include <pcs/deformation/upsampling/Point_carrier.h>
+#include <pcs/deformation/upsampling/read_maps.h>
+#include <pcs/internal/Stage_timer.h>
+#include <pcs/internal/parallel.h>
+#include <pcs/internal/progress.h>
 
+#include <Eigen/Core>
+
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -19,16 +38,307 @@
 namespace pcs {
 namespace deformation {
 
+/*!
+  Everything that the calls of a session share. Settings are numbers that no two sessions share:
+  there is a new one whenever handles or the rest shape change.
+*/
+template <class ConcurrencyTag>
+struct Session_state
+{
+  // ---- from the points; incomplete, and of no use, if the construction was cancelled
+  Sampled_body<ConcurrencyTag> body;
+  Coarse_levels<ConcurrencyTag> coarse;
+  bool is_ready = false;
+
+  // ---- the handles as the caller set them; no other call changes them
+  Handle_set handles;
+  std::uint64_t setting = 0; ///< of the present handles and rest shape
+
+  // ---- constraints of these handles; a cancelled solve leaves them
+  Site_constraints sites;
+  Elastic_network
+      network; ///< the samples and the nodes on the borders of handles, if there are any
+  Elastic_solver<ConcurrencyTag> solver;
+  Handle_fades fades;
+  double stiffness = 1;
+  bool is_constrained = false;        ///< by the present handles
+  std::uint64_t setting_of_sites = 0; ///< when `sites` were found
+
+  // ---- the state of the solver; a cancelled solve destroys it, and the next one begins cold
+  bool has_solution = false; ///< under the present constraints
+  double last_energy = 0;    ///< of the solution
+
+  // ---- the present shape; a cancelled solve leaves it
+  std::vector<Affine_map> maps;             ///< of the samples
+  std::vector<Similarity> local_transforms; ///< of the handles, that the maps belong to
+  std::vector<Similarity> shape_transforms; ///< the same in the caller's coordinates
+  std::uint64_t setting_of_shape = 0;       ///< when the shape was solved
+  bool is_at_rest = true;
+
+  // ---- memory of the next shape, kept so that frames allocate nothing
+  std::vector<Similarity> next_transforms;
+  std::vector<Affine_map> next_maps;
+  std::vector<int> are_finite;
+
+  // ---- what is written follows from the present shape
+  Dirty_handles dirty_handles; ///< since the last time that points were written
+  Outlier_maps outlier_maps;
+  std::vector<Handle_map> handle_maps;
+  std::unique_ptr<Point_carrier> carrier; ///< of the present rest shape; null until it is needed
+
+  Deformation_report report;
+  bool was_reported = false; ///< the first solve reports the seconds of the construction too
+};
+
+namespace internal {
+
+// ---- settings and shapes
+
+/// The shape is the rest shape, whatever the handles.
+template <class Tag>
+void keep_rest(Session_state<Tag>& s)
+{
+  s.shape_transforms.assign(s.handles.size(), Similarity());
+  s.setting_of_shape = s.setting;
+  s.is_at_rest = true;
+}
+
+/// Handles or the rest shape have changed: earlier snapshots cannot be restored.
+template <class Tag>
+void begin_setting(Session_state<Tag>& s)
+{
+  static std::atomic<std::uint64_t> last{0};
+  s.setting = ++last;
+  if (s.is_at_rest)
+    keep_rest(s);
+}
+
+template <class Tag>
+void put_samples_at_rest(Session_state<Tag>& s)
+{
+  s.maps.assign(s.maps.size(), identity_map());
+  keep_rest(s);
+}
+
+/// The local transformations of handles follow those that were set.
+template <class Tag>
+void localize_transforms(Session_state<Tag>& s)
+{
+  s.handles.local_transforms(s.body.frame, s.local_transforms);
+}
+
+/// Handles that were added since the last solve have moved nothing yet. The outside of the region
+/// stays the last.
+template <class Tag>
+void complete_transforms(Session_state<Tag>& s)
+{
+  const std::size_t outside_count = s.handles.has_outside() ? 1 : 0;
+  if (s.local_transforms.size() == s.handles.size() + outside_count)
+    return;
+  if (!s.local_transforms.empty())
+    s.local_transforms.resize(s.local_transforms.size() - outside_count);
+  s.local_transforms.resize(s.handles.size() + outside_count);
+}
+
+// ---- construction
+
+template <class Tag>
+void describe_body(Session_state<Tag>& s)
+{
+  const Sampled_body<Tag>& body = s.body;
+  s.report.number_of_points = body.number_of_points();
+  s.report.number_of_duplicates = body.number_of_points() - body.number_of_sites();
+  s.report.number_of_samples = body.network.size();
+  s.report.number_of_interior_links = body.network.links.neighbor.size() / 2;
+  s.report.number_of_components = body.number_of_components();
+  s.report.number_of_short_cuts = body.number_of_short_cuts;
+}
+
+template <class Tag>
+void build_coarse_levels(Session_state<Tag>& s)
+{
+  std::vector<std::uint32_t> component;
+  for (const auto site : s.body.site_of_sample)
+    component.push_back(s.body.component_of_site[site]);
+  s.coarse =
+      Coarse_levels<Tag>(s.body.network, std::move(component), s.body.options.do_preserve_volume);
+}
+
+// ---- solving
+
+/// Starts the report of a solve. The first one keeps the seconds of the construction.
+template <class Tag>
+void start_report(Session_state<Tag>& s)
+{
+  if (s.was_reported)
+    s.report.seconds = Deformation_report::Seconds();
+  s.was_reported = true;
+  s.report.number_of_iterations = 0;
+  s.report.initial_energy = s.report.energy = 0;
+}
+
+/// Without handles the shape is the rest shape.
+template <class Tag>
+Status solve_nothing(Session_state<Tag>& s)
+{
+  put_samples_at_rest(s);
+  s.local_transforms.clear();
+  return Status::nothing_to_do;
+}
+
+/// Solves on all levels, the coarsest first.
+template <class Tag>
+Elastic_result solve_levels(Session_state<Tag>& s,
+                            const Elastic_options& options,
+                            pcs::internal::Progress& progress)
+{
+  const Deviation_guess* guess = nullptr;
+  {
+    const pcs::internal::Stage_timer timer(s.report.seconds.coarse_levels);
+    guess = &s.coarse.solve(s.next_transforms, options, progress);
+  }
+  return s.solver.solve(s.next_transforms, options, progress, *guess);
+}
+
+/// Solves from the last solution if that is wanted and near, otherwise from the rest shape.
+template <class Tag>
+Elastic_result solve_samples(Session_state<Tag>& s,
+                             const Elastic_options& options,
+                             Solver_start start,
+                             pcs::internal::Progress& progress)
+{
+  s.handles.local_transforms(s.body.frame, s.next_transforms);
+  Elastic_result result;
+  const bool is_warm =
+      start == Solver_start::warm && s.has_solution && !s.coarse.has_link_offsets();
+  const double highest_energy = largest_warm_growth * s.last_energy;
+  if (!is_warm ||
+      !s.solver.solve_further(s.next_transforms, options, progress, highest_energy, result))
+    result = solve_levels(s, options, progress);
+  s.has_solution = result.status != Status::cancelled;
+  s.last_energy = result.energy;
+  return result;
+}
+
+template <class Tag>
+void describe_result(Session_state<Tag>& s, const Elastic_result& result)
+{
+  const double unit = s.body.frame.unit;
+  s.report.number_of_iterations = static_cast<std::size_t>(result.number_of_passes);
+  s.report.initial_energy = result.initial_energy * unit * unit;
+  s.report.energy = result.energy * unit * unit;
+}
+
+/// Makes what was solved the present shape. Returns `false`, and changes nothing, if it is not
+/// finite.
+template <class Tag>
+bool take_shape(Session_state<Tag>& s)
+{
+  if (!read_maps<Tag>(s.solver.state(),
+                      s.next_transforms,
+                      s.body.network.rest,
+                      s.next_maps,
+                      s.are_finite))
+    return false;
+  s.local_transforms.swap(s.next_transforms);
+  s.maps.swap(s.next_maps);
+  s.shape_transforms = s.handles.transforms();
+  s.setting_of_shape = s.setting;
+  s.is_at_rest = false;
+  return true;
+}
+
+// ---- points outside the session
+
+template <class Tag>
+void carry_with_handle(const Session_state<Tag>& s,
+                       Node_constraint h,
+                       const Vec3& local,
+                       Vec3& point,
+                       Vec3& normal)
+{
+  const Similarity& t = s.local_transforms[static_cast<std::size_t>(h)];
+  if (t.is_identity())
+    return;
+  point = s.body.frame.to_world(t(local));
+  normal = t.rotation() * normal;
+}
+
+/// The map of a point near `site`, which is free or an outlier.
+template <class Tag>
+Affine_map map_near_site(const Session_state<Tag>& s, std::size_t site, const Vec3& local)
+{
+  if (s.sites[site] == outlier_site)
+    return s.outlier_maps.of_site(s.body, site);
+  return s.body.is_sampled ? s.carrier->map_at(local, site, s.maps) : s.maps[site];
+}
+
+template <class Tag>
+void carry_with_samples(const Session_state<Tag>& s,
+                        std::size_t site,
+                        const Vec3& local,
+                        Vec3& point,
+                        Vec3& normal)
+{
+  const Affine_map map = map_near_site(s, site, local);
+  Eigen::Matrix3d a = Eigen::Map<const Row_major_matrix>(map.a);
+  Vec3 moved = a * local + Eigen::Map<const Vec3>(map.t), turned = turn_normal(a, normal);
+  if (s.body.is_sampled && s.sites[site] != outlier_site && !s.local_transforms.empty())
+    s.fades.apply(site, s.local_transforms, local, normal, moved, turned, a);
+  point = s.body.frame.to_world(moved);
+  normal = turned;
+}
+
+template <class Tag>
+void build_carrier(Session_state<Tag>& s)
+{
+  std::vector<Vec3> sites(s.body.number_of_sites());
+  for (std::size_t place = 0; place < s.body.number_of_points(); ++place)
+    sites[s.body.site_of_place[place]] = s.body.upsampling.rest(place);
+  s.carrier = std::make_unique<Point_carrier>(std::move(sites),
+                                              s.body.network.rest,
+                                              s.body.sample_of_site,
+                                              s.body.network.surface,
+                                              s.body.options.number_of_sample_neighbors,
+                                              s.body.options.sample_weights);
+}
+
+// ---- a new rest shape
+
+/// Moves points and samples of the rest shape. `position(input index)` is in the caller's
+/// coordinates.
+template <class Tag>
+void move_rest(Session_state<Tag>& s, const std::function<Vec3(std::size_t)>& position)
+{
+  Sampled_body<Tag>& body = s.body;
+  body.upsampling.set_rest(
+      [&](std::size_t place) { return body.frame.to_local(position(body.input_of_place[place])); });
+  for (std::size_t sample = 0; sample < body.network.size(); ++sample)
+    body.network.rest[sample] = body.rest_of_site(body.site_of_sample[sample]);
+  body.upsampling.set_sample_points(body.network.rest);
+  s.coarse.accept(body.network);
+  s.carrier.reset();
+}
+
+} // namespace internal
+
 template <class ConcurrencyTag>
 Session<ConcurrencyTag>::Session(std::vector<Vec3> points,
                                  const Sampling_options& options,
                                  const std::vector<std::uint32_t>* region,
                                  pcs::internal::Progress& progress)
-  : m_core(std::make_unique<Session_core<ConcurrencyTag>>(std::move(points),
-                                                          options,
-                                                          region,
-                                                          progress))
+  : m_state(std::make_unique<Session_state<ConcurrencyTag>>())
 {
+  Session_state<ConcurrencyTag>& s = *m_state;
+  s.is_ready = s.body.build(std::move(points), options, s.report.seconds, progress);
+  if (!s.is_ready)
+    return;
+  internal::describe_body(s);
+  s.maps.assign(s.body.network.size(), identity_map());
+  s.next_maps = s.maps;
+  internal::build_coarse_levels(s);
+  s.handles.start(s.body, region);
+  internal::begin_setting(s);
 }
 
 template <class ConcurrencyTag>
@@ -37,25 +347,19 @@ Session<ConcurrencyTag>::~Session() = default;
 template <class ConcurrencyTag>
 bool Session<ConcurrencyTag>::is_ready() const
 {
-  return m_core->is_ready();
+  return m_state->is_ready;
 }
 
 template <class ConcurrencyTag>
 std::size_t Session<ConcurrencyTag>::number_of_points() const
 {
-  return m_core->number_of_points();
-}
-
-template <class ConcurrencyTag>
-const Similarity& Session<ConcurrencyTag>::transform(std::size_t handle) const
-{
-  return m_core->transform(handle);
+  return m_state->body.number_of_points();
 }
 
 template <class ConcurrencyTag>
 std::size_t Session<ConcurrencyTag>::number_of_samples() const
 {
-  return m_core->number_of_samples();
+  return m_state->maps.size();
 }
 
 template <class ConcurrencyTag>
@@ -63,123 +367,225 @@ std::size_t Session<ConcurrencyTag>::add_handle(const std::vector<std::uint32_t>
                                                 double weight,
                                                 const char* function)
 {
-  return m_core->add_handle(indices, weight, function);
+  const std::size_t handle = m_state->handles.add(m_state->body, indices, weight, function);
+  m_state->is_constrained = false;
+  internal::begin_setting(*m_state);
+  return handle;
 }
 
 template <class ConcurrencyTag>
 void Session<ConcurrencyTag>::remove_handle(std::size_t handle)
 {
-  m_core->remove_handle(handle);
+  m_state->handles.remove(handle);
+  m_state->is_constrained = false;
+  internal::begin_setting(*m_state);
 }
 
 template <class ConcurrencyTag>
 bool Session<ConcurrencyTag>::is_handle(std::size_t handle) const
 {
-  return m_core->is_handle(handle);
+  return m_state->handles.contains(handle);
+}
+
+template <class ConcurrencyTag>
+const Similarity& Session<ConcurrencyTag>::transform(std::size_t handle) const
+{
+  return m_state->handles.transforms()[handle];
 }
 
 template <class ConcurrencyTag>
 const Vec3& Session<ConcurrencyTag>::centroid(std::size_t handle) const
 {
-  return m_core->centroid(handle);
+  return m_state->handles.centroid(handle);
 }
 
 template <class ConcurrencyTag>
 void Session<ConcurrencyTag>::set_transform(std::size_t handle, const Similarity& transform)
 {
-  m_core->set_transform(handle, transform);
+  m_state->handles.set_transform(m_state->body.frame, handle, transform);
 }
 
 template <class ConcurrencyTag>
 bool Session<ConcurrencyTag>::constrain(double stiffness)
 {
-  return m_core->constrain(stiffness);
+  Session_state<ConcurrencyTag>& s = *m_state;
+  if (s.is_constrained && stiffness == s.stiffness)
+    return true;
+  s.report.seconds.factorization = 0;
+  const pcs::internal::Stage_timer timer(s.report.seconds.factorization);
+  s.has_solution = false;
+  s.stiffness = stiffness;
+  s.setting_of_sites = s.setting;
+  Body_constraints found = constrain_body(s.body, s.handles, s.sites, s.report);
+  const bool is_regular = s.coarse.constrain(s.body.network, found.of_samples, stiffness);
+  if (found.has_network)
+    s.network = std::move(found.network);
+  pcs::internal::invoke_both<ConcurrencyTag>(
+      [&] {
+        s.is_constrained = s.solver.constrain(found.has_network ? s.network : s.body.network,
+                                              std::move(found.of_nodes),
+                                              stiffness);
+      },
+      [&] {
+        if (s.body.is_sampled)
+          s.fades.find(s.body, found.border, exact_handles(s.handles));
+      });
+  s.is_constrained = s.is_constrained && is_regular;
+  return s.is_constrained;
 }
 
 template <class ConcurrencyTag>
-Deformation_report Session<ConcurrencyTag>::solve(const Elastic_options& options,
-                                                  Solver_start start,
-                                                  pcs::internal::Progress& progress)
+Status Session<ConcurrencyTag>::solve(const Elastic_options& options,
+                                      Solver_start start,
+                                      pcs::internal::Progress& progress)
 {
-  return m_core->solve(options, start, progress);
+  Session_state<ConcurrencyTag>& s = *m_state;
+  internal::start_report(s);
+  const bool is_regular = constrain(options.stiffness);
+  if (s.handles.empty())
+    return s.report.status = internal::solve_nothing(s);
+  if (!is_regular)
+    return s.report.status = Status::numerical_failure;
+  const pcs::internal::Stage_timer timer(s.report.seconds.solving);
+  const Elastic_result result = internal::solve_samples(s, options, start, progress);
+  internal::describe_result(s, result);
+  const bool is_kept = result.status == Status::cancelled || internal::take_shape(s);
+  return s.report.status = is_kept ? result.status : Status::numerical_failure;
 }
 
 template <class ConcurrencyTag>
 bool Session<ConcurrencyTag>::has_shape_of_handles() const
 {
-  return m_core->has_shape_of_handles();
+  return m_state->setting_of_shape == m_state->setting;
 }
 
 template <class ConcurrencyTag>
 bool Session<ConcurrencyTag>::is_ahead_of_shape() const
 {
-  return m_core->is_ahead_of_shape();
+  return !m_state->is_at_rest && m_state->setting_of_sites != m_state->setting_of_shape;
 }
 
 template <class ConcurrencyTag>
 bool Session<ConcurrencyTag>::is_of_setting(const Session_snapshot& s) const
 {
-  return m_core->is_of_setting(s);
+  return s.setting == m_state->setting;
 }
 
 template <class ConcurrencyTag>
 Session_snapshot Session<ConcurrencyTag>::snapshot() const
 {
-  return m_core->snapshot();
+  const Session_state<ConcurrencyTag>& s = *m_state;
+  return {s.shape_transforms, s.maps, s.setting, s.is_at_rest};
 }
 
 template <class ConcurrencyTag>
-void Session<ConcurrencyTag>::restore(const Session_snapshot& s)
+void Session<ConcurrencyTag>::restore(const Session_snapshot& snapshot)
 {
-  m_core->restore(s);
+  Session_state<ConcurrencyTag>& s = *m_state;
+  s.handles.restore(snapshot.transforms);
+  s.maps = snapshot.maps;
+  s.shape_transforms = s.handles.transforms();
+  s.setting_of_shape = s.setting;
+  s.is_at_rest = snapshot.is_at_rest;
+  s.has_solution = false;
+  internal::localize_transforms(s);
+  constrain(s.stiffness);
 }
 
 template <class ConcurrencyTag>
 void Session<ConcurrencyTag>::reset()
 {
-  m_core->reset();
-}
-
-template <class ConcurrencyTag>
-void Session<ConcurrencyTag>::carry(Vec3& point, Vec3& normal) const
-{
-  m_core->carry(point, normal);
-}
-
-template <class ConcurrencyTag>
-void Session<ConcurrencyTag>::prepare_carrying()
-{
-  m_core->prepare_carrying();
-}
-
-template <class ConcurrencyTag>
-const Deformation_report& Session<ConcurrencyTag>::report() const
-{
-  return m_core->report();
-}
-
-template <class ConcurrencyTag>
-void Session<ConcurrencyTag>::set_normals(const std::function<Vec3(std::size_t)>& normal)
-{
-  m_core->set_normals(normal);
-}
-
-template <class ConcurrencyTag>
-void Session<ConcurrencyTag>::accept(const std::function<Vec3(std::size_t)>& position)
-{
-  m_core->accept(position);
+  Session_state<ConcurrencyTag>& s = *m_state;
+  s.handles.put_at_rest();
+  internal::put_samples_at_rest(s);
+  s.has_solution = false;
+  internal::localize_transforms(s);
+  constrain(s.stiffness);
 }
 
 template <class ConcurrencyTag>
 Writing<ConcurrencyTag> Session<ConcurrencyTag>::start_writing()
 {
-  return m_core->start_writing();
+  Session_state<ConcurrencyTag>& s = *m_state;
+  s.report.seconds.upsampling = 0;
+  const pcs::internal::Stage_timer timer(s.report.seconds.upsampling);
+  const std::vector<char>& is_written = s.dirty_handles.find(s.local_transforms,
+                                                             s.handles.has_outside(),
+                                                             s.sites.take_followed_handles(),
+                                                             s.is_at_rest);
+  s.outlier_maps.read(s.body, s.maps);
+  Upsampling::Block_motions motions;
+  if (s.body.is_sampled) {
+    read_handle_maps(s.local_transforms, s.handle_maps);
+    motions = {s.sites.is_blended().data(),
+               s.sites.holder().data(),
+               is_written.data(),
+               s.handle_maps.data(),
+               s.local_transforms.empty() ? Upsampling::Fades() : s.fades.of_blocks()};
+  }
+  return {s.body,
+          s.maps,
+          s.sites,
+          s.outlier_maps,
+          s.local_transforms,
+          is_written,
+          motions,
+          s.report.seconds.upsampling};
 }
 
 template <class ConcurrencyTag>
-void Session<ConcurrencyTag>::end_writing(double seconds)
+void Session<ConcurrencyTag>::carry(Vec3& point, Vec3& normal) const
 {
-  m_core->end_writing(seconds);
+  const Session_state<ConcurrencyTag>& s = *m_state;
+  const Vec3 local = s.body.frame.to_local(point);
+  const std::size_t site = s.carrier->nearest_site(local);
+  const Node_constraint h = s.sites[site];
+  if (h >= 0)
+    internal::carry_with_handle(s, h, local, point, normal);
+  else if (h == free_node || h == outlier_site)
+    internal::carry_with_samples(s, site, local, point, normal);
+}
+
+template <class ConcurrencyTag>
+void Session<ConcurrencyTag>::prepare_carrying()
+{
+  Session_state<ConcurrencyTag>& s = *m_state;
+  internal::complete_transforms(s);
+  s.outlier_maps.read(s.body, s.maps);
+  if (s.carrier)
+    return;
+  internal::build_carrier(s);
+  if (s.sites.empty())
+    constrain(s.stiffness);
+}
+
+template <class ConcurrencyTag>
+const Deformation_report& Session<ConcurrencyTag>::report() const
+{
+  return m_state->report;
+}
+
+template <class ConcurrencyTag>
+void Session<ConcurrencyTag>::set_normals(const std::function<Vec3(std::size_t)>& normal)
+{
+  Sampled_body<ConcurrencyTag>& body = m_state->body;
+  body.upsampling.set_normals(
+      [&](std::size_t place) { return normal(body.input_of_place[place]); });
+}
+
+template <class ConcurrencyTag>
+void Session<ConcurrencyTag>::accept(const std::function<Vec3(std::size_t)>& position)
+{
+  Session_state<ConcurrencyTag>& s = *m_state;
+  internal::move_rest(s, position);
+  s.sites.accept();
+  s.dirty_handles.accept();
+  s.is_constrained = false;
+  s.handles.put_at_rest();
+  internal::begin_setting(s);
+  internal::put_samples_at_rest(s);
+  s.handles.update_centroids(s.body);
+  internal::localize_transforms(s);
 }
 
 } // namespace deformation

@@ -1,0 +1,93 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Constraints of a sampled body: which nodes the handles hold, and new nodes on their borders.
+
+#ifndef PCS_DEFORMATION_HANDLES_CONSTRAIN_BODY_H
+#define PCS_DEFORMATION_HANDLES_CONSTRAIN_BODY_H
+
+#include <pcs/core/Deformation_report.h>
+#include <pcs/deformation/body/Sampled_body.h>
+#include <pcs/deformation/handles/Border_finder.h>
+#include <pcs/deformation/handles/Handle_set.h>
+#include <pcs/deformation/handles/Site_constraints.h>
+#include <pcs/deformation/handles/add_boundary_nodes.h>
+#include <pcs/deformation/handles/anchor_free_components.h>
+#include <pcs/deformation/handles/straighten_borders.h>
+#include <pcs/deformation/model/Elastic_network.h>
+#include <pcs/deformation/model/Harmonic_system.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace pcs {
+namespace deformation {
+
+struct Body_constraints
+{
+  Node_constraints of_samples; ///< in every component that a handle reaches, one sample is held
+  Node_constraints of_nodes;   ///< of `network` if there is one, else of the samples
+  Elastic_network network;     ///< the samples, with nodes on the borders of exact handles
+  bool has_network = false;
+  std::vector<Border_edge> border; ///< edges out of exact handles, if the body is sampled
+};
+
+/// Returns a function that gives the exact handle of a site, or a negative number.
+inline auto exact_handles(const Handle_set& handles)
+{
+  return [&handles](std::size_t site) { return handles.exact_handle(site); };
+}
+
+namespace internal {
+
+/// The samples with nodes on the borders of the handles, to which `constraints` are extended.
+template <class ConcurrencyTag, class HandleOfSite>
+Elastic_network network_with_borders(const Sampled_body<ConcurrencyTag>& body,
+                                     const std::vector<Border_edge>& border,
+                                     const HandleOfSite& handle_of_site,
+                                     Node_constraints& constraints)
+{
+  const auto position = [&](std::size_t site) { return body.rest_of_site(site); };
+  return add_boundary_nodes(Boundary_input<HandleOfSite, decltype(position)>{body.network,
+                                                                             body.weight_unit,
+                                                                             border,
+                                                                             body.sample_of_site,
+                                                                             handle_of_site,
+                                                                             position},
+                            constraints);
+}
+
+} // namespace internal
+
+/// Finds how each site is written and which nodes are held: by handles that have samples, at the
+/// borders of exact handles, and where components would otherwise be free.
+template <class ConcurrencyTag>
+Body_constraints constrain_body(const Sampled_body<ConcurrencyTag>& body,
+                                const Handle_set& handles,
+                                Site_constraints& sites,
+                                Deformation_report& report)
+{
+  const auto handle_of_site = exact_handles(handles);
+  Body_constraints result;
+  result.of_samples = result.of_nodes = sites.find(body, handles, report);
+  anchor_free_components(
+      [&](std::size_t s) { return body.component_of_site[body.site_of_sample[s]]; },
+      body.sample_of_site,
+      handle_of_site,
+      result.of_samples); // on the finest level, nodes on borders hold these components
+  if (body.is_sampled) {
+    result.border =
+        body.border_finder.template find<ConcurrencyTag>(body.site_graph, [&](std::size_t site) {
+          return handle_of_site(site) >= 0;
+        });
+    result.network =
+        internal::network_with_borders(body, result.border, handle_of_site, result.of_nodes);
+    result.has_network = true;
+  } else
+    result.has_network = straighten_borders(body.network, result.of_nodes, result.network);
+  return result;
+}
+
+} // namespace deformation
+} // namespace pcs
+
+#endif // PCS_DEFORMATION_HANDLES_CONSTRAIN_BODY_H
