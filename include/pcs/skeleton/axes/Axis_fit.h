@@ -19,18 +19,18 @@
 namespace pcs {
 namespace skeleton {
 
-/// What the fit assumes. Lengths are in the unit of the scan.
+/// Statistical assumptions of the fit. Lengths are in the unit of the scan.
 struct Fit_model
 {
   double noise = 0;         ///< standard deviation of a point from the surface [L]
-  double bark = 0.04;       ///< the same relative to the radius [-]
+  double bark = 0.04;       ///< least such deviation, relative to the radius [-]
   double axis_bend = 0;     ///< standard deviation of the curvature of an axis [1/L]
-  double thick_bend = 0.05; ///< the same relative to the radius: thick branches are stiff [-]
-  double taper_offset = 0, taper_scale = 1; ///< radius'' = (taper_offset + r) / taper_scale^2 [L]
-  double correlation = 1;                   ///< the length on which a bend is one event [L]
-  double lowest_radius = 0;                 ///< [L]
+  double thick_bend = 0.05; ///< bound on curvature times radius: thick branches are stiff [-]
+  double taper_offset = 0, taper_scale = 1; ///< r'' ~ (taper_offset + r) / taper_scale^2 [L]
+  double correlation = 1;                   ///< correlation length of bends [L]
+  double lowest_radius = 0;                 ///< lower bound on radii [L]
 
-  /// Defaults in multiples of the spacing `u` and the noise.
+  /// Returns defaults for a scan of spacing `u` [L] and standard deviation `noise` [L].
   static Fit_model of(double u, double noise)
   {
     Fit_model model;
@@ -46,15 +46,16 @@ struct Fit_model
   double deviation(double radius) const { return std::max(noise, bark * radius); }
 };
 
-/// A radius expected without looking at how far the points are from the axis.
+/// Prior of a radius, independent of the distances of the points from the axis.
 struct Radius_prior
 {
   double radius = 0;
-  double deviation = 0; ///< 0: no expectation
-  double measured = 0;  ///< part of 1 / deviation^2 that other places of the points tell [1/L^2]
+  double deviation = 0; ///< [L]; 0: no prior
+  double measured = 0;  ///< portion of 1 / deviation^2 that is measured from the points [1/L^2]
 };
 
-/// What two independent expectations say together. At least the second one is one.
+/// Combines two independent priors, weighted by their precisions. The second must have a positive
+/// deviation.
 inline Radius_prior joined(const Radius_prior& a, const Radius_prior& b)
 {
   if (!(a.deviation > 0))
@@ -63,21 +64,23 @@ inline Radius_prior joined(const Radius_prior& a, const Radius_prior& b)
   return {(u * a.radius + v * b.radius) / (u + v), 1 / std::sqrt(u + v), a.measured + b.measured};
 }
 
-/// Where the points of a section lie: their middle is expected at `radius * facing` from its
-/// center.
+/// Prior of the center of a section: the mean of its points is expected at `radius * facing` from
+/// the center.
 struct Center_prior
 {
-  Vec3 middle = Vec3::Zero(); ///< of the points, moved along to the plane of the center
+  Vec3 middle = Vec3::Zero(); ///< mean of the points, projected onto the plane of the center
   Vec3 facing = Vec3::Zero();
-  double deviation = 0; ///< [L]; 0: no expectation
+  double deviation = 0; ///< [L]; 0: no prior
 };
 
-/// Tukey's constant, in standard deviations, and how much wider the first iterations look [-].
+/// Tukey's constant in standard deviations, and the factor by which the first iterations widen
+/// it [-].
 constexpr double tukey_constant = 4.7, first_widening = 2.5;
 
 /*!
-  Least squares with Tukey's weights over centres and radii of all nodes; second differences of both
-  are small a priori. Each iteration is a banded Cholesky solution: O(points + nodes).
+  Robust least-squares fit of the centers and radii of all nodes with Tukey's weights. The second
+  differences of both have priors of mean zero. Each iteration solves a banded system by Cholesky
+  factorization: O(points + nodes).
 */
 class Axis_fit
 {
@@ -87,7 +90,7 @@ public:
   const Axis& axis() const { return m_axis; }
   Axis& axis() { return m_axis; }
 
-  /// `segments` are guesses, one per point.
+  /// Sets the points and an initial segment for each.
   void set_points(std::vector<Vec3> points, std::vector<Index> segments)
   {
     m_points = std::move(points);
@@ -95,8 +98,8 @@ public:
     m_places.resize(m_points.size());
     m_stride = 1;
   }
-  /// Every so many points only take part in the next steps, with as much weight as all. Finds the
-  /// places of those that did not before.
+  /// Restricts the next iterations to every `stride`-th point, weighted by `stride`. Projects the
+  /// points that were left out before.
   void use_every(std::size_t stride)
   {
     const bool are_known = m_stride == 1 || stride == m_stride;
@@ -111,7 +114,7 @@ public:
   const std::vector<Vec3>& points() const { return m_points; }
   const std::vector<Axis_place>& places() const { return m_places; }
 
-  /// Finds the place of every point on the present axis.
+  /// Projects the points in use onto the current axis.
   void project()
   {
     const std::vector<Axis_segment> lines = segments_of(m_axis);
@@ -121,8 +124,8 @@ public:
     }
   }
 
-  /// One step from the present axis; `widening` scales the width of the weights. Leaves places up
-  /// to date.
+  /// Performs one iteration from the current axis; `widening` scales the width of the weights.
+  /// Updates the projections. Returns `false` if the system cannot be solved.
   bool iterate(double widening)
   {
     assemble(widening);
@@ -135,22 +138,21 @@ public:
     return true;
   }
 
-  /// By how much the last step moved a node or changed its radius at most [L].
+  /// Returns the largest displacement or change of radius of a node in the last iteration [L].
   double largest_change() const { return m_largest_change; }
 
-  /// Standard errors of the radii from the last system: the diagonal of its inverse.
+  /// Estimates standard errors of the radii from the diagonal of the inverse of the last system.
   void estimate_errors();
 
 private:
-  //! second differences reach the same unknown two nodes back, points everything one node back
+  //! second differences couple one unknown over two nodes, points all unknowns of adjacent nodes
   static constexpr std::size_t bandwidth = 8;
   using Matrix = linear_algebra::Banded_cholesky<bandwidth>;
 
-  /// What the points of a segment add to the system of its two nodes.
+  /// Contribution of the points of a segment to the system of its two nodes.
   struct Segment_sums
   {
-    //! lower halves, by rows, of the blocks of the first node, of the second and the first, and of
-    //! the second
+    //! lower triangles, by rows, of three blocks: first node, second with first node, second node
     std::array<std::array<double, 10>, 3> products;
     std::array<std::array<double, 4>, 2> slope;
     std::array<double, 2> weight;
@@ -175,10 +177,10 @@ private:
   std::vector<Center_prior> m_center_priors;
   std::size_t m_stride = 1;
   double m_largest_change = 0;
-  Matrix m_matrix; // its factor after a step
+  Matrix m_matrix; // contains its Cholesky factor after an iteration
   std::vector<double> m_gradient, m_step;
   std::vector<Segment_sums> m_sums;
-  std::vector<double> m_information; // of the points on each radius alone
+  std::vector<double> m_information; // of the points about each radius alone
 };
 
 inline void Axis_fit::assemble(double widening)
@@ -193,11 +195,11 @@ inline void Axis_fit::assemble(double widening)
   hold_along_axis();
 }
 
-/// Nothing but chance moves nodes along the axis: they stay in the planes across it. Damps steps,
-/// not the result.
+/// Damps displacements along the axis, which the points do not determine. The damping affects the
+/// steps but not the result.
 inline void Axis_fit::hold_along_axis()
 {
-  constexpr double everywhere = 0.005, along_axis = 100; // in points on the axis
+  constexpr double everywhere = 0.005, along_axis = 100; // in weights of a point on the axis
   const double across = everywhere / (m_model.noise * m_model.noise);
   const double along = along_axis / (m_model.noise * m_model.noise);
   const std::size_t n = m_axis.size();
@@ -230,8 +232,8 @@ inline void Axis_fit::add_points(double widening)
     const double weight = (1 - x * x) * precision, w = double(m_stride) * weight * weight;
     const double inverse = 1 / place.distance;
     const Vec3 n = inverse * (m_points[i] - point_at(m_axis, place));
-    // Second order: the surface is curved, and a point outside holds the axis across n, too.
-    // Without this, steps of thin axes swing between two sides of their points for ever.
+    // Second-order term: the surface is curved, so that a point outside also constrains the axis
+    // perpendicular to n. Without it, thin axes oscillate between two sides of their points.
     const double hold = std::max(0.0, e * inverse), pull = 1 - hold;
     // e(c, r) = |p - c| - r with c, r linear between the nodes, so its derivatives are -(1 - t) d
     // and -t d, d = (n, 1)
@@ -349,8 +351,8 @@ inline void Axis_fit::add_center_priors()
   }
 }
 
-/// Nodes at the ends stay as far from their neighbours as they were: across a short segment of a
-/// thick axis steps overshoot, and every swing to the other side would carry the end farther out.
+/// Applies the step and keeps the lengths of the end segments: across a short segment of a thick
+/// axis steps overshoot, and each oscillation would move the end farther outwards.
 inline void Axis_fit::apply_step()
 {
   m_largest_change = 0;

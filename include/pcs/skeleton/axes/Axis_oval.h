@@ -19,26 +19,26 @@
 namespace pcs {
 namespace skeleton {
 
-/// When an axis has an oval, and what is believed of it.
+/// Options of the oval cross-section of an axis.
 struct Oval_options
 {
   double one_sided =
-      0.4; ///< length of the mean normal of the points: rings show mean radii as they are [-]
-  double thickness = 6;     ///< smallest radius, in noise [-] ...
-  double spacings = 2;      ///< ... and in spacings
-  double usual = 0.04;      ///< standard deviation of each coefficient before anything is known [-]
-  double largest = 0.2;     ///< of their size [-]
+      0.4; ///< least length of the mean normal of the points: full rings give unbiased radii [-]
+  double thickness = 6;     ///< least radius, in standard deviations of the noise [-] ...
+  double spacings = 2;      ///< ... and in spacings [-]
+  double usual = 0.04;      ///< prior standard deviation of each coefficient [-]
+  double largest = 0.2;     ///< upper bound on the norm of the coefficients [-]
   double roughness = 0.015; ///< of the surface, in radii [-]
-  double stretch = 2;       ///< sections share a place and a radius over this many radii, ...
-  std::size_t count = 30;   ///< ... or more, until they have so many points
-  std::size_t fewest = 6;   ///< points that tell anything of an oval
-  int rounds = 3;           ///< of estimates, each with a fit after it, ...
-  double settled = 0.002;   ///< ... until they change by less than this [-]
+  double stretch = 2;       ///< length of stretches of common center and radius, in radii ...
+  std::size_t count = 30;   ///< ... and the least number of points that ends a stretch [count]
+  std::size_t fewest = 6;   ///< points that a stretch needs to be used [count]
+  int rounds = 3;           ///< most estimates of the oval, each followed by a fit [count]
+  double settled = 0.002;   ///< change of the coefficients that ends the estimation [-]
 };
 
 /*!
-  Sections of distance `r (1 + x cos 2a + y sin 2a)` from the axis, with one oval for all of them:
-  the angle a counts in frames that do not twist.
+  Oval `r (1 + x cos 2a + y sin 2a)` that all sections of an axis have in common. The angle a refers
+  to frames that do not rotate about the axis.
 */
 class Axis_oval
 {
@@ -60,15 +60,15 @@ public:
   const Eigen::Vector2d& coefficients() const { return m_coefficients; }
 
   /*!
-    Adds what the residuals of a fit tell: least squares over the oval, and the place and radius of
-    every stretch, which are eliminated. Of an arc the oval explains little that a place and a
-    radius do not; many sections together tell it. `noise`: standard deviation of the points [L].
-    O(points).
+    Updates the coefficients from the residuals of a fit by weighted least squares. The center and
+    radius of every stretch are further unknowns, which are eliminated. On a single arc they explain
+    nearly the same residuals as the oval, so that many sections are needed to determine it.
+    `noise`: standard deviation of the points [L]. O(points).
   */
   void improve(const Axis_fit& fit, double noise, const Oval_options& rules);
 
-  /// The points where they would be if all sections were round, by their places in a fit.
-  /// O(points).
+  /// Moves the points to where they would lie if all sections were round, given their projections
+  /// in a fit. O(points).
   std::vector<Vec3> rounded(std::vector<Vec3> points, const Axis_fit& fit) const
   {
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -83,7 +83,7 @@ public:
   }
 
 private:
-  /// cos 2a and sin 2a of a unit vector across a segment.
+  /// Returns cos 2a and sin 2a of a unit vector across a segment.
   Eigen::Vector2d harmonic(Index segment, const Vec3& normal) const
   {
     const double c = normal.dot(m_first[segment]), s = normal.dot(m_second[segment]);
@@ -101,7 +101,7 @@ inline void Axis_oval::improve(const Axis_fit& fit, double noise, const Oval_opt
   using Vector5 = Eigen::Matrix<double, 5, 1>;
   const Axis& axis = fit.axis();
   const std::size_t n = axis.size() - 1;
-  // of a place across (2), a radius and the oval (2)
+  // unknowns: center across the axis (2), radius (1), oval (2)
   std::vector<Matrix5> products(n, Matrix5::Zero());
   std::vector<Vector5> slope(n, Vector5::Zero());
   std::vector<std::size_t> count(n, 0);

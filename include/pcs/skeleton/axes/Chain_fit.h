@@ -29,7 +29,7 @@
 namespace pcs {
 namespace skeleton {
 
-/// Finds the axis of one chain.
+/// Fit of the axis of one chain.
 class Chain_fit
 {
 public:
@@ -45,7 +45,7 @@ public:
   {
     Candidate candidate;
     const bool is_first =
-        chain.parent_node == none; // at the root stands the trunk, whatever is there
+        chain.parent_node == none; // the trunk begins at the root, even with a thin base
     const Chain_start start = start_of(m_view, tree, chain);
     candidate.number_of_own_points = start.points.size();
     if (start.points.size() < m_rules.lowest_count)
@@ -98,7 +98,7 @@ private:
 
 inline void Chain_fit::place_own_points(const Chain_start& start, Axis_fit& fit) const
 {
-  // the segment of each layer, walking along the resampled axis
+  // nearest segment of the resampled axis for each level-set component
   std::vector<Index> segment(start.axis.size());
   Index s = 0;
   for (std::size_t k = 0; k < start.axis.size(); ++k)
@@ -162,7 +162,7 @@ inline void Chain_fit::start_at_circles(Axis_fit& fit) const
       axis[k].radius = circles[k].radius;
     } else if (m_set.density > 0 && counts.visible_length[k] > 0) {
       const double r = counts.radius(k, m_set.density_at(fit.axis(), k));
-      // its first radius is the deviation of the points from their middle
+      // the first radius is the deviation of the points from their mean
       const bool is_thin = std::min(axis[k].radius, r) < m_rules.thick * u;
       const Vec3 facing = is_thin ? m_set.visibility_at(fit.axis(), k) : Vec3(Vec3::Zero());
       const double spread = axis[k].radius / std::sqrt(1 - facing.squaredNorm());
@@ -171,11 +171,11 @@ inline void Chain_fit::start_at_circles(Axis_fit& fit) const
     }
   }
   for (std::size_t k = 0; k < n; ++k)
-    axis[k].point += shift[k]; // so far it runs in the middle of the points
+    axis[k].point += shift[k]; // until here it passes through the means of the points
   fit.project();
 }
 
-/// `length`: over which the axis is expected to taper; 0: it is a piece [L].
+/// Iterates the fit. `length`: expected length of taper; 0: the axis is a piece [L].
 inline bool Chain_fit::run(Axis_fit& fit, double widening, double length) const
 {
   const std::vector<double> visible = visible_shares(m_view, fit);
@@ -185,7 +185,7 @@ inline bool Chain_fit::run(Axis_fit& fit, double widening, double length) const
   };
   use(m_rules.enough);
   const int ramp = widening > 1 ? m_rules.narrowing : 0, least = std::max(ramp, m_rules.fewest);
-  const int full = ramp > 0 ? 0 : m_rules.full_iterations; // the first fits are not the last ones
+  const int full = ramp > 0 ? 0 : m_rules.full_iterations; // fits with wide weights are preliminary
   bool is_full = false;
   for (int k = 0, left = m_rules.most_iterations - full;; ++k, --left) {
     if (!is_full &&
@@ -206,12 +206,13 @@ inline bool Chain_fit::run(Axis_fit& fit, double widening, double length) const
   return true;
 }
 
-/// Free points near the axis, each with the middle nodes of the stretches that found it, sorted.
+/// Finds unassigned points near the axis, each with the middle node of a stretch that contains it,
+/// sorted by point.
 inline std::vector<std::pair<Index, Index>> Chain_fit::find_points_near(const Axis& axis) const
 {
   const double u = m_scan.spacing;
-  // Stretches of the axis as long as it is thick: nodes of a trunk alone would find every point ten
-  // times.
+  // One query for each stretch as long as the axis is thick; queries at every node of a trunk would
+  // find each point about ten times.
   std::vector<std::pair<Index, Index>> found; // point, middle node of a stretch
   std::vector<Index> near;
   std::vector<double> across(axis.size());
@@ -260,7 +261,7 @@ inline std::vector<Index> Chain_fit::gather(Axis_fit& fit) const
     while (e < found.size() && found[e].first == found[b].first)
       ++e;
     const Vec3& p = m_scan.points[found[b].first];
-    // the nearest of the nodes that found it
+    // nearest of the middle nodes of this point
     Index node = found[b].second;
     double best = (axis[node].point - p).squaredNorm();
     for (std::size_t k = b + 1; k < e; ++k) {
@@ -282,8 +283,8 @@ inline std::vector<Index> Chain_fit::gather(Axis_fit& fit) const
   return points;
 }
 
-/// The last nodes of a thick axis and a piece beyond them, fitted anew; empty if no points go on
-/// like that.
+/// Refits the last nodes of a thick axis with a piece beyond its tip; empty if the points do not
+/// support the extension.
 inline Axis Chain_fit::tail_with_piece(const Axis& axis, std::size_t first) const
 {
   Axis_fit fit(Axis(axis.begin() + static_cast<std::ptrdiff_t>(first), axis.end()),
@@ -303,8 +304,8 @@ inline Axis Chain_fit::tail_with_piece(const Axis& axis, std::size_t first) cons
   return is_good ? longer : Axis();
 }
 
-/// A hollow piece straight ahead of a thick axis, `skip` beyond its tip and as thick; empty if
-/// there is none.
+/// Fits a hollow piece of similar radius straight ahead of a thick axis, `skip` [L] beyond its tip;
+/// empty if there is none.
 inline Axis Chain_fit::piece_ahead(const Axis& axis, std::size_t first, double skip) const
 {
   const double radius = axis.back().radius, length = 4 * radius + 8 * m_scan.spacing;
@@ -329,10 +330,10 @@ inline Axis Chain_fit::piece_ahead(const Axis& axis, std::size_t first, double s
 }
 
 /*!
-  Follows a thick branch beyond its tip, piece by piece, as long as there are points around it:
-  paths over the surface end at occlusions, or turn into a side branch; a tip that collapses is left
-  out then. Where points lie inside, as at a whorl, it is looked for straight ahead. Returns whether
-  the axis grew; if not, it is as it was.
+  Extends a thick branch beyond its tip, piece by piece, as long as points surround it. Shortest
+  paths over the surface end at occlusions or turn into a side branch; a collapsing tip is removed
+  first. Where points lie inside, as at a whorl, the branch is searched straight ahead. Returns
+  whether the axis was extended; otherwise it is unchanged.
 */
 inline bool Chain_fit::follow(Axis_fit& fit) const
 {
@@ -356,7 +357,7 @@ inline bool Chain_fit::follow(Axis_fit& fit) const
     Axis longer = tail_with_piece(axis, b);
     const bool is_connected = !longer.empty() && longer.back().radius <= thickest;
     if (is_connected)
-      axis.resize(b + 1); // what lies behind was fitted again
+      axis.resize(b + 1); // the nodes beyond it were refitted
     else
       longer.clear();
     for (int k = 1; k <= m_rules.most_skipped && longer.empty(); ++k)
@@ -372,9 +373,9 @@ inline bool Chain_fit::follow(Axis_fit& fit) const
 }
 
 /*!
-  Where a thick axis is seen from one side, its oval moves the centers and changes the radii of
-  sections: a circle through half of an ellipse is off by as much as half axes differ. The oval is
-  found, and the axis fitted to points without it.
+  Estimates the oval of a thick axis with one-sided visibility, and refits the axis to the points
+  without the oval. Otherwise ovality biases centers and radii: the error of a circle through half
+  of an ellipse is as large as the difference of the semi-axes.
 */
 inline void Chain_fit::round_ovals(Axis_fit& fit) const
 {
@@ -415,7 +416,7 @@ Chain_fit::judge(Axis_fit& fit, const std::vector<Index>& points, Candidate& can
   const Axis& axis = fit.axis();
   const double u = m_scan.spacing, s = m_set.noise;
   const Section_counts counts = section_counts(m_view, fit, visible_shares(m_view, fit));
-  // only hollow sections that are seen well tell what the surface is like
+  // only hollow, well sampled sections are samples of the surface
   const Filling filling(m_view, fit);
   std::vector<std::uint8_t> is_odd(axis.size(), 0);
   for (std::size_t k = 0; k < axis.size(); ++k)
@@ -429,7 +430,7 @@ Chain_fit::judge(Axis_fit& fit, const std::vector<Index>& points, Candidate& can
     candidate.points.push_back(points[k]);
     candidate.segments.push_back(p.segment);
     const bool is_inside = p.share > 0 && p.share < 1;
-    // where noise, not bark, is what one sees
+    // where noise exceeds the roughness of the bark
     if (is_inside && !is_odd[p.segment] && r > 3 * s && 0.03 * r < s &&
         candidate.deviations.size() < 2000)
       candidate.deviations.push_back(std::abs(p.distance - r));
@@ -449,7 +450,7 @@ Chain_fit::judge(Axis_fit& fit, const std::vector<Index>& points, Candidate& can
   candidate.axis = axis;
   for (Axis_node& node : candidate.axis) {
     const double r2 = node.radius * node.radius - m_rules.noise_share * s * s;
-    // noise cannot take more than half of a radius away
+    // the correction for noise removes at most half of a radius
     node.radius = std::max(0.5 * node.radius, std::sqrt(std::max(0.0, r2)));
   }
 }

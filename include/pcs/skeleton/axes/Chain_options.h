@@ -16,87 +16,87 @@
 namespace pcs {
 namespace skeleton {
 
-/// Rules of the fit of one chain. Factors of the spacing unless said otherwise [-].
+/// Options of the fit of one chain. Factors of the spacing unless stated otherwise [-].
 struct Chain_options
 {
   Node_spacing node_spacing{0.6, 2, 8}; ///< the factor is of the radius
-  double gather_factor = 1.25;          ///< points within this many radii ...
-  double gather_offset = 1.7;           ///< ... and this many spacings are looked at again
-  double cover_factor = 0.15;     ///< points this many radii outside of the surface are explained,
-  double cover_offset = 1.1;      ///< ... or this many spacings
-  double explained = 0.4;         ///< share of its own points that a chain must explain
-  double protrusion = 3;          ///< how far an axis must leave those that are there
-  double protrusion_radius = 0.3; ///< ... and this many radii of those
-  int sectors = 5;                ///< of 12, that a circle must see to be a start
-  double circle_deviation = 0.25; ///< largest deviation of such a circle in radii
-  double circle_noise = 2.5;      ///< smallest radius of such a circle in noise
+  double gather_factor = 1.25;          ///< points are gathered within this many radii ...
+  double gather_offset = 1.7;           ///< ... plus this many spacings of the axis
+  double cover_factor = 0.15;           ///< points up to this many radii outside are explained ...
+  double cover_offset = 1.1;            ///< ... or up to this many spacings
+  double explained = 0.4;         ///< least fraction of its own points that a chain explains [-]
+  double protrusion = 3;          ///< least protrusion of an axis from existing ones ...
+  double protrusion_radius = 0.3; ///< ... plus this many radii of those
+  int sectors = 5;                ///< least number, of 12, covered at an initial circle [count]
+  double circle_deviation = 0.25; ///< largest deviation of such a circle, in radii
+  double circle_noise = 2.5;      ///< least radius of such a circle, in noise
   double expected_share =
-      0.25; ///< circles with fewer points than this share of the expected straddle several twigs
-  //! standard deviation of the radius by counting, in radii that are found, and in spacings
+      0.25; ///< circles with a smaller fraction of the expected points straddle several twigs [-]
+  //! standard deviation of a counted radius, in fitted radii and in spacings
   double prior_share = 0.5, prior_offset = 0.2;
-  double prior_ratio = 2.5; ///< found radii so much larger than counted ones are not believed
-  double blurred = 4; ///< noise hides the curvature of sections thinner than this much of it [-]
-  //! their counts along a whole axis are low by at most this factor where something hides it, ...
+  double prior_ratio = 2.5; ///< largest credible ratio of fitted to counted radii [-]
+  double blurred = 4; ///< noise hides the curvature of sections of smaller radius, in noise [-]
+  //! largest factor by which occlusion reduces the counts of such sections along an axis [-]
   double most_hidden = 2;
-  double hidden_nodes = 20; ///< ... half of which is believed of this many nodes [count]
-  //! while no density is known, axes taper from their radius within this share of the length to
-  //! such a share of it ...
+  double hidden_nodes = 20; ///< number of nodes that halves the logarithm of this factor
+  //! taper while no density is known: the radius within the first fraction of the length decreases
+  //! to the second fraction of itself at the tip [-]
   double taper_from = 1.0 / 3, taper_to = 0.5;
-  double taper_share = 0.25; ///< ... with a deviation of so much of it [-]
-  double taper_count = 24;   ///< ... and more where more points than this tell otherwise [count]
-  //! deviation of the middle of the points of a thin branch from its place: this many times the
-  //! usual one ...
+  double taper_share = 0.25; ///< standard deviation of that radius, in radii near the base [-]
+  double taper_count = 24;   ///< number of points above which this deviation increases [count]
+  //! standard deviation of the mean of the points of a thin branch from its expected position:
+  //! multiple of the usual one [-] ...
   double facing_share = 5;
-  double facing_noise = 0.5; ///< ... and this much noise
-  //! where the mean normal of the points is longer than this, and there are so many, ...
+  double facing_noise = 0.5; ///< ... plus this multiple of the noise [-]
+  //! least length of the mean normal [-] and number of points [count] for radii by width
   double width_one_sided = 0.6, width_count = 6;
-  double width_radius = 8; ///< ... axes thinner than this have a radius by the width of the points,
-  double width_factor = 1.7320508075688772; ///< ... this many times their deviation [-]
-  //! standard deviation of that radius, in radii and noise [-]
+  double width_radius = 8;                  ///< upper bound on the radius of such axes, in spacings
+  double width_factor = 1.7320508075688772; ///< radius by standard deviation of the points [-]
+  //! standard deviation of a radius by width, in radii and in noise [-]
   double width_share = 0.15, width_noise = 0.5;
-  double visible = 0.5;       ///< share of a section that such a radius must be counted on [-]
-  double counted_share = 0.7; ///< of the expected points: below, other axes may hide a section [-]
-  double hiding_radius = 4;   ///< how far such an axis is looked for, in radii ...
-  double hiding_offset = 6;   ///< ... and spacings
+  double visible = 0.5;       ///< least visible fraction of a section for counting its points [-]
+  double counted_share = 0.7; ///< fraction of expected points below which others may hide it [-]
+  double hiding_radius = 4;   ///< search radius for such an axis, in radii ...
+  double hiding_offset = 6;   ///< ... plus spacings
   double noise_share = 0.2;   ///< r^2 is reduced by this many noise^2: noise inflates thin branches
-  double thick = 4;           ///< branches of at least this radius are followed beyond their tips
-  double filled = 0.08; ///< thick axes end where more than this share of the points lies inside ...
-  //! ... from a smaller radius on, if they widen beyond that place by this factor [-]
+  double thick = 4;           ///< least radius of branches that are extended beyond their tips
+  double filled = 0.08; ///< thick axes end where a larger fraction of the points lies inside [-]
+  //! least radius for this of axes that widen farther out by the second factor [-]
   double thick_widening = 2, widening = 1.1;
-  double bush = 0.2;         ///< with such a share, a section tells nothing about surfaces [-]
-  double typical = 0.5;      ///< ... nor with less than this share of the usual density
-  double filled_depth = 0.1; ///< ... deeper than this many radii ...
-  double filled_noise = 4;   ///< ... and than this many times the noise
-  double deep = 0.3;         ///< flutes of a stem are less deep than this many radii
-  double steady = 4;         ///< length of a stretch that shows how thick an axis is, in its radii
+  double bush = 0.2;         ///< largest fraction of interior points in sampled sections [-]
+  double typical = 0.5;      ///< least density of such sections, relative to the usual one [-]
+  double filled_depth = 0.1; ///< points lie inside if they are deeper than this many radii ...
+  double filled_noise = 4;   ///< ... and than this multiple of the noise
+  double deep = 0.3;         ///< upper bound on the depth of flutes of a stem, in radii
+  double steady = 4;         ///< length of the stretches that show the thickness, in radii
   double thin_base = 0.4,
          thick_base =
-             0.75; ///< an axis with a base below the first share of that begins at the second [-]
-  int most_skipped = 3; ///< extensions by which a thick axis may be lost, at a whorl for example
-  double extension = 3; ///< how far both ends are prolonged on trial, in radii ...
-  double extension_offset = 4;          ///< ... and spacings
-  double extension_share = 0.3;         ///< share of the expected points that a prolongation needs
-  std::size_t lowest_count = 2;         ///< points of an axis
-  int narrowing = 5;                    ///< iterations in which wide weights become narrow
-  int fewest = 3, most_iterations = 40; ///< of a fit, ...
-  double settled = 0.3;    ///< ... which ends when nothing moves by more than this much noise [-]
-  int full_iterations = 2; ///< the last of them, to many points, unless weights were wide
+             0.75; ///< axes thinner at the base than the first fraction begin at the second [-]
+  int most_skipped = 3; ///< extensions over which a thick axis may be lost, as at a whorl [count]
+  double extension = 3; ///< trial extension at both ends, in radii ...
+  double extension_offset = 4;          ///< ... plus spacings
+  double extension_share = 0.3;         ///< least fraction of the expected points on an extension
+  std::size_t lowest_count = 2;         ///< least number of points of an axis [count]
+  int narrowing = 5;                    ///< iterations in which wide weights narrow [count]
+  int fewest = 3, most_iterations = 40; ///< bounds on the iterations of a fit [count]
+  double settled = 0.3;                 ///< largest change at which a fit ends, in noise [-]
+  int full_iterations = 2; ///< final iterations with more points, none after wide weights [count]
   std::size_t enough = 16,
-              full_enough = 256; ///< points per node that the others and those use [count]
+              full_enough = 256; ///< points per node in other and final iterations [count]
   Oval_options ovals;
 };
 
-/// An axis that is not yet accepted.
+/// Axis that is not yet accepted.
 struct Candidate
 {
-  Axis axis;                           ///< empty: none
-  std::vector<Index> points, segments; ///< what it explains, points in increasing order
+  Axis axis;                           ///< empty if none was found
+  std::vector<Index> points, segments; ///< explained points in increasing order, and their segments
   std::size_t number_of_own_points = 0;
   std::vector<double> deviations;
   std::vector<Density_sample> densities;
 };
 
-/// What the fit of a chain sees; all of it outlives the fit.
+/// Input of the fit of a chain; all of it outlives the fit.
 struct Chain_view
 {
   const Scan& scan;

@@ -19,11 +19,11 @@
 namespace pcs {
 namespace skeleton {
 
-/// Deviations and densities, gathered from fits in a fixed order.
+/// Estimator of noise, density and visibility from the samples of fits, added in a fixed order.
 class Noise_and_density_model
 {
 public:
-  /// Points are not believed to lie nearer to surfaces than `least_noise` [L].
+  /// `least_noise`: lower bound on the estimated noise [L].
   explicit Noise_and_density_model(double least_noise) : m_least_noise(least_noise) {}
 
   void add_deviations(const std::vector<double>& values)
@@ -39,7 +39,7 @@ public:
     m_densities.insert(m_densities.end(), samples.begin(), samples.end());
   }
 
-  /// What `deviations` alone say of the noise; 0: they are too few [L].
+  /// Estimates the noise from `deviations` alone; 0 if they are too few [L].
   double noise_of(std::vector<double> deviations) const
   {
     // standard deviation from the median of |e|
@@ -47,7 +47,7 @@ public:
                ? std::max(m_least_noise, 1.4826 * median(deviations))
                : 0;
   }
-  /// Updates noise and density where there is enough to go by.
+  /// Updates the noise, density and fields of `set` if there are enough new samples.
   void learn(Axis_set& set)
   {
     if (m_deviations.size() >= enough_deviations && m_deviations.size() != m_learned_deviations) {
@@ -85,13 +85,13 @@ private:
 
   static constexpr std::size_t capacity = 40000, enough_deviations = 100, enough_densities = 8,
                                enough_thick = 600, enough_facing = 100;
-  static constexpr double field_growth = 1.5; ///< of the samples, until the field is fitted again
+  static constexpr double field_growth = 1.5; ///< growth of samples that triggers a refit [-]
   static constexpr double thick_radius =
-      6; ///< in noise: here the radius, hence the density, has no bias
+      6; ///< in noise: above it, the radius and hence the density is unbiased [-]
   double m_least_noise;
   std::vector<double> m_deviations;
   std::vector<Density_sample> m_densities;
-  // what the last lesson was from
+  // state of the samples at the last update
   std::size_t m_learned_deviations = 0, m_learned_densities = 0;
   double m_learned_noise = 0;
   std::size_t m_samples_of_field = 0;

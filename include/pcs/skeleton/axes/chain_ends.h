@@ -16,7 +16,8 @@
 namespace pcs {
 namespace skeleton {
 
-/// Adds straight pieces at both ends; the points decide later how much of them stays.
+/// Adds straight trial pieces at the tip and, if `do_base`, at the base; `trim()` shortens them to
+/// the extent of the points.
 inline void prolong(const Chain_view& view, bool do_base, Axis& axis)
 {
   const auto piece = [&](bool is_tip) {
@@ -43,11 +44,11 @@ inline void prolong(const Chain_view& view, bool do_base, Axis& axis)
   axis.push_back(behind);
 }
 
-/// How many points of each segment lie on the surface, and how many inside of it.
+/// Numbers of points of each segment on the surface and inside of it.
 struct Filling
 {
   std::vector<double> on, inside;
-  std::vector<double> deep; ///< those of `inside` that no flute of a stem explains
+  std::vector<double> deep; ///< deeper inside than the flutes of a stem
 
   Filling(const Chain_view& view, const Axis_fit& fit)
     : on(fit.axis().size(), 0), inside(on), deep(on)
@@ -65,8 +66,8 @@ struct Filling
     }
   }
 
-  /// Share of the points of the segments of [begin, end) that lies inside; 1 if there are too few
-  /// to tell.
+  /// Returns the fraction of the points of segments [begin, end) that lies inside; 1 if there are
+  /// too few points [-].
   double share(std::size_t begin, std::size_t end) const
   {
     double a = 0, b = 0;
@@ -78,7 +79,7 @@ struct Filling
     return a + b >= enough ? a / (a + b) : 1;
   }
 
-  /// Whether more than the share lies inside, in the segments of [begin, end).
+  /// Whether more than the fraction `share` of the points of segments [begin, end) lies inside.
   bool is_filled(std::size_t begin, std::size_t end, double share) const
   {
     constexpr double fewest = 6;
@@ -92,11 +93,11 @@ struct Filling
 };
 
 /*!
-  Wood is hollow to a scanner: where a thick axis that was hollow gets points inside, it runs around
-  a fork, and ends. One that never was hollow is an irregular stem, or seen badly, and stays; so
-  does one that is hollow again farther on, with more points than before, because it only passed
-  buttresses or a whorl. Wood does not widen: an axis that does so beyond such a place need not be
-  as thick.
+  Cuts a thick axis where it encloses a fork. A scan samples only the surface of wood: where a
+  hollow axis begins to contain points, it encloses a fork and ends. An axis that is hollow nowhere
+  is an irregular or poorly sampled stem, and is kept. An axis that is hollow again farther out,
+  with more points than before, passes buttresses or a whorl, and is kept too. The least radius is
+  lower for axes that widen beyond such a point, which wood does not.
 */
 inline void cut_filled(const Chain_view& view, Axis_fit& fit)
 {
@@ -104,18 +105,18 @@ inline void cut_filled(const Chain_view& view, Axis_fit& fit)
   Axis& axis = fit.axis();
   const std::size_t n = axis.size();
   const Filling filling(view, fit);
-  // points on the surface up to each node; one deep inside outweighs so many that `filled` balances
+  // points up to each node; one deep inside cancels `1 / filled` on the surface
   std::vector<double> balance(n + 1, 0);
   for (std::size_t k = 0; k < n; ++k)
     balance[k + 1] =
         balance[k] + filling.on[k] + filling.inside[k] - filling.deep[k] / view.rules.filled;
-  std::vector<double> highest = balance; // from each node on
+  std::vector<double> highest = balance; // of this and all later nodes
   for (std::size_t k = n; k-- > 0;)
     highest[k] = std::max(highest[k], highest[k + 1]);
-  std::vector<double> thickest(n); // from each node on
+  std::vector<double> thickest(n); // of this and all later nodes
   for (std::size_t k = n; k-- > 0;)
     thickest[k] = std::max(axis[k].radius, k + 1 < n ? thickest[k + 1] : 0);
-  double least = 1; // share inside of the best stretch so far
+  double least = 1; // fraction inside of the most hollow stretch so far
   for (std::size_t k = window; k + window < n; ++k) {
     least = std::min(least, filling.share(k - window, k));
     const bool is_mostly_beyond = highest[k] - balance[k] > std::max(0.0, balance[k]);
@@ -130,8 +131,8 @@ inline void cut_filled(const Chain_view& view, Axis_fit& fit)
   }
 }
 
-/// The largest radius that a hollow stretch has all along which is `view.rules.steady` radii long;
-/// 0: there is none.
+/// Returns the largest radius that is maintained along a hollow stretch of `view.rules.steady`
+/// radii; 0 if there is none [L].
 inline double steady_radius(const Chain_view& view, const Axis_fit& fit)
 {
   const Axis& axis = fit.axis();
@@ -154,14 +155,14 @@ inline double steady_radius(const Chain_view& view, const Axis_fit& fit)
 }
 
 /*!
-  Wood tapers: an axis that begins much thinner than it is farther out, where it is hollow, was
-  reached through something else, such as a twig that touches it. It begins where it is thick; what
-  lies before is left to other axes.
+  Removes a thin base. Wood tapers: an axis whose base is much thinner than a hollow stretch farther
+  out was reached by a path through another object, such as a twig in contact with it. The axis then
+  begins where it is thick, and the points before are left to other axes.
 */
 inline void cut_thin_base(const Chain_view& view, Axis_fit& fit)
 {
   Axis& axis = fit.axis();
-  double narrowest = axis.front().radius; // most axes taper, or are thin
+  double narrowest = axis.front().radius; // early exit: most axes taper or are thin
   const bool may_be_thin = std::any_of(axis.begin(), axis.end(), [&](const Axis_node& node) {
     narrowest = std::min(narrowest, node.radius);
     return node.radius >= view.rules.thick * view.scan.spacing &&
@@ -188,8 +189,9 @@ inline void cut_thin_base(const Chain_view& view, Axis_fit& fit)
   fit.project();
 }
 
-/// The number of nodes before a tip that collapses within a few radii, as where a trunk turns into
-/// one of its limbs; all nodes if it does not. Never 0 for an axis that has nodes.
+/// Returns the number of nodes before a tip whose radius collapses within a few radii, as where a
+/// trunk continues into one of its limbs; all nodes without such a collapse. At least 1 unless the
+/// axis is empty.
 inline std::size_t size_without_collapse(const Chain_options& rules, const Axis& axis)
 {
   double widest = 0, length = 0; // of the last stretch
@@ -205,8 +207,8 @@ inline std::size_t size_without_collapse(const Chain_options& rules, const Axis&
   return size;
 }
 
-/// Cuts the ends where the points end: outwards from the places of `base` and `tip`, as far as
-/// there are enough.
+/// Trims both ends to the extent of the points: from the projections of `base` and `tip` outwards
+/// as far as segments have enough points.
 inline void trim(const Chain_view& view, const Vec3& base, const Vec3& tip, Axis_fit& fit)
 {
   Axis& axis = fit.axis();

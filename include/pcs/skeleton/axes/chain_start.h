@@ -20,18 +20,18 @@
 namespace pcs {
 namespace skeleton {
 
-/// A guess of the axis, and the points of the chain that nothing explains yet.
+/// Initial axis of a chain, and its points that no axis explains yet.
 struct Chain_start
 {
   Axis axis;
   std::vector<Index> points;
-  std::vector<std::size_t> place; ///< node of `axis` that a point belongs to
+  std::vector<std::size_t> place; ///< node of `axis` for each point
 };
 
 namespace internal {
 
-/// Replaces the only node of a chain by the ends of a line through its points, of the length of a
-/// layer.
+/// Replaces the only node of a chain by the ends of the principal line of its points, as long as a
+/// level set is thick.
 inline void
 make_line(const Chain_view& view, const Layer_tree& tree, const Chain& chain, Chain_start& start)
 {
@@ -55,7 +55,8 @@ make_line(const Chain_view& view, const Layer_tree& tree, const Chain& chain, Ch
   std::fill(start.place.begin(), start.place.end(), 0);
 }
 
-/// Smooths the centers of ragged layers, and extends both ends by half a layer.
+/// Smooths the centers of ragged level-set components, and extends both ends by half the thickness
+/// of a level set.
 inline void smooth_centers(double spacing, Axis& axis)
 {
   for (int pass = 0; pass < 2; ++pass) {
@@ -75,7 +76,7 @@ inline void smooth_centers(double spacing, Axis& axis)
   extend(axis.back(), last);
 }
 
-/// First radii: root mean square distance of the points from the axis.
+/// Initializes the radii: root mean square distance of the points from the axis.
 inline void guess_radii(const Scan& scan, Chain_start& start)
 {
   Axis& axis = start.axis;
@@ -94,7 +95,7 @@ inline void guess_radii(const Scan& scan, Chain_start& start)
 
 } // namespace internal
 
-/// The start of the fit of a chain: the centers of its layers, smoothed, with first radii.
+/// Initializes the fit of a chain: smoothed centers of its level-set components, with first radii.
 inline Chain_start start_of(const Chain_view& view, const Layer_tree& tree, const Chain& chain)
 {
   Chain_start start;

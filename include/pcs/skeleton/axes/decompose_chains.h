@@ -20,29 +20,29 @@
 namespace pcs {
 namespace skeleton {
 
-/// Nodes of a layer tree from the base to a tip.
+/// Path of level-set components from a base to a tip.
 struct Chain
 {
   std::vector<Index> nodes;
-  Index parent_node = none; ///< the node of another chain that it sprouts from
-  double length = 0;        ///< along the centres [L]
+  Index parent_node = none; ///< node of another chain that it branches from
+  double length = 0;        ///< along the centers [L]
 };
 
-/// How many layers back the direction of a chain is taken from, and how many ahead that of a child
-/// [count].
+/// Numbers of level sets behind and ahead of a fork that define the directions of the chain and of
+/// a child [count].
 constexpr int direction_reach = 6, ahead_reach = 3;
-/// Added to the spread of a node, in spacings: thin nodes must not win by noise [-].
+/// Offset of the spread of a node, in spacings: reduces the effect of noise on thin nodes [-].
 constexpr double spread_offset = 0.4;
-/// Farther children than this many layers lie behind a gap; the way there must be this straight
-/// before and behind it [-].
+/// Distance in level sets beyond which a child lies behind a gap, and least cosine between the gap
+/// and the chain before and behind it [-].
 constexpr double gap_layers = 1.5, gap_cosine = 0.8;
-/// What a unit of the cosine between both counts against the logarithms of height and spread:
+/// Weight of the cosine between both directions against the logarithms of height and spread:
 /// branches are straight [-].
 constexpr double chain_straightness = 5;
 
 namespace internal {
 
-/// Longest way from each node to a tip below it.
+/// Returns the longest path from each node to a tip among its descendants [L].
 inline std::vector<double> heights(const Layer_tree& tree)
 {
   std::vector<double> height(tree.size(), 0);
@@ -64,7 +64,7 @@ inline Vec3 direction_to(const Layer_tree& tree, Index node)
   return length > 0 ? Vec3(d / length) : Vec3(Vec3::Zero());
 }
 
-/// Chooses the child of a node that continues the same branch.
+/// Selection of the child that continues the branch of a node.
 class Main_child
 {
 public:
@@ -73,7 +73,7 @@ public:
   {
   }
 
-  /// `none` where the branch ends.
+  /// Returns the main child of `v`; `none` where the branch ends.
   Index operator()(Index v) const
   {
     const Index in_ring = m_tree.next_in_ring[v];
@@ -100,7 +100,7 @@ public:
   }
 
 private:
-  /// A few layers from a node towards its farthest tip.
+  /// Returns the node a few level sets ahead towards the farthest tip.
   Index ahead(Index v) const
   {
     for (int step = 0; step < ahead_reach && !m_children[v].empty(); ++step)
@@ -110,8 +110,8 @@ private:
     return v;
   }
 
-  /// Where points are missing between a node and its child, only a child straight ahead may belong
-  /// to the same branch.
+  /// Whether `c` lies behind a gap without points and not straight ahead, so that it does not
+  /// continue the branch of `v`.
   bool is_crooked_gap(Index v, Index c, const Vec3& along) const
   {
     const Vec3 jump = m_tree.center[c] - m_tree.center[v];
@@ -131,8 +131,8 @@ private:
   Index_groups m_children;
 };
 
-/// Sorts chains by decreasing length, the first chain from a source to the front. Ties are decided
-/// by what does not change when the scan is rotated.
+/// Sorts chains by decreasing length, and moves the first one that begins at a source to the front.
+/// Ties are broken by rotation-invariant properties.
 inline void sort_chains(const Layer_tree& tree, std::vector<Chain>& chains)
 {
   const auto key = [&](const Chain& c) {
@@ -153,9 +153,9 @@ inline void sort_chains(const Layer_tree& tree, std::vector<Chain>& chains)
 
 } // namespace internal
 
-/// Decomposes the tree of layers into chains: the longest that begins at a source, then the others
-/// by decreasing length. A chain begins with the first node that does not continue its parent's
-/// chain. O(n log n).
+/// Decomposes the tree of level-set components into chains: the longest that begins at a source,
+/// then the others by decreasing length. A chain begins with a node that does not continue the
+/// chain of its parent. O(n log n).
 inline std::vector<Chain> decompose_chains(const Scan& scan, const Layer_tree& tree)
 {
   const internal::Main_child main_child(scan, tree);

@@ -14,19 +14,20 @@
 namespace pcs {
 namespace skeleton {
 
-/// When axes of two points are believed.
+/// Criteria for keeping axes of two points.
 struct Two_point_axis_options
 {
-  double ratio = 1.7;     ///< largest number for each axis of three points [-]
-  std::size_t fewest = 6; ///< axes of three points, or there is nothing to go by [count]
-  double share = 0.05; ///< least of all axes: where thin twigs are seen well, few are in pieces [-]
+  double ratio = 1.7;     ///< largest number relative to that of axes of three points [-]
+  std::size_t fewest = 6; ///< least number of axes of three points [count]
+  double share = 0.05;    ///< least fraction of all axes [-]
 };
 
 /*!
-  Two points are a piece of a twig, or nothing. Twigs that a scan just about sees come in pieces of
-  any number of points, what chance puts side by side mostly in twos: drops all pairs if there are
-  more of them for an axis of three points, or less for all axes, than the rules say. Returns how
-  many. O(axes + points).
+  Drops all axes of two points unless their number is plausible for twigs. Barely sampled twigs
+  consist of pieces with any number of points, while random neighbours mostly form pairs. Pairs are
+  therefore dropped if too many of them exist relative to axes of three points. They are also
+  dropped if they are a small fraction of all axes: well sampled twigs are rarely in pieces. Returns
+  the number of dropped axes. O(axes + points).
 */
 inline std::size_t drop_two_point_axes(const Two_point_axis_options& rules, Axis_set& set)
 {
@@ -40,7 +41,7 @@ inline std::size_t drop_two_point_axes(const Two_point_axis_options& rules, Axis
                          double(pairs) >= rules.share * double(set.axes.size());
   if (pairs == 0 || are_twigs)
     return 0;
-  // the number of each axis among those that stay, and of the nearest one below that does
+  // new index of each kept axis, and of the nearest kept axis towards the root
   std::vector<Index> own(set.axes.size(), none), next(set.axes.size(), none);
   std::vector<Fitted_axis> kept;
   for (Index a = 0; a < set.axes.size(); ++a) {

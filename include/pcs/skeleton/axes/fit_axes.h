@@ -25,30 +25,30 @@
 namespace pcs {
 namespace skeleton {
 
-/// Rules of the whole search.
+/// Options of the fit of all axes.
 struct Axis_options
 {
   Link_rule links;
   Chain_options chains;
   int passes = 3;
-  double later_links = 0.7; ///< links of later passes are this much shorter [-]
+  double later_links = 0.7; ///< factor on the lengths of links in later passes [-]
   //! replaces `Chain_options::protrusion` in later passes, in spacings [-]
   double later_protrusion = 3;
-  double first_noise = 0.3; ///< noise before anything is known, in spacings [-]
+  double first_noise = 0.3; ///< initial noise, in spacings [-]
   double first_guess =
-      0.7; ///< with less than this share of it, the first chain is fitted again [-]
-  double least_noise = 0.08; ///< of points without any, in spacings: polygons are no smoother [-]
-  int most_cuts = 4;         ///< how often what is left of a chain is tried again
-  std::size_t shortest_rest = 4; ///< layers that such a rest needs [count]
+      0.7; ///< ratio of measured to initial noise below which the first chain is refitted [-]
+  double least_noise = 0.08;     ///< lower bound on the noise, in spacings [-]
+  int most_cuts = 4;             ///< most repetitions of the fit of what remains of a chain [count]
+  std::size_t shortest_rest = 4; ///< least number of level sets of such a remainder [count]
   Two_point_axis_options pairs;
-  std::size_t largest_wave = 64; ///< chains that are fitted side by side [count]
-  double most_lost = 0.05; ///< share of its points that a chain may lose to others of its wave [-]
+  std::size_t largest_wave = 64; ///< chains that are fitted concurrently [count]
+  double most_lost = 0.05;       ///< largest fraction of points that a chain loses in its wave [-]
 };
 
 namespace internal {
 
-/// The largest distance by which the axis leaves those that are there, in excess of the share of
-/// their radii.
+/// Returns the largest distance of the axis from the surfaces of existing ones, reduced by the
+/// fraction `share` of their radii and clamped to [-reach, reach] [L].
 inline double
 protrusion_of(const Scan& scan, const Axis_set& set, const Axis& axis, double reach, double share)
 {
@@ -65,7 +65,7 @@ protrusion_of(const Scan& scan, const Axis_set& set, const Axis& axis, double re
   return best;
 }
 
-/// Share of the points of a candidate that others have covered since it was fitted.
+/// Returns the fraction of the points of a candidate that other axes have covered since its fit.
 inline double lost_share(const Candidate& candidate, const Axis_set& set)
 {
   const std::size_t lost = static_cast<std::size_t>(
@@ -75,7 +75,8 @@ inline double lost_share(const Candidate& candidate, const Axis_set& set)
   return candidate.points.empty() ? 0 : double(lost) / double(candidate.points.size());
 }
 
-/// Accepts candidates one after the other; each sees what the ones before it have covered.
+/// Adds a candidate to `set` if it explains enough points that are not covered and protrudes from
+/// existing axes. Returns whether it was added.
 inline bool accept(const Scan& scan,
                    const Chain_options& rules,
                    Candidate& candidate,
@@ -110,7 +111,8 @@ inline bool accept(const Scan& scan,
   return true;
 }
 
-/// The stretches of a chain, of at least `fewest` layers, in which most points are not explained.
+/// Returns the stretches of a chain, of at least `fewest` level sets, in which most points are not
+/// explained.
 inline std::vector<Chain>
 open_stretches(const Layer_tree& tree, const Axis_set& set, const Chain& chain, std::size_t fewest)
 {
@@ -140,8 +142,7 @@ open_stretches(const Layer_tree& tree, const Axis_set& set, const Chain& chain, 
   return stretches;
 }
 
-/// The chains of one tree of layers in the order in which they are fitted, and the axes that they
-/// became.
+/// Chains of one tree of level-set components in the order of their fits, with the resulting axes.
 class Chain_queue
 {
 public:
@@ -151,13 +152,13 @@ public:
     m_number_of_sorted = size();
   }
 
-  /// Of all chains, those that were fitted, too.
+  /// Returns the number of chains, including those that were fitted.
   std::size_t size() const { return m_order.size(); }
   const Chain& operator[](std::size_t place) const { return m_chains[m_order[place]]; }
-  /// How often what was left of a chain was tried again until this one [count].
+  /// Returns the number of preceding fits of which a chain is the remainder [count].
   int cuts(std::size_t place) const { return m_cuts[m_order[place]]; }
 
-  /// Adds chains, or pieces of some that are there, at the end.
+  /// Appends chains, or pieces of existing ones.
   void add(std::vector<Chain> chains, int cuts)
   {
     for (Chain& chain : chains) {
@@ -171,7 +172,7 @@ public:
     }
   }
 
-  /// Sorts those that were added among the chains from a place on, the longest first.
+  /// Merges the appended chains into those from index `from` on, by decreasing length.
   void sort(std::size_t from)
   {
     const auto is_longer = [&](Index x, Index y) {
@@ -186,7 +187,7 @@ public:
 
   void set_axis(std::size_t place, Index axis) { m_axis[m_order[place]] = axis; }
 
-  /// The axis of the nearest chain on the way to the root that has one, or `none`.
+  /// Returns the axis of the nearest chain towards the root that has one, or `none`.
   Index parent_axis(std::size_t place) const
   {
     Index c = m_order[place];
@@ -200,7 +201,7 @@ public:
 
 private:
   std::vector<Chain> m_chains;
-  std::vector<Index> m_axis;  ///< of each chain; `none`: it has none so far
+  std::vector<Index> m_axis;  ///< of each chain; `none`: no axis
   std::vector<int> m_cuts;    ///< of each chain
   std::vector<Index> m_order; ///< numbers of chains
   std::vector<Index> m_chain_of_node;
@@ -208,12 +209,12 @@ private:
 };
 
 /*!
-  Fits the chains of one tree of layers, in waves whose members do not see each other: one that
-  finds much of what others have found is fitted again in the next wave. Where a chain leads through
-  layers that are explained already, as a second arc of a trunk does, only its stretches between
-  them are fitted, each by itself: what is left over beside an axis that is there is not one branch.
-  Whether it does learn about the surface: what the first pass has left over is not typical. Returns
-  `false` as soon as `progress` does, which sees a share of the work.
+  Fits the chains of one tree of level-set components in waves of independent fits. A chain that
+  loses too many of its points to others of its wave is refitted later. Where a chain passes through
+  components that are explained already, as a second arc of a trunk does, the stretches between them
+  are fitted separately: points left beside an existing axis do not form one branch. `does_learn`:
+  whether fits update noise and density; points left by the first pass are not typical. Returns
+  `false` as soon as `progress` does, which is called with the completed fraction of the work.
 */
 template <class ConcurrencyTag, class Progress>
 bool fit_chains(const Scan& scan,
@@ -227,7 +228,7 @@ bool fit_chains(const Scan& scan,
   Chain_queue queue(scan, tree);
   std::size_t wave = 1;
   std::vector<Candidate> candidates;
-  std::vector<std::size_t> places; // of the chains of a wave
+  std::vector<std::size_t> places; // indices of the chains of a wave
   for (std::size_t begin = 0; begin < queue.size();) {
     const std::size_t end = std::min(queue.size(), begin + wave);
     places.clear();
@@ -248,7 +249,7 @@ bool fit_chains(const Scan& scan,
           1);
     };
     fit();
-    // the trunk tells the noise, which may be far from the guess that it was fitted with
+    // the noise is estimated from the trunk, and may differ much from its initial value
     if (begin == 0 && does_learn && !candidates.empty()) {
       const double noise = statistics.noise_of(candidates.front().deviations);
       if (noise > 0 && noise < rules.first_guess * set.noise) {
@@ -282,7 +283,7 @@ bool fit_chains(const Scan& scan,
   return true;
 }
 
-/// In every component, the point nearest to an axis.
+/// Returns the point of every connected component that is nearest to an axis.
 template <class ConcurrencyTag>
 std::vector<Index> nearest_to_axes(const Scan& scan,
                                    const Axis_set& set,
@@ -291,7 +292,8 @@ std::vector<Index> nearest_to_axes(const Scan& scan,
 {
   const std::size_t n = scan.size();
   Point_sets sets = united_points<ConcurrencyTag>(n, links, [](const Link&) { return true; });
-  // a tree of the points of axes, where a search among all would pass many others, as in leaves
+  // Separate search tree of covered points: a search among all points would visit many others, as
+  // in leaves.
   std::vector<Vec3> covered;
   for (Index i = 0; i < n; ++i)
     if (set.is_covered(i))
@@ -330,8 +332,8 @@ std::vector<Index> nearest_to_axes(const Scan& scan,
 } // namespace internal
 
 /*!
-  All axes: those of the chains of `first_tree`, then those of the points that are left. What is
-  found until `progress` returns `false` is returned.
+  Fits all axes: first the chains of `first_tree`, then the unexplained points in further passes.
+  Returns the axes found so far if `progress` returns `false`.
 */
 template <class ConcurrencyTag, class Progress>
 Axis_set fit_axes(const Scan& scan,

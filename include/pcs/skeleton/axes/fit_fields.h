@@ -37,10 +37,10 @@ inline Sample_frame::Sample_frame(const std::vector<Density_sample>& samples)
   }
   const auto eigen = linear_algebra::symmetric_eigen<3>(covariance);
   m_sides = eigen.vectors;
-  m_reach = std::sqrt(3.0) * eigen.values.cwiseMax(0).cwiseSqrt(); // of even samples
+  m_reach = std::sqrt(3.0) * eigen.values.cwiseMax(0).cwiseSqrt(); // of uniform samples
 }
 
-/// Some thousand of all samples, evenly.
+/// Returns at most 3000 samples at a constant stride.
 inline std::vector<Density_sample> subsample(const std::vector<Density_sample>& all)
 {
   constexpr std::size_t most = 3000;
@@ -63,7 +63,7 @@ inline void Density_field::learn(const std::vector<Density_sample>& all)
     values.push_back(std::log(s.density));
   std::vector<double> sorted = values;
   std::sort(sorted.begin(), sorted.end());
-  const std::size_t tail = sorted.size() / 20; // odd ones
+  const std::size_t tail = sorted.size() / 20; // outliers
   m_middle = sorted[sorted.size() / 2];
   m_lowest = sorted[tail];
   m_highest = sorted[sorted.size() - 1 - tail];

@@ -20,7 +20,7 @@ namespace pcs {
 namespace skeleton {
 
 /// Assigns points that were classified as leaves but lie on the surface of an axis to that axis.
-/// Returns how many.
+/// Returns their number.
 template <class ConcurrencyTag>
 std::size_t reassign_points(const Scan& scan,
                             const Chain_options& rules,

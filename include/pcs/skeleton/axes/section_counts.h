@@ -19,12 +19,11 @@ namespace skeleton {
 /// Sums over a window of nodes about each node.
 struct Section_counts
 {
-  std::vector<double> count;  ///< points near the surface
-  std::vector<double> length; ///< of the axis [L]
-  std::vector<double>
-      visible_length; ///< the same, times the share of the section that may have points [L]
+  std::vector<double> count;          ///< points near the surface
+  std::vector<double> length;         ///< of the axis [L]
+  std::vector<double> visible_length; ///< the same, times the visible fraction of the section [L]
 
-  /// The radius at which the surface would have `density` points per area.
+  /// Returns the radius for which the surface would have `density` points per area [L].
   double radius(std::size_t k, double density) const
   {
     return count[k] / (2 * 3.14159265358979323846 * density * visible_length[k]);
@@ -35,7 +34,7 @@ struct Section_counts
   }
 };
 
-/// `visible`: share of the section at each node that may have points.
+/// Counts points near the surface. `visible`: visible fraction of the section at each node [-].
 inline Section_counts
 section_counts(const Chain_view& view, const Axis_fit& fit, const std::vector<double>& visible)
 {
@@ -75,9 +74,9 @@ section_counts(const Chain_view& view, const Axis_fit& fit, const std::vector<do
 }
 
 /*!
-  Share of the section at each node that lies outside of what another axis has taken: where a branch
-  leaves its parent, the points are the parent's, and inside of it there are none. Only nodes with
-  few points are looked at. O(nodes log points).
+  Returns the visible fraction of the section at each node, which lies outside of other axes. Where
+  a branch leaves its parent, surface points are assigned to the parent, and its interior has none.
+  Nodes with enough points are taken as visible. O(nodes log points).
 */
 inline std::vector<double> visible_shares(const Chain_view& view, const Axis_fit& fit)
 {
@@ -103,7 +102,7 @@ inline std::vector<double> visible_shares(const Chain_view& view, const Axis_fit
         nearest_place(other, view.set.segment_of_point[near.index], axis[k].point);
     const double thick = radius_at(other, place);
     const double taken = thick + std::max(rules.cover_offset * u, rules.cover_factor * thick);
-    // the arc of the section inside of a disc of radius `taken`
+    // arc of the section inside of a disc of radius `taken`
     const double d = std::max(place.distance, 1e-9 * u);
     const double cosine = (d * d + r * r - taken * taken) / (2 * d * r);
     shares[k] = 1 - std::acos(std::min(1.0, std::max(-1.0, cosine))) / 3.14159265358979323846;

@@ -20,16 +20,17 @@
 namespace pcs {
 namespace skeleton {
 
-/// Whether noise hides the curvature of a section, so that its radius may be anything.
+/// Whether noise hides the curvature of a section, so that the fit does not determine its radius.
 inline bool is_blurred(const Chain_view& view, double radius)
 {
   return radius < view.rules.blurred * view.set.noise;
 }
 
 /*!
-  The radius `counted` [L] where the fit has `found` one. Counts are wrong by a factor, up or down,
-  so that what is found tells by how much; but much fewer points than expected are no chance: an
-  axis that runs between several twigs must not look certain of its radius.
+  Returns the prior of a radius `counted` [L] given the fitted radius `found` [L]. Errors of counts
+  are multiplicative, so that the deviation scales with the fitted radius. The deviation decreases
+  where points are much fewer than expected, which is not due to chance: the radius of an axis
+  between several twigs must not count as measured.
 */
 inline Radius_prior counted_prior(const Chain_view& view, double counted, double found)
 {
@@ -40,9 +41,9 @@ inline Radius_prior counted_prior(const Chain_view& view, double counted, double
 }
 
 /*!
-  By how many times what hides an axis from the scanner lowers its counts, all along it, as its
-  blurred sections tell; never less than 1. Few nodes are not believed. `counted`: radii by counting
-  [L], negative where sections cannot be seen.
+  Estimates the factor by which occlusion reduces the counts along an axis from its blurred
+  sections; at least 1 [-]. The factor is shrunk towards 1 for few nodes. `counted`: radii by
+  counting, negative where sections are hidden [L].
 */
 inline double
 hidden_factor(const Chain_view& view, const std::vector<double>& counted, const Axis& axis)
@@ -58,8 +59,8 @@ hidden_factor(const Chain_view& view, const std::vector<double>& counted, const 
   return std::min(view.rules.most_hidden, std::max(1.0, std::exp(level)));
 }
 
-/// The priors of all nodes by counting; without weight where there is nothing to go by. O(nodes +
-/// points).
+/// Returns the priors of all nodes by counting; without weight where sections are hidden or the
+/// density is not known. O(nodes + points).
 inline std::vector<Radius_prior>
 counted_priors(const Chain_view& view, const std::vector<double>& visible, const Axis_fit& fit)
 {
@@ -82,11 +83,11 @@ counted_priors(const Chain_view& view, const std::vector<double>& visible, const
 }
 
 /*!
-  What is expected as long as nothing can be counted: a branch tapers. Where it is thicker than a
-  line from what it is near its base to a share of that at its tip, and has few points, curvature
-  alone must not tell; it may be the way around several twigs. Thick axes have enough points.
-  `length`: from the base to the tip of all that the paths follow, of which the axis may be a part
-  [L]. O(nodes + points).
+  Returns priors by taper for scans without a known density. They apply where the radius exceeds a
+  linear taper from the base to a fraction of the base radius at the tip, and become weak with many
+  points: with few points, an axis around several twigs has a plausible curvature. Thick axes have
+  enough points and get no priors. `length`: length of the whole chain, of which the axis may be a
+  portion [L]. O(nodes + points).
 */
 inline std::vector<Radius_prior> taper_priors(const Chain_view& view,
                                               const std::vector<double>& visible,
@@ -96,7 +97,7 @@ inline std::vector<Radius_prior> taper_priors(const Chain_view& view,
   const Chain_options& rules = view.rules;
   const Axis& axis = fit.axis();
   std::vector<Radius_prior> priors(axis.size());
-  std::vector<double> place(axis.size(), 0), radii; // lengths to the base; near it
+  std::vector<double> place(axis.size(), 0), radii; // distances from the base; radii near it
   for (std::size_t k = 1; k < axis.size(); ++k)
     place[k] = place[k - 1] + (axis[k].point - axis[k - 1].point).norm();
   for (std::size_t k = 0; k < axis.size() && place[k] <= rules.taper_from * place.back(); ++k)
@@ -117,8 +118,8 @@ inline std::vector<Radius_prior> taper_priors(const Chain_view& view,
 }
 
 /*!
-  Tells `fit` what to expect of its sections as they are. `visible`: share of each that may have
-  points [-]; `length`: as for `taper_priors()`, 0 for a piece that need not taper [L].
+  Sets the priors of `fit` from its current sections. `visible`: visible fraction of each section
+  [-]; `length`: as for `taper_priors()`, 0 for a piece that need not taper [L].
 */
 inline void expect_sections(const Chain_view& view,
                             const std::vector<double>& visible,

@@ -26,7 +26,7 @@ struct Section_visibility
   std::vector<double> count;
   std::vector<Vec3> offset;            ///< mean vector from the axis to its points [L]
   std::vector<Vec3> normal;            ///< mean of the outward normals of the points
-  std::vector<Eigen::Matrix3d> moment; ///< mean of the products of the offsets, of thin axes [L^2]
+  std::vector<Eigen::Matrix3d> moment; ///< second moments of the offsets, of thin axes only [L^2]
 
   Section_visibility(const Chain_view& view, const Axis_fit& fit)
     : count(fit.axis().size(), 0),
@@ -36,8 +36,7 @@ struct Section_visibility
   {
     const Axis& axis = fit.axis();
     const std::size_t n = axis.size();
-    // moments cost most, so only windows with an axis that `add_width_priors()` asks about have
-    // them
+    // second moments are costly, and computed only for the thin sections of `add_width_priors()`
     std::vector<char> is_thin(n, false);
     for (std::size_t k = 0; k < n; ++k)
       if (axis[k].radius < view.rules.width_radius * view.scan.spacing)
@@ -71,7 +70,8 @@ struct Section_visibility
     }
   }
 
-  /// Standard deviation of the points across the axis and the side on which they lie [L].
+  /// Returns the standard deviation of the points perpendicular to the axis and to their mean
+  /// normal [L].
   double width(const Axis& axis, std::size_t k) const
   {
     const Vec3 chord = axis[std::min(axis.size() - 1, k + 1)].point - axis[k > 0 ? k - 1 : 0].point;
@@ -81,7 +81,7 @@ struct Section_visibility
   }
 
 private:
-  /// Of weights, offsets, normals, and products of the offsets, the upper half.
+  /// Sums of weights, offsets, normals, and the upper triangle of the products of the offsets.
   struct Sums
   {
     std::array<double, 13> values;
@@ -106,9 +106,9 @@ private:
 };
 
 /*!
-  Where the points of each section are expected to lie about its center. The points of a thin branch
-  that is seen from one side fit axes before, in and behind them nearly as well; thick branches tell
-  which it is.
+  Returns priors of the centers of thin sections from the side on which their points lie. The points
+  of a thin branch with one-sided visibility fit axes before, in and behind them nearly equally
+  well. The visible side is known from thick branches.
 */
 inline std::vector<Center_prior>
 center_priors(const Chain_view& view, const Axis& axis, const Section_visibility& sides)
@@ -126,10 +126,11 @@ center_priors(const Chain_view& view, const Axis& axis, const Section_visibility
 }
 
 /*!
-  Radii by how wide the points lie, where they lie on one side. A scanner samples the side that it
-  sees evenly across its beams, so that places across the line of sight are evenly spread over a
-  diameter: their standard deviation is r / sqrt(3). That depends neither on the density, which
-  varies, nor on the curvature, which noise hides. Joined to `priors` by their variances. O(nodes).
+  Adds priors of radii by the width of the points, for sections with one-sided visibility. A scanner
+  samples the visible side uniformly across its beams, so that positions perpendicular to the line
+  of sight are uniformly distributed over a diameter: their standard deviation is r / sqrt(3). This
+  depends neither on the density, which varies, nor on the curvature, which noise hides. The result
+  is combined with `priors` by precision. O(nodes).
 */
 inline void add_width_priors(const Chain_view& view,
                              const Axis& axis,

@@ -30,16 +30,16 @@ struct Branching_options
   Stub_options stubs;
 };
 
-/// The tree of the axes, which a cancelled call has joined in part.
+/// The tree of the axes, which may be incomplete after a cancelled call.
 struct Joined_axes
 {
-  int regroupings = 0; ///< rounds that are done
+  int regroupings = 0; ///< completed rounds [count]
   Index root = none;   ///< the axis of the root
   std::vector<Joint> joints;
   Branch_tree tree;
 };
 
-/// Joins the axes as they are into one tree from the axis at `root`.
+/// Joins the axes without changes into one tree, from the axis at `root`.
 template <class ConcurrencyTag>
 void join_axes(const Scan& scan,
                const Axis_set& axes,
@@ -57,9 +57,9 @@ void join_axes(const Scan& scan,
 }
 
 /*!
-  Joins the axes; regroups and fuses them by the branches that result, for some rounds; splits axes
-  that nothing reaches; prunes stubs. `progress(f)` gets the fraction of the rounds. Returns `false`
-  if it stopped the work.
+  Joins the axes into a tree of branches. Regroups and fuses the axes by the resulting branches for
+  some rounds, splits unreachable axes, and prunes stubs. `progress(f)` receives the fraction of
+  completed rounds. Returns `false` if it stopped the work.
 */
 template <class ConcurrencyTag, class Progress>
 bool build_branch_tree(const Scan& scan,

@@ -21,28 +21,28 @@
 namespace pcs {
 namespace skeleton {
 
-/// When two ends belong to one branch. Factors of the spacing unless said otherwise [-].
+/// Criteria for two ends of one branch. Lengths are in spacings unless stated otherwise [-].
 struct Fusion_options
 {
-  double limit = 8;  ///< largest cost: a sum of squares, each of unit variance; 0: nothing is fused
+  double limit = 8;  ///< largest cost, a sum of squares of unit variance; 0: no axes are fused
   double reach = 24; ///< widest gap ...
   double length_share = 1;    ///< ... and in lengths of the longer piece [-]
-  double end_length = 10;     ///< length over which the direction of an end is taken
+  double end_length = 10;     ///< length from which the direction of an end is computed
   double end_radii = 4;       ///< ... and in radii [-]
-  double offset = 0.7;        ///< deviation of an end from its line
-  double direction = 0.12;    ///< deviation of the direction of a long piece [rad]
-  double raggedness = 1;      ///< the same of a short one times its length
-  double bend = 0.25;         ///< deviation of the angle between both [rad]
-  double radius = 0.35;       ///< deviation of the radius, in radii [-] ...
-  double radius_offset = 0.2; ///< ... and
-  double gap = 10;            ///< deviation of the gap
+  double offset = 0.7;        ///< standard deviation of an end from its line
+  double direction = 0.12;    ///< standard deviation of the direction of a long piece [rad]
+  double raggedness = 1;      ///< the same for a short piece, times its length
+  double bend = 0.25;         ///< standard deviation of the angle between both [rad]
+  double radius = 0.35;       ///< standard deviation of the radius, in radii [-] ...
+  double radius_offset = 0.2; ///< ... and in spacings
+  double gap = 10;            ///< standard deviation of the gap
   double against = 3;         ///< cost of two bases or two tips [-]
-  double inside = 0.5;        ///< depth in radii of a third axis that the way between may have [-]
+  double inside = 0.5;        ///< least distance of a gap from a third axis, in its radii [-]
 };
 
 namespace internal {
 
-/// One end of an axis, seen from the axis.
+/// One end of an axis, with its outward direction.
 struct Loose_end
 {
   Vec3 point, outward;
@@ -59,7 +59,7 @@ loose_end(const Axis& axis, bool is_tip, double spacing, const Fusion_options& r
   end.point = node(0).point;
   double gone = 0, radius = 0;
   std::size_t k = 1;
-  // line through the nodes, weighted by the lengths that they stand for
+  // line through the segments, weighted by their lengths
   Vec3 mean = Vec3::Zero(), moment = Vec3::Zero();
   double weight = 0;
   for (; k < n && (gone < wanted || k < 2); ++k) {
@@ -107,7 +107,8 @@ public:
       }
   }
 
-  /// For every end (two per axis, the base first) the one it continues in; `none`: a free end.
+  /// Returns for every end (two per axis, the base first) the end with which it is paired, or
+  /// `none` for a free end.
   template <class ConcurrencyTag>
   std::vector<Index> partners() const
   {
@@ -188,7 +189,8 @@ private:
     return sum;
   }
 
-  /// Whether the straight way between two ends leads through the inside of another axis.
+  /// Returns whether the straight line between two ends passes through the interior of another
+  /// axis.
   bool is_through_wood(Index i, Index j, const neighborhood::Nearest_neighbors& near_nodes) const
   {
     const Vec3 a = m_ends[i].point, g = m_ends[j].point - a;
@@ -223,17 +225,17 @@ private:
   std::vector<std::pair<Index, Index>> m_place_of_node;
 };
 
-/// Where an axis went when it was fused.
+/// The position of a previous axis on its fused axis.
 struct Fused_piece
 {
   Index axis = none;        ///< the new axis
-  Index first = 0;          ///< its first segment there
-  bool is_reversed = false; ///< whether it runs backwards there
+  Index first = 0;          ///< index of its first segment there
+  bool is_reversed = false; ///< whether its direction is reversed there
 };
 
-/// The ends through which the row of pieces with axis `a` is entered, in the sense in which most of
-/// its length was found. `forward` and `total` are the lengths of pieces that run forward there,
-/// and of all.
+/// Returns the first ends of the pieces in the chain of axis `a`, in the direction of most of its
+/// length. `forward` is the length of pieces whose direction matches that of the walk from a free
+/// end; `total` is the length of all pieces.
 inline std::vector<Index> row_of_pieces(const Axis_set& set,
                                         const std::vector<Index>& partner,
                                         Index a,
@@ -259,7 +261,7 @@ inline std::vector<Index> row_of_pieces(const Axis_set& set,
   return entries;
 }
 
-/// Appends the pieces to one axis with the number `number`, and records where they went.
+/// Concatenates the pieces to the axis with index `number`, and records their positions.
 inline Fitted_axis fuse_pieces(const std::vector<Index>& entries,
                                Index number,
                                Axis_set& set,
@@ -267,7 +269,7 @@ inline Fitted_axis fuse_pieces(const std::vector<Index>& entries,
 {
   Fitted_axis row;
   row.parent = set.axes[entries.front() / 2].parent;
-  bool is_reversed = false; // the piece before
+  bool is_reversed = false; // the previous piece
   for (const Index e : entries) {
     Fitted_axis& piece = set.axes[e / 2];
     pieces[e / 2] = {number, static_cast<Index>(row.axis.size()), e % 2 == 1};
@@ -286,7 +288,7 @@ inline Fitted_axis fuse_pieces(const std::vector<Index>& entries,
   return row;
 }
 
-/// Moves the points of all axes to the fused axes.
+/// Reassigns the points of all axes to the fused axes.
 inline void move_points(const std::vector<Fused_piece>& pieces, Axis_set& set)
 {
   const std::size_t n = set.axes.size();
@@ -307,9 +309,9 @@ inline void move_points(const std::vector<Fused_piece>& pieces, Axis_set& set)
 } // namespace internal
 
 /*!
-  Replaces axes that continue each other by one. Ends are paired by how far each lies off the line
-  of the other, by the bend, the change of the radius and the gap, best pairs first. Returns by how
-  many the number of axes fell. O(axes log axes).
+  Fuses axes that continue each other. Pairs their ends in ascending order of cost. The cost depends
+  on the distance of each end from the line of the other, on the bend, on the change of the radius,
+  and on the gap. Returns by how much the number of axes decreased. O(axes log axes).
 */
 template <class ConcurrencyTag>
 std::size_t fuse_axes(double spacing, const Fusion_options& options, Axis_set& set)
@@ -333,7 +335,7 @@ std::size_t fuse_axes(double spacing, const Fusion_options& options, Axis_set& s
   for (Index k = 0; k < fused.size(); ++k)
     if (fused[k].parent != none) {
       const Index parent = pieces[fused[k].parent].axis;
-      fused[k].parent = parent != k ? parent : none; // found on another piece of itself
+      fused[k].parent = parent != k ? parent : none; // detected on another piece of the same axis
     }
   const std::size_t fewer = n - fused.size();
   set.axes = std::move(fused);

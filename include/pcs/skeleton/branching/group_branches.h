@@ -21,7 +21,7 @@ namespace skeleton {
 
 namespace internal {
 
-/// Nodes with parents, while the tree is being built.
+/// Builds the nodes of the tree and links them to their parents.
 class Tree_builder
 {
 public:
@@ -53,16 +53,16 @@ public:
 private:
   struct Inserted
   {
-    double at; ///< segment + share
+    double at; ///< segment + parameter in [0, 1]
     Index axis;
   };
 
-  /// Copies the axes in the order of a walk from the root, with a node where a child sits.
+  /// Copies the axes in depth-first order from the root, and inserts a node at each joint.
   void add_axes(Index root)
   {
-    std::vector<std::pair<Index, Index>> stack{{root, none}}; // axis, node that it sits on
+    std::vector<std::pair<Index, Index>> stack{{root, none}}; // axis, parent node
     while (!stack.empty()) {
-      const Index a = stack.back().first, seat = stack.back().second; // a lambda captures them
+      const Index a = stack.back().first, seat = stack.back().second; // captured by a lambda
       stack.pop_back();
       const Axis& axis = m_set.axes[a].axis;
       std::vector<Inserted> seats;
@@ -77,7 +77,7 @@ private:
       if (is_reversed)
         std::reverse(seats.begin(), seats.end());
       Index before = seat;
-      if (seat != none) { // its own node on the axis of the parent
+      if (seat != none) { // a separate node on the axis of the parent
         Branch_node base;
         static_cast<Axis_node&>(base) = is_reversed ? axis.back() : axis.front();
         base.point = m_tree.nodes[seat].point;
@@ -91,7 +91,7 @@ private:
       m_places_of_axis[a] = static_cast<Index>(m_node_of_place.size() - 1);
       places.assign(axis.size(), none);
       std::size_t next = 0;
-      const auto add_seats = [&](double until) { // all seats on the way to `until`
+      const auto add_seats = [&](double until) { // all joints up to `until`
         for (; next < seats.size() &&
                (is_reversed ? seats[next].at >= until : seats[next].at <= until);
              ++next) {
@@ -111,7 +111,7 @@ private:
       };
       for (std::size_t i = 0; i < axis.size(); ++i) {
         const std::size_t k = is_reversed ? axis.size() - 1 - i : i;
-        // a seat between the nodes comes before the next node
+        // a joint between the nodes comes before the next node
         if (i > 0)
           add_seats(is_reversed ? double(k) + 1e-9 : double(k) - 1e-9);
         Branch_node node;
@@ -158,7 +158,7 @@ private:
 
 } // namespace internal
 
-/// The tree of all axes that the root reaches. O(nodes log nodes).
+/// Returns the tree of all axes reachable from the root. O(nodes log nodes).
 inline Branch_tree
 branch_tree(const Axis_set& set, const std::vector<Joint>& joints, Index root, double spacing)
 {

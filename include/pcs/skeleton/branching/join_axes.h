@@ -27,34 +27,33 @@
 namespace pcs {
 namespace skeleton {
 
-/// What a joint costs: logarithms of odds, as they were found in scans of virtual trees. Lengths in
-/// spacings [-].
+/// Costs of a joint: log-odds, estimated from scans of virtual trees. Lengths are in spacings [-].
 struct Joint_options
 {
-  int rounds = 2;    ///< how often joints are chosen, the later ones between branches [count]
+  int rounds = 2;    ///< selections of joints; later ones join branches [count]
   double reach = 30; ///< widest gap between the base of a branch and the surface of its parent
-  double long_reach = 0.2; ///< ... or this share of the length of the branch [-]
-  double base_length = 8;  ///< length over which the direction of a base is taken
-  double lateral = 1.8;    ///< cost of missing the parent's axis, per logarithm of 1 + length
-  double lateral_tolerance = 0.3; ///< of it free of charge, in radii of the parent
+  double long_reach = 0.2; ///< ... or this fraction of the length of the branch [-]
+  double base_length = 8;  ///< length from which the direction of a base is computed
+  double lateral = 1.8;    ///< cost of a lateral offset from the parent's axis, per log(1 + offset)
+  double lateral_tolerance = 0.3; ///< offset without cost, in radii of the parent
   double gap = 0.044;             ///< cost of a gap, per length ...
-  double steep_gap = 12;          ///< ... and gaps longer than this cost more than their length
+  double steep_gap = 12;          ///< ... and beyond this length, the cost is quadratic
   double overlap = 0.115;         ///< cost of a parent ahead of the base, per length
-  double tie = 0.05;  ///< of the whole distance: what costs nothing else is decided by it
-  double angle = 3.2; ///< cost of each unit of the cosine to the parent's direction below 1 ...
+  double tie = 0.05;  ///< cost of the whole distance, which decides between equal joints
+  double angle = 3.2; ///< cost of 1 - cosine of the angle to the parent ...
   double lowest_cosine =
-      -0.2; ///< ... down to this one, since the parent itself may be turned round
+      -0.2; ///< ... with this least cosine, since the parent itself may be reversed
   double radius =
-      0.6; ///< cost of a thick base, per logarithm of its share of the parent's radius ...
-  double free_share = 0.37; ///< ... above this share
-  double taper = 0.85;      ///< gain of a base that is thicker than the tip, per logarithm
-  double reversal = 1.1;    ///< for using the tip as the base
-  double thinnest = 0.1;    ///< smaller radii count as this one
+      0.6; ///< cost of a thick base, per log ratio to the parent's radius ...
+  double free_share = 0.37; ///< ... above this ratio
+  double taper = 0.85;      ///< gain of a base thicker than the tip, per log ratio
+  double reversal = 1.1;    ///< cost of the tip as the base
+  double thinnest = 0.1;    ///< lower bound of radii in ratios
 };
 
 namespace internal {
 
-/// An end of an axis, seen from outside.
+/// An end of an axis, with its inward direction.
 struct Axis_end
 {
   Vec3 point;
@@ -69,7 +68,7 @@ inline Axis_end end_of(const Axis& axis, bool is_tip, double length)
   Axis_end end{node(0).point, Vec3::Zero(), 0};
   double gone = 0, radius = node(0).radius;
   std::size_t k = 1, count = 1;
-  Vec3 mean = Vec3::Zero(); // of the nodes, which damps the raggedness of a single one
+  Vec3 mean = Vec3::Zero(); // mean of several nodes, which reduces noise
   for (; k < n && (gone < length || k < 3); ++k) {
     gone += (node(k).point - node(k - 1).point).norm();
     mean += node(k).point;
@@ -104,13 +103,13 @@ public:
       level.search = std::make_unique<neighborhood::Nearest_neighbors>(level.points);
   }
 
-  /// A joint for every axis but the root; no cycles. Axes that nothing is near to have no parent.
+  /// Selects a joint for every axis except the root, without cycles. Isolated axes have no parent.
   template <class ConcurrencyTag>
   std::vector<Joint> run(Index root) const
   {
     return run<ConcurrencyTag>(std::vector<Index>{root});
   }
-  /// The same with several roots, each of which becomes a tree.
+  /// Selects the joints for several roots, one tree each.
   template <class ConcurrencyTag>
   std::vector<Joint> run(const std::vector<Index>& roots) const
   {
@@ -130,9 +129,9 @@ public:
   }
 
 private:
-  using Node = std::pair<Index, Index>; ///< axis, number on it
+  using Node = std::pair<Index, Index>; ///< axis, index on it
 
-  /// Nodes of similar radii: only among thick ones one must look far.
+  /// Nodes of similar radii, so that only thick nodes need a large search radius.
   struct Level
   {
     double thickest = 0;
@@ -152,22 +151,21 @@ private:
     const double doublings = std::log2(std::max(1.0, radius / m_spacing));
     return m_levels[std::min(m_levels.size() - 1, static_cast<std::size_t>(doublings))];
   }
-  /// Nodes whose surfaces are not much farther than `reach`, by axis, then by number.
+  /// Returns the nodes whose surfaces are within `reach` and some slack, by axis, then by index.
   std::vector<Node> nodes_near(const Vec3& place, double reach) const;
 
-  /// The cheapest place on axis `b` near the given nodes of it.
+  /// Returns the joint of least cost on axis `b` near the given nodes of this axis.
   Joint best_place(const internal::Axis_end& end,
                    Index b,
                    const std::vector<Index>& nodes,
                    double reach) const;
-  /// Infinite where it is not below `limit`, or out of reach.
+  /// Returns the cost of a joint, or infinity if it is not below `limit` or out of reach.
   double cost(const internal::Axis_end& end,
               Index b,
               const Axis_place& place,
               double reach,
               double limit) const;
-  /// No place on a segment costs less: what is far away, or has another direction, costs something
-  /// in any case.
+  /// Returns a lower bound of the cost on a segment, from its distance and direction.
   double least_cost(const internal::Axis_end& end, const Axis& axis, Index segment) const
   {
     const Axis_node &a = axis[segment], &b = axis[segment + 1];
@@ -198,7 +196,7 @@ private:
   const Axis_set& m_set;
   double m_spacing;
   Joint_options m_rules;
-  std::array<Level, 12> m_levels; // of doubled radii
+  std::array<Level, 12> m_levels; // radii double between levels
 };
 
 inline double Axis_joiner::cost(const internal::Axis_end& end,
@@ -220,7 +218,7 @@ inline double Axis_joiner::cost(const internal::Axis_end& end,
   sum += m_rules.overlap * std::max(0.0, -back - radius) / u;
   sum += m_rules.tie * (lateral + distance) / u;
   sum += angle_cost(end, internal::tangent(axis, place.segment));
-  if (!(sum < limit)) // logarithms take most of the time
+  if (!(sum < limit)) // computing logarithms dominates the time
     return std::numeric_limits<double>::infinity();
   const double share = radius_ratio(end.radius, radius) / m_rules.free_share;
   sum += m_rules.radius * std::log(std::max(1.0, share));
@@ -258,7 +256,7 @@ inline Joint Axis_joiner::best_place(const internal::Axis_end& end,
         try_segment(s);
       }
   };
-  // what is near leaves little to try of the others
+  // a low cost at the nearest node excludes most other segments
   const Index nearest = *std::min_element(nodes.begin(), nodes.end(), [&](Index x, Index y) {
     return (axis[x].point - end.point).squaredNorm() < (axis[y].point - end.point).squaredNorm();
   });
@@ -273,8 +271,8 @@ inline Joint Axis_joiner::best_place(const internal::Axis_end& end,
 
 inline std::vector<Axis_joiner::Node> Axis_joiner::nodes_near(const Vec3& place, double reach) const
 {
-  const double slack = 8 * m_spacing; // the nearest place lies between nodes
-  std::vector<std::uint64_t> keys;    // of nodes, which are sorted faster
+  const double slack = 8 * m_spacing; // the nearest position lies between nodes
+  std::vector<std::uint64_t> keys;    // of nodes, for faster sorting
   std::vector<Index> found;
   for (const Level& level : m_levels) {
     found.clear();
@@ -333,15 +331,16 @@ inline std::vector<Joint> Axis_joiner::options_of(Index a) const
 }
 
 /*!
-  Every axis takes its cheapest option; roots have none. What then does not hang on a root, because
-  it runs in a circle, is led back axis by axis where the change to an option that does costs least.
+  Selects the option of least cost for every axis except the roots. Cycles remain unreachable from a
+  root. They are resolved axis by axis: the next axis is the one whose change to a reachable parent
+  has the least additional cost.
 */
 inline std::vector<Joint> Axis_joiner::choose(const std::vector<Index>& roots,
                                               const std::vector<std::vector<Joint>>& options)
 {
   const std::size_t n = options.size();
   std::vector<Joint> joints(n);
-  std::vector<std::vector<Index>> children(n), users(n); // users: who has an option on an axis
+  std::vector<std::vector<Index>> children(n), users(n); // users: axes with an option on an axis
   for (Index a = 0; a < n; ++a) {
     if (options[a].empty())
       continue;
@@ -351,7 +350,7 @@ inline std::vector<Joint> Axis_joiner::choose(const std::vector<Index>& roots,
       users[o.parent].push_back(a);
   }
   std::vector<std::uint8_t> is_reached(n, 0);
-  // what a change to an option costs, who changes, and to which
+  // additional cost of a change, axis, index of the option
   using Change = std::tuple<double, Index, std::size_t>;
   std::priority_queue<Change, std::vector<Change>, std::greater<Change>> changes;
   const auto reach = [&](Index from) {
@@ -370,7 +369,7 @@ inline std::vector<Joint> Axis_joiner::choose(const std::vector<Index>& roots,
         for (std::size_t k = 0; !is_reached[a] && k < options[a].size(); ++k)
           if (options[a][k].parent == b) {
             changes.emplace(options[a][k].cost - joints[a].cost, a, k);
-            break; // they are sorted
+            break; // options are sorted
           }
   };
   for (const Index root : roots)

@@ -16,17 +16,17 @@
 namespace pcs {
 namespace skeleton {
 
-/// Which branches are stubs.
+/// Criteria for stubs.
 struct Stub_options
 {
   double shortest =
-      /// length outside of the parent that a branch without branches needs, in spacings; 0: any [-]
+      /// least length outside the parent of a branch without children, in spacings; 0: no limit [-]
       4;
 };
 
 /*!
-  Removes branches without branches that leave their parent by less than the shortest length; their
-  points go to the node that they sat on. Returns how many there were. O(nodes + points).
+  Removes branches without children whose length outside the parent is below the limit. Reassigns
+  their points to the parent node. Returns the number of removed branches. O(nodes + points).
 */
 inline std::size_t prune_stubs(double spacing, const Stub_options& rules, Branch_tree& tree)
 {
@@ -37,7 +37,7 @@ inline std::size_t prune_stubs(double spacing, const Stub_options& rules, Branch
       ++children[b.parent];
   std::vector<std::uint8_t> is_stub(n, 0);
   std::size_t count = 0;
-  for (std::size_t b = n; b-- > 1;) { // children come behind their parents
+  for (std::size_t b = n; b-- > 1;) { // children come after their parents
     const Branch& branch = tree.branches[b];
     if (children[b] > 0 || branch.parent == none)
       continue;

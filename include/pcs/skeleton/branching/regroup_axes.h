@@ -17,22 +17,22 @@ namespace pcs {
 namespace skeleton {
 
 /*!
-  Replaces the axes that `tree` was joined from by its branches, without the nodes on the axes of
-  their parents. Where a fit went over from one branch to another, the tree went on straight, and
-  its branches are better known than the axes were. Axes out of reach stay. Every point keeps an
-  axis. O(nodes + points).
+  Replaces the axes from which `tree` was joined by its branches, without the nodes on the axes of
+  their parents. Where a fitted axis changes from one branch to another, the tree continues
+  straight, so its branches are more reliable than the axes. Unreachable axes remain. Every point
+  keeps an axis. O(nodes + points).
 */
 inline void regroup_axes(const Branch_tree& tree, Axis_set& set)
 {
   if (tree.branches.empty() || tree.branches.front().nodes.size() < 2)
-    return; // the root is a single place
+    return; // the root is a single node
   std::vector<Fitted_axis> axes;
   std::vector<Index> axis_of_branch(tree.branches.size(), none);
-  std::vector<Index> place(tree.nodes.size(), 0); // number of a node on its axis
+  std::vector<Index> place(tree.nodes.size(), 0); // index of a node on its axis
   for (Index b = 0; b < tree.branches.size(); ++b) {
     const Branch& branch = tree.branches[b];
     const Index seat = tree.nodes[branch.nodes.front()].parent;
-    if (branch.nodes.size() < 2) { // lies on its parent altogether
+    if (branch.nodes.size() < 2) { // lies entirely on its parent
       axis_of_branch[b] = axis_of_branch[branch.parent];
       place[branch.nodes.front()] = place[seat];
       continue;
@@ -47,7 +47,7 @@ inline void regroup_axes(const Branch_tree& tree, Axis_set& set)
     axis_of_branch[b] = static_cast<Index>(axes.size());
     axes.push_back(std::move(axis));
   }
-  std::vector<Index> out_of_reach(set.axes.size(), none); // their new numbers
+  std::vector<Index> out_of_reach(set.axes.size(), none); // their new indices
   for (std::size_t i = 0; i < set.axis_of_point.size(); ++i) {
     Index& axis = set.axis_of_point[i];
     if (axis == none)
@@ -62,7 +62,7 @@ inline void regroup_axes(const Branch_tree& tree, Axis_set& set)
         number = static_cast<Index>(axes.size());
         axes.push_back(std::move(set.axes[axis]));
         axes.back().number_of_points = 0;
-        axes.back().parent = none; // it counted the old axes
+        axes.back().parent = none; // it refers to the previous axes
       }
       axis = number;
     }

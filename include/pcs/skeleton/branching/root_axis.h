@@ -39,15 +39,16 @@ inline Index nearest_axis(const Axis_set& set, const Vec3& p)
 }
 
 /*!
-  The axis that explains the root, and most else: a trunk may stand on buttresses that have more of
-  the root. If none does, the nearest one. Instead of one that is small beside an axis which the
-  root is near, too, that: chance pieces of a foot may have all of the root, unless the caller gave
-  it (`is_given`). `root` has points, `set` axes. O(axes + root).
+  Selects the axis of the root: the one with the most root points, weighted by its number of points,
+  since the buttresses of a trunk may have more root points. If no axis has root points, selects the
+  nearest axis. A small axis is replaced by a much larger one close to the root, since chance pieces
+  of a foot may have all root points. A given root (`is_given`) skips this step. `root` and `set`
+  are not empty. O(axes + root).
 */
 inline Index
 root_axis(const Scan& scan, const Axis_set& set, const std::vector<Index>& root, bool is_given)
 {
-  constexpr double small = 0.1, near = 4; // share of the points, radii from the axis
+  constexpr double small = 0.1, near = 4; // fraction of the points, distance from the axis in radii
   const auto points_of = [&](Index a) { return double(set.axes[a].number_of_points); };
   std::vector<double> votes(set.axes.size(), 0);
   for (const Index i : root)
@@ -70,7 +71,7 @@ root_axis(const Scan& scan, const Axis_set& set, const std::vector<Index>& root,
   return largest;
 }
 
-/// Whether the root lies at the tip of its axis.
+/// Returns whether the root lies at the tip of its axis.
 inline bool is_root_reversed(const Scan& scan, const Axis& axis, const std::vector<Index>& root)
 {
   const Vec3 middle = middle_of(scan, root);

@@ -17,11 +17,12 @@ namespace pcs {
 namespace skeleton {
 
 /*!
-  Two bases side by side may be a branch that another one crosses, or two branches that leave it on
-  opposite sides. Where the branch that they would make is out of reach, but something that is not
-  lies within `reach` of the place where they met, they were the latter: both become axes of their
-  own, which begin there. `joints` are those of the axes, `root` the one that stands on the root.
-  Returns how many axes there are more. O(axes log points + points).
+  Splits unreachable axes where the bases of two pieces met. Two adjacent bases may belong to one
+  branch that another one crosses, or to two branches on opposite sides of another one. The latter
+  holds if their common axis is unreachable but a reachable axis lies within `reach` of the position
+  where they met. Both pieces then become separate axes that begin there. `joints` are the joints of
+  the axes, `root` is the axis of the root. Returns the number of additional axes. O(axes log points
+  + points).
 */
 inline std::size_t split_unreachable_axes(const Scan& scan,
                                           double reach,
@@ -31,7 +32,7 @@ inline std::size_t split_unreachable_axes(const Scan& scan,
 {
   const std::size_t n = set.axes.size();
   std::vector<Index> other(n, none),
-      meeting(n, 0); // the new axis of the second part, its first node
+      meeting(n, 0); // new axis of the second piece, index of its first node
   const auto is_reached = [&](Index a) { return a == root || joints[a].parent != none; };
   for (Index a = 0; a < n; ++a) {
     const std::size_t m = set.axes[a].meeting, size = set.axes[a].axis.size();

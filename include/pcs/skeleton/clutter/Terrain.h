@@ -22,24 +22,24 @@
 namespace pcs {
 namespace skeleton {
 
-/// When the lowest points of a scan are a surface on which all others stand.
+/// Criteria for a terrain: a surface of lowest points below all other points.
 struct Terrain_options
 {
   double cell =
-      0.025; ///< of the finest grid relative to the root mean square radius of the scan [-],
-  double spacings = 4;     ///< ... at least this many spacings;
-  int scales = 4;          ///< this is tried, and twice as much, and so on
-  double clip = 0.001;     ///< share of the points beyond each side of the grid [-]
-  double most_cells = 500; ///< along a side of the grid
-  double steepest = 1;     ///< slope from cell to cell
-  double below = 0.02;     ///< share of all points that lie deeper than half a cell, at most [-]
-  double sheet = 2; ///< points within half a cell by those up to one cell above them, at least [-]
+      0.025; ///< of the finest grid, relative to the root mean square radius of the scan [-] ...
+  double spacings = 4;     ///< ... but at least this many spacings
+  int scales = 4;          ///< number of grids, each twice as coarse as the previous one [count]
+  double clip = 0.001;     ///< fraction of the points beyond each side of the grid [-]
+  double most_cells = 500; ///< along a side of the grid [count]
+  double steepest = 1;     ///< largest slope from cell to cell [-]
+  double below = 0.02;     ///< largest fraction of points deeper than half a cell [-]
+  double sheet = 2; ///< least ratio of points within half a cell to those up to one cell higher [-]
 };
 
-/// The rectangle across the direction up that holds nearly all points.
+/// Horizontal rectangle that contains nearly all points.
 struct Terrain_bounds
 {
-  Vec3 e1, e2; ///< its sides
+  Vec3 e1, e2; ///< directions of its sides
   Eigen::Vector2d origin = Eigen::Vector2d::Zero(), extent = Eigen::Vector2d::Zero();
 
   Terrain_bounds(const Scan& scan,
@@ -66,7 +66,7 @@ struct Terrain_bounds
   }
 };
 
-/// The largest connected surface of lowest points of a scan.
+/// Largest connected surface of the lowest points of a scan.
 class Terrain
 {
 public:
@@ -92,8 +92,8 @@ public:
     spread(surface);
   }
 
-  /// Of a place above the surface, which goes on beyond its border as steep as it is in the mean
-  /// [L].
+  /// Returns the height of `p` above the surface [L]. Beyond its border, the surface continues with
+  /// its mean slope.
   double height(const Vec3& p) const
   {
     const Place at = place(p);
@@ -105,7 +105,7 @@ public:
     return at.height - level;
   }
 
-  /// Whether hardly anything lies below, and little right above.
+  /// Whether few points lie below the surface, and few directly above it.
   bool carries_all(const Scan& scan,
                    const Terrain_options& rules,
                    const std::vector<std::uint8_t>& is_used) const
@@ -126,7 +126,7 @@ public:
     return double(below) <= most_below && on > 0 && double(on) >= rules.sheet * double(above);
   }
 
-  /// How far nearly all points of the surface lie from it [L].
+  /// Returns the 90th percentile of the distances of the points of the surface from it [L].
   double noise(const Scan& scan, const std::vector<std::uint8_t>& is_used) const
   {
     std::vector<double> distances;
@@ -143,7 +143,8 @@ public:
     return *at;
   }
 
-  /// Lets the surface cross a disc around `center` as it goes on from outside: where a stem stands.
+  /// Replaces the surface in a disc around `center`, the foot of a stem, by a plane fitted to the
+  /// ring around it.
   void bridge(const Vec3& center, double radius)
   {
     const Vec2 middle = place(center).q;
@@ -182,7 +183,7 @@ private:
   using Vec2 = Eigen::Vector2d;
   static constexpr std::size_t nowhere = std::numeric_limits<std::size_t>::max();
 
-  /// Across the direction up, and along it.
+  /// Horizontal and vertical coordinates of a point.
   struct Place
   {
     Vec2 q = Vec2::Zero();
@@ -191,11 +192,11 @@ private:
 
   struct Cell
   {
-    Place low;                     ///< the lowest point but for a few that may lie below the ground
-    std::size_t nearest = nowhere; ///< cell of the surface
-    Vec2 middle = Vec2::Zero();    ///< of the lowest points here and around
-    Vec2 slope = Vec2::Zero();     ///< of the surface, from the mean plane
-    double level = 0;              ///< of the surface in the middle, above that plane
+    Place low;                     ///< lowest point except for a few that may lie below the ground
+    std::size_t nearest = nowhere; ///< nearest cell of the surface
+    Vec2 middle = Vec2::Zero();    ///< mean of the lowest points of this cell and its neighbours
+    Vec2 slope = Vec2::Zero();     ///< of the surface relative to the mean plane [-]
+    double level = 0;              ///< of the surface at `middle` above that plane [L]
   };
 
   Place place(const Vec3& p) const { return {Vec2(m_e1.dot(p), m_e2.dot(p)), m_up.dot(p)}; }
@@ -207,7 +208,7 @@ private:
 
   bool is_surface(std::size_t c) const { return m_cells[c].nearest == c; }
 
-  /// The cell of a place, or that at the border next to it.
+  /// Returns the cell of a position, or the nearest cell at the border.
   std::size_t cell_of(const Vec2& q) const
   {
     const Vec2 place = (q - m_origin) / m_cell;
@@ -217,7 +218,7 @@ private:
     return clamped(place.x(), m_size[0]) * m_size[1] + clamped(place.y(), m_size[1]);
   }
 
-  /// Calls `visit` for the cells next to one, those across its corners included if `is_across`.
+  /// Calls `visit` for the cells adjacent to `c`, including diagonal ones if `is_across`.
   template <class Visitor>
   void for_neighbors(std::size_t c, bool is_across, Visitor visit) const
   {
@@ -234,7 +235,7 @@ private:
   {
     struct Lowest
     {
-      std::array<Place, 3> places; ///< from below
+      std::array<Place, 3> places; ///< lowest points, ascending
       std::size_t count = 0;
     };
     std::vector<Lowest> lowest(m_cells.size());
@@ -256,7 +257,7 @@ private:
       m_cells[c].low = lowest[c].places[std::min<std::size_t>(2, lowest[c].count / 20)];
   }
 
-  /// The cells that are reached from each other by steps of at most `step` upwards or downwards.
+  /// Returns the largest set of cells connected by height differences of at most `step` [L].
   std::vector<std::size_t> largest_surface(double step) const
   {
     std::vector<std::uint8_t> is_seen(m_cells.size(), 0);
@@ -315,7 +316,7 @@ private:
     });
   }
 
-  /// Least squares of heights about a middle; `damping` [L^2] holds it where there are few places.
+  /// Returns the least-squares slope of heights about `middle`; `damping` regularizes it [L^2].
   template <class Height>
   Vec2 slope_of(const std::vector<std::size_t>& cells,
                 const Vec2& middle,
@@ -332,7 +333,7 @@ private:
     return square.inverse() * product;
   }
 
-  /// Tells each other cell the one of the surface that is nearest in steps.
+  /// Assigns the nearest cell of the surface, in steps, to each other cell.
   void spread(std::vector<std::size_t> reached)
   {
     for (std::size_t k = 0; k < reached.size(); ++k)
@@ -352,7 +353,7 @@ private:
   Vec3 m_plane = Vec3::Zero(); ///< slopes along both axes, and the height at the origin
 };
 
-/// The terrain on which a tree stands, if the scan has any. O(n).
+/// Finds the terrain below a tree, if the scan contains any. O(n).
 inline std::optional<Terrain> find_terrain(const Scan& scan,
                                            const Vec3& up,
                                            const Terrain_options& rules,

@@ -20,7 +20,7 @@
 namespace pcs {
 namespace skeleton {
 
-/// Walls and roofs go before the ground is looked for, all else that is flat afterwards.
+/// Removal of walls and roofs before the ground classification, and of other flat faces after it.
 template <class ConcurrencyTag>
 class Wall_removal
 {
@@ -33,7 +33,7 @@ public:
   {
   }
 
-  /// Whether there was any flat face when they were looked for last.
+  /// Whether the last detection found any flat face.
   bool has_faces() const { return m_has_faces; }
 
   void leave_out_walls_and_roofs(const Vec3& up)
@@ -42,8 +42,8 @@ public:
     leave_out(walls_and_roofs(m_scan, faces, up, m_rules, m_used.flags()));
   }
 
-  /// The other faces, and what is left beside them. `find_links` gives the links between the used
-  /// points. Returns whether there is any.
+  /// Removes the other faces and the remaining components beside them. `find_links` returns the
+  /// links between the used points. Returns whether any points were removed.
   template <class FindLinks>
   bool leave_out_rest(const FindLinks& find_links, Links& links)
   {
@@ -79,7 +79,7 @@ private:
     return true;
   }
 
-  /// Keeps `is_left`, if that is anything. Returns whether it did.
+  /// Keeps only `is_left` if enough points remain. Returns whether points were removed.
   bool leave_out(std::size_t marked, std::vector<std::uint8_t> is_left)
   {
     const auto left = static_cast<std::size_t>(std::count(is_left.begin(), is_left.end(), 1));
@@ -94,7 +94,7 @@ private:
   const Wall_options& m_rules;
   Point_labels<ConcurrencyTag>& m_used;
   Skeleton_report& m_report;
-  std::vector<Flat_face> m_faces; ///< that are left out
+  std::vector<Flat_face> m_faces; ///< faces that were removed
   bool m_has_faces = false;
 };
 

@@ -22,25 +22,25 @@
 namespace pcs {
 namespace skeleton {
 
-/// When points are a filled sheet, and when a scan is nothing else.
+/// Criteria for points that form a filled sheet, and for scans that contain only a sheet.
 struct Sheet_options
 {
-  int cells = 20;          ///< along the radius of a sheet
-  double thin = 0.1;       ///< deviation across it by that along it [-],
-  double full = 0.7;       ///< ... share of its cells that hold points,
-  double longest = 8;      ///< ... and its length by its width [-]
-  double standing = 0.999; ///< quantile of distances from its plane that tells what stands on it,
-  double tall = 0.5;       ///< ... which is this high, by its deviation across,
-  double outstanding = 10; ///< ... and by the median of all [-]
+  int cells = 20;          ///< along the radius of a sheet [count]
+  double thin = 0.1;       ///< largest ratio of the deviations across and along a sheet [-]
+  double full = 0.7;       ///< least fraction of its cells that contain points [-]
+  double longest = 8;      ///< largest ratio of its length to its width [-]
+  double standing = 0.999; ///< quantile of distances from its plane, the height of a tree on it [-]
+  double tall = 0.5;       ///< least ratio of that height to the horizontal deviation of the tree
+  double outstanding = 10; ///< least ratio of that height to the median distance of all points [-]
 };
 
 namespace internal {
 
-/// The nearest nine tenths of some points to `center`, seen across a sheet along `e1` and `e2`:
-/// lengths count by these, so that the disc may be an ellipse.
+/// Disc of the nearest 90 % of points to `center`, in coordinates along `e1` and `e2` of a sheet.
+/// The lengths of these vectors scale the coordinates, so that the disc may be an ellipse.
 struct Sheet_disc
 {
-  std::vector<std::array<double, 2>> places; ///< from the centre
+  std::vector<std::array<double, 2>> places; ///< relative to the center
   double radius = 0;
 
   Sheet_disc(const Scan& scan,
@@ -66,13 +66,14 @@ struct Sheet_disc
                  places.end());
   }
 
-  /// The side of a cell that would hold so many of the points if they were spread evenly.
+  /// Returns the side of a cell that contains `crowd` of the points in a uniform distribution.
   double cell_of(double crowd) const
   {
     return std::sqrt(crowd * area() / double(std::max<std::size_t>(1, places.size())));
   }
 
-  /// Whether this share of the cells of the disc holds points; never if they or the cells are few.
+  /// Whether the fraction `share` of the cells of the disc contains points; `false` for few points
+  /// or cells.
   bool is_filled(double cell, double share) const
   {
     const double all = area() / (cell * cell);
@@ -90,7 +91,7 @@ private:
   double area() const { return 3.14159265358979323846 * radius * radius; }
 };
 
-/// Whether a tree stands or lies on a sheet: few points, but higher than they are wide.
+/// Whether a tree is upright or lying on a sheet: few points, but high relative to their width.
 inline bool carries_a_tree(const Scan& scan,
                            const std::vector<Index>& points,
                            const Vec3& normal,
@@ -120,8 +121,8 @@ inline bool carries_a_tree(const Scan& scan,
 
 } // namespace internal
 
-/// Whether all points together are one thin filled sheet, such as ground alone, or a wall; longer
-/// ones than `rules.longest` may be boards or rows of anything.
+/// Whether all points form one thin filled sheet, such as ground or a wall. Sheets longer than
+/// `rules.longest` widths are excluded, since they may be boards or rows of objects.
 inline bool is_single_sheet(const Scan& scan,
                             const std::vector<std::uint8_t>& is_used,
                             const Sheet_options& rules)

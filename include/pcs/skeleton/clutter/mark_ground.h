@@ -25,27 +25,27 @@
 namespace pcs {
 namespace skeleton {
 
-/// When a terrain is ground: a filled patch, much wider than the stem above it.
+/// Criteria for a terrain to be ground: a filled patch, much wider than the stem above it.
 struct Ground_options
 {
-  double noise = 4;     ///< points within this many times its noise are ground [-]
-  double crowd = 5;     ///< its cells would hold so many of them if these lay evenly [count],
-  double spread = 0.55; ///< ... and this share of the cells holds points [-]
-  double width = 3;     ///< of it relative to the stem [-]
-  double lying = 0.01;  ///< what has no stem has this many points by those of the ground [-]
-  double bin = 0.01;    ///< height of a bin relative to the extent upwards, at least 4 spacings [-]
-  int bins = 12;        ///< in which the stem is looked for, from below
-  double keep = 2;      ///< so many stem widths around the stem no plants are looked for,
-  double beside = 1.5;  ///< and nearer to it than this,
-  double foot = 2;      ///< ... ground is thinner: in multiples of the noise [-]
-  double filled = 0.4;  ///< share of the cells of a bin that plants fill [-]
+  double noise = 4;     ///< thickness of ground, in multiples of the terrain noise [-]
+  double crowd = 5;     ///< points per cell of a uniform distribution [count] ...
+  double spread = 0.55; ///< ... and least fraction of these cells that contain points [-]
+  double width = 3;     ///< least distance of its farthest points from the stem, in stem widths [-]
+  double lying = 0.01;  ///< least ratio of other points to ground if there is no stem [-]
+  double bin = 0.01;    ///< height of a bin by the vertical extent, at least 4 spacings [-]
+  int bins = 12;        ///< lowest bins for the search of the stem [count]
+  double keep = 2;      ///< radius around the stem without search of plants, in stem widths [-]
+  double beside = 1.5;  ///< radius within which ground is thinner, in stem widths [-] ...
+  double foot = 2;      ///< ... and its thickness there, in multiples of the noise [-]
+  double filled = 0.4;  ///< least fraction of filled cells in a bin of plants [-]
   Terrain_options terrain;
   Sheet_options sheet;
 };
 
 namespace internal {
 
-/// Horizontal centre and root mean square width of one bin.
+/// Center and horizontal root mean square width of one bin.
 struct Bin_extent
 {
   Vec3 center = Vec3::Zero();
@@ -53,11 +53,11 @@ struct Bin_extent
   std::size_t count = 0;
 };
 
-/// The low points of a scan in bins of equal height, from below.
+/// Low points of a scan in bins of equal height, from below.
 struct Low_bins
 {
   double low = 0, high = 0, height = 0;    ///< nearly all points lie between `low` and `high`
-  std::vector<Index> bin;                  ///< of a point; `none`: too high, or not used
+  std::vector<Index> bin;                  ///< of each point; `none`: too high, or not used
   std::vector<std::vector<Index>> members; ///< points by bin
 
   Low_bins(const Scan& scan,
@@ -91,8 +91,8 @@ struct Low_bins
   }
 };
 
-/// What of each bin belongs to the stem of the tallest thing above the bins: followed downwards
-/// from part to part.
+/// Returns the points of the stem in each bin. The stem is tracked downwards from the dominant
+/// component above the bins, by size times height, through connected components.
 inline std::vector<std::vector<Index>> stem_in_bins(const Scan& scan,
                                                     const Links& links,
                                                     const std::vector<double>& height_of,
@@ -101,7 +101,7 @@ inline std::vector<std::vector<Index>> stem_in_bins(const Scan& scan,
 {
   const Index n = static_cast<Index>(scan.size());
   const std::size_t count = bins.members.size();
-  Point_sets above(n), sets(n); // parts above all bins, and in each of them
+  Point_sets above(n), sets(n); // connected components above all bins, and in each of them
   Links across;
   for (const Link& l : links) {
     const Index a = bins.bin[l.first], b = bins.bin[l.second];
@@ -141,7 +141,7 @@ inline std::vector<std::vector<Index>> stem_in_bins(const Scan& scan,
       if (bins.bin[l.second] == b && is_stem[l.first] && bins.bin[l.first] > b)
         offer(l.second);
     }
-    if (part == none) // a gap: the thickest part
+    if (part == none) // a gap: the largest component
       for (const Index i : bins.members[b])
         offer(i);
     for (const Index i : bins.members[b])
@@ -170,13 +170,13 @@ inline Bin_extent extent_of(const Scan& scan, const std::vector<Index>& points, 
   return e;
 }
 
-/// Where the stem of a tree leaves the ground.
+/// Position where the stem of a tree leaves the ground.
 struct Stem_foot
 {
   Vec3 center = Vec3::Zero();
-  double width = 0; ///< root mean square, of most bins
+  double width = 0; ///< lower quartile of the root mean square widths of the bins [L]
 
-  /// Nothing if no stem is found in the bins.
+  /// Finds the foot; no value if there is no stem in the bins.
   static std::optional<Stem_foot>
   find(const Scan& scan, const std::vector<std::vector<Index>>& stem, const Vec3& up)
   {
@@ -193,8 +193,7 @@ struct Stem_foot
     Stem_foot foot;
     foot.width = widths[widths.size() / 4];
     for (const Bin_extent& bin : extent)
-      if (bin.count >= 6 &&
-          bin.width <= 1.5 * foot.width) { // the lowest one that is the stem alone
+      if (bin.count >= 6 && bin.width <= 1.5 * foot.width) { // lowest bin of the stem alone
         foot.center = bin.center;
         return foot;
       }
@@ -202,7 +201,7 @@ struct Stem_foot
   }
 };
 
-/// Finds the points of ground: those of a terrain, and of plants on it.
+/// Detector of ground points: those of a terrain, and of plants on it.
 class Ground_finder
 {
 public:
@@ -260,7 +259,7 @@ private:
                            m_rules.filled);
   }
 
-  /// The layer of the terrain, and the bins above it that plants fill.
+  /// Finds the points of the terrain, and of plants in the bins above it.
   void find_on(Terrain terrain)
   {
     const double noise = terrain.noise(m_scan, m_is_used), thickness = m_rules.noise * noise;
@@ -288,7 +287,7 @@ private:
     const Low_bins bins(m_scan, height, m_rules, is_standing);
     const auto foot =
         Stem_foot::find(m_scan, stem_in_bins(m_scan, links, height, is_standing, bins), m_up);
-    if (!foot) { // such as a stem that lies on it
+    if (!foot) { // such as a lying stem
       const auto standing = std::count(is_standing.begin(), is_standing.end(), 1);
       if (double(standing) >= m_rules.lying * double(layer.size()))
         m_points = layer;
@@ -310,7 +309,8 @@ private:
     }
   }
 
-  /// The bins that plants fill, and those parts of as many bins above them that go on from there.
+  /// Adds the points of bins that plants fill, and of connected components that extend from these
+  /// into as many bins above.
   void add_plants(const Low_bins& bins, const Links& links, const Stem_foot& foot)
   {
     std::size_t filled = 0;
@@ -342,9 +342,9 @@ private:
 } // namespace internal
 
 /*!
-  Takes ground out of `is_used`, and returns the number of its points: those of a terrain on which
-  all others stand, if it is a filled patch much wider than the stem, or if something lies on it.
-  Plants that cover it go with it. `links` are those between neighbours. O(n log n).
+  Removes ground from `is_used`, and returns the number of its points. Ground is a terrain below all
+  other points that is a filled patch much wider than the stem, or with an object lying on it.
+  Plants that cover it are removed, too. `links`: links between neighbours. O(n log n).
 */
 inline std::size_t mark_ground(const Scan& scan,
                                const Links& links,

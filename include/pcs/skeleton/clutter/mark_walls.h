@@ -26,38 +26,38 @@
 namespace pcs {
 namespace skeleton {
 
-/// When points are a flat face: a plane that they fill, wider than a piece of a stem is within the
+/// Criteria for a flat face: points fill a plane that is wider than a strip of a stem within the
 /// same tolerance.
 struct Wall_options
 {
-  double cell = 0.083;  ///< of the grid relative to the root mean square radius of the scan [-],
-  double spacings = 10; ///< ... at least this many spacings
-  std::size_t most_points = 200000; ///< looked at to find planes
-  std::size_t fewest_points = 12;   ///< of these in a cell
+  double cell = 0.083;  ///< of the grid, by the root mean square radius of the scan [-] ...
+  double spacings = 10; ///< ... but at least this many spacings
+  std::size_t most_points = 200000; ///< in the sample for the search of planes [count]
+  std::size_t fewest_points = 12;   ///< of the sample in a cell [count]
   double flat = 0.1;   ///< largest deviation of the points of a cell from their plane, in cells
-  double step = 0.045; ///< farthest point from the plane of its face, in cells
-  double share = 0.5;  ///< least share of the points of a cell that lie on its face [-]
+  double step = 0.045; ///< largest distance of a point from the plane of its face, in cells
+  double share = 0.5;  ///< least fraction of the points of a cell that lie on its face [-]
   double width = 3.5;  ///< least width of a face in cells; with `step`, cylinders have 3.4 at most
-  double even = 2.5;   ///< largest deviation of a face by the mean one of its cells [-]
-  double crowd = 5;    ///< small cells would hold so many of the points if these lay evenly
-  double full = 0.6;   ///< ... and this share of them holds some [-]
-  double level = 0.7;  ///< least cosine of normal and up where a face is no wall but a roof [-]
+  double even = 2.5;   ///< largest ratio of the deviation of a face to the mean one of cells [-]
+  double crowd = 5;    ///< points per small cell of a uniform distribution [count] ...
+  double full = 0.6;   ///< ... and least fraction of these cells that contain points [-]
+  double level = 0.7;  ///< cosine of normal and up above which a face is level, not a wall [-]
   double roof =
-      0.15; ///< least height of a roof above the lowest point, relative to the extent upwards [-]
+      0.15; ///< least height of a roof above the lowest point, relative to the vertical extent [-]
   double noise = 3;    ///< points within this many deviations belong to a face [-]
-  double reach = 1;    ///< points within this many cells are beside a face;
-  double beside = 0.5; ///< ... parts with this share of them go with it [-]
-  int rounds = 4;      ///< what is left is smaller, and may have smaller faces
-  double least = 0.01; ///< share of the points that must be left, or the faces are all there is [-]
+  double reach = 1;    ///< points within this many cells are beside a face ...
+  double beside = 0.5; ///< ... and components with this fraction of them are removed with it [-]
+  int rounds = 4;      ///< of detection; the remaining points may have smaller faces [count]
+  double least = 0.01; ///< least fraction of remaining points; otherwise no face is removed [-]
 };
 
 namespace internal {
 
-/// The plane of least squares through points, with their deviations.
+/// Least-squares plane of points, with their standard deviations.
 struct Fitted_plane
 {
   Vec3 middle, normal, e1, e2;
-  Vec3 deviation; ///< across, along the shorter and along the longer axis
+  Vec3 deviation; ///< across the plane, along the shorter and the longer axis [L]
 
   explicit Fitted_plane(const Moments& m) : middle(m.mean())
   {
@@ -70,7 +70,7 @@ struct Fitted_plane
   double height(const Vec3& p) const { return normal.dot(p - middle); }
 };
 
-/// Cells of a level or a solid grid as one number; indices may be negative.
+/// Encodes the cell of a two- or three-dimensional grid as one number; indices may be negative.
 inline std::uint64_t cell_key(long x, long y, long z)
 {
   constexpr long half = 1L << 20;
@@ -80,7 +80,7 @@ inline std::uint64_t cell_key(long x, long y, long z)
 
 } // namespace internal
 
-/// A plane, and the cells along it that points fill.
+/// Plane with the cells in it that points fill.
 struct Flat_face
 {
   internal::Fitted_plane plane;
@@ -88,7 +88,8 @@ struct Flat_face
   double thickness = 0; ///< of the face to each side [L]
   std::vector<std::uint64_t> places;
 
-  /// Whether a point lies at most so far across from the cells.
+  /// Whether the distance of a point from one of the cells, along the normal, is at most `reach`
+  /// [L].
   bool covers(const Vec3& p, double reach) const
   {
     return std::abs(plane.height(p)) <= reach &&
@@ -107,8 +108,7 @@ struct Flat_face
 
 namespace internal {
 
-/// Finds flat faces: cells of a grid whose points lie in a plane, grown to patches of the same
-/// plane.
+/// Detector of flat faces by region growing from cells of a grid whose points lie in a plane.
 class Face_finder
 {
 public:
@@ -143,7 +143,8 @@ private:
     bool is_flat = false, is_taken = false;
   };
 
-  /// Every so many of the used points, which are sorted by place, and the size of cells for them.
+  /// Samples the used points, which are in spatial order, at a constant stride, and sets the cell
+  /// size.
   void sample(const std::vector<std::uint8_t>& is_used)
   {
     const auto used = static_cast<std::size_t>(std::count(is_used.begin(), is_used.end(), 1));
@@ -193,7 +194,7 @@ private:
     return m;
   }
 
-  /// The points of a cell that lie on a plane.
+  /// Returns the moments of the points of a cell that lie on a plane.
   Moments near_part(const Cell& cell, const Fitted_plane& plane) const
   {
     Moments near;
@@ -263,7 +264,7 @@ private:
     m_faces.push_back(std::move(face));
   }
 
-  /// Whether small cells hold points, in cells with four neighbours.
+  /// Whether enough small cells contain points, within cells that have four neighbours.
   bool is_filled(const std::vector<Index>& patch, const Flat_face& face, double count) const
   {
     const double per_cell = count / double(patch.size());
@@ -318,8 +319,8 @@ private:
 } // namespace internal
 
 /*!
-  The flat faces among the points of `is_used`: patches of one plane, wide and filled. What is
-  curved, as a stem is, stays narrow. O(n log n) in the points that are looked at.
+  Detects flat faces among the points of `is_used`: wide, filled patches of one plane. Patches of
+  curved surfaces, such as stems, are narrow. O(n log n) in the sampled points.
 */
 inline std::vector<Flat_face>
 flat_faces(const Scan& scan, const Wall_options& rules, const std::vector<std::uint8_t>& is_used)
@@ -327,7 +328,8 @@ flat_faces(const Scan& scan, const Wall_options& rules, const std::vector<std::u
   return std::move(internal::Face_finder(scan, rules, is_used).faces());
 }
 
-/// Those of the faces that are no ground: walls, and beside walls what begins high above all else.
+/// Selects faces that are not ground: walls, and level faces high above the lowest point if there
+/// are walls.
 inline std::vector<Flat_face> walls_and_roofs(const Scan& scan,
                                               const std::vector<Flat_face>& faces,
                                               const Vec3& up,
@@ -358,7 +360,7 @@ inline std::vector<Flat_face> walls_and_roofs(const Scan& scan,
   return walls;
 }
 
-/// Takes the points of faces out of `is_used`, and returns their number. O(faces x n).
+/// Removes the points of faces from `is_used`, and returns their number. O(faces x n).
 inline std::size_t mark_faces(const Scan& scan,
                               const std::vector<Flat_face>& faces,
                               std::vector<std::uint8_t>& is_used)
@@ -373,8 +375,8 @@ inline std::size_t mark_faces(const Scan& scan,
   return count;
 }
 
-/// Takes those parts out of `is_used` that lie beside faces: edges, frames, posts. `links` are
-/// those between neighbours. Returns the number of their points. O(faces x n).
+/// Removes connected components beside faces, such as edges, frames and posts, from `is_used`, and
+/// returns the number of their points. `links`: links between neighbours. O(faces x n).
 inline std::size_t mark_beside_faces(const Scan& scan,
                                      const std::vector<Flat_face>& faces,
                                      const Links& links,

@@ -30,8 +30,8 @@ struct Clutter_options
 };
 
 /*!
-  Removes walls and roofs first, then the ground and all other flat faces. A call that is cancelled
-  in between continues with the ground.
+  Removal of walls and roofs, then of the ground and all other flat faces. After a cancellation
+  between both, the next call continues with the ground.
 */
 template <class ConcurrencyTag>
 class Clutter_removal
@@ -52,8 +52,8 @@ public:
   {
   }
 
-  /// Removes walls and roofs. Returns `false` if the scan is a single sheet of ground, of which
-  /// nothing is left.
+  /// Removes walls and roofs. Returns `false` if the scan is a single sheet of ground; all points
+  /// are then removed.
   bool remove_walls_and_roofs(const Vec3& up)
   {
     if (m_are_walls_removed)
@@ -81,8 +81,8 @@ public:
         meanwhile);
   }
 
-  /// Removes the ground that was marked, and all other flat faces. `find_links()` gives the links
-  /// between the points that are used. Returns whether `links` changed.
+  /// Removes the marked ground and all other flat faces. `find_links()` returns the links between
+  /// the used points. Returns whether `links` changed.
   template <class FindLinks>
   bool remove_ground_and_faces(const FindLinks& find_links, Links& links)
   {

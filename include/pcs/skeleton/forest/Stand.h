@@ -14,22 +14,22 @@
 namespace pcs {
 namespace skeleton {
 
-/// A tree in the coordinates of the input.
+/// A tree, in input coordinates.
 struct Detected_tree
 {
-  Vec3 foot = Vec3::Zero(); ///< on the axis of its thickest stem, where that begins
-  double radius = 0;        ///< of that stem, the largest in its lowest part [L]
+  Vec3 foot = Vec3::Zero(); ///< lower end of the axis of its thickest stem
+  double radius = 0;        ///< largest radius in the lowest part of this stem [L]
 };
 
 struct Stand
 {
-  std::vector<Detected_tree> trees; ///< thick ones first
-  std::vector<Index> tree_of_input; ///< by point of the input; `none`: no tree's
+  std::vector<Detected_tree> trees; ///< in descending order of radius
+  std::vector<Index> tree_of_input; ///< by input point; `none`: unassigned
 };
 
 /*!
-  Finds the trees of a scan. `input` is finite, with at least two different points. Returns `false`
-  if the work was cancelled; `forest` is untouched then. O(n log n).
+  Detects the trees of a scan. `input` is finite, with at least two different points. Returns
+  `false` if the work was cancelled; in this case, `forest` remains unchanged. O(n log n).
 */
 template <class ConcurrencyTag>
 bool find_trees(const std::vector<Vec3>& input,

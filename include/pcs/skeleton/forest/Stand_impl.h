@@ -26,18 +26,19 @@ namespace skeleton {
 
 namespace internal {
 
-/// What is found among one point of every cube of a side. By point of the input, if not said
+/// The trees detected at one voxel size. Vectors are indexed by input point unless stated
 /// otherwise.
 struct Stand_state
 {
   Scan_frame frame;
-  std::vector<Found_stem> stems; ///< those of a tree in a row; in coordinates of `frame`
+  std::vector<Found_stem> stems; ///< grouped by tree; in coordinates of `frame`
   std::vector<Index> tree_of_input, stem_of_input;
   std::vector<float>
-      spacing_of_input; ///< among one point of each cube, by the median of those of trees [-]
+      spacing_of_input; ///< of the thinned points, relative to the median of trees [-]
 };
 
-/// Points get trees only if `are_wanted(stand)`, with the stems. `false` if the work was cancelled.
+/// Detects the stems. Assigns points to trees only if `are_wanted(stand)` holds for these stems.
+/// Returns `false` if the work was cancelled.
 template <class ConcurrencyTag, class Are_wanted>
 bool find_stand(const std::vector<Vec3>& input,
                 double side,
@@ -50,7 +51,7 @@ bool find_stand(const std::vector<Vec3>& input,
   stand.tree_of_input.assign(input.size(), none);
   stand.stem_of_input.assign(input.size(), none);
   const Thinned_points thinned(input, side);
-  if (thinned.points.size() < rules.solid_part) // far smaller than a tree
+  if (thinned.points.size() < rules.solid_part) // much smaller than a tree
     return progress(1);
   Session_options options(hints);
   options.leaf_removal = Leaf_removal::never;
@@ -76,7 +77,7 @@ bool find_stand(const std::vector<Vec3>& input,
     return progress(1);
   if (!finder.label(progress))
     return false;
-  std::vector<double> spacings; // the ground may have its own
+  std::vector<double> spacings; // without the ground, whose spacing may differ
   for (Index i = 0; i < scan.size(); ++i)
     if (finder.tree_of_point()[i] != none)
       spacings.push_back(scan.local_spacing[i]);
@@ -91,7 +92,7 @@ bool find_stand(const std::vector<Vec3>& input,
   return true;
 }
 
-/// Which stems of `coarse` have few points in `stand`. O(points).
+/// Returns which stems of `coarse` are sparsely sampled in `stand`. O(points).
 inline std::vector<bool>
 sparse_stems(const Stand_state& coarse, const Stand_options& rules, const Stand_state& stand)
 {
@@ -108,8 +109,8 @@ sparse_stems(const Stand_state& coarse, const Stand_options& rules, const Stand_
 }
 
 /*!
-  Adds the trees of those stems of `coarse` that have few points: between those of others, their
-  stems fall to pieces. Such trees get their points that are few or nobody's. O(points + stems^2).
+  Adds the trees of sparsely sampled stems of `coarse`, which are disconnected at the finer voxel
+  size. Assigns to these trees their points that are sparse or unassigned. O(points + stems^2).
 */
 inline void add_sparse_trees(const Stand_state& coarse,
                              const std::vector<bool>& is_sparse,
@@ -181,7 +182,7 @@ bool find_trees(const std::vector<Vec3>& input,
     return false;
   internal::add_sparse_trees(coarse, is_sparse, hints.breast_height, rules, stand);
 
-  std::vector<internal::Found_stem> thickest; // of every tree, thick ones first
+  std::vector<internal::Found_stem> thickest; // of each tree, in descending order of radius
   for (const internal::Found_stem& stem : stand.stems)
     if (stem.tree == thickest.size())
       thickest.push_back(stem);

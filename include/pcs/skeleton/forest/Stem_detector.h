@@ -35,7 +35,7 @@ namespace skeleton {
 
 namespace internal {
 
-/// The lowest points of a scan in a level grid, from which the ground rises at most by a slope.
+/// Estimates the ground from the lowest points in a horizontal grid and a largest slope.
 class Lowest_ground
 {
 public:
@@ -59,7 +59,7 @@ public:
       m_lowest.push_back(entry.second);
   }
 
-  /// How far a place lies above it. O(cells).
+  /// Returns the height of a point above the ground. O(cells).
   double height(const Vec3& p) const
   {
     double ground = std::numeric_limits<double>::infinity();
@@ -73,8 +73,8 @@ private:
   std::vector<Vec3> m_lowest;
 };
 
-/// What has no label gets that of its nearest ancestor with one. `parent(i)` is `none` at a root.
-/// O(n).
+/// Copies labels from the nearest labelled ancestor to unlabelled elements. `parent(i)` is `none`
+/// at a root. O(n).
 template <class Parent>
 void inherit(std::vector<Index>& labels, const Parent& parent)
 {
@@ -89,7 +89,7 @@ void inherit(std::vector<Index>& labels, const Parent& parent)
   }
 }
 
-/// A stem in a scan, and the tree that it belongs to.
+/// A stem in a scan, and its tree.
 struct Found_stem
 {
   Index axis, tree;
@@ -98,7 +98,7 @@ struct Found_stem
   double height; ///< of the foot above the ground
 };
 
-/// Whether a stem belongs to the tree of one that is not thinner. z is up.
+/// Returns whether a stem belongs to the tree of a stem of at least its radius. z points upwards.
 inline bool are_of_one_tree(const Found_stem& stem,
                             const Found_stem& thicker,
                             double breast_height,
@@ -111,9 +111,10 @@ inline bool are_of_one_tree(const Found_stem& stem,
 }
 
 /*!
-  Axes are fitted twice. First along the paths from the lowest points of all that hangs together, to
-  find stems; then along the paths from the feet of these. Every axis of the second fit sits on
-  another one by the odds of `Axis_joiner`, and so belongs to a tree. z is up.
+  Detects stems and assigns points to trees. Axes are fitted twice: first along the paths from the
+  lowest points of all connected components, to detect stems; then along the paths from the feet of
+  these stems. `Axis_joiner` joins every axis of the second fit to another one, and thus to a tree.
+  z points upwards.
 */
 template <class ConcurrencyTag>
 class Stem_detector
@@ -132,7 +133,7 @@ public:
   {
   }
 
-  /// The first fit, and the stems in it. `false` if the work was cancelled.
+  /// Performs the first fit and detects its stems. Returns `false` if the work was cancelled.
   bool find(pcs::internal::Progress& progress)
   {
     m_links = neighbor_links<ConcurrencyTag>(m_scan, m_is_used, m_options.axes.links);
@@ -155,8 +156,8 @@ public:
     return true;
   }
 
-  /// The second fit, along the paths from the stems, and the trees of all points. `false` if the
-  /// work was cancelled.
+  /// Performs the second fit along the paths from the stems, and assigns all points to trees.
+  /// Returns `false` if the work was cancelled.
   bool label(pcs::internal::Progress& progress)
   {
     if (m_feet.empty())
@@ -169,14 +170,14 @@ public:
     return true;
   }
 
-  const std::vector<Found_stem>& stems() const { return m_stems; } ///< those of a tree in a row
-  /// By point of the scan; `none`: of no tree.
+  const std::vector<Found_stem>& stems() const { return m_stems; } ///< grouped by tree
+  /// Returns the tree of each scan point, or `none`.
   const std::vector<Index>& tree_of_point() const { return m_tree_of_point; }
-  /// By point of the scan, of the lowest part of stems; `none`: of no stem.
+  /// Returns the stem of each scan point in the lowest part of a stem, or `none`.
   const std::vector<Index>& stem_of_point() const { return m_stem_of_point; }
 
 private:
-  /// Of every part, those within one layer of its lowest one.
+  /// Returns the points within one level-set thickness of the lowest point of each component.
   std::vector<Index> lowest_points() const
   {
     const Point_parts parts = connected_parts<ConcurrencyTag>(m_is_used, m_links);
@@ -206,7 +207,7 @@ private:
     return is_running;
   }
 
-  /// What hangs together in numbers, and may be ground or stand on it, whether it is used or not.
+  /// Marks the points of large connected components of used and unused points: ground or trees.
   std::vector<std::uint8_t> solid_points() const
   {
     std::vector<std::uint8_t> is_solid(m_scan.size(), 1);
@@ -218,7 +219,7 @@ private:
     return is_solid;
   }
 
-  /// Steep axes that begin near the ground and are not much thinner there.
+  /// Detects stems: steep axes that begin near the ground and are not much thinner there.
   void find_stems()
   {
     const Lowest_ground ground(m_scan,
@@ -238,7 +239,7 @@ private:
     std::stable_sort(found.begin(), found.end(), [](const Found_stem& a, const Found_stem& b) {
       return a.radius > b.radius;
     });
-    std::vector<Found_stem> thickest; // of every tree
+    std::vector<Found_stem> thickest; // of each tree
     for (Found_stem& stem : found) {
       const auto own = std::find_if(thickest.begin(), thickest.end(), [&](const Found_stem& other) {
         return are_of_one_tree(stem, other, m_breast_height, m_rules);
@@ -253,7 +254,8 @@ private:
     m_stems = std::move(found);
   }
 
-  /// The end from which an axis rises as stems do, whatever it does above; null if there is none.
+  /// Returns the end from which an axis rises like a stem, or null. Its part above the highest node
+  /// is ignored.
   const Axis_node* foot_of(const Axis& axis, const Lowest_ground& ground) const
   {
     const Axis_node* foot = nullptr;
@@ -263,7 +265,7 @@ private:
         return axis[is_reversed ? axis.size() - 1 - k : k];
       };
       double length = 0;
-      bool is_steep = false; // up to somewhere
+      bool is_steep = false; // up to some node
       std::size_t top = 0;
       for (std::size_t k = 1; k < axis.size(); ++k) {
         length += (node_at(k).point - node_at(k - 1).point).norm();
@@ -286,7 +288,7 @@ private:
     return foot;
   }
 
-  /// Largest radius of the lowest part of a stem.
+  /// Returns the largest radius in the lowest part of a stem.
   double radius_near(const Axis& axis, const Vec3& foot) const
   {
     double radius = 0;
@@ -296,7 +298,7 @@ private:
     return radius;
   }
 
-  /// The lowest points of all stems, which belong to their trees.
+  /// Returns the points in the lowest part of all stems, and assigns them to their trees.
   std::vector<Index> points_of_feet()
   {
     std::vector<Index> stem_of_axis(m_axes.axes.size(), none), sources;
@@ -313,8 +315,8 @@ private:
     return sources;
   }
 
-  /// The axis that explains the foot of a stem, and most else, is a root; the others belong to the
-  /// tree that they hang on.
+  /// Assigns the axes to trees. The root axis of a stem is the one with the most foot points,
+  /// weighted by its number of points; other axes belong to the tree of their parent.
   void label_axes()
   {
     std::map<std::pair<Index, Index>, double> votes; // of stem and axis
@@ -342,7 +344,8 @@ private:
     inherit(m_tree_of_axis, [&](Index a) { return joints[a].parent; });
   }
 
-  /// By its axis; where that has no tree, or there is none, by the path from the nearest foot.
+  /// Assigns the points to trees by their axis; without an axis or its tree, by the path from the
+  /// nearest foot.
   void label_points(const Shortest_paths& paths)
   {
     inherit(m_tree_of_point,
@@ -353,8 +356,8 @@ private:
     return_feet();
   }
 
-  /// The part of the stems that was left out with the ground, to the nearest one in radii. On a
-  /// slope it reaches above their feet.
+  /// Assigns the points of stems that were removed with the ground to the stem nearest in radii. On
+  /// a slope, such points also lie above the feet.
   void return_feet()
   {
     if (m_stems.empty())
@@ -377,7 +380,7 @@ private:
           const Vec3& p = m_scan.points[i];
           std::vector<Index> near;
           search.within(Vec3(p.x(), p.y(), 0), widest, near);
-          double best = 1; // share of the reach of a stem
+          double best = 1; // distance as a fraction of the reach of a stem
           for (const Index s : near) {
             const Found_stem& stem = m_stems[s];
             const Vec3 d = p - stem.foot;
@@ -400,11 +403,11 @@ private:
   const Stand_options& m_rules;
   std::vector<std::uint8_t> m_is_solid;
   Links m_links;
-  std::unique_ptr<Neighbor_graph> m_graph; // such graphs are copied, not moved
+  std::unique_ptr<Neighbor_graph> m_graph; // constructed directly: a move would copy it
   Axis_set m_axes;
   std::vector<Found_stem> m_stems;
-  std::vector<Index> m_stem_of_point; ///< of those at the feet
-  std::vector<Index> m_feet;          ///< these points
+  std::vector<Index> m_stem_of_point; ///< of points at the feet
+  std::vector<Index> m_feet;          ///< points at the feet
   std::vector<Index> m_tree_of_point, m_tree_of_axis;
 };
 

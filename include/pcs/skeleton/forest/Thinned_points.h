@@ -19,8 +19,8 @@ namespace skeleton {
 
 namespace internal {
 
-/// One point of every cube, and which of them stands for each point of the input. Neither depends
-/// on the order of the input.
+/// Keeps one point per voxel, and maps each input point to it. The result does not depend on the
+/// order of the input.
 struct Thinned_points
 {
   std::vector<Vec3> points;
@@ -33,7 +33,7 @@ struct Thinned_points
       low = low.cwiseMin(p);
       high = high.cwiseMax(p);
     }
-    const double cell = std::max(side, 1e-15 * (high - low).maxCoeff()); // cubes have numbers
+    const double cell = std::max(side, 1e-15 * (high - low).maxCoeff()); // prevents index overflow
     struct Entry
     {
       std::array<std::int64_t, 3> cube;

@@ -25,7 +25,8 @@
 namespace pcs {
 namespace skeleton {
 
-/// Compressed rows of Boost.Graph, every edge in both directions; costs come from the points.
+/// Compressed rows of Boost.Graph with every edge in both directions; costs are computed from the
+/// points.
 using Neighbor_graph = boost::compressed_sparse_row_graph<boost::directedS,
                                                           boost::no_property,
                                                           boost::no_property,
@@ -33,11 +34,11 @@ using Neighbor_graph = boost::compressed_sparse_row_graph<boost::directedS,
                                                           Index,
                                                           Index>;
 
-/// Which neighbours are linked, in multiples of the spacing [-].
+/// Criteria for links between neighbours, in multiples of the spacing [-].
 struct Link_rule
 {
   double local_factor = 2.5;       ///< longest link relative to the local spacing
-  double lowest = 3, highest = 12; ///< bounds of it relative to the median spacing
+  double lowest = 3, highest = 12; ///< its bounds relative to the median spacing
   double gap = 30; ///< widest gap that is closed, relative to the median spacing; 0: none
 
   double longest(const Scan& scan, Index i) const
@@ -47,17 +48,17 @@ struct Link_rule
   }
 };
 
-/// Steps longer than this many spacings cost more than their length: a path should not jump [-].
+/// Length in spacings above which steps cost more than their length, to penalize gaps [-].
 constexpr double cheap_step = 2.5;
 
-/// The cost of going from one point to another [L].
+/// Returns the cost of a step from one point to another [L].
 inline double step_cost(const Scan& scan, Index i, Index j)
 {
   const double d = (scan.points[i] - scan.points[j]).norm();
   return d * std::max(1.0, d / (cheap_step * scan.spacing));
 }
 
-/// Two points that are linked, the smaller index first.
+/// Pair of linked points, the smaller index first.
 struct Link
 {
   Index first, second;
@@ -69,7 +70,7 @@ struct Link
 };
 using Links = pcs::internal::Huge_vector<Link>;
 
-/// Sets of points that hang together: union by size, path halving.
+/// Disjoint sets of connected points: union by size, path halving.
 class Point_sets
 {
 public:
@@ -101,8 +102,8 @@ private:
   std::vector<Index> m_size, m_parent;
 };
 
-/// Links between the points of `is_used` that are neighbours, each once, nearly in increasing
-/// order.
+/// Returns the links between neighbours among the points of `is_used`, each once, nearly in
+/// increasing order.
 template <class ConcurrencyTag>
 Links neighbor_links(const Scan& scan,
                      const std::vector<std::uint8_t>& is_used,
@@ -116,7 +117,7 @@ Links neighbor_links(const Scan& scan,
   const auto knows = [&](Index i, Index j) {
     bool does = false;
     for (const Index k : scan.neighbors[i])
-      does |= k == j; // all of them: no branch to be guessed
+      does |= k == j; // no early exit, to avoid branch misprediction
     return does;
   };
   // bit b: the link to the b-th neighbour is listed with this point
@@ -132,7 +133,7 @@ Links neighbor_links(const Scan& scan,
       unsigned bits = 0;
       for (std::size_t b = 0; b < neighbors_per_point; ++b) {
         const Index j = scan.neighbors[i][b];
-        // of two that know each other, the smaller one lists the link
+        // of two mutual neighbours, the smaller one lists the link
         if (j == none || !is_used[j] || !is_link(i, j) || (j < i && knows(j, i)))
           continue;
         bits |= 1U << b;
@@ -162,16 +163,16 @@ Links neighbor_links(const Scan& scan,
 }
 
 /*!
-  The sets of points that hang together by the links for which `is_wanted(link)` holds. Stretches of
-  links are united side by side as far as both ends are in one stretch of points, which is nearly
-  always so in spatial order; then the rest.
+  Returns the connected components of the links for which `is_wanted(link)` holds. Blocks of links
+  are united in parallel if both ends belong to one block of points, which is nearly always true in
+  spatial order; the remaining links follow sequentially.
 */
 template <class ConcurrencyTag, class IsWanted>
 Point_sets united_points(std::size_t n, const Links& links, const IsWanted& is_wanted)
 {
   constexpr std::size_t block = std::size_t(1) << 17;
   const std::size_t number_of_blocks = (links.size() + block - 1) / block;
-  // of the stretches of points
+  // of the blocks of points
   std::vector<Index> border(number_of_blocks + 1, static_cast<Index>(n));
   for (std::size_t b = 0; b < number_of_blocks; ++b)
     border[b] = b == 0 ? 0 : std::max(border[b - 1], links[b * block].first);
@@ -198,10 +199,10 @@ Point_sets united_points(std::size_t n, const Links& links, const IsWanted& is_w
   return sets;
 }
 
-/// The connected parts of some points: the set of each point, and the size of each set.
+/// Connected components of points: the component of each point, and the size of each component.
 struct Point_parts
 {
-  std::vector<Index> part; ///< a point of the part; `none` if not used
+  std::vector<Index> part; ///< a point of the component; `none` if not used
   std::vector<Index> size; ///< by that point
 
   std::vector<Index> points_of(Index s) const
@@ -214,7 +215,7 @@ struct Point_parts
   }
 };
 
-/// The connected parts of the points of `is_used`.
+/// Returns the connected components of the points of `is_used`.
 template <class ConcurrencyTag>
 Point_parts connected_parts(const std::vector<std::uint8_t>& is_used, const Links& links)
 {
@@ -230,9 +231,9 @@ Point_parts connected_parts(const std::vector<std::uint8_t>& is_used, const Link
 }
 
 /*!
-  The shortest links that join the parts of the points of `is_used`, in Boruvka's rounds, up to the
-  widest gap of the rule. The largest part never searches: the others find it. Where much lies
-  outside of it, only points that have others about search.
+  Returns the shortest links that join the connected components of the points of `is_used` up to the
+  widest gap of the rule, by the method of Boruvka. The largest component is only found by searches
+  from the others. If many points are outside of it, only points near other components search.
 */
 inline Links links_across_gaps(const Scan& scan,
                                const std::vector<std::uint8_t>& is_used,
@@ -242,7 +243,7 @@ inline Links links_across_gaps(const Scan& scan,
   Links across;
   const std::size_t n = scan.size();
   const double widest = rule.gap * scan.spacing;
-  Point_sets sets(n); // of parts
+  Point_sets sets(n); // of components
   struct Best
   {
     double squared_distance;
@@ -253,7 +254,7 @@ inline Links links_across_gaps(const Scan& scan,
   std::optional<Point_cells> cells;
   while (widest > 0) {
     size.assign(n, 0);
-    std::size_t number_of_others = 0; // points outside of the largest part
+    std::size_t number_of_others = 0; // points outside of the largest component
     for (Index i = 0; i < n; ++i)
       if (is_used[i]) {
         ++size[label[i] = sets.find(parts.part[i])];
@@ -265,7 +266,7 @@ inline Links links_across_gaps(const Scan& scan,
     number_of_others -= size[largest];
     if (number_of_others == 0)
       break;
-    if (number_of_others > n / 8 && !cells) // else it would cost more than it saves
+    if (number_of_others > n / 8 && !cells) // otherwise the cells cost more than they save
       cells.emplace(scan.points, is_used, widest);
     const std::vector<Index> around = cells ? cells->common_label(label) : std::vector<Index>();
     for (Index i = 0; i < n; ++i) {
@@ -304,7 +305,7 @@ inline Links links_across_gaps(const Scan& scan,
 
 namespace internal {
 
-/// Every link of two lists in both directions.
+/// Iterator over every link of two lists in both directions.
 class Edge_iterator : public boost::iterator_facade<Edge_iterator,
                                                     std::pair<Index, Index>,
                                                     boost::forward_traversal_tag,
@@ -348,13 +349,13 @@ private:
   }
 
   const Link* m_link;
-  const Link *m_end, *m_next; ///< where the first list ends, and the other one begins
+  const Link *m_end, *m_next; ///< end of the first list, begin of the second
   bool m_is_reverse = false;
 };
 
 } // namespace internal
 
-/// Rows from links and those that close gaps, each in both directions.
+/// Builds a graph from links and those that close gaps, each in both directions.
 inline Neighbor_graph graph_of(std::size_t n, const Links& links, const Links& gaps = Links())
 {
   return Neighbor_graph(boost::edges_are_unsorted_multi_pass,
@@ -363,7 +364,7 @@ inline Neighbor_graph graph_of(std::size_t n, const Links& links, const Links& g
                         static_cast<Index>(n));
 }
 
-/// All points in one graph: where parts are apart, the gaps between them are closed.
+/// Graph of all points, in which gaps between connected components are closed.
 struct Linked_parts
 {
   Links gaps;

@@ -22,7 +22,7 @@ namespace skeleton {
 class Point_cells
 {
 public:
-  /// Cubes of a side of the points of `is_used`. O(points).
+  /// Groups the points of `is_used` into cubes of side `side` [L]. O(points).
   Point_cells(const std::vector<Vec3>& points,
               const std::vector<std::uint8_t>& is_used,
               double side)
@@ -51,11 +51,11 @@ public:
       }
   }
 
-  /// Of a used point.
+  /// Returns the cell of a used point.
   Index cell_of(Index point) const { return m_cell_of_point[point]; }
 
-  /// For each cell, the label of all points in it and in the 26 cells about it; `none` if they
-  /// differ. O(points + cells).
+  /// Returns, for each cell, the common label of all points in it and in the 26 adjacent cells;
+  /// `none` if they differ. O(points + cells).
   std::vector<Index> common_label(const std::vector<Index>& label_of_point) const
   {
     constexpr Index nothing_yet = none - 1;
@@ -73,10 +73,10 @@ public:
   }
 
 private:
-  using Key = std::array<double, 3>; // whole numbers, of any size
+  using Key = std::array<double, 3>; // integers of any size
 
   std::vector<Index> m_cell_of_point;
-  std::vector<std::vector<Index>> m_around; // cells next to each, with itself
+  std::vector<std::vector<Index>> m_around; // adjacent cells of each, including itself
 };
 
 } // namespace skeleton

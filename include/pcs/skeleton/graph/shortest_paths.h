@@ -18,8 +18,8 @@
 namespace pcs {
 namespace skeleton {
 
-/// The shortest paths from a set of sources; unreached points have an infinite distance and are
-/// their own predecessor.
+/// Shortest paths from a set of sources; unreached points have an infinite distance and are their
+/// own predecessor.
 struct Shortest_paths
 {
   std::vector<double> distance;
@@ -29,8 +29,8 @@ struct Shortest_paths
 namespace internal {
 
 /*!
-  Points that wait for their turn, in buckets by distance: a ring of them, and what lies beyond it.
-  Within a bucket they have no order, so that the points to come are known and can be fetched.
+  Priority queue of points in buckets by distance: a ring of buckets, and a list of entries beyond
+  it. Entries of a bucket have no order, so that the next points are known and can be prefetched.
 */
 class Distance_buckets
 {
@@ -53,8 +53,8 @@ public:
       m_beyond.push_back({distance, point});
   }
 
-  /// What waits in the nearest bucket; what is pushed from there on may be nearer than the rest of
-  /// it.
+  /// Moves the nearest bucket to `entries`; entries pushed later may be nearer than some of these.
+  /// Returns `false` if the queue is empty.
   bool pop(std::vector<Entry>& entries)
   {
     entries.clear();
@@ -65,7 +65,7 @@ public:
         m_size -= entries.size();
         return true;
       }
-      // entries beyond the ring are at least one round of it away
+      // entries beyond the ring are at least one cycle away
       if (++m_now % number_of_buckets == 0 || m_size == 0)
         bring_in();
     }
@@ -75,8 +75,7 @@ public:
 private:
   static constexpr std::uint64_t number_of_buckets = 128;
 
-  /// Fills the ring from what lies beyond it, from its nearest point on if there is nothing before
-  /// it.
+  /// Distributes the entries beyond the ring. An empty ring restarts at the nearest of them.
   void bring_in()
   {
     std::vector<Entry> beyond;
@@ -104,11 +103,11 @@ private:
 constexpr double path_bucket = 1;
 
 /*!
-  Dijkstra's distances, found by buckets: a point may be done more than once, and is when it was
-  late, but none waits for the order of a heap, and its neighbours are in the cache when it is its
-  turn. The distances are those of `boost::dijkstra_shortest_paths()` to the last bit: either way
-  each is the least of the sums over its neighbours. Of predecessors that give the same sum, the
-  first one stays. O(edges) but for points that are done again.
+  Computes shortest paths with a bucket queue instead of a heap. A point is processed again if a
+  shorter path to it is found later; in return, no order within buckets is maintained, and
+  neighbours are prefetched. The distances are bitwise identical to
+  `boost::dijkstra_shortest_paths()`: both are the least of the sums over neighbours. Of
+  predecessors with equal sums, the first is kept. O(edges), except for repeated points.
 */
 inline Shortest_paths
 shortest_paths(const Scan& scan, const Neighbor_graph& graph, const std::vector<Index>& sources)
@@ -146,7 +145,7 @@ shortest_paths(const Scan& scan, const Neighbor_graph& graph, const std::vector<
       const Index v = now[k].point;
       const double before = now[k].distance;
       if (before > distance[v])
-        continue; // it was reached on a shorter way since
+        continue; // outdated: a shorter path was found
       for (auto [w, end] = adjacent_vertices(v, graph); w != end; ++w) {
         const Index to = static_cast<Index>(*w);
         if (distance[to] <= before)
@@ -162,7 +161,7 @@ shortest_paths(const Scan& scan, const Neighbor_graph& graph, const std::vector<
   return paths;
 }
 
-/// All points, each before the one that its path leads to. O(points).
+/// Returns all points, each before its predecessor. O(points).
 inline std::vector<Index> tips_first(const Shortest_paths& paths)
 {
   const std::size_t n = paths.predecessor.size();
@@ -182,7 +181,7 @@ inline std::vector<Index> tips_first(const Shortest_paths& paths)
   return order;
 }
 
-/// How many paths lead through each point, its own with them, for points in the order of
+/// Returns the number of paths through each point, including its own, for points in the order of
 /// `tips_first()` [count]. O(points).
 inline std::vector<double> carried_paths(const Shortest_paths& paths,
                                          const std::vector<Index>& order)

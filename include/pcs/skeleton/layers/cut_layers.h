@@ -24,12 +24,12 @@ namespace skeleton {
 
 namespace internal {
 
-/// Numbers the parts of the layers by their first layer, then by their first point.
+/// Numbers the level-set components by their lowest level set, then by their first point.
 inline void number_layer_parts(Point_sets& sets, const std::vector<Index>& layer, Layer_tree& tree)
 {
   const std::size_t n = layer.size();
-  std::vector<Index> order;        // first point of each part
-  std::vector<Index> lowest_layer; // of each part
+  std::vector<Index> order;        // first point of each component
+  std::vector<Index> lowest_layer; // of each component
   std::vector<Index> part(n, none);
   for (Index i = 0; i < n; ++i) {
     if (layer[i] == none)
@@ -57,7 +57,7 @@ inline void number_layer_parts(Point_sets& sets, const std::vector<Index>& layer
       tree.node_of_point[i] = number[part[sets.find(i)]];
 }
 
-/// Sorts the points by node and computes centres and spreads.
+/// Groups the points by node and computes centres and spreads.
 template <class ConcurrencyTag>
 void collect_nodes(const Scan& scan, Layer_tree& tree)
 {
@@ -87,8 +87,8 @@ void collect_nodes(const Scan& scan, Layer_tree& tree)
   });
 }
 
-/// The parent of a node is the one that most shortest paths of its points come from; among equals
-/// the one with more points, or the wider one.
+/// Selects as the parent of a node the one from which most shortest paths to its points come. Ties
+/// go to the node with more points, then to the wider one.
 template <class ConcurrencyTag>
 void vote_for_parents(const std::vector<Index>& predecessor, Layer_tree& tree)
 {
@@ -96,7 +96,7 @@ void vote_for_parents(const std::vector<Index>& predecessor, Layer_tree& tree)
     votes.clear();
     for (Index k = tree.first[v]; k < tree.first[v + 1]; ++k) {
       const Index from = tree.node_of_point[predecessor[tree.point[k]]];
-      if (from < v) // layers that were joined may have points before and behind a thin one
+      if (from < v) // joined level sets may have points on both sides of a thin one
         votes.push_back(from);
     }
     std::sort(votes.begin(), votes.end());
@@ -126,8 +126,8 @@ void vote_for_parents(const std::vector<Index>& predecessor, Layer_tree& tree)
 } // namespace internal
 
 /*!
-  Cuts the shortest paths into layers and returns the tree of their connected parts.
-  `links` are the edges of the graph that the paths were found in.
+  Cuts the shortest paths into level sets and returns the tree of their connected components.
+  `links` are the edges of the graph in which the paths were computed.
 */
 template <class ConcurrencyTag>
 Layer_tree layer_tree(const Scan& scan, const Links& links, const Shortest_paths& paths)

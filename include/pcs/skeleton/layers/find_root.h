@@ -26,34 +26,34 @@
 namespace pcs {
 namespace skeleton {
 
-/// How the root is looked for. The trunk is what holds the most points near the lower end.
+/// Options of the root search. The trunk is the stem with the most points near the lower end.
 struct Root_options
 {
-  double slab = 0.03; ///< height in which it is looked for, relative to the extent upwards [-]
-  double slab_spacings = 8; ///< ... at least this many spacings
-  double thin = 0.003;      ///< stems of less spread, relative to the extent, may be hanging twigs:
-  //! ... it is looked for in the first share then, or in the second, and taken if it is ...
+  double slab = 0.03; ///< height of the searched slab, relative to the vertical extent [-]
+  double slab_spacings = 8; ///< ... and at least this many spacings [-]
+  double thin = 0.003;      ///< stems of less spread, in extents, may be hanging twigs [-];
+  //! ... then slabs of these relative heights are searched as well, and a stem is used if it is ...
   double wide_slab = 0.1, widest_slab = 0.2;
   double thicker =
-      /// ... another stem with this many times the spread, in the second one with a round foot [-]
+      /// ... another one with this many times the spread (second slab: also with a round foot) [-]
       3;
-  double band = 0.4;   ///< height of the points that are the root, in half widths of the stem [-]
-  double rival = 0.03; ///< share of the lowest points of a stem that makes another one a rival [-]
+  double band = 0.4;   ///< height of the root points, in half widths of the stem [-]
+  double rival = 0.03; ///< least size of another stem, relative to the first one [-]
   double smallest_component =
-      0.05; ///< share of the points that a part must have to hold the root [-]
+      0.05; ///< least fraction of the points in a component with the root [-]
   double floating =
-      0.05; ///< such parts begin at most this high, relative to the extent upwards [-]
-  double ring_deviation = 0.15; ///< a trunk is a ring: deviation of its points, in radii [-],
-  double ring_spreads = 2;      ///< ... which is at most this many times its spread [-]
-  double lying_length = 6;      ///< a stem of this many heights of the slab lies on its side,
-  double lying_ratio = 3;       ///< ... if it is also longer than this many of its widths [-];
-  double lying_share = 0.3;     ///< so does one with this share of its part's points in the slab,
-  double lying_side = 2;        ///< ... if it is longer than this many heights of the slab [-]
+      0.05; ///< highest lower end of such components, relative to the vertical extent [-]
+  double ring_deviation = 0.15; ///< largest deviation of the points of a ring, in radii [-],
+  double ring_spreads = 2;      ///< ... and largest radius, in spreads [-]
+  double lying_length = 6;      ///< a stem is lying if it is longer than this many slab heights [-]
+  double lying_ratio = 3;       ///< ... and longer than this many of its widths [-],
+  double lying_share = 0.3;     ///< or if the slab has this fraction of its component's points [-]
+  double lying_side = 2;        ///< ... and it is longer than this many slab heights [-]
 };
 
 namespace internal {
 
-/// Connected points near the lower end of their part.
+/// Connected points near the lower end of their component.
 struct Stem
 {
   std::vector<Index> points;
@@ -62,7 +62,7 @@ struct Stem
 
   double spread() const { return std::hypot(shape.length, shape.width); }
 
-  /// Of the circle that all its points lie on, seen along `up`; 0 if they do not.
+  /// Returns the radius of the circle on which all points lie in the projection along `up`, or 0.
   double ring_radius(const Scan& scan, const Vec3& up, const Root_options& rules) const
   {
     const Vec3 e1 = up.unitOrthogonal(), e2 = up.cross(e1);
@@ -93,8 +93,9 @@ struct Stem
   }
 };
 
-/// Of all stems, that from which most of the points high up are nearest along the points; `first`
-/// if none has much more. `stem_of_point` tells those of the lowest points. O(points log points).
+/// Returns the stem with the largest catchment: the one nearest along paths to most points in the
+/// upper half. Returns `first` unless another one has twice as many. `stem_of_point` contains the
+/// stems of the lowest points. O(points log points).
 inline Index stem_with_largest_catchment(const Scan& scan,
                                          const std::vector<double>& height,
                                          const Links& links,
@@ -102,7 +103,7 @@ inline Index stem_with_largest_catchment(const Scan& scan,
                                          Index first)
 {
   constexpr double much = 2; // times as many points as the first
-  constexpr double up = 0.5; // of the height of all that is reached
+  constexpr double up = 0.5; // of the height of all reachable points
   std::vector<Index> nearest = stem_of_point, sources, way;
   for (Index i = 0; i < nearest.size(); ++i)
     if (nearest[i] != none)
@@ -116,7 +117,7 @@ inline Index stem_with_largest_catchment(const Scan& scan,
       way.push_back(at);
     const Index stem = nearest[at];
     if (stem == none)
-      continue; // out of reach
+      continue; // unreachable
     low = std::min(low, height[i]);
     high = std::max(high, height[i]);
     for (const Index j : way)
@@ -133,7 +134,7 @@ inline Index stem_with_largest_catchment(const Scan& scan,
   return best;
 }
 
-/// Looks for the stem at the lower end of the large connected parts.
+/// Searches for the stem at the lower end of the large connected components.
 template <class ConcurrencyTag>
 class Stem_search
 {
@@ -189,13 +190,13 @@ public:
 private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
-  /// `share` is that of the extent upwards.
+  /// `share` is a fraction of the vertical extent.
   double height_of_slab(double share) const
   {
     return std::max(share * (m_high - m_low), m_rules.slab_spacings * m_scan.spacing);
   }
 
-  /// Whether the lowest points of a stem are a ring.
+  /// Returns whether the lowest points of a stem form a ring.
   bool has_round_foot(const Stem& stem) const
   {
     double low = infinity;
@@ -211,7 +212,7 @@ private:
     return foot.ring_radius(m_scan, m_up, m_rules) > 0;
   }
 
-  /// `share` is that of the extent upwards.
+  /// Returns the stem in a slab. `share` is the height as a fraction of the vertical extent.
   Stem within(double share) const
   {
     const Index n = static_cast<Index>(m_scan.size());
@@ -237,18 +238,18 @@ private:
         }
       }
     Stem stem(m_scan, m_up, slab, m_parts, low_parts, first, m_rules);
-    // shrubs about a tree may have more points near the ground than its trunk
+    // shrubs around a tree may have more points near the ground than its trunk
     const auto rivals =
         std::count_if(low_parts.size.begin(), low_parts.size.end(), [&](Index size) {
           return double(size) > m_rules.rival * double(stem.points.size());
         });
-    if (stem.is_lying || rivals < 2) // the stem itself is one
+    if (stem.is_lying || rivals < 2) // the stem itself counts
       return stem;
     const Index busiest =
         stem_with_largest_catchment(m_scan, m_height, m_links, low_parts.part, first);
     Stem other(m_scan, m_up, slab, m_parts, low_parts, busiest, m_rules);
-    // the foot of a trunk that is cut off from the crown leads to none of its points, a hanging
-    // twig to all
+    // a trunk foot that is disconnected from the crown has no catchment there, whereas a hanging
+    // twig may have all of it
     const double ring = stem.ring_radius(m_scan, m_up, m_rules);
     const bool is_foot = ring > m_rules.thicker * other.ring_radius(m_scan, m_up, m_rules);
     return is_foot ? stem : other;
@@ -259,17 +260,17 @@ private:
   const Vec3& m_up;
   const Root_options& m_rules;
   const Point_parts& m_parts;
-  std::vector<double> m_height, m_low_of, m_high_of; ///< of points; of parts
-  double m_low = infinity, m_high = -infinity;       ///< of the large parts
+  std::vector<double> m_height, m_low_of, m_high_of; ///< of points; of components
+  double m_low = infinity, m_high = -infinity;       ///< of large components
 };
 
 } // namespace internal
 
 /*!
-  The lowest layer of points of the thickest thing that stands at the lower end of a large connected
-  part, the tall ones first. Of a stem that lies on its side, or of a flat cloud, one end. `links`
-  are those between neighbours, without closed gaps, `parts` what hangs together by them. Never
-  empty if a point is used.
+  Returns the lowest points of the stem at the lower end of a large connected component. Stems with
+  many points and tall components take precedence. For a lying stem or a flat cloud, returns the
+  points of one end. `links` are the edges between neighbours, without closed gaps; `parts` are the
+  connected components of this graph. The result is never empty if a point is used.
 */
 template <class ConcurrencyTag>
 std::vector<Index> find_root(const Scan& scan,
@@ -281,7 +282,8 @@ std::vector<Index> find_root(const Scan& scan,
 {
   const internal::Stem_search<ConcurrencyTag> search(scan, is_used, links, parts, up, rules);
   internal::Stem stem = search();
-  // all around a thick stem, or the layers above would be tilted; of a lying one the end
+  // the band includes the whole circumference of a thick stem, since level sets would be tilted
+  // otherwise; for a lying stem, it is one end
   const double spread = stem.is_lying ? stem.shape.width : stem.spread();
   const double band = std::max(layer_thickness * scan.spacing, rules.band * spread);
   const auto place = [&](Index i) {

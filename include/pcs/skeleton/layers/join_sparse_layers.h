@@ -26,20 +26,20 @@
 namespace pcs {
 namespace skeleton {
 
-/// When layers are joined, and how many.
+/// Options for joining sparse level sets.
 struct Sparse_layer_options
 {
-  double thinnest = 1.3;  ///< thickness of layers that hang together, in local spacings [-]
-  int doublings = 4;      ///< layers become at most two to this power times thicker [count]
-  std::size_t fewest = 8; ///< points of a joined layer [count]
-  double radius = 2.5;    ///< least radius of it, in local spacings: thinner ones hang together [-]
+  double thinnest = 1.3;  ///< least thickness of a connected level set, in local spacings [-]
+  int doublings = 4;      ///< the thickness grows at most by two to this power [count]
+  std::size_t fewest = 8; ///< points of a joined level set [count]
+  double radius = 2.5;    ///< its least radius, in local spacings: thinner ones are connected [-]
   double band = 0.2;      ///< largest deviation from a circle, in radii [-]
-  int sectors = 6;        ///< of 12, that must be seen
+  int sectors = 6;        ///< of 12 that must have points [count]
 };
 
 namespace internal {
 
-/// How often the layers about each point must be doubled to hang together.
+/// Returns how often the thickness of the level sets at each point must be doubled to connect them.
 template <class ConcurrencyTag>
 std::vector<std::uint8_t> doublings_of_layers(const Scan& scan,
                                               const std::vector<Index>& layer,
@@ -51,7 +51,7 @@ std::vector<std::uint8_t> doublings_of_layers(const Scan& scan,
     if (layer[i] == none || rules.thinnest * scan.local_spacing[i] <= thickness)
       return;
     std::array<double, neighbors_per_point> others;
-    std::size_t count = 0; // single points may lie far from the others
+    std::size_t count = 0; // isolated points may lie far from the others
     for (const Index j : scan.neighbors[i])
       if (j != none)
         others[count++] = scan.local_spacing[j];
@@ -59,7 +59,7 @@ std::vector<std::uint8_t> doublings_of_layers(const Scan& scan,
       return;
     const auto middle = others.begin() + static_cast<std::ptrdiff_t>(count / 2);
     std::nth_element(others.begin(), middle, others.begin() + static_cast<std::ptrdiff_t>(count));
-    // long steps cost more than their length
+    // the cost of long steps exceeds their length
     const double wanted =
         rules.thinnest * *middle * std::max(1.0, *middle / (cheap_step * scan.spacing));
     while (level[i] < rules.doublings && std::ldexp(thickness, level[i]) < wanted)
@@ -68,7 +68,7 @@ std::vector<std::uint8_t> doublings_of_layers(const Scan& scan,
   return level;
 }
 
-/// Finds the parts of thicker layers that lie on circles, where scans are sparse.
+/// Joins level-set components that together lie on circles, where scans are sparse.
 class Sparse_layer_joiner
 {
   using Member = std::pair<Index, Index>; // a set and a point of it
@@ -118,7 +118,7 @@ public:
   }
 
 private:
-  /// Whether the points lie on a circle around the direction in which the paths through them go on.
+  /// Returns whether the points lie on a circle about the direction of increasing path length.
   bool is_ring(const Member* begin, const Member* end) const
   {
     const double n = double(end - begin);
@@ -156,17 +156,17 @@ private:
   const std::vector<double>& m_distance;
   const std::vector<Index>& m_layer;
   Sparse_layer_options m_rules;
-  std::vector<std::uint8_t> m_level; ///< doublings that the layers about each point need
+  std::vector<std::uint8_t> m_level; ///< required doublings at each point
 };
 
 } // namespace internal
 
 /*!
-  Layers are as thick as usual spacings ask for. Where the points of a thick stem are farther apart
-  they fall to pieces; there, layers are joined by twos until they hang together, if that makes
-  rings: twigs, of which there are points one behind the other, are left as they are. `layer` is
-  that of each point, `sets` has the connected parts of the layers. O(links + p log p) with p points
-  in sparse layers.
+  Joins the components of sparse level sets. The thickness of level sets follows the typical
+  spacing; where the points of a thick stem are farther apart, level sets fall into several
+  components. There, the thickness is doubled until the components are connected, provided that they
+  form rings. Twigs with single rows of points remain unchanged. `layer` is the level set of each
+  point, `sets` has the level-set components. O(links + p log p) with p points in sparse level sets.
 */
 template <class ConcurrencyTag>
 void join_sparse_layers(const Scan& scan,

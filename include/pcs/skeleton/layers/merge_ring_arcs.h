@@ -20,31 +20,31 @@
 namespace pcs {
 namespace skeleton {
 
-/// When parts are arcs of one ring.
+/// Criteria for level-set components that are arcs of one ring.
 struct Ring_arc_options
 {
   double smallest = 4;      ///< radius of a ring, in spacings [-]
   double band = 0.2;        ///< half width of the ring, in radii ...
   double band_offset = 1.5; ///< ... and spacings
-  double share = 0.75;      ///< of the points of an arc that lie in the band [-]
+  double share = 0.75;      ///< least fraction of the points of an arc in the band [-]
   double main_share =
-      0.4; ///< the same for the arc with the most points: a branch may leave there [-]
+      0.4; ///< the same for the arc with the most points, where a branch may begin [-]
   double lasting =
-      2; ///< thicker than this many smallest ones, a ring ends rather than become a branch [-],
-  double growth = 1.1;  ///< largest growth of a radius from layer to layer [-]
-  int age = 8;          ///< layers in which such a ring was seen
-  double inertia = 0.7; ///< of the radius from layer to layer [-]
-  int sectors = 6;      ///< of 12, that a ring must see to correct its centre
+      2; ///< beyond this many smallest radii, a ring without successor ends there [-],
+  double growth = 1.1;  ///< largest growth of a radius between level sets [-]
+  int age = 8;          ///< least number of level sets with such a ring [count]
+  double inertia = 0.7; ///< weight of the previous radius and centre [-]
+  int sectors = 6;      ///< of 12 that must have points to correct the centre [count]
 };
 
 namespace internal {
 
-/// The cross-section that a node belongs to, as predicted from the nodes before.
+/// The cross-section of a node, as predicted from the previous nodes.
 struct Ring
 {
   Vec3 center = Vec3::Zero(), along = Vec3::Zero();
   double radius = 0; ///< 0: no ring
-  int age = 0;       ///< layers in which it was seen
+  int age = 0;       ///< level sets with this ring [count]
 };
 
 class Ring_arc_merger
@@ -61,7 +61,8 @@ public:
   {
   }
 
-  /// The node that each node is merged into, itself if none; leaders come first.
+  /// Returns for each node the leader into which it is merged, or the node itself. A leader has the
+  /// lowest index of its group.
   const std::vector<Index>& operator()()
   {
     const Index m = static_cast<Index>(m_tree.size());
@@ -74,7 +75,7 @@ public:
         follow(v, Ring());
       else
         children[m_tree.parent[v]].push_back(v);
-    // Nodes in order: the children of all members of a ring come later than the members.
+    // Nodes in order: children have higher indices than all members of the ring of their parent.
     for (Index v = 0; v < m; ++v) {
       if (m_leader[v] != v)
         continue;
@@ -91,11 +92,11 @@ public:
     return m_leader;
   }
 
-  /// The leader that continues the ring of a leader; itself where a thick ring ends.
+  /// Returns for each leader the one that continues its ring, or itself where a thick ring ends.
   const std::vector<Index>& next() const { return m_next; }
 
 private:
-  /// Points of `v` that lie in the band of the ring.
+  /// Counts the points of `v` in the band of the ring.
   std::size_t count_inside(const Ring& ring, Index v) const
   {
     const double band = m_rules.band * ring.radius + m_rules.band_offset * m_scan.spacing;
@@ -114,7 +115,7 @@ private:
       std::vector<std::size_t> inside;
       for (const Index c : group)
         inside.push_back(count_inside(ring, c));
-      std::size_t most = 0; // this one may carry the base of a branch as well
+      std::size_t most = 0; // this arc may also contain the base of a branch
       for (std::size_t k = 0; k < group.size(); ++k)
         if (inside[k] > inside[most])
           most = k;
@@ -137,8 +138,7 @@ private:
     return first;
   }
 
-  /// Corrects the ring by the points of `v` and all that was merged into it, or looks for a new
-  /// one.
+  /// Corrects the ring by the points of `v` and of its merged nodes, or searches for a new ring.
   void follow(Index v, const Ring& before)
   {
     Ring& ring = m_ring[v];

@@ -29,8 +29,8 @@ struct Layer_options
   Ring_arc_options rings;
 };
 
-/// Points of the root: the used point nearest to `hint` (in coordinates of the scan), or those that
-/// `find_root()` finds.
+/// Returns the points of the root: the used point nearest to `hint` (in coordinates of the scan),
+/// or the result of `find_root()`.
 template <class ConcurrencyTag>
 std::vector<Index> points_of_root(const Scan& scan,
                                   const std::vector<std::uint8_t>& is_used,
@@ -51,7 +51,7 @@ std::vector<Index> points_of_root(const Scan& scan,
 
 /*!
   Builds the neighbour graph of the used points from `links` and from links that close gaps between
-  connected components. Calls `find_root(parts)` with the components meanwhile.
+  connected components. Calls `find_root(parts)` with the components concurrently.
 */
 template <class ConcurrencyTag, class FindRoot>
 void link_parts(const Scan& scan,
@@ -67,13 +67,13 @@ void link_parts(const Scan& scan,
       [&] { find_root(parts); },
       [&] {
         linked.gaps = links_across_gaps(scan, is_used, rule, parts);
-        // constructed in place: such graphs are copied, not moved
+        // constructed directly: a move would copy the graph
         linked.graph.reset(new Neighbor_graph(graph_of(scan.size(), links, linked.gaps)));
       });
 }
 
-/// Shortest paths from `root`, and the tree of their level sets. Releases the graph. Appends the
-/// links that close gaps to `links`.
+/// Computes the shortest paths from `root`, and the tree of their level sets. Releases the graph,
+/// and appends the links that close gaps to `links`.
 template <class ConcurrencyTag>
 Shortest_paths trace_layers(const Scan& scan,
                             const std::vector<Index>& root,

@@ -12,7 +12,7 @@
 namespace pcs {
 namespace skeleton {
 
-/// One layer of rectified sums of the features, and a sum of these.
+/// A multilayer perceptron with one hidden layer of rectified linear units and a linear output.
 template <std::size_t number_of_features, std::size_t number_of_units>
 struct Multilayer_perceptron
 {

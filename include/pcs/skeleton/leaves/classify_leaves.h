@@ -24,32 +24,32 @@
 namespace pcs {
 namespace skeleton {
 
-/// When points and axes are leaves.
+/// Options of the leaf-wood separation.
 struct Leaf_options
 {
-  //! of the points that no axis explains: with fewer, leaves are not looked for [-]
+  //! least fraction of points without an axis; with fewer, the separation is skipped [-]
   double unexplained = 0.025;
-  double thick = 0.05; ///< share of the points that must be thick wood, or this is no tree [-]
-  //! least dimension of the points of thick wood; less have rows, which look like twigs [-]
+  double thick = 0.05; ///< least fraction of thick wood in a tree [-]
+  //! least sampling dimension of thick wood; lower values indicate rows, which resemble twigs [-]
   double dimension = 1.9;
-  double leafy = 0.16; ///< share of the points that must be deep in leaves: fewer are chance [-]
-  std::size_t neighbors = 10; ///< that are leaves, too, around a point deep in leaves [count]
-  //! or the share of those that are no thick wood that must lie in flat patches [-]
+  double leafy = 0.16; ///< least fraction of points deep in leaves; fewer are chance [-]
+  std::size_t neighbors = 10; ///< neighbours in leaves of a point deep in leaves [count]
+  //! alternatively: least fraction, of the points outside thick wood, in planar patches [-]
   double patchy = 0.035;
-  double wood_score = -0.8;    ///< least logarithm of the odds that a point is of wood [-]
-  double axis_likeness = -0.4; ///< the same of an axis [-]
-  //! the same where there are no leaves: of an axis, and of a point that no axis explains [-]
+  double wood_score = -0.8;    ///< least log-odds of wood for a point [-]
+  double axis_likeness = -0.4; ///< the same for an axis [-]
+  //! the same in leafless trees: for an axis, and for a point without an axis [-]
   double bare_axis_likeness = -2, bare_point_likeness = 1;
-  double bare_reach = 2.5; ///< radii of the trunk around its axis where nothing strays [-]
-  int rounds = 3;          ///< of leaving out: points first, then axes twice [count]
-  double pipe_slack = 1.5; ///< `Pipe_model_options::slack` where there are leaves [-]
+  double bare_reach = 2.5; ///< distance from the trunk axis that is always wood, in radii [-]
+  int rounds = 3;          ///< rounds of removal: points first, then axes twice [count]
+  double pipe_slack = 1.5; ///< `Pipe_model_options::slack` of trees with leaves [-]
   Surface_wood_options hollow;
   Linear_point_options lines;
   Wood_path_options paths;
   Planar_patch_options patches;
 };
 
-/// Whether enough points are not explained to look for leaves.
+/// Returns whether enough points lie on no axis to require a leaf-wood separation.
 inline bool may_have_leaves(const Axis_set& set,
                             const std::vector<std::uint8_t>& is_used,
                             const Leaf_options& rules)
@@ -63,7 +63,7 @@ inline bool may_have_leaves(const Axis_set& set,
   return double(open) >= rules.unexplained * double(used);
 }
 
-/// Whether enough points are thick wood for a tree. O(points).
+/// Returns whether the fraction of thick wood is large enough for a tree. O(points).
 inline bool has_thick_wood(const std::vector<std::uint8_t>& is_used,
                            const std::vector<std::uint8_t>& is_thick,
                            const Leaf_options& rules)
@@ -77,9 +77,8 @@ inline bool has_thick_wood(const std::vector<std::uint8_t>& is_used,
 }
 
 /*!
-  Whether the points that are neither thick wood nor lines are leaves. Twigs that a scan just about
-  sees are no lines, too, but are mixed with those that it sees well, and make no flat patches.
-  O(points).
+  Returns whether the points outside thick wood and lines are leaves. Barely resolved twigs form no
+  lines either, but they are mixed with well resolved ones and form no planar patches. O(points).
 */
 inline bool are_leaves(const Scan& scan,
                        const std::vector<std::uint8_t>& is_used,
@@ -88,7 +87,7 @@ inline bool are_leaves(const Scan& scan,
                        const Leaf_options& rules)
 {
   std::vector<std::uint8_t> is_open(scan.size());
-  std::size_t used = 0, thin = 0, deep = 0; // points, those not of thick wood, those deep in leaves
+  std::size_t used = 0, thin = 0, deep = 0; // all, outside thick wood, deep in leaves
   for (std::size_t i = 0; i < scan.size(); ++i) {
     used += is_used[i];
     thin += is_used[i] && !is_thick[i];
@@ -105,21 +104,21 @@ inline bool are_leaves(const Scan& scan,
              rules.patchy * double(thin);
 }
 
-/// The points of wood among all that are used.
+/// The classification of the used points.
 struct Found_wood
 {
-  std::vector<std::uint8_t> is_wood; ///< empty: there are no leaves, as far as is known
-  //! of wood: logarithm of the odds, by point; empty: nothing is known
+  std::vector<std::uint8_t> is_wood; ///< empty: no leaves were detected
+  //! log-odds of wood, by point; empty: unknown
   std::vector<float> wood_score;
-  bool is_in_rows = false; ///< nothing is known, because the points lie in rows
+  bool is_in_rows = false; ///< no classification, because the points lie in rows
 };
 
 /*!
-  The points of thick wood, which is hollow, and of thin wood, by its surroundings and the paths
-  that it carries: `paths` lead over all points that are used. Without `is_sure`, which says that
-  there are leaves, all points are wood where what is left when all lines are taken for wood does
-  not look like leaves, and where the points of thick wood lie in rows: each of these is a line, and
-  its surroundings are not those of a twig or of a leaf.
+  Classifies the points of wood. Thick wood has hollow sections; thin wood is recognized by its
+  surroundings and by the shortest paths through it. `paths` connect all used points. `is_sure`
+  indicates that the tree has leaves. Otherwise, all points are wood if the points outside thick
+  wood and lines do not resemble leaves. The same applies if the points of thick wood lie in rows:
+  each row is a line, and its surroundings match neither those of a twig nor those of a leaf.
 */
 template <class ConcurrencyTag>
 Found_wood classify_wood_points(const Scan& scan,

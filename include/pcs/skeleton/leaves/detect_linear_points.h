@@ -20,20 +20,20 @@
 namespace pcs {
 namespace skeleton {
 
-/// When points form a line. Lengths are in radii of a tube along it [-].
+/// Criteria for points on a line. Lengths are in radii of a tube along it [-].
 struct Linear_point_options
 {
-  double radius = 1.3; ///< of the tube, in spacings
+  double radius = 1.3; ///< radius of the tube, in spacings
   float around = 2.2F; ///< outer radius of the ring around it
   float reach = 8;     ///< half of its length
-  float crowd = 0.35F; ///< what a point of the ring costs, in points of the tube
-  float least = 5.5F;  ///< score of a line: the number of its pieces with points in the tube alone
-  int directions = 12; ///< that are tried at a point [count]
+  float crowd = 0.35F; ///< penalty of a point in the ring, in points of the tube
+  float least = 5.5F;  ///< least score: number of pieces with points only in the tube
+  int directions = 12; ///< tested at a point [count]
 };
 
 namespace internal {
 
-/// The best line through one point.
+/// Finds the best line through one point.
 class Line_search
 {
 public:
@@ -46,7 +46,7 @@ public:
   {
   }
 
-  /// Score of the best line through a point.
+  /// Returns the score of the best line through a point.
   float operator()(Index i)
   {
     gather(i);
@@ -72,7 +72,8 @@ public:
     return best;
   }
 
-  /// Of the last point, which had `score`. Lengths are in radii of the tube.
+  /// Returns the surroundings of the last point, which had `score`. Lengths are in radii of the
+  /// tube.
   Surroundings surroundings(float score) const
   {
     Surroundings result;
@@ -91,7 +92,7 @@ public:
     return result;
   }
 
-  /// Calls `visit` for the points of the last best line, where it is one.
+  /// Calls `visit` for the points of the last best line in pieces with a positive score.
   template <class Visit>
   void visit_line(const Visit& visit)
   {
@@ -128,7 +129,7 @@ private:
       m_square[k] = m_x[k] * m_x[k] + m_y[k] * m_y[k] + m_z[k] * m_z[k];
   }
 
-  /// Positions along a line, and squared distances from it.
+  /// Computes the positions along a line, and the squared distances from it.
   void project(const std::array<float, 3>& along)
   {
     const std::size_t n = m_x.size();
@@ -147,7 +148,7 @@ private:
 
   float score()
   {
-    // a piece with nothing is a gap; with points beside the line only, it speaks against it
+    // an empty piece is a gap; a piece with points only beside the line is evidence against it
     constexpr float empty = -0.2F, beside = -0.5F;
     std::array<float, number_of_pieces> in{}, out{};
     const float widest = m_rules.around * m_rules.around;
@@ -165,8 +166,8 @@ private:
     return sum;
   }
 
-  static constexpr float nearest_target = 2; ///< of a direction, from the point
-  /// Of all but the last of the surroundings, as shares of the square of the reach.
+  static constexpr float nearest_target = 2; ///< least distance of a target point
+  /// Squared radii of all surroundings but the last, as fractions of the squared reach.
   static constexpr std::array<float, Surroundings::number_of_spreads - 1> squared_reaches = {
       0.0832F,
       0.333F};
@@ -175,7 +176,7 @@ private:
   const std::vector<std::uint8_t>& m_is_used;
   const Linear_point_options& m_rules;
   std::vector<Index> m_near, m_index;
-  std::vector<float> m_x, m_y, m_z, m_square; ///< from the point, in radii of the tube
+  std::vector<float> m_x, m_y, m_z, m_square; ///< relative to the point, in radii of the tube
   std::vector<float> m_at, m_off;
   std::vector<std::size_t> m_far;
   std::array<float, 3> m_best{};
@@ -190,10 +191,10 @@ struct Ignore_line_search
 };
 
 /*!
-  Which points lie on lines: around points that are used and not yet `is_sure`, tubes in several
-  directions are tried. A tube is a line if most of its pieces hold points and the ring around them
-  few; then its points are marked. In leaves, a tube is as crowded as what is around it. `visit(i,
-  search, score)` is called for each of these points, in any order, from any thread. O(open points *
+  Marks the points on lines. Tests tubes in several directions around used points that are not yet
+  `is_sure`. A tube is a line if most of its pieces have points and the ring around them has few;
+  then its points are marked. In leaves, a tube is as dense as its surroundings. Calls `visit(i,
+  search, score)` for each tested point, in any order and from any thread. O(open points *
   neighbours in reach * directions).
 */
 template <class ConcurrencyTag, class Visit = Ignore_line_search>

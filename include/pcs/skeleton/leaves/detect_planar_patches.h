@@ -18,18 +18,18 @@
 namespace pcs {
 namespace skeleton {
 
-/// When a group of points is a patch.
+/// Criteria for planar patches.
 struct Planar_patch_options
 {
-  double link = 2;         ///< neighbours belong together up to this distance, in spacings
+  double link = 2;         ///< largest distance of connected neighbours, in spacings [-]
   std::size_t fewest = 6;  ///< points of a patch [count]
-  double thickness = 0.32; ///< largest, as a share of its width [-]
-  double width = 0.32;     ///< least, as a share of its length [-]
+  double thickness = 0.32; ///< largest thickness, relative to the width [-]
+  double width = 0.32;     ///< least width, relative to the length [-]
 };
 
 /*!
-  How many of the open points lie in patches: connected groups of them that are flat, wide, and not
-  connected to thick wood, whose surface is flat as well. O(points).
+  Counts the open points in planar patches: connected groups that are flat and wide. Groups
+  connected to thick wood do not count, since its surface is also flat. O(points).
 */
 inline std::size_t count_patch_points(const Scan& scan,
                                       const std::vector<std::uint8_t>& is_open,
@@ -40,7 +40,7 @@ inline std::size_t count_patch_points(const Scan& scan,
   {
     std::size_t count = 0;
     Vec3 sum = Vec3::Zero();
-    Eigen::Matrix3d moment = Eigen::Matrix3d::Zero(); ///< about the first point, like `sum`
+    Eigen::Matrix3d moment = Eigen::Matrix3d::Zero(); ///< relative to the first point, like `sum`
     bool is_on_wood = false;
   };
   const std::size_t n = scan.size();

@@ -19,23 +19,23 @@
 namespace pcs {
 namespace skeleton {
 
-/// When a section is one of thick wood.
+/// Criteria for sections of thick wood.
 struct Surface_wood_options
 {
-  double thinnest = 1.3;  ///< radius, in spacings
-  double depth = 0.3;     ///< points this many radii below the surface lie inside ...
-  double depth_noise = 2; ///< ... if that is more than this many times the noise
-  double filled = 0.1;    ///< share inside below which a section is hollow [-]
-  double expected = 0.3;  ///< share of the expected points on the surface [-]
-  double fewest = 12;     ///< points on the surface [count]
-  std::size_t reach = 3;  ///< nodes on both sides that are looked at with one [count]
+  double thinnest = 1.3;  ///< least radius, in spacings [-]
+  double depth = 0.3;     ///< points this many radii below the surface are inside ...
+  double depth_noise = 2; ///< ... if this depth exceeds this many times the noise
+  double filled = 0.1;    ///< largest fraction of points inside a hollow section [-]
+  double expected = 0.3;  ///< least number of surface points, relative to the expected number [-]
+  double fewest = 12;     ///< least number of surface points [count]
+  std::size_t reach = 3;  ///< nodes included on both sides [count]
   double share =
-      0.5; ///< of the length up to a section that must be hollow for all of it to be wood [-]
+      0.5; ///< least hollow fraction of the length up to a section, for all of it to be wood [-]
 };
 
 namespace internal {
 
-/// The segments of one axis that are thick wood, from the points on each and inside of it.
+/// Returns which segments of an axis are thick wood, from the points on and inside each segment.
 inline std::vector<std::uint8_t> hollow_segments(const Axis_set& set,
                                                  const Axis& axis,
                                                  const std::vector<double>& on,
@@ -51,7 +51,7 @@ inline std::vector<std::uint8_t> hollow_segments(const Axis_set& set,
   }
   std::vector<std::uint8_t> is_wood(n, 0);
   double all = 0, hollow = 0;
-  std::size_t last = 0; // where what is hollow still prevails
+  std::size_t last = 0; // end of the predominantly hollow length
   for (std::size_t k = 0; k < n; ++k) {
     double a = 0, b = 0, e = 0;
     for (std::size_t j = k - std::min(k, rules.reach); j < std::min(n, k + rules.reach + 1); ++j) {
@@ -70,7 +70,7 @@ inline std::vector<std::uint8_t> hollow_segments(const Axis_set& set,
   return is_wood;
 }
 
-/// What carries an axis of hollow sections is wood, from its base to there.
+/// Marks as wood the parent of each mostly hollow axis, from its base to the joint.
 inline void add_carriers(const Axis_set& set,
                          const Surface_wood_options& rules,
                          std::vector<std::vector<std::uint8_t>>& is_wood)
@@ -88,8 +88,8 @@ inline void add_carriers(const Axis_set& set,
 
 } // namespace internal
 
-/// Points of hollow sections, and of what lies between such sections and the base of their axis, or
-/// carries it. O(points).
+/// Marks the points of hollow sections and of all sections between them and the root. Hollow
+/// sections must predominate there. O(points).
 template <class ConcurrencyTag>
 std::vector<std::uint8_t>
 points_on_hollow_sections(const Scan& scan, const Axis_set& set, const Surface_wood_options& rules)

@@ -17,10 +17,11 @@ namespace pcs {
 namespace skeleton {
 
 /*!
-  The intrinsic dimension of the points of `is_part` by the distances to their neighbours, after
-  Levina and Bickel (2004): the number of neighbours within `r` grows with `r` to this power. 2 for
-  random points of a surface, up to 3 with noise or where they lie evenly, 1 in rows that are far
-  from each other. Infinite where no point has two neighbours at different distances. O(n). [-]
+  Estimates the intrinsic dimension of the points of `is_part` from the distances to their
+  neighbours [Levina and Bickel 2004]: the number of neighbours within `r` grows with `r` to this
+  power. It is 2 for random points of a surface, up to 3 for noisy or evenly spaced points, and 1
+  for rows that are far from each other. The result is infinite if no point has two neighbours at
+  different distances. O(n). [-]
 */
 inline double sampling_dimension(const Scan& scan, const std::vector<std::uint8_t>& is_part)
 {

@@ -20,16 +20,16 @@
 namespace pcs {
 namespace skeleton {
 
-/// What the rounds of a leaf-wood separation know.
+/// The state of a leaf-wood separation between rounds.
 struct Leaf_state
 {
-  int rounds = 0;                ///< in which points were removed
+  int rounds = 0;                ///< rounds in which points were removed
   bool has_leaves = false;       ///< otherwise only points far from wood were removed
-  bool is_in_rows = false;       ///< the points lie in rows, in which leaves cannot be recognised
-  std::vector<float> wood_score; ///< of the points: logarithm of the odds; empty: unknown
+  bool is_in_rows = false;       ///< the points lie in rows, where leaves cannot be recognized
+  std::vector<float> wood_score; ///< log-odds of wood, by point; empty: unknown
 };
 
-/// Points of axes that are wood; without leaves, all points except those that stray from the wood.
+/// Returns the points of axes that are wood; without leaves, all points except outliers.
 template <class ConcurrencyTag>
 std::vector<std::uint8_t> wood_by_axes(const Scan& scan,
                                        const Axis_set& axes,
@@ -51,9 +51,9 @@ std::vector<std::uint8_t> wood_by_axes(const Scan& scan,
 }
 
 /*!
-  The first round: classifies single points. `trunk()` is the axis of the trunk; where no leaves are
-  found, the root and the surroundings of the trunk stay wood. Returns an empty vector if nothing is
-  known about the points.
+  Performs the first round, which classifies single points. `trunk()` is the axis of the trunk; if
+  no leaves are found, the root and the surroundings of the trunk remain wood. Returns an empty
+  vector if the points cannot be classified.
 */
 template <class ConcurrencyTag, class Trunk>
 std::vector<std::uint8_t> wood_by_points(const Scan& scan,

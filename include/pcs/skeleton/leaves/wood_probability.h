@@ -17,13 +17,13 @@
 namespace pcs {
 namespace skeleton {
 
-/// How the points within some distance of one of them lie; that one is the origin.
+/// The moments of the points within some distance of a point, which is the origin.
 struct Spread : Moments
 {
   static constexpr std::size_t number_of_features = 5;
 
-  /// Logarithm of the count, the deviations along the longest to the shortest axis, and how far the
-  /// mean is from the origin.
+  /// Returns the log count, the standard deviations along the principal axes in descending order,
+  /// and the distance of the mean from the origin.
   std::array<double, number_of_features> features() const
   {
     const Vec3 deviation =
@@ -32,7 +32,7 @@ struct Spread : Moments
   }
 };
 
-/// What the surroundings of a point are judged by: spreads within three distances, and the score of
+/// The descriptors of the surroundings of a point: spreads within three distances, and the score of
 /// the best line.
 struct Surroundings
 {
@@ -40,7 +40,7 @@ struct Surroundings
   static constexpr std::size_t number_of_features =
       number_of_spreads * Spread::number_of_features + 1;
 
-  std::array<Spread, number_of_spreads> spread; ///< each holds the points of those before
+  std::array<Spread, number_of_spreads> spread; ///< each includes the points of the previous ones
   double line = 0;
 
   std::array<double, number_of_features> features() const
@@ -94,7 +94,7 @@ constexpr Multilayer_perceptron<Surroundings::number_of_features, 12> likeness_o
 
 } // namespace internal
 
-/// Logarithm of the odds that a point with these surroundings is of wood and not of leaves.
+/// Returns the log-odds of wood against leaves for a point with these surroundings.
 inline double wood_probability(const Surroundings& surroundings)
 {
   return internal::likeness_of_surroundings(surroundings.features());

@@ -26,7 +26,7 @@
 namespace pcs {
 namespace skeleton {
 
-/// What an axis is judged by. Lengths are in spacings.
+/// The descriptors by which an axis is classified. Lengths are in spacings.
 struct Axis_evidence
 {
   static constexpr std::size_t number_of_features = 12;
@@ -34,18 +34,18 @@ struct Axis_evidence
   double length = 0;
   double length_in_breast_heights = 0;
   double mean_likeness = 0;    ///< of its points
-  double high_likeness = 0;    ///< a fifth of its points have more
+  double high_likeness = 0;    ///< upper quintile of its points
   double residual = 0;         ///< mean distance of its points from its surface
-  double local_spacing = 0;    ///< the mean of its points
-  double width = 0, depth = 0; ///< deviations of its points by their largest [-]
-  double leaves = 0;           ///< share of the neighbours of its points that are left out [-]
+  double local_spacing = 0;    ///< mean over its points
+  double width = 0, depth = 0; ///< deviations of its points, relative to the largest [-]
+  double leaves = 0;           ///< fraction of unused neighbours of its points [-]
   double parent_length = 0;    ///< 0: none
-  double carried = 1; ///< the most paths to the root that lead through one of its points [count]
-  double seen = 0;    ///< share of its pieces that have points [-]
+  double carried = 1; ///< largest number of paths to the root through one of its points [count]
+  double seen = 0;    ///< fraction of its pieces with points [-]
 
   std::array<double, number_of_features> features() const
   {
-    const double least = 1e-3; // of a length whose logarithm is taken
+    const double least = 1e-3; // lower bound of lengths before the logarithm
     return {std::log(std::max(least, length)),
             std::log(std::max(least, length_in_breast_heights)),
             mean_likeness,
@@ -63,7 +63,7 @@ struct Axis_evidence
 
 namespace internal {
 
-constexpr double surest = 6; ///< what is surer is not told apart
+constexpr double surest = 6; ///< larger log-odds are clipped
 
 // Trained on scans of 75 virtual trees with leaves, see benchmark/results/leaves.md.
 // clang-format off
@@ -94,7 +94,7 @@ constexpr Multilayer_perceptron<Axis_evidence::number_of_features, 12> likeness_
 
 } // namespace internal
 
-/// Logarithm of the odds that an axis is of wood and not of leaves.
+/// Returns the log-odds of wood against leaves for an axis.
 inline double wood_probability(const Axis_evidence& evidence)
 {
   return internal::likeness_by_axis(evidence.features());
@@ -102,7 +102,7 @@ inline double wood_probability(const Axis_evidence& evidence)
 
 namespace internal {
 
-/// Adds the evidence of the points of an axis. `carried` are the paths through each point.
+/// Adds the evidence of the points of an axis. `carried` is the number of paths through each point.
 template <class Points>
 void add_evidence_of_points(const Scan& scan,
                             const Axis_set& set,
@@ -157,8 +157,8 @@ void add_evidence_of_points(const Scan& scan,
 
 } // namespace internal
 
-/// The evidence for every axis. `wood_score` is that of the points, `paths` lead over all that are
-/// used. O(points).
+/// Collects the evidence for every axis. `wood_score` has the log-odds of the points; `paths`
+/// connect all used points. O(points).
 template <class ConcurrencyTag>
 std::vector<Axis_evidence> evidence_of_axes(const Scan& scan,
                                             const Axis_set& set,
@@ -199,10 +199,10 @@ std::vector<Axis_evidence> evidence_of_axes(const Scan& scan,
 }
 
 /*!
-  The points of the axes that are of wood, and such that no axis explains but that look like wood;
-  others are parts of leaves, or stray. An axis that carries one of wood is of wood, and so is the
-  first. Parameters as of `evidence_of_axes()`; `least` is the least likeness of an axis,
-  `least_of_point` that of a point without one. O(points).
+  Marks the points of wood axes and the points without an axis that resemble wood; others are leaves
+  or outliers. The parent of a wood axis is wood, and so is the first axis. The parameters are those
+  of `evidence_of_axes()`; `least` is the least log-odds of an axis, `least_of_point` those of a
+  point without an axis. O(points).
 */
 template <class ConcurrencyTag>
 std::vector<std::uint8_t> wood_of_scored_axes(const Scan& scan,
@@ -216,7 +216,7 @@ std::vector<std::uint8_t> wood_of_scored_axes(const Scan& scan,
 {
   const std::vector<Axis_evidence> evidence =
       evidence_of_axes<ConcurrencyTag>(scan, set, is_used, paths, wood_score, breast_height);
-  // parents come before the axes on them
+  // parents come before their children
   std::vector<std::uint8_t> is_of_wood(evidence.size(), 0);
   for (std::size_t a = evidence.size(); a-- > 0;) {
     if (a == 0 || wood_probability(evidence[a]) >= least)

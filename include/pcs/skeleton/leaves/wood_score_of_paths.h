@@ -24,21 +24,21 @@ namespace pcs {
 namespace skeleton {
 
 /*!
-  What lies along the shortest path from a point to the root, and along those that lead through the
-  point. What is farther along a path counts less: `reach` is the distance at which it counts 1 / e.
+  The descriptors of the shortest path from a point to the root, and of the paths through the point.
+  Weights decrease along a path: `reach` is the distance at which the weight is 1 / e.
 */
 struct Path_context
 {
-  double carried = 1;    ///< paths that lead through the point, its own with them [count]
-  double upstream = 0;   ///< mean score of the points towards the root, with this one
-  double downstream = 0; ///< mean score of the points from which paths come; 0: none
+  double carried = 1;    ///< paths through the point, including its own [count]
+  double upstream = 0;   ///< mean score of the points towards the root, including this one
+  double downstream = 0; ///< mean score of the points whose paths pass here; 0: none
   double straightness =
-      1; ///< length of the mean step towards the root over the mean length of a step [-]
+      1; ///< length of the mean step towards the root, divided by the mean step length [-]
 };
 
 /*!
-  The same for all points; those without a path to any other have no context. Scores and paths are
-  given by point. O(points).
+  Computes the contexts of all points; points without a path to another one have none. Scores and
+  paths are given by point. O(points).
 */
 inline std::vector<Path_context> path_contexts(const Scan& scan,
                                                const Shortest_paths& paths,
@@ -92,20 +92,20 @@ inline std::vector<Path_context> path_contexts(const Scan& scan,
   return result;
 }
 
-/// What a point is judged by: its score and path, and the points next to it. Lengths are in
-/// spacings.
+/// The descriptors by which a point is classified: its score, its path, and the neighbouring
+/// points. Lengths are in spacings.
 struct Wood_evidence
 {
   static constexpr std::size_t number_of_features = 12;
 
   double score = 0;
   Path_context path;
-  double count = 0;                         ///< points next to it, with this one [count]
-  double mean_score = 0, largest_score = 0; ///< of these
-  double most_carried = 1;                  ///< the most paths that one of them carries [count]
-  Vec3 mean = Vec3::Zero();                 ///< of these, from the point
-  Vec3 mean_of_paths = Vec3::Zero();        ///< the same, by the paths that they carry
-  Eigen::Matrix3d covariance_of_paths = Eigen::Matrix3d::Zero(); ///< the same
+  double count = 0;                         ///< neighbouring points, including this one [count]
+  double mean_score = 0, largest_score = 0; ///< of the neighbours
+  double most_carried = 1;                  ///< largest number of paths through a neighbour [count]
+  Vec3 mean = Vec3::Zero();                 ///< of the neighbours, relative to the point
+  Vec3 mean_of_paths = Vec3::Zero();        ///< the same, weighted by their numbers of paths
+  Eigen::Matrix3d covariance_of_paths = Eigen::Matrix3d::Zero(); ///< with these weights
 
   std::array<double, number_of_features> features() const
   {
@@ -126,16 +126,16 @@ struct Wood_evidence
   }
 };
 
-/// How far what is judged lies around a point, in spacings [-].
+/// The extents of the path and of the neighbourhood of a point, in spacings [-].
 struct Wood_path_options
 {
-  double reach = 5;  ///< along paths: there, a point counts 1 / e
-  double radius = 3; ///< of what is next to it
+  double reach = 5;  ///< distance along paths at which the weight is 1 / e
+  double radius = 3; ///< of the neighbourhood
 };
 
 namespace internal {
 
-constexpr double largest_likeness = 4;  ///< what is surer is not told apart
+constexpr double largest_likeness = 4;  ///< larger log-odds are clipped
 constexpr double likeness_of_thick = 3; ///< of points of thick wood
 
 // Trained on scans of 60 virtual trees with leaves, see benchmark/results/leaves.md.
@@ -171,14 +171,13 @@ constexpr Multilayer_perceptron<Wood_evidence::number_of_features, 12> likeness_
 
 } // namespace internal
 
-/// Logarithm of the odds that a point is of wood and not of leaves.
+/// Returns the log-odds of wood against leaves for a point.
 inline double wood_probability(const Wood_evidence& evidence)
 {
   return internal::likeness_by_evidence(evidence.features());
 }
 
-/// The evidence for point `i`, which is used, by the points of `near` that are used; it is one of
-/// them.
+/// Collects the evidence for the used point `i` from the used points of `near`, which include it.
 inline Wood_evidence evidence_of_point(const Scan& scan,
                                        const std::vector<std::uint8_t>& is_used,
                                        const std::vector<float>& score,
@@ -212,8 +211,8 @@ inline Wood_evidence evidence_of_point(const Scan& scan,
   return e;
 }
 
-/// What `path_contexts()` sums up: the likeness by the surroundings, within limits, and that of
-/// thick wood.
+/// Returns the scores for `path_contexts()`: the clipped log-odds from the surroundings, and a
+/// constant for thick wood.
 inline std::vector<float> scores_of_surroundings(const std::vector<std::uint8_t>& is_used,
                                                  const std::vector<std::uint8_t>& is_thick,
                                                  const std::vector<float>& wood_score)
@@ -228,9 +227,9 @@ inline std::vector<float> scores_of_surroundings(const std::vector<std::uint8_t>
 }
 
 /*!
-  The likeness for all points that are used and not of thick wood, which is certain; `wood_score`
-  holds what their surroundings say (`wood_probability(Surroundings)`), `paths` lead over all points
-  that are used. O(points * neighbours).
+  Computes the log-odds of wood for all used points outside thick wood, which is certain.
+  `wood_score` has the log-odds from their surroundings (`wood_probability(Surroundings)`); `paths`
+  connect all used points. O(points * neighbours).
 */
 template <class ConcurrencyTag>
 std::vector<float> wood_score_of_paths(const Scan& scan,

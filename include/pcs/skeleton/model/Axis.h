@@ -21,23 +21,22 @@ struct Axis_node
   Vec3 point = Vec3::Zero();
   double radius = 0;        ///< [L]
   double radius_error = 0;  ///< standard error [L]
-  bool is_measured = false; ///< the points decide the radius, not the prior
+  bool is_measured = false; ///< the points determine the radius rather than the prior
 };
 
-/// At least one node; the base first.
+/// Nodes from the base to the tip; at least one.
 using Axis = std::vector<Axis_node>;
 
-/// The place of an axis that is nearest to a point.
+/// Projection of a point onto an axis.
 struct Axis_place
 {
   Index segment = 0; ///< between nodes `segment` and `segment + 1`
-  double share =
-      /// position on the segment; outside of [0, 1] only before the first and behind the last node
-      0;
-  double distance = 0; ///< from the place clamped to the axis [L]
+  //! parameter on the segment; outside of [0, 1] only before the first and beyond the last node
+  double share = 0;
+  double distance = 0; ///< of the point from the projection, clamped to the axis [L]
 };
 
-/// A segment of an axis, prepared for many points.
+/// Segment of an axis, prepared for repeated projections.
 struct Axis_segment
 {
   Vec3 base, along;
@@ -49,7 +48,7 @@ struct Axis_segment
     inverse = length2 > 0 ? 1 / length2 : 0;
   }
 
-  /// Position of the foot of `p` on the line, not clamped.
+  /// Returns the parameter of the projection of `p` onto the line, not clamped.
   double share(const Vec3& p) const { return along.dot(p - base) * inverse; }
   double squared_distance(double share, const Vec3& p) const
   {
@@ -69,8 +68,8 @@ inline std::vector<Axis_segment> segments_of(const Axis& axis)
 
 namespace internal {
 
-/// Keeps the segment that is nearest to a point; `segment_at(s)` tells a segment, `last` is the
-/// last one.
+/// Search for the segment that is nearest to a point. `segment_at(s)` returns segment `s`, `last`
+/// is the index of the last one.
 template <class SegmentAt>
 class Place_search
 {
@@ -80,7 +79,7 @@ public:
   {
   }
 
-  /// Whether segment `s` is nearer than all before.
+  /// Returns whether segment `s` is nearer than all previous ones, and records it if so.
   bool offer(std::size_t s)
   {
     const Axis_segment& segment = m_segment_at(s);
@@ -94,8 +93,8 @@ public:
     return true;
   }
 
-  /// Goes on from `s` until some segments in a row are not nearer, or one that is not leads away
-  /// from the point.
+  /// Visits the segments beyond `s` in one direction until several in a row are not nearer, or one
+  /// of these leads away from the point.
   template <bool IsForward>
   void walk(std::size_t s)
   {
@@ -123,12 +122,12 @@ private:
   const SegmentAt& m_segment_at;
   const Vec3& m_p;
   double m_squared_distance = std::numeric_limits<double>::infinity(), m_share = 0;
-  double m_last_share = 0; ///< of the segment that was offered last
+  double m_last_share = 0; ///< of the last segment visited
 };
 
 } // namespace internal
 
-/// Walks from segment `guess` to the nearest one. There is at least one segment.
+/// Projects a point onto an axis, searching from segment `guess`. At least one segment.
 inline Axis_place
 nearest_place(const std::vector<Axis_segment>& segments, std::size_t guess, const Vec3& p)
 {
@@ -141,7 +140,7 @@ nearest_place(const std::vector<Axis_segment>& segments, std::size_t guess, cons
   return search.place();
 }
 
-/// The same for a few points. The axis has at least two nodes.
+/// Does the same without prepared segments, for few points. The axis has at least two nodes.
 inline Axis_place nearest_place(const Axis& axis, std::size_t guess, const Vec3& p)
 {
   const auto segment_at = [&](std::size_t s) { return Axis_segment(axis[s], axis[s + 1]); };
@@ -153,7 +152,7 @@ inline Axis_place nearest_place(const Axis& axis, std::size_t guess, const Vec3&
   return search.place();
 }
 
-/// The nearest of all segments. O(nodes).
+/// Projects a point onto the nearest of all segments. O(nodes).
 inline Axis_place nearest_place(const Axis& axis, const Vec3& p)
 {
   const auto segment_at = [&](std::size_t s) { return Axis_segment(axis[s], axis[s + 1]); };
@@ -175,7 +174,7 @@ inline Vec3 point_at(const Axis& axis, const Axis_place& place)
   return (1 - t) * axis[place.segment].point + t * axis[place.segment + 1].point;
 }
 
-/// Length along the nodes.
+/// Returns the length of the polyline [L].
 inline double length_of(const Axis& axis)
 {
   double sum = 0;
@@ -184,7 +183,7 @@ inline double length_of(const Axis& axis)
   return sum;
 }
 
-/// Nodes closer than `factor` radii, but not than `lowest`, and not farther than `highest`.
+/// Distance between nodes: `factor` radii, clamped to [lowest, highest] [L].
 struct Node_spacing
 {
   double factor, lowest, highest;
@@ -194,18 +193,18 @@ struct Node_spacing
   }
 };
 
-/// The same line with nodes at the wanted distances; both ends stay.
+/// Resamples an axis to nodes at the wanted distances; both ends are kept.
 inline Axis resample(const Axis& axis, const Node_spacing& spacing)
 {
   if (axis.size() < 2)
     return axis;
-  // "Number of steps" as a running integral of length / wanted distance, then equal steps of it.
+  // cumulative integral of length / wanted distance, divided into equal steps
   std::vector<double> steps(axis.size(), 0);
   for (std::size_t k = 1; k < axis.size(); ++k) {
     const double wanted = spacing(0.5 * (axis[k].radius + axis[k - 1].radius));
     steps[k] = steps[k - 1] + (axis[k].point - axis[k - 1].point).norm() / wanted;
   }
-  // an axis across wide gaps has no use for more nodes than these: nothing is there
+  // limits the nodes of an axis across wide gaps, which have no points
   const double most = 4.0 * double(axis.size()) + 64;
   const std::size_t count =
       static_cast<std::size_t>(std::max(1.0, std::min(most, std::round(steps.back()))));

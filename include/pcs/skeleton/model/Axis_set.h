@@ -17,14 +17,14 @@
 namespace pcs {
 namespace skeleton {
 
-/// One axis and where it came from.
+/// Axis with its parent and the certainty of its direction.
 struct Fitted_axis
 {
   Axis axis;
-  Index parent = none; ///< axis that the paths to the root lead to
+  Index parent = none; ///< next axis on the paths to the root
   std::size_t number_of_points = 0;
-  double direction = 1; ///< how sure its base is one: 0 if its pieces point to both sides alike [-]
-  std::size_t meeting = 0; ///< node where two pieces that point away from each other meet; 0: none
+  double direction = 1; ///< certainty of the base: 0 if its pieces point equally to both ends [-]
+  std::size_t meeting = 0; ///< node between two pieces of opposite directions; 0: none
 };
 
 struct Axis_set
@@ -37,19 +37,19 @@ struct Axis_set
   Density_field density_field;
   Visibility_field facing_field;
 
-  /// Points per area of a branch at a place, along a unit vector [1/L^2].
+  /// Returns the points per area of a branch at `place` along the unit vector `along` [1/L^2].
   double density_at(const Vec3& place, const Vec3& along) const
   {
     return density_field.is_known() ? density_field(place, along) : density;
   }
-  /// The same at a node of an axis.
+  /// Returns the points per area at a node of an axis [1/L^2].
   double density_at(const Axis& axis, std::size_t k) const
   {
     const Vec3 d = axis[std::min(axis.size() - 1, k + 1)].point - axis[k > 0 ? k - 1 : 0].point;
     const double length = d.norm();
     return density_at(axis[k].point, length > 0 ? Vec3(d / length) : Vec3(Vec3::UnitZ()));
   }
-  /// The mean outward normal of the points at a node; zero where nothing is known.
+  /// Returns the expected mean outward normal of the points at a node; zero if it is not known.
   Vec3 visibility_at(const Axis& axis, std::size_t k) const
   {
     const Vec3 d = axis[std::min(axis.size() - 1, k + 1)].point - axis[k > 0 ? k - 1 : 0].point;
@@ -60,7 +60,8 @@ struct Axis_set
 
   bool is_covered(Index i) const { return axis_of_point[i] != none; }
 
-  /// How far `p` lies outside of the axis that explains point `i`; negative inside [L].
+  /// Returns the signed distance of `p` from the surface of the axis that explains point `i`;
+  /// negative inside [L].
   double height_above(Index i, const Vec3& p) const
   {
     const Axis& axis = axes[axis_of_point[i]].axis;

@@ -18,8 +18,8 @@ namespace skeleton {
 
 namespace internal {
 
-/// Groups nodes, parents first and the root at the front, into branches. `number()` is the new
-/// index of each node.
+/// Decomposition of a tree of nodes into branches. Parents come before children, and the root is
+/// first. `number()` has the new index of each node.
 class Branch_grouper
 {
 public:
@@ -54,7 +54,7 @@ private:
     }
   }
 
-  /// The node a way ahead of `v` (to where most wood is) or behind it.
+  /// Returns the node at `length` ahead of `v` towards the largest wood volume, or behind it.
   Index ahead(Index v, double length) const
   {
     double gone = 0;
@@ -79,8 +79,8 @@ private:
     return v;
   }
 
-  /// At a fork, the child that goes on is straight and carries most: sums change little when a tip
-  /// is lost.
+  /// Chooses the child that continues the branch at each fork by straightness and supported wood
+  /// volume. Sums of volumes change little if a tip is missing.
   void choose_continuations()
   {
     const std::size_t n = m_tree.nodes.size();
@@ -107,12 +107,12 @@ private:
     }
   }
 
-  /// Follows the continuations, inserts missing bases and drops needless ones.
+  /// Traverses the continuations, inserts missing bases and drops coincident nodes.
   void number_branches()
   {
     std::vector<Branch_node> nodes;
     std::vector<Index> number(m_tree.nodes.size(), none);
-    std::vector<std::pair<Index, Index>> stack{{0, none}}; // first node, new number of the seat
+    std::vector<std::pair<Index, Index>> stack{{0, none}}; // first node, index of its parent
     while (!stack.empty()) {
       const auto [start, seat] = stack.back();
       stack.pop_back();
@@ -153,13 +153,13 @@ private:
     m_number = std::move(number);
   }
 
-  /// What a unit of the cosine counts against the logarithm of what a child carries [-].
+  /// Weight of the cosine against the logarithm of the supported volume [-].
   static constexpr double straightness = 8;
   double m_spacing;
   Branch_tree m_tree;
   std::vector<std::vector<Index>> m_child;
   std::vector<Index> m_next, m_number;
-  std::vector<double> m_carried; ///< squared radii times lengths
+  std::vector<double> m_carried; ///< sums of squared radii times lengths of descendants [L^3]
 };
 
 } // namespace internal

@@ -13,7 +13,7 @@
 namespace pcs {
 namespace skeleton {
 
-/// A node of the result. Parents have smaller numbers than their children.
+/// Node of the result. Parents have smaller indices than their children.
 struct Branch_node : Axis_node
 {
   Index parent = none;
@@ -21,7 +21,7 @@ struct Branch_node : Axis_node
   double major_radius = 0, minor_radius = 0; ///< of the section; 0: a circle [L]
   Vec3 major_axis = Vec3::Zero();
 
-  /// Makes the section smaller or larger, of the same shape.
+  /// Scales the section without changing its shape.
   void resize(double new_radius)
   {
     if (radius > 0) {
@@ -34,7 +34,7 @@ struct Branch_node : Axis_node
 
 struct Branch
 {
-  Index parent = none; ///< branch
+  Index parent = none; ///< parent branch
   int order = 0;
   std::vector<Index> nodes; ///< the first lies on the axis of the parent
 };
@@ -46,7 +46,7 @@ struct Branch_tree
   std::vector<Index> node_of_point; ///< per point of the scan; `none`: not explained
   std::size_t number_of_unreached_axes = 0;
 
-  /// Whether the edge to `v` leads to the base of another branch.
+  /// Whether `v` is the base of its branch, so that its edge leads to another branch.
   bool is_base(Index v) const
   {
     return nodes[v].parent == none || nodes[nodes[v].parent].branch != nodes[v].branch;

@@ -17,7 +17,7 @@
 namespace pcs {
 namespace skeleton {
 
-/// What one good section says about the scan.
+/// Sample of point density and visibility at a reliable section.
 struct Density_sample
 {
   double density; ///< points per area [1/L^2]
@@ -27,19 +27,19 @@ struct Density_sample
   Vec3 facing = Vec3::Zero(); ///< mean of the outward normals of its points
 };
 
-/// Places relative to the middle of samples, in their spread. Beyond the samples a field goes on as
-/// at the nearest place among them: a polynomial that was learned on a trunk says nothing of the
-/// crown.
+/// Normalized coordinates relative to the mean and spread of samples. Beyond the samples, a field
+/// is evaluated at the nearest position among them: a polynomial fitted on a trunk does not
+/// extrapolate to the crown.
 class Sample_frame
 {
 public:
   Sample_frame() = default;
-  /// At least one sample. In learn_fields.h.
+  /// Requires at least one sample. Defined in fit_fields.h.
   explicit Sample_frame(const std::vector<Density_sample>& samples);
 
   Vec3 operator()(const Vec3& place) const { return m_scale * (place - m_center); }
 
-  /// That of the nearest place in the box about nearly all samples.
+  /// Returns coordinates clamped to the box around nearly all samples.
   Vec3 within(const Vec3& place) const
   {
     const Vec3 q = m_sides.transpose() * (*this)(place);
@@ -49,29 +49,30 @@ public:
 private:
   Vec3 m_center = Vec3::Zero();
   double m_scale = 1;
-  Eigen::Matrix3d m_sides = Eigen::Matrix3d::Identity(); ///< of the box, by columns
-  Vec3 m_reach = Vec3::Zero();                           ///< half its lengths, in the frame
+  Eigen::Matrix3d m_sides = Eigen::Matrix3d::Identity(); ///< axes of the box, by columns
+  Vec3 m_reach = Vec3::Zero();                           ///< half extents of the box, in the frame
 };
 
 /*!
-  Points thin out with the distance from a station, and where a branch points to it: the logarithm
-  of the density is a polynomial of second degree of the place and of the direction. Robust least
-  squares with a ridge; neither a place nor a prediction leaves the range of the samples.
+  Point density on branches. It decreases with the distance from a station, and on branches directed
+  towards the station. The logarithm of the density is a polynomial of second degree of position and
+  direction, fitted by robust ridge regression. Positions and predictions are clamped to the range
+  of the samples.
 */
 class Density_field
 {
 public:
   static constexpr std::size_t fewest_samples = 60;
-  static constexpr double shared = 5; ///< sections next to each other share points [count]
+  static constexpr double shared = 5; ///< adjacent sections that have points in common [count]
 
   /// Whether there were enough samples.
   bool is_known() const { return m_is_known; }
 
-  /// Fits the field to samples of positive density. O(samples). In learn_fields.h, as it takes long
-  /// to compile.
+  /// Fits the field to samples of positive density. O(samples). Defined in fit_fields.h, as it
+  /// takes long to compile.
   void learn(const std::vector<Density_sample>& all);
 
-  /// Points per area of a branch at `place` that runs along the unit vector `along` [1/L^2].
+  /// Returns the points per area of a branch at `place` along the unit vector `along` [1/L^2].
   double operator()(const Vec3& place, const Vec3& along) const
   {
     const double value = m_middle + m_weights.dot(row(m_frame.within(place), along));
@@ -83,10 +84,10 @@ private:
   static constexpr double least_deviation = 0.05;
   using Row = Eigen::Matrix<double, size, 1>;
 
-  /// `q` is a place in the frame.
+  /// `q`: position in the frame [-].
   static Row row(const Vec3& q, const Vec3& t)
   {
-    const double root = std::sqrt(2.0); // the ridge is the same for a turned scan
+    const double root = std::sqrt(2.0); // makes the ridge invariant to rotations
     Row r;
     r << 1, q.x(), q.y(), q.z(), q.x() * q.x(), q.y() * q.y(), q.z() * q.z(), root * q.x() * q.y(),
         root * q.x() * q.z(), root * q.y() * q.z(), t.x() * t.x(), t.y() * t.y(), t.z() * t.z(),

@@ -16,11 +16,11 @@
 namespace pcs {
 namespace skeleton {
 
-/// The members of each group, in increasing order.
+/// Members of each group in increasing order.
 class Index_groups
 {
 public:
-  /// `group_of_member` has the group of each member, or `none`. O(members + groups).
+  /// `group_of_member`: group of each member, or `none`. O(members + groups).
   Index_groups(std::size_t number_of_groups, const std::vector<Index>& group_of_member)
     : m_first(pcs::internal::compress_rows<Index>(
           number_of_groups,
@@ -37,7 +37,7 @@ public:
   }
 
 private:
-  std::vector<Index> m_members, m_first; // the first is filled by the second
+  std::vector<Index> m_members, m_first; // the initialization of `m_first` fills `m_members`
 };
 
 } // namespace skeleton

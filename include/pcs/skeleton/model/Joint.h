@@ -12,12 +12,12 @@
 namespace pcs {
 namespace skeleton {
 
-/// Where an axis sits on its parent.
+/// Attachment of an axis to its parent.
 struct Joint
 {
-  Index parent = none; ///< `none`: the root, or out of reach
+  Index parent = none; ///< `none`: the root, or no parent within reach
   Axis_place place;
-  bool is_reversed = false; ///< its tip is the base
+  bool is_reversed = false; ///< the tip of the axis is its base
   double cost = std::numeric_limits<double>::infinity();
 };
 

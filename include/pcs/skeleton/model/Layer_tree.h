@@ -13,21 +13,20 @@
 namespace pcs {
 namespace skeleton {
 
-/// Thickness of a layer in spacings [-].
+/// Thickness of a level set in spacings [-].
 constexpr double layer_thickness = 3;
 
-/// A node is a connected part of a layer. Parents have smaller numbers than their children.
+/// Tree whose nodes are level-set components. Parents have smaller indices than their children.
 struct Layer_tree
 {
-  std::vector<Index> node_of_point; ///< `none` where no path leads
+  std::vector<Index> node_of_point; ///< `none` for unreached points
   std::vector<Index> parent;        ///< `none` at the sources
   std::vector<Vec3> center;         ///< mean of the points of a node
-  std::vector<double> spread;       ///< root of the mean squared distance from it [L]
-  std::vector<Index>
-      /// the child that continues a thick ring; itself: the ring ends here; `none`: no ring
-      next_in_ring;
+  std::vector<double> spread;       ///< root mean square distance of the points from it [L]
+  //! child that continues a thick ring; the node itself: the ring ends here; `none`: no ring
+  std::vector<Index> next_in_ring;
   std::vector<Index> first; ///< offsets into `point`
-  std::vector<Index> point; ///< the points node by node
+  std::vector<Index> point; ///< points, ordered by node
 
   std::size_t size() const { return parent.size(); }
   std::size_t count(Index node) const { return first[node + 1] - first[node]; }

@@ -12,7 +12,7 @@
 namespace pcs {
 namespace skeleton {
 
-/// Count, sum, and sum of squares of points, which should lie near the origin.
+/// Count, sum, and sum of outer products of points, which should lie near the origin.
 struct Moments
 {
   double count = 0;

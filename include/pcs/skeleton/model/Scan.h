@@ -22,16 +22,16 @@ namespace skeleton {
 
 using neighborhood::Vec3;
 using Index = std::uint32_t;
-/// No point, no node, no branch.
+/// Index of no point, node or branch.
 constexpr Index none = std::numeric_limits<Index>::max();
 
 /// Neighbours kept per point [count].
 constexpr std::size_t neighbors_per_point = 12;
-/// The neighbour whose distance measures the local spacing; the first is too noisy.
+/// Rank of the neighbour whose distance is the local spacing; the nearest is too noisy.
 constexpr std::size_t spacing_neighbor = 4;
 
-/// A scan ready for the stages. Points are distinct, in spatial order, in the coordinates of
-/// `frame`. It stays where it is: the search refers to its points.
+/// Prepared scan. Points are distinct, in spatial order, in the coordinates of `frame`. It is not
+/// copied or moved, since the search refers to its points.
 struct Scan
 {
   Scan() = default;
@@ -40,9 +40,9 @@ struct Scan
 
   Scan_frame frame;
   std::vector<Vec3> points;
-  std::vector<Index> point_of_input; ///< which of `points` an input point became
+  std::vector<Index> point_of_input; ///< index into `points` of each input point
   pcs::internal::Huge_vector<std::array<Index, neighbors_per_point>>
-      neighbors;                     ///< nearest first, `none` behind
+      neighbors;                     ///< nearest first, padded with `none`
   std::vector<double> local_spacing; ///< distance to the 4th neighbour [L]
   std::vector<std::uint8_t> is_outlier;
   double spacing = 0; ///< median distance to the nearest neighbour [L]
@@ -51,7 +51,7 @@ struct Scan
   std::size_t size() const { return points.size(); }
 };
 
-/// The lower median; rearranges `values`. 0 if there are none.
+/// Returns the lower median; 0 if there are no values. Reorders `values`.
 template <class T>
 T median(std::vector<T>& values)
 {

@@ -13,10 +13,10 @@ namespace pcs {
 namespace skeleton {
 
 /*!
-  An origin in the middle of the points, the third axis upwards, the first to where most far points
-  lie, a typical distance of points from the origin as unit. All work is done in these coordinates,
-  rounded to a grid: copies of a scan then are the same scan bit by bit, and rounding decides
-  nothing.
+  Local frame. The origin is a robust mean of the points, the third axis points upwards, the first
+  towards the side with most distant points. The unit is a typical distance of points from the
+  origin. All computations use these coordinates, rounded to a grid: transformed copies of a scan
+  are then bitwise identical, and results do not depend on rounding.
 */
 struct Scan_frame
 {
@@ -30,9 +30,9 @@ struct Scan_frame
   Vec3 to_input(const Vec3& p) const { return unit * (axes.transpose() * p) + origin; }
   Vec3 direction_to_input(const Vec3& d) const { return axes.transpose() * d; }
 
-  /// The local coordinates on the grid.
+  /// Returns local coordinates, rounded to the grid.
   Vec3 to_grid(const Vec3& p) const { return rounded(to_local(p)); }
-  /// Local coordinates, on the grid.
+  /// Rounds local coordinates to the grid.
   static Vec3 rounded(const Vec3& local)
   {
     constexpr double cells = 1 << 24; // per unit: far below the noise of scans, far above rounding

@@ -19,13 +19,13 @@ namespace skeleton {
 
 namespace internal {
 
-/// Mean and standard deviations across `up` of a set of points.
+/// Mean of a set of points, and standard deviations perpendicular to `up`.
 struct Slab_shape
 {
   Vec3 mean = Vec3::Zero();
   Vec3 along =
-      Vec3::UnitX(); ///< direction of the largest spread, in the sense in which the points rise
-  double length = 0, width = 0; ///< standard deviations along and across it
+      Vec3::UnitX(); ///< direction of the largest spread, oriented to where the points rise
+  double length = 0, width = 0; ///< standard deviations along and across it [L]
 
   Slab_shape(const Scan& scan, const std::vector<Index>& points, const Vec3& up)
   {

@@ -19,10 +19,11 @@ namespace pcs {
 namespace skeleton {
 
 /*!
-  One station sees one side of every branch, and of outer branches several see the outside. The mean
-  of the outward normals of a section's points is, across the axis, a linear function of the place.
-  Robust least squares with a ridge over sections whose radius is certain; thin ones, whose points
-  would fit circles on both sides, then are fitted on the right one.
+  Visible side of branches. One station sees one side of every branch, and several stations see the
+  outer side of outer branches. The mean outward normal of the points of a section, perpendicular to
+  the axis, is modeled as a linear function of position. The model is fitted by robust ridge
+  regression to sections of reliable radius. It selects the correct side for thin sections, whose
+  points fit circles on both sides.
 */
 class Visibility_field
 {
@@ -30,11 +31,11 @@ public:
   /// Whether there were enough samples.
   bool is_known() const { return m_is_known; }
 
-  /// Fits the field. O(samples). In learn_fields.h.
+  /// Fits the field. O(samples). Defined in fit_fields.h.
   void learn(const std::vector<Density_sample>& all);
 
-  /// The mean outward normal of the points of a branch at `place` that runs along the unit vector
-  /// `along`; short where points lie on all sides.
+  /// Returns the expected mean outward normal of the points of a branch at `place` along the unit
+  /// vector `along`; short where points lie on all sides [-].
   Vec3 operator()(const Vec3& place, const Vec3& along) const
   {
     const Row r = row(place);
@@ -46,14 +47,14 @@ public:
     return length > largest ? Vec3(largest / length * facing) : facing;
   }
 
-  /// How far typical sections are from that [-].
+  /// Returns the median deviation of sections from the model [-].
   double deviation() const { return m_deviation; }
 
 private:
   static constexpr Eigen::Index size = 4;
   static constexpr double least_deviation = 0.05;
   static constexpr double largest =
-      0.25 * 3.14159265358979323846; // of a half that one station sees
+      0.25 * 3.14159265358979323846; // of the half that one station sees
   using Row = Eigen::Vector4d;
   using Weights = Eigen::Matrix<double, 3 * size, 1>;
   using Matrix = Eigen::Matrix<double, 3 * size, 3 * size>;

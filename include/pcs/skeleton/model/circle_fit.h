@@ -20,11 +20,11 @@ struct Circle
 {
   Vec2 center = Vec2::Zero();
   double radius = 0;    ///< 0: no circle
-  double deviation = 0; ///< root of the mean squared distance of the points from it [L]
+  double deviation = 0; ///< root mean square distance of the points from it [L]
 };
 
-/// Taubin's fit (Newton's method on its characteristic polynomial): no bias on short arcs. At least
-/// 3 points.
+/// Fits a circle by Taubin's method (Newton's method on its characteristic polynomial), which is
+/// unbiased on short arcs. At least 3 points.
 inline Circle fit_circle(const std::vector<Vec2>& points)
 {
   Circle circle;
@@ -79,11 +79,11 @@ inline Circle fit_circle(const std::vector<Vec2>& points)
   return circle;
 }
 
-/// Sectors of a full turn that arcs are measured in [count].
+/// Number of sectors of a full turn for measuring arcs [count].
 constexpr int number_of_sectors = 12;
 
-/// How many of the sectors around `center` hold a point. The first sector begins at the mean of the
-/// points, so that the count does not depend on the frame of the plane.
+/// Counts the sectors around `center` that contain a point. The sectors are aligned with the mean
+/// of the points, so that the count does not depend on the frame of the plane.
 inline int covered_sectors(const std::vector<Vec2>& points, const Vec2& center)
 {
   Vec2 mean = Vec2::Zero();

@@ -15,7 +15,7 @@
 namespace pcs {
 namespace skeleton {
 
-/// The next node of the same branch; `none` at its tip.
+/// Returns the next node of the same branch for each node; `none` at tips.
 inline std::vector<Index> successors(const Branch_tree& tree)
 {
   std::vector<Index> next(tree.nodes.size(), none);
@@ -25,20 +25,21 @@ inline std::vector<Index> successors(const Branch_tree& tree)
   return next;
 }
 
-/// The nearest place to a point.
+/// Projection of a point onto an edge.
 struct Place_on_edge
 {
   double squared_distance = std::numeric_limits<double>::infinity();
-  Vec3 offset = Vec3::Zero(); ///< from the axis to the point
-  double radius = 0;          ///< of the branch there
+  Vec3 offset = Vec3::Zero(); ///< from the axis to the point [L]
+  double radius = 0;          ///< of the branch at the projection [L]
 };
 
 enum class Base_edge {
   left_out,
-  cylinder ///< of the radius of the branch, as in its surface
+  cylinder ///< with the radius of the branch, as in its surface
 };
 
-/// On the edge before node `v` and the two behind it, on its branch. `next` are the `successors()`.
+/// Projects `point` onto the nearest of the edge before node `v` and the two behind it on its
+/// branch. `next`: `successors()` of the tree.
 inline Place_on_edge nearest_edge(const Branch_tree& tree,
                                   const std::vector<Index>& next,
                                   Index v,

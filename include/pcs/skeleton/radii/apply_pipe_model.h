@@ -18,14 +18,14 @@
 namespace pcs {
 namespace skeleton {
 
-/// The pipe model, as an upper bound.
+/// Options of the pipe model, which is an upper bound.
 struct Pipe_model_options
 {
-  double slack = 3;     ///< areas of wood add up to one to two times that of the section below [-]
-  double thicker = 1.2; ///< proven branches this many times thicker than their parent stand alone
+  double slack = 3;     ///< most total area per area below; one to two is typical of wood [-]
+  double thicker = 1.2; ///< beyond this ratio to the parent, proven branches are independent
   double proven =
-      0.7; ///< share of the area of a branch that must be proven, or nothing of it is [-]
-  std::size_t bins = 128; ///< of the longest way from the root [count]
+      0.7; ///< least proven fraction of the area of a branch; below it, no section is proven [-]
+  std::size_t bins = 128; ///< of the longest path from the root [count]
   int rounds = 6;
 };
 
@@ -70,7 +70,8 @@ public:
 private:
   Index seat_of(Index b) const { return m_tree.nodes[m_tree.branches[b].nodes.front()].parent; }
 
-  /// Chance proves single sections in a cloud of leaves, not most of a branch.
+  /// Keeps proven sections only in branches that are mostly proven: in leaves, single sections may
+  /// be proven by chance.
   void keep_proven()
   {
     m_is_kept.assign(m_tree.nodes.size(), 0);
@@ -87,7 +88,7 @@ private:
     }
   }
 
-  /// Branches that are proven to be thicker than what they sit on: their joints are wrong.
+  /// Finds branches that are proven to be thicker than their parent: their joints are wrong.
   void find_independent()
   {
     const std::size_t n = m_tree.branches.size();
@@ -106,22 +107,22 @@ private:
     }
   }
 
-  /// What passes a bin.
+  /// The branches that pass a bin.
   struct Passing
   {
-    double area = 0, count = 0; ///< sum of squared radii, branches
+    double area = 0, count = 0; ///< sum of squared radii, number of branches
   };
-  /// What is allowed in a bin.
+  /// The upper bound of a bin.
   struct Limit
   {
-    double factor = 1; ///< of the squared radii
-    double share = 0;  ///< squared radius if all were equal; nothing is scaled below it
+    double factor = 1; ///< for the squared radii
+    double share = 0;  ///< squared radius of equal branches, the lower bound of scaling
   };
   using Passings = std::vector<Passing>; // per bin
   using Limits = std::vector<Limit>;     // per bin; empty: none
 
-  /// Calls `visit(v, passings)` for the nodes of a branch from its tip to its base, with all that
-  /// `v` carries.
+  /// Calls `visit(v, passings)` for the nodes of a branch from its tip to its base. `passings` sums
+  /// up the branches above `v`.
   template <class Visit>
   Passings walk(Index b, const std::vector<Passings>& of_branch, const Visit& visit) const
   {
@@ -136,7 +137,7 @@ private:
             sums[i].count += of_branch[c][i].count;
           }
       visit(v, sums);
-      // the edge before the node fills the bins that begin on it
+      // the edge towards the root counts for the bins that begin on it
       const std::size_t from = k > 0 ? m_bin[nodes[k - 1]] : m_bin[v];
       const double area = m_tree.nodes[v].radius * m_tree.nodes[v].radius;
       for (std::size_t i = from; i < m_bin[v]; ++i) {
@@ -151,10 +152,10 @@ private:
   {
     const std::size_t n = m_tree.branches.size();
     std::vector<Passings> of_branch(n);
-    std::vector<std::vector<std::pair<Index, Limits>>> limits(n); // by node, from the tip on
+    std::vector<std::vector<std::pair<Index, Limits>>> limits(n); // by node, from the tip
     for (std::size_t b = n; b-- > 0;) {
       const std::vector<Index>& nodes = m_tree.branches[b].nodes;
-      std::vector<double> thickest(m_rules.bins, 0); // the thickest node of a bin stands for it
+      std::vector<double> thickest(m_rules.bins, 0); // thickest proven radius in each bin
       for (const Index v : nodes)
         if (m_is_proven[v])
           thickest[m_bin[v]] = std::max(thickest[m_bin[v]], m_tree.nodes[v].radius);
@@ -212,21 +213,21 @@ private:
   }
 
   const std::vector<std::uint8_t>& m_is_proven;
-  std::vector<std::uint8_t> m_is_kept; // whatever it adds up to
+  std::vector<std::uint8_t> m_is_kept; // exempt from limits
   const Pipe_model_options& m_rules;
   Branch_tree& m_tree;
   std::vector<std::size_t> m_bin;
-  std::vector<std::vector<Index>> m_children; // branches that sit on a node
+  std::vector<std::vector<Index>> m_children; // child branches of a node
   std::vector<std::uint8_t> m_is_independent;
 };
 
 } // namespace internal
 
 /*!
-  Where leaves were taken for wood, the areas of all branches at one distance from the root add up
-  to many times that of the trunk. Wood does not do that: scales the radii down at such distances,
-  for what each node carries. Scaled nodes count as inferred. Returns how many there are. O((nodes +
-  branches) * bins).
+  Bounds the radii by the pipe model. Where leaves were classified as wood, the total area of all
+  branches at one distance from the root is many times that of the trunk, which wood does not reach.
+  Scales the radii down at such distances, for the branches that each node supports. Scaled nodes
+  count as inferred. Returns their number. O((nodes + branches) * bins).
 */
 inline std::size_t apply_pipe_model(const std::vector<std::uint8_t>& is_proven,
                                     const Pipe_model_options& rules,

@@ -22,37 +22,37 @@
 namespace pcs {
 namespace skeleton {
 
-/// When points support a radius, and what bounds the others.
+/// Criteria for the point support of radii, and bounds for unsupported radii.
 struct Support_options
 {
-  double depth = 0.3;          ///< points this many radii below the surface lie inside ...
-  double depth_noise = 2;      ///< ... if that is more than this many times the noise
-  double filled = 0.2;         ///< share inside above which a section is a bush of leaves [-]
-  double branch_filled = 0.15; ///< the same from the base of the branch on [-]
-  std::size_t reach = 2;       ///< nodes on both sides that are looked at with one [count]
-  double fewest = 12;          ///< points that support a section [count]
-  double expected = 0.25;      ///< share of the expected ones [-]
-  double thicker = 1.5; ///< no branch is this many times thicker than its parent at the joint, but
-                        ///< where the points prove it, by ...
-  double proof_expected = 0.5; ///< ... this share of the expected ones on the surface,
-  double proof_filled = 0.05;  ///< ... at most this share inside,
-  double proof_error = 0.1;    ///< ... a standard error below this many radii [-];
-  //! with an error below this, and where something as thick is below, `expected` is enough: one
-  //! side may be hidden
+  double depth = 0.3;          ///< points this many radii below the surface are inside ...
+  double depth_noise = 2;      ///< ... if this depth exceeds this many times the noise
+  double filled = 0.2;         ///< fraction of inside points above which a section is leaves [-]
+  double branch_filled = 0.15; ///< the same for all sections from the base [-]
+  std::size_t reach = 2;       ///< nodes included on both sides [count]
+  double fewest = 12;          ///< least number of points of a supported section [count]
+  double expected = 0.25;      ///< ... and their least fraction of the expected number [-]
+  double thicker = 1.5; ///< largest ratio of the radius to that below, unless points prove a
+                        ///< larger one by ...
+  double proof_expected = 0.5; ///< ... this fraction of the expected points on the surface,
+  double proof_filled = 0.05;  ///< ... at most this fraction of points inside,
+  double proof_error = 0.1;    ///< ... and a standard error below this many radii [-]
+  //! an error below this with an equally thick section below requires only `expected` points, since
+  //! one side may be occluded [-]
   double proof_precise = 0.03;
-  double mostly = 0.7; ///< with this share of its volume proven a branch is no bush [-]
+  double mostly = 0.7; ///< least proven fraction of the volume of a branch that is not leaves [-]
   double slack =
-      3; ///< bound of a section that nothing speaks for or against, in radii by allometry
-  double filled_slack = 1; ///< the same of a filled one
+      3; ///< bound of a section without evidence, in allometric radii [-]
+  double filled_slack = 1; ///< the same for a filled section [-]
   double foot = 8;         ///< length of the foot of a trunk, in radii [-]
   Pipe_model_options pipes;
-  double thinnest = 0.16; ///< no bound is below this many spacings: a single row of points
+  double thinnest = 0.16; ///< least bound, in spacings: a single row of points [-]
 };
 
-/// What the points of each node say.
+/// The points on and inside the section of each node.
 struct Section_support
 {
-  std::vector<double> on, inside; ///< points near the surface or outside of it, and inside
+  std::vector<double> on, inside; ///< numbers of points: near or outside the surface, inside
 
   explicit Section_support(const Branch_tree& tree)
     : on(tree.nodes.size(), 0), inside(tree.nodes.size(), 0)
@@ -60,7 +60,7 @@ struct Section_support
   }
 };
 
-/// Counts the points on the surface of each node and inside of it. O(points).
+/// Counts the points on and inside the surface of each node. O(points).
 template <class ConcurrencyTag>
 Section_support support_of_sections(const Scan& scan,
                                     const Branch_tree& tree,
@@ -90,12 +90,12 @@ Section_support support_of_sections(const Scan& scan,
 
 namespace internal {
 
-/// What the points say of the sections of one branch, each at least as long as thick.
+/// The point support of the sections of one branch; each section is at least as long as thick.
 struct Branch_support
 {
-  std::vector<double> on, inside, expected; ///< points about each node
+  std::vector<double> on, inside, expected; ///< points around each node
   std::vector<std::uint8_t> is_proven, is_precise;
-  bool is_mostly_proven = false; ///< then what is filled is no cloud of leaves
+  bool is_mostly_proven = false; ///< then filled sections are not leaves
 
   Branch_support(const Section_support& support,
                  const Branch& branch,
@@ -109,7 +109,7 @@ struct Branch_support
       is_precise(on.size(), 0)
   {
     const std::size_t n = on.size();
-    double all = 0, proven = 0; // squared radii times lengths
+    double all = 0, proven = 0; // sums of squared radii times lengths
     for (std::size_t k = 0; k < n; ++k) {
       const Branch_node& node = tree.nodes[branch.nodes[k]];
       const auto is_near = [&](std::size_t j) {
@@ -148,11 +148,11 @@ private:
   }
 };
 
-/// The lowest stretch of the trunk, of which single sections may be anything.
+/// The lowest part of the trunk, where single sections are unreliable.
 struct Trunk_foot
 {
-  std::size_t size = 0; ///< nodes of the trunk; 0: another branch
-  double radius = 0;    ///< of the sections that are not filled, the median by length [L]
+  std::size_t size = 0; ///< number of its nodes; 0: not a trunk
+  double radius = 0;    ///< median of its hollow sections, weighted by length [L]
 
   Trunk_foot(const Branch_tree& tree,
              const Branch& branch,
@@ -188,18 +188,18 @@ struct Trunk_foot
     }
   }
 
-  /// Whether a node of it is much thinner than the others: trunks are not.
+  /// Returns whether a node of the foot is much thinner than the others, which is implausible.
   bool is_odd(std::size_t k, double node_radius, const Support_options& rules) const
   {
     return k < size && rules.thicker * node_radius < radius;
   }
 };
 
-/// The longest way from each node to a tip.
+/// Returns the length of the longest path from each node to a tip.
 inline std::vector<double> ways_to_tips(const Branch_tree& tree)
 {
   std::vector<double> way(tree.nodes.size(), 0);
-  for (std::size_t v = tree.nodes.size(); v-- > 1;) { // children come behind their parents
+  for (std::size_t v = tree.nodes.size(); v-- > 1;) { // children come after their parents
     const Index p = tree.nodes[v].parent;
     way[p] = std::max(way[p], way[v] + (tree.nodes[v].point - tree.nodes[p].point).norm());
   }
@@ -209,11 +209,11 @@ inline std::vector<double> ways_to_tips(const Branch_tree& tree)
 } // namespace internal
 
 /*!
-  Scanners see the surface of wood, not what is inside. Sections with points inside are bushes of
-  leaves, with few points anything: their radii are at most what is left, by the longest way to a
-  tip, of the last radius below that the points support, or the largest one that they support
-  farther out on the branch. Such nodes count as inferred. Returns how many there are. O(points +
-  nodes).
+  Bounds radii without sufficient point support. Scanners sample the surface of wood, not its
+  interior: sections with many inside points are leaves, and sections with few points are
+  unreliable. The bound is the last supported radius towards the root, scaled by the ratio of the
+  longest paths to a tip, or the largest supported radius farther out on the branch. Bounded nodes
+  count as inferred. Returns their number. O(points + nodes).
 */
 inline std::size_t bound_radii(const Scan& scan,
                                const Section_support& support,
@@ -227,8 +227,8 @@ inline std::size_t bound_radii(const Scan& scan,
   struct Reference
   {
     double radius = 0, way = 0; ///< of the last supported node towards the root; 0: none
-    double narrowest = 0;       ///< radius since the last proven one
-    double thickest = 0;        ///< of all supported ones
+    double narrowest = 0;       ///< least radius since the last proven one
+    double thickest = 0;        ///< largest of all supported radii
   };
   std::vector<Reference> reference(tree.nodes.size());
   std::vector<std::uint8_t> is_sure(tree.nodes.size(), 0);
@@ -247,7 +247,7 @@ inline std::size_t bound_radii(const Scan& scan,
       all_on += support.on[v];
       all_inside += support.inside[v];
       const Reference below = node.parent == none ? Reference() : reference[node.parent];
-      // then the joint is wrong, or the parent
+      // a proven section thicker than its parent indicates a wrong joint or parent
       const bool is_proven = sections.is_proven[k] != 0 ||
                              (sections.is_precise[k] != 0 && node.radius <= below.thickest);
       const bool is_bush = all_inside > rules.branch_filled * (all_on + all_inside) &&

@@ -16,22 +16,23 @@
 namespace pcs {
 namespace skeleton {
 
-/// How much of the width of a beam is added to a radius.
+/// Options for the widening of radii by the beam width.
 struct Beam_divergence_options
 {
   double edge_share =
-      0.5; ///< of the beams that only their border meets, and that give a point nevertheless [-]
+      0.5; ///< fraction of beams that hit only with their border and still yield a point [-]
   double shift =
       1.0 /
-      6; ///< by which such points lie outside on the average, weighted as in the fit, in widths [-]
-  double least = 0.25; ///< share of the radius that is left at least [-]
+      6; ///< mean distance of such points outside, weighted as in the fit, in beam widths [-]
+  double least = 0.25; ///< least corrected radius, as a fraction of the fitted one [-]
 };
 
 /*!
-  A beam of width w meets a branch of radius r also where its middle passes outside, up to w / 2: of
-  all points the share f = s w / (2 r + s w) lies outside of the branch, where s of such beams give
-  a point. The fit takes that for bark: it finds r + f w / 6. Inverts this with the distance of the
-  nearest scanner. O(nodes * scanners).
+  Corrects the radii for beam divergence. A beam of width w also hits a branch of radius r if its
+  centre passes outside by up to w / 2. If a fraction s of such beams yields a point, the fraction f
+  = s w / (2 r + s w) of all points lies outside the branch, and the fit returns r + f w / 6. The
+  function inverts this relation, with w at the distance of the nearest scanner. O(nodes *
+  scanners).
 */
 inline void correct_beam_divergence(const std::vector<Vec3>& scanners,
                                     double beam_width,
@@ -45,7 +46,7 @@ inline void correct_beam_divergence(const std::vector<Vec3>& scanners,
     const double w = beam_width * distance, found = node.radius;
     if (!std::isfinite(w) || !(w > 0))
       continue;
-    // r + s w^2 / (6 (2 r + s w)) = found: grows with r where it matters, so bisection
+    // r + s w^2 / (6 (2 r + s w)) = found: increases with r in the relevant range, hence bisection
     double low = rules.least * found, high = found;
     for (int k = 0; k < 40; ++k) {
       const double r = 0.5 * (low + high);

@@ -16,21 +16,21 @@
 namespace pcs {
 namespace skeleton {
 
-/// When points lie on a grid, and what that adds to radii.
+/// Criteria for points on a voxel grid, and the widening of radii by the voxels.
 struct Voxel_size_options
 {
-  double share = 0.8;         ///< of the points whose nearest one is a step away along an axis [-]
+  double share = 0.8;         ///< least fraction of points with the nearest one a step away [-]
   double tolerance = 0.01;    ///< of the lengths [-] and directions [rad] of these steps
-  std::size_t fewest = 100;   ///< points that can tell [count]
-  std::size_t enough = 20000; ///< points that are looked at, spread over all [count]
-  double widening = 0.3;      ///< of the square of a radius, in squares of the step [-]
-  double least = 0.6;         ///< share of a radius that is left at least [-]
+  std::size_t fewest = 100;   ///< least number of points for a detection [count]
+  std::size_t enough = 20000; ///< points of an even sample [count]
+  double widening = 0.3;      ///< increase of a squared radius, in squared steps [-]
+  double least = 0.6;         ///< least corrected radius, as a fraction of the fitted one [-]
 };
 
 /*!
-  The step of a grid whose nodes the points are, as the centers of voxels are; 0: they are on none
-  [L]. There the nearest point is one step away nearly always, along one of three directions. The
-  grid may be turned. O(1), from some ten thousand points.
+  Returns the step of the grid on which the points lie, such as the centres of voxels, or 0 if there
+  is none [L]. On a grid, the nearest point is nearly always one step away, along one of three
+  directions. The grid may be rotated. O(1), from some ten thousand points.
 */
 inline double voxel_size(const Scan& scan, const Voxel_size_options& rules)
 {
@@ -38,7 +38,7 @@ inline double voxel_size(const Scan& scan, const Voxel_size_options& rules)
   const double step = scan.spacing;
   if (n < rules.fewest || !(step > 0))
     return 0;
-  std::vector<Vec3> directions; // of those that are one step away
+  std::vector<Vec3> directions; // to neighbours one step away
   for (std::size_t i = 0; i < n; i += stride) {
     const Vec3 d = scan.points[scan.neighbors[i][0]] - scan.points[i];
     if (std::abs(d.norm() - step) <= rules.tolerance * step)
@@ -47,7 +47,7 @@ inline double voxel_size(const Scan& scan, const Voxel_size_options& rules)
   const double wanted = rules.share * double((n + stride - 1) / stride);
   if (double(directions.size()) < wanted)
     return 0;
-  // three axes by two directions that are perpendicular to each other
+  // two perpendicular directions define the three axes
   const Vec3 first = directions[directions.size() / 2];
   const auto second = std::find_if(directions.begin(), directions.end(), [&](const Vec3& d) {
     return std::abs(d.dot(first)) <= rules.tolerance;
@@ -64,10 +64,10 @@ inline double voxel_size(const Scan& scan, const Voxel_size_options& rules)
 }
 
 /*!
-  The centers of the voxels that a branch touches lie farther from its axis than its surface on the
-  average: a cube of size h reaches the surface from outside as from inside, and there is more room
-  outside. The fit finds sqrt(r^2 + 0.3 h^2), nearly (simulated: the mean distance is sqrt(r^2 +
-  (0.22 to 0.39) h^2) for r up to 3 h). Inverts this. O(nodes).
+  Corrects the radii for the voxel size. The centres of the voxels that a branch touches lie, on
+  average, outside its surface: voxels of size h touch the surface from both sides, and the volume
+  outside is larger. The fit returns approximately sqrt(r^2 + 0.3 h^2) (simulated: the mean distance
+  is sqrt(r^2 + (0.22 to 0.39) h^2) for r up to 3 h). The function inverts this relation. O(nodes).
 */
 inline void correct_voxel_size(double step, const Voxel_size_options& rules, Branch_tree& tree)
 {

@@ -22,19 +22,19 @@
 namespace pcs {
 namespace skeleton {
 
-/// When a section is called an ellipse.
+/// Criteria for elliptical sections.
 struct Section_ellipse_options
 {
-  std::size_t lowest_count = 20; ///< points
-  int sectors = 10;              ///< of 12 that must hold points
-  double significance = 4;       ///< of the difference of the half axes, in standard deviations [-]
+  std::size_t lowest_count = 20; ///< least number of points [count]
+  int sectors = 10;              ///< of 12 that must have points [count]
+  double significance = 4;       ///< difference of the semi-axes, in standard deviations [-]
   double thickness = 3;          ///< smallest radius in noise [-]
 };
 
 /*!
-  The first even harmonic of the distance from the axis: `r (1 + c cos 2a + s sin 2a)`. On arcs that
-  are not nearly closed the five unknowns of an ellipse have no answer; the section stays a circle
-  there. The area stays that of the node's radius.
+  Fits the second harmonic of the distance from the axis: `r (1 + c cos 2a + s sin 2a)`. Open arcs
+  do not determine the five parameters of an ellipse; their sections remain circles. The area
+  remains that of the node's radius.
 */
 template <class ConcurrencyTag>
 void fit_section_ellipses(const Scan& scan,

@@ -25,26 +25,25 @@
 namespace pcs {
 namespace skeleton {
 
-/// How points are given to edges, and when a circle through them counts.
+/// Criteria for the assignment of points to edges and for circles through these points.
 struct Given_skeleton_options
 {
   double reach = 2,
          reach_offset =
-             4;    ///< points farther than this are no points of an edge, in radii and spacings
-  int sectors = 5; ///< of 12, that a circle must see
+             4;    ///< largest distance of points from the edge, in radii plus spacings [-]
+  int sectors = 5; ///< of 12 that must have points [count]
   double deviation = 0.25; ///< largest deviation of a circle, in radii
   double widening =
-      /// largest radius of a circle, or of a branch that is found, in median distances from the
-      /// edge
+      /// largest radius of a circle or of a detected branch, in median distances from the edge [-]
       1.5;
   double inside =
-      1.3; ///< nodes of a branch this near to its base, in radii of the parent, lie in the parent
-  std::size_t lowest_count = 3; ///< points of an edge that tell its radius
-  double thicker = 1.5; ///< a circle this many times thicker than the last one below is no section
-  double slack = 1.5;   ///< most that points without a circle change a radius, as a factor
+      1.3; ///< nodes within this many parent radii of the base lie inside the parent [-]
+  std::size_t lowest_count = 3; ///< least number of points for the radius of an edge [count]
+  double thicker = 1.5; ///< largest ratio of a circle to the last one below [-]
+  double slack = 1.5;   ///< largest change of a radius by points without a circle, as a factor [-]
   double found_thicker =
-      1.3; ///< most that a branch that is found may be thicker than the points of the edge say
-  double aligned = 0.7; ///< least cosine between an edge and a branch that is found along it
+      1.3; ///< largest ratio of a detected branch to the radius from the points of the edge [-]
+  double aligned = 0.7; ///< least cosine between an edge and a detected branch along it [-]
 };
 
 namespace internal {
@@ -76,7 +75,7 @@ public:
       const std::vector<Branch_node> alone = std::move(nodes);
       take_found();
       nodes = measured();
-      for (std::size_t v = 0; v < n; ++v) // what is found in a sparse scan may be far too thick
+      for (std::size_t v = 0; v < n; ++v) // branches in a sparse scan may be far too thick
         if (nodes[v].radius > m_rules.found_thicker * alone[v].radius)
           nodes[v] = alone[v];
     }
@@ -102,8 +101,8 @@ private:
     return nodes;
   }
 
-  /// The base of a branch lies in its parent, whose points are no measure of it: its radius is that
-  /// of the first node outside.
+  /// Replaces the radii of branch nodes inside the parent by that of the first node outside: points
+  /// of the parent do not determine them.
   void leave_parents(Branch_tree& tree) const
   {
     for (const Branch& branch : tree.branches) {
@@ -124,7 +123,7 @@ private:
     }
   }
 
-  /// Foot of a point on the edge to `v`; the edge of the root is a point.
+  /// Returns the distance of a point from the edge to `v`; the edge of the root is a point.
   double distance(Index v, const Vec3& p) const
   {
     const Vec3& a = m_nodes[m_parent[v] == none ? v : m_parent[v]];
@@ -134,8 +133,9 @@ private:
     return (p - a - t * d).norm();
   }
 
-  /// The nearest measured place on branches that were found and run along the edge to each node,
-  /// inside of them or a spacing away.
+  /// Takes the radius of each node from the nearest measured position on a detected branch. The
+  /// branch must be aligned with the edge, and the node must lie inside it or within one spacing of
+  /// its axis.
   void take_found()
   {
     const std::vector<Index> next = successors(m_found);
@@ -178,7 +178,7 @@ private:
     }
   }
 
-  /// First guess: the edge whose axis is nearest.
+  /// Assigns the points to the edges with the nearest axis, as an initial guess.
   void assign_to_nearest()
   {
     std::vector<Vec3> samples;
@@ -204,7 +204,7 @@ private:
       }
   }
 
-  /// With radii known: the edge whose surface is nearest, if it is near.
+  /// Assigns the points to the edges with the nearest surface within reach, by the current radii.
   void assign_to_surfaces()
   {
     std::vector<double> best(m_scan.size(), std::numeric_limits<double>::infinity());
@@ -234,7 +234,8 @@ private:
     }
   }
 
-  /// The radius of each edge: of a circle through its points, or the median of their distances.
+  /// Computes the radius of each edge: that of a detected branch, that of a circle through its
+  /// points, or the median of their distances.
   void measure()
   {
     const std::size_t n = m_nodes.size();
@@ -289,7 +290,7 @@ private:
     }
   }
 
-  /// Longest way from the middle of each edge to a tip.
+  /// Returns the length of the longest path from the middle of each edge to a tip.
   std::vector<double> ways_to_tips() const
   {
     const std::size_t n = m_nodes.size();
@@ -299,12 +300,12 @@ private:
       const double length = p == none ? 0 : (m_nodes[v] - m_nodes[p]).norm();
       if (p != none)
         way[p] = std::max(way[p], way[v] + length);
-      way[v] += 0.5 * length; // its children have been here
+      way[v] += 0.5 * length; // its children are complete
     }
     return way;
   }
 
-  /// The thickest circle among the next ones farther out; 0: there is none.
+  /// Returns the largest radius among the next measured sections farther out, or 0.
   std::vector<double> circles_farther_out() const
   {
     std::vector<double> radius(m_nodes.size(), 0);
@@ -317,9 +318,10 @@ private:
   }
 
   /*!
-    Radii at the nodes from those of the edges. Where neither a branch nor a circle is found,
-    branches taper with the way to their tips from the last section below, but for one farther out;
-    few points, which may be those of other branches, make them thicker by `slack` at most.
+  Computes the radii at the nodes from those of the edges. Where there is neither a detected branch
+  nor a circle, the radius decreases with the length to the tip from that of the last section below,
+  but not below a section farther out. A few points, perhaps of other branches, change it by at most
+  a factor of `slack`.
   */
   void fill_gaps(std::vector<Branch_node>& nodes) const
   {
@@ -352,7 +354,7 @@ private:
       } else {
         node.radius = m_radius[v] > 0      ? m_radius[v]
                       : farther_out[v] > 0 ? farther_out[v]
-                                           : m_scan.spacing; // no point at all is near
+                                           : m_scan.spacing; // no point is near
       }
       node.radius_error = std::max(node.radius, m_error[v]);
     }
@@ -365,15 +367,15 @@ private:
   std::vector<Index> m_parent, m_edge_of_point;
   Given_skeleton_options m_rules;
   std::vector<double> m_radius, m_error;
-  std::vector<double> m_found_radius; ///< 0: nothing is found there
+  std::vector<double> m_found_radius; ///< 0: no branch was detected
   std::vector<Index> m_found_node;
   std::vector<std::uint8_t> m_is_measured;
 };
 
 } // namespace internal
 
-/// Branches and radii along a skeleton whose positions stay; `found` is what was found in the same
-/// points, or empty. O(n log n) for edges that are about as long as thick.
+/// Computes branches and radii along a given skeleton without moving its nodes. `found` is the
+/// skeleton detected from the same points, or empty. O(n log n) for edges about as long as thick.
 inline Branch_tree measure_given(const Scan& scan,
                                  const std::vector<std::uint8_t>& is_used,
                                  const Given_skeleton& given,

@@ -19,23 +19,23 @@
 namespace pcs {
 namespace skeleton {
 
-/// When a foot is mended, and how.
+/// Options for the reconstruction of the trunk base.
 struct Trunk_base_options
 {
-  double sound = 8;      ///< length of a trunk that gives the direction below it, in radii [-] ...
-  double proven = 0.8;   ///< ... with this share of its sections proven by points [-]
-  double shortest = 2;   ///< in radii: a lower foot is left as it is [-]
-  double highest = 0.25; ///< share of the height of the tree [-]
+  double sound = 8;      ///< trunk length that defines the direction below it, in radii [-] ...
+  double proven = 0.8;   ///< ... with this least fraction of its length proven by points [-]
+  double shortest = 2;   ///< height below which a foot remains unchanged, in radii [-]
+  double highest = 0.25; ///< largest height of a foot, as a fraction of the tree height [-]
   double steep = 0.7;    ///< least rise per length of the trunk above [-]
-  double reach = 2.5;    ///< points of the foot are at most this many radii away [-]
+  double reach = 2.5;    ///< largest distance of points of the foot, in radii [-]
   double slab = 0.25;    ///< half thickness of a section, in radii ...
-  double slab_spacings = 2; ///< ... and spacings, whichever is more [-]
-  int sectors = 8;          ///< of 24, that points must be seen in
+  double slab_spacings = 2; ///< ... and in spacings, whichever is larger [-]
+  int sectors = 8;          ///< of 24 that must have points [count]
 };
 
 namespace internal {
 
-/// The outline of a section as distances from its center by sector.
+/// The outline of a section, as distances from its centre by sector.
 class Outline
 {
 public:
@@ -53,8 +53,8 @@ public:
                                           m_distances.end(),
                                           [](const auto& d) { return !d.empty(); }));
   }
-  /// Of the circle with the area of the outline; what is not seen lies between its neighbours. At
-  /// least one point.
+  /// Returns the radius of the circle with the area of the outline. Empty sectors are interpolated
+  /// between their neighbours. Requires at least one point.
   double radius()
   {
     constexpr std::size_t n = number_of_sectors;
@@ -80,8 +80,8 @@ private:
   std::array<std::vector<double>, number_of_sectors> m_distances;
 };
 
-/// The first node of the trunk from which on points prove its sections; the number of nodes if
-/// there is none.
+/// Returns the first node of the trunk above which points prove the sections, or the number of
+/// nodes if there is none.
 inline std::size_t first_sound_node(const Branch_tree& tree,
                                     const Section_support& support,
                                     double density,
@@ -109,9 +109,10 @@ inline std::size_t first_sound_node(const Branch_tree& tree,
 } // namespace internal
 
 /*!
-  Below the first stretch of the trunk that points prove to be round, the axis goes straight on, and
-  radii are those of circles with the area of the outline around it: fits there follow one buttress
-  or another. z is up. Returns the number of nodes that were moved. O(points + nodes).
+  Rebuilds the trunk below the lowest part that points prove to be round, since fits below it follow
+  single buttresses. The axis continues straight downwards, and the radii are those of circles with
+  the area of the outline around it. z points upwards. Returns the number of moved nodes. O(points +
+  nodes).
 */
 inline std::size_t rebuild_trunk_base(const Scan& scan,
                                       const std::vector<std::uint8_t>& is_used,
@@ -164,7 +165,7 @@ inline std::size_t rebuild_trunk_base(const Scan& scan,
     node.radius = node.is_measured ? outline.radius() : first.radius;
     node.radius_error = node.is_measured ? proof.proof_error * node.radius : node.radius;
   }
-  for (Branch& branch : tree.branches) { // those that sit there move with it
+  for (Branch& branch : tree.branches) { // child branches move with the axis
     Branch_node& base = tree.nodes[branch.nodes.front()];
     if (base.parent != none && tree.nodes[base.parent].branch == 0)
       base.point = tree.nodes[base.parent].point;

@@ -21,21 +21,22 @@
 namespace pcs {
 namespace skeleton {
 
-/// Which axes go to their points, and how.
+/// Criteria and weights for re-centring bounded nodes.
 struct Recentering_options
 {
-  double apart = 3;       ///< the points lie outside of the surface by this much noise on the mean,
-  double one_side = 0.85; ///< ... the mean of their normals is at least as long as this [-],
-  double fewest = 3;      ///< ... and their weights add up to at least this many [count]
+  double apart = 3;       ///< least mean distance of the points outside the surface, in noise [-],
+  double one_side = 0.85; ///< ... least length of the mean of their normals [-],
+  double fewest = 3;      ///< ... and least sum of their weights [count]
   std::size_t reach = 3;  ///< nodes on both sides whose points count [count]
-  double far = 3;         ///< points at this many radii of the fit count half [-]
-  double hold = 0.05;     ///< weight of the place where the axis was, relative to the points [-]
+  double far = 3;         ///< distance of weight 1/2, in radii of the fit [-]
+  double hold = 0.05;     ///< weight of the previous position, relative to the points [-]
   int rounds = 3;
 };
 
 namespace internal {
 
-/// Least squares of the distances of points from a surface, over the place of its axis across it.
+/// Fits the lateral position of an axis by least squares of the distances of points from its
+/// surface.
 class Axis_place_fit
 {
 public:
@@ -64,7 +65,7 @@ public:
     return m_weight >= rules.fewest && m_apart > rules.apart * noise * m_weight &&
            m_normals.norm() > rules.one_side * m_weight;
   }
-  /// By how much the axis moves. There are points.
+  /// Returns the displacement of the axis. Requires at least one point.
   Vec3 move(double hold) const
   {
     const Eigen::Matrix3d matrix = m_matrix + hold * m_weight * Eigen::Matrix3d::Identity();
@@ -81,9 +82,10 @@ private:
 } // namespace internal
 
 /*!
-  Points on one side of a branch fit a circle through them that is much too large, whose center lies
-  far behind them. Where such a radius was bounded afterwards (`before` has those of the fit), the
-  node goes back to its points. Returns how many did. O(points).
+  Re-centres nodes whose radius was bounded. With points on one side of a branch, the fitted circle
+  may be far too large, with its centre far behind the points. If its radius was bounded afterwards
+  (`before` has the fitted radii), the node moves back to its points. Returns the number of moved
+  nodes. O(points).
 */
 inline std::size_t recenter_bounded_nodes(const Scan& scan,
                                           const std::vector<double>& before,
@@ -126,7 +128,7 @@ inline std::size_t recenter_bounded_nodes(const Scan& scan,
         else
           moves[v] = fit.move(rules.hold);
       }
-    for (Index v = 0; v < n; ++v) // bases of branches lie on their parents
+    for (Index v = 0; v < n; ++v) // bases of branches coincide with their parent nodes
       tree.nodes[v].point += moves[v != 0 && tree.is_base(v) ? tree.nodes[v].parent : v];
   }
   return count();

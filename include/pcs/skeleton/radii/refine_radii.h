@@ -22,7 +22,7 @@
 namespace pcs {
 namespace skeleton {
 
-/// Options of this stage.
+/// Options of the radius refinement.
 struct Radius_options
 {
   Support_options support;
@@ -59,7 +59,7 @@ void refine_radii(const Scan& scan,
   recenter_bounded_nodes(scan, fitted, axes.noise, options.recentering, tree);
 }
 
-/// Subtracts from the radii what beam divergence and voxels add. Returns the voxel size, or 0 [L].
+/// Corrects the radii for beam divergence and voxel size. Returns the voxel size, or 0 [L].
 inline double correct_widening(const Scan& scan,
                                const std::vector<Vec3>& scanners,
                                double beam_width,

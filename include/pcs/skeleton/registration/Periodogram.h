@@ -17,25 +17,25 @@
 namespace pcs {
 namespace skeleton {
 
-/// A hypothesis and a step under which many lengths are multiples of the step.
+/// A hypothesis and a step for which many lengths are multiples of the step.
 struct Step_peak
 {
   std::size_t hypothesis = 0;
   double step = 0;     ///< [L]
-  double contrast = 0; ///< of the mean cosine with those of steps beside it [-]
-  double score = 0;    ///< contrast in usual deviations of all hypotheses [-]
+  double contrast = 0; ///< mean cosine less that of neighbouring steps [-]
+  double score = 0;    ///< contrast in typical deviations of all hypotheses [-]
 };
 
 /*!
-  For each hypothesis and each step, the mean cosine of the lengths in steps, less the mean of those
-  of a shorter and a longer step: what changes slowly with the step is the shape of the surface, not
-  a grid.
+  Computes a contrast for each hypothesis and step: the mean cosine of the lengths in steps, less
+  the mean of the cosines for a shorter and a longer step. The difference removes parts that change
+  slowly with the step; they come from the shape of the surface, not from a grid.
 */
 class Periodogram
 {
 public:
-  /// Steps from `shortest` to `longest`, each `ratio` times the one before; the contrast is with
-  /// steps `beside` places away.
+  /// Sets up steps from `shortest` to `longest`, each `ratio` times the previous one. The contrast
+  /// compares a step with those `beside` indices before and after it. Lengths count up to `reach`.
   Periodogram(double shortest, double longest, double ratio, std::size_t beside, double reach)
     : m_beside(beside), m_reach(reach)
   {
@@ -51,8 +51,8 @@ public:
   }
 
   /*!
-    `lengths_of(hypothesis)(pair)` is a length, a `float` [L]; those beyond the reach do not count.
-    O(hypotheses (pairs + steps)).
+    Computes all contrasts. `lengths_of(hypothesis)(pair)` returns a length, a `float` [L]; lengths
+    beyond the reach do not count. O(hypotheses (pairs + steps)).
   */
   template <class ConcurrencyTag, class LengthsOf>
   void compute(std::size_t number_of_hypotheses,
@@ -67,7 +67,7 @@ public:
         [&](std::size_t h) {
           const auto length_of = lengths_of(h);
           std::array<float, bins + 1> histogram{}; // the last one: beyond the reach
-          std::array<int, 1024> bin;               // of some pairs at a time, for wide instructions
+          std::array<int, 1024> bin;               // of one batch of pairs, for SIMD instructions
           for (std::size_t begin = 0; begin < number_of_pairs; begin += bin.size()) {
             const std::size_t count = std::min(bin.size(), number_of_pairs - begin);
             for (std::size_t k = 0; k < count; ++k)
@@ -91,7 +91,7 @@ public:
         16);
   }
 
-  /// The highest contrast.
+  /// Returns the peak with the highest contrast.
   Step_peak highest() const
   {
     Step_peak best;
@@ -101,14 +101,14 @@ public:
     return best;
   }
 
-  /// What stands out by at least `evidence` from the other hypotheses, highest first; `are_alike(g,
-  /// h)` tells hypotheses apart.
+  /// Returns up to `most` peaks whose contrast exceeds `evidence` deviations of all hypotheses,
+  /// highest first. Of hypotheses for which `are_alike(g, h)` holds, only the best is kept.
   template <class AreAlike>
   std::vector<Step_peak>
   outstanding(double evidence, std::size_t most, const AreAlike& are_alike) const
   {
     const std::size_t n = m_contrast.size() / size();
-    const double chance = std::sqrt(0.75 / double(m_number_of_pairs)); // of random lengths
+    const double chance = std::sqrt(0.75 / double(m_number_of_pairs)); // for random lengths
     std::vector<Step_peak> peaks, chosen;
     std::vector<double> values(n);
     for (std::size_t s = 0; s < size(); ++s) {
@@ -137,7 +137,7 @@ public:
 private:
   static constexpr std::size_t bins = 256;
 
-  /// Of the steps that have others on both sides.
+  /// Returns the number of steps that have neighbours on both sides.
   std::size_t size() const { return m_steps.size() - 2 * m_beside; }
 
   std::size_t m_beside, m_number_of_pairs = 0;

@@ -25,8 +25,7 @@ struct Point_pair
   Vec3 second() const { return middle + 0.5 * step; }
 };
 
-/// Draws pairs from points that are sorted along an octree: those that are near in this order are
-/// near in space.
+/// Draws pairs from points in octree order: points that are close in this order are close in space.
 class Pair_source
 {
 public:
@@ -35,18 +34,18 @@ public:
   {
   }
 
-  /// Median distance of points to the nearest of those around them in the order [L].
+  /// Returns the median distance of points to the nearest of their neighbours in the order [L].
   double spacing() const { return m_spacing; }
 
-  /// Up to `most` pairs whose distances are in [`low`, `high`], evenly; the same ones on each call.
-  /// O(most).
+  /// Draws up to `most` pairs with distances in [`low`, `high`], evenly over the points. The result
+  /// is deterministic. O(most).
   template <class ConcurrencyTag>
   std::vector<Point_pair> draw(double low, double high, std::size_t most) const
   {
     std::vector<Point_pair> pairs;
     const std::size_t n = m_points.size(), step = 1 + n / most;
     const double x = high / m_spacing,
-                 around = 4 * x * x; // surfaces have so many points within `high`
+                 around = 4 * x * x; // number of points of a surface within `high`
     const std::size_t reach = static_cast<std::size_t>(std::min(double(n), around));
     std::vector<std::size_t> partners;
     for (std::size_t round = 0; round * n < most * step && pairs.size() < most; ++round) {
@@ -65,7 +64,8 @@ public:
   }
 
 private:
-  /// A point at such a distance from point `i`; the number of points where some tries find none.
+  /// Returns a point with a distance in [`low`, `high`] from point `i`, or the number of points if
+  /// all tries fail.
   std::size_t
   partner(std::size_t i, std::size_t seed, std::size_t reach, double low, double high) const
   {
@@ -81,7 +81,7 @@ private:
     return m_points.size();
   }
 
-  /// A number in [0, n) that depends on `i` alone.
+  /// Returns a pseudo-random number in [0, n) that depends only on `i`.
   static std::size_t scattered(std::size_t i, std::size_t n)
   {
     std::uint64_t x = (std::uint64_t(i) + 1) * 0x9E3779B97F4A7C15u;

@@ -10,49 +10,50 @@
 namespace pcs {
 namespace skeleton {
 
-/// Lengths are in units of the scan.
+/// Options of the search for scan grids. Lengths are in units of the scan.
 struct Scan_grid_options
 {
   double nearest = 0.8,
-         farthest = 30;  ///< horizontal distance of a station from the middle of the scan [L]
-  double spacing = 0.06; ///< of the places that are tried, by their distance [-]
-  double shortest = 0.8, longest = 4; ///< distance between beams, by that of the points [-]
-  double hint = 3.2;            ///< deviations above what is usual, of what is looked at again [-]
-  double evidence = 5;          ///< standard deviations above what is usual [-]
-  double significance = 3;      ///< the same where little is tried [-]
-  double least_contrast = 0.01; ///< mean cosine [-]
+         farthest = 30;  ///< horizontal distance of a station from the centre of the scan [L]
+  double spacing = 0.06; ///< of candidate positions, relative to their distance [-]
+  double shortest = 0.8, longest = 4; ///< distance between beams, in point spacings [-]
+  double hint = 3.2;            ///< least score of a candidate direction, in deviations [-]
+  double evidence = 5;          ///< least contrast of a detection, in standard deviations [-]
+  double significance = 3;      ///< the same where few hypotheses are tested [-]
+  double least_contrast = 0.01; ///< least mean cosine for the curvature [-]
   double tilt = 0.02;           ///< of scanners, standard deviation [rad]
-  double far = 1.2;             ///< distance of points that tell the grid of a whole tree [L]
-  double least_share = 0.03;    ///< of the points that have no station yet [-]
-  std::size_t pairs = 6000;     ///< that are looked at [count]
-  std::size_t fewest_pairs = 500; ///< that can tell [count]
-  std::size_t samples = 10000;    ///< single points [count]
-  std::size_t guesses = 6;        ///< that are followed [count]
-  std::size_t fewest = 1000;      ///< points that can tell [count]
-  std::size_t most = 40;          ///< stations [count]
-  double loosest = 0.2;           ///< points of a station are this near to whole numbers [steps]
+  double far = 1.2;             ///< largest distance of pairs in the fit of a grid [L]
+  double least_share = 0.03;    ///< least fraction of the unassigned points [-]
+  std::size_t pairs = 6000;     ///< drawn for each step of the search [count]
+  std::size_t fewest_pairs = 500; ///< for a reliable estimate [count]
+  std::size_t samples = 10000;    ///< single points in the final fit [count]
+  std::size_t guesses = 6;        ///< most directions that are examined [count]
+  std::size_t fewest = 1000;      ///< points for a reliable search [count]
+  std::size_t most = 40;          ///< most stations [count]
+  double loosest = 0.2;           ///< largest misfit of points of a station [steps]
 };
 
-/// Which points tell where stations are, and what else their distances from the axes may come from.
+/// Selects the points that register stations, and sets the expected sizes of the other causes of
+/// their residuals.
 struct Station_alignment_options
 {
   double thickness = 3; ///< smallest radius, in noise [-]
   std::size_t fewest =
-      10; ///< points of a piece of a branch, which are halved as long as both have them [count]
+      10; ///< points of a branch piece; pieces are halved while both halves have them [count]
   double longest = 32;          ///< half of the length of a piece, in radii [-]
-  double fit = 3;               ///< error of a radius or place that was fitted, in noise ... [-]
+  double fit = 3;               ///< error of a fitted radius or position, in noise ... [-]
   double relative_fit = 0.2;    ///< ... and in radii [-]
-  double oval = 0.04;           ///< half difference of the half axes of a section, in radii [-]
-  double largest_error = 4.685; ///< of a point, in noise (Tukey's constant) [-]
-  double motion = 1;            ///< usual size, in noise [-]
-  //! error of motions, by their size, above which more points are looked at ...
+  double oval = 0.04;           ///< half difference of the semi-axes of a section, in radii [-]
+  double largest_error = 4.685; ///< residual of weight 0, in noise (Tukey's constant) [-]
+  double motion = 1;            ///< prior standard deviation, in noise [-]
+  //! error of the motions, relative to their size, above which more points are used ...
   double agreement = 0.4;
-  double least = 0.25;           ///< ... unless the motions are as small as this, in noise [-]
-  std::size_t fewest_pieces = 8; ///< of every second axis that tell the error [count]
-  //! motions that are looked for once more when they are taken out, in noise [-]
+  double least = 0.25;           ///< ... unless the motions are smaller than this, in noise [-]
+  std::size_t fewest_pieces = 8; ///< of every second axis, to estimate the error [count]
+  //! size of motions above which another pass follows after they are applied, in noise [-]
   double much = 1.5;
-  int passes = 3; ///< of these, at most
-  int rounds = 6; ///< of each
+  int passes = 3; ///< most passes [count]
+  int rounds = 6; ///< Gauss-Newton steps of a pass [count]
 };
 
 /// Options of `register_stations()`.

@@ -16,7 +16,7 @@ namespace skeleton {
 struct Rigid_motion
 {
   Vec3 shift = Vec3::Zero(); ///< [L]
-  Vec3 turn = Vec3::Zero();  ///< about this axis, by its length [rad]
+  Vec3 turn = Vec3::Zero();  ///< rotation vector [rad]
 
   Eigen::Matrix3d rotation() const
   {

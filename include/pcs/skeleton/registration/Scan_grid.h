@@ -21,25 +21,25 @@ constexpr double two_pi = 2 * static_cast<double>(EIGEN_PI);
 /// A column and a row of a grid, as real numbers [steps].
 using Grid_place = Eigen::Vector2d;
 
-/// From the nearest whole number, in [-1/2, 1/2].
+/// Returns the difference from the nearest integer, in [-1/2, 1/2].
 inline double beyond_whole(double x)
 {
   return x - std::nearbyint(x);
 }
 
 /*!
-  A scanner on a station turns by equal steps about its own vertical, and its beam rises by equal
-  steps. Errors of ranges move points along their beams, so that columns and rows stay whole
-  numbers, whatever the noise.
+  The grid of beam directions of a scanner station. The scanner turns by equal steps about its own
+  vertical, and its beam rises by equal steps. Range errors move points along their beams, so that
+  columns and rows remain integers.
 */
 struct Scan_grid
 {
-  Vec3 position = Vec3::Zero(); ///< of the station, with the error of its registration [L]
+  Vec3 position = Vec3::Zero(); ///< of the station, including its registration error [L]
   Eigen::Matrix3d axes =
-      Eigen::Matrix3d::Identity();       ///< by rows: to the tree, to the left, its own vertical
+      Eigen::Matrix3d::Identity();       ///< rows: towards the tree, left, vertical
   Grid_place rate = Grid_place::Ones();  ///< of columns and rows [1/rad]
   Grid_place phase = Grid_place::Zero(); ///< added to them [steps]
-  double tolerance = 0; ///< points of the station are this near to whole numbers [steps]
+  double tolerance = 0; ///< largest misfit of points of the station [steps]
 
   Grid_place place_of_direction(const Vec3& q) const
   {
@@ -49,8 +49,8 @@ struct Scan_grid
   }
   Grid_place place(const Vec3& p) const { return place_of_direction(axes * (p - position)); }
 
-  /// The larger distance of column and row from whole numbers, in [0, 1/2]; at least `most` where
-  /// it is more than that [steps].
+  /// Returns the larger distance of column and row from integers, in [0, 1/2] [steps]. If it
+  /// exceeds `most`, the result is only a lower bound above `most`.
   double misfit(const Vec3& p, double most = 0.5) const
   {
     const Vec3 q = axes * (p - position);

@@ -25,28 +25,28 @@
 namespace pcs {
 namespace skeleton {
 
-/// Motions in coordinates of the scan.
+/// The estimated motions, in coordinates of the scan.
 struct Aligned_stations
 {
   std::vector<Rigid_motion> motions;
-  double size = 0, error = 0; ///< root mean square; turns at a typical distance [L]
+  double size = 0, error = 0; ///< root mean square; rotations act at a typical distance [L]
 };
 
 namespace internal {
 
 /*!
-  Gauss-Newton over the stations' motions. A point's distance from a straight piece of a branch
-  comes from the motion of its station, and from the shape of the piece: a bent axis, a radius that
-  changes along it, an oval section. These ten unknowns of every piece are eliminated; what is left
-  tells the motions apart, since each station sees another side. Only where the pieces are is taken
-  from the axes that were fitted: their bends follow the points, and with them the motions that are
-  looked for.
+  Estimates the motions of the stations by the Gauss-Newton method. The distance of a point from a
+  straight piece of a branch depends on the motion of its station and on the shape of the piece: a
+  bent axis, a radius that changes along it, an oval section. The ten shape parameters of every
+  piece are eliminated. The remaining residuals determine the motions, since each station sees a
+  different side. Only the positions of the pieces are taken from the fitted axes: bends of these
+  axes follow the points, and thus also the unknown motions.
 */
 template <class ConcurrencyTag>
 class Station_alignment
 {
 public:
-  /// `station` has one entry for each point of the scan, `none` where nothing is known.
+  /// `station` has one entry for each point of the scan, `none` where it is unknown.
   Station_alignment(const Scan& scan,
                     const Axis_set& axes,
                     const std::vector<Index>& station,
@@ -61,9 +61,9 @@ public:
   }
 
   /*!
-    The motions by all axes. Every second axis and the others, each alone, tell how much less the
-    points say than if nothing but noise moved them: with that trust, what they cannot tell stays
-    near the usual size of motions.
+    Estimates the motions from all axes. Separate estimates from the even and the odd axes show by
+    which factor the points are less reliable than independent noise implies. The weight of the
+    points is reduced by this factor. The prior limits motions that the points do not determine.
   */
   Aligned_stations run()
   {
@@ -88,23 +88,23 @@ public:
       result.motions[s] = {all.motions.template segment<3>(at),
                            all.motions.template segment<3>(at + 3)};
     }
-    // turns count at a typical distance
+    // rotations act at a typical distance
     const double mean = 1 / double(m_count.size());
     result.size = std::sqrt(mean * all.motions.squaredNorm());
-    result.error = fewest < m_rules.fewest_pieces ? result.size // not known
+    result.error = fewest < m_rules.fewest_pieces ? result.size // unknown
                                                   : std::sqrt(mean * 0.25 * apart.squaredNorm());
     return result;
   }
 
 private:
-  static constexpr int freedom = 6; ///< of a motion: shift and turn
-  static constexpr int local = 10;  ///< radius (2), place across (3 each), oval (2)
+  static constexpr int freedom = 6; ///< of a motion: translation and rotation
+  static constexpr int local = 10;  ///< radius (2), lateral position (3 each), oval (2)
   using Motion = Eigen::Matrix<double, freedom, 1>;
   using Local = Eigen::Matrix<double, local, 1>;
 
   struct Answer
   {
-    Eigen::VectorXd motions; ///< shift and turn of every station
+    Eigen::VectorXd motions; ///< translation and rotation of every station
     Eigen::MatrixXd matrix;  ///< of their normal equations
   };
 
@@ -146,8 +146,8 @@ private:
     }
   }
 
-  /// Halves the points of segments [`begin`, `end`) as long as both halves have enough: one point
-  /// more or less changes few pieces.
+  /// Halves the segments [`begin`, `end`) while both halves have enough points. A single additional
+  /// point then changes few pieces.
   void cut(Index axis,
            const std::vector<std::pair<Index, Index>>& sorted,
            const std::vector<std::size_t>& first,
@@ -155,7 +155,7 @@ private:
            std::size_t end)
   {
     constexpr std::size_t shortest = 2; // segments
-    std::size_t middle = 0, fewer = 0;  // points of the half that has less
+    std::size_t middle = 0, fewer = 0;  // points of the smaller half
     for (std::size_t k = begin + shortest; k + shortest <= end; ++k) {
       const std::size_t less = std::min(first[k] - first[begin], first[end] - first[k]);
       if (less > fewer) {
@@ -193,8 +193,8 @@ private:
     m_pieces.push_back(std::move(piece));
   }
 
-  /// How far a point is from the surface, and how that changes with the motion of its station and
-  /// with the piece.
+  /// The distance of a point from the surface, and its derivatives with respect to the motion of
+  /// the station and to the shape of the piece.
   struct Sight
   {
     double height;
@@ -223,7 +223,7 @@ private:
     return x * x < 1 ? (1 - x * x) * (1 - x * x) / (m_axes.noise * m_axes.noise) : 0;
   }
 
-  /// The expected size of what is wrong with a piece, as inverse squares.
+  /// Returns the prior precision of the shape parameters of a piece: inverse variances.
   Local precision(const Piece& piece) const
   {
     const double fit = std::hypot(m_rules.fit * m_axes.noise, m_rules.relative_fit * piece.radius);
@@ -234,7 +234,8 @@ private:
     return result;
   }
 
-  /// Adds what one piece says of the motions, whatever is wrong with it, which is found as well.
+  /// Adds the normal equations of one piece for the motions. Eliminates and solves for the shape
+  /// parameters of the piece.
   void add(Piece& piece, Eigen::MatrixXd& matrix, Eigen::VectorXd& right) const
   {
     std::vector<Index> stations; // of the piece
@@ -259,7 +260,7 @@ private:
       own_right += w * s.height * s.wrong;
     }
     const Eigen::LDLT<Eigen::Matrix<double, local, local>> solver(own);
-    piece.wrong = solver.solve(own_right); // of the motions so far
+    piece.wrong = solver.solve(own_right); // for the current motions
     motions -= mixed * solver.solve(mixed.transpose());
     motion_right -= mixed * piece.wrong;
     for (std::size_t a = 0; a < stations.size(); ++a) {
@@ -272,7 +273,7 @@ private:
     }
   }
 
-  /// The motions by those axes for which `is_used`.
+  /// Estimates the motions from the axes for which `is_used` holds.
   template <class IsUsed>
   Answer motions_by(const IsUsed& is_used)
   {
@@ -295,11 +296,11 @@ private:
     return answer;
   }
 
-  /// One step. Returns the matrix of its normal equations.
+  /// Performs one Gauss-Newton step. Returns the matrix of its normal equations.
   Eigen::MatrixXd improve()
   {
     const Eigen::Index size = freedom * static_cast<Eigen::Index>(m_motions.size());
-    constexpr std::size_t number_of_blocks = 16; // whatever the number of threads
+    constexpr std::size_t number_of_blocks = 16; // independent of the number of threads
     const std::size_t block = m_used.size() / number_of_blocks + 1;
     std::vector<Eigen::MatrixXd> matrices(number_of_blocks, Eigen::MatrixXd::Zero(size, size));
     std::vector<Eigen::VectorXd> rights(number_of_blocks, Eigen::VectorXd::Zero(size));
@@ -330,7 +331,7 @@ private:
     return matrix;
   }
 
-  /// All points together stay where they are: nothing tells where that is.
+  /// Removes the mean motion of all points, which the data do not determine.
   void keep_middle()
   {
     double total = 0;
@@ -351,7 +352,7 @@ private:
   const Axis_set& m_axes;
   const std::vector<Index>& m_station;
   const Station_alignment_options& m_rules;
-  double m_trust = 1;          ///< in points
+  double m_trust = 1;          ///< weight of one point
   std::vector<double> m_count; ///< points of each station
   std::vector<Rigid_motion> m_motions;
   std::vector<Piece> m_pieces;
@@ -360,8 +361,8 @@ private:
 
 } // namespace internal
 
-/// The motions that bring the points of all stations onto the same branches, in coordinates of the
-/// scan. Points that are on no axis do not take part. O(points rounds).
+/// Estimates the motions that align the points of all stations with the same branches, in
+/// coordinates of the scan. Points without an axis are ignored. O(points rounds).
 template <class ConcurrencyTag>
 Aligned_stations align_stations(const Scan& scan,
                                 const Axis_set& axes,

@@ -27,8 +27,8 @@ namespace skeleton {
 
 namespace internal {
 
-/// Looks for one station of points that are sorted along an octree, with the third axis upwards and
-/// the origin in the middle.
+/// Searches for one station among points in octree order. The third axis points upwards, and the
+/// origin is the centre of the points.
 template <class ConcurrencyTag>
 class Scan_grid_search
 {
@@ -40,7 +40,7 @@ public:
       m_ranges.push_back(r);
   }
 
-  /// Returns whether there is one.
+  /// Returns whether a station was found.
   bool run(Scan_grid& grid) const
   {
     const double spacing = m_source.spacing();
@@ -55,10 +55,9 @@ public:
 
 private:
   using Vec2 = Eigen::Vector2d;
-  static constexpr double widening = 1.5; ///< of steps that are looked for together [-]
+  static constexpr double widening = 1.5; ///< ratio of the steps of one search [-]
 
-  /// The direction of a station, and the length of a step between its columns or rows at the
-  /// origin.
+  /// The direction of a station, and the distance between its columns or rows at the origin.
   struct Guess
   {
     double angle = 0, step = 0;
@@ -89,7 +88,7 @@ private:
     return Vec2(range * std::cos(angle), range * std::sin(angle));
   }
 
-  /// The same pairs by coordinates, for wide instructions.
+  /// The pairs by coordinate, for SIMD instructions.
   struct Coordinates
   {
     std::array<std::vector<float>, 3> middle, step;
@@ -104,7 +103,7 @@ private:
     std::size_t size() const { return middle[0].size(); }
   };
 
-  /// Spectra of the columns that stations at these places have.
+  /// Computes the spectra of the columns of stations at the given positions.
   void
   columns(const Coordinates& pairs, const std::vector<Vec2>& places, Periodogram& spectra) const
   {
@@ -123,7 +122,7 @@ private:
                                     });
   }
 
-  /// Spectra of the rows that stations at these heights above one place have.
+  /// Computes the spectra of the rows of stations at the given heights above one position.
   void rows(const Coordinates& pairs,
             const Vec2& place,
             const std::vector<double>& heights,
@@ -144,7 +143,8 @@ private:
     });
   }
 
-  /// Where near pairs show columns. They tell little of how far away the station is.
+  /// Returns the directions in which near pairs show columns. Near pairs determine the direction of
+  /// a station, but hardly its distance.
   std::vector<Guess> directions(const Coordinates& near, double shortest) const
   {
     const std::size_t around = static_cast<std::size_t>(std::ceil(two_pi / m_rules.spacing));
@@ -166,10 +166,11 @@ private:
     return guesses;
   }
 
-  /// Farther pairs tell the distance, and then the height.
+  /// Estimates the distance of a station from pairs that lie farther apart, then its height.
+  /// Returns `false` if the contrast is too low.
   bool place(const Guess& guess, const Coordinates& near, Scan_grid& grid, double& step) const
   {
-    constexpr double fine = 1.01, reach = 10; // of steps that are tried; lengths of pairs [steps]
+    constexpr double fine = 1.01, reach = 10; // ratio of steps; length of pairs [steps]
     constexpr std::size_t beside = 6;
     const double shortest = guess.step / 1.1, longest = guess.step * 1.1;
     const Coordinates far(m_source.template draw<ConcurrencyTag>(0.5 * reach * guess.step,
@@ -187,7 +188,7 @@ private:
     const double range = at.norm();
     if (column.contrast < least)
       return false;
-    // rows may have another step
+    // the step between rows may differ
     std::vector<double> heights;
     for (double z = -1.5 * range; z <= 1.5 * range; z += 0.5 * m_rules.spacing * range)
       heights.push_back(z);
@@ -224,9 +225,9 @@ private:
 } // namespace internal
 
 /*!
-  The stations from which a scan was made, where it still shows the grids of their beams. `points`
-  are sorted along an octree, with the third axis upwards and the origin in their middle. One
-  station after the other is looked for among the points that have none.
+  Detects the scanner stations of a scan whose points still show the grids of their beams. `points`
+  are in octree order, with the third axis upwards and the origin at their centre. Stations are
+  detected one after the other among the unassigned points.
 */
 template <class ConcurrencyTag>
 std::vector<Scan_grid> detect_scan_grids(std::vector<Vec3> points, const Scan_grid_options& rules)

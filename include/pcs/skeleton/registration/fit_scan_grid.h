@@ -23,7 +23,7 @@
 namespace pcs {
 namespace skeleton {
 
-/// Moves a grid uphill, to where more points are at whole columns and rows.
+/// Refines a scan grid by gradient ascent, so that more points lie at integer columns and rows.
 template <class ConcurrencyTag>
 class Scan_grid_fit
 {
@@ -40,8 +40,8 @@ public:
   {
   }
 
-  /// By pairs of points farther and farther from each other, then by single points. `false` if too
-  /// few points are on the grid. `step` is a distance between beams [L].
+  /// Fits the grid to pairs of points at increasing distances, then to single points. Returns
+  /// `false` if too few points lie on the grid. `step` is the distance between beams [L].
   bool run(double step)
   {
     Grid_place usual = Grid_place::Zero();
@@ -51,7 +51,7 @@ public:
       if (pairs.size() < m_rules.fewest_pairs)
         return false;
       constexpr int rounds = 4;
-      constexpr double near = 0.003; // of the top [steps]
+      constexpr double near = 0.003; // distance from the maximum [steps]
       Grid_place cosine = Grid_place::Zero();
       double change = 1;
       for (int round = 0; round < rounds && change > near; ++round)
@@ -70,13 +70,13 @@ public:
   const Scan_grid& grid() const { return m_grid; }
 
 private:
-  static constexpr Eigen::Index size = 7; ///< place [ranges], tilt [rad], logarithms of the rates
+  static constexpr Eigen::Index size = 7; ///< position [ranges], tilt [rad], log rates
   using Step = Eigen::Matrix<double, size, 1>;
   using Matrix = Eigen::Matrix<double, size, size>;
-  using Long_step = Eigen::Matrix<double, size + 2, 1>; ///< and the phases
+  using Long_step = Eigen::Matrix<double, size + 2, 1>; ///< including the phases
   using Long_matrix = Eigen::Matrix<double, size + 2, size + 2>;
 
-  /// Column and row of a point, and how they change with the grid.
+  /// Column and row of a point, and their derivatives with respect to the grid.
   struct Sighting
   {
     Grid_place at;
@@ -107,7 +107,7 @@ private:
     m_grid.rate[1] *= std::exp(x[6]);
   }
 
-  /// `add(k, sums)` for each `k` below `count`, in fixed blocks.
+  /// Calls `add(k, sums)` for each `k` below `count` in fixed blocks, and sums the results.
   template <class Sums, class Add>
   static Sums sum_up(std::size_t count, const Add& add)
   {
@@ -141,9 +141,9 @@ private:
     }
   };
 
-  /// One step of Newton's method for the sum of the cosines of columns and rows between points of
-  /// pairs, of which only some are of the station. Returns the mean cosines before it; `change` is
-  /// how far it moves pairs, root mean square [steps].
+  /// Performs one Newton step that maximizes the sum of the cosines of the column and row
+  /// differences of pairs; only some pairs belong to the station. Returns the mean cosines before
+  /// the step. `change` is the root mean square change of the pairs [steps].
   Grid_place climb(const std::vector<Point_pair>& pairs, const Grid_place& usual, double& change)
   {
     Pair_sums all = sum_up<Pair_sums>(pairs.size(), [&](std::size_t k, Pair_sums& sums) {
@@ -157,11 +157,11 @@ private:
       sums.cosine += Grid_place(std::cos(angle[0]), std::cos(angle[1]));
     });
     all.cosine /= double(pairs.size());
-    // the curvature at the top; on the slope it would be too small
+    // the curvature at the maximum; on the slope it would be too small
     const Grid_place curvature = all.cosine.cwiseMax(0.7 * usual).cwiseMax(m_rules.least_contrast);
     Matrix m = curvature[0] * all.columns + curvature[1] * all.rows;
     const Step slope = all.column + all.row;
-    // what such pairs cannot tell stays as it is: a sine has the variance 1/2
+    // a prior stabilizes parameters that such pairs do not determine; a sine has the variance 1/2
     const double variance = 0.5 / (two_pi * two_pi * curvature.mean());
     const double place = m_rules.spacing * m_rules.spacing, tilt = m_rules.tilt * m_rules.tilt;
     for (Eigen::Index k = 0; k < size; ++k)
@@ -172,14 +172,14 @@ private:
     return all.cosine;
   }
 
-  /// Points that are looked at one by one, evenly.
+  /// Returns the number of points in an even sample of the scan.
   std::size_t number_of_samples() const { return std::min(m_points.size(), m_rules.samples); }
   const Vec3& sample(std::size_t k) const
   {
     return m_points[k * m_points.size() / number_of_samples()];
   }
 
-  /// Of angles.
+  /// Sums for the circular mean of angles.
   struct Phase_sums
   {
     Grid_place sine = Grid_place::Zero(), cosine = Grid_place::Zero();
@@ -222,7 +222,7 @@ private:
     }
   };
 
-  /// Least squares of the points within `reach` of whole numbers.
+  /// Performs a least-squares step for the points within `reach` of integers.
   void settle(double reach)
   {
     Point_sums all = sum_up<Point_sums>(number_of_samples(), [&](std::size_t k, Point_sums& sums) {
@@ -245,7 +245,7 @@ private:
     m_grid.phase += x.tail<2>();
   }
 
-  /// Whole numbers of half a step are whole or halves; if all are whole, the step is twice as long.
+  /// Doubles or triples the step if all columns or rows are multiples of 2 or 3.
   void use_longest_steps()
   {
     constexpr double reach = 0.1, sure = 0.8;
@@ -256,7 +256,7 @@ private:
               sums.add(two_pi / factor * m_grid.place(sample(k)));
           });
       for (int e = 0; e < 2; ++e) {
-        // what is within reach by chance has any angle
+        // points within reach by chance have random angles
         if (std::hypot(all.sine[e], all.cosine[e]) < sure * all.count)
           continue;
         m_grid.rate[e] /= factor;
@@ -266,8 +266,8 @@ private:
     }
   }
 
-  /// As wide as tells most from points that are there by chance. Returns the share of those that
-  /// are not.
+  /// Finds the tolerance with the most significant excess of points over chance. Returns this
+  /// excess as a fraction of all points, or 0 if it is not significant.
   double find_tolerance()
   {
     std::vector<double> misfits(number_of_samples());

@@ -29,17 +29,16 @@ namespace pcs {
 namespace skeleton {
 
 /*!
-  Finds the rigid motions of scanner stations after which all see the same branches. Errors of
-  registration make branches too thick or too thin by as much. `draft(points, is_wood, progress)`
-  fits axes to some of the points, and returns a pointer to something with `scan()` and `axes()`, or
-  null if `progress` stopped it.
+  Estimates rigid motions that align the points of all scanner stations with the same branches.
+  Registration errors change the radii of branches by the same amount. `draft(points, is_wood,
+  progress)` fits axes to some of the points. It returns a pointer to an object with `scan()` and
+  `axes()`, or null if `progress` stopped it.
 */
 template <class ConcurrencyTag, class Draft>
 class Station_registration
 {
 public:
-  /// `scan` has its points, and nothing else yet; `is_wood` is empty or has one entry per point of
-  /// the input.
+  /// `scan` needs only its points; `is_wood` is empty or has one entry per input point.
   Station_registration(const Scan& scan,
                        const std::vector<std::uint8_t>& is_wood,
                        const Registration_options& options,
@@ -48,8 +47,8 @@ public:
   {
   }
 
-  /// Finds the motions. `stations` are the labels of the input points, or empty. Returns `false` if
-  /// `progress` stopped it.
+  /// Estimates the motions. `stations` are the labels of the input points, or empty. Returns
+  /// `false` if `progress` stopped it.
   bool run(const std::vector<long long>& stations, pcs::internal::Progress& progress)
   {
     if (!progress(0))
@@ -62,7 +61,7 @@ public:
     m_places = m_scan.points;
     m_moves.assign(m_labels.size(), Move::Identity());
     double size = 0; // in noise
-    // motions that are large blur the draft that tells them
+    // large motions blur the draft from which they are estimated
     for (int pass = 0; pass < m_options.alignment.passes; ++pass) {
       if (!improve(progress, size))
         return false;
@@ -73,9 +72,9 @@ public:
     return progress(1);
   }
 
-  /// After `run()`: moves the points if that helps, and reports the stations. Motions of more than
-  /// `max_shift` or stations of few points cannot be errors of registration: nothing is moved then,
-  /// and the report has the largest shift.
+  /// Moves the points if `run()` improved them, and reports the stations. Motions above `max_shift`
+  /// and stations with few points are not plausible registration errors: in these cases, no point
+  /// is moved, and the report contains the largest shift.
   void move(double max_shift, Scan& scan, Skeleton_report& report)
   {
     if (!m_is_moved)
@@ -101,12 +100,12 @@ public:
 private:
   using Move = Eigen::Isometry3d; ///< in the frame
 
-  /// Drafts the tree and moves the places. `size` is that of the motions, in noise; 0 if they are
-  /// no better than none. `false` if stopped.
+  /// Drafts the tree and moves the points. `size` is the size of the motions in noise, or 0 if they
+  /// bring no improvement. Returns `false` if stopped.
   bool improve(pcs::internal::Progress& progress, double& size)
   {
     const Station_alignment_options& rules = m_options.alignment;
-    // some points are enough on thick branches, and more are needed on thin ones
+    // a subset of the points suffices for thick branches; thin branches need more
     for (m_stride = 1 + m_places.size() / enough;; m_stride = (m_stride + 3) / 4) {
       const auto draft = m_draft(chosen_places(), chosen_wood(), progress);
       if (!draft)
@@ -124,15 +123,15 @@ private:
     }
   }
 
-  /// Labels with more values tell something else; the work grows with the cube of their number
-  /// [count].
+  /// Most labels. More values do not denote stations, and the work grows with the cube of their
+  /// number [count].
   static constexpr std::size_t most_stations = 100;
-  /// Fewer points cannot estimate a motion [count].
+  /// Fewest points for an estimate of a motion [count].
   static constexpr std::size_t min_points_of_station = 100;
-  /// Points of the first draft, at most.
+  /// Most points of the first draft [count].
   static constexpr std::size_t enough = 40000;
 
-  /// Some places, with those around them.
+  /// Returns some blocks of neighbouring points.
   std::vector<Vec3> some_places() const
   {
     constexpr std::size_t most = 200000, block = 2000;
@@ -174,7 +173,7 @@ private:
       if (label >= 0)
         number.emplace(label, 0);
     if (number.size() > most_stations)
-      return; // these are no stations
+      return; // the labels do not denote stations
     for (auto& entry : number) {
       entry.second = static_cast<Index>(m_labels.size());
       m_labels.push_back(entry.first);
@@ -206,7 +205,7 @@ private:
     return is_wood;
   }
 
-  /// The motions of all stations by the axes of the draft, in its coordinates.
+  /// Estimates the motions of all stations from the axes of the draft, in its coordinates.
   Aligned_stations
   align(const Scan& scan, const Axis_set& axes, const Station_alignment_options& rules) const
   {
@@ -216,7 +215,7 @@ private:
     return align_stations<ConcurrencyTag>(scan, axes, station, m_labels.size(), rules);
   }
 
-  /// Adds motions in the frame of a draft, and moves the places.
+  /// Adds motions in the frame of a draft, and moves the points.
   void add(const std::vector<Rigid_motion>& motions, const Scan_frame& draft)
   {
     std::vector<Move> steps;
@@ -237,7 +236,7 @@ private:
   std::vector<Scan_station> stations() const
   {
     std::vector<Scan_station> stations(m_labels.size());
-    std::vector<Vec3> middle(m_labels.size(), Vec3::Zero()); // of what is moved
+    std::vector<Vec3> middle(m_labels.size(), Vec3::Zero()); // of the moved points
     for (std::size_t k = 0; k < m_station.size(); ++k)
       if (m_station[k] != none) {
         ++stations[m_station[k]].number_of_points;
@@ -266,20 +265,20 @@ private:
   std::size_t m_stride = 1;
   bool m_is_moved = false;
   std::vector<Vec3> m_places;      ///< of the scan, moved
-  std::vector<Scan_grid> m_grids;  ///< empty where the caller knows the stations
-  std::vector<Index> m_station;    ///< of each place, or `none`
+  std::vector<Scan_grid> m_grids;  ///< empty if the caller gave the stations
+  std::vector<Index> m_station;    ///< of each point, or `none`
   std::vector<long long> m_labels; ///< of the stations
   std::vector<Move> m_moves;       ///< of the stations
 };
 
 /*!
   Moves the points of each scanner station by a rigid motion so that all stations see the same
-  branches, if there are several stations and the motions can be estimated; the report gets them.
-  `stations` are the labels of the input points; if it is empty, stations are found by their scan
-  grids. `scan` has its points, and nothing else yet; `is_wood` is empty or has one entry per input
-  point. `max_shift` is the largest plausible shift of a station, in the unit of the input. See
-  `Station_registration` for `draft`. Returns `false` if `progress` stopped it; nothing is moved
-  then.
+  branches, if there are several stations and the motions can be estimated. The report contains
+  these motions. `stations` are the labels of the input points; if it is empty, stations are
+  detected by their scan grids. `scan` needs only its points; `is_wood` is empty or has one entry
+  per input point. `max_shift` is the largest plausible shift of a station, in the unit of the
+  input. See `Station_registration` for `draft`. Returns `false` if `progress` stopped it; in this
+  case, no point is moved.
 */
 template <class ConcurrencyTag, class Draft>
 bool register_stations(const std::vector<std::uint8_t>& is_wood,

@@ -17,25 +17,25 @@
 namespace pcs {
 namespace skeleton {
 
-/// What a stem is, in shares of the height of the tree [-].
+/// Criteria for a stem. Lengths are fractions of the height of the tree [-].
 struct Stem_options
 {
   double foot = 0.15;   ///< highest foot above the root
   double length = 0.25; ///< least rise
-  double steep = 0.5;   ///< least rise per length
+  double steep = 0.5;   ///< least rise per length [-]
   double taper =
-      1.2; ///< least ratio of the radius below to that above or at the base of the branch
+      1.2; ///< least ratio of the lower radius to the upper one or to that of the base [-]
 };
 
 namespace internal {
 
-/// The lower and the upper end of a row of nodes.
+/// The lower and the upper end of a sequence of nodes.
 struct Axis_slope_summary
 {
   double foot = 0, rise = 0, length = 0; ///< [L]
   double lower_radius = 0, upper_radius = 0;
 
-  /// `node_at(k)` is the one of number k of n; z is up.
+  /// `node_at(k)` returns node k of n; z points upwards.
   template <class NodeAt>
   Axis_slope_summary(std::size_t n, const NodeAt& node_at)
   {
@@ -64,9 +64,9 @@ struct Axis_slope_summary
 } // namespace internal
 
 /*!
-  How many stems beside that of the root stand at its height: axes that the tree does not reach, and
-  branches that come down there and are thicker below, because another tree hangs on this one where
-  the crowns touch. z is up. O(nodes).
+  Counts the stems besides that of the root near its height. These are unreachable axes, and
+  branches that descend to this height and are thicker at their lower end: there, another tree is
+  joined to this one where the crowns touch. z points upwards. O(nodes).
 */
 inline std::size_t count_other_stems(const Axis_set& set,
                                      const std::vector<Joint>& joints,
@@ -96,8 +96,7 @@ inline std::size_t count_other_stems(const Axis_set& set,
     std::size_t low = 0;
     for (std::size_t k = 0; k < nodes.size(); ++k)
       low = z(k) <= z(low) ? k : low;
-    // from the lowest node back to where it is highest, before it falls by as much as a foot may be
-    // high
+    // from the lowest node back to the highest one, up to a descent by the largest height of a foot
     std::size_t top = low;
     for (std::size_t k = low; k-- > 0 && z(k) >= z(top) - rules.foot * height;)
       top = z(k) > z(top) ? k : top;
@@ -105,8 +104,8 @@ inline std::size_t count_other_stems(const Axis_set& set,
       return tree.nodes[nodes[top + k]];
     };
     const internal::Axis_slope_summary standing(low + 1 - top, node_at);
-    // a branch becomes thinner, a stem on its head thicker than it is above, or than the branch
-    // that leads to it
+    // a branch becomes thinner towards its tip; an inverted stem is thicker at its lower end than
+    // at its upper end, or than the branch that leads to it
     const double base = tree.nodes[nodes[std::min<std::size_t>(1, nodes.size() - 1)]].radius;
     count += standing.is_stem(ground, height, rules) &&
              standing.lower_radius >= rules.taper * std::min(base, standing.upper_radius);

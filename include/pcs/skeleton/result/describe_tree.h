@@ -22,8 +22,8 @@
 namespace pcs {
 namespace skeleton {
 
-/// Height of the root above the lowest points of the tree: those for which `is_tree(i)` holds,
-/// without one in 500 [L].
+/// Returns the height of the root above the lowest points for which `is_tree(i)` holds, without the
+/// lowest 1/500 of them [L].
 template <class IsTree>
 double
 elevation_of_root(const Scan& scan, const Branch_tree& tree, const Vec3& up, const IsTree& is_tree)
@@ -40,8 +40,8 @@ elevation_of_root(const Scan& scan, const Branch_tree& tree, const Vec3& up, con
 }
 
 /*!
-  Fills in all that depends on the tree. `is_tree(i)` holds for the points of wood and leaves, and
-  `top_of_leaves` is the height of the highest leaves, in coordinates of the scan [L].
+  Fills in all entries that depend on the tree. `is_tree(i)` holds for the points of wood and
+  leaves. `top_of_leaves` is the height of the highest leaves, in coordinates of the scan [L].
 */
 template <class IsTree>
 void describe_tree(const Scan& scan,

@@ -23,28 +23,28 @@ namespace skeleton {
 /// in metres.
 constexpr double size_bounds_by_breast_height[] = {0.005 / 1.3, 0.01 / 1.3, 0.02 / 1.3, 0.05 / 1.3};
 
-/// Half the length of the section whose radii tell the diameter at breast height, in breast
-/// heights: from 1.1 to 1.5 m.
+/// Half the length of the section from which the diameter at breast height is estimated, in breast
+/// heights: from 1.1 to 1.5 m [-].
 constexpr double half_section_by_breast_height = 0.2 / 1.3;
 
 /*!
-  The diameter of a branch on the piece that ends at node `v`, at `share` of it: a line through the
-  radii within `half` along the axis, on both sides, by least squares. Bark and noise change a
-  radius within a hand's breadth. `v` is no base. O(nodes of the branch).
+  Estimates the diameter of a branch on the segment that ends at node `v`, at parameter `share` in
+  [0, 1]. Fits a line by least squares to the radii within `half` along the axis on both sides,
+  since bark and noise vary single radii. `v` is not a base. O(nodes of the branch).
 */
 inline double diameter_of_section(const Branch_tree& tree, Index v, double share, double half)
 {
   const std::vector<Index>& nodes = tree.branches[tree.nodes[v].branch].nodes;
   const std::size_t place =
       static_cast<std::size_t>(std::find(nodes.begin(), nodes.end(), v) - nodes.begin());
-  // integrals over the section of 1, s, s^2, r and s r, where s is the length from the place
+  // integrals over the section of 1, s, s^2, r and s r, where s is the signed length from there
   double n = 0, s1 = 0, s2 = 0, r1 = 0, sr = 0;
   double least = std::numeric_limits<double>::infinity(), most = 0;
   const auto length_before = [&](std::size_t k) {
     return (tree.nodes[nodes[k]].point - tree.nodes[nodes[k - 1]].point).norm();
   };
   const auto add = [&](std::size_t k,
-                       double from) { // the piece before node k, which begins at `from`
+                       double from) { // segment before node k, which begins at `from`
     const double length = length_before(k);
     const double begin = std::max(from, -half), end = std::min(from + length, half);
     if (!(end > begin))
@@ -91,9 +91,9 @@ struct Stem_crossing
   Index branch;
 };
 
-/// Diameters of the stems: of the branches that rise to half of the height of the tree, the
-/// thickest and those at least half as thick. Without such a branch, the thickest one counts.
-/// `ground` is the height of the root.
+/// Reports the diameters of the stems. Stems are branches that rise to half the height of the tree:
+/// the thickest one, and those with at least 0.7 times its diameter. Without such a branch, the
+/// thickest one counts. `ground` is the height of the root.
 inline void report_stems(const Branch_tree& tree,
                          const Vec3& up,
                          double ground,
@@ -126,8 +126,8 @@ inline void report_stems(const Branch_tree& tree,
 
 } // namespace internal
 
-/// Fills in what depends on the tree alone, in the unit of the input: `unit` times that of the
-/// tree. O(nodes).
+/// Fills in the entries that depend only on the tree, in the unit of the input. `unit` is the unit
+/// of the tree, in that of the input. O(nodes).
 inline void report_sizes(const Branch_tree& tree,
                          double unit,
                          const Vec3& up,
@@ -180,7 +180,7 @@ inline void report_sizes(const Branch_tree& tree,
   internal::report_stems(tree, up, ground, std::move(crossings), r);
 }
 
-/// Counts the points that no axis explains, and those of axes that are not part of the tree.
+/// Counts the points without an axis, and the points of axes that are not part of the tree.
 /// O(points).
 inline void count_unexplained(const std::vector<std::uint8_t>& is_used,
                               const Axis_set& set,

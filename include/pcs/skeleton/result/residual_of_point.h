@@ -16,8 +16,8 @@
 namespace pcs {
 namespace skeleton {
 
-/// The vector from the axis of its branch to point `p`, which has a node. `next` are the
-/// `successors()`.
+/// Returns the vector from the axis of its branch to point `p`, which has a node. `next` is the
+/// result of `successors()`.
 inline Vec3
 offset_of_point(const Scan& scan, const Branch_tree& tree, const std::vector<Index>& next, Index p)
 {
@@ -25,8 +25,8 @@ offset_of_point(const Scan& scan, const Branch_tree& tree, const std::vector<Ind
       .offset;
 }
 
-/// Distance of point `p`, which has a node, from the surface of its branch, as cones between nodes;
-/// negative inside [L].
+/// Returns the signed distance of point `p`, which has a node, from the surface of its branch,
+/// which consists of truncated cones between nodes; it is negative inside [L].
 inline double residual_of_point(const Scan& scan,
                                 const Branch_tree& tree,
                                 const std::vector<Index>& next,
@@ -37,7 +37,8 @@ inline double residual_of_point(const Scan& scan,
   return std::sqrt(place.squared_distance) - place.radius;
 }
 
-/// The median distance of the points from the surface, of some ten thousand spread over all [L].
+/// Returns the median distance of the points from the surface, from an even sample of some ten
+/// thousand [L].
 inline double
 median_residual(const Scan& scan, const Branch_tree& tree, const std::vector<Index>& next)
 {

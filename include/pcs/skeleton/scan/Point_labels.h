@@ -18,8 +18,9 @@
 namespace pcs {
 namespace skeleton {
 
-/// Labels of the points of a scan: tree, leaf, clutter or outlier. Points that are not part of the
-/// tree stay in the scan for distances, and are marked as outliers there. The report counts them.
+/// Labels of the points of a scan: tree, leaf, clutter or outlier. Points that do not belong to the
+/// tree are kept in the scan for distances, and are marked as outliers there. The report counts
+/// them.
 template <class ConcurrencyTag>
 class Point_labels
 {
@@ -41,7 +42,7 @@ public:
     for (std::size_t i = 0; i < n; ++i)
       is_used[i] = may_be_wood[i] && !m_scan.is_outlier[i];
     if (number_of(is_used) == 0)
-      is_used = may_be_wood; // all are far from each other: better these than none
+      is_used = may_be_wood; // all points are outliers, and are used nevertheless
     use_only(is_used);
     m_is_leaf.resize(n);
     m_is_found_leaf.assign(n, 0);
@@ -65,7 +66,7 @@ public:
     std::fill(m_is_used.begin(), m_is_used.end(), std::uint8_t(0));
   }
 
-  /// Keeps `is_left`, for which spacing and outliers are measured again.
+  /// Keeps only the points of `is_left`, and measures spacing and outliers again for these.
   void keep_only(Flags is_left)
   {
     measure_part<ConcurrencyTag>(is_left, m_scan);
@@ -79,7 +80,7 @@ public:
     m_report.spacing = m_scan.frame.unit * m_scan.spacing;
   }
 
-  /// Keeps `is_wood`; all other used points become leaves.
+  /// Keeps only the points of `is_wood`; all other used points become leaves.
   void remove_leaves(const Flags& is_wood)
   {
     for (Index i = 0; i < m_scan.size(); ++i)
@@ -90,12 +91,12 @@ public:
     use_only(is_wood);
   }
 
-  /// Leaves that were found, not given by the caller. Entries that are cleared become wood by
-  /// `restore_leaves()`.
+  /// Leaves from leaf-wood separation, without those given by the caller. Points of cleared entries
+  /// become wood by `restore_leaves()`.
   Flags& found_leaves() { return m_is_found_leaf; }
 
-  /// Uses `count` points again whose entry of `found_leaves()` was cleared: those with
-  /// `is_covered(i)`.
+  /// Restores the `count` leaves for which `is_covered(i)` holds, and whose entries of
+  /// `found_leaves()` are cleared, as used points.
   template <class IsCovered>
   void restore_leaves(std::size_t count, const IsCovered& is_covered)
   {
@@ -108,7 +109,7 @@ public:
       }
   }
 
-  /// Uses all points again that were removed as leaves by the leaf-wood separation.
+  /// Restores all points that were removed by the leaf-wood separation.
   void undo_leaf_removal()
   {
     for (Index i = 0; i < m_scan.size(); ++i)
@@ -120,8 +121,8 @@ public:
       }
   }
 
-  /// The 99.9th percentile of the heights of the leaves that were found; the lowest number without
-  /// leaves [L].
+  /// Returns the 99.9th percentile of the heights of the leaves from leaf-wood separation; the
+  /// lowest number without leaves [L].
   double top_of_leaves(const Vec3& up) const
   {
     std::vector<double> heights;
@@ -151,7 +152,7 @@ private:
   Scan& m_scan;
   Skeleton_report& m_report;
   Flags m_is_used;
-  Flags m_is_leaf, m_is_found_leaf; ///< the second: not labelled by the caller
+  Flags m_is_leaf, m_is_found_leaf; ///< the second: not labeled by the caller
 };
 
 } // namespace skeleton

@@ -26,7 +26,7 @@ struct Coordinate_step
 namespace internal {
 
 /*!
-  The step `s` of sorted values that are all multiples of `s` apart, or 0.
+  Returns the step `s` of sorted values whose differences are all multiples of `s`, or 0.
 
   The smallest gap between different values is the candidate. It is the step if nearly all gaps are
   multiples of it, and if these multiples are small. Exact coordinates fail the second condition:
@@ -36,8 +36,8 @@ inline double step_of_sorted(const std::vector<double>& values)
 {
   constexpr double tolerance = 0.02;    // of the step: rounding of the coordinates themselves [-]
   constexpr double min_fraction = 0.98; // of the gaps that are multiples [-]
-  constexpr double max_mean_multiple = 50; // of the step, of the gaps; more are chance [-]
-  // with fewer gaps, values must repeat so often that they cannot do so by chance [count]
+  constexpr double max_mean_multiple = 50; // of the gaps, in steps; more are due to chance [-]
+  // with fewer gaps, values must repeat more often than by chance [count]
   constexpr std::size_t min_gaps = 30, min_repeats = 100;
   std::vector<double> gaps;
   for (std::size_t i = 1; i < values.size(); ++i)

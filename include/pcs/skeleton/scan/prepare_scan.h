@@ -24,28 +24,28 @@
 namespace pcs {
 namespace skeleton {
 
-/// The neighbour whose distance tells outliers [count].
+/// Rank of the neighbour whose distance indicates outliers [count].
 constexpr std::size_t outlier_neighbor = 2;
-/// An outlier is this much farther from it than its neighbours are from their 4th ones ...
+/// Least ratio of this distance of an outlier to the local spacing of its neighbours [-] ...
 constexpr double outlier_factor = 3;
-/// ... and than is usual in the cloud; or so far from all that nothing else matters.
+/// ... and to the median local spacing; the latter alone is sufficient above the second factor [-].
 constexpr double outlier_global_factor = 2, outlier_far_factor = 20;
 
-/// Where the usual distances to one neighbour and to the next differ by this factor, those nearer
-/// are copies of the point; on surfaces the factor is 1.6 at most, on lines of random points 2.4;
-/// the less points the more by chance [-].
+/// Least ratio of the median distances to consecutive neighbours for which the nearer ones are
+/// copies of the point [-]. Without copies, the ratio is at most 1.6 on surfaces and 2.4 on lines
+/// of random points; the second term allows for chance in small scans.
 constexpr double copy_factor = 2.5, copy_chance = 15;
-/// Copies of copies, at most [count].
+/// Most rounds of merging, for copies of copies [count].
 constexpr int copy_rounds = 3;
 
 namespace internal {
 
-/// Different places, sorted along an octree, and which of them each point is at.
+/// Distinct positions in the order of an octree, and the position of each point.
 struct Distinct_places
 {
   std::vector<Vec3> places;
-  std::vector<Index> chosen;   ///< the least of the points at each place
-  std::vector<Index> of_point; ///< place of each point
+  std::vector<Index> chosen;   ///< lexicographically least point at each position
+  std::vector<Index> of_point; ///< position of each point
 };
 
 template <class ConcurrencyTag>
@@ -58,7 +58,7 @@ Distinct_places distinct_places(const std::vector<Vec3>& points, const Scan_fram
   const auto is_first = [&](std::size_t i) {
     return i == 0 || entries[i].point != entries[i - 1].point;
   };
-  std::vector<std::size_t> first(number_of_blocks + 1, 0); // place of each block
+  std::vector<std::size_t> first(number_of_blocks + 1, 0); // first position of each block
   pcs::internal::for_each_block<ConcurrencyTag>(n, block, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       first[begin / block + 1] += is_first(i);
@@ -116,9 +116,9 @@ void find_neighbors(Scan& scan)
   scan.spacing = median(nearest);
 }
 
-/// The distance within which points are copies of each other: most of the scan is there several
-/// times, with other digits or other noise. 0: it is not. From some ten thousand points spread over
-/// all.
+/// Returns the distance within which points are copies of each other, if most of the scan is
+/// repeated with different rounding or noise; otherwise 0 [L]. It is estimated from at most 20000
+/// points at a constant stride.
 inline double reach_of_copies(const Scan& scan)
 {
   constexpr std::size_t fewest = 200, enough = 20000;
@@ -137,8 +137,8 @@ inline double reach_of_copies(const Scan& scan)
   return 0;
 }
 
-/// Keeps one point of those that are copies. Returns whether there are any; the neighbours must be
-/// found again then.
+/// Merges copies into one point each. Returns whether there are any; the neighbours are then
+/// invalid.
 inline bool merge_copies(Scan& scan)
 {
   const double reach = reach_of_copies(scan);
@@ -164,7 +164,7 @@ inline bool merge_copies(Scan& scan)
   return true;
 }
 
-/// Among the points of `is_part`.
+/// Marks outliers among the points of `is_part`.
 template <class ConcurrencyTag>
 void mark_outliers(const std::vector<std::uint8_t>& is_part, Scan& scan)
 {
@@ -178,7 +178,7 @@ void mark_outliers(const std::vector<std::uint8_t>& is_part, Scan& scan)
   pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
     if (!is_part[i])
       return;
-    // A point of a thin twig has two near neighbours, those next to it; an outlier has none.
+    // A point of a thin twig has two near neighbours, an outlier has none.
     const Index second = scan.neighbors[i][outlier_neighbor - 1];
     const double own = second != none ? (scan.points[i] - scan.points[second]).norm()
                                       : std::numeric_limits<double>::infinity();
@@ -197,7 +197,7 @@ void mark_outliers(const std::vector<std::uint8_t>& is_part, Scan& scan)
 
 } // namespace internal
 
-/// Gives an empty scan the points of `input`, each place once; that is finite and not empty, `up` a
+/// Sets the distinct points of `input` in an empty scan. `input` is finite and not empty, `up` a
 /// unit vector. Neither the frame nor the order depends on duplicates. O(n log n).
 template <class ConcurrencyTag>
 void take_points(std::vector<Vec3> input, const Vec3& up, Scan& scan)
@@ -217,7 +217,7 @@ void take_points(std::vector<Vec3> input, const Vec3& up, Scan& scan)
   scan.points = std::move(found.places);
 }
 
-/// Gives a scan that has its points all the rest. O(n log n).
+/// Merges copies, and measures neighbours, spacing and outliers of a scan with points. O(n log n).
 template <class ConcurrencyTag>
 void measure_points(Scan& scan)
 {
@@ -227,7 +227,7 @@ void measure_points(Scan& scan)
   internal::mark_outliers<ConcurrencyTag>(std::vector<std::uint8_t>(scan.size(), 1), scan);
 }
 
-/// Both.
+/// Takes and measures the points of `input`. O(n log n).
 template <class ConcurrencyTag>
 void prepare_scan(const std::vector<Vec3>& input, const Vec3& up, Scan& scan)
 {
@@ -235,8 +235,8 @@ void prepare_scan(const std::vector<Vec3>& input, const Vec3& up, Scan& scan)
   measure_points<ConcurrencyTag>(scan);
 }
 
-/// Measures the spacing of those points alone, and tells which of them are outliers: the ground may
-/// have another density.
+/// Measures the spacing of the points of `is_part` alone, and marks outliers among them: the ground
+/// may have a different density.
 template <class ConcurrencyTag>
 void measure_part(const std::vector<std::uint8_t>& is_part, Scan& scan)
 {

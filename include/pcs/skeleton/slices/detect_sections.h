@@ -24,7 +24,7 @@ struct Found_section
 {
   Vec3 center = Vec3::Zero(), along = Vec3::UnitZ(), major_axis = Vec3::UnitX();
   double major = 0, minor = 0;
-  Index point = none; ///< that it was found from
+  Index point = none; ///< point from which it was detected
   double radius() const { return std::sqrt(major * minor); }
 };
 
@@ -41,7 +41,7 @@ public:
   {
   }
 
-  /// Fewer sections if `progress`, asked between points, is `false`.
+  /// Detects the sections. Stops early if `progress`, called between points, returns `false`.
   template <class Callback>
   std::vector<Found_section> operator()(const Callback& progress)
   {
@@ -79,7 +79,8 @@ public:
   }
 
 private:
-  /// Fits the slice at `s`, which is replaced; `score` is the sampling distance by the deviation.
+  /// Replaces `s` by a fit to the slice at `s`. `score` is the sampling distance divided by the
+  /// deviation.
   bool fit(Index i, Found_section& s, double& score)
   {
     const double spacing = m_rules.is_height_local ? m_scan.local_spacing[i] : m_scan.spacing;
@@ -98,7 +99,7 @@ private:
       return false;
     std::vector<Index> chosen = m_slice;
     if (m_rules.highest_count > 0 && chosen.size() > m_rules.highest_count) {
-      std::minstd_rand random(m_rules.seed + 7919 * i + 1); // the same for every thread and order
+      std::minstd_rand random(m_rules.seed + 7919 * i + 1); // independent of threads and order
       for (std::size_t k = 0; k < m_rules.highest_count; ++k)
         std::swap(chosen[k], chosen[k + random() % (chosen.size() - k)]);
       chosen.resize(m_rules.highest_count);
@@ -119,7 +120,7 @@ private:
     return true;
   }
 
-  /// Tilts a slice that is much longer than wide about its shorter axis, as long as that helps.
+  /// Tilts an elongated slice about its minor axis while this improves the fit.
   bool adjust(Index i, Found_section& s, double& score)
   {
     for (int k = 0; k < m_rules.tilts; ++k) {
@@ -160,8 +161,8 @@ private:
 
 } // namespace internal
 
-/// The sections of all points that no earlier one speaks for. The order of the points decides, not
-/// the threads. They are incomplete once `progress(share)` is `false`.
+/// Detects the sections of all points that support no earlier section. The result depends on the
+/// order of the points, not on threads. It is incomplete once `progress(fraction)` returns `false`.
 template <class Callback>
 std::vector<Found_section> detect_sections(const Scan& scan,
                                            const std::vector<std::uint8_t>& is_used,

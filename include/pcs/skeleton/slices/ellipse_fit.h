@@ -22,16 +22,16 @@ namespace skeleton {
 struct Ellipse
 {
   Vec2 center = Vec2::Zero();
-  double major = 0, minor = 0;    ///< half axes; 0: no ellipse
+  double major = 0, minor = 0;    ///< semi-axes; 0: no ellipse
   Vec2 direction = Vec2::UnitX(); ///< of the major axis
   double deviation =
-      /// root of the mean squared distance of the points, taken along the ray from the centre [L]
+      /// root mean square distance of the points, along the ray from the centre [L]
       0;
 };
 
 namespace internal {
 
-/// The ellipse a x^2 + b x y + c y^2 + d x + e y + f = 0, if it is one.
+/// Returns the ellipse a x^2 + b x y + c y^2 + d x + e y + f = 0, or none for other conics.
 inline Ellipse ellipse_of_conic(double a, double b, double c, double d, double e, double f)
 {
   Ellipse result;
@@ -70,9 +70,9 @@ inline Ellipse fit_conic(const std::vector<Vec2>& points)
              : Ellipse();
 }
 
-/// The least algebraic distance among ellipses: `v^T m v` for quadratic terms `v` with `4 a c - b^2
-/// = 1`, where `m` is what the best linear terms leave. Halir and Flusser take eigenvectors of a
-/// matrix that is not symmetric; these are the same.
+/// Fits the ellipse of least algebraic distance: minimizes `v^T m v` for quadratic terms `v` with
+/// `4 a c - b^2 = 1`, where `m` results from elimination of the linear terms. The solution is that
+/// of Halir and Flusser, who compute eigenvectors of a nonsymmetric matrix.
 inline Ellipse fit_direct(const std::vector<Vec2>& points)
 {
   Eigen::Matrix3d s1 = Eigen::Matrix3d::Zero(), s2 = s1, s3 = s1;
@@ -90,7 +90,7 @@ inline Ellipse fit_direct(const std::vector<Vec2>& points)
   const double largest = left.values(2);
   if (!(largest > 0) || !left.values.allFinite())
     return Ellipse();
-  for (int k = 0; k < 3; ++k) // on an exact ellipse one of them vanishes
+  for (int k = 0; k < 3; ++k) // on an exact ellipse, one of the values is zero
     left.vectors.col(k) /= std::sqrt(std::max(left.values(k), 1e-15 * largest));
   Eigen::Matrix3d discriminant = Eigen::Matrix3d::Zero();
   discriminant(0, 2) = discriminant(2, 0) = 2;
@@ -103,11 +103,11 @@ inline Ellipse fit_direct(const std::vector<Vec2>& points)
 
 } // namespace internal
 
-/// Sectors of 12 from which an ellipse is trusted.
+/// Least number of sectors of 12 with points for a reliable ellipse [count].
 constexpr int sectors_of_an_ellipse = 9;
 
-/// Fits as told; points are centred and scaled first, because none of the algebraic fits is
-/// invariant.
+/// Fits a section by the method `how`. Points are centred and scaled first, because the algebraic
+/// fits are not invariant.
 inline Ellipse fit_section(const std::vector<Vec2>& points, Section_fit how)
 {
   Ellipse result;

@@ -20,10 +20,10 @@
 namespace pcs {
 namespace skeleton {
 
-/// Neighbours that a normal and the curvatures are taken from; the dissertation's number [count].
+/// Number of neighbours for a normal and the curvatures, as published [Aiteanu 2022] [count].
 constexpr std::size_t curvature_neighbors = 25;
 
-/// The surface at a point. The sign of the normal is arbitrary; that of `k1` goes with it.
+/// The surface at a point. The sign of the normal is arbitrary; it determines the sign of `k1`.
 struct Surface_frame
 {
   Vec3 normal = Vec3::UnitZ();
@@ -52,10 +52,11 @@ inline Vec3 normal_of(const std::vector<Vec3>& points)
 } // namespace internal
 
 /*!
-  For every point: the third axis of a principal component analysis is the normal; the normal
-  curvatures of the circles through the point and each neighbour, tangent to the surface, give the
-  Weingarten matrix by Euler's formula in the sense of least squares. What is built on it, `point +
-  normal / k1`, does not depend on the sign of the normal. O(n k log n).
+  Estimates the surface at every point. The normal is the third axis of a principal component
+  analysis. The Weingarten matrix is a least-squares fit of Euler's formula to the normal curvatures
+  of the circles that are tangent to the surface at the point and pass through a neighbour. The
+  centre of curvature, `point + normal / k1`, does not depend on the sign of the normal. O(n k log
+  n).
 */
 template <class ConcurrencyTag>
 std::vector<Surface_frame> principal_curvatures(const Scan& scan)

@@ -25,19 +25,19 @@
 namespace pcs {
 namespace skeleton {
 
-/// How sections become branches.
+/// Options for building branches from sections.
 struct Section_tree_options
 {
-  std::size_t neighbors = 12; ///< sections that a section may be joined to
-  double longest = 25;        ///< of such a joint, in spacings [-]
+  std::size_t neighbors = 12; ///< candidates for the joint of a section [count]
+  double longest = 25;        ///< largest length of a joint, in spacings [-]
   double turn_cost =
-      1; ///< times the length, for sections that do not lie along the joint; 0: the text's [-]
-  double wider = 1.5;  ///< sections this much wider than their parent are wrong [-]
-  double thinning = 1; ///< distance of the nodes that are kept, in diameters [-]
+      1; ///< cost of a turn, per length of the joint; 0: as published [Aiteanu 2022] [-]
+  double wider = 1.5;  ///< largest ratio of the radius to that of the parent [-]
+  double thinning = 1; ///< least distance of nodes, in diameters [-]
   double dense_radius = 0.25,
-         dense_offset = 2;   ///< distance from a cylinder that is dense, in radii and spacings
-  double allometry = 0.4;    ///< radius by importance to this power; 1/2 is da Vinci's rule [-]
-  double twig_radius = 0.15; ///< the thinnest twig, in spacings [-]
+         dense_offset = 2;   ///< largest distance of dense points, in radii plus spacings
+  double allometry = 0.4;    ///< exponent of importance for radii; 1/2 is da Vinci's rule [-]
+  double twig_radius = 0.15; ///< radius of the thinnest twig, in spacings [-]
 };
 
 namespace internal {
@@ -79,7 +79,7 @@ private:
                                       boost::no_property,
                                       boost::property<boost::edge_weight_t, double>>;
 
-  /// Shortest paths over the centres, from the section nearest to the root.
+  /// Computes the shortest paths over the centres, from the section nearest to the root.
   void span(const std::vector<Index>& root)
   {
     const std::size_t n = m_sections.size();
@@ -129,14 +129,14 @@ private:
     std::stable_sort(m_order.begin(), m_order.end(), [&](Index a, Index b) {
       return distance[a] < distance[b];
     });
-    // parents first, also where a distance is zero
+    // parents first, also for zero distances
     std::stable_partition(m_order.begin(), m_order.end(), [&](Index a) { return a == start; });
     for (const Index i : m_order)
       if (i != start)
         m_parent[i] = predecessor[i];
   }
 
-  /// Removes leaves inside of their parents, and sections that are much wider than theirs.
+  /// Removes tips inside their parents, and sections that are much wider than their parents.
   void filter()
   {
     const std::size_t n = m_sections.size();
@@ -167,7 +167,7 @@ private:
     }
   }
 
-  /// Keeps forks, tips, and nodes a diameter apart.
+  /// Keeps forks, tips, and nodes at a distance of a diameter.
   void thin()
   {
     const std::size_t n = m_sections.size();
@@ -203,7 +203,8 @@ private:
     }
   }
 
-  /// Points near the generalized cylinder of an edge are dense, and belong to its upper node.
+  /// Marks the points near the generalized cylinder of an edge as dense, and assigns them to its
+  /// upper node.
   void mark_dense()
   {
     std::vector<Index> near;
@@ -236,8 +237,8 @@ private:
     }
   }
 
-  /// Spanning trees over the rest, contracted to layers; radii by importance from that of the
-  /// joint.
+  /// Adds spanning trees over the remaining points, contracted to level sets. Radii follow from
+  /// importance and from the radius at the joint.
   void add_sparse(const std::vector<Index>& root)
   {
     const std::size_t n = m_scan.size();
@@ -252,7 +253,7 @@ private:
                                          rule,
                                          connected_parts<CGAL::Sequential_tag>(is_used, links));
     links.insert(links.end(), gaps.begin(), gaps.end());
-    // all dense points are sources: every subtree of the rest begins where the dense region ends
+    // all dense points are sources: every sparse subtree begins at the border of the dense region
     std::vector<Index> sources;
     for (Index i = 0; i < n; ++i)
       if (m_is_used[i] && !is_rest[i])
@@ -294,7 +295,7 @@ private:
     for (Index v = 0; v < tree.size(); ++v) {
       const Index at = joint[top[v]];
       if (at == none && !m_nodes.empty() && number[top[v]] == none && top[v] != v)
-        continue; // out of reach
+        continue; // unreachable
       if (at == none && top[v] == v && !m_nodes.empty())
         continue;
       const double base = at == none ? m_scan.spacing : m_nodes[at].radius;
@@ -322,7 +323,7 @@ private:
 
 } // namespace internal
 
-/// The whole way of the dissertation from its sections to a tree of branches.
+/// Builds the tree of branches from sections, as published [Aiteanu 2022].
 inline Branch_tree section_skeleton(const Scan& scan,
                                     const std::vector<std::uint8_t>& is_used,
                                     const std::vector<Found_section>& sections,

@@ -29,7 +29,7 @@ struct Section
   Vec3 major_axis = Vec3::Zero();
 };
 
-/// A branch whose surface is wanted; parents come before their children.
+/// The sections of a branch and its parent; parents come before their children.
 struct Surface_branch
 {
   std::size_t parent = static_cast<std::size_t>(-1); ///< none
@@ -38,25 +38,25 @@ struct Surface_branch
 
 struct Surface_options
 {
-  double tolerance = 0; ///< distance of the mesh from the sections [L]
-  bool do_join = true;  ///< else every branch is a closed tube of its own
+  double tolerance = 0; ///< largest distance of the mesh from the sections [L]
+  bool do_join = true;  ///< otherwise, every branch is a separate closed tube
   std::size_t fewest_sides = 4, most_sides = 48;
   double margin =
-      0.35; ///< between the border of a hole and the branch in it, in radii of the branch
-  double steepest = 0.25; ///< sine of the angle between a branch and its parent, at least this
-  double widest = 1.1;    ///< half the angle of the parent that a branch may take [rad]
+      0.35; ///< distance between the border of a hole and its branch, in radii of the branch [-]
+  double steepest = 0.25; ///< least sine of the angle between a branch and its parent [-]
+  double widest = 1.1;    ///< largest half angle of a branch around its parent [rad]
 };
 
-/// A mesh of triangles that look outwards.
+/// A triangle mesh with outward orientation.
 struct Branch_surface
 {
   std::vector<Vec3> points;
   std::vector<std::array<std::size_t, 3>> triangles;
-  std::size_t number_of_joined = 0;   ///< branches sewn into a hole of their parent [count]
-  std::size_t number_of_separate = 0; ///< branches that are closed tubes of their own [count]
+  std::size_t number_of_joined = 0;   ///< branches joined to a hole of their parent [count]
+  std::size_t number_of_separate = 0; ///< branches that are separate closed tubes [count]
 };
 
-/// The sections of one branch as a line with arc lengths; sections at one place are one.
+/// The sections of one branch as a polyline by arc length; coincident sections are merged.
 class Section_line
 {
 public:
@@ -76,7 +76,7 @@ public:
   double at(std::size_t k) const { return m_at[k]; }
   const Section& operator[](std::size_t k) const { return m_sections[k]; }
 
-  /// The section at an arc length, between those that are there.
+  /// Interpolates the section at an arc length.
   Section section(double s) const
   {
     const std::size_t k = segment(s);
@@ -96,7 +96,7 @@ public:
     return (m_sections[k + 1].center - m_sections[k].center).normalized();
   }
 
-  /// Arc length of the nearest place of the line.
+  /// Returns the arc length of the nearest point of the line.
   double nearest(const Vec3& p) const
   {
     double best = 0, least = -1;
@@ -113,8 +113,8 @@ public:
     return best;
   }
 
-  /// The arc lengths that are needed to stay within the tolerance (Douglas and Peucker, radius
-  /// included).
+  /// Returns the arc lengths of a simplification within the tolerance, including the radii (Douglas
+  /// and Peucker).
   std::vector<double> simplified(double tolerance) const
   {
     std::vector<std::uint8_t> is_kept(size(), !(tolerance > 0));
@@ -162,16 +162,16 @@ private:
   std::vector<double> m_at;
 };
 
-/// A grid of vertices: `sides` of them on each ring.
+/// A tube as a grid of vertices, with `sides` vertices on each ring.
 struct Surface_tube
 {
   std::size_t sides = 0;
   std::vector<Section> rings;
   std::vector<double> at;            ///< arc length of each ring
   std::vector<Vec3> along, side;     ///< frame of each ring
-  std::size_t first = 0;             ///< number of the first vertex
+  std::size_t first = 0;             ///< index of the first vertex
   std::vector<std::uint8_t> is_hole; ///< quads, ring by ring
-  std::vector<std::size_t> base;     ///< the loop that the first ring is sewn to; empty: a lid
+  std::vector<std::size_t> base;     ///< loop joined to the first ring; empty: a cap
 
   std::size_t vertex(std::size_t ring, std::size_t k) const
   {
@@ -179,7 +179,7 @@ struct Surface_tube
   }
   std::uint8_t& hole(std::size_t ring, std::size_t k) { return is_hole[ring * sides + k % sides]; }
 
-  /// Frames that do not twist: each is the one before, turned by the smallest rotation.
+  /// Computes frames without twist: each is the previous one after the smallest rotation.
   void place_frames()
   {
     const std::size_t n = rings.size();
@@ -210,7 +210,7 @@ struct Surface_tube
       radius = 1 / std::sqrt(c2 / (s.major_radius * s.major_radius) +
                              (1 - c2) / (s.minor_radius * s.minor_radius));
     }
-    // a polygon of the area of the section: half of it lies outside, half inside
+    // the polygon has the area of the section
     return s.center + radius * std::sqrt(angle(1) / std::sin(angle(1))) * direction;
   }
 };

@@ -21,10 +21,10 @@ namespace pcs {
 namespace skeleton {
 
 /*!
-  A branch begins where its axis leaves the wood of its parent. There its tube is prolonged
-  backwards to a loop on the surface of the parent; the parent has rings just before and behind, so
-  that a block of its quads holds the loop closely. The block is taken out, and what is left of it
-  around the loop is filled in the unrolled surface.
+  Builds the surface of all branches. A branch begins where its axis leaves its parent. From there,
+  its tube is extended backwards to a loop on the surface of the parent. The parent has rings just
+  below and above, so that a block of its quads tightly encloses the loop. This block is removed,
+  and the gap between its border and the loop is triangulated in the unrolled surface.
 */
 class Surface_builder
 {
@@ -66,7 +66,7 @@ private:
   {
     std::size_t r0 = 0, r1 = 0, c0 = 0, count = 0;
   };
-  /// A place on the unrolled surface: sides, and arc length.
+  /// A position on the unrolled surface: sides and arc length.
   struct Place
   {
     double u = 0, s = 0;
@@ -139,8 +139,8 @@ inline void Surface_builder::make_tube(std::size_t b, std::vector<double> rings)
   tube.is_hole.assign((tube.rings.size() - 1) * tube.sides, 0);
 }
 
-/// The smallest free block that holds the place with some room; smaller ones where others are in
-/// the way.
+/// Finds the smallest block of free quads around a position with some margin. Reduces the margin if
+/// quads are occupied. Returns `false` if there is no such block.
 inline bool Surface_builder::find_block(Surface_tube& parent,
                                         const Place& center,
                                         double du,
@@ -179,7 +179,7 @@ inline bool Surface_builder::find_block(Surface_tube& parent,
   return false;
 }
 
-/// The point of the grid at a place: bilinear in its quad.
+/// Returns the point of the grid at a position, by bilinear interpolation in its quad.
 inline Vec3 Surface_builder::on_grid(const Surface_tube& tube, const Place& place) const
 {
   const std::size_t rows = tube.rings.size() - 1;
@@ -201,7 +201,7 @@ inline bool Surface_builder::join(std::size_t b)
   const Branch_exit& e = m_exits[b];
   if (!m_rules.do_join || !e.is_there || parent.rings.empty())
     return false;
-  // the frame of the parent there
+  // the frame of the parent at the exit
   std::size_t row = 0;
   while (row + 2 < parent.rings.size() && parent.at[row + 1] <= e.at)
     ++row;
@@ -213,7 +213,7 @@ inline bool Surface_builder::join(std::size_t b)
   Place center{std::atan2(e.normal.dot(e2), e.normal.dot(e1)) / turn, e.at};
   if (center.u < 0)
     center.u += double(parent.sides);
-  // the tube of the branch, prolonged backwards to the surface
+  // the tube of the branch, extended backwards to the surface
   std::vector<Place> loop;
   Vec3 s1 = tube.side.front() - tube.side.front().dot(e.direction) * e.direction;
   s1 = s1.norm() > 1e-9 ? Vec3(s1.normalized()) : Vec3(e.direction.unitOrthogonal());
@@ -236,7 +236,7 @@ inline bool Surface_builder::join(std::size_t b)
   Block block;
   if (!find_block(parent, center, room * scale_u * du, half, block))
     return false;
-  // the loop, scaled and moved into the block
+  // the loop, scaled and translated into the block
   const double s0 = parent.at[block.r0], s_1 = parent.at[block.r1];
   double c0 = double(block.c0);
   if (center.u < c0 - 1e-9 - 0.5 * double(block.count))
@@ -271,7 +271,7 @@ inline bool Surface_builder::join(std::size_t b)
     pass(block.r1, c);
   for (std::size_t r = block.r1; r > block.r0; --r)
     pass(r, 0);
-  for (std::vector<Place>* list : {&places, &loop}) // units in which the loop is round
+  for (std::vector<Place>* list : {&places, &loop}) // scaled so that the loop is a circle
     for (Place& p : *list)
       p = {(p.u - center.u) / (fit_u * du), (p.s - center.s) / (fit_s * ds)};
   sew(border, places, tube.base, loop);
@@ -279,8 +279,7 @@ inline bool Surface_builder::join(std::size_t b)
   return true;
 }
 
-/// A branch for which there is no room is a tube of its own, whose first ring lies in the wood of
-/// its parent.
+/// Makes a branch without a free block a separate tube whose first ring lies inside its parent.
 inline void Surface_builder::begin_inside(std::size_t b)
 {
   ++m_surface.number_of_separate;
@@ -294,14 +293,14 @@ inline void Surface_builder::begin_inside(std::size_t b)
     m_surface.points[tube.vertex(0, k)] += back;
 }
 
-/// Triangles between two loops that run the same way around the origin, one around the other: the
-/// shorter diagonal, as long as the one loop sees the other.
+/// Triangulates the region between two nested loops with the same orientation around the origin.
+/// Selects the shorter diagonal, provided that the angle between its ends is not too large.
 inline void Surface_builder::sew(const Loop& outer,
                                  const std::vector<Place>& outer_places,
                                  const Loop& inner,
                                  const std::vector<Place>& inner_places)
 {
-  constexpr double pi = 3.14159265358979323846, sight = 1.75; // a little more than a right angle
+  constexpr double pi = 3.14159265358979323846, sight = 1.75; // just over a right angle [rad]
   const std::size_t n = outer.size(), m = inner.size();
   const auto distance = [&](std::size_t i, std::size_t j) {
     const Place &a = outer_places[i % n], &b = inner_places[j % m];
@@ -310,7 +309,7 @@ inline void Surface_builder::sew(const Loop& outer,
   double widest = 1;
   for (const Place& p : outer_places)
     widest = std::max(widest, std::hypot(p.u, p.s));
-  const double out_of_sight = 1e3 * widest; // no diagonal is as long
+  const double out_of_sight = 1e3 * widest; // longer than all diagonals
   std::size_t i0 = 0, j0 = 0;
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < m; ++j)
@@ -323,7 +322,7 @@ inline void Surface_builder::sew(const Loop& outer,
     const double d = angle(b) - angle(a);
     return d > pi ? d - 2 * pi : (d <= -pi ? d + 2 * pi : d);
   };
-  double turned = difference(outer_places[i0], inner_places[j0]); // how far the inner loop is ahead
+  double turned = difference(outer_places[i0], inner_places[j0]); // lead of the inner loop [rad]
   for (std::size_t i = 0, j = 0; i < n || j < m;) {
     const std::size_t a = i0 + i, b = j0 + j;
     const double outer_step = difference(outer_places[a % n], outer_places[(a + 1) % n]);
@@ -345,7 +344,7 @@ inline void Surface_builder::sew(const Loop& outer,
   }
 }
 
-/// The quads that are no hole, the neck to the parent, and lids on open ends.
+/// Adds the quads outside holes, the connection to the parent, and caps on open ends.
 inline void Surface_builder::close(Surface_tube& tube)
 {
   if (tube.rings.empty())
@@ -376,7 +375,7 @@ inline void Surface_builder::close(Surface_tube& tube)
     add(tube.vertex(0, k + 1), tube.vertex(0, k), foot);
 }
 
-/// Inside of holes there are points of no triangle.
+/// Removes points without triangles, which lie inside holes.
 inline void Surface_builder::drop_unused_points()
 {
   std::vector<std::size_t> number(m_surface.points.size(), 0);

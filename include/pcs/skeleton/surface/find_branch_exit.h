@@ -16,18 +16,18 @@
 namespace pcs {
 namespace skeleton {
 
-/// Where a branch leaves its parent.
+/// The exit of a branch from its parent.
 struct Branch_exit
 {
   bool is_there = false;
-  double at = 0, half = 0; ///< arc length on the parent, and how far the branch reaches along it
-  double start = 0;        ///< arc length on the branch where its own rings begin; < 0: no surface
+  double at = 0, half = 0; ///< arc length on the parent, half length of the branch along it
+  double start = 0;        ///< arc length of the first ring of the branch; < 0: no surface
   double radius = 0;       ///< of the branch
   Vec3 point = Vec3::Zero(), direction = Vec3::Zero(), normal = Vec3::Zero();
 };
 
-/// Follows the axis of a branch to the surface of its parent, the line `below`; null: nothing to be
-/// joined with.
+/// Follows the axis of a branch to the surface of its parent, the line `below`, which is null for a
+/// separate branch.
 inline Branch_exit
 find_branch_exit(const Section_line& line, const Section_line* below, const Surface_options& rules)
 {
@@ -47,7 +47,7 @@ find_branch_exit(const Section_line& line, const Section_line* below, const Surf
     else
       low = line.at(k);
   }
-  if (high < 0) { // hidden in its parent
+  if (high < 0) { // entirely inside its parent
     e.start = -1;
     return e;
   }
@@ -65,19 +65,19 @@ find_branch_exit(const Section_line& line, const Section_line* below, const Surf
   normal -= normal.dot(axis) * axis;
   e.normal =
       normal.norm() > 1e-9 * at.radius ? Vec3(normal.normalized()) : Vec3(axis.unitOrthogonal());
-  // flat branches are taken for steeper ones: their footprint would run far along the parent
+  // limits the angle of flat branches, whose footprint would extend far along the parent
   const Vec3 d = line.direction(high);
   const double sine = std::max(rules.steepest, d.dot(e.normal));
   Vec3 flat = d - d.dot(e.normal) * e.normal;
   flat = flat.norm() > 1e-9 ? Vec3(flat.normalized()) : Vec3(Vec3::Zero());
   e.direction = (std::sqrt(1 - std::min(1.0, sine * sine)) * flat + sine * e.normal).normalized();
-  const double rise = std::abs(flat.dot(axis)); // part of the slope that runs along the parent
+  const double rise = std::abs(flat.dot(axis)); // component of the slope along the parent
   e.half = e.radius * ((1 - rise) + rise / sine) + rules.margin * e.radius;
   const double slope = std::sqrt(1 - std::min(1.0, sine * sine)) / sine;
   const double sag = at.radius > e.radius // the parent curves away from the branch
                          ? at.radius - std::sqrt(at.radius * at.radius - e.radius * e.radius)
                          : e.radius;
-  // the first ring of the branch lies outside of the parent as a whole
+  // the first ring of the branch lies entirely outside the parent
   e.start = high + std::max(0.0, slope * e.radius - sag) + rules.margin * e.radius;
   const double last = line.length();
   if (e.start > high + 0.6 * (last - high))
