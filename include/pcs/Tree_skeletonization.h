@@ -9,6 +9,7 @@
 #include <pcs/concepts.h>
 #include <pcs/core/Skeleton_report.h>
 #include <pcs/core/Tree_skeleton.h>
+#include <pcs/core/check_value.h>
 #include <pcs/core/errors.h>
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Session.h>
@@ -138,7 +139,7 @@ public:
       \np{skeleton_method} how branches are found
         \nptype `Skeleton_method`: `chains`, or `sections` for the dissertation's own way
         \npdefault `chains`
-      \np{slice_rules} the steps of the method `sections`: how slices are cut, fitted, tilted, and
+      \np{slice_options} the steps of the method `sections`: how slices are cut, fitted, tilted, and
           which points they spare
         \nptype `Slice_options`
         \npdefault the dissertation's, with which nothing is replaced
@@ -208,14 +209,14 @@ public:
     : m_points(&points), m_np(np)
   {
     if constexpr (is_ok) {
-      skeleton::Session_hints hints = skeleton::read_options(m_np, function);
-      m_callback =
-          internal::choose(m_np, CGAL::internal_np::callback, std::function<bool(double)>());
+      skeleton::Input_options options = skeleton::read_skeleton_options(m_np, function);
+      m_callback = std::move(options.callback);
       std::vector<skeleton::Vec3> input = read_points();
-      skeleton::check_input(input, hints, function);
+      skeleton::check_input(input, options.hints, function);
       std::vector<std::uint8_t> is_wood = read_wood();
-      hints.stations = read_stations();
-      m_session = std::make_unique<Session>(std::move(input), std::move(is_wood), std::move(hints));
+      options.hints.stations = read_stations();
+      m_session =
+          std::make_unique<Session>(std::move(input), std::move(is_wood), std::move(options.hints));
     }
   }
 
@@ -340,10 +341,11 @@ private:
           is_wood.push_back(get(map, *it) ? 1 : 0);
           count += is_wood.back();
         }
-      if (count < lowest_number_of_scan_points)
-        throw Invalid_input(std::string(function) + ": wood_map leaves " + std::to_string(count) +
-                            " points; there must be at least " +
-                            std::to_string(lowest_number_of_scan_points));
+      internal::check(count >= lowest_number_of_scan_points,
+                      function,
+                      "wood_map leaves " + std::to_string(count) +
+                          " points; there must be at least " +
+                          std::to_string(lowest_number_of_scan_points));
     }
     return is_wood;
   }
@@ -403,17 +405,33 @@ private:
     };
     if constexpr (internal::is_given_v<NamedParameters, internal_np::point_branch_map_t>) {
       const auto map = CGAL::parameters::get_parameter(m_np, internal_np::point_branch_map);
-      for_each_point([&](auto&& key, std::size_t, skeleton::Index v) {
-        put(map, key, v == skeleton::none ? npos : std::size_t(found.nodes[v].branch));
-      });
+      using Map = std::decay_t<decltype(map)>;
+      constexpr bool is_map_ok = skeleton::internal::is_index_map_v<Map, typename Types::Element>;
+      static_assert(is_map_ok,
+                    "pcs::extract_tree_skeleton(): named parameter `point_branch_map` must be "
+                    "writable, accept an element of `points` as key, and store an integer type");
+      if constexpr (is_map_ok)
+        for_each_point([&](auto&& key, std::size_t, skeleton::Index v) {
+          const std::size_t branch =
+              v == skeleton::none ? npos : std::size_t(found.nodes[v].branch);
+          put(map, key, static_cast<pcs::Map_value<Map>>(branch));
+        });
     }
     if constexpr (internal::is_given_v<NamedParameters, internal_np::point_residual_map_t>) {
       const auto map = CGAL::parameters::get_parameter(m_np, internal_np::point_residual_map);
-      using R = pcs::Map_value<std::decay_t<decltype(map)>>;
-      std::vector<double> residuals(m_session->report().number_of_points, 0);
-      for_each_explained([&](std::size_t i) { residuals[i] = m_session->residual_of_input(i); });
-      for_each_point(
-          [&](auto&& key, std::size_t i, skeleton::Index) { put(map, key, R(residuals[i])); });
+      using Map = std::decay_t<decltype(map)>;
+      constexpr bool is_map_ok = skeleton::internal::is_length_map_v<Map, typename Types::Element>;
+      static_assert(is_map_ok,
+                    "pcs::extract_tree_skeleton(): named parameter `point_residual_map` must be "
+                    "writable, accept an element of `points` as key, and store floating point "
+                    "numbers");
+      if constexpr (is_map_ok) {
+        std::vector<double> residuals(m_session->report().number_of_points, 0);
+        for_each_explained([&](std::size_t i) { residuals[i] = m_session->residual_of_input(i); });
+        for_each_point([&](auto&& key, std::size_t i, skeleton::Index) {
+          put(map, key, pcs::Map_value<Map>(residuals[i]));
+        });
+      }
     }
     if constexpr (internal::is_given_v<NamedParameters, internal_np::point_is_leaf_map_t>) {
       const auto map = CGAL::parameters::get_parameter(m_np, internal_np::point_is_leaf_map);
@@ -429,15 +447,14 @@ private:
     }
     if constexpr (internal::is_given_v<NamedParameters, CGAL::internal_np::normal_t>) {
       const auto map = CGAL::parameters::get_parameter(m_np, CGAL::internal_np::normal_map);
-      using V = pcs::Map_value<std::decay_t<decltype(map)>>;
-      constexpr bool is_map_ok =
-          is_point_or_vector_v<V> &&
-          is_map_for_v<std::decay_t<decltype(map)>, typename Types::Element, V>;
+      using Map = std::decay_t<decltype(map)>;
+      constexpr bool is_map_ok = skeleton::internal::is_vector_map_v<Map, typename Types::Element>;
       static_assert(is_map_ok,
                     "pcs::extract_tree_skeleton(): named parameter `normal_map` must be writable, "
                     "accept an element of `points` as key, and store vectors with x(), y(), z() "
                     "and a constructor from three coordinates");
       if constexpr (is_map_ok) {
+        using V = pcs::Map_value<Map>;
         using FT = std::decay_t<decltype(std::declval<const V&>().x())>;
         std::vector<skeleton::Vec3> normals(m_session->report().number_of_points,
                                             skeleton::Vec3::Zero());
@@ -450,9 +467,15 @@ private:
     }
     if constexpr (internal::is_given_v<NamedParameters, internal_np::point_is_dense_map_t>) {
       const auto map = CGAL::parameters::get_parameter(m_np, internal_np::point_is_dense_map);
-      for_each_point([&](auto&& key, std::size_t, skeleton::Index v) {
-        put(map, key, v != skeleton::none && found.nodes[v].is_measured);
-      });
+      constexpr bool is_map_ok =
+          is_map_for_v<std::decay_t<decltype(map)>, typename Types::Element, bool>;
+      static_assert(is_map_ok,
+                    "pcs::extract_tree_skeleton(): named parameter `point_is_dense_map` must be "
+                    "writable, accept an element of `points` as key, and store bool");
+      if constexpr (is_map_ok)
+        for_each_point([&](auto&& key, std::size_t, skeleton::Index v) {
+          put(map, key, v != skeleton::none && found.nodes[v].is_measured);
+        });
     }
   }
 

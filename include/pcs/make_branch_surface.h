@@ -7,8 +7,9 @@
 
 #include <pcs/Named_function_parameters.h>
 #include <pcs/core/Tree_skeleton.h>
-#include <pcs/core/errors.h>
-#include <pcs/internal/text.h>
+#include <pcs/core/check_value.h>
+#include <pcs/core/read_parameter.h>
+#include <pcs/skeleton/input/caller_types.h>
 #include <pcs/skeleton/surface/Surface_builder.h>
 
 #include <CGAL/number_utils.h>
@@ -17,7 +18,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -50,8 +53,10 @@ struct Surface_input
 
 /// Throws `Invalid_input` if a position or radius is not finite, or a radius is negative.
 template <class Kernel>
-skeleton::Section
-read_section(const Tree_skeleton<Kernel>& tree, std::size_t v, const skeleton::Vec3& origin)
+skeleton::Section read_section(const Tree_skeleton<Kernel>& tree,
+                               std::size_t v,
+                               const skeleton::Vec3& origin,
+                               const std::string& caller)
 {
   using skeleton::Vec3;
   const Tree_node<Kernel>& node = tree[v];
@@ -61,9 +66,10 @@ read_section(const Tree_skeleton<Kernel>& tree, std::size_t v, const skeleton::V
                   CGAL::to_double(node.point.z())) -
              origin;
   s.radius = CGAL::to_double(node.radius);
-  if (!s.center.allFinite() || !std::isfinite(s.radius) || s.radius < 0)
-    throw Invalid_input("pcs::make_branch_surface(): position or radius of node " +
-                        std::to_string(v) + " is not finite, or the radius is negative");
+  check(s.center.allFinite() && std::isfinite(s.radius) && s.radius >= 0,
+        caller,
+        "position or radius of node " + std::to_string(v) +
+            " is not finite, or the radius is negative");
   s.major_radius = CGAL::to_double(node.major_radius);
   s.minor_radius = CGAL::to_double(node.minor_radius);
   s.major_axis = Vec3(CGAL::to_double(node.major_axis.x()),
@@ -75,7 +81,7 @@ read_section(const Tree_skeleton<Kernel>& tree, std::size_t v, const skeleton::V
 }
 
 template <class Kernel>
-Surface_input read_surface_input(const Tree_skeleton<Kernel>& tree)
+Surface_input read_surface_input(const Tree_skeleton<Kernel>& tree, const std::string& caller)
 {
   const auto lists = nodes_by_branch<Kernel>(tree);
   const Tree_bundle& bundle = tree[boost::graph_bundle];
@@ -98,23 +104,34 @@ Surface_input read_surface_input(const Tree_skeleton<Kernel>& tree)
     if (bundle.branches[b].parent != npos)
       branch.parent = number[bundle.branches[b].parent];
     for (const std::size_t v : lists[b]) {
-      branch.sections.push_back(read_section(tree, v, input.origin));
+      branch.sections.push_back(read_section(tree, v, input.origin, caller));
       input.max_radius = std::max(input.max_radius, branch.sections.back().radius);
     }
   }
   return input;
 }
 
-template <class NamedParameters>
-skeleton::Surface_options read_surface_options(const NamedParameters& np, double max_radius)
+/// The named parameters of `make_branch_surface()`.
+struct Branch_surface_options
 {
-  skeleton::Surface_options options;
-  options.do_join = choose(np, internal_np::do_join, true);
-  options.tolerance = static_cast<double>(
-      choose(np, internal_np::tolerance, default_surface_tolerance * max_radius));
-  if (!std::isfinite(options.tolerance) || options.tolerance < 0)
-    throw Invalid_input("pcs::make_branch_surface(): tolerance is " + to_text(options.tolerance) +
-                        "; it must not be negative");
+  std::optional<double> tolerance; ///< [L]
+  bool do_join = true;
+};
+
+/// Throws `Invalid_input` with a message that begins with `caller` if a value is out of range.
+template <class NamedParameters>
+Branch_surface_options read_branch_surface_options(const NamedParameters& np,
+                                                   const std::string& caller)
+{
+  static_assert(is_parameter_v<double, NamedParameters, internal_np::tolerance_t>,
+                "pcs::make_branch_surface(): named parameter `tolerance` must be a number");
+  static_assert(is_parameter_v<bool, NamedParameters, internal_np::do_join_t>,
+                "pcs::make_branch_surface(): named parameter `do_join` must be a bool");
+  Branch_surface_options options;
+  read_parameter(np, internal_np::tolerance, options.tolerance);
+  if (options.tolerance)
+    check_at_least(caller, "tolerance", *options.tolerance, 0);
+  read_parameter(np, internal_np::do_join, options.do_join);
   return options;
 }
 
@@ -158,9 +175,14 @@ Branch_surface_report make_branch_surface(const Tree_skeleton<Kernel>& tree,
                                           const NamedParameters& np = NamedParameters())
 {
   using FT = typename Kernel::FT;
-  const internal::Surface_input input = internal::read_surface_input(tree);
-  const skeleton::Surface_options options = internal::read_surface_options(np, input.max_radius);
-  skeleton::Branch_surface surface = skeleton::Surface_builder(input.branches, options)();
+  const std::string caller = "pcs::make_branch_surface()";
+  const internal::Branch_surface_options options =
+      internal::read_branch_surface_options(np, caller);
+  const internal::Surface_input input = internal::read_surface_input(tree, caller);
+  skeleton::Surface_options rules;
+  rules.do_join = options.do_join;
+  rules.tolerance = options.tolerance.value_or(default_surface_tolerance * input.max_radius);
+  skeleton::Branch_surface surface = skeleton::Surface_builder(input.branches, rules)();
   std::vector<typename Kernel::Point_3> result;
   result.reserve(surface.points.size());
   for (const skeleton::Vec3& q : surface.points) {
@@ -171,6 +193,20 @@ Branch_surface_report make_branch_surface(const Tree_skeleton<Kernel>& tree,
   triangles = std::move(surface.triangles);
   return {points.size(), triangles.size(), surface.number_of_joined, surface.number_of_separate};
 }
+
+/// \cond
+template <class Graph,
+          class Points,
+          class Triangles,
+          class NamedParameters = parameters::Default_named_parameters>
+std::enable_if_t<!skeleton::internal::is_tree_skeleton_v<Graph>, Branch_surface_report>
+make_branch_surface(const Graph&, Points&, Triangles&, const NamedParameters& = NamedParameters())
+{
+  static_assert(skeleton::internal::is_tree_skeleton_v<Graph>,
+                "pcs::make_branch_surface(): the tree must be a pcs::Tree_skeleton<Kernel>");
+  return {};
+}
+/// \endcond
 
 } // namespace pcs
 

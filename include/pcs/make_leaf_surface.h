@@ -7,8 +7,9 @@
 
 #include <pcs/Named_function_parameters.h>
 #include <pcs/core/Tree_skeleton.h>
-#include <pcs/core/errors.h>
-#include <pcs/internal/text.h>
+#include <pcs/core/check_value.h>
+#include <pcs/core/read_parameter.h>
+#include <pcs/skeleton/input/caller_types.h>
 
 #include <CGAL/number_utils.h>
 
@@ -20,8 +21,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <random>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -42,7 +45,7 @@ struct Leaf_nodes
 };
 
 template <class Kernel>
-Leaf_nodes read_leaf_nodes(const Tree_skeleton<Kernel>& tree)
+Leaf_nodes read_leaf_nodes(const Tree_skeleton<Kernel>& tree, const std::string& caller)
 {
   const std::size_t n = num_vertices(tree);
   Leaf_nodes nodes;
@@ -53,9 +56,10 @@ Leaf_nodes read_leaf_nodes(const Tree_skeleton<Kernel>& tree)
     Eigen::Vector3d& position = nodes.position[v];
     position = {CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())};
     const double radius = CGAL::to_double(tree[v].radius);
-    if (!position.allFinite() || !std::isfinite(radius) || radius < 0)
-      throw Invalid_input("pcs::make_leaf_surface(): position or radius of node " +
-                          std::to_string(v) + " is not finite, or the radius is negative");
+    check(position.allFinite() && std::isfinite(radius) && radius >= 0,
+          caller,
+          "position or radius of node " + std::to_string(v) +
+              " is not finite, or the radius is negative");
     nodes.extent = std::max(nodes.extent, (position - nodes.position[0]).norm());
     if (out_degree(v, tree) == 0)
       tips.push_back(radius);
@@ -69,31 +73,36 @@ Leaf_nodes read_leaf_nodes(const Tree_skeleton<Kernel>& tree)
 /// The named parameters of `make_leaf_surface()`.
 struct Leaf_surface_options
 {
-  double length;        ///< of a leaf [L]
-  double density;       ///< leaves per length of branch [1/L]
-  double branch_radius; ///< of the thickest branch with leaves [L]
-  std::uint64_t seed;
+  std::optional<double> length;        ///< of a leaf [L]
+  std::optional<double> density;       ///< leaves per length of branch [1/L]
+  std::optional<double> branch_radius; ///< of the thickest branch with leaves [L]
+  std::uint64_t seed = 0;
 };
 
+/// Throws `Invalid_input` with a message that begins with `caller` if a value is out of range.
 template <class NamedParameters>
-Leaf_surface_options read_leaf_surface_options(const NamedParameters& np, const Leaf_nodes& nodes)
+Leaf_surface_options read_leaf_surface_options(const NamedParameters& np, const std::string& caller)
 {
-  const auto choose = [&](auto tag, double otherwise, bool is_zero_fine, const char* name) {
-    const double value = static_cast<double>(internal::choose(np, tag, otherwise));
-    if (!std::isfinite(value) || value < 0 || (value == 0 && !is_zero_fine))
-      throw Invalid_input(std::string("pcs::make_leaf_surface(): ") + name + " is " +
-                          internal::to_text(value) + "; it must " +
-                          (is_zero_fine ? "not be negative" : "be positive"));
-    return value;
-  };
-  Leaf_surface_options o;
-  const double one = nodes.extent > 0 ? default_leaf_share * nodes.extent : 1;
-  o.length = choose(internal_np::leaf_length, one, false, "leaf_length");
-  o.density = choose(internal_np::leaves_per_length, 2 / o.length, true, "leaves_per_length");
-  o.branch_radius =
-      choose(internal_np::leaf_branch_radius, 2 * nodes.tip_radius, true, "leaf_branch_radius");
-  o.seed = static_cast<std::uint64_t>(internal::choose(np, CGAL::internal_np::random_seed, 0));
-  return o;
+  static_assert(is_parameter_v<double, NamedParameters, internal_np::leaf_length_t>,
+                "pcs::make_leaf_surface(): named parameter `leaf_length` must be a number");
+  static_assert(is_parameter_v<double, NamedParameters, internal_np::leaves_per_length_t>,
+                "pcs::make_leaf_surface(): named parameter `leaves_per_length` must be a number");
+  static_assert(is_parameter_v<double, NamedParameters, internal_np::leaf_branch_radius_t>,
+                "pcs::make_leaf_surface(): named parameter `leaf_branch_radius` must be a number");
+  static_assert(is_integer_parameter_v<NamedParameters, CGAL::internal_np::random_seed_t>,
+                "pcs::make_leaf_surface(): named parameter `random_seed` must be an integer");
+  Leaf_surface_options options;
+  read_parameter(np, internal_np::leaf_length, options.length);
+  if (options.length)
+    check_positive(caller, "leaf_length", *options.length);
+  read_parameter(np, internal_np::leaves_per_length, options.density);
+  if (options.density)
+    check_at_least(caller, "leaves_per_length", *options.density, 0);
+  read_parameter(np, internal_np::leaf_branch_radius, options.branch_radius);
+  if (options.branch_radius)
+    check_at_least(caller, "leaf_branch_radius", *options.branch_radius, 0);
+  options.seed = read_random_seed(np);
+  return options;
 }
 
 } // namespace internal
@@ -140,9 +149,14 @@ std::size_t make_leaf_surface(const Tree_skeleton<Kernel>& tree,
 {
   using FT = typename Kernel::FT;
   using Vec3 = Eigen::Vector3d;
-  const internal::Leaf_nodes nodes = internal::read_leaf_nodes(tree);
-  const internal::Leaf_surface_options o = internal::read_leaf_surface_options(np, nodes);
-  std::mt19937_64 random(o.seed);
+  const std::string caller = "pcs::make_leaf_surface()";
+  const internal::Leaf_surface_options options = internal::read_leaf_surface_options(np, caller);
+  const internal::Leaf_nodes nodes = internal::read_leaf_nodes(tree, caller);
+  const double length =
+      options.length.value_or(nodes.extent > 0 ? default_leaf_share * nodes.extent : 1);
+  const double density = options.density.value_or(2 / length);
+  const double branch_radius = options.branch_radius.value_or(2 * nodes.tip_radius);
+  std::mt19937_64 random(options.seed);
   const auto uniform = [&] { return double(random() >> 11) * 0x1p-53; };
   const auto direction = [&] {
     const double z = 2 * uniform() - 1, angle = 6.283185307179586 * uniform();
@@ -155,10 +169,10 @@ std::size_t make_leaf_surface(const Tree_skeleton<Kernel>& tree,
   for (std::size_t v = 0; v < nodes.position.size(); ++v) {
     const std::size_t p = parent_node<Kernel>(v, tree);
     const double radius = CGAL::to_double(tree[v].radius);
-    if (p == npos || tree[p].branch != tree[v].branch || radius > o.branch_radius)
+    if (p == npos || tree[p].branch != tree[v].branch || radius > branch_radius)
       continue;
     const Vec3 d = nodes.position[v] - nodes.position[p];
-    const double expected = o.density * d.norm(), whole = std::floor(expected);
+    const double expected = density * d.norm(), whole = std::floor(expected);
     const double count = whole + (uniform() < expected - whole ? 1 : 0);
     for (double k = 0; k < count; ++k) {
       const Vec3 along = direction();
@@ -167,9 +181,9 @@ std::size_t make_leaf_surface(const Tree_skeleton<Kernel>& tree,
       const Vec3 base = nodes.position[p] + uniform() * d + radius * along;
       const std::size_t first = vertices.size();
       add(base);
-      add(base + 0.5 * o.length * along + 0.25 * o.length * side);
-      add(base + o.length * along);
-      add(base + 0.5 * o.length * along - 0.25 * o.length * side);
+      add(base + 0.5 * length * along + 0.25 * length * side);
+      add(base + length * along);
+      add(base + 0.5 * length * along - 0.25 * length * side);
       faces.push_back({first, first + 1, first + 2});
       faces.push_back({first, first + 2, first + 3});
     }
@@ -178,6 +192,20 @@ std::size_t make_leaf_surface(const Tree_skeleton<Kernel>& tree,
   triangles = std::move(faces);
   return points.size() / 4;
 }
+
+/// \cond
+template <class Graph,
+          class Points,
+          class Triangles,
+          class NamedParameters = parameters::Default_named_parameters>
+std::enable_if_t<!skeleton::internal::is_tree_skeleton_v<Graph>, std::size_t>
+make_leaf_surface(const Graph&, Points&, Triangles&, const NamedParameters& = NamedParameters())
+{
+  static_assert(skeleton::internal::is_tree_skeleton_v<Graph>,
+                "pcs::make_leaf_surface(): the tree must be a pcs::Tree_skeleton<Kernel>");
+  return 0;
+}
+/// \endcond
 
 } // namespace pcs
 

@@ -170,26 +170,29 @@ Segmentation_report segment_trees(PointRange& points,
   static_assert(is_point_ok,
                 "pcs::segment_trees(): `point_map` must be a property map that stores points with "
                 "x(), y(), z() and a constructor from three coordinates, like Kernel::Point_3");
+  constexpr bool is_point_map_ok =
+      !is_point_ok ||
+      is_readable_map_v<typename Types::Point_map, typename Types::Element, typename Types::Point>;
+  static_assert(is_point_map_ok,
+                "pcs::segment_trees(): named parameter `point_map` must be readable and accept an "
+                "element of `points` as key");
   constexpr bool is_tree_map_ok = is_map_for_v<PointTreeMap, Element, std::size_t>;
   static_assert(is_tree_map_ok,
                 "pcs::segment_trees(): `point_tree_map` must be writable, accept an element of "
                 "`points` as key, and store what a std::size_t converts to");
   Segmentation_report report;
-  if constexpr (is_range_ok && is_point_ok && is_tree_map_ok) {
-    const std::string function = "pcs::segment_trees()";
+  if constexpr (is_range_ok && is_point_ok && is_point_map_ok && is_tree_map_ok) {
+    const std::string caller = "pcs::segment_trees()";
+    const skeleton::Input_options options = skeleton::read_segmentation_options(np, caller);
+    const skeleton::Session_hints& hints = options.hints;
     internal::Stopwatch watch;
-    skeleton::Session_hints hints;
-    hints.up = skeleton::read_up_direction(np, function);
-    hints.breast_height = skeleton::read_breast_height(np, function);
-    hints.do_mark_ground = internal::choose(np, internal_np::do_remove_ground, true);
     const auto point_map = internal::choose(np,
                                             CGAL::internal_np::point_map,
                                             CGAL::Identity_property_map<std::decay_t<Element>>());
     const std::vector<skeleton::Vec3> input =
-        skeleton::internal::read_input(points, point_map, function);
-    skeleton::check_input(input, hints, function);
-    internal::Progress progress(
-        internal::choose(np, CGAL::internal_np::callback, std::function<bool(double)>()));
+        skeleton::internal::read_input(points, point_map, caller);
+    skeleton::check_input(input, hints, caller);
+    internal::Progress progress(options.callback);
     report.number_of_points = input.size();
     report.breast_height = hints.breast_height;
     skeleton::Stand forest;

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <type_traits>
@@ -22,13 +23,24 @@
 namespace pcs {
 namespace internal {
 
+/// Whether a `Given` may stand for an `Option`. A `bool` is not made of a pointer or a fraction.
+template <class Given, class Option>
+constexpr bool is_option_value_v = std::is_convertible_v<Given, Option> &&
+                                   !(std::is_same_v<Option, bool> &&
+                                     (std::is_pointer_v<Given> || std::is_floating_point_v<Given>));
+
 /// Whether `tag` is not in the chain, or was given a value that converts to `Option`.
 template <class Option, class NamedParameters, class Tag>
 constexpr bool is_parameter_v =
-    std::is_convertible_v<decltype(choose(std::declval<const NamedParameters&>(),
-                                          std::declval<Tag>(),
-                                          std::declval<const Option&>())),
-                          Option>;
+    is_option_value_v<std::decay_t<decltype(choose(std::declval<const NamedParameters&>(),
+                                                   std::declval<Tag>(),
+                                                   std::declval<const Option&>()))>,
+                      Option>;
+
+/// Whether `tag` is not in the chain, or was given an integer.
+template <class NamedParameters, class Tag>
+constexpr bool is_integer_parameter_v = std::is_integral_v<
+    std::decay_t<decltype(choose(std::declval<const NamedParameters&>(), std::declval<Tag>(), 0))>>;
 
 /// Replaces `value` by the value given for `tag`, if there is one. A value of a wrong type is
 /// ignored: the caller rejects it with a `static_assert` that names the parameter.
@@ -37,6 +49,17 @@ void read_parameter(const NamedParameters& np, Tag tag, Option& value)
 {
   if constexpr (is_parameter_v<Option, NamedParameters, Tag>)
     value = static_cast<Option>(choose(np, tag, value));
+}
+
+/// The given `random_seed`, or 0 if there is none or one that is no integer, which the caller
+/// rejects with a `static_assert`.
+template <class NamedParameters>
+std::uint64_t read_random_seed([[maybe_unused]] const NamedParameters& np)
+{
+  if constexpr (is_integer_parameter_v<NamedParameters, CGAL::internal_np::random_seed_t>)
+    return static_cast<std::uint64_t>(choose(np, CGAL::internal_np::random_seed, 0));
+  else
+    return 0;
 }
 
 /// Sets `callback` to the one given in `np`, if there is one.
@@ -64,7 +87,7 @@ std::array<double, 3> read_up_direction([[maybe_unused]] const NamedParameters& 
   std::array<double, 3> up = {0, 0, 1};
   using Tag = internal_np::up_direction_t;
   if constexpr (is_given_v<NamedParameters, Tag>) {
-    const auto given = CGAL::parameters::get_parameter(np, Tag());
+    const auto& given = CGAL::parameters::get_parameter_reference(np, Tag());
     constexpr bool is_vector = is_coordinate_triple_v<std::decay_t<decltype(given)>>;
     static_assert(is_vector,
                   "pcs: named parameter `up_direction` must be a vector with x(), y(), z()");

@@ -7,39 +7,56 @@
 
 #include <pcs/Named_function_parameters.h>
 #include <pcs/core/Tree_skeleton.h>
+#include <pcs/core/read_parameter.h>
 #include <pcs/generators/Tree_habit.h>
 #include <pcs/generators/internal/Tree_growth.h>
 
 #include <cstdint>
-#include <type_traits>
 
 namespace pcs {
+namespace internal {
+
+/// The named parameters of `grow_tree()`.
+struct Growth_options
+{
+  std::uint64_t seed = 0;
+};
+
+template <class NamedParameters>
+Growth_options read_growth_options(const NamedParameters& np)
+{
+  static_assert(is_integer_parameter_v<NamedParameters, CGAL::internal_np::random_seed_t>,
+                "pcs::grow_tree(): named parameter `random_seed` must be an integer");
+  return {read_random_seed(np)};
+}
+
+} // namespace internal
 
 /*!
   \ingroup PkgPcsGeneratorsRef
   \brief grows a virtual tree upwards from the origin.
 
-  Axes are random walks of direction with a pull upwards; radii taper from base to tip; branches
-  leave their parent at the golden angle, with a random share of its radius, and end at a crown of
-  given shape; sections are ellipses with a random phase for each branch. A branch begins on the
-  axis of its parent, with a node of its own at the place of the parent's node.
+  Axes are random walks of direction with a tropism; radii taper from base to tip. Branches leave
+  their parent at the golden angle, with a random fraction of its radius, and end at a crown of
+  given shape. Cross-sections are ellipses with a random phase for each branch. A branch begins on
+  the axis of its parent, with a separate node that coincides with a node of the parent.
 
-  Every branch draws from a random stream of its own, so the number of its twigs does not change
-  the next branch. `Tree_branch::id` is the number of the branch; `tree_at_age()`, `prune_branch()`,
+  Every branch uses a separate random stream, so the number of its twigs does not affect the next
+  branch. `Tree_branch::id` is the number of the branch; `tree_at_age()`, `prune_branch()`,
   `turn_branch()` and `lengthen_branch()` keep it.
 
   \tparam Kernel a class with `FT`, `Point_3` and `Vector_3`, such as a kernel of CGAL
   \tparam NamedParameters a sequence of named parameters
   \param tree is replaced; unchanged when an exception is thrown
-  \param habit how the tree grows; lengths in any unit [L]
+  \param habit growth parameters; lengths in any unit [L]
   \param np an optional sequence of named parameters, listed below
   \npbegin
-    \np{random_seed} another seed gives another tree of the same habit
+    \np{random_seed} seed of the random streams
       \nptype integer
       \npdefault `0`
   \npend
-  \throws pcs::Invalid_input when a value of `habit` makes no sense, or the tree would have more
-          than ten million nodes
+  \throws pcs::Invalid_input when a value of `habit` is invalid, or the tree would have more than
+          ten million nodes
   \par Complexity
   Linear in the number of nodes.
   \par Determinism
@@ -50,15 +67,11 @@ void grow_tree(Tree_skeleton<Kernel>& tree,
                const Tree_habit& habit = broadleaf_habit(),
                const NamedParameters& np = parameters::default_values())
 {
-  const auto seed = internal::choose(np, CGAL::internal_np::random_seed, 0);
-  constexpr bool seed_ok = std::is_integral_v<std::decay_t<decltype(seed)>>;
-  static_assert(seed_ok, "pcs::grow_tree(): named parameter `random_seed` must be an integer");
+  const internal::Growth_options options = internal::read_growth_options(np);
   internal::check_habit(habit);
-  if constexpr (seed_ok) {
-    generators::internal::Tree_growth growth(habit, static_cast<std::uint64_t>(seed));
-    growth.run();
-    tree = growth.template skeleton<Kernel>();
-  }
+  generators::internal::Tree_growth growth(habit, options.seed);
+  growth.run();
+  tree = growth.template skeleton<Kernel>();
 }
 
 } // namespace pcs

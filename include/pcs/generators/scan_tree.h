@@ -7,6 +7,7 @@
 
 #include <pcs/Named_function_parameters.h>
 #include <pcs/core/Tree_skeleton.h>
+#include <pcs/core/read_parameter.h>
 #include <pcs/generators/Virtual_scan.h>
 #include <pcs/generators/Virtual_scanner.h>
 #include <pcs/generators/internal/Scan_session.h>
@@ -16,24 +17,45 @@
 
 #include <cstdint>
 #include <functional>
-#include <type_traits>
 
 namespace pcs {
+namespace internal {
+
+/// The named parameters of `scan_tree()`.
+struct Scan_options
+{
+  std::uint64_t seed = 0;
+  std::function<bool(double)> callback;
+};
+
+template <class NamedParameters>
+Scan_options read_scan_options(const NamedParameters& np)
+{
+  static_assert(is_integer_parameter_v<NamedParameters, CGAL::internal_np::random_seed_t>,
+                "pcs::scan_tree(): named parameter `random_seed` must be an integer");
+  Scan_options options;
+  options.seed = read_random_seed(np);
+  read_callback(np, options.callback);
+  return options;
+}
+
+} // namespace internal
 
 /*!
   \ingroup PkgPcsGeneratorsRef
-  \brief scans a tree as a terrestrial laser scanner would see it.
+  \brief simulates a terrestrial laser scan of a tree.
 
-  The branches become tubes of triangles, with elliptic sections of exact area and with bark. From
-  every station beams go out in even steps of azimuth and elevation; the first surface is hit, so
-  what is behind stays hidden. A beam consists of three rays. Where their ranges differ by more than
-  `ghost_gap`, the share `ghost_share` gives a ghost at a random range between them; where only a
-  ray beside the middle hits, the share `edge_share` gives a point, in the direction of the middle:
-  so thin twigs look too thick, as in real scans. Ranges are noisy, each station has a small shift
-  (the error of registration), and outliers lie anywhere in the bounding box.
+  The branches become triangulated tubes, with elliptic sections of exact area and with bark. Every
+  station emits beams in regular steps of azimuth and elevation; only the first surface is hit,
+  which causes occlusion. A beam consists of three rays. If their ranges differ by more than
+  `ghost_gap`, the fraction `ghost_share` of such beams gives a ghost at a random range between
+  them. If only a ray beside the central one hits, the fraction `edge_share` of such beams gives a
+  point in the direction of the central ray. Thin twigs therefore appear too thick, as in real
+  scans. Ranges are noisy, each station has a small shift (the error of registration), and outliers
+  are distributed over the bounding box.
 
-  Optional: wind that moves twigs from station to station, leaves, ground, posts, stations on one
-  side only, and a thinned copy; see `Virtual_scanner`.
+  Options of `Virtual_scanner`: wind that moves twigs between stations, leaves, ground, posts,
+  one-sided visibility, and thinning.
 
   \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or
           `CGAL::Parallel_if_available_tag`
@@ -41,10 +63,10 @@ namespace pcs {
   \tparam NamedParameters a sequence of named parameters
   \param tree a tree with branches; up is +z. Positions may be far from the origin.
   \param scan is replaced; unchanged when the work is cancelled or an exception is thrown
-  \param scanner the scanner and its surroundings
+  \param scanner the scanner and the scanned surroundings
   \param np an optional sequence of named parameters, listed below
   \npbegin
-    \np{random_seed} of noise, ghosts, bark, leaves and everything else that is random
+    \np{random_seed} seed of noise, ghosts, bark, leaves and all other random values
       \nptype integer
       \npdefault `0`
     \np{callback} called with the progress between 0 and 1; returns `false` to cancel
@@ -52,12 +74,12 @@ namespace pcs {
       \npdefault none
   \npend
   \return a `Scan_report`: status, counts by label, seconds
-  \throws pcs::Invalid_input when a value of `scanner` makes no sense, the tree has no edge, a
+  \throws pcs::Invalid_input when a value of `scanner` is invalid, the tree has no edge, a
           coordinate or radius is not finite, or a station would send more than 4e9 beams
   \par Complexity
-  \f$O(t \log t)\f$ for `t` triangles, and \f$O(\log t)\f$ per beam as a rule.
+  \f$O(t \log t)\f$ for `t` triangles, and typically \f$O(\log t)\f$ per beam.
   \par Determinism
-  Same bits for every number of threads and for the sequential tag.
+  The result is bitwise identical for every number of threads and for the sequential tag.
 */
 template <class ConcurrencyTag = CGAL::Parallel_if_available_tag,
           class Kernel,
@@ -67,19 +89,11 @@ Scan_report scan_tree(const Tree_skeleton<Kernel>& tree,
                       const Virtual_scanner& scanner = Virtual_scanner(),
                       const NamedParameters& np = parameters::default_values())
 {
-  const auto seed = internal::choose(np, CGAL::internal_np::random_seed, 0);
-  constexpr bool seed_ok = std::is_integral_v<std::decay_t<decltype(seed)>>;
-  static_assert(seed_ok, "pcs::scan_tree(): named parameter `random_seed` must be an integer");
-  internal::Progress progress(
-      internal::choose(np, CGAL::internal_np::callback, std::function<bool(double)>()));
+  const internal::Scan_options options = internal::read_scan_options(np);
+  internal::Progress progress(options.callback);
   internal::check_scanner(scanner);
-  if constexpr (seed_ok) {
-    generators::internal::Scan_session<Kernel> session(tree,
-                                                       scanner,
-                                                       static_cast<std::uint64_t>(seed));
-    return session.template run<ConcurrencyTag>(scan, progress);
-  }
-  return {};
+  generators::internal::Scan_session<Kernel> session(tree, scanner, options.seed);
+  return session.template run<ConcurrencyTag>(scan, progress);
 }
 
 } // namespace pcs

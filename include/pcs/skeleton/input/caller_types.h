@@ -8,7 +8,7 @@
 #include <pcs/Named_function_parameters.h>
 #include <pcs/concepts.h>
 #include <pcs/core/Tree_skeleton.h>
-#include <pcs/core/errors.h>
+#include <pcs/core/check_value.h>
 #include <pcs/skeleton/model/Given_skeleton.h>
 #include <pcs/skeleton/model/Scan.h>
 
@@ -19,7 +19,6 @@
 #include <boost/property_map/property_map.hpp>
 
 #include <cstddef>
-#include <functional>
 #include <iterator>
 #include <map>
 #include <string>
@@ -38,28 +37,31 @@ Vec3 to_vec3(const Point& p)
   return {CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z())};
 }
 
-/// The vertices of a graph in an order in which parents come first; throws unless it is one tree.
+/// Reads the vertices of a graph, parents before their children. Throws `Invalid_input` unless the
+/// graph is a single tree.
 template <class Graph, class PointMap>
-Given_skeleton read_given(const Graph& graph, const PointMap& point_map)
+Given_skeleton read_given(const Graph& graph, const PointMap& point_map, const std::string& caller)
 {
   using Vertex = typename boost::graph_traits<Graph>::vertex_descriptor;
-  const std::string function = "pcs::extract_tree_skeleton(): given_skeleton ";
+  const auto check = [&](bool is_valid, const char* rule) {
+    pcs::internal::check(is_valid, caller, std::string("given_skeleton ") + rule);
+  };
   std::map<Vertex, Vertex> parent_of;
   std::size_t count = 0;
   for (auto [v, end] = vertices(graph); v != end; ++v, ++count)
     for (auto [e, last] = out_edges(*v, graph); e != last; ++e)
-      if (!parent_of.emplace(target(*e, graph), *v).second)
-        throw Invalid_input(function + "has a node with two parents");
-  if (count < 2 || parent_of.size() + 1 != count)
-    throw Invalid_input(
-        function + "must be one tree with a root and at least one more node; it has " +
-        std::to_string(count) + " nodes and " + std::to_string(parent_of.size()) + " edges");
+      check(parent_of.emplace(target(*e, graph), *v).second, "has a node with two parents");
+  pcs::internal::check(count >= 2 && parent_of.size() + 1 == count,
+                       caller,
+                       "given_skeleton must be one tree with a root and at least one more node; "
+                       "it has " +
+                           std::to_string(count) + " nodes and " +
+                           std::to_string(parent_of.size()) + " edges");
   Given_skeleton given;
   std::vector<Vertex> order;
   const auto add = [&](Vertex v, Index parent) {
     given.points.push_back(to_vec3(get(point_map, v)));
-    if (!given.points.back().allFinite())
-      throw Invalid_input(function + "has a position that is not finite");
+    check(given.points.back().allFinite(), "has a position that is not finite");
     given.parent.push_back(parent);
     order.push_back(v);
   };
@@ -71,12 +73,11 @@ Given_skeleton read_given(const Graph& graph, const PointMap& point_map)
     for (auto [e, last] = out_edges(v, graph); e != last; ++e)
       add(target(*e, graph), static_cast<Index>(k));
   }
-  if (order.size() != count)
-    throw Invalid_input(function + "has a cycle");
+  check(order.size() == count, "has a cycle");
   return given;
 }
 
-/// The types that a point range and a chain of named parameters stand for.
+/// The types that follow from a point range and from named parameters.
 template <class PointRange, class NamedParameters>
 struct Skeleton_types
 {
@@ -96,7 +97,7 @@ template <class T>
 struct Is_range_of_points<
     T,
     std::enable_if_t<!std::is_void_v<typename pcs::internal::Iterator_of<T>::type>>>
-  : pcs::internal::Is_point<std::decay_t<decltype(*std::begin(std::declval<T&>()))>>
+  : pcs::internal::Is_coordinate_triple<std::decay_t<decltype(*std::begin(std::declval<T&>()))>>
 {
 };
 template <class T>
@@ -117,16 +118,30 @@ struct Is_mutable_graph<
 {
 };
 
-template <class T>
-const T& unwrapped(const T& value)
-{
-  return value;
-}
-template <class T>
-const T& unwrapped(const std::reference_wrapper<T>& value)
-{
-  return value.get();
-}
+template <class Kernel>
+std::true_type test_tree_skeleton(const Tree_skeleton<Kernel>*);
+std::false_type test_tree_skeleton(const void*);
+
+/// Whether `Graph` is a `Tree_skeleton`, or a class derived from one.
+template <class Graph>
+constexpr bool is_tree_skeleton_v =
+    decltype(test_tree_skeleton(static_cast<const Graph*>(nullptr)))::value;
+
+/// Whether `Map` takes branch indices: integers other than bool.
+template <class Map, class Key>
+constexpr bool is_index_map_v =
+    std::is_integral_v<pcs::Map_value<Map>> && !std::is_same_v<pcs::Map_value<Map>, bool> &&
+    is_map_for_v<Map, Key, std::size_t>;
+
+/// Whether `Map` takes lengths: numbers other than integers.
+template <class Map, class Key>
+constexpr bool is_length_map_v =
+    !std::is_integral_v<pcs::Map_value<Map>> && is_map_for_v<Map, Key, double>;
+
+/// Whether `Map` takes vectors.
+template <class Map, class Key>
+constexpr bool is_vector_map_v =
+    is_point_or_vector_v<pcs::Map_value<Map>>&& is_map_for_v<Map, Key, pcs::Map_value<Map>>;
 
 } // namespace internal
 

@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_INPUT_CHECK_INPUT_H
 #define PCS_SKELETON_INPUT_CHECK_INPUT_H
 
+#include <pcs/core/check_value.h>
 #include <pcs/core/errors.h>
 #include <pcs/internal/text.h>
 #include <pcs/skeleton/input/Session_hints.h>
@@ -21,12 +22,12 @@
 namespace pcs {
 
 //! \ingroup PkgPcsSkeletonRef
-//! a scan of fewer different points has no skeleton [count]
+//! least number of different points of a scan [count]
 constexpr std::size_t lowest_number_of_scan_points = 10;
 
 namespace skeleton {
 
-/// Larger coordinates have volumes that are no numbers.
+/// Largest coordinate; volumes would overflow beyond it [L].
 constexpr double largest_coordinate = 1e100;
 
 namespace internal {
@@ -36,8 +37,8 @@ inline bool is_coordinate(const Vec3& p)
   return p.allFinite() && p.cwiseAbs().maxCoeff() <= largest_coordinate;
 }
 
-/// The positions of a range. Throws `Invalid_input`, whose text begins with `function`, at one that
-/// is none.
+/// Reads the positions of a range. Throws `Invalid_input`, whose text begins with `function`, at an
+/// invalid position.
 template <class PointRange, class PointMap>
 std::vector<Vec3>
 read_input(const PointRange& points, const PointMap& point_map, const std::string& function)
@@ -69,28 +70,28 @@ inline void check_number_of_points(const std::vector<Vec3>& input, const std::st
                       std::to_string(lowest_number_of_scan_points));
 }
 
-/// Scanners that are farther away, in diagonals of the box of the points, stand in other
-/// coordinates [-].
+/// Largest distance of scanners, in diagonals of the bounding box of the points [-]. Farther
+/// scanners are probably in different coordinates.
 constexpr double farthest_scanner = 500;
 
-/// A given skeleton has a length.
+/// Throws `Invalid_input` if a position of a given skeleton is too large or its length is zero.
 inline void check_given(const Given_skeleton& given, const std::string& function)
 {
-  for (const Vec3& p : given.points)
-    if (!is_coordinate(p))
-      throw Invalid_input(function + ": given_skeleton has a position beyond 1e100");
-  if (std::all_of(given.points.begin(), given.points.end(), [&](const Vec3& p) {
-        return p == given.points.front();
-      }))
-    throw Invalid_input(function + ": all nodes of given_skeleton lie at one place");
+  const auto at_root = [&](const Vec3& p) { return p == given.points.front(); };
+  pcs::internal::check(std::all_of(given.points.begin(), given.points.end(), is_coordinate),
+                       function,
+                       "given_skeleton has a position beyond 1e100");
+  pcs::internal::check(!std::all_of(given.points.begin(), given.points.end(), at_root),
+                       function,
+                       "all nodes of given_skeleton lie at one place");
 }
 
 } // namespace internal
 
 /*!
   Throws `Invalid_input`, whose text begins with `function`, if there are too few points, or if the
-  root or all of the given skeleton is farther away from them than they are wide, or a scanner far
-  beyond that. O(n).
+  root, the whole given skeleton or a scanner is too far away. The limit for the root and the
+  skeleton is the diagonal of the bounding box of the points; that for scanners is far larger. O(n).
 */
 inline void
 check_input(const std::vector<Vec3>& input, const Session_hints& hints, const std::string& function)
@@ -103,25 +104,26 @@ check_input(const std::vector<Vec3>& input, const Session_hints& hints, const st
   }
   const auto distance = [&](const Vec3& p) { return (p - p.cwiseMax(low).cwiseMin(high)).norm(); };
   const double diagonal = (high - low).norm();
-  const auto check = [&](double away, const std::string& what) {
-    if (!(away <= diagonal))
-      throw Invalid_input(function + ": " + what + " is " + pcs::internal::to_text(away) +
-                          " away from the points, which lie in a box with a diagonal of " +
-                          pcs::internal::to_text(diagonal));
+  const auto check = [&](double away, double largest, const char* what, const char* advice) {
+    pcs::internal::check(away <= largest,
+                         function,
+                         std::string(what) + " is " + pcs::internal::to_text(away) +
+                             " away from the points, which lie in a box with a diagonal of " +
+                             pcs::internal::to_text(diagonal) + advice);
   };
   for (const Vec3& p : hints.scanners)
-    if (!(distance(p) <= internal::farthest_scanner * diagonal))
-      throw Invalid_input(function + ": a scanner is " + pcs::internal::to_text(distance(p)) +
-                          " away from the points, which lie in a box with a diagonal of " +
-                          pcs::internal::to_text(diagonal) + ": are these other coordinates?");
+    check(distance(p),
+          internal::farthest_scanner * diagonal,
+          "a scanner",
+          ": are these other coordinates?");
   if (hints.root)
-    check(distance(*hints.root), "root_position");
+    check(distance(*hints.root), diagonal, "root_position", "");
   if (hints.given) {
     internal::check_given(*hints.given, function);
     double nearest = std::numeric_limits<double>::infinity();
     for (const Vec3& p : hints.given->points)
       nearest = std::min(nearest, distance(p));
-    check(nearest, "given_skeleton");
+    check(nearest, diagonal, "given_skeleton", "");
   }
 }
 

@@ -21,7 +21,7 @@
 namespace pcs {
 namespace skeleton {
 
-/// Fills a `Tree_skeleton` with all that is known of the nodes.
+/// Fills a `Tree_skeleton` with all attributes of nodes and branches.
 template <class Graph>
 void write_ready_made(const Branch_tree& found, const Scan_frame& frame, Graph& tree)
 {
@@ -58,7 +58,7 @@ void write_ready_made(const Branch_tree& found, const Scan_frame& frame, Graph& 
     bundle.branches.push_back(branch);
   }
   tree.swap(result);
-  tree[boost::graph_bundle] = bundle; // swap() of Boost 1.74 forgets it
+  tree[boost::graph_bundle] = bundle; // swap() of Boost 1.74 omits it
 }
 
 namespace internal {
@@ -72,8 +72,8 @@ struct Has_clear<Graph, std::void_t<decltype(std::declval<Graph&>().clear())>> :
 {
 };
 
-/// Removes all vertices. Where the graph cannot do so at once, one after the other: in vectors each
-/// takes O(size).
+/// Removes all vertices. For graphs without `clear()`, removes them one after the other; with
+/// vertices in a vector, each removal is O(size).
 template <class Graph>
 void clear_graph(Graph& graph)
 {
@@ -89,7 +89,8 @@ void clear_graph(Graph& graph)
 
 } // namespace internal
 
-/// Replaces any other graph; positions and radii go through the maps among the named parameters.
+/// Replaces the contents of a graph of another type. Writes positions and radii to the maps in the
+/// named parameters.
 template <class NamedParameters, class Graph>
 void write_graph(const Branch_tree& found,
                  const Scan_frame& frame,
@@ -98,16 +99,21 @@ void write_graph(const Branch_tree& found,
 {
   const auto point_map = CGAL::parameters::get_parameter(np, pcs::internal_np::node_point_map);
   const auto radius_map = CGAL::parameters::get_parameter(np, pcs::internal_np::node_radius_map);
-  using P = pcs::Map_value<std::decay_t<decltype(point_map)>>;
-  using R = pcs::Map_value<std::decay_t<decltype(radius_map)>>;
-  constexpr bool are_maps_ok = is_point_or_vector_v<P> && std::is_floating_point_v<R>;
+  using Point_map = std::decay_t<decltype(point_map)>;
+  using Radius_map = std::decay_t<decltype(radius_map)>;
+  using Vertex = typename boost::graph_traits<Graph>::vertex_descriptor;
+  using P = pcs::Map_value<Point_map>;
+  using R = pcs::Map_value<Radius_map>;
+  constexpr bool are_maps_ok = is_point_or_vector_v<P> && is_map_for_v<Point_map, Vertex, P> &&
+                               std::is_floating_point_v<R> && is_map_for_v<Radius_map, Vertex, R>;
   static_assert(are_maps_ok,
-                "pcs::extract_tree_skeleton(): `node_point_map` must store points with x(), y(), "
-                "z(), and `node_radius_map` floating point numbers");
+                "pcs::extract_tree_skeleton(): `node_point_map` and `node_radius_map` must be "
+                "writable, accept a vertex of the result as key, and store points with x(), y(), "
+                "z() and floating point numbers");
   if constexpr (are_maps_ok) {
     using FT = std::decay_t<decltype(std::declval<const P&>().x())>;
     internal::clear_graph(tree);
-    std::vector<typename boost::graph_traits<Graph>::vertex_descriptor> vertex;
+    std::vector<Vertex> vertex;
     vertex.reserve(found.nodes.size());
     for (std::size_t k = 0; k < found.nodes.size(); ++k)
       vertex.push_back(add_vertex(tree));
