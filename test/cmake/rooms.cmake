@@ -17,19 +17,16 @@ set(root_deformation Session.h access/Point_access.h access/read_options.h)
 set(deformation_session
   body/Sampled_body.h
   body/Sampled_body_impl.h
-  handles/Dirty_handles.h
-  handles/Site_constraints.h
   handles/constrain_body.h
   multigrid/Coarse_levels.h
   solver/Elastic_solver.h
+  upsampling/Dirty_handles.h
   upsampling/Handle_fades.h
-  upsampling/Moved_point_writer.h
   upsampling/Outlier_maps.h
   upsampling/Point_carrier.h
   upsampling/Upsampling.h
-  upsampling/read_maps.h)
-set(deformation_access body/Sampled_body.h)
-set(deformation_body handles/Border_finder.h upsampling/Upsampling.h)
+  upsampling/read_maps.h
+  upsampling/write_points.h)
 set(deformation_handles body/Sample_regions.h body/Sampled_body.h)
 set(deformation_multigrid
   body/Sample_links.h

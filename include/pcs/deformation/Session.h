@@ -9,15 +9,10 @@
 #include <pcs/core/Deformation_report.h>
 #include <pcs/core/Similarity.h>
 #include <pcs/core/Status.h>
-#include <pcs/deformation/body/Sampled_body.h>
-#include <pcs/deformation/handles/Site_constraints.h>
 #include <pcs/deformation/model/Affine_map.h>
 #include <pcs/deformation/model/Elastic_options.h>
-#include <pcs/deformation/upsampling/Moved_point_writer.h>
-#include <pcs/deformation/upsampling/Outlier_maps.h>
-#include <pcs/deformation/upsampling/Upsampling.h>
-#include <pcs/internal/Stage_timer.h>
-#include <pcs/internal/parallel.h>
+#include <pcs/deformation/model/Sampling_options.h>
+#include <pcs/deformation/upsampling/write_points.h>
 #include <pcs/internal/progress.h>
 
 #include <cstddef>
@@ -36,20 +31,6 @@ struct Session_snapshot
   std::vector<Affine_map> maps;       ///< of the samples
   std::uint64_t setting = 0;          ///< the session, its rest shape and its handles
   bool is_at_rest = true;
-};
-
-/// What is read while points are written.
-template <class ConcurrencyTag>
-struct Writing
-{
-  Sampled_body<ConcurrencyTag>& body; ///< whose upsampling keeps what it makes of the maps
-  const std::vector<Affine_map>& maps;
-  const Site_constraints& sites;
-  const Outlier_maps& outlier_maps;
-  const std::vector<Similarity>& transforms; ///< of the handles, in local coordinates
-  const std::vector<char>& is_written;       ///< of each handle
-  Upsampling::Block_motions motions;         ///< if the body is sampled
-  double& seconds;                           ///< of the report
 };
 
 template <class ConcurrencyTag>
@@ -125,30 +106,7 @@ public:
   template <bool HasGradients, class Output>
   void write(Output& output)
   {
-    const Writing<ConcurrencyTag> w = start_writing();
-    const pcs::internal::Stage_timer timer(w.seconds);
-    const Moved_point_writer<ConcurrencyTag, Output> writer(w.body,
-                                                            w.sites,
-                                                            w.outlier_maps,
-                                                            w.transforms,
-                                                            w.is_written,
-                                                            output);
-    if (w.body.is_sampled)
-      w.body.upsampling.template apply<ConcurrencyTag, HasGradients>(
-          w.maps,
-          {w.body.frame.unit, w.body.frame.origin},
-          w.motions,
-          writer);
-    else
-      pcs::internal::for_each_index<ConcurrencyTag>(w.body.number_of_points(),
-                                                    [&](std::size_t place) {
-                                                      const std::size_t site =
-                                                          w.body.site_of_place[place];
-                                                      if (w.sites[site] == free_node)
-                                                        writer.write_mapped(place, w.maps[site]);
-                                                      else
-                                                        writer.write_other(place);
-                                                    });
+    write_points<HasGradients>(moved_points(), output);
   }
 
   /*!
@@ -171,7 +129,7 @@ public:
   void accept(const std::function<Vec3(std::size_t)>& position);
 
 private:
-  Writing<ConcurrencyTag> start_writing();
+  Moved_points<ConcurrencyTag> moved_points();
 
   std::unique_ptr<Session_state<ConcurrencyTag>> m_state;
 };

@@ -12,14 +12,15 @@
 #include <pcs/deformation/Session.h>
 #include <pcs/deformation/body/Sampled_body.h>
 #include <pcs/deformation/body/Sampled_body_impl.h>
-#include <pcs/deformation/handles/Dirty_handles.h>
 #include <pcs/deformation/handles/constrain_body.h>
 #include <pcs/deformation/model/Affine_map.h>
 #include <pcs/deformation/multigrid/Coarse_levels.h>
 #include <pcs/deformation/solver/Elastic_solver.h>
+#include <pcs/deformation/upsampling/Dirty_handles.h>
 #include <pcs/deformation/upsampling/Handle_fades.h>
 #include <pcs/deformation/upsampling/Outlier_maps.h>
 #include <pcs/deformation/upsampling/Point_carrier.h>
+#include <pcs/deformation/upsampling/Upsampling.h>
 #include <pcs/deformation/upsampling/read_maps.h>
 #include <pcs/internal/Stage_timer.h>
 #include <pcs/internal/parallel.h>
@@ -47,6 +48,8 @@ struct Session_state
 {
   // ---- from the points; incomplete, and of no use, if the construction was cancelled
   Sampled_body<ConcurrencyTag> body;
+  Border_finder border_finder; ///< of the body's graph of sites, if it is sampled
+  Upsampling upsampling;       ///< if the body is sampled
   Coarse_levels<ConcurrencyTag> coarse;
   bool is_ready = false;
 
@@ -154,14 +157,50 @@ void describe_body(Session_state<Tag>& s)
   s.report.number_of_short_cuts = body.number_of_short_cuts;
 }
 
+/// Prepares the borders of handles and the upsampling.
 template <class Tag>
-void build_coarse_levels(Session_state<Tag>& s)
+void prepare_points(Session_state<Tag>& s)
 {
-  std::vector<std::uint32_t> component;
-  for (const auto site : s.body.site_of_sample)
-    component.push_back(s.body.component_of_site[site]);
-  s.coarse =
-      Coarse_levels<Tag>(s.body.network, std::move(component), s.body.options.do_preserve_volume);
+  if (!s.body.is_sampled)
+    return;
+  const pcs::internal::Stage_timer timer(s.report.seconds.sampling);
+  const auto row = [&](std::size_t place) { return s.body.site_of_place[place]; };
+  s.border_finder = Border_finder(s.body.site_graph);
+  s.upsampling = Upsampling(s.body.number_of_points(), row, s.body.links_of_site);
+  s.body.links_of_site = Sample_links();
+}
+
+template <class Tag>
+void prepare_samples(Session_state<Tag>& s)
+{
+  s.maps.assign(s.body.network.size(), identity_map());
+  s.next_maps = s.maps;
+  s.coarse = Coarse_levels<Tag>(s.body.network,
+                                s.body.component_of_sample(),
+                                s.body.options.do_preserve_volume);
+}
+
+// ---- constraints
+
+/// Factorises the network of the finest level and, meanwhile, finds the points near handles. Returns
+/// `false` if a matrix is singular.
+template <class Tag>
+bool constrain_finest(Session_state<Tag>& s, Body_constraints found)
+{
+  if (found.has_network)
+    s.network = std::move(found.network);
+  bool is_regular = false;
+  pcs::internal::invoke_both<Tag>(
+      [&] {
+        is_regular = s.solver.constrain(found.has_network ? s.network : s.body.network,
+                                        std::move(found.of_nodes),
+                                        s.stiffness);
+      },
+      [&] {
+        if (s.body.is_sampled)
+          s.fades.find(s.body, found.border, exact_handles(s.handles));
+      });
+  return is_regular;
 }
 
 // ---- solving
@@ -248,6 +287,30 @@ bool take_shape(Session_state<Tag>& s)
   return true;
 }
 
+// ---- points of the session
+
+template <class Tag>
+const std::vector<char>& find_written_handles(Session_state<Tag>& s)
+{
+  return s.dirty_handles.find(s.local_transforms,
+                              s.handles.has_outside(),
+                              s.sites.take_followed_handles(),
+                              s.is_at_rest);
+}
+
+template <class Tag>
+Upsampling::Block_motions block_motions(Session_state<Tag>& s, const std::vector<char>& is_written)
+{
+  if (!s.body.is_sampled)
+    return {};
+  read_handle_maps(s.local_transforms, s.handle_maps);
+  return {s.sites.is_blended().data(),
+          s.sites.holder().data(),
+          is_written.data(),
+          s.handle_maps.data(),
+          s.local_transforms.empty() ? Upsampling::Fades() : s.fades.of_blocks()};
+}
+
 // ---- points outside the session
 
 template <class Tag>
@@ -294,7 +357,7 @@ void build_carrier(Session_state<Tag>& s)
 {
   std::vector<Vec3> sites(s.body.number_of_sites());
   for (std::size_t place = 0; place < s.body.number_of_points(); ++place)
-    sites[s.body.site_of_place[place]] = s.body.upsampling.rest(place);
+    sites[s.body.site_of_place[place]] = s.body.rest_points.position(place);
   s.carrier = std::make_unique<Point_carrier>(std::move(sites),
                                               s.body.network.rest,
                                               s.body.sample_of_site,
@@ -311,11 +374,10 @@ template <class Tag>
 void move_rest(Session_state<Tag>& s, const std::function<Vec3(std::size_t)>& position)
 {
   Sampled_body<Tag>& body = s.body;
-  body.upsampling.set_rest(
+  body.rest_points.set_positions(
       [&](std::size_t place) { return body.frame.to_local(position(body.input_of_place[place])); });
   for (std::size_t sample = 0; sample < body.network.size(); ++sample)
     body.network.rest[sample] = body.rest_of_site(body.site_of_sample[sample]);
-  body.upsampling.set_sample_points(body.network.rest);
   s.coarse.accept(body.network);
   s.carrier.reset();
 }
@@ -334,9 +396,8 @@ Session<ConcurrencyTag>::Session(std::vector<Vec3> points,
   if (!s.is_ready)
     return;
   internal::describe_body(s);
-  s.maps.assign(s.body.network.size(), identity_map());
-  s.next_maps = s.maps;
-  internal::build_coarse_levels(s);
+  internal::prepare_points(s);
+  internal::prepare_samples(s);
   s.handles.start(s.body, region);
   internal::begin_setting(s);
 }
@@ -416,21 +477,9 @@ bool Session<ConcurrencyTag>::constrain(double stiffness)
   s.has_solution = false;
   s.stiffness = stiffness;
   s.setting_of_sites = s.setting;
-  Body_constraints found = constrain_body(s.body, s.handles, s.sites, s.report);
+  Body_constraints found = constrain_body(s.body, s.border_finder, s.handles, s.sites, s.report);
   const bool is_regular = s.coarse.constrain(s.body.network, found.of_samples, stiffness);
-  if (found.has_network)
-    s.network = std::move(found.network);
-  pcs::internal::invoke_both<ConcurrencyTag>(
-      [&] {
-        s.is_constrained = s.solver.constrain(found.has_network ? s.network : s.body.network,
-                                              std::move(found.of_nodes),
-                                              stiffness);
-      },
-      [&] {
-        if (s.body.is_sampled)
-          s.fades.find(s.body, found.border, exact_handles(s.handles));
-      });
-  s.is_constrained = s.is_constrained && is_regular;
+  s.is_constrained = internal::constrain_finest(s, std::move(found)) && is_regular;
   return s.is_constrained;
 }
 
@@ -504,33 +553,23 @@ void Session<ConcurrencyTag>::reset()
 }
 
 template <class ConcurrencyTag>
-Writing<ConcurrencyTag> Session<ConcurrencyTag>::start_writing()
+Moved_points<ConcurrencyTag> Session<ConcurrencyTag>::moved_points()
 {
   Session_state<ConcurrencyTag>& s = *m_state;
-  s.report.seconds.upsampling = 0;
-  const pcs::internal::Stage_timer timer(s.report.seconds.upsampling);
-  const std::vector<char>& is_written = s.dirty_handles.find(s.local_transforms,
-                                                             s.handles.has_outside(),
-                                                             s.sites.take_followed_handles(),
-                                                             s.is_at_rest);
+  double& seconds = s.report.seconds.upsampling = 0;
+  const pcs::internal::Stage_timer timer(seconds);
+  const std::vector<char>& is_written = internal::find_written_handles(s);
+  const Upsampling::Block_motions motions = internal::block_motions(s, is_written);
   s.outlier_maps.read(s.body, s.maps);
-  Upsampling::Block_motions motions;
-  if (s.body.is_sampled) {
-    read_handle_maps(s.local_transforms, s.handle_maps);
-    motions = {s.sites.is_blended().data(),
-               s.sites.holder().data(),
-               is_written.data(),
-               s.handle_maps.data(),
-               s.local_transforms.empty() ? Upsampling::Fades() : s.fades.of_blocks()};
-  }
   return {s.body,
+          s.upsampling,
           s.maps,
-          s.sites,
           s.outlier_maps,
+          s.sites,
           s.local_transforms,
           is_written,
           motions,
-          s.report.seconds.upsampling};
+          seconds};
 }
 
 template <class ConcurrencyTag>
@@ -569,7 +608,7 @@ template <class ConcurrencyTag>
 void Session<ConcurrencyTag>::set_normals(const std::function<Vec3(std::size_t)>& normal)
 {
   Sampled_body<ConcurrencyTag>& body = m_state->body;
-  body.upsampling.set_normals(
+  body.rest_points.set_normals(
       [&](std::size_t place) { return normal(body.input_of_place[place]); });
 }
 

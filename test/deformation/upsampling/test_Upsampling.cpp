@@ -5,6 +5,7 @@
 #include <pcs/core/Similarity.h>
 #include <pcs/core/rotations.h>
 #include <pcs/deformation/body/octree_samples.h>
+#include <pcs/deformation/model/Point_blocks.h>
 #include <pcs/deformation/upsampling/Upsampling.h>
 #include <pcs/deformation/upsampling/blend_block_impl.h>
 #include <pcs/internal/instruction_set.h>
@@ -54,6 +55,8 @@ struct Setup
   std::vector<Eigen::Matrix3d> gradients; ///< of the last apply()
   std::vector<std::uint32_t> samples;
   pcs::deformation::Sample_links links;
+  Points sample_points;
+  pcs::deformation::Point_blocks rest;
   pcs::deformation::Upsampling upsampling;
 
   Setup(const Points& unordered, std::size_t count, bool has_normals)
@@ -69,14 +72,20 @@ struct Setup
                                                                  samples,
                                                                  6,
                                                                  pcs::Sample_weights::compact);
+    sample_points = pcs_test::permuted(points, samples);
+    rest = pcs::deformation::Point_blocks(points.size(), [&](std::size_t i) { return points[i]; });
     upsampling = pcs::deformation::Upsampling(
         points.size(),
-        [&](std::size_t i) { return points[i]; },
         [](std::size_t i) { return i; },
-        pcs_test::permuted(points, samples),
         links);
     if (has_normals)
-      upsampling.set_normals([&](std::size_t i) { return normals[i]; });
+      rest.set_normals([&](std::size_t i) { return normals[i]; });
+  }
+
+  /// The points and samples, which move by `maps`.
+  pcs::deformation::Upsampling::Input input(const std::vector<Affine_map>& maps) const
+  {
+    return {rest, sample_points, maps};
   }
 
   /// Maps that turn and shift by up to `size`, differently for every sample.
@@ -101,7 +110,7 @@ struct Setup
     pcs::deformation::Upsampling::Fades fades;
 
     explicit Motions(const Setup& s)
-      : is_blended(s.upsampling.number_of_blocks(), 255),
+      : is_blended(s.rest.number_of_blocks(), 255),
         holder(is_blended.size(), pcs::deformation::mixed_block)
     {
     }
@@ -127,7 +136,7 @@ struct Setup
       n[i] = m;
       gradients[i] = g;
     }};
-    upsampling.apply<Tag, true>(maps, {}, motions, writer);
+    upsampling.apply<Tag, true>(input(maps), {}, motions, writer);
   }
 };
 
@@ -213,7 +222,7 @@ BOOST_AUTO_TEST_CASE(points_around_handles_are_drawn_to_where_these_take_them)
   const auto share = [](std::size_t i) { return i % 24 < 4 ? 0.25 * double(i % 24 + 1) : 0.0; };
   std::vector<std::uint32_t> first(1, 0);
   std::vector<Block_fade> entries;
-  for (std::size_t block = 0; block < s.upsampling.number_of_blocks(); ++block) {
+  for (std::size_t block = 0; block < s.rest.number_of_blocks(); ++block) {
     if (block % 3 == 0) {
       entries.push_back({0, {}});
       for (std::size_t l = 0; l < 4; ++l)
@@ -255,7 +264,8 @@ BOOST_AUTO_TEST_CASE(points_that_are_not_blended_are_passed_on)
     BOOST_TEST((normal == Vec3::Zero()));
   }};
   writer.write_other = [&](std::size_t i) { ++others[i]; };
-  s.upsampling.apply<CGAL::Sequential_tag, false>(s.random_maps(1, 2), {}, blocks, writer);
+  const auto maps = s.random_maps(1, 2);
+  s.upsampling.apply<CGAL::Sequential_tag, false>(s.input(maps), {}, blocks, writer);
   for (std::size_t i = 0; i < 101; ++i) {
     BOOST_TEST(written[i] == (i % 3 == 0 ? 1 : 0));
     BOOST_TEST(others[i] == (i % 3 == 0 ? 0 : 1));
@@ -309,7 +319,7 @@ BOOST_AUTO_TEST_CASE(whole_blocks_are_streamed_where_the_writer_takes_them)
   }};
   writer.write_other = [](std::size_t) {};
   const auto maps = s.random_maps(1, 4);
-  s.upsampling.apply<CGAL::Sequential_tag, false>(maps, {}, blocks, writer);
+  s.upsampling.apply<CGAL::Sequential_tag, false>(s.input(maps), {}, blocks, writer);
   BOOST_TEST(std::count(written.begin(), written.end(), 1) == n - 1);
   const Points all = p, all_normals = normals;
   writer.expect = [](std::size_t) { BOOST_ERROR("nothing is to be asked for"); };
@@ -326,7 +336,7 @@ BOOST_AUTO_TEST_CASE(whole_blocks_are_streamed_where_the_writer_takes_them)
     return true;
   };
   std::fill(written.begin(), written.end(), 0);
-  s.upsampling.apply<CGAL::Sequential_tag, false>(maps, {}, blocks, writer);
+  s.upsampling.apply<CGAL::Sequential_tag, false>(s.input(maps), {}, blocks, writer);
   BOOST_TEST((p == all && normals == all_normals));
   for (std::size_t i = 0; i < n; ++i) {
     const bool is_declined = i / 8 == 1 || i / 8 == 2 || i / 8 == n / 8;
@@ -345,10 +355,8 @@ BOOST_AUTO_TEST_CASE(points_are_announced_before_they_are_written)
     late += announced[i] == 0 ? 1 : 0;
   }};
   writer.expect = [&](std::size_t i) { ++announced.at(i); };
-  s.upsampling.apply<CGAL::Sequential_tag, false>(s.random_maps(1, 2),
-                                                  {},
-                                                  Setup::Motions(s),
-                                                  writer);
+  const auto maps = s.random_maps(1, 2);
+  s.upsampling.apply<CGAL::Sequential_tag, false>(s.input(maps), {}, Setup::Motions(s), writer);
   BOOST_TEST(*std::max_element(announced.begin(), announced.end()) == 1);
   BOOST_TEST(late < n / 5); // the first blocks and the last, which is not whole
 }
@@ -357,14 +365,14 @@ BOOST_AUTO_TEST_CASE(sizes_around_the_block_are_right)
 {
   for (std::size_t n = 1; n < 20; ++n) {
     Setup s(pcs_test::random_points(n, 4), 3, true);
-    BOOST_TEST(s.upsampling.size() == n);
+    BOOST_TEST(s.rest.size() == n);
     const auto identity = affine(Eigen::Matrix3d::Identity(), Vec3::Zero());
     Points p, normals;
     s.apply<Any_tag>(std::vector<Affine_map>(s.samples.size(), identity), p, normals);
     BOOST_TEST(pcs_test::largest_distance(p, s.points) < 1e-15);
     for (std::size_t i = 0; i < n; ++i) {
-      BOOST_TEST((s.upsampling.rest(i) == s.points[i]));
-      BOOST_TEST((s.upsampling.rest_normal(i) == s.normals[i]));
+      BOOST_TEST((s.rest.position(i) == s.points[i]));
+      BOOST_TEST((s.rest.normal(i) == s.normals[i]));
     }
   }
 }

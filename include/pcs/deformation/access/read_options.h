@@ -9,9 +9,10 @@
 #include <pcs/concepts.h>
 #include <pcs/core/Deformation_options.h>
 #include <pcs/core/errors.h>
-#include <pcs/deformation/body/Sampled_body.h>
 #include <pcs/deformation/model/Elastic_options.h>
+#include <pcs/deformation/model/Sampling_options.h>
 #include <pcs/internal/text.h>
+#include <pcs/neighborhood/Proximity_graph.h>
 
 #include <cstddef>
 #include <cstdint>

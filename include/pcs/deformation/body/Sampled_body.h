@@ -5,13 +5,13 @@
 #ifndef PCS_DEFORMATION_BODY_SAMPLED_BODY_H
 #define PCS_DEFORMATION_BODY_SAMPLED_BODY_H
 
-#include <pcs/core/Deformation_options.h>
 #include <pcs/core/Deformation_report.h>
 #include <pcs/deformation/body/Sample_links.h>
-#include <pcs/deformation/handles/Border_finder.h>
+#include <pcs/deformation/model/Affine_map.h>
 #include <pcs/deformation/model/Elastic_network.h>
-#include <pcs/deformation/model/Harmonic_system.h>
-#include <pcs/deformation/upsampling/Upsampling.h>
+#include <pcs/deformation/model/Local_frame.h>
+#include <pcs/deformation/model/Point_blocks.h>
+#include <pcs/deformation/model/Sampling_options.h>
 #include <pcs/internal/progress.h>
 #include <pcs/neighborhood/Proximity_graph.h>
 #include <pcs/neighborhood/detach_outliers.h>
@@ -22,38 +22,7 @@
 
 namespace pcs {
 
-//! \ingroup PkgPcsDeformationRef
-//! samples on which the non-linear problem is solved, unless the caller says otherwise [count]
-constexpr std::size_t default_number_of_samples = 2000;
-//! \ingroup PkgPcsDeformationRef
-//! nearest neighbours that a point is linked to; the dissertation's 5 to 6 [count]
-constexpr std::size_t default_number_of_neighbors = 6;
-//! \ingroup PkgPcsDeformationRef
-//! nearest samples that move a point [count]
-constexpr std::size_t default_number_of_sample_neighbors = 6;
-
 namespace deformation {
-
-struct Sampling_options
-{
-  std::size_t number_of_samples = default_number_of_samples;
-  std::size_t number_of_neighbors = default_number_of_neighbors;
-  std::size_t number_of_sample_neighbors = default_number_of_sample_neighbors;
-  Sample_search sample_search = Sample_search::regions;
-  Sample_weights sample_weights = Sample_weights::compact;
-  bool do_preserve_volume = true;
-};
-
-/// From the caller's coordinates to ours and back: the middle of the points, and a power of two,
-/// which loses no bits.
-struct Local_frame
-{
-  Vec3 origin = Vec3::Zero();
-  double unit = 1; ///< length of one of our units [L]
-
-  Vec3 to_local(const Vec3& p) const { return (p - origin) / unit; }
-  Vec3 to_world(const Vec3& p) const { return p * unit + origin; }
-};
 
 /*!
   Points are numbered three ways. An *input* index is the caller's. A *site* stands for all points
@@ -79,10 +48,10 @@ struct Sampled_body
       sample_of_site; ///< nearest along the surface; `no_sample` where there is none
   neighborhood::Proximity_graph
       site_graph;                       ///< kept for the borders of handles; empty if not sampled
-  Border_finder border_finder;          ///< of `site_graph`
   Elastic_network network;              ///< over the samples
   double weight_unit = 1;               ///< see `sample_graph()`
-  Upsampling upsampling;                ///< over the places
+  Point_blocks rest_points;             ///< at rest, over the places
+  Sample_links links_of_site;           ///< only until the upsampling is built from them
   std::size_t number_of_short_cuts = 0; ///< links dropped between sheets
   bool has_fragments = false;           ///< whether there are sites without a sample
   std::vector<neighborhood::Outlier> outliers; ///< sites that hang on one other
@@ -95,7 +64,9 @@ struct Sampled_body
   {
     return place_of_site.empty() ? site : place_of_site[site];
   }
-  Vec3 rest_of_site(std::size_t site) const { return upsampling.rest(first_place(site)); }
+  Vec3 rest_of_site(std::size_t site) const { return rest_points.position(first_place(site)); }
+
+  std::vector<std::uint32_t> component_of_sample() const;
 
   /// Builds everything from finite points in the caller's coordinates. Returns `false` if
   /// cancelled.
@@ -105,17 +76,30 @@ struct Sampled_body
              pcs::internal::Progress& progress);
 
 private:
+  using Graph = neighborhood::Proximity_graph;
+
+  // ---- neighbours
+  bool find_neighbors(std::vector<Vec3> points,
+                      std::vector<Vec3>& sites,
+                      Graph& graph,
+                      pcs::internal::Progress& progress);
   /// Coordinate by coordinate: near the cloud, wherever a few outliers are.
   static Vec3 median_point(const std::vector<Vec3>& points);
   void to_local(std::vector<Vec3>& points);
   /// Numbers sites and places.
   void order_points(const std::vector<Vec3>& points, std::vector<Vec3>& sites);
-  void find_components(const neighborhood::Proximity_graph& graph);
+  void number_places(const std::vector<Vec3>& points, std::size_t number_of_sites);
+  void find_components(const Graph& graph);
+
+  // ---- samples
+  bool sample(const std::vector<Vec3>& sites, Graph graph, pcs::internal::Progress& progress);
   /// Outliers are no samples: nothing but themselves would follow them.
   void choose_samples(const std::vector<Vec3>& sites);
-  void sample(std::vector<Vec3> sites,
-              neighborhood::Proximity_graph graph,
-              pcs::internal::Progress& progress);
+  void choose_samples_without_outliers(const std::vector<Vec3>& sites);
+  /// Builds the graph of the samples, and the links of the sites to them.
+  bool link_samples(const std::vector<Vec3>& sites, Graph graph, pcs::internal::Progress& progress);
+  /// Every site is a sample.
+  void take_all_sites(const std::vector<Vec3>& sites, Graph graph);
 };
 
 } // namespace deformation

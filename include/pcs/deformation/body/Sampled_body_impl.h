@@ -6,6 +6,7 @@
 #define PCS_DEFORMATION_BODY_SAMPLED_BODY_IMPL_H
 
 #include <pcs/core/Deformation_options.h>
+#include <pcs/core/Deformation_report.h>
 #include <pcs/core/errors.h>
 #include <pcs/deformation/body/Sample_links.h>
 #include <pcs/deformation/body/Sample_regions.h>
@@ -14,7 +15,7 @@
 #include <pcs/deformation/body/interior_links.h>
 #include <pcs/deformation/body/octree_samples.h>
 #include <pcs/deformation/body/voronoi_graph.h>
-#include <pcs/internal/Stopwatch.h>
+#include <pcs/internal/Stage_timer.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
 #include <pcs/internal/text.h>
@@ -35,6 +36,14 @@
 namespace pcs {
 namespace deformation {
 
+namespace internal {
+
+/// Fractions of the construction after which its steps end.
+constexpr double end_of_order = 0.2, end_of_neighbors = 0.6, end_of_sample_graph = 0.8,
+                 end_of_network = 0.9;
+
+} // namespace internal
+
 template <class ConcurrencyTag>
 bool Sampled_body<ConcurrencyTag>::build(std::vector<Vec3> points,
                                          const Sampling_options& sampling,
@@ -42,24 +51,33 @@ bool Sampled_body<ConcurrencyTag>::build(std::vector<Vec3> points,
                                          pcs::internal::Progress& progress)
 {
   options = sampling;
-  pcs::internal::Stopwatch watch;
-  to_local(points);
   std::vector<Vec3> sites;
+  Graph graph;
+  {
+    const pcs::internal::Stage_timer timer(seconds.neighbors);
+    if (!find_neighbors(std::move(points), sites, graph, progress))
+      return false;
+  }
+  const pcs::internal::Stage_timer timer(seconds.sampling);
+  return sample(sites, std::move(graph), progress);
+}
+
+template <class ConcurrencyTag>
+bool Sampled_body<ConcurrencyTag>::find_neighbors(std::vector<Vec3> points,
+                                                  std::vector<Vec3>& sites,
+                                                  Graph& graph,
+                                                  pcs::internal::Progress& progress)
+{
+  to_local(points);
   order_points(points, sites);
   points = std::vector<Vec3>();
-  if (!progress(0.2))
+  if (!progress(internal::end_of_order))
     return false;
-  neighborhood::Proximity_graph graph =
-      neighborhood::nearest_neighbor_graph<ConcurrencyTag>(sites, options.number_of_neighbors);
+  graph = neighborhood::nearest_neighbor_graph<ConcurrencyTag>(sites, options.number_of_neighbors);
   number_of_short_cuts = neighborhood::drop_short_cuts<ConcurrencyTag>(sites, graph);
   outliers = neighborhood::detach_outliers<ConcurrencyTag>(sites, graph);
   find_components(graph);
-  seconds.neighbors = watch.lap();
-  if (!progress(0.6))
-    return false;
-  sample(std::move(sites), std::move(graph), progress);
-  seconds.sampling = watch.lap();
-  return progress(1.0);
+  return progress(internal::end_of_neighbors);
 }
 
 template <class ConcurrencyTag>
@@ -114,15 +132,23 @@ void Sampled_body<ConcurrencyTag>::order_points(const std::vector<Vec3>& points,
       sites.push_back(points[i]);
     site_of_input[i] = static_cast<std::uint32_t>(sites.size() - 1);
   }
+  number_places(points, sites.size());
+}
+
+template <class ConcurrencyTag>
+void Sampled_body<ConcurrencyTag>::number_places(const std::vector<Vec3>& points,
+                                                 std::size_t number_of_sites)
+{
+  const std::size_t n = points.size();
   is_in_callers_order = is_coherent_order(points, input_of_place);
   if (is_in_callers_order)
     std::iota(input_of_place.begin(), input_of_place.end(), 0u);
   site_of_place.resize(n);
   for (std::size_t place = 0; place < n; ++place)
     site_of_place[place] = site_of_input[input_of_place[place]];
-  if (sites.size() == n && !is_in_callers_order)
+  if (number_of_sites == n && !is_in_callers_order)
     return;
-  place_of_site.resize(sites.size());
+  place_of_site.resize(number_of_sites);
   for (std::size_t place = n; place-- > 0;)
     place_of_site[site_of_place[place]] = static_cast<std::uint32_t>(place);
 }
@@ -140,10 +166,15 @@ void Sampled_body<ConcurrencyTag>::find_components(const neighborhood::Proximity
 template <class ConcurrencyTag>
 void Sampled_body<ConcurrencyTag>::choose_samples(const std::vector<Vec3>& sites)
 {
-  if (outliers.empty() || options.number_of_samples >= sites.size()) {
+  if (outliers.empty() || options.number_of_samples >= sites.size())
     site_of_sample = octree_samples(sites, options.number_of_samples);
-    return;
-  }
+  else
+    choose_samples_without_outliers(sites);
+}
+
+template <class ConcurrencyTag>
+void Sampled_body<ConcurrencyTag>::choose_samples_without_outliers(const std::vector<Vec3>& sites)
+{
   std::vector<Vec3> others;
   std::vector<std::uint32_t> site_of_other;
   auto next = outliers.begin();
@@ -166,60 +197,74 @@ void Sampled_body<ConcurrencyTag>::choose_samples(const std::vector<Vec3>& sites
 }
 
 template <class ConcurrencyTag>
-void Sampled_body<ConcurrencyTag>::sample(std::vector<Vec3> sites,
-                                          neighborhood::Proximity_graph graph,
+bool Sampled_body<ConcurrencyTag>::link_samples(const std::vector<Vec3>& sites,
+                                                Graph graph,
+                                                pcs::internal::Progress& progress)
+{
+  Sample_regions regions = grow_regions(sites, graph, site_of_sample);
+  network.surface = sample_graph(sites, graph, site_of_sample, regions, weight_unit);
+  if (!progress(internal::end_of_sample_graph))
+    return false;
+  const std::size_t k = options.number_of_sample_neighbors;
+  const Sample_weights weights = options.sample_weights;
+  links_of_site = options.sample_search == Sample_search::breadth_first_hops
+                      ? link_by_hops<ConcurrencyTag>(sites, graph, site_of_sample, k, weights)
+                      : link_by_regions<ConcurrencyTag>(sites,
+                                                        site_of_sample,
+                                                        regions,
+                                                        network.surface,
+                                                        k,
+                                                        weights);
+  sample_of_site = std::move(regions.sample_of_point);
+  has_fragments =
+      std::find(sample_of_site.begin(), sample_of_site.end(), no_sample) != sample_of_site.end();
+  site_graph = std::move(graph);
+  return true;
+}
+
+template <class ConcurrencyTag>
+void Sampled_body<ConcurrencyTag>::take_all_sites(const std::vector<Vec3>& sites, Graph graph)
+{
+  static_cast<Graph&>(network.surface) = std::move(graph);
+  sample_of_site = site_of_sample;
+  set_edge_weights<ConcurrencyTag>(sites, network.surface);
+  network.surface = voronoi_graph<ConcurrencyTag>(sites, network.surface);
+}
+
+template <class ConcurrencyTag>
+std::vector<std::uint32_t> Sampled_body<ConcurrencyTag>::component_of_sample() const
+{
+  std::vector<std::uint32_t> component;
+  component.reserve(site_of_sample.size());
+  for (const auto site : site_of_sample)
+    component.push_back(component_of_site[site]);
+  return component;
+}
+
+template <class ConcurrencyTag>
+bool Sampled_body<ConcurrencyTag>::sample(const std::vector<Vec3>& sites,
+                                          Graph graph,
                                           pcs::internal::Progress& progress)
 {
   choose_samples(sites);
   is_sampled = site_of_sample.size() < sites.size();
-  Sample_links links;
-  if (is_sampled) {
-    Sample_regions regions = grow_regions(sites, graph, site_of_sample);
-    network.surface = sample_graph(sites, graph, site_of_sample, regions, weight_unit);
-    if (!progress(0.8))
-      return;
-    const bool is_text = options.sample_search == Sample_search::breadth_first_hops;
-    links = is_text ? link_by_hops<ConcurrencyTag>(sites,
-                                                   graph,
-                                                   site_of_sample,
-                                                   options.number_of_sample_neighbors,
-                                                   options.sample_weights)
-                    : link_by_regions<ConcurrencyTag>(sites,
-                                                      site_of_sample,
-                                                      regions,
-                                                      network.surface,
-                                                      options.number_of_sample_neighbors,
-                                                      options.sample_weights);
-    sample_of_site = std::move(regions.sample_of_point);
-    has_fragments =
-        std::find(sample_of_site.begin(), sample_of_site.end(), no_sample) != sample_of_site.end();
-    site_graph = std::move(graph);
-    border_finder = Border_finder(site_graph);
-  } else {
-    static_cast<neighborhood::Proximity_graph&>(network.surface) = std::move(graph);
-    sample_of_site = site_of_sample;
-    set_edge_weights<ConcurrencyTag>(sites, network.surface);
-    network.surface = voronoi_graph<ConcurrencyTag>(sites, network.surface);
-  }
-  network.rest.resize(site_of_sample.size());
-  for (std::size_t s = 0; s < site_of_sample.size(); ++s)
-    network.rest[s] = sites[site_of_sample[s]];
-  std::vector<std::uint32_t> component(network.size());
-  for (std::size_t s = 0; s < network.size(); ++s)
-    component[s] = component_of_site[site_of_sample[s]];
+  if (!is_sampled)
+    take_all_sites(sites, std::move(graph));
+  else if (!link_samples(sites, std::move(graph), progress))
+    return false;
+  for (const auto site : site_of_sample)
+    network.rest.push_back(sites[site]);
+  const std::vector<std::uint32_t> component = component_of_sample();
   set_areas<ConcurrencyTag>(component, network);
-  if (!progress(0.9))
-    return;
+  if (!progress(internal::end_of_network))
+    return false;
   if (options.do_preserve_volume && network.size() <= largest_linked_network)
     network.links = interior_links<ConcurrencyTag>(network, component);
   if (is_sampled)
     rank_nodes(network);
-  upsampling = Upsampling(
-      number_of_points(),
-      [&](std::size_t place) { return sites[site_of_place[place]]; },
-      [&](std::size_t place) { return site_of_place[place]; },
-      network.rest,
-      links);
+  rest_points = Point_blocks(number_of_points(),
+                             [&](std::size_t place) { return sites[site_of_place[place]]; });
+  return progress(1);
 }
 
 } // namespace deformation

@@ -10,6 +10,7 @@
 #include <pcs/deformation/body/Sampled_body.h>
 #include <pcs/deformation/model/Elastic_network.h>
 #include <pcs/deformation/model/Harmonic_system.h>
+#include <pcs/deformation/model/Local_frame.h>
 #include <pcs/internal/text.h>
 
 #include <Eigen/Core>

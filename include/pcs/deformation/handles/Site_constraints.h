@@ -9,6 +9,7 @@
 #include <pcs/deformation/body/Sampled_body.h>
 #include <pcs/deformation/handles/Handle_set.h>
 #include <pcs/deformation/model/Harmonic_system.h>
+#include <pcs/deformation/model/Point_blocks.h>
 #include <pcs/internal/parallel.h>
 
 #include <cstddef>
@@ -152,7 +153,7 @@ private:
   template <class ConcurrencyTag>
   void mark_places(const Sampled_body<ConcurrencyTag>& body)
   {
-    m_is_blended.resize(body.upsampling.number_of_blocks());
+    m_is_blended.resize(body.rest_points.number_of_blocks());
     m_holder.resize(m_is_blended.size());
     pcs::internal::for_each_index<ConcurrencyTag>(m_is_blended.size(), [&](std::size_t block) {
       unsigned bits = 0;

@@ -62,6 +62,7 @@ Elastic_network network_with_borders(const Sampled_body<ConcurrencyTag>& body,
 /// borders of exact handles, and where components would otherwise be free.
 template <class ConcurrencyTag>
 Body_constraints constrain_body(const Sampled_body<ConcurrencyTag>& body,
+                                const Border_finder& border_finder,
                                 const Handle_set& handles,
                                 Site_constraints& sites,
                                 Deformation_report& report)
@@ -75,10 +76,9 @@ Body_constraints constrain_body(const Sampled_body<ConcurrencyTag>& body,
       handle_of_site,
       result.of_samples); // on the finest level, nodes on borders hold these components
   if (body.is_sampled) {
-    result.border =
-        body.border_finder.template find<ConcurrencyTag>(body.site_graph, [&](std::size_t site) {
-          return handle_of_site(site) >= 0;
-        });
+    result.border = border_finder.find<ConcurrencyTag>(body.site_graph, [&](std::size_t site) {
+      return handle_of_site(site) >= 0;
+    });
     result.network =
         internal::network_with_borders(body, result.border, handle_of_site, result.of_nodes);
     result.has_network = true;

@@ -5,7 +5,12 @@
 #ifndef PCS_DEFORMATION_MODEL_POINT_BLOCKS_H
 #define PCS_DEFORMATION_MODEL_POINT_BLOCKS_H
 
+#include <pcs/deformation/model/Affine_map.h>
+#include <pcs/internal/Huge_page_allocator.h>
+
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 
 namespace pcs {
 namespace deformation {
@@ -21,6 +26,70 @@ struct Lane_vectors
 
 /// The weights of samples are stored in 16 bits, in steps of one over this.
 constexpr double weight_steps = 65535;
+
+/// Instead of the handle that holds all points of a block: there is none; or nothing moves any of
+/// them.
+constexpr std::int32_t mixed_block = -1, still_block = -2;
+
+/// Points at rest, and their normals if they have any: 24 bytes each. The last point fills up the
+/// last block.
+class Point_blocks
+{
+public:
+  Point_blocks() = default;
+
+  /// \param position `position(i)` is the position of point `i` in `[0, n)`
+  template <class Vector_at>
+  Point_blocks(std::size_t n, const Vector_at& position) : m_size(n)
+  {
+    set_positions(position);
+  }
+
+  std::size_t size() const { return m_size; }
+  std::size_t number_of_blocks() const { return (m_size + lanes - 1) / lanes; }
+  bool has_normals() const { return !m_normals.empty(); }
+
+  template <class Vector_at>
+  void set_positions(const Vector_at& position)
+  {
+    pack(position, m_positions);
+  }
+  template <class Vector_at>
+  void set_normals(const Vector_at& normal)
+  {
+    pack(normal, m_normals);
+  }
+
+  Vec3 position(std::size_t i) const { return lane(m_positions, i); }
+  Vec3 normal(std::size_t i) const { return lane(m_normals, i); }
+
+  const Lane_vectors& positions(std::size_t block) const { return m_positions[block]; }
+  /// Only with normals.
+  const Lane_vectors& normals(std::size_t block) const { return m_normals[block]; }
+
+private:
+  using Blocks = pcs::internal::Huge_vector<Lane_vectors>;
+
+  template <class Vector_at>
+  void pack(const Vector_at& vector, Blocks& packed) const
+  {
+    packed.resize(number_of_blocks());
+    for (std::size_t i = 0; i < packed.size() * lanes; ++i) {
+      const Vec3 v = vector(std::min(i, m_size - 1));
+      for (int c = 0; c < 3; ++c)
+        packed[i / lanes].value[c][i % lanes] = v[c];
+    }
+  }
+
+  static Vec3 lane(const Blocks& vectors, std::size_t i)
+  {
+    const auto& v = vectors[i / lanes].value;
+    return {v[0][i % lanes], v[1][i % lanes], v[2][i % lanes]};
+  }
+
+  std::size_t m_size = 0;
+  Blocks m_positions, m_normals;
+};
 
 } // namespace deformation
 } // namespace pcs

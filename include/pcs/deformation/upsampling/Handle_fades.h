@@ -52,8 +52,7 @@ public:
     std::vector<std::uint32_t> first_of_site(body.number_of_sites(), none);
     for (std::size_t f = m_of_sites.size(); f-- > 0;)
       first_of_site[m_of_sites[f].site] = static_cast<std::uint32_t>(f);
-    const auto& upsampling = body.upsampling;
-    for (std::size_t block = 0; block < upsampling.number_of_blocks(); ++block) {
+    for (std::size_t block = 0; block < body.rest_points.number_of_blocks(); ++block) {
       for (std::size_t place = block * lanes;
            place < std::min((block + 1) * lanes, body.number_of_points());
            ++place) {

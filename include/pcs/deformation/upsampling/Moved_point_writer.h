@@ -10,6 +10,7 @@
 #include <pcs/deformation/handles/Site_constraints.h>
 #include <pcs/deformation/model/Affine_map.h>
 #include <pcs/deformation/upsampling/Outlier_maps.h>
+#include <pcs/deformation/upsampling/Upsampling.h>
 #include <pcs/internal/instruction_set.h>
 
 #include <Eigen/Core>
@@ -20,6 +21,21 @@
 namespace pcs {
 namespace deformation {
 
+/// What is read while points are written.
+template <class ConcurrencyTag>
+struct Moved_points
+{
+  const Sampled_body<ConcurrencyTag>& body;
+  Upsampling& upsampling;              ///< keeps what it makes of the maps
+  const std::vector<Affine_map>& maps; ///< of the samples
+  const Outlier_maps& outlier_maps;
+  const Site_constraints& sites;
+  const std::vector<Similarity>& transforms; ///< of the handles, in local coordinates
+  const std::vector<char>& is_written;       ///< of each handle: whether its points are written
+  Upsampling::Block_motions motions;         ///< if the body is sampled
+  double& seconds;                           ///< of writing, in the report
+};
+
 /*!
   The `Writer` of `Upsampling::apply()`, over places. `Output` stands for the caller's points, by
   input index, with `write(i, position, normal, gradient)` and, for what `Writer` has them for,
@@ -29,21 +45,14 @@ template <class ConcurrencyTag, class Output>
 class Moved_point_writer
 {
 public:
-  /// \param transforms of the handles, in local coordinates
-  /// \param is_written of each handle: whether the points that it holds are to be written
-  Moved_point_writer(const Sampled_body<ConcurrencyTag>& body,
-                     const Site_constraints& sites,
-                     const Outlier_maps& outlier_maps,
-                     const std::vector<Similarity>& transforms,
-                     const std::vector<char>& is_written,
-                     Output& output)
-    : m_body(body),
-      m_sites(sites),
-      m_outlier_maps(outlier_maps),
-      m_transforms(transforms),
-      m_is_written(is_written),
+  Moved_point_writer(const Moved_points<ConcurrencyTag>& moved, Output& output)
+    : m_body(moved.body),
+      m_sites(moved.sites),
+      m_outlier_maps(moved.outlier_maps),
+      m_transforms(moved.transforms),
+      m_is_written(moved.is_written),
       m_output(output),
-      m_does_stream(body.is_in_callers_order && output.can_stream())
+      m_does_stream(moved.body.is_in_callers_order && output.can_stream())
   {
   }
 
@@ -83,10 +92,10 @@ public:
   {
     const Eigen::Matrix3d a = Eigen::Map<const Row_major_matrix>(map.a);
     Vec3 normal = Vec3::Zero();
-    if (m_body.upsampling.has_normals())
-      normal = turn_normal(a, m_body.upsampling.rest_normal(place));
+    if (m_body.rest_points.has_normals())
+      normal = turn_normal(a, m_body.rest_points.normal(place));
     write_local(place,
-                a * m_body.upsampling.rest(place) + Eigen::Map<const Vec3>(map.t),
+                a * m_body.rest_points.position(place) + Eigen::Map<const Vec3>(map.t),
                 normal,
                 a);
   }
@@ -95,9 +104,9 @@ private:
   void write_rigid(std::size_t place, const Similarity& t) const
   {
     Vec3 normal = Vec3::Zero();
-    if (m_body.upsampling.has_normals())
-      normal = t.rotation() * m_body.upsampling.rest_normal(place);
-    write_local(place, t(m_body.upsampling.rest(place)), normal, t.scale() * t.rotation());
+    if (m_body.rest_points.has_normals())
+      normal = t.rotation() * m_body.rest_points.normal(place);
+    write_local(place, t(m_body.rest_points.position(place)), normal, t.scale() * t.rotation());
   }
 
   void write_local(std::size_t place,

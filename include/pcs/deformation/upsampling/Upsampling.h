@@ -6,6 +6,9 @@
 #define PCS_DEFORMATION_UPSAMPLING_UPSAMPLING_H
 
 #include <pcs/deformation/body/Sample_links.h>
+#include <pcs/deformation/model/Affine_map.h>
+#include <pcs/deformation/model/Local_frame.h>
+#include <pcs/deformation/model/Point_blocks.h>
 #include <pcs/deformation/upsampling/blend_block.h>
 #include <pcs/internal/Huge_page_allocator.h>
 #include <pcs/internal/instruction_set.h>
@@ -28,83 +31,35 @@
 namespace pcs {
 namespace deformation {
 
-/// Instead of the handle that holds all points of a block: there is none; or nothing moves any of
-/// them.
-constexpr std::int32_t mixed_block = -1, still_block = -2;
-
-/*!
-  Points in blocks of eight with the samples that move any of them. Memory per point: 24 bytes of
-  position, 24 of normal if there are normals, and some 2.5 bytes per sample of the block.
-*/
+/// The samples that move any of the points of each block. Memory per point: some 2.5 bytes per
+/// sample of its block.
 class Upsampling
 {
 public:
   Upsampling() = default;
 
-  /// \param point `point(i)` is the position of point `i` in `[0, n)`; neighbours in this order
-  /// should be near
-  /// \param row `row(i)` is the row of `links` that holds for point `i`
-  template <class Point_at, class Row_at>
-  Upsampling(std::size_t n,
-             const Point_at& point,
-             const Row_at& row,
-             std::vector<Vec3> sample_points,
-             const Sample_links& links)
-    : m_size(n), m_sample_points(std::move(sample_points))
+  /// \param n number of points; neighbours in their order should be near
+  /// \param row `row(i)` is the row of `links` that holds for point `i` in `[0, n)`
+  template <class Row_at>
+  Upsampling(std::size_t n, const Row_at& row, const Sample_links& links)
   {
-    set_rest(point);
+    const std::size_t number_of_blocks = (n + lanes - 1) / lanes;
     m_first.push_back(0);
-    m_base.reserve(number_of_blocks());
+    m_base.reserve(number_of_blocks);
     std::unordered_map<std::uint64_t, std::uint32_t> pair_index; // looked up only, never iterated
     std::vector<Member> members;
-    for (std::size_t block = 0; block < number_of_blocks(); ++block) {
-      members.clear();
-      for (std::size_t l = 0; l < lanes; ++l) {
-        const std::size_t i = row(std::min(block * lanes + l, m_size - 1));
-        for (std::size_t b = 0; b < links.k; ++b) {
-          const std::uint32_t s = links.sample[i * links.k + b];
-          if (s == no_sample)
-            break;
-          auto found = std::find_if(members.begin(), members.end(), [s](const Member& m) {
-            return m.sample == s;
-          });
-          if (found == members.end())
-            found = members.insert(found, {s, {}});
-          found->weight[l] += links.weight[i * links.k + b];
-        }
-      }
+    for (std::size_t block = 0; block < number_of_blocks; ++block) {
+      find_members(block, n, row, links, members);
       add_block(members, pair_index);
     }
   }
 
-  std::size_t size() const { return m_size; }
-  std::size_t number_of_blocks() const { return (m_size + lanes - 1) / lanes; }
-  bool has_normals() const { return !m_normal.empty(); }
-
-  template <class Point_at>
-  void set_rest(const Point_at& point)
+  /// Points and samples at rest, and the maps of the samples.
+  struct Input
   {
-    pack(point, m_rest);
-  }
-  template <class Normal_at>
-  void set_normals(const Normal_at& normal)
-  {
-    pack(normal, m_normal);
-  }
-  void set_sample_points(std::vector<Vec3> sample_points)
-  {
-    m_sample_points = std::move(sample_points);
-  }
-  const std::vector<Vec3>& sample_points() const { return m_sample_points; }
-
-  Vec3 rest(std::size_t i) const { return lane(m_rest, i); }
-  Vec3 rest_normal(std::size_t i) const { return lane(m_normal, i); }
-
-  /// From the coordinates of the points to those that are written.
-  struct Output_frame
-  {
-    double unit = 1;
-    Vec3 origin = Vec3::Zero();
+    const Point_blocks& points;
+    const std::vector<Vec3>& samples;
+    const std::vector<Affine_map>& maps;
   };
 
   /// Which handles draw the points of a block: those from `entry[first[block]]` to
@@ -141,18 +96,18 @@ public:
     | `write_other(i)` | for the points of a mixed block that are not blended |
   */
   template <class ConcurrencyTag, bool HasGradients, class Writer>
-  void apply(const std::vector<Affine_map>& maps,
-             const Output_frame& frame,
+  void apply(const Input& in,
+             const Local_frame& frame,
              const Block_motions& motions,
              const Writer& writer)
   {
-    update_pairs<ConcurrencyTag>(maps);
+    update_pairs<ConcurrencyTag>(in.samples, in.maps);
     const auto apply_to_all = [&](auto outputs) {
-      apply_blocks<ConcurrencyTag, decltype(outputs)::value>(frame, motions, writer);
+      apply_blocks<ConcurrencyTag, decltype(outputs)::value>(in.points, frame, motions, writer);
     };
     if constexpr (HasGradients)
       apply_to_all(std::integral_constant<Blend_outputs, Blend_outputs::gradients>());
-    else if (has_normals())
+    else if (in.points.has_normals())
       apply_to_all(std::integral_constant<Blend_outputs, Blend_outputs::normals>());
     else
       apply_to_all(std::integral_constant<Blend_outputs, Blend_outputs::positions>());
@@ -169,27 +124,34 @@ private:
     std::uint32_t base, sample;
   };
 
-  template <class Vector_at>
-  void pack(const Vector_at& vector, pcs::internal::Huge_vector<Lane_vectors>& packed) const
+  /// The samples that move any point of a block, each with its weight for every point.
+  template <class Row_at>
+  static void find_members(std::size_t block,
+                           std::size_t n,
+                           const Row_at& row,
+                           const Sample_links& links,
+                           std::vector<Member>& members)
   {
-    packed.resize(number_of_blocks());
-    for (std::size_t i = 0; i < packed.size() * lanes; ++i) {
-      const Vec3 v = vector(std::min(i, m_size - 1));
-      for (int c = 0; c < 3; ++c)
-        packed[i / lanes].value[c][i % lanes] = v[c];
+    members.clear();
+    for (std::size_t l = 0; l < lanes; ++l) {
+      const std::size_t i = row(std::min(block * lanes + l, n - 1));
+      for (std::size_t b = 0; b < links.k; ++b) {
+        const std::uint32_t s = links.sample[i * links.k + b];
+        if (s == no_sample)
+          break;
+        auto found = std::find_if(members.begin(), members.end(), [s](const Member& m) {
+          return m.sample == s;
+        });
+        if (found == members.end())
+          found = members.insert(found, {s, {}});
+        found->weight[l] += links.weight[i * links.k + b];
+      }
     }
   }
 
-  static Vec3 lane(const pcs::internal::Huge_vector<Lane_vectors>& vectors, std::size_t i)
+  /// The sample with the largest total weight: the others are stored, it takes the rest.
+  static std::size_t find_base(const std::vector<Member>& members)
   {
-    const auto& v = vectors[i / lanes].value;
-    return {v[0][i % lanes], v[1][i % lanes], v[2][i % lanes]};
-  }
-
-  void add_block(const std::vector<Member>& members,
-                 std::unordered_map<std::uint64_t, std::uint32_t>& pair_index)
-  {
-    // The base is the sample with the largest share; its weight is what the others leave.
     std::size_t base = 0;
     float largest = -1;
     for (std::size_t u = 0; u < members.size(); ++u) {
@@ -201,6 +163,13 @@ private:
         base = u;
       }
     }
+    return base;
+  }
+
+  void add_block(const std::vector<Member>& members,
+                 std::unordered_map<std::uint64_t, std::uint32_t>& pair_index)
+  {
+    const std::size_t base = find_base(members);
     m_base.push_back(members.empty() ? 0 : members[base].sample);
     for (std::size_t u = 0; u < members.size(); ++u) {
       if (u == base)
@@ -223,16 +192,16 @@ private:
   /// The maps of bases, and what changes from the base of a block to each of its other samples;
   /// shared by all blocks of the base.
   template <class ConcurrencyTag>
-  void update_pairs(const std::vector<Affine_map>& maps)
+  void update_pairs(const std::vector<Vec3>& samples, const std::vector<Affine_map>& maps)
   {
     m_base_maps.resize(maps.size());
     pcs::internal::for_each_index<ConcurrencyTag>(maps.size(), [&](std::size_t s) {
-      m_base_maps[s] = base_map(maps[s], m_sample_points[s].data());
+      m_base_maps[s] = base_map(maps[s], samples[s].data());
     });
     m_differences.resize(m_pairs.size());
     pcs::internal::for_each_index<ConcurrencyTag>(m_pairs.size(), [&](std::size_t p) {
       const auto [base, sample] = m_pairs[p];
-      m_differences[p] = map_difference(maps[base], maps[sample], m_sample_points[base].data());
+      m_differences[p] = map_difference(maps[base], maps[sample], samples[base].data());
     });
   }
 
@@ -244,8 +213,10 @@ private:
   }
 
   template <class ConcurrencyTag, Blend_outputs Outputs, class Writer>
-  void
-  apply_blocks(const Output_frame& frame, const Block_motions& motions, const Writer& writer) const
+  void apply_blocks(const Point_blocks& points,
+                    const Local_frame& frame,
+                    const Block_motions& motions,
+                    const Writer& writer) const
   {
     const auto blend = choose_blend_block<Outputs>();
     const bool does_stream = Outputs != Blend_outputs::gradients && writer.does_stream();
@@ -265,15 +236,15 @@ private:
           const auto put = [&](std::size_t block) PCS_LAMBDA_INLINE {
             const std::size_t at = block % 2;
             if (mask[at] != 0 || motions.holder[block] == mixed_block)
-              write_block<Outputs>(block, mask[at], out[at], does_stream, writer);
+              write_block<Outputs>(block, points.size(), mask[at], out[at], does_stream, writer);
           };
           for (std::size_t block = begin; block < end; ++block) {
             if (block + blocks_ahead < m_base.size() &&
                 computed(motions, block + blocks_ahead) != 0)
-              prefetch(block + blocks_ahead, does_stream, writer);
+              prefetch(points, block + blocks_ahead, does_stream, writer);
             mask[block % 2] = computed(motions, block);
             if (mask[block % 2] != 0) {
-              set_input(motions, block, in);
+              set_input(points, motions, block, in);
               blend(in, out[block % 2]);
             }
             if (block != begin)
@@ -287,14 +258,17 @@ private:
 
   /// Asks for what a later block reads: the processor foresees it only up to the next page of 4 KB.
   template <class Writer>
-  PCS_ALWAYS_INLINE void prefetch(std::size_t block, bool does_stream, const Writer& writer) const
+  PCS_ALWAYS_INLINE void prefetch(const Point_blocks& points,
+                                  std::size_t block,
+                                  bool does_stream,
+                                  const Writer& writer) const
   {
-    if (!does_stream && (block + 1) * lanes <= m_size)
+    if (!does_stream && (block + 1) * lanes <= points.size())
       pcs::internal::unroll<lanes>([&](auto l)
                                        PCS_LAMBDA_INLINE { writer.expect(block * lanes + l); });
-    pcs::internal::prefetch(&m_rest[block], sizeof(Lane_vectors));
-    if (has_normals())
-      pcs::internal::prefetch(&m_normal[block], sizeof(Lane_vectors));
+    pcs::internal::prefetch(&points.positions(block), sizeof(Lane_vectors));
+    if (points.has_normals())
+      pcs::internal::prefetch(&points.normals(block), sizeof(Lane_vectors));
     // A fixed number of bytes: a branch that depends on how many there are would be foreseen too
     // seldom.
     pcs::internal::prefetch(m_entry.data() + m_first[block], bytes_of_entries);
@@ -302,6 +276,7 @@ private:
 
   template <Blend_outputs Outputs, class Writer>
   PCS_ALWAYS_INLINE void write_block(std::size_t block,
+                                     std::size_t number_of_points,
                                      std::uint8_t mask,
                                      const Block_output& out,
                                      bool does_stream,
@@ -309,7 +284,7 @@ private:
   {
     Eigen::Matrix3d gradient = Eigen::Matrix3d::Identity();
     const std::size_t first = block * lanes;
-    const std::size_t count = std::min(lanes, m_size - first);
+    const std::size_t count = std::min(lanes, number_of_points - first);
     if (Outputs != Blend_outputs::gradients && mask == whole_block && count == lanes) {
       if (does_stream && writer.stream(first, out))
         return;
@@ -334,13 +309,16 @@ private:
     return {v.value[0][l], v.value[1][l], v.value[2][l]};
   }
 
-  void set_input(const Block_motions& motions, std::size_t block, Block_input& in) const
+  void set_input(const Point_blocks& points,
+                 const Block_motions& motions,
+                 std::size_t block,
+                 Block_input& in) const
   {
     in.base = &m_base_maps[m_base[block]];
     in.entry = m_entry.data() + m_first[block];
     in.entry_end = m_entry.data() + m_first[block + 1];
-    in.rest = &m_rest[block];
-    in.normal = has_normals() ? &m_normal[block] : nullptr;
+    in.rest = &points.positions(block);
+    in.normal = points.has_normals() ? &points.normals(block) : nullptr;
     if (motions.fades.first) {
       in.fade = motions.fades.entry + motions.fades.first[block];
       in.fade_end = motions.fades.entry + motions.fades.first[block + 1];
@@ -353,9 +331,6 @@ private:
   static constexpr std::size_t bytes_of_entries = 128; ///< of most blocks
   static constexpr std::uint8_t whole_block = 0xff;
 
-  std::size_t m_size = 0;
-  std::vector<Vec3> m_sample_points;
-  pcs::internal::Huge_vector<Lane_vectors> m_rest, m_normal;
   std::vector<std::uint32_t> m_base, m_first;
   pcs::internal::Huge_vector<Block_entry> m_entry;
   std::vector<Sample_pair> m_pairs;

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSL-1.0
 // Dirty flags of handles: points of unmoved handles keep every bit.
 
-#ifndef PCS_DEFORMATION_HANDLES_DIRTY_HANDLES_H
-#define PCS_DEFORMATION_HANDLES_DIRTY_HANDLES_H
+#ifndef PCS_DEFORMATION_UPSAMPLING_DIRTY_HANDLES_H
+#define PCS_DEFORMATION_UPSAMPLING_DIRTY_HANDLES_H
 
 #include <pcs/core/Similarity.h>
 #include <pcs/deformation/model/Harmonic_system.h>
@@ -63,4 +63,4 @@ private:
 } // namespace deformation
 } // namespace pcs
 
-#endif // PCS_DEFORMATION_HANDLES_DIRTY_HANDLES_H
+#endif // PCS_DEFORMATION_UPSAMPLING_DIRTY_HANDLES_H
