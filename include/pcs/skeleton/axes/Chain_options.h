@@ -16,7 +16,23 @@
 namespace pcs {
 namespace skeleton {
 
-/// Options of the fit of one chain. Factors of the spacing unless stated otherwise [-].
+/*!
+  Options of the fit of one chain (`Chain_fit`). Factors of the spacing unless stated otherwise [-].
+
+  With the spacing `u` [L], the noise `s` [L] and the point density `D` [1/L^2], a point at the
+  distance `x` [L] from an axis, which has the radius `r` [L] there, is
+
+  - gathered for the fit if `x <= gather_factor r + gather_offset u`;
+  - explained by the axis if `x <= r + max(cover_offset u, cover_factor r)`;
+  - inside the axis if `x < r - max(filled_noise s, filled_depth r)`.
+
+  A section of length `h` [L] is expected to have `2 pi r h D` points. `Axis_fit` minimises the
+  residuals of the gathered points, with the priors of `expect_sections()`, until no node changes by
+  `settled s`. Radii are then reduced to `max(r / 2, sqrt(r^2 - noise_share s^2))`. The axis is
+  accepted if it explains the fraction `explained` of its own points, and if one of its nodes is at
+  least `(1 + protrusion_radius) R + protrusion u` from the nearest other axis, of radius `R` [L],
+  or has no point of another axis within `protrusion u`.
+*/
 struct Chain_options
 {
   Node_spacing node_spacing{0.6, 2, 8}; ///< the factor is of the radius

@@ -55,9 +55,22 @@ private:
 
 /*!
   Point density on branches. It decreases with the distance from a station, and on branches directed
-  towards the station. The logarithm of the density is a polynomial of second degree of position and
-  direction, fitted by robust ridge regression. Positions and predictions are clamped to the range
-  of the samples.
+  towards the station.
+
+  The density `D` [1/L^2] at the position `x` [L] along the unit vector `t` [-] is
+
+      ln D(x, t) = m + w . phi(q, t),   q = (x - center) scale                               [-]
+
+  with the 16 monomials `phi`: 1, those of `q` and `q q^T`, and those of `t t^T`. Mixed ones have
+  the factor sqrt(2), so that the ridge is invariant to rotations. The mean of `|q|^2` is 3. Robust
+  ridge regression over `w` [-] minimises
+
+      |w|^2 + sum_i (ln D_i - m - w . phi_i)^2 / (5 s^2 (1 + (e_i / (2 s))^2))               [-]
+
+  over the samples, at most 3000, with the median `m` of `ln D_i`. The absolute residuals `e_i` of
+  the previous of four rounds yield Cauchy weights, and `s = max(0.05, 1.4826 median e_i)`; the
+  factor 5 is `shared`. Predictions are at positions clamped to the box of the samples, and within
+  the 5 % and 95 % quantiles of their densities. O(samples).
 */
 class Density_field
 {
