@@ -1,0 +1,25 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The breast height must be a number.
+
+#include <pcs/extract_tree_skeleton.h>
+
+#include <CGAL/Simple_cartesian.h>
+
+#include <string>
+#include <vector>
+
+using Kernel = CGAL::Simple_cartesian<double>;
+
+#ifdef PCS_BREAK_THE_RULE
+using Value = std::string;
+#else
+using Value = float;
+#endif
+
+void compile(const std::vector<Kernel::Point_3>& points,
+             const Value& value,
+             pcs::Tree_skeleton<Kernel>& tree)
+{
+  pcs::extract_tree_skeleton(points, tree, pcs::parameters::breast_height(value));
+}

@@ -1,0 +1,24 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// A given skeleton must be a graph.
+
+#include <pcs/extract_tree_skeleton.h>
+
+#include <CGAL/Simple_cartesian.h>
+
+#include <vector>
+
+using Kernel = CGAL::Simple_cartesian<double>;
+
+#ifdef PCS_BREAK_THE_RULE
+using Value = std::vector<Kernel::Point_3>;
+#else
+using Value = pcs::Tree_skeleton<Kernel>;
+#endif
+
+void compile(const std::vector<Kernel::Point_3>& points,
+             const Value& value,
+             pcs::Tree_skeleton<Kernel>& tree)
+{
+  pcs::extract_tree_skeleton(points, tree, pcs::parameters::given_skeleton(value));
+}
