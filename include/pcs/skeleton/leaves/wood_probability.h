@@ -58,7 +58,7 @@ struct Surroundings
 
 namespace internal {
 
-// Trained on scans of 40 virtual trees with leaves, see benchmark/results/leaves.md.
+// Trained on scans of 40 virtual trees with leaves, see doc/design/leaf_wood_separation.md.
 // clang-format off
 constexpr Multilayer_perceptron<Surroundings::number_of_features, 12> likeness_of_surroundings = {
 {
@@ -94,7 +94,17 @@ constexpr Multilayer_perceptron<Surroundings::number_of_features, 12> likeness_o
 
 } // namespace internal
 
-/// Returns the log-odds of wood against leaves for a point with these surroundings.
+/*!
+  Returns the log-odds of wood against leaves for a point with these surroundings [-].
+
+      y = b + sum_{u=1..12} v_u max(0, b_u + sum_{f=1..16} w_uf x_f),   P(wood) = 1 / (1 + exp(-y))
+
+  with the weights of `likeness_of_surroundings`. The features `x` are, for each of three balls
+  about the point, `ln(1 + n)` of the number `n` of its points [-], their standard deviations along
+  the principal axes in descending order, and the distance of their mean from the point; the last
+  one is the score of the best line [-]. Lengths are in radii of the tube of
+  `Linear_point_options` [-]; the balls have 0.29, 0.58 and 1 times its reach. O(1).
+*/
 inline double wood_probability(const Surroundings& surroundings)
 {
   return internal::likeness_of_surroundings(surroundings.features());

@@ -226,8 +226,21 @@ private:
 /*!
   Bounds the radii by the pipe model. Where leaves were classified as wood, the total area of all
   branches at one distance from the root is many times that of the trunk, which wood does not reach.
-  Scales the radii down at such distances, for the branches that each node supports. Scaled nodes
-  count as inferred. Returns their number. O((nodes + branches) * bins).
+  Scaled nodes count as inferred. Returns their number.
+
+  Bins divide the path length from the root [L]. With the largest proven radius `R` [L] of a branch
+  in the bin of its node `v` and both adjacent ones, the constraint is, for every bin `i` farther
+  out,
+
+      A_i(v) = sum_j r_j^2 <= slack R^2                                                    [L^2]
+
+  over the edges that pass the beginning of the bin, of the `n_i` branches that `v` supports. If it
+  is violated, the squares of the radii in that bin become `max(f r^2, slack R^2 / n_i)`, with
+  `f = slack R^2 / A_i(v)` [-]: a branch keeps at least the area of each of `n_i` equal branches.
+  The least `f` of all `v` towards the root applies. Proven sections of mostly proven branches keep
+  their radii. Branches that are proven to be more than `thicker` times as thick as their parent do
+  not count among those of the parent and are not scaled by it. Rounds are repeated until nothing
+  changes, at most `rounds` times. Each round costs O((nodes + branches) * bins).
 */
 inline std::size_t apply_pipe_model(const std::vector<std::uint8_t>& is_proven,
                                     const Pipe_model_options& rules,

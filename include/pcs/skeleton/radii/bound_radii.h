@@ -211,9 +211,29 @@ inline std::vector<double> ways_to_tips(const Branch_tree& tree)
 /*!
   Bounds radii without sufficient point support. Scanners sample the surface of wood, not its
   interior: sections with many inside points are leaves, and sections with few points are
-  unreliable. The bound is the last supported radius towards the root, scaled by the ratio of the
-  longest paths to a tip, or the largest supported radius farther out on the branch. Bounded nodes
-  count as inferred. Returns their number. O(points + nodes).
+  unreliable. Bounded nodes count as inferred. Returns their number.
+
+  The section of a node of radius `r` [L] comprises adjacent edges of length `l` [L]. It has `n`
+  points on its surface, `m` points inside [count], and, at the density `D` [1/L^2], the expected
+  number `E = 2 pi D sum r l` of points on its surface. Factors are those of `Support_options`. A
+  section is
+
+  - filled if `m > filled (n + m)`, or if the sections from the base of the branch to here are, by
+    `branch_filled`;
+  - proven if `n >= proof_expected E`, `m <= proof_filled (n + m)`, and the standard error of `r` is
+    at most `proof_error r`;
+  - supported if it is measured and not filled, `n >= max(fewest, expected E)`, and it is proven or
+    `r <= thicker R`, with the least supported radius `R` [L] since the last proven one.
+
+  (`proof_precise`, `mostly` and `foot` define exceptions.) A section without support is bounded by
+  the last supported one towards the root, of radius `r'` [L], if there is one, and by the supported
+  ones farther out on the branch, of radii `r''` [L]:
+
+      r <= max(r' min(1, c h / h'), thinnest u, max r''),
+
+  with the lengths `h`, `h'` [L] of the longest paths from both nodes to a tip, the spacing `u` [L],
+  and `c = slack`, or `filled_slack` if the section is filled. `apply_pipe_model()` follows.
+  O(nodes), besides the pipe model.
 */
 inline std::size_t bound_radii(const Scan& scan,
                                const Section_support& support,

@@ -34,8 +34,24 @@ struct Radius_options
   Voxel_size_options voxels;
 };
 
-/// Bounds radii without point support, rebuilds the trunk base, and re-centres the nodes that were
-/// bounded.
+/*!
+  Bounds radii without point support, rebuilds the trunk base, and re-centres the nodes that were
+  bounded. Nothing is minimised over all nodes; the stages are, in this order,
+
+  1. `bound_radii()`: `r <= b` for every radius `r` [L], with the bound `b` [L] from the supported
+     sections and the pipe model;
+  2. `rebuild_trunk_base()`: below the lowest proven part of the trunk, `r^2` is the mean over equal
+     sectors of the squared median distance [L^2] of the points of a sector from the center;
+  3. `recenter_bounded_nodes()`: in each of a few rounds, a node whose radius was reduced from `r_0`
+     to `r` [L], and whose points lie far outside on one side, moves by the vector `y` [L].
+
+  With the distances `x_i` [L] of the points around the node from the axis, their outward normals
+  `n_i` [-] and the sum `W` of all `w_i`, `y` minimises
+
+      sum_i w_i (n_i . y - x_i + r)^2 + hold W |y|^2,   w_i = 1 / (1 + (x_i / (far r_0))^2).
+
+  Bounded nodes count as inferred. O(points + nodes), besides the pipe model.
+*/
 template <class ConcurrencyTag>
 void refine_radii(const Scan& scan,
                   const std::vector<std::uint8_t>& is_used,
@@ -59,7 +75,17 @@ void refine_radii(const Scan& scan,
   recenter_bounded_nodes(scan, fitted, axes.noise, options.recentering, tree);
 }
 
-/// Corrects the radii for beam divergence and voxel size. Returns the voxel size, or 0 [L].
+/*!
+  Corrects the radii for beam divergence and voxel size. Returns the voxel size, or 0 [L].
+
+  A fitted radius `F` [L] is replaced by the solution `r` [L] of
+
+      r + s w^2 / (6 (2 r + s w)) = F   for the beam width w [L] at the nearest scanner,
+      r^2 + 0.3 h^2 = F^2               for voxels of size h [L],
+
+  one after the other, with the fraction `s` [-] of grazing beams that yield a point. The solutions
+  are at least 0.25 F and 0.6 F. O(nodes * scanners).
+*/
 inline double correct_widening(const Scan& scan,
                                const std::vector<Vec3>& scanners,
                                double beam_width,
