@@ -10,6 +10,7 @@
 
 #include <functional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -65,14 +66,13 @@ BOOST_AUTO_TEST_CASE(a_plain_chain_of_cgal_is_understood)
 
 BOOST_AUTO_TEST_CASE(our_chain_is_a_chain_of_cgal)
 {
-  const auto chain =
-      np::number_of_samples(3).number_of_iterations(42).geom_traits(std::string("k"));
+  const auto chain = np::number_of_samples(3).number_of_iterations(42).point_map(First());
   using CGAL::parameters::choose_parameter;
   using CGAL::parameters::get_parameter;
   BOOST_TEST(choose_parameter(get_parameter(chain, CGAL::internal_np::number_of_iterations), 1) ==
              42);
-  BOOST_TEST(
-      choose_parameter(get_parameter(chain, CGAL::internal_np::geom_traits), std::string()) == "k");
+  static_assert(
+      std::is_same_v<decltype(get_parameter(chain, CGAL::internal_np::point_map)), First>);
 }
 
 BOOST_AUTO_TEST_CASE(only_what_was_given_is_given)
