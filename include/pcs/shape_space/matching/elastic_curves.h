@@ -95,9 +95,21 @@ inline Slopes make_slopes(int largest)
 }
 
 /*!
-  Matches curve 2 to curve 1. With unit tangents u and lengths L the energy of a reparametrisation g
-  is `L1 + L2 - 2 sqrt(L1 L2) M(g)` with `M(g)` the integral of `sqrt(g') <u1, u2 o g>`; `M` is at
-  most 1, so `(sqrt L1 - sqrt L2)^2` bounds the energy from below whatever the grid.
+  Matches curve 2 to curve 1. With unit tangents `u` [-] and lengths `L` [L], the squared distance
+  of the square-root velocities `q = sqrt(L) u` under a reparametrisation `g` of [0, 1] is
+
+      E(g) = int |q1 - sqrt(g') q2(g)|^2 = L1 + L2 - 2 sqrt(L1 L2) M(g),                     [L]
+      M(g) = int sqrt(g') u1 . u2(g)                                                         [-]
+
+  where `g` increases from 0 to 1. `M` is at most 1, so `(sqrt L1 - sqrt L2)^2` bounds the energy
+  from below whatever the grid. `M` is maximised by dynamic programming over a grid of `n` by `n`
+  samples,
+
+      B(i, j) = max_{a, b} (B(i-a, j-b) + sqrt(b/a) sum_{0 <= x < a} u1(i-a+x) . u2(j-b + x b/a))
+
+  with `B(0, 0) = 0` and `M = B(n-1, n-1) / (n-1)`. Products are interpolated linearly between
+  samples of curve 2. The steps `a`, `b` are coprime and at most `s = largest_step`, so that
+  `1/s <= g' <= s`. O(n^2 sum a), with the sum over all steps.
 */
 class Elastic_matcher
 {

@@ -41,13 +41,26 @@ inline Eigen::MatrixXd inverse_of_symmetric(Eigen::MatrixXd a)
 } // namespace internal
 
 /*!
-  Covariance between trees. Each number of a tree is a draw from a Gaussian over the trees with one
-  covariance, which is the same for all numbers of all blocks up to a factor for each block. The
-  covariance is where the mean over all blocks of products of deviations, each block divided by its
-  size under that covariance, is the covariance itself: one block has one vote, however much it
-  varies, and a block where trees were mistaken for each other has no more (D. E. Tyler 1987).
-  Blocks that a tree lacks are unknown; their products are those that are expected (A. P. Dempster,
-  N. M. Laird, D. B. Rubin 1977), and the block has the share of a vote that is known.
+  Covariance between `n` trees, of which some lack blocks of numbers.
+
+  The numbers of block `b` are the rows of a matrix [L] with one column per tree. Each row is a draw
+  from a Gaussian over the trees; its covariance is `S` [-], `n` by `n` and of trace `n`, up to a
+  factor for each block. `S` is a fixed point, up to its trace, of
+
+      S <- sum_b w_b (Z_b^T Z_b + U_b),   w_b = (k_b / n) / tr(Z_b (S + 0.02 I)^-1 Z_b^T)    [1/L^2]
+
+  with the deviations `Z_b` [L] from the mean of the block, and the number `k_b` of trees that have
+  it: the M-estimator of D. E. Tyler (1987), by which all blocks have the same influence, however
+  much they vary. Values that trees lack are replaced by their expectations (A. P. Dempster,
+  N. M. Laird, D. B. Rubin 1977): with the trees `K` that have the block and the others, `O`,
+
+      Z_O = Z_K S_KK^-1 S_KO,   U_OO = c (S_OO - S_OK S_KK^-1 S_KO),                         [L^2]
+      c = tr(Z_K S_KK^-1 Z_K^T) / max(1, k_b - 1),   mean = X_K S_KK^-1 1 / (1^T S_KK^-1 1)
+
+  for the values `X_b` and with 1e-6 on the diagonal of `S` added. `U_b` is zero elsewhere; the mean
+  of a block that all trees have is the arithmetic one. Without a start, the first step has `Z_O`
+  and `U_b` zero and the inverse in `w_b` is `I`. Blocks that do not vary are left out. At most 60
+  steps, each O(sum_b (k_b^3 + rows_b n^2)).
 */
 class Tree_covariance
 {

@@ -23,16 +23,36 @@ namespace shape_space {
 
 /*!
   A Gaussian in a space where lengths and radii are logarithms, so that they stay positive, and
-  directions those of a `Direction_chart`, so that branches keep their slant; and a chance for each
-  branch to be there if its parent is.
+  directions those of a `Direction_chart`, so that branches keep their slant; and a probability of
+  each branch to exist if its parent does.
 
-  A sum of the deviations of the inputs with normal weights has their covariance. For few trees this
-  is shrunk towards one where branches vary by themselves, but each as a whole, in the ways in which
-  that branch varies in the inputs (O. Ledoit, M. Wolf 2003; J. Schaefer, K. Strimmer 2005; their
-  target has blocks here, not numbers). Branches that few trees have are turned, stretched and
-  thickened as a whole as those of their order are. Values of branches that an input lacks are
-  unknown, not 0: they count as those of the middle, and the deviations of the others are scaled up
-  for it.
+  The coordinates of an edge are two angles of direction [rad] and the logarithms of length and
+  radius relative to the middle of the trees [-]; those of a branch are the logarithm of the radius
+  at its base [-] and the difference of its attachment [edges of the parent]. Tree `t` of `n` has
+  the deviations `D_tb` of branch `b`; they are zero if it lacks the branch. `m_b` trees have it.
+  With independent normal numbers `g`, `h`, `k` of unit variance, a random tree deviates by
+
+      z_b = sqrt((1 - a) / (m_b - 1)) sum_t g_t D_tb
+          + sqrt(a / (m_b + 1)) (sum_t h_tb D_tb + sqrt(2) sum_{i=1..6} k_ib P_i)
+
+  where `P_i` changes the whole branch by one standard deviation of branches of its order, in one of
+  the six kinds of coordinates (`m_b - 1` is at least 1 in the first denominator). So with
+  `S_b = sum_t D_tb D_tb^T / (m_b - 1)` and `P = sum_i P_i P_i^T`, the covariances are
+
+      (1 - a) S_b + a ((m_b - 1) S_b + 2 P) / (m_b + 1)               within a branch,
+      (1 - a) sum_t D_tb D_tc^T / sqrt((m_b - 1) (m_c - 1))           between two branches,
+
+  apart from the truncation of normal numbers and the factor `spread` of `z` (`draw()`).
+
+  The shrinkage `a` [-] minimises the expected squared error of the covariances between branches
+  (O. Ledoit, M. Wolf 2003; J. Schaefer, K. Strimmer 2005; their target has blocks here): over all
+  pairs `i`, `j` of coordinates of different branches, in units of length [L],
+
+      a = sum V_ij / sum s_ij^2,   s_ij = sum_t z_ti z_tj / n,                         in [0, 1]
+      V_ij = (sum_t (z_ti z_tj)^2 / n - s_ij^2) / (n - 1),
+
+  or 0.5 for less than three trees. Branch `b` with the parent `p` exists with the probability
+  `m_b / m_p` if `p` exists. O(n^2 coordinates), and O(n coordinates) for each tree that is drawn.
 */
 class Tree_distribution
 {

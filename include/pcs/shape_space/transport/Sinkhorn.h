@@ -19,9 +19,22 @@ namespace pcs {
 namespace shape_space {
 
 /*!
-  Alternating projections (M. Cuturi, 2013) with potentials; epsilon is halved from the largest cost
-  down. All arcs have a flow. With arcs that cannot carry the marginals, the violation stays large:
-  it is reported.
+  Entropic optimal transport by alternating projections (M. Cuturi, 2013), as in section 4.8 of
+  \cite aiteanu2022. Minimises, over the masses `P_a >= 0` [-] of the arcs `a`,
+
+      sum_a P_a c_a + epsilon sum_a P_a (ln P_a - 1)
+
+  subject to `sum_{a from i} P_a = s_i` and `sum_{a to j} P_a = t_j`, with the costs `c_a`, [L] or
+  [L^2] as given, and the supplies `s_i` and demands `t_j` [-], which both sum to one. The minimum
+  is `P_a = exp((f_i + g_j - c_a) / epsilon)`. A pass makes the sums of all sources exact, then
+  those of all targets, by the potentials:
+
+      f_i += epsilon ln(s_i / sum_{a from i} P_a),   g_j += epsilon ln(t_j / sum_{a to j} P_a).
+
+  `epsilon` is halved every 20 passes, from the largest cost to `regularization` times that. There,
+  at most `iterations` passes are made, until the sum of all violations of the constraints is below
+  `tolerance`. `cost` is without the entropy. All arcs have a flow. With arcs that do not admit the
+  marginals, the violation stays large: it is reported. O(arcs) for each pass.
 */
 inline Transport_plan sinkhorn(const Transport_problem& problem, const Sinkhorn_options& options)
 {

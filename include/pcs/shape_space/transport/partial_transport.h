@@ -27,9 +27,19 @@ inline Transport_plan solve_transport(const Transport_problem& problem,
 
 /*!
   Partial transport (L. Caffarelli and R. McCann, 2010): a unit of mass of either side may stay
-  where it is at `price`, so that none goes where it costs twice the price. One more source and one
-  more target, with room for all, take what stays; with these the marginals hold as always. `price`
-  > 0; `problem` needs no arcs.
+  where it is at the price `p > 0`, in the unit of the costs. Minimises, over the masses `P_a >= 0`
+  [-] of the arcs `a`,
+
+      sum_a P_a c_a + p (sum_i (s_i - sum_{a from i} P_a) + sum_j (t_j - sum_{a to j} P_a))
+
+  where no difference is negative, with the costs `c_a`, [L] or [L^2] as given, and the supplies
+  `s_i` and demands `t_j` [-], which both sum to one. As the arc `a` gains only if `c_a < 2 p`, all
+  others are left out.
+
+  One more source and one more target, each of mass 1, take what stays, over arcs of cost `p` from
+  all sources and to all targets; the arc between them costs nothing. All masses are halved, so that
+  those of this complete transport sum to one; `solve_transport()` finds it. `cost` is without the
+  price. `problem` needs no arcs; n + m + 1 are added to it.
 */
 inline Transport_plan
 solve_partially(const Transport_problem& problem, double price, const Transport_options& options)
