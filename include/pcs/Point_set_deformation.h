@@ -10,21 +10,21 @@
 #include <pcs/core/Deformation_options.h>
 #include <pcs/core/Deformation_report.h>
 #include <pcs/core/Similarity.h>
-#include <pcs/core/errors.h>
+#include <pcs/core/Status.h>
+#include <pcs/core/check_value.h>
+#include <pcs/core/read_parameter.h>
 #include <pcs/deformation/Session.h>
+#include <pcs/deformation/access/Handle_motion.h>
 #include <pcs/deformation/access/Point_access.h>
+#include <pcs/deformation/access/carry_points.h>
+#include <pcs/deformation/access/check_session.h>
 #include <pcs/deformation/access/read_options.h>
-#include <pcs/internal/lanes.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
 
-#include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <functional>
-#include <limits>
 #include <memory>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -36,12 +36,11 @@ namespace pcs {
 
   Implements chapter 2 of \cite aiteanu2022 (\cite adk2010): local rotations and positions are
   solved on samples of the cloud with matrices that are factorised once per set of handles, and
-  carried to all points by blended affine maps. Neighbours come from the points alone; no mesh is
-  needed.
+  carried to all points by blended affine maps. No mesh is needed.
 
-  Work is done as late as possible and never twice: the constructor finds neighbours and samples;
-  adding or removing a handle makes the next `deform()` (or `preprocess()`) factorise again, which
-  takes milliseconds; setting transformations costs nothing until `deform()`.
+  Work is done as late as possible and never twice. The constructor finds neighbours and samples.
+  After a handle was added or removed, the next `deform()` (or `preprocess()`) factorises again,
+  which takes milliseconds. Setting transformations costs nothing until `deform()`.
 
   \tparam PointRange a model of `RandomAccessRange`. The points stay the caller's: the class keeps a
           reference, writes through the point map in `deform()`, `restore()` and `reset()`, and
@@ -55,11 +54,9 @@ namespace pcs {
   About 150 bytes per point with normals, and some 300 at the peak of the construction. After the
   first frames, `deform()` allocates nothing.
 
-  \par Thread safety
-  Different objects may be used at the same time. One object may be used by one thread at a time.
-
-  \par Determinism
-  Same bits for every number of threads and for the sequential tag.
+  \par Thread safety and determinism
+  Different objects may be used at the same time, one object by one thread at a time. Results have
+  the same bits for every number of threads and for the sequential tag.
 */
 template <class PointRange,
           class NamedParameters = parameters::Default_named_parameters,
@@ -67,6 +64,8 @@ template <class PointRange,
 class Point_set_deformation
 {
   using Access = deformation::Point_access<PointRange, NamedParameters>;
+  using Session = deformation::Session<ConcurrencyTag>;
+  using Motion = deformation::Handle_motion;
 
 public:
   using Point_map = typename Access::Point_map;
@@ -75,13 +74,6 @@ public:
   using Normal = typename Access::Normal;
   using Handle = std::size_t;
 
-private:
-  struct Motion
-  {
-    Similarity scale, rotation, translation;
-  };
-
-public:
   /// See `snapshot()`.
   class Snapshot
   {
@@ -93,7 +85,7 @@ public:
   /*!
     Reads the points, finds neighbours and samples. O(n log n).
 
-    \param points at least one place different from the others; must outlive this object
+    \param points at least two different positions; must outlive this object
     \param np
     \npbegin
       \np{point_map} where a position is read and written
@@ -106,11 +98,9 @@ public:
         \nptype model of `ReadWritePropertyMap`, key: element of `points`, value: a vector type
         \npdefault none
       \np{tensor_map} tensors that are carried by it: `G T G^T`, like the covariances of splats
-        \nptype model of `ReadWritePropertyMap`, key: element of `points`, value: `Eigen::Matrix<FT,
-            3, 3>`
+        \nptype the same, value: `Eigen::Matrix<FT, 3, 3>`
         \npdefault none
-      \np{number_of_samples} nodes of the non-linear problem [count]; as many as points, or more: no
-          sampling
+      \np{number_of_samples} nodes of the non-linear problem, at most all points [count]
         \nptype integer, `> 0`
         \npdefault `default_number_of_samples`
       \np{number_of_neighbors} nearest neighbours that a point is linked to [count]
@@ -119,10 +109,10 @@ public:
       \np{number_of_sample_neighbors} nearest samples that move a point [count]
         \nptype integer, 1 to 32
         \npdefault `default_number_of_sample_neighbors`
-      \np{sample_search} how these are found
+      \np{sample_search} how the nearest samples are found
         \nptype `Sample_search`
         \npdefault `Sample_search::regions`
-      \np{sample_weights} how they are weighted
+      \np{sample_weights} how the nearest samples are weighted
         \nptype `Sample_weights`
         \npdefault `Sample_weights::compact`
       \np{rotation_field} how rotations are blended between handles
@@ -131,24 +121,22 @@ public:
       \np{number_of_iterations} largest number of passes of one `deform()` [count]
         \nptype integer, `>= 0`
         \npdefault `deformation::default_maximal_number_of_passes`
-      \np{tolerance} passes end when the energy falls by less than this share [-]
+      \np{tolerance} passes end when the energy falls by less than this fraction [-]
         \nptype floating point, `>= 0`
         \npdefault `deformation::default_tolerance`
-      \np{stiffness} resistance against bending relative to stretching; the same for any number of
-        points, and of samples from 2,000 on [-]
+      \np{stiffness} resistance against bending relative to stretching. It is the same for any
+        number of points, and of samples from 2,000 on. [-]
         \nptype floating point, 0.001 to 1000
         \npdefault 1
-      \np{poisson_ratio} transverse contraction under stretch [-]: 0.5 like rubber, 0 like cork,
-          negative auxetic
+      \np{poisson_ratio} transverse contraction under stretch; 0.5 like rubber, 0 like cork [-]
         \nptype floating point, -1 to 0.5
         \npdefault 0
-      \np{do_preserve_volume} whether closed surfaces get springs through their inside; with more
-          than 20,000 samples only their coarser levels do, and the finer ones make a single pass
-          from there
+      \np{do_preserve_volume} whether closed surfaces get springs through their inside. With more
+        than 20,000 samples only coarser levels get them, and finer levels make a single pass.
         \nptype `bool`
         \npdefault `true`
-      \np{region_of_interest} numbers of the points that may move; all others stay bit for bit, and
-        so do points at the same place as one of these
+      \np{region_of_interest} numbers of the points that may move. All others stay bit for bit, and
+        so do points at the same position as one of these.
         \nptype range of integers (copied; use `std::cref` for large ones)
         \npdefault all points
       \np{callback} called on this thread with a value that grows from 0 to 1; `false` stops
@@ -164,23 +152,15 @@ public:
   {
     if constexpr (Access::is_ok) {
       const char* function = "pcs::Point_set_deformation";
-      const deformation::Sampling_options sampling =
-          deformation::read_sampling_options(np, function);
+      const auto sampling = deformation::read_sampling_options(np, function);
       m_elastic = deformation::read_elastic_options(np, function);
-      deformation::read_callback(np, m_callback);
-      std::vector<deformation::Vec3> coordinates = read_points(function);
-      std::vector<std::uint32_t> region;
-      constexpr bool has_region =
-          internal::is_given_v<NamedParameters, internal_np::region_of_interest_t>;
-      if constexpr (has_region) {
-        const auto& given =
-            CGAL::parameters::get_parameter_reference(np, internal_np::region_of_interest);
-        region = deformation::internal::checked_indices(function, given, coordinates.size());
-      }
+      internal::read_callback(np, m_callback);
+      auto coordinates = m_access.template points_of_session<ConcurrencyTag>(function);
+      const auto region = deformation::read_region(np, coordinates.size(), function);
       internal::Progress progress(m_callback);
       m_session = std::make_unique<Session>(std::move(coordinates),
                                             sampling,
-                                            has_region ? &region : nullptr,
+                                            region ? &*region : nullptr,
                                             progress);
       if (m_session->is_ready())
         keep_attributes();
@@ -197,10 +177,10 @@ public:
   /// @{
 
   /*!
-    Adds a handle, which stays where it is until told otherwise.
+    Adds a handle, which stays at rest until a motion is set.
     \param indices the numbers of its points, in any order, not necessarily connected
-    \param softness 0: its points reach their targets exactly; otherwise they are drawn to them by
-           springs, the weaker the larger the value (1: as strong as the neighbours of a point) [-]
+    \param softness 0: its points reach their targets exactly. Otherwise springs draw them there,
+           with a stiffness inverse to the value; at 1 it is that of the edges of a point. [-]
     \throws Invalid_input if there is no index, one is out of range, belongs to another handle, or
             lies outside the region of interest; nothing is changed then
   */
@@ -208,14 +188,10 @@ public:
   Handle add_handle(const IndexRange& indices, double softness = 0)
   {
     const char* function = "pcs::Point_set_deformation::add_handle()";
-    require_ready(function);
-    deformation::internal::checked(function,
-                                   "softness",
-                                   softness,
-                                   softness == 0 || (softness >= 1e-9 && softness <= 1e9),
-                                   "0, or between 1e-9 and 1e9");
+    deformation::check_ready(m_session, function);
+    deformation::check_softness(softness, function);
     const auto checked =
-        deformation::internal::checked_indices(function, indices, m_session->number_of_points());
+        deformation::read_indices(indices, m_session->number_of_points(), function);
     const Handle handle = m_session->add_handle(checked, softness > 0 ? 1 / softness : 0, function);
     m_motion.emplace_back();
     return handle;
@@ -224,20 +200,18 @@ public:
   /// Frees the points of a handle. \throws Invalid_input if there is no such handle
   void remove_handle(Handle handle)
   {
-    require_handle("pcs::Point_set_deformation::remove_handle()", handle);
+    deformation::check_handle(m_session, handle, "pcs::Point_set_deformation::remove_handle()");
     m_session->remove_handle(handle);
     m_motion[handle] = Motion();
   }
 
-  /// Sets the rotation by `angle` [rad] about `axis` through `center`, from rest. Any number of
-  /// turns.
+  /// Sets the rotation from rest by `angle` [rad], of any size, about `axis` through `center`.
   template <class Vector_3, class Point_3>
   void set_rotation(Handle handle, const Vector_3& axis, double angle, const Point_3& center)
   {
-    require_handle("pcs::Point_set_deformation::set_rotation()", handle);
-    Motion motion = m_motion[handle];
-    motion.rotation = rotation(axis, angle, center);
-    set_motion(handle, motion);
+    change_motion(handle, "pcs::Point_set_deformation::set_rotation()", [&](Motion& m) {
+      m.rotation = rotation(axis, angle, center);
+    });
   }
 
   /// The same about the centroid of the handle at rest.
@@ -251,51 +225,47 @@ public:
   template <class Vector_3>
   void set_translation(Handle handle, const Vector_3& offset)
   {
-    require_handle("pcs::Point_set_deformation::set_translation()", handle);
-    Motion motion = m_motion[handle];
-    motion.translation = translation(offset);
-    set_motion(handle, motion);
+    change_motion(handle, "pcs::Point_set_deformation::set_translation()", [&](Motion& m) {
+      m.translation = translation(offset);
+    });
   }
 
   /// Sets the scale `factor` > 0 about the centroid of the handle at rest; it precedes the
-  /// rotation. What lies between handles of different scale gets thicker or thinner, and longer or
-  /// shorter as far as they make room for it.
+  /// rotation. Between handles of different scale the thickness changes, and the length as far as
+  /// the handles leave room.
   void set_scale(Handle handle, double factor)
   {
-    require_handle("pcs::Point_set_deformation::set_scale()", handle);
-    Motion motion = m_motion[handle];
-    motion.scale = scaling(factor, centroid(handle));
-    set_motion(handle, motion);
+    change_motion(handle, "pcs::Point_set_deformation::set_scale()", [&](Motion& m) {
+      m.scale = scaling(factor, centroid(handle));
+    });
   }
 
   /// Sets the whole motion from rest: a `Similarity`, or a `CGAL::Aff_transformation_3` that is
-  /// one. To the calls above it is the rotation: the next `set_rotation()` replaces it, a
-  /// translation follows it, a scale precedes it.
+  /// one. It counts as the rotation: `set_rotation()` replaces it, a translation follows it, a
+  /// scale precedes it.
   template <class Transformation>
   void set_transformation(Handle handle, const Transformation& transformation)
   {
-    require_handle("pcs::Point_set_deformation::set_transformation()", handle);
     static_assert(is_similarity_like_v<Transformation>,
                   "pcs: a transformation must be a pcs::Similarity or a "
                   "CGAL::Aff_transformation_3");
-    if constexpr (is_similarity_like_v<Transformation>) {
-      Motion motion;
-      motion.rotation = to_similarity(transformation);
-      set_motion(handle, motion);
-    }
+    if constexpr (is_similarity_like_v<Transformation>)
+      change_motion(handle, "pcs::Point_set_deformation::set_transformation()", [&](Motion& m) {
+        m = {Similarity(), to_similarity(transformation), Similarity()};
+      });
   }
 
   /// The whole motion from rest: scale, then rotation, then translation.
   const Similarity& transformation(Handle handle) const
   {
-    require_handle("pcs::Point_set_deformation::transformation()", handle);
+    deformation::check_handle(m_session, handle, "pcs::Point_set_deformation::transformation()");
     return m_session->transform(handle);
   }
 
   /// Centroid of the points of the handle at rest.
   Point centroid(Handle handle) const
   {
-    require_handle("pcs::Point_set_deformation::centroid()", handle);
+    deformation::check_handle(m_session, handle, "pcs::Point_set_deformation::centroid()");
     return Access::template make<Point>(m_session->centroid(handle));
   }
 
@@ -306,34 +276,30 @@ public:
   /// Factorises now instead of in the next `deform()`. Returns `false` if a matrix is singular.
   bool preprocess()
   {
-    require_ready("pcs::Point_set_deformation::preprocess()");
+    deformation::check_ready(m_session, "pcs::Point_set_deformation::preprocess()");
     return m_session->constrain(m_elastic.stiffness);
   }
 
   /*!
     Solves for the present motions of the handles, from rest, and writes points and normals. Points
     that no handle reaches, those outside the region of interest, and those of handles that have not
-    moved are not written.
+    moved are not written. Nothing is written if the report says `cancelled` or `numerical_failure`.
 
-    If the report says `cancelled` or `numerical_failure`, nothing was written.
+    \param start `Solver_start::cold`: the result depends on the rest shape and the motions only.
+           `Solver_start::warm`, for the frames of a drag: passes continue from the last result, and
+           one to three suffice.
 
-    \param start `Solver_start::cold`: the result depends on the rest shape and the motions only,
-        not on what was done before.
-    `Solver_start::warm`: for the frames of a drag. The passes go on from the last result, so that
-    one to three are enough; the energy was at most a tenth above that of cold starts, and a quarter
-    of it where these end early. A large step, new handles, a snapshot that was restored, and full
-    resolution of more than 20,000 points with interior springs begin cold in any case.
+    The energy of warm starts was at most a tenth above that of cold ones, and a quarter of it where
+    these end early. A large step, new handles, a restored snapshot, and full resolution of more
+    than 20,000 points with interior springs begin cold in any case.
   */
   Deformation_report deform(Solver_start start = Solver_start::cold)
   {
     const char* function = "pcs::Point_set_deformation::deform()";
-    require_session(function);
-    if (!m_session->is_ready()) {
-      Deformation_report report;
-      report.status = Status::cancelled;
-      return report;
-    }
-    require_all_points(function);
+    deformation::check_session(m_session, function);
+    if (!m_session->is_ready())
+      return m_session->report();
+    deformation::check_number_of_points(m_session, m_access.size(), function);
     internal::Progress progress(m_callback);
     const Status status = m_session->solve(m_elastic, start, progress);
     if (status != Status::cancelled && status != Status::numerical_failure) {
@@ -348,57 +314,32 @@ public:
     Moves other points, and their normals, as the last `deform()` moved the points around them: a
     cloud that does not fit into memory is deformed through a sample of it, then chunk by chunk.
     Each point follows its nearest point of this object: rigidly if that is in a handle, not at all
-    if that stays; between them it is blended from the samples like a point of this object (the same
-    to rounding if it is one, with `Sample_search::regions`, as long as no shape was accepted).
+    if that stays. Otherwise it is blended from the samples like a point of this object; for such a
+    point the result is the same to rounding, with `Sample_search::regions`, unless a shape was
+    accepted. O(n log n) once per rest shape, then O(log n) per point.
 
     \param points a model of `RandomAccessRange` at rest, modified in place
     \param np `point_map` and `normal_map` as in the constructor, for `points`
     \throws Invalid_input if a point or normal is not finite, or constraints were made for other
             handles since the last `deform()`; nothing is changed then
-    \par Complexity
-    O(n log n) once per rest shape, then O(log n) per point.
   */
   template <class OtherRange, class OtherParameters = parameters::Default_named_parameters>
   void apply(OtherRange& points, const OtherParameters& np = OtherParameters())
   {
     const char* function = "pcs::Point_set_deformation::apply()";
-    require_ready(function);
-    using Other = deformation::Point_access<OtherRange, OtherParameters>;
-    static_assert(!Other::has_gradients,
-                  "pcs::Point_set_deformation::apply(): `vector_map` and `tensor_map` are for the "
-                  "points of the object itself");
-    if constexpr (Other::is_ok) {
-      Other other(points, np);
-      const std::vector<deformation::Vec3> rest = other.template points<ConcurrencyTag>(function);
-      other.check_attributes(function);
-      if (m_session->is_ahead_of_shape())
-        throw Invalid_input(
-            std::string(function) +
-            ": handles were added or removed since the last deform(); call it first");
-      m_session->prepare_carrying();
-      internal::for_each_index<ConcurrencyTag>(
-          rest.size(),
-          [&](std::size_t i) {
-            const deformation::Vec3 rest_normal = other.normal(i);
-            deformation::Vec3 p = rest[i], normal = rest_normal;
-            m_session->carry(p, normal);
-            if (p != rest[i] || normal != rest_normal) // a point may turn in its place
-              other.write(i, p, normal, Eigen::Matrix3d::Identity());
-          },
-          256);
-    }
+    deformation::check_ready(m_session, function);
+    deformation::carry_points<ConcurrencyTag>(*m_session, points, np, function);
   }
 
-  /// The present points and the motions that gave them, at the cost of the samples only: motions
-  /// that were set since the last `deform()` are not part of it. \throws Invalid_input if handles
-  /// were added or removed since then
+  /// Returns the present points and the motions that gave them, at the cost of the samples only.
+  /// \throws Invalid_input if handles were added or removed since the last `deform()`
   Snapshot snapshot() const
   {
     const char* function = "pcs::Point_set_deformation::snapshot()";
-    require_ready(function);
-    if (!m_session->has_shape_of_handles())
-      throw Invalid_input(std::string(function) +
-                          ": handles were added or removed since the last deform(); call it first");
+    deformation::check_ready(m_session, function);
+    internal::check(m_session->has_shape_of_handles(),
+                    function,
+                    "handles were added or removed since the last deform(); call it first");
     Snapshot result;
     result.session = m_session->snapshot();
     result.motions = m_shape_motions;
@@ -410,12 +351,11 @@ public:
   void restore(const Snapshot& snapshot)
   {
     const char* function = "pcs::Point_set_deformation::restore()";
-    require_ready(function);
-    require_all_points(function);
-    if (!m_session->is_of_setting(snapshot.session))
-      throw Invalid_input(std::string(function) +
-                          ": the snapshot is of another point set, of another rest shape, or of "
-                          "other handles");
+    check_points(function);
+    internal::check(m_session->is_of_setting(snapshot.session),
+                    function,
+                    "the snapshot is of another point set, of another rest shape, or of other "
+                    "handles");
     m_session->restore(snapshot.session);
     const std::size_t count = m_motion.size();
     m_motion = snapshot.motions;
@@ -427,9 +367,7 @@ public:
   /// Back to the rest shape; handles stay, their motions end.
   void reset()
   {
-    const char* function = "pcs::Point_set_deformation::reset()";
-    require_ready(function);
-    require_all_points(function);
+    check_points("pcs::Point_set_deformation::reset()");
     m_session->reset();
     end_motions();
     write_points();
@@ -441,10 +379,9 @@ public:
   void accept()
   {
     const char* function = "pcs::Point_set_deformation::accept()";
-    require_ready(function);
+    check_points(function);
     if constexpr (Access::is_ok) {
-      require_all_points(function);
-      const std::vector<deformation::Vec3> present = read_points(function);
+      const auto present = m_access.template points_of_session<ConcurrencyTag>(function);
       m_session->accept([&](std::size_t i) { return present[i]; });
       keep_attributes();
     }
@@ -456,63 +393,27 @@ public:
   std::size_t number_of_samples() const { return m_session ? m_session->number_of_samples() : 0; }
 
 private:
-  using Session = deformation::Session<ConcurrencyTag>;
-
-  void require_session(const char* function) const
+  /// Calls `change(motion)` for the motion of a handle; nothing is changed if it throws.
+  template <class Change>
+  void change_motion(Handle handle, const char* function, const Change& change)
   {
-    if (!m_session)
-      throw Invalid_input(std::string(function) + ": this object was moved from");
-  }
-
-  void require_ready(const char* function) const
-  {
-    require_session(function);
-    if (!m_session->is_ready())
-      throw Invalid_input(std::string(function) +
-                          ": the construction of this object was cancelled");
-  }
-
-  void require_all_points(const char* function) const
-  {
-    if (m_access.size() != m_session->number_of_points())
-      throw Invalid_input(std::string(function) + ": there are " + std::to_string(m_access.size()) +
-                          " points, " + std::to_string(m_session->number_of_points()) +
-                          " in the beginning");
-  }
-
-  void require_handle(const char* function, Handle handle) const
-  {
-    require_ready(function);
-    if (!m_session->is_handle(handle))
-      throw Invalid_input(std::string(function) + ": there is no handle " + std::to_string(handle));
-  }
-
-  void set_motion(Handle handle, const Motion& motion)
-  {
-    m_session->set_transform(handle, motion.translation * motion.rotation * motion.scale);
+    deformation::check_handle(m_session, handle, function);
+    Motion motion = m_motion[handle];
+    change(motion);
+    m_session->set_transform(handle, motion.whole());
     m_motion[handle] = motion;
+  }
+
+  void check_points(const char* function) const
+  {
+    deformation::check_ready(m_session, function);
+    deformation::check_number_of_points(m_session, m_access.size(), function);
   }
 
   void end_motions()
   {
     m_motion.assign(m_motion.size(), Motion());
     m_shape_motions = m_motion;
-  }
-
-  /// The points as they are, finite, and as many as there may be. `function` begins the text of
-  /// errors.
-  std::vector<deformation::Vec3> read_points(const char* function) const
-  {
-    const std::size_t n = m_access.size();
-    if (n == 0)
-      throw Invalid_input(std::string(function) + ": there are no points");
-    if (n >= std::numeric_limits<std::uint32_t>::max() / 64)
-      throw Invalid_input(std::string(function) + ": " + std::to_string(n) +
-                          " points are too many for 32 bit indices of their links; deform a "
-                          "sample of them");
-    std::vector<deformation::Vec3> points = m_access.template points<ConcurrencyTag>(function);
-    m_access.check_attributes(function);
-    return points;
   }
 
   /// Takes the normals, vectors and tensors of the rest shape.

@@ -7,7 +7,8 @@
 
 #include <pcs/Point_set_deformation.h>
 #include <pcs/concepts.h>
-#include <pcs/deformation/access/read_options.h>
+#include <pcs/core/read_parameter.h>
+#include <pcs/internal/progress.h>
 
 #include <cstddef>
 #include <functional>
@@ -20,7 +21,7 @@
 namespace pcs {
 
 //! \ingroup PkgPcsDeformationRef
-//! points that move together, and how
+//! points that move together, and their motion
 struct Deformation_handle
 {
   std::vector<std::size_t> indices; //!< numbers of the points
@@ -44,12 +45,11 @@ struct Is_handle_range<T, std::enable_if_t<!std::is_void_v<typename Iterator_of<
 template <class T>
 constexpr bool is_handle_range_v = Is_handle_range<T>::value;
 
-/// Share of the callback's range for finding neighbours and samples; the rest is for the
-/// deformation.
-constexpr double construction_share = 0.6;
+/// Fraction of the work after which neighbours and samples are found; the deformation follows.
+constexpr double end_of_construction = 0.6;
 
 /*!
-  One session for one edit: `edit(session)` adds and moves the handles. The callback sees
+  Runs one session for one edit: `edit(session)` adds and moves the handles. The callback sees
   construction and deformation as one task.
 */
 template <class ConcurrencyTag, class PointRange, class NamedParameters, class Edit>
@@ -64,14 +64,12 @@ Deformation_report deform_once(PointRange& points, const NamedParameters& np, co
   };
   if constexpr (is_given_v<NamedParameters, CGAL::internal_np::callback_t>) {
     std::function<bool(double)> user;
-    deformation::read_callback(np, user);
-    const auto done = std::make_shared<double>(0); // share of the work before the present stage
-    const std::function<bool(double)> callback = [user, done](double f) {
-      const double share = *done == 0 ? construction_share : 1 - construction_share;
-      return !user || user(*done + share * f);
-    };
+    read_callback(np, user);
+    const auto progress = std::make_shared<Progress>(user);
+    progress->stage(0, end_of_construction);
+    const std::function<bool(double)> callback = [progress](double f) { return (*progress)(f); };
     auto session = run(np.callback(callback));
-    *done = construction_share;
+    progress->stage(end_of_construction, 1);
     return session.deform();
   } else
     return run(np).deform();

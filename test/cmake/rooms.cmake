@@ -13,7 +13,7 @@
 
 
 # ---- deformation: deform_point_set
-set(root_deformation Session.h access/Point_access.h access/read_options.h)
+set(root_deformation Session.h access)
 set(deformation_session
   body/Sampled_body.h
   body/Sampled_body_impl.h

@@ -23,6 +23,13 @@ inline void check(bool is_valid, const std::string& caller, const std::string& r
     throw Invalid_input(caller + ": " + rule);
 }
 
+/// The same without memory unless it throws.
+inline void check(bool is_valid, const char* caller, const char* rule)
+{
+  if (!is_valid)
+    throw Invalid_input(std::string(caller) + ": " + rule);
+}
+
 /// Returns `value`, or throws `Invalid_input` with "<caller>: <name> is <value>; it must be <rule>".
 template <class Value>
 Value check_value(const std::string& caller,
@@ -56,11 +63,7 @@ check_at_least(const std::string& caller, const std::string& name, double value,
 /// A finite number greater than 0.
 inline double check_positive(const std::string& caller, const std::string& name, double value)
 {
-  return check_value(caller,
-                     name,
-                     value,
-                     std::isfinite(value) && value > 0,
-                     "finite and positive");
+  return check_value(caller, name, value, std::isfinite(value) && value > 0, "finite and positive");
 }
 
 /// A number in `[lowest, highest]`.

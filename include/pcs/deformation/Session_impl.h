@@ -182,8 +182,8 @@ void prepare_samples(Session_state<Tag>& s)
 
 // ---- constraints
 
-/// Factorises the network of the finest level and, meanwhile, finds the points near handles. Returns
-/// `false` if a matrix is singular.
+/// Factorises the network of the finest level and, meanwhile, finds the points near handles.
+/// Returns `false` if a matrix is singular.
 template <class Tag>
 bool constrain_finest(Session_state<Tag>& s, Body_constraints found)
 {
@@ -393,8 +393,10 @@ Session<ConcurrencyTag>::Session(std::vector<Vec3> points,
 {
   Session_state<ConcurrencyTag>& s = *m_state;
   s.is_ready = s.body.build(std::move(points), options, s.report.seconds, progress);
-  if (!s.is_ready)
+  if (!s.is_ready) {
+    s.report.status = Status::cancelled;
     return;
+  }
   internal::describe_body(s);
   internal::prepare_points(s);
   internal::prepare_samples(s);

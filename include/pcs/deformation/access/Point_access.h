@@ -8,6 +8,7 @@
 #include <pcs/Named_function_parameters.h>
 #include <pcs/concepts.h>
 #include <pcs/core/Similarity.h>
+#include <pcs/core/check_value.h>
 #include <pcs/core/errors.h>
 #include <pcs/deformation/access/stream_block.h>
 #include <pcs/deformation/model/Affine_map.h>
@@ -177,6 +178,22 @@ public:
         throw Invalid_input(std::string(function) + ": point " + std::to_string(i) +
                             " is not finite");
     return points;
+  }
+
+  /// All points of a session. Throws like `points()`, and if there are none or too many, or a
+  /// normal, vector or tensor is not finite.
+  template <class ConcurrencyTag>
+  std::vector<Vec3> points_of_session(const char* function) const
+  {
+    const std::size_t n = size();
+    pcs::internal::check(n > 0, function, "there are no points");
+    if (n >= std::numeric_limits<std::uint32_t>::max() / 64)
+      throw Invalid_input(std::string(function) + ": " + std::to_string(n) +
+                          " points are too many for 32 bit indices of their links; deform a "
+                          "sample of them");
+    std::vector<Vec3> result = points<ConcurrencyTag>(function);
+    check_attributes(function);
+    return result;
   }
 
   /// Throws like `points()` if a normal, vector or tensor is not finite.

@@ -8,87 +8,68 @@
 #include <pcs/Named_function_parameters.h>
 #include <pcs/concepts.h>
 #include <pcs/core/Deformation_options.h>
+#include <pcs/core/check_value.h>
 #include <pcs/core/errors.h>
+#include <pcs/core/read_parameter.h>
 #include <pcs/deformation/model/Elastic_options.h>
 #include <pcs/deformation/model/Sampling_options.h>
-#include <pcs/internal/text.h>
 #include <pcs/neighborhood/Proximity_graph.h>
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
+#include <optional>
 #include <string>
-#include <type_traits>
-#include <utility>
 #include <vector>
 
 namespace pcs {
-
 namespace deformation {
+
 namespace internal {
 
-template <class Value>
-Value checked(const char* function, const char* name, Value value, bool is_valid, const char* rule)
-{
-  if (!is_valid) {
-    std::string text;
-    if constexpr (std::is_floating_point_v<Value>)
-      text = pcs::internal::to_text(static_cast<double>(value));
-    else
-      text = std::to_string(value);
-    throw Invalid_input(std::string(function) + ": " + name + " is " + text + "; it must be " +
-                        rule);
-  }
-  return value;
-}
+using pcs::internal::is_parameter_v;
+using pcs::internal::read_parameter;
+namespace tags = pcs::internal_np;
 
-/// Whether `tag` is not in the chain, or was given a value that converts to `Option`.
-template <class Option, class NamedParameters, class Tag>
-constexpr bool is_option_v =
-    std::is_convertible_v<decltype(pcs::internal::choose(std::declval<const NamedParameters&>(),
-                                                         std::declval<Tag>(),
-                                                         std::declval<const Option&>())),
-                          Option>;
+constexpr std::size_t max_number_of_sample_neighbors = 32;
+constexpr std::size_t max_number_of_iterations = 1000000;
 
-/// Replaces `value` by the value given for `tag`, if there is one. A value of a wrong type is
-/// ignored: a sentence of the caller rejects it.
-template <class Option, class NamedParameters, class Tag>
-void read_option(const NamedParameters& np, Tag tag, Option& value)
-{
-  if constexpr (is_option_v<Option, NamedParameters, Tag>)
-    value = pcs::internal::choose(np, tag, value);
-}
-
-/// Reads a count that may have been given as any integer type; negative ones must not wrap around.
+/// Reads an integer of any type in `[lowest, highest]`.
 template <class NamedParameters, class Tag>
-std::size_t count_parameter(const char* function,
-                            const char* name,
-                            const NamedParameters& np,
-                            Tag tag,
-                            std::size_t fallback,
-                            std::size_t lowest,
-                            std::size_t highest)
+void read_count(const NamedParameters& np,
+                Tag tag,
+                const std::string& caller,
+                const std::string& name,
+                std::size_t lowest,
+                std::size_t highest,
+                std::size_t& value)
 {
-  const auto value = pcs::internal::choose(np, tag, fallback);
-  constexpr bool is_integer = std::is_integral_v<std::decay_t<decltype(value)>>;
+  constexpr bool is_integer = pcs::internal::is_integer_parameter_v<NamedParameters, Tag>;
   static_assert(is_integer,
                 "pcs: number_of_samples, number_of_neighbors, number_of_sample_neighbors and "
                 "number_of_iterations must be integers");
-  if constexpr (is_integer) {
-    const bool is_valid = !(value < 0) && static_cast<std::size_t>(value) >= lowest &&
-                          static_cast<std::size_t>(value) <= highest;
-    const std::string rule =
-        "between " + std::to_string(lowest) + " and " + std::to_string(highest);
-    return static_cast<std::size_t>(checked(function, name, value, is_valid, rule.c_str()));
-  } else
-    return fallback;
+  if constexpr (is_integer)
+    value = pcs::internal::check_count(caller,
+                                       name,
+                                       pcs::internal::choose(np, tag, value),
+                                       lowest,
+                                       highest);
 }
 
-/// Indices as 32 bit numbers, each checked against the number of points.
+template <class NamedParameters, class Tag>
+void read_number(const NamedParameters& np, Tag tag, double& value)
+{
+  static_assert(is_parameter_v<double, NamedParameters, Tag>,
+                "pcs: tolerance, stiffness and poisson_ratio must be numbers");
+  read_parameter(np, tag, value);
+}
+
+} // namespace internal
+
+/// Converts indices to 32 bits. Throws `Invalid_input` if one is not below `n`.
 template <class IndexRange>
 std::vector<std::uint32_t>
-checked_indices(const char* function, const IndexRange& indices, std::size_t n)
+read_indices(const IndexRange& indices, std::size_t n, const std::string& caller)
 {
   static_assert(is_index_range_v<IndexRange>,
                 "pcs: a handle or a region of interest must be a range of integers, the numbers of "
@@ -97,101 +78,99 @@ checked_indices(const char* function, const IndexRange& indices, std::size_t n)
   if constexpr (is_index_range_v<IndexRange>)
     for (const auto& i : indices) {
       if (i < 0 || static_cast<std::size_t>(i) >= n)
-        throw Invalid_input(std::string(function) + ": index " + std::to_string(i) +
+        throw Invalid_input(caller + ": index " + std::to_string(i) +
                             " is out of range; there are " + std::to_string(n) + " points");
       result.push_back(static_cast<std::uint32_t>(i));
     }
   return result;
 }
 
-} // namespace internal
+/// The indices of the region of interest of `n` points, if one is given. Throws like
+/// `read_indices()`.
+template <class NamedParameters>
+std::optional<std::vector<std::uint32_t>> read_region([[maybe_unused]] const NamedParameters& np,
+                                                      [[maybe_unused]] std::size_t n,
+                                                      [[maybe_unused]] const std::string& caller)
+{
+  using Tag = pcs::internal_np::region_of_interest_t;
+  if constexpr (pcs::internal::is_given_v<NamedParameters, Tag>)
+    return read_indices(CGAL::parameters::get_parameter_reference(np, Tag()), n, caller);
+  else
+    return std::nullopt;
+}
 
-/// How a cloud is sampled. Throws `Invalid_input`, whose text begins with `function`, if a
+/// Throws `Invalid_input` unless the softness is 0 or between 1e-9 and 1e9.
+inline void check_softness(double softness, const std::string& caller)
+{
+  pcs::internal::check_value(caller,
+                             "softness",
+                             softness,
+                             softness == 0 || (softness >= 1e-9 && softness <= 1e9),
+                             "0, or between 1e-9 and 1e9");
+}
+
+/// Reads how a cloud is sampled. Throws `Invalid_input`, whose text begins with `caller`, if a
 /// parameter is out of range.
 template <class NamedParameters>
-Sampling_options read_sampling_options(const NamedParameters& np, const char* function)
+Sampling_options read_sampling_options(const NamedParameters& np, const std::string& caller)
 {
-  const auto count =
-      [&](const char* name, auto tag, std::size_t& value, std::size_t lowest, std::size_t highest) {
-        value = internal::count_parameter(function, name, np, tag, value, lowest, highest);
-      };
-  namespace tags = pcs::internal_np;
-  Sampling_options options;
-  count("number_of_samples",
-        tags::number_of_samples,
-        options.number_of_samples,
-        1,
-        std::numeric_limits<std::uint32_t>::max());
-  count("number_of_neighbors",
-        tags::number_of_neighbors,
-        options.number_of_neighbors,
-        2,
-        neighborhood::maximal_number_of_neighbors);
-  count("number_of_sample_neighbors",
-        tags::number_of_sample_neighbors,
-        options.number_of_sample_neighbors,
-        1,
-        32);
-  static_assert(internal::is_option_v<Sample_search, NamedParameters, tags::sample_search_t>,
+  namespace tags = internal::tags;
+  static_assert(internal::is_parameter_v<Sample_search, NamedParameters, tags::sample_search_t>,
                 "pcs: named parameter `sample_search` must be a pcs::Sample_search");
-  static_assert(internal::is_option_v<Sample_weights, NamedParameters, tags::sample_weights_t>,
+  static_assert(internal::is_parameter_v<Sample_weights, NamedParameters, tags::sample_weights_t>,
                 "pcs: named parameter `sample_weights` must be a pcs::Sample_weights");
-  static_assert(internal::is_option_v<bool, NamedParameters, tags::do_preserve_volume_t>,
+  static_assert(internal::is_parameter_v<bool, NamedParameters, tags::do_preserve_volume_t>,
                 "pcs: named parameter `do_preserve_volume` must be a bool");
-  internal::read_option(np, tags::sample_search, options.sample_search);
-  internal::read_option(np, tags::sample_weights, options.sample_weights);
-  internal::read_option(np, tags::do_preserve_volume, options.do_preserve_volume);
+  Sampling_options options;
+  internal::read_parameter(np, tags::sample_search, options.sample_search);
+  internal::read_parameter(np, tags::sample_weights, options.sample_weights);
+  internal::read_parameter(np, tags::do_preserve_volume, options.do_preserve_volume);
+  const auto count =
+      [&](auto tag, const char* name, std::size_t lowest, std::size_t highest, std::size_t& value) {
+        internal::read_count(np, tag, caller, name, lowest, highest, value);
+      };
+  count(tags::number_of_samples,
+        "number_of_samples",
+        1,
+        std::numeric_limits<std::uint32_t>::max(),
+        options.number_of_samples);
+  count(tags::number_of_neighbors,
+        "number_of_neighbors",
+        2,
+        neighborhood::maximal_number_of_neighbors,
+        options.number_of_neighbors);
+  count(tags::number_of_sample_neighbors,
+        "number_of_sample_neighbors",
+        1,
+        internal::max_number_of_sample_neighbors,
+        options.number_of_sample_neighbors);
   return options;
 }
 
-/// Sets `callback` to the one given in `np`, if there is one.
+/// Reads how the samples resist deformation. Throws like `read_sampling_options()`.
 template <class NamedParameters>
-void read_callback([[maybe_unused]] const NamedParameters& np,
-                   [[maybe_unused]] std::function<bool(double)>& callback)
+Elastic_options read_elastic_options(const NamedParameters& np, const std::string& caller)
 {
-  using Tag = CGAL::internal_np::callback_t;
-  if constexpr (pcs::internal::is_given_v<NamedParameters, Tag>) {
-    using Given = std::decay_t<decltype(CGAL::parameters::get_parameter(np, Tag()))>;
-    constexpr bool is_callback = is_progress_callback_v<Given>;
-    static_assert(is_callback,
-                  "pcs: named parameter `callback` must take a double and return a bool");
-    if constexpr (is_callback)
-      callback = CGAL::parameters::get_parameter(np, Tag());
-  }
-}
-
-/// How its samples resist. Throws like `read_sampling_options()`.
-template <class NamedParameters>
-Elastic_options read_elastic_options(const NamedParameters& np, const char* function)
-{
-  const auto real = [&](const char* name,
-                        auto tag,
-                        double& value,
-                        double lowest,
-                        double highest,
-                        const char* rule) {
-    static_assert(internal::is_option_v<double, NamedParameters, decltype(tag)>,
-                  "pcs: tolerance, stiffness and poisson_ratio must be numbers");
-    internal::read_option(np, tag, value);
-    internal::checked(function, name, value, value >= lowest && value <= highest, rule);
-  };
-  namespace tags = pcs::internal_np;
-  constexpr double finite = std::numeric_limits<double>::max();
-  Elastic_options options;
-  static_assert(internal::is_option_v<Rotation_field, NamedParameters, tags::rotation_field_t>,
+  namespace tags = internal::tags;
+  static_assert(internal::is_parameter_v<Rotation_field, NamedParameters, tags::rotation_field_t>,
                 "pcs: named parameter `rotation_field` must be a pcs::Rotation_field");
-  internal::read_option(np, tags::rotation_field, options.rotation_field);
-  options.maximal_number_of_passes = static_cast<int>(
-      internal::count_parameter(function,
-                                "number_of_iterations",
-                                np,
-                                CGAL::internal_np::number_of_iterations,
-                                static_cast<std::size_t>(options.maximal_number_of_passes),
-                                0,
-                                1000000));
-  real("tolerance", tags::tolerance, options.tolerance, 0, finite, "finite and not negative");
-  real("stiffness", tags::stiffness, options.stiffness, 1e-3, 1e3, "between 0.001 and 1000");
-  real("poisson_ratio", tags::poisson_ratio, options.poisson_ratio, -1, 0.5, "between -1 and 0.5");
+  Elastic_options options;
+  internal::read_parameter(np, tags::rotation_field, options.rotation_field);
+  auto passes = static_cast<std::size_t>(options.maximal_number_of_passes);
+  internal::read_count(np,
+                       CGAL::internal_np::number_of_iterations,
+                       caller,
+                       "number_of_iterations",
+                       0,
+                       internal::max_number_of_iterations,
+                       passes);
+  options.maximal_number_of_passes = static_cast<int>(passes);
+  internal::read_number(np, tags::tolerance, options.tolerance);
+  internal::read_number(np, tags::stiffness, options.stiffness);
+  internal::read_number(np, tags::poisson_ratio, options.poisson_ratio);
+  pcs::internal::check_at_least(caller, "tolerance", options.tolerance, 0);
+  pcs::internal::check_in_range(caller, "stiffness", options.stiffness, 1e-3, 1e3);
+  pcs::internal::check_in_range(caller, "poisson_ratio", options.poisson_ratio, -1, 0.5);
   return options;
 }
 
