@@ -6,6 +6,7 @@
 #define PCS_CORE_SKELETON_REPORT_H
 
 #include <pcs/core/Status.h>
+#include <pcs/internal/constants.h>
 #include <pcs/internal/unit_of_height.h>
 
 #include <Eigen/Core>
@@ -24,87 +25,85 @@ namespace pcs {
 //! sums over a part of a tree
 struct Branch_totals
 {
-  std::size_t number_of_branches = 0; ///< [count]; 0 in classes of size, which cut branches
+  std::size_t number_of_branches = 0; ///< [count]; 0 in size classes, which divide branches
   double length = 0;                  ///< along the axes [L]
   double volume = 0;                  ///< of the frusta between the nodes [L^3]
 };
 
 //! \ingroup PkgPcsSkeletonRef
-//! a scanner station, and the rigid motion of its points after which all stations see the same
-//! branches
+//! a scanner station and the estimated rigid motion that registers its points with those of the
+//! other stations
 struct Scan_station
 {
-  long long label = 0;              ///< by `station_map`, otherwise the index of the station
-  std::size_t number_of_points = 0; ///< of the station [count]
-  Eigen::Vector3d shift = Eigen::Vector3d::Zero(); ///< of the mean of its points [L]
+  long long label = 0;              ///< label in `station_map`, or the index of the station
+  std::size_t number_of_points = 0; ///< points of the station [count]
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero(); ///< translation of the mean of its points [L]
   double turn = 0;                                 ///< rotation about that mean [rad]
-  //! of the scanner; only set if its scan grid was found [L]
+  //! position of the scanner; only set if its scan grid was found [L]
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  //! angles between columns and between rows of beams; 0: scan grids were not searched [rad]
+  //! angles between columns and between rows of beams; 0: no search for scan grids [rad]
   double azimuth_step = 0, elevation_step = 0;
 };
 
 //! \ingroup PkgPcsSkeletonRef
-//! the result of `extract_tree_skeleton()` or `Tree_skeletonization` in numbers
+//! statistics of `extract_tree_skeleton()` or `Tree_skeletonization`
 struct Skeleton_report
 {
-  //! `converged`; `nothing_to_do` if nothing in the cloud is a branch; `cancelled`
+  //! `converged`; `nothing_to_do` if no branch was found; `cancelled`
   Status status = Status::nothing_to_do;
 
   std::size_t number_of_points = 0; ///< of the input [count]
-  //! points that coincide with another point, within its noise [count]
+  //! points that coincide with another point within the noise [count]
   std::size_t number_of_duplicates = 0;
-  std::size_t number_of_outliers = 0; ///< points far from all others, which are removed [count]
+  std::size_t number_of_outliers = 0; ///< removed points far from all others [count]
   //! points removed by `wood_map` or `do_remove_leaves` [count]
   std::size_t number_of_leaf_points = 0;
   std::size_t number_of_ground_points = 0; ///< points removed as ground [count]
   std::size_t number_of_wall_points = 0;   ///< points removed as walls or other flat faces [count]
-  std::size_t number_of_unexplained_points = 0; ///< other points without a branch [count]
-  //! points of branches that are too far from the tree, and not part of the result [count]
+  std::size_t number_of_unexplained_points = 0; ///< other points not assigned to a branch [count]
+  //! points of branches too far from the tree, which are not part of the result [count]
   std::size_t number_of_unreached_points = 0;
   std::size_t number_of_unreached_branches = 0; ///< such branches [count]
-  //! further stems at the height of the root, unconnected or connected by a branch: other trees
-  //! [count]
+  //! further stems at the height of the root, unconnected or connected by a branch, which are
+  //! interpreted as other trees [count]
   std::size_t number_of_other_stems = 0;
-  //! the points lie in sparse rows, in which leaves cannot be separated from wood; all are kept
+  //! whether the points lie in sparse rows, in which leaves cannot be separated; all are kept
   bool is_in_rows = false;
   //! stations whose points were moved; empty if no stations were found
   std::vector<Scan_station> stations;
-  //! largest shift of stations that was found but not applied: too large for an error of
-  //! registration, or a station has too few points; 0: none [L]
+  //! largest station shift that was estimated but rejected, because it is too large for an error of
+  //! registration or a station has too few points; 0: none [L]
   double rejected_station_shift = 0;
   std::size_t number_of_nodes = 0;    ///< [count]
   std::size_t number_of_branches = 0; ///< [count]
 
   double spacing = 0; ///< median distance to the nearest neighbour [L]
-  //! voxel size of a thinned scan, which the radii are corrected for; 0: the points are not voxel
-  //! centers [L]
+  //! estimated voxel size of a thinned scan, for which the radii are corrected; 0: not thinned [L]
   double voxel_size = 0;
-  //! step that the coordinates of the input are rounded to, the largest of the axes; 0: none [L]
+  //! step to which the input coordinates are rounded, the largest of the three axes; 0: none [L]
   double coordinate_step = 0;
   //! whether that step is the resolution of 32-bit floating-point numbers far from the origin
   bool is_single_precision = false;
   double noise = 0; ///< standard deviation of the points from the surface [L]
-  //! median distance of the points from the surface of their branches; several times `noise` is
-  //! suspicious [L]
+  //! median distance of the points from the fitted surfaces; several times `noise` indicates a
+  //! poor fit [L]
   double residual = 0;
-  double density = 0; ///< points per area of the surface of branches; 0: unknown [1/L^2]
+  double density = 0; ///< points per surface area of the branches; 0: unknown [1/L^2]
 
   //! from the root to the highest node or leaf, along the up direction [L]
   double height = 0;
   //! height of the root above the lowest points of the tree, leaves included [L]
   double root_elevation = 0;
   double max_root_distance = 0; ///< from the root to the farthest node [L]
-  //! of the thickest stem at breast height, by a line through its radii from 1.1 to 1.5 m: bark and
-  //! noise change single radii; 0: the tree is lower [L]
+  //! diameter of the thickest stem at breast height, from a line fitted to its radii between 1.1
+  //! and 1.5 m to reduce the effect of bark and noise; 0: the tree is lower [L]
   double diameter_at_breast_height = 0;
-  //! diameters of all stems at breast height, thickest first: several where the trunk forks below
-  //! [L]
+  //! diameters of all stems at breast height, thickest first; several if the trunk forks below [L]
   std::vector<double> stem_diameters;
-  double breast_height = 0; ///< of that diameter, above the root [L]
+  double breast_height = 0; ///< height of that diameter above the root [L]
   Branch_totals total;
   std::vector<Branch_totals> by_order; ///< trunk first
-  //! upper bounds of the radius in the classes of `by_size`; the last class has none
+  //! upper bounds of the radii of the classes in `by_size`; the last class has no upper bound
   std::vector<double> size_bounds;
   std::vector<Branch_totals> by_size; ///< thinnest class first
 
@@ -117,7 +116,7 @@ struct Skeleton_report
 
 namespace internal {
 
-/// Three significant digits.
+/// Formats `value` with three significant digits.
 inline std::string short_text(double value)
 {
   std::ostringstream out;
@@ -126,11 +125,11 @@ inline std::string short_text(double value)
   return out.str();
 }
 
-/// Warnings about the points of the scan.
+/// Adds warnings about the points of the scan.
 inline void warn_of_points(const Skeleton_report& r, std::vector<std::string>& sentences)
 {
-  constexpr double max_unreached = 0.05; // of the points [-]
-  constexpr double max_leaves = 0.5;     // of the points that are neither ground nor walls [-]
+  constexpr double max_unreached = 0.05; // fraction of the points [-]
+  constexpr double max_leaves = 0.5;     // fraction of the points without ground and walls [-]
   if (r.number_of_other_stems > 0)
     sentences.push_back("more than one tree: " + std::to_string(r.number_of_other_stems) +
                         " other stem(s) at the height of the foot; the tree of one foot is kept, "
@@ -158,10 +157,10 @@ inline void warn_of_points(const Skeleton_report& r, std::vector<std::string>& s
                         "wood; all points are kept (do_remove_leaves(true) removes leaves)");
 }
 
-/// Warnings about the precision of the coordinates.
+/// Adds warnings about the precision of the coordinates.
 inline void warn_of_precision(const Skeleton_report& r, std::vector<std::string>& sentences)
 {
-  constexpr double max_step = 0.5; // of the spacing: more merges neighbours or moves them apart [-]
+  constexpr double max_step = 0.5; // of the spacing: larger steps merge or displace neighbours [-]
   if (r.voxel_size > 0)
     sentences.push_back("the points are voxel centers of size " + short_text(r.voxel_size) +
                         "; branches that are not several times as thick are rough guesses");
@@ -174,26 +173,27 @@ inline void warn_of_precision(const Skeleton_report& r, std::vector<std::string>
              : "; branches that are not several times as thick are rough guesses"));
 }
 
-/// Warnings about an implausible tree.
+/// Adds warnings about an implausible tree.
 inline void warn_of_shape(const Skeleton_report& r, std::vector<std::string>& sentences)
 {
-  // Gaussian noise gives 0.67, scans of trees 0.5 to 0.9, spheres, cubes and dust more than 2 [-]
+  // residual by noise: Gaussian noise 0.67, scans of trees 0.5 to 0.9, spheres, cubes and dust more
+  // than 2 [-]
   constexpr double max_residual = 1.5;
-  // of the spacing: below, points are on the surface, whatever the noise [-]
+  // residual by spacing: smaller residuals are accepted for any noise [-]
   constexpr double exact = 0.1;
-  // of the diameter of the trunk: as much as ovals and bark alone leave [-]
+  // residual by trunk diameter: out-of-round sections and bark alone cause residuals up to this [-]
   constexpr double oval = 0.02;
-  // diameter of the trunk per length: trees 0.01 to 0.1, spheres more than 0.2 [-]
+  // trunk diameter by trunk length: trees 0.01 to 0.1, spheres more than 0.2 [-]
   constexpr double max_trunk_ratio = 0.2;
-  constexpr double min_trunk_ratio = 0.002; // by the height [-]
-  // volume by the cube of the reach: trees up to 0.003, a post of ten diameters 0.008, spheres that
-  // are taken for many thin branches 0.03 and more [-]
+  constexpr double min_trunk_ratio = 0.002; // trunk diameter by height [-]
+  // volume by cube of the largest root distance: trees up to 0.003, a post of ten diameters 0.008,
+  // spheres interpreted as many thin branches at least 0.03 [-]
   constexpr double max_wood = 0.015;
-  // by the diameter of the trunk: beyond, volumes are up to several times too large; real scans up
-  // to 0.2 [-]
+  // spacing by trunk diameter: above it, volumes are up to several times too large; real scans have
+  // at most 0.2 [-]
   constexpr double max_spacing = 1.0 / 3;
   const auto& trunk = r.by_order.front();
-  const double diameter = 2 * std::sqrt(trunk.volume / (3.14159265358979323846 * trunk.length));
+  const double diameter = 2 * std::sqrt(trunk.volume / (pcs::internal::pi * trunk.length));
   if (r.status == Status::converged &&
       r.residual > std::max({max_residual * r.noise, exact * r.spacing, oval * diameter}))
     sentences.push_back("half of the points lie far from the surfaces found; this may be no tree");
@@ -209,10 +209,10 @@ inline void warn_of_shape(const Skeleton_report& r, std::vector<std::string>& se
                         "radii and volume are rough guesses");
 }
 
-/// Warnings about the foot and the stems.
+/// Adds warnings about the foot and the stems.
 inline void warn_of_stems(const Skeleton_report& r, std::vector<std::string>& sentences)
 {
-  constexpr double max_elevation = 0.1; // of the root, by the height above the lowest points [-]
+  constexpr double max_elevation = 0.1; // root elevation by the height above the lowest points [-]
   if (r.root_elevation > max_elevation * (r.root_elevation + r.height))
     sentences.push_back("the root is " + short_text(r.root_elevation) +
                         " above the lowest points: the foot of the tree may be missing from the "
@@ -230,7 +230,7 @@ inline void warn_of_stems(const Skeleton_report& r, std::vector<std::string>& se
 } // namespace internal
 
 //! \ingroup PkgPcsSkeletonRef
-//! what makes a result doubtful, a sentence each; empty for most trees
+//! returns one sentence for each reason to doubt the result; empty for most trees
 inline std::vector<std::string> warnings(const Skeleton_report& r)
 {
   std::vector<std::string> sentences;

@@ -6,6 +6,7 @@
 #define PCS_CORE_TREE_MEASURES_H
 
 #include <pcs/core/Tree_skeleton.h>
+#include <pcs/internal/constants.h>
 
 #include <CGAL/number_utils.h>
 
@@ -17,28 +18,27 @@
 namespace pcs {
 
 //! \ingroup PkgPcsCoreRef
-//! what `measure_tree()` returns
+//! the result of `measure_tree()`
 struct Tree_measures
 {
-  double length = 0; //!< of all axes, from the axes of their parents [L]
-  //! sum of the frusta between nodes; the base of a branch inside its parent counts twice [L^3]
+  double length = 0; //!< sum over all axes, measured from the axes of their parents [L]
+  //! sum of the frusta between nodes; the bases of branches inside their parents count twice [L^3]
   double volume = 0;
-  //! the same without those bases: of each branch only what lies outside its parent [L^3]
+  //! sum of the frusta without those bases [L^3]
   double union_volume = 0;
 };
 
 /*!
   \ingroup PkgPcsCoreRef
-  \brief measures length and volume of a tree.
+  \brief measures the length and the volume of a tree.
 
-  A branch has its own radius from the axis of its parent on, so the edge to its first node is a
-  cylinder of that radius. It leaves its parent where its axis is farther from that of the parent
-  than the parent is thick.
+  The edge to the first node of a branch is a cylinder with the radius of that branch. A branch
+  leaves its parent where the distance between their axes exceeds the radius of the parent.
 
   \tparam Kernel a kernel of CGAL
   \param tree a tree with branches
   \par Complexity
-  Linear in the number of nodes, times the number of nodes of a parent for each base.
+  Linear in the number of nodes; each base adds a search over the nodes of its parent.
 */
 template <class Kernel>
 Tree_measures measure_tree(const Tree_skeleton<Kernel>& tree)
@@ -57,7 +57,7 @@ Tree_measures measure_tree(const Tree_skeleton<Kernel>& tree)
   const auto radius = [&](std::size_t v) { return CGAL::to_double(tree[v].radius); };
   const auto nodes = nodes_by_branch<Kernel>(tree);
 
-  // whether a point lies in the wood of a branch
+  // whether a point lies inside a branch
   const auto is_inside = [&](const Vector& p, const std::vector<std::size_t>& branch) {
     for (std::size_t i = 1; i < branch.size(); ++i) {
       const Vector a = position(branch[i - 1]), d = position(branch[i]) - a, q = p - a;
@@ -70,8 +70,7 @@ Tree_measures measure_tree(const Tree_skeleton<Kernel>& tree)
     return false;
   };
 
-  constexpr double pi = 3.14159265358979323846;
-  constexpr int number_of_pieces = 16; // of an edge that leaves the parent
+  constexpr int number_of_pieces = 16; // of an edge that crosses the surface of the parent
   Tree_measures result;
   for (const std::vector<std::size_t>& branch : nodes) {
     bool is_outside = branch.empty() || parent_node<Kernel>(branch[0], tree) == npos;
@@ -85,7 +84,7 @@ Tree_measures measure_tree(const Tree_skeleton<Kernel>& tree)
       const double length = std::sqrt(d * d);
       const auto frustum = [&](double s, double t) {
         const double r = from + s * (to - from), q = from + t * (to - from);
-        return pi / 3 * (t - s) * length * (r * r + r * q + q * q);
+        return pcs::internal::pi / 3 * (t - s) * length * (r * r + r * q + q * q);
       };
       result.length += length;
       result.volume += frustum(0, 1);

@@ -5,6 +5,8 @@
 #ifndef PCS_CORE_ROTATIONS_H
 #define PCS_CORE_ROTATIONS_H
 
+#include <pcs/internal/constants.h>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -20,7 +22,7 @@ using Quaternion = Eigen::Quaterniond;
 inline Quaternion rotation_exp(const Eigen::Vector3d& u)
 {
   const double angle = u.norm();
-  // sin(t/2)/t = 1/2 - t^2/48 + ...; below 1e-4 the next term is under the last bit
+  // sin(t/2)/t = 1/2 - t^2/48 + ...; below 1e-4 the next term is less than rounding
   const double f = angle > 1e-4 ? std::sin(0.5 * angle) / angle : 0.5 - angle * angle / 48;
   return Quaternion(std::cos(0.5 * angle), f * u.x(), f * u.y(), f * u.z());
 }
@@ -29,37 +31,35 @@ inline Quaternion rotation_exp(const Eigen::Vector3d& u)
 inline Eigen::Vector3d lifted_rotation_log(const Quaternion& q)
 {
   const double s = q.vec().norm();
-  if (!(s > 0)) // a full turn, about any axis, or none
-    return q.w() >= 0 ? Eigen::Vector3d(0, 0, 0)
-                      : Eigen::Vector3d(2 * static_cast<double>(EIGEN_PI), 0, 0);
+  if (!(s > 0)) // a full turn about any axis, or none
+    return q.w() >= 0 ? Eigen::Vector3d(0, 0, 0) : Eigen::Vector3d(2 * pcs::internal::pi, 0, 0);
   const double f = s > 1e-4 || q.w() < 0 ? 2 * std::atan2(s, q.w()) / s : 2 + s * s / 3;
   return f * q.vec();
 }
 
-/// Rotation vector of the rotation `q`, the shorter of the two: length in [0, pi]. [rad]
+/// Rotation vector of the rotation `q`, of the smaller of its two angles: length in [0, pi]. [rad]
 inline Eigen::Vector3d rotation_log(const Quaternion& q)
 {
   return lifted_rotation_log(q.w() >= 0 ? q : Quaternion(-q.w(), -q.x(), -q.y(), -q.z()));
 }
 
 /*!
-  Four times the modified Rodrigues parameters of the rotation \p q of any length but zero, the
-  shorter of the two: `4 tan(angle / 4)` times its axis, the stereographic projection of the unit
-  quaternion. Equals the rotation vector but for `angle^3 / 48`, up to a length of 4 instead of pi,
-  and takes a root and a division where that takes an arc tangent (M. D. Shuster, "A survey of
-  attitude representations", J. Astronautical Sciences 41, 1993).
+  Four times the modified Rodrigues parameters of the rotation \p q (of any length but zero), of the
+  smaller of its two angles: `4 tan(angle / 4)` times its axis, the stereographic projection of the
+  unit quaternion. Differs from the rotation vector by about `angle^3 / 48`, has a length of at most
+  4 instead of pi, and needs a root and a division instead of an arc tangent (M. D. Shuster, "A
+  survey of attitude representations", J. Astronautical Sciences 41, 1993).
 */
 inline Eigen::Vector3d rodrigues_from_rotation(const Quaternion& q)
 {
-  // Number by number, as in `newton_turn()`.
+  // Computed on scalars, as in `newton_turn()`.
   const double w = q.w(), x = q.x(), y = q.y(), z = q.z();
   const double length = std::sqrt(w * w + x * x + y * y + z * z);
   const double f = 4 / (w >= 0 ? w + length : w - length);
   return {f * x, f * y, f * z};
 }
 
-/// The unit quaternion with four times the modified Rodrigues parameters \p u; any length is a
-/// rotation.
+/// Unit quaternion with four times the modified Rodrigues parameters \p u; every \p u is valid.
 inline Quaternion rotation_from_rodrigues(const Eigen::Vector3d& u)
 {
   const double s = u.squaredNorm() / 16, inverse = 1 / (1 + s), f = 0.5 * inverse;
@@ -69,13 +69,13 @@ inline Quaternion rotation_from_rodrigues(const Eigen::Vector3d& u)
 /*!
   Improves the rotation `q` towards the maximiser of `trace(R^T covariance)`, where `covariance` is
   the sum of `w * deformed * rest^T` (M. Mueller et al., "A robust method to extract the rotational
-  part of deformations", 2016). What the bundle does not determine (a line, a point, nothing) stays
-  as in `q`, so every input has a defined answer.
+  part of deformations", 2016). Components that the covariance does not determine (for collinear,
+  coincident or no points) remain as in `q`, so the result is defined for every input.
 */
 inline Quaternion
 improve_rotation(const Eigen::Matrix3d& covariance, Quaternion q, int number_of_iterations)
 {
-  // 1e-9 of the size of the bundle: below it the axis is rounding
+  // 1e-9 of the size of the covariance: below it, the axis is determined by rounding
   const double epsilon = 1e-9 * covariance.norm() + 1e-300;
   for (int i = 0; i < number_of_iterations; ++i) {
     const Eigen::Matrix3d r = q.toRotationMatrix();
@@ -94,13 +94,13 @@ improve_rotation(const Eigen::Matrix3d& covariance, Quaternion q, int number_of_
 
 /*!
   One step of Newton's method towards the maximiser of `trace(R^T covariance)`, as a rotation
-  vector. \p m is `covariance R^T` with the present `R`; `damping` is added to the Hessian, relative
-  to the trace. The trace at `exp(u) R` is `trace(m) + torque u - u^T hessian u / 2 + ...`; where it
-  is not concave, the step is that of `improve_rotation()`.
+  vector. \p m is `covariance R^T` with the current `R`; `damping` is added to the Hessian, relative
+  to the trace. The trace at `exp(u) R` is `trace(m) + torque u - u^T hessian u / 2 + ...`; if it is
+  not concave, the step equals that of `improve_rotation()`.
 */
 inline Eigen::Vector3d newton_turn(const Eigen::Matrix3d& m, double damping)
 {
-  // Number by number: what is written in halves and read as a register makes a processor wait.
+  // Scalars avoid stalls from reading a vector register whose halves were stored separately.
   const double x = m(2, 1) - m(1, 2), y = m(0, 2) - m(2, 0), z = m(1, 0) - m(0, 1);
   const double trace = m(0, 0) + m(1, 1) + m(2, 2);
   const double epsilon = std::max(damping * std::abs(trace), 1e-9 * m.lpNorm<1>()) + 1e-300;

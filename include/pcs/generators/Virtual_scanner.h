@@ -6,6 +6,7 @@
 #define PCS_GENERATORS_VIRTUAL_SCANNER_H
 
 #include <pcs/core/errors.h>
+#include <pcs/internal/constants.h>
 #include <pcs/internal/text.h>
 
 #include <array>
@@ -18,7 +19,7 @@
 namespace pcs {
 
 //! \ingroup PkgPcsGeneratorsRef
-//! an upright cylinder beside the tree, such as a lamp post; its foot is at the height of the root
+//! an upright cylinder beside the tree, such as a lamp post; its base is at the height of the root
 struct Scan_post
 {
   double x = 0, y = 0; //!< from the root [L]
@@ -27,45 +28,45 @@ struct Scan_post
 
 /*!
   \ingroup PkgPcsGeneratorsRef
-  \brief A virtual laser scanner and its surroundings; the defaults suppose metres.
+  \brief A virtual laser scanner and the scanned surroundings; the defaults assume metres.
 
-  Stations stand on a circle, or an arc of it, around the root of the tree, or where `positions`
-  says. Each one sends beams in even steps of azimuth and elevation. A beam consists of three rays
-  within `beam_width`; see `scan_tree()` for what becomes of a beam that meets an edge.
+  Stations are distributed over a circle or an arc around the root of the tree, or given by
+  `positions`. Each station emits beams in regular steps of azimuth and elevation. A beam consists
+  of three rays within `beam_width`; `scan_tree()` describes how beams at edges are processed.
 */
 struct Virtual_scanner
 {
   std::size_t number_of_stations = 4;           //!< [count]
   double distance = 10;                         //!< of the stations from the root [L]
-  double distance_spread = 0.15;                //!< share by which it varies [-]
+  double distance_spread = 0.15;                //!< relative variation of `distance` [-]
   double station_height = 1.6;                  //!< above the root [L]
   double first_azimuth = 0;                     //!< of the arc, from +x to +y [rad]
-  double azimuth_range = 6.283185307179586;     //!< of the arc; less than a turn: one-sided [rad]
+  double azimuth_range = 2 * pcs::internal::pi; //!< of the arc; below 2 pi: one-sided [rad]
   std::vector<std::array<double, 3>> positions; //!< in the coordinates of the tree; replace the arc
 
-  double angular_step = 0.05 * 0.017453292519943295; //!< between beams [rad]
-  double beam_width = 0.0004;                        //!< [rad]
-  double ghost_gap = 0.03;    //!< ranges in a beam that differ more may give a ghost [L]
-  double ghost_share = 0.25;  //!< of such beams [-]
-  double edge_share = 0.5;    //!< of beams whose middle misses that give a point nevertheless [-]
-  double range_noise = 0.002; //!< standard deviation at the station [L]
-  double noise_distance = 50; //!< at which the noise is twice that [L]
+  double angular_step = 0.05 * (pcs::internal::pi / 180); //!< between beams [rad]
+  double beam_width = 0.0004; //!< diameter of a beam: its divergence [rad]
+  double ghost_gap = 0.03;    //!< range difference in a beam above which a ghost may occur [L]
+  double ghost_share = 0.25;  //!< fraction of such beams that give a ghost [-]
+  double edge_share = 0.5;    //!< fraction of beams hit only off-center that give a point [-]
+  double range_noise = 0.002; //!< standard deviation of ranges, extrapolated to the station [L]
+  double noise_distance = 50; //!< distance at which the noise is doubled [L]
   double registration_error = 0.0015; //!< standard deviation of a station's shift, per axis [L]
-  double outlier_share = 0.001;       //!< points anywhere in the bounding box, by all others [-]
+  double outlier_share = 0.001;       //!< number of outliers by the number of other points [-]
   double largest_range = std::numeric_limits<double>::infinity(); //!< [L]
-  double voxel_size = 0; //!< one point remains in each cube of this size; 0: all [L]
+  double voxel_size = 0; //!< thinning to one point per cube of this size; 0: none [L]
 
-  double bark_depth = 0.004; //!< of the relief; no more than `bark_share` of the radius [L]
-  double bark_share = 0.03;  //!< [-]
+  double bark_depth = 0.004; //!< of the bark relief, at most `bark_share` of the radius [L]
+  double bark_share = 0.03;  //!< largest ratio of bark depth and radius [-]
   double wind = 0;           //!< largest displacement of twigs (order 2 and more) per station [L]
-  double leaves_per_length = 0; //!< of twigs thinner than `leaf_twig_radius` [1/L]
+  double leaves_per_length = 0; //!< on twigs thinner than `leaf_twig_radius` [1/L]
   double leaf_radius = 0.03;    //!< [L]
   double leaf_twig_radius = 0.01;
-  double ground_radius = 0;       //!< of a round patch of ground; 0: none [L]
+  double ground_radius = 0;       //!< radius of a circular patch of ground; 0: none [L]
   double ground_roughness = 0.02; //!< amplitude of its relief [L]
   std::vector<Scan_post> posts;
 
-  //! the same scanner in another unit: all lengths times `factor`, angles as they are
+  //! returns the same scanner in another unit: multiplies all lengths, but no angles, by `factor`
   Virtual_scanner scaled(double factor) const
   {
     Virtual_scanner result = *this;
@@ -97,7 +98,7 @@ struct Virtual_scanner
 
 namespace internal {
 
-/// Checks of single values of a scanner; each throws `Invalid_input`.
+/// Checks single values of a scanner; throws `Invalid_input`.
 struct Scanner_checks
 {
   static void check(bool is_fine, const char* name, double value, const char* rule)

@@ -5,13 +5,15 @@
 #ifndef PCS_INTERNAL_RANDOM_STREAM_H
 #define PCS_INTERNAL_RANDOM_STREAM_H
 
+#include <pcs/internal/constants.h>
+
 #include <cmath>
 #include <cstdint>
 
 namespace pcs {
 namespace internal {
 
-/// The finaliser of SplitMix64 (Steele, Lea, Flood 2014): a bijection whose output bits look
+/// The finaliser of SplitMix64 (Steele, Lea, Flood 2014): a bijection whose output bits appear
 /// independent.
 inline std::uint64_t mix_bits(std::uint64_t x)
 {
@@ -22,9 +24,9 @@ inline std::uint64_t mix_bits(std::uint64_t x)
 }
 
 /*
-  SplitMix64, started from a seed and any number of keys, so that task `i` has a stream of its own
-  whatever other tasks draw. The distributions of the standard library differ between its
-  implementations, hence the ones here.
+  SplitMix64, started from a seed and any number of keys, so that the stream of a task does not
+  depend on other tasks. The distributions are implemented here because those of the standard
+  library differ between its implementations.
 */
 class Random_stream
 {
@@ -42,15 +44,14 @@ public:
     return result;
   }
 
-  /// In [0, 1).
+  /// A uniform random number in [0, 1).
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
 
   double uniform(double from, double to) { return from + (to - from) * uniform(); }
 
-  /// Mean 0, standard deviation 1, by Box and Muller.
+  /// A normal random number with mean 0 and standard deviation 1, by Box and Muller.
   double normal()
   {
-    constexpr double pi = 3.14159265358979323846;
     const double radius = std::sqrt(-2 * std::log(1 - uniform()));
     return radius * std::cos(2 * pi * uniform());
   }

@@ -15,6 +15,7 @@
 #include <pcs/generators/internal/normal_vector.h>
 #include <pcs/internal/Random_stream.h>
 #include <pcs/internal/Stopwatch.h>
+#include <pcs/internal/constants.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
 
@@ -37,7 +38,7 @@ namespace pcs {
 namespace generators {
 namespace internal {
 
-//! begins a branch at the node that carries it, with its own section
+//! extends a branch to its parent node, with the section of the branch
 inline void add_base(Scan_wood& wood, std::size_t b, std::size_t carrier)
 {
   Scan_node base = wood.nodes[wood.branches[b][0]];
@@ -47,7 +48,7 @@ inline void add_base(Scan_wood& wood, std::size_t b, std::size_t carrier)
   wood.branches[b].insert(wood.branches[b].begin(), wood.nodes.size() - 1);
 }
 
-//! the tree with its root at the origin; checks all numbers
+//! returns the tree with its root at the origin; checks all numbers
 template <class Kernel>
 Scan_wood scan_wood(const Tree_skeleton<Kernel>& tree, Eigen::Vector3d& origin)
 {
@@ -83,7 +84,7 @@ Scan_wood scan_wood(const Tree_skeleton<Kernel>& tree, Eigen::Vector3d& origin)
       fail("the branch of node " + std::to_string(v) + " does not exist");
     extent = std::max({extent, node.point.norm(), node.major_radius});
   }
-  // rays are traced in floats
+  // rays are traced in single precision
   if (!(extent > 1e-12 && extent < 1e12))
     fail("the tree must be larger than 1e-12 and smaller than 1e12");
   wood.branches = nodes_by_branch<Kernel>(tree);
@@ -91,7 +92,7 @@ Scan_wood scan_wood(const Tree_skeleton<Kernel>& tree, Eigen::Vector3d& origin)
     wood.carriers.push_back(
         wood.branches[b].empty() ? npos : parent_node<Kernel>(wood.branches[b][0], tree));
     wood.orders.push_back(bundle.branches[b].order);
-    // a base at another place than its carrier is drawn to it
+    // a base that does not coincide with its parent node is connected to it
     const std::size_t carrier = wood.carriers.back();
     if (carrier != npos && wood.nodes[carrier].point != wood.nodes[wood.branches[b][0]].point)
       add_base(wood, b, carrier);
@@ -147,7 +148,7 @@ public:
   }
 
 private:
-  static constexpr double two_pi = 6.283185307179586;
+  static constexpr double two_pi = 2 * pcs::internal::pi;
 
   void place_stations()
   {
@@ -171,7 +172,7 @@ private:
     }
   }
 
-  //! the surroundings as one station sees them; without wind all see the same
+  //! returns the surroundings at the time of one station; without wind all stations have the same
   Scene make_scene(std::size_t station) const
   {
     Scene scene(m_scanner, m_seed);
@@ -186,7 +187,7 @@ private:
     return scene;
   }
 
-  //! branches of order 2 and more swing about their bases, and carry their own branches along
+  //! displaces branches of order 2 and more about their bases, with their descendants
   Scan_wood blown(std::size_t station) const
   {
     Scan_wood wood = m_wood;
@@ -216,7 +217,7 @@ private:
     return wood;
   }
 
-  //! rows in groups, so that there is progress between them and memory stays small
+  //! scans rows in groups, which limits the memory and allows for progress between them
   template <class ConcurrencyTag>
   bool scan_from(const Scan_station& station,
                  const Ray_tree& tree,
@@ -243,7 +244,7 @@ private:
     return true;
   }
 
-  //! bases that were added for drawing stand for the first node of their branch
+  //! maps additional base nodes to the first node of their branch
   int own_label(int label) const
   {
     if (label < static_cast<int>(m_number_of_nodes))
@@ -271,7 +272,7 @@ private:
     }
   }
 
-  //! keeps of each cube the point nearest to its middle, the first of several
+  //! keeps in each cube the point nearest to its center, or the first of several
   void thin()
   {
     const double size = m_scanner.voxel_size;

@@ -10,6 +10,7 @@
 #include <pcs/generators/internal/Ray_tree.h>
 #include <pcs/generators/internal/Scene.h>
 #include <pcs/internal/Random_stream.h>
+#include <pcs/internal/constants.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -35,8 +36,8 @@ struct Scan_return
 };
 
 /*
-  The grid of beams of a station covers the triangles of the scene as they are seen from there, and
-  no more. Each beam has a random stream of its own.
+  The beam grid of a station covers only the triangles of the scene as seen from the station. Each
+  beam has a separate random stream.
 */
 class Scan_station
 {
@@ -54,7 +55,7 @@ public:
     if (!triangles.empty())
       set_grid(triangles, random);
     for (std::size_t k = 0; k < m_rolls.size(); ++k) {
-      const double roll = pi * double(k) / double(m_rolls.size());
+      const double roll = pcs::internal::pi * double(k) / double(m_rolls.size());
       m_rolls[k] = 0.5 * scanner.beam_width * Eigen::Vector2d(std::cos(roll), std::sin(roll));
     }
   }
@@ -62,7 +63,7 @@ public:
   std::size_t number_of_rows() const { return m_rows; }
   std::size_t number_of_columns() const { return m_directions.size(); }
 
-  //! sends the beams of one row
+  //! emits the beams of one row
   void scan_row(const Ray_tree& tree,
                 const Scene& scene,
                 std::size_t row,
@@ -76,7 +77,7 @@ public:
       const Eigen::Vector2d& azimuth = m_directions[column];
       const Eigen::Vector3d direction(c * azimuth.x(), c * azimuth.y(), s);
       Random_stream random(m_seed, m_number, row, column);
-      // two rays on opposite sides of the middle one; the fourth lane repeats that
+      // two rays on opposite sides of the central one; the fourth lane repeats the central ray
       const Eigen::Vector2d& roll = m_rolls[random.bits() % m_rolls.size()];
       const Eigen::Vector3d side =
           roll.x() * Eigen::Vector3d(-azimuth.y(), azimuth.x(), 0) +
@@ -90,13 +91,13 @@ public:
   }
 
 private:
-  static constexpr double pi = 3.14159265358979323846;
   static constexpr float none = std::numeric_limits<float>::infinity();
 
-  //! azimuths from the front and elevations that surely contain some triangles
+  //! intervals of azimuth, relative to the front, and elevation that enclose given boxes
   struct Window
   {
-    double left = pi, right = -pi, down = pi / 2, up = -pi / 2;
+    double left = pcs::internal::pi, right = -pcs::internal::pi, down = pcs::internal::pi / 2,
+           up = -pcs::internal::pi / 2;
 
     //! adds a box; `low` and `high` as seen from the station
     void
@@ -117,17 +118,17 @@ private:
           right = std::max(right, azimuth);
           is_ahead = is_ahead && ahead > 0;
         }
-      // beside or around the station: the azimuths of the corners need not enclose it
+      // the azimuths of the corners need not enclose a box beside or around the station
       if (!is_ahead) {
-        left = -pi;
-        right = pi;
+        left = -pcs::internal::pi;
+        right = pcs::internal::pi;
       }
     }
   };
 
   void set_grid(const std::vector<Triangle>& triangles, Random_stream& random)
   {
-    // neighbours in the list are neighbours in space, so a few boxes tell what all corners would
+    // neighbours in the list are close in space, so the boxes of groups replace all corners
     constexpr std::size_t group = 32;
     std::vector<Eigen::AlignedBox3f> boxes((triangles.size() + group - 1) / group);
     Eigen::AlignedBox3f whole;
@@ -147,7 +148,7 @@ private:
       window.extend(box.min().cast<double>() - m_position,
                     box.max().cast<double>() - m_position,
                     toward);
-    // a beam beside the tree may still touch it
+    // a beam beside the tree may hit it because of its width
     const double margin = 0.5 * m_scanner.beam_width;
     const double down = window.down - margin, up = window.up + margin;
     const double left = window.left - margin, right = window.right + margin;
@@ -155,7 +156,7 @@ private:
     m_low = down - random.uniform() * step;
     const double first = front + left - random.uniform() * step;
     const double columns =
-        std::min(std::floor((right - left) / step) + 2, std::ceil(2 * pi / step));
+        std::min(std::floor((right - left) / step) + 2, std::ceil(2 * pcs::internal::pi / step));
     const double rows = std::floor((up - down) / step) + 2;
     if (!(rows * columns < 4e9))
       throw Invalid_input("pcs::scan_tree(): a station would send " +
@@ -197,7 +198,7 @@ private:
       return;
     const double noise =
         m_scanner.range_noise * (1 + true_range / m_scanner.noise_distance) * random.normal();
-    // the scanner knows one direction for all that comes back of a beam
+    // the scanner assigns the direction of the central ray to all returns of a beam
     const Eigen::Vector3d point = m_position + (true_range + noise) * direction + m_shift;
     const int label =
         is_ghost ? label_ghost

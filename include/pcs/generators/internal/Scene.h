@@ -9,6 +9,7 @@
 #include <pcs/generators/internal/Ray_tree.h>
 #include <pcs/generators/internal/normal_vector.h>
 #include <pcs/internal/Random_stream.h>
+#include <pcs/internal/constants.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -27,7 +28,7 @@ namespace internal {
 
 using pcs::internal::Random_stream;
 
-//! a node of the scanned tree, from the root
+//! a node of the scanned tree, relative to the root
 struct Scan_node
 {
   Eigen::Vector3d point, major_axis; // major_axis may be null
@@ -39,9 +40,9 @@ struct Scan_wood
 {
   std::vector<Scan_node> nodes;
   std::vector<std::vector<std::size_t>> branches;
-  std::vector<std::size_t> carriers; // for each branch the node that it hangs on, or none
+  std::vector<std::size_t> carriers; // for each branch its parent node, or none
   std::vector<int> orders;
-  std::vector<int> added; // for each node behind those of the tree the one that it stands for
+  std::vector<int> added; // for each additional node the node of the tree that it represents
 };
 
 class Scene
@@ -74,7 +75,7 @@ public:
       }
   }
 
-  //! a round patch with a gentle relief that is 0 at the trunk
+  //! adds a circular patch with a gentle relief that is 0 at the trunk
   void add_ground(int label)
   {
     constexpr std::size_t n_turn = 96, n_out = 48;
@@ -115,8 +116,8 @@ public:
     close(high, Eigen::Vector3d(post.x, post.y, post.height), p);
   }
 
-  //! the node of a wooden triangle that is nearest to a point along the axis, or the label of
-  //! another
+  //! returns the node nearest to a point along the axis for a triangle of wood, otherwise the label
+  //! of the object
   int label(std::uint32_t triangle, const Eigen::Vector3d& point) const
   {
     const Piece& p = m_pieces[m_piece_of[triangle]];
@@ -127,7 +128,7 @@ public:
   std::vector<Triangle> triangles;
 
 private:
-  static constexpr double two_pi = 6.283185307179586;
+  static constexpr double two_pi = 2 * pcs::internal::pi;
 
   struct Piece
   {
@@ -135,7 +136,7 @@ private:
     Eigen::Vector3d from, to;
   };
 
-  //! a polygon of this many sides has the area of the unit circle at this radius
+  //! returns the radius at which a polygon with this many sides has the area of the unit circle
   static double radius_of_equal_area(std::size_t sides)
   {
     const double n = static_cast<double>(sides);
@@ -149,7 +150,7 @@ private:
     return static_cast<std::uint32_t>(m_pieces.size() - 1);
   }
 
-  //! of what is no wood
+  //! adds a piece that is not wood
   std::uint32_t piece(int label)
   {
     return piece(label, label, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero());
@@ -160,7 +161,7 @@ private:
                     const Eigen::Vector3d& c,
                     std::uint32_t of_piece)
   {
-    // edges from rounded corners, so that neighbours share their edges exactly
+    // edges between rounded corners, so that the edges of neighbours are identical
     const Vector3f corner = a.cast<float>();
     triangles.push_back({corner, b.cast<float>() - corner, c.cast<float>() - corner});
     m_piece_of.push_back(of_piece);
@@ -207,7 +208,7 @@ private:
       const Scan_node& node = wood.nodes[branch[i]];
       const Eigen::Vector3d& before = wood.nodes[branch[i == 0 ? 0 : i - 1]].point;
       const Eigen::Vector3d& after = wood.nodes[branch[std::min(i + 1, branch.size() - 1)]].point;
-      // the mean of the directions, whatever the lengths of the edges
+      // the mean of the directions, independent of the lengths of the edges
       Eigen::Vector3d tangent =
           (node.point - before).normalized() + (after - node.point).normalized();
       if (!(tangent.squaredNorm() > 1e-12))
@@ -227,7 +228,7 @@ private:
     close(ring, tip.point + 0.5 * tip.radius * m_tangent, last);
   }
 
-  //! the longer axis of a section across the tangent, without a jump from the section before
+  //! returns the longer axis of a section across the tangent, continuous along the branch
   Eigen::Vector3d section_axis(const Scan_node& node, const Eigen::Vector3d& before) const
   {
     for (const Eigen::Vector3d& wish : {node.major_axis, before}) {
@@ -266,7 +267,7 @@ private:
       const Eigen::Vector2d &p = polygon[k], &q = polygon[(k + 1) % sides];
       doubled_area += p.x() * q.y() - p.y() * q.x();
     }
-    // neither the corners cut off nor the bark change the area of the section
+    // neither the polygon nor the bark changes the area of the section
     const double scale = doubled_area > 0 ? node.radius * std::sqrt(two_pi / doubled_area) : 1.0;
     std::vector<Eigen::Vector3d> ring;
     for (const Eigen::Vector2d& p : polygon)
@@ -274,7 +275,7 @@ private:
     return ring;
   }
 
-  //! a rhombus of the area of a disc
+  //! adds a rhombus with the area of a disc
   void add_leaf(const Eigen::Vector3d& on_axis, double radius, Random_stream& random, int label)
   {
     const auto direction = [&] {

@@ -10,6 +10,7 @@
 #include <pcs/generators/Tree_habit.h>
 #include <pcs/generators/internal/normal_vector.h>
 #include <pcs/internal/Random_stream.h>
+#include <pcs/internal/constants.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -28,9 +29,7 @@ namespace internal {
 using pcs::internal::Random_stream;
 using Vector3 = Eigen::Vector3d;
 
-constexpr double pi = 3.14159265358979323846;
-
-//! a unit vector across `direction`, the same for the same input
+//! returns a unit vector perpendicular to `direction`, the same for the same input
 inline Vector3 any_normal(const Vector3& direction)
 {
   Eigen::Index least = 0;
@@ -38,7 +37,7 @@ inline Vector3 any_normal(const Vector3& direction)
   return direction.cross(Vector3::Unit(least)).normalized();
 }
 
-//! `normal` after the direction has changed: turned as little as possible
+//! rotates `normal` with the change of direction by the smallest possible angle
 inline Vector3 transported(const Vector3& normal, const Vector3& direction)
 {
   const Vector3 across = normal - normal.dot(direction) * direction;
@@ -115,7 +114,7 @@ private:
     std::size_t parent, branch;
   };
 
-  //! a node of the branch that grows now
+  //! a node of the current branch
   struct Place
   {
     std::size_t node;
@@ -137,13 +136,13 @@ private:
     const double rest = std::max(0.0, 1 - at / bud.length);
     double r = bud.radius;
     if (bud.kind == Kind::stub)
-      r *= 0.8 + 0.2 * rest; // broken off, not grown to a tip
+      r *= 0.8 + 0.2 * rest; // broken off, without a tip
     else
       r *= (1 - m_habit.tip_share[i]) * std::pow(rest, m_habit.taper[i]) + m_habit.tip_share[i];
     if (bud.order == 0)
       r *= 1 + m_habit.flare * std::exp(-at / m_habit.flare_height);
     if (bud.order == 0 && m_habit.number_of_leaders > 1 && at > m_habit.fork * bud.length)
-      r *= 0.85; // the other stems take their share
+      r *= 0.85; // reduced because the wood is divided among the stems
     return std::max(r, m_habit.tip_radius);
   }
 
@@ -168,7 +167,7 @@ private:
     const std::size_t i = row(bud);
     std::vector<Place> places;
     Vector3 point = bud.base, direction = bud.direction, normal = any_normal(direction);
-    const double phase = random.uniform(0, 2 * pi);
+    const double phase = random.uniform(0, 2 * pcs::internal::pi);
     normal = Eigen::AngleAxisd(phase, direction) * normal;
     Vector3 bend = Vector3::Zero();
     std::size_t parent = bud.parent_node;
@@ -198,10 +197,11 @@ private:
       at = step == bud.length - at ? bud.length : at + step;
       if (bud.order == 0 && !m_is_forked && m_habit.number_of_leaders > 1 &&
           at >= m_habit.fork * bud.length) {
-        // the stems lean away from each other
+        // the stems lean apart
         m_is_forked = true;
         m_fork_angle = random.uniform(m_habit.fork_angle.least, m_habit.fork_angle.largest);
-        m_fork_axis = Eigen::AngleAxisd(random.uniform(0, 2 * pi), direction) * normal;
+        m_fork_axis =
+            Eigen::AngleAxisd(random.uniform(0, 2 * pcs::internal::pi), direction) * normal;
         m_fork_direction = direction;
         m_fork_place = places.size();
         direction = Eigen::AngleAxisd(-m_fork_angle / 2, m_fork_axis) * direction;
@@ -209,7 +209,7 @@ private:
     }
   }
 
-  //! the stems besides the trunk that go on behind its fork
+  //! adds the stems besides the trunk that continue above its fork
   void fork(const Bud& bud, std::size_t branch, const std::vector<Place>& places)
   {
     if (!m_is_forked || m_fork_place >= places.size())
@@ -217,8 +217,8 @@ private:
     const Place& place = places[m_fork_place];
     for (std::size_t k = 1; k < m_habit.number_of_leaders; ++k) {
       Random_stream random(bud.seed, 3, k);
-      const double turn =
-          2 * pi * double(k - 1) / double(std::max<std::size_t>(m_habit.number_of_leaders, 2));
+      const double turn = 2 * pcs::internal::pi * double(k - 1) /
+                          double(std::max<std::size_t>(m_habit.number_of_leaders, 2));
       const Vector3 axis = Eigen::AngleAxisd(turn, m_fork_direction) * m_fork_axis;
       Bud stem = child(branch, place, bud.order + 1, random);
       stem.direction = Eigen::AngleAxisd(m_fork_angle / 2, axis) * m_fork_direction;
@@ -240,7 +240,7 @@ private:
     return bud;
   }
 
-  //! how far a branch reaches that leaves the trunk at the share `x` of the crown
+  //! returns the reach of a branch that leaves the trunk at the fraction `x` of the crown
   double reach(double x) const
   {
     switch (m_habit.crown) {
@@ -260,7 +260,7 @@ private:
     constexpr double golden_angle = 2.399963229728653;
     const std::size_t i = row(bud);
     Random_stream random(bud.seed, 4);
-    double azimuth = random.uniform(0, 2 * pi);
+    double azimuth = random.uniform(0, 2 * pcs::internal::pi);
     check_number(bud.length / m_habit.spacing[i]);
     const double from = m_habit.bare[i] * bud.length;
     std::size_t place = 0;
@@ -271,7 +271,7 @@ private:
       const std::size_t n = bud.kind == Kind::stem ? m_habit.whorl : 1;
       for (std::size_t k = 0; k < n; ++k) {
         const double jitter = 0.3 * random.normal();
-        const double turn = azimuth + jitter + 2 * pi * double(k) / double(n);
+        const double turn = azimuth + jitter + 2 * pcs::internal::pi * double(k) / double(n);
         add_branch(bud, branch, places[place], turn, (at - from) / (bud.length - from), random);
       }
       azimuth += golden_angle;
@@ -300,12 +300,12 @@ private:
     if (parent.kind == Kind::stem) {
       bud.radius = std::min(bud.radius, m_habit.largest_branch);
       bud.length = std::min(slender * bud.radius, full * reach(share));
-      // what the crown cuts short is thin, too
+      // branches shortened by the crown are thinner as well
       bud.radius = std::min(bud.radius, bud.length / (0.6 * slenderness.least));
     } else {
       bud.length = std::min(slender * bud.radius, 0.9 * full * (parent.length - 0.6 * place.at));
     }
-    // a branch that ends inside its parent is none
+    // branches that end inside their parent are omitted
     if (bud.radius >= m_habit.smallest_branch && bud.length > 1.5 * place.radius &&
         bud.length >= 2 * m_habit.smallest_step) {
       check_number(static_cast<double>(m_buds.size()));
@@ -313,7 +313,7 @@ private:
     }
   }
 
-  /// Of nodes, or of branches that are on their way.
+  /// Checks a number of nodes, or of branches that are not yet grown.
   static void check_number(double number)
   {
     if (!(number < static_cast<double>(largest_number_of_nodes)))
@@ -329,7 +329,7 @@ private:
       const auto i = static_cast<std::size_t>(share * static_cast<double>(places.size() - 1));
       const Place& place = places[i];
       Bud bud = child(branch, place, trunk.order + 1, random);
-      const double azimuth = random.uniform(0, 2 * pi);
+      const double azimuth = random.uniform(0, 2 * pcs::internal::pi);
       const Vector3 across = Eigen::AngleAxisd(azimuth, place.direction) * place.normal;
       bud.direction = (0.4 * place.direction + across).normalized();
       bud.radius = std::max(m_habit.tip_radius, place.radius * random.uniform(0.1, 0.2));

@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_AXES_SECTION_COUNTS_H
 #define PCS_SKELETON_AXES_SECTION_COUNTS_H
 
+#include <pcs/internal/constants.h>
 #include <pcs/skeleton/axes/Axis_fit.h>
 #include <pcs/skeleton/axes/Chain_options.h>
 
@@ -26,11 +27,11 @@ struct Section_counts
   /// Returns the radius for which the surface would have `density` points per area [L].
   double radius(std::size_t k, double density) const
   {
-    return count[k] / (2 * 3.14159265358979323846 * density * visible_length[k]);
+    return count[k] / (2 * pcs::internal::pi * density * visible_length[k]);
   }
   double density(std::size_t k, double radius) const
   {
-    return count[k] / (2 * 3.14159265358979323846 * radius * visible_length[k]);
+    return count[k] / (2 * pcs::internal::pi * radius * visible_length[k]);
   }
 };
 
@@ -105,7 +106,7 @@ inline std::vector<double> visible_shares(const Chain_view& view, const Axis_fit
     // arc of the section inside of a disc of radius `taken`
     const double d = std::max(place.distance, 1e-9 * u);
     const double cosine = (d * d + r * r - taken * taken) / (2 * d * r);
-    shares[k] = 1 - std::acos(std::min(1.0, std::max(-1.0, cosine))) / 3.14159265358979323846;
+    shares[k] = 1 - std::acos(std::min(1.0, std::max(-1.0, cosine))) / pcs::internal::pi;
   }
   return shares;
 }

@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_LEAVES_FIND_SURFACE_WOOD_H
 #define PCS_SKELETON_LEAVES_FIND_SURFACE_WOOD_H
 
+#include <pcs/internal/constants.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/skeleton/model/Axis.h>
 #include <pcs/skeleton/model/Axis_set.h>
@@ -47,7 +48,7 @@ inline std::vector<std::uint8_t> hollow_segments(const Axis_set& set,
   std::vector<double> expected(n), length(n);
   for (std::size_t k = 0; k < n; ++k) {
     length[k] = (axis[k + 1].point - axis[k].point).norm();
-    expected[k] = 2 * 3.14159265358979323846 * axis[k].radius * length[k] * set.density_at(axis, k);
+    expected[k] = 2 * pcs::internal::pi * axis[k].radius * length[k] * set.density_at(axis, k);
   }
   std::vector<std::uint8_t> is_wood(n, 0);
   double all = 0, hollow = 0;

@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_MODEL_VISIBILITY_FIELD_H
 #define PCS_SKELETON_MODEL_VISIBILITY_FIELD_H
 
+#include <pcs/internal/constants.h>
 #include <pcs/skeleton/model/Density_field.h>
 #include <pcs/skeleton/model/Scan.h>
 
@@ -53,8 +54,7 @@ public:
 private:
   static constexpr Eigen::Index size = 4;
   static constexpr double least_deviation = 0.05;
-  static constexpr double largest =
-      0.25 * 3.14159265358979323846; // of the half that one station sees
+  static constexpr double largest = 0.25 * pcs::internal::pi; // of the half that one station sees
   using Row = Eigen::Vector4d;
   using Weights = Eigen::Matrix<double, 3 * size, 1>;
   using Matrix = Eigen::Matrix<double, 3 * size, 3 * size>;

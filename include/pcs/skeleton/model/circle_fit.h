@@ -5,6 +5,8 @@
 #ifndef PCS_SKELETON_MODEL_CIRCLE_FIT_H
 #define PCS_SKELETON_MODEL_CIRCLE_FIT_H
 
+#include <pcs/internal/constants.h>
+
 #include <Eigen/Core>
 
 #include <cmath>
@@ -94,7 +96,7 @@ inline int covered_sectors(const std::vector<Vec2>& points, const Vec2& center)
     const Vec2 d = p - center;
     const double angle =
         std::atan2(mean.x() * d.y() - mean.y() * d.x(), mean.x() * d.x() + mean.y() * d.y());
-    const double turn = angle / (2 * 3.14159265358979323846) + 0.5;
+    const double turn = angle / (2 * pcs::internal::pi) + 0.5;
     const int sector = static_cast<int>(turn * number_of_sectors) % number_of_sectors;
     seen |= 1u << sector;
   }

@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_REGISTRATION_SCAN_GRID_H
 #define PCS_SKELETON_REGISTRATION_SCAN_GRID_H
 
+#include <pcs/internal/constants.h>
 #include <pcs/internal/fast_atan2.h>
 #include <pcs/skeleton/model/Scan.h>
 
@@ -16,7 +17,7 @@
 namespace pcs {
 namespace skeleton {
 
-constexpr double two_pi = 2 * static_cast<double>(EIGEN_PI);
+constexpr double two_pi = 2 * pcs::internal::pi;
 
 /// A column and a row of a grid, as real numbers [steps].
 using Grid_place = Eigen::Vector2d;
@@ -35,10 +36,9 @@ inline double beyond_whole(double x)
 struct Scan_grid
 {
   Vec3 position = Vec3::Zero(); ///< of the station, including its registration error [L]
-  Eigen::Matrix3d axes =
-      Eigen::Matrix3d::Identity();       ///< rows: towards the tree, left, vertical
-  Grid_place rate = Grid_place::Ones();  ///< of columns and rows [1/rad]
-  Grid_place phase = Grid_place::Zero(); ///< added to them [steps]
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity(); ///< rows: towards the tree, left, vertical
+  Grid_place rate = Grid_place::Ones();               ///< of columns and rows [1/rad]
+  Grid_place phase = Grid_place::Zero();              ///< added to them [steps]
   double tolerance = 0; ///< largest misfit of points of the station [steps]
 
   Grid_place place_of_direction(const Vec3& q) const

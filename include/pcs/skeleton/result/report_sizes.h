@@ -6,6 +6,7 @@
 #define PCS_SKELETON_RESULT_REPORT_SIZES_H
 
 #include <pcs/core/Skeleton_report.h>
+#include <pcs/internal/constants.h>
 #include <pcs/skeleton/model/Axis_set.h>
 #include <pcs/skeleton/model/Branch_tree.h>
 
@@ -159,7 +160,7 @@ inline void report_sizes(const Branch_tree& tree,
     const Branch_node& below = tree.nodes[node.parent];
     const double length = unit * (node.point - below.point).norm();
     const double a = unit * below.radius, b = unit * node.radius;
-    const double volume = 3.14159265358979323846 / 3 * length * (a * a + a * b + b * b);
+    const double volume = pcs::internal::pi / 3 * length * (a * a + a * b + b * b);
     std::size_t size = 0;
     while (size < r.size_bounds.size() && 0.5 * (a + b) > r.size_bounds[size])
       ++size;

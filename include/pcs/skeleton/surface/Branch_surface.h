@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_SURFACE_BRANCH_SURFACE_H
 #define PCS_SKELETON_SURFACE_BRANCH_SURFACE_H
 
+#include <pcs/internal/constants.h>
 #include <pcs/skeleton/model/Scan.h>
 
 #include <Eigen/Geometry>
@@ -197,7 +198,7 @@ struct Surface_tube
     }
   }
 
-  double angle(double k) const { return 2 * 3.14159265358979323846 * k / double(sides); }
+  double angle(double k) const { return 2 * pcs::internal::pi * k / double(sides); }
 
   Vec3 point_on(std::size_t ring, std::size_t k) const
   {
