@@ -18,7 +18,7 @@
 
   \par Required
   for a graph other than `pcs::Tree_skeleton`, writable property maps from vertices to points
-  (`node_point_map`) and to radii (`node_radius_map`)
+  (`node_point_map`) and to radii of a floating point type (`node_radius_map`)
 
   \par Checked by
   a `static_assert` of `pcs::extract_tree_skeleton()`

@@ -30,7 +30,8 @@ inline void check(bool is_valid, const char* caller, const char* rule)
     throw Invalid_input(std::string(caller) + ": " + rule);
 }
 
-/// Returns `value`, or throws `Invalid_input` with "<caller>: <name> is <value>; it must be <rule>".
+/// Returns `value`, or throws `Invalid_input` with "<caller>: <name> is <value>; it must be
+/// <rule>".
 template <class Value>
 Value check_value(const std::string& caller,
                   const std::string& name,
