@@ -12,6 +12,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -229,6 +230,85 @@ inline void drop_long_links(const Elastic_network& network, double factor, std::
               links.end());
 }
 
+/// Casts a ray from every node against its normal, and one along it. The nodes that they hit on the
+/// opposite side of the same component, or `miss`.
+template <class ConcurrencyTag>
+std::array<std::vector<std::uint32_t>, 2>
+find_opposite_nodes(const Elastic_network& network,
+                    const std::vector<std::uint32_t>& component,
+                    const Interior_link_options& options,
+                    const Ray_caster& rays)
+{
+  const std::vector<Vec3> normal = oriented_normals<ConcurrencyTag>(network);
+  const auto opposite = [&](std::size_t i, const Vec3& direction) {
+    const std::uint32_t j = rays.first_hit(network.rest[i], direction);
+    const bool is_opposite = j != Ray_caster::miss && component[j] == component[i] &&
+                             normal[i].dot(normal[j]) < options.opposition;
+    return is_opposite ? j : Ray_caster::miss;
+  };
+  std::array<std::vector<std::uint32_t>, 2> hit;
+  for (auto& side : hit)
+    side.resize(network.size());
+  pcs::internal::for_each_index<ConcurrencyTag>(
+      network.size(),
+      [&](std::size_t i) {
+        hit[0][i] = opposite(i, -normal[i]);
+        hit[1][i] = opposite(i, normal[i]);
+      },
+      128);
+  return hit;
+}
+
+/// Counts the rays of each component, and those of each side that hit.
+inline std::vector<Link_votes> count_hits(const std::array<std::vector<std::uint32_t>, 2>& hit,
+                                          const std::vector<std::uint32_t>& component)
+{
+  std::vector<Link_votes> votes(*std::max_element(component.begin(), component.end()) +
+                                std::size_t(1));
+  for (std::size_t i = 0; i < component.size(); ++i) {
+    Link_votes& v = votes[component[i]];
+    ++v.size;
+    for (std::size_t side = 0; side < 2; ++side)
+      if (hit[side][i] != Ray_caster::miss)
+        ++v.hits[side];
+  }
+  return votes;
+}
+
+/// The links through the inside of each component: the side from which more rays hit.
+inline std::vector<Link> link_through_inside(const std::array<std::vector<std::uint32_t>, 2>& hit,
+                                             const std::vector<std::uint32_t>& component,
+                                             double smallest_hit_share,
+                                             std::vector<Link_votes>& votes)
+{
+  std::vector<Link> links;
+  for (std::size_t i = 0; i < component.size(); ++i) {
+    Link_votes& v = votes[component[i]];
+    const std::size_t inside = v.hits[0] >= v.hits[1] ? 0 : 1;
+    if (static_cast<double>(v.hits[inside]) >= smallest_hit_share * static_cast<double>(v.size) &&
+        hit[inside][i] != Ray_caster::miss) {
+      links.emplace_back(static_cast<std::uint32_t>(i), hit[inside][i]);
+      ++v.links;
+    }
+  }
+  return links;
+}
+
+/// The graph of the links; one of length `d` has the weight `numerator / d^2`.
+inline Weighted_graph
+weighted_links(const Elastic_network& network, std::vector<Link> links, double numerator)
+{
+  Weighted_graph result;
+  static_cast<neighborhood::Proximity_graph&>(result) =
+      neighborhood::graph_from_edges(network.size(), std::move(links));
+  result.weight.resize(result.neighbor.size());
+  for (std::size_t i = 0; i < network.size(); ++i)
+    for (std::size_t e = result.first[i]; e < result.first[i + 1]; ++e)
+      result.weight[e] =
+          numerator / (network.rest[result.neighbor[e]] - network.rest[i]).squaredNorm();
+  return result;
+}
+
 } // namespace internal
 
 /*!
@@ -241,67 +321,21 @@ Weighted_graph interior_links(const Elastic_network& network,
                               const std::vector<std::uint32_t>& component,
                               const Interior_link_options& options = {})
 {
-  const std::size_t n = network.size();
-  const auto& graph = network.surface;
-  Weighted_graph none;
-  if (n < 4 || graph.neighbor.empty())
-    return none;
-  const double h = typical_edge(network.rest, graph);
-  const std::vector<Vec3> normal = internal::oriented_normals<ConcurrencyTag>(network);
-
+  if (network.size() < 4 || network.surface.neighbor.empty())
+    return {};
+  const double h = typical_edge(network.rest, network.surface);
   if (!(h > 0))
-    return none;
+    return {};
   const internal::Ray_caster rays(network, h, options);
-  // Both sides of every node: the side that more rays of the component hit from is the inside.
-  std::vector<std::uint32_t> hit[2];
-  for (auto& side : hit)
-    side.resize(n);
-  pcs::internal::for_each_index<ConcurrencyTag>(
-      n,
-      [&](std::size_t i) {
-        hit[0][i] = rays.first_hit(network.rest[i], -normal[i]);
-        hit[1][i] = rays.first_hit(network.rest[i], normal[i]);
-      },
-      128);
-  const std::size_t number_of_components =
-      n == 0 ? 0 : std::size_t(*std::max_element(component.begin(), component.end())) + 1;
-  std::vector<internal::Link_votes> votes(number_of_components);
-  const auto is_hit = [&](int side, std::size_t i) {
-    const std::uint32_t j = hit[side][i];
-    return j != internal::Ray_caster::miss && component[j] == component[i] &&
-           normal[i].dot(normal[j]) < options.opposition;
-  };
-  for (std::size_t i = 0; i < n; ++i) {
-    internal::Link_votes& v = votes[component[i]];
-    ++v.size;
-    for (int side = 0; side < 2; ++side)
-      if (is_hit(side, i))
-        ++v.hits[side];
-  }
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> links;
-  for (std::size_t i = 0; i < n; ++i) {
-    internal::Link_votes& v = votes[component[i]];
-    const int inside = v.hits[0] >= v.hits[1] ? 0 : 1;
-    if (static_cast<double>(v.hits[inside]) >=
-            options.smallest_hit_share * static_cast<double>(v.size) &&
-        is_hit(inside, i)) {
-      links.emplace_back(static_cast<std::uint32_t>(i), hit[inside][i]);
-      ++v.links;
-    }
-  }
+  const auto hit = internal::find_opposite_nodes<ConcurrencyTag>(network, component, options, rays);
+  std::vector<internal::Link_votes> votes = internal::count_hits(hit, component);
+  std::vector<internal::Link> links =
+      internal::link_through_inside(hit, component, options.smallest_hit_share, votes);
   internal::drop_open_components(rays, component, options, votes, links);
   internal::drop_long_links(network, options.longest, links);
   if (links.empty())
-    return none;
-  Weighted_graph result;
-  static_cast<neighborhood::Proximity_graph&>(result) =
-      neighborhood::graph_from_edges(n, std::move(links));
-  result.weight.resize(result.neighbor.size());
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t e = result.first[i]; e < result.first[i + 1]; ++e)
-      result.weight[e] = options.strength * h * h /
-                         (network.rest[result.neighbor[e]] - network.rest[i]).squaredNorm();
-  return result;
+    return {};
+  return internal::weighted_links(network, std::move(links), options.strength * h * h);
 }
 
 } // namespace deformation

@@ -128,6 +128,123 @@ PCS_ALWAYS_INLINE void carry_block(const Block_input& in, Block_output& out)
   });
 }
 
+/// The blended map of the points of one register, around the base's position at rest: linear part
+/// `g`, row by row, and `position`.
+template <class Arithmetic, class Doubles>
+PCS_ALWAYS_INLINE void
+blend_maps(const Block_input& in, std::size_t first, Doubles* g, Doubles* position)
+{
+  using pcs::internal::unroll;
+  unroll<9>([&](auto k) PCS_LAMBDA_INLINE { Arithmetic::fill(in.base->a[k], g[k]); });
+  unroll<3>([&](auto r) PCS_LAMBDA_INLINE { Arithmetic::fill(in.base->center[r], position[r]); });
+  for (const Block_entry* entry = in.entry; entry != in.entry_end; ++entry) {
+    const double* difference = in.differences[entry->pair].value;
+    Doubles weight;
+    Arithmetic::to_doubles(entry->weight + first, weight);
+    unroll<9>([&](auto k) PCS_LAMBDA_INLINE { Arithmetic::fma(difference[k], weight, g[k]); });
+    unroll<3>([&](auto r)
+                  PCS_LAMBDA_INLINE { Arithmetic::fma(difference[9 + r], weight, position[r]); });
+  }
+}
+
+/// Adds `g` times the offset of the points from the base.
+template <class Arithmetic, class Doubles>
+PCS_ALWAYS_INLINE void
+add_offsets(const Block_input& in, std::size_t first, const Doubles* g, Doubles* position)
+{
+  using pcs::internal::unroll;
+  Doubles v[3];
+  load_vectors(*in.rest, first, v);
+  unroll<3>([&](auto c) PCS_LAMBDA_INLINE { Arithmetic::subtract(in.base->origin[c], v[c]); });
+  unroll<3>([&](auto row) PCS_LAMBDA_INLINE {
+    constexpr std::size_t r = decltype(row)::value;
+    Arithmetic::fma(g[3 * r + 2], v[2], position[r]);
+    Arithmetic::fma(g[3 * r + 1], v[1], position[r]);
+    Arithmetic::fma(g[3 * r], v[0], position[r]);
+  });
+}
+
+/// Draws positions towards the handles.
+template <class Arithmetic, class Doubles>
+PCS_ALWAYS_INLINE void fade_positions(const Block_input& in, std::size_t first, Doubles* position)
+{
+  Doubles v[3];
+  for (const Block_fade* f = in.fade; f != in.fade_end; ++f) {
+    const Affine_map& map = in.handles[f->handle].map;
+    Doubles weight;
+    pcs::internal::load(f->weight + first, weight);
+    load_vectors(*in.rest, first, v);
+    pcs::internal::unroll<3>([&](auto r) PCS_LAMBDA_INLINE {
+      Doubles target;
+      Arithmetic::fill(map.t[r], target);
+      add_image<Arithmetic>(map.a + 3 * r, v, target);
+      Arithmetic::fma(weight, Doubles(target - position[r]), position[r]);
+    });
+  }
+}
+
+/// Draws the normals `turned`, of which `v` are the ones at rest, towards the handles.
+template <class Arithmetic, class Doubles>
+PCS_ALWAYS_INLINE void
+fade_normals(const Block_input& in, std::size_t first, const Doubles* v, Doubles* turned)
+{
+  for (const Block_fade* f = in.fade; f != in.fade_end; ++f) {
+    Doubles weight, rest_weight;
+    pcs::internal::load(f->weight + first, weight);
+    rest_weight = 1.0 - weight;
+    pcs::internal::unroll<3>([&](auto r) PCS_LAMBDA_INLINE {
+      Doubles target{};
+      add_image<Arithmetic>(in.handles[f->handle].turn + 3 * r, v, target);
+      turned[r] = turned[r] * rest_weight;
+      Arithmetic::fma(weight, target, turned[r]);
+    });
+  }
+}
+
+/// Gives `v` the length of which `squared` is the square.
+template <class Arithmetic, class Doubles>
+PCS_ALWAYS_INLINE void set_length(const Doubles& squared, Doubles* v)
+{
+  Doubles scale;
+  scale_to_length<Arithmetic>(squared, v, scale);
+  pcs::internal::unroll<3>([&](auto r) PCS_LAMBDA_INLINE { v[r] = v[r] * scale; });
+}
+
+/// Normals get the cofactor matrix of `g`, are drawn towards the handles, and keep their length.
+template <class Arithmetic, class Doubles>
+PCS_ALWAYS_INLINE void
+blend_normals(const Block_input& in, std::size_t first, const Doubles* g, Block_output& out)
+{
+  Doubles v[3], turned[3], squared;
+  load_vectors(*in.normal, first, v);
+  squared_length<Arithmetic>(v, squared);
+  multiply_by_cofactors<Arithmetic>(g, v, turned);
+  set_length<Arithmetic>(squared, turned);
+  if (in.fade != in.fade_end) {
+    fade_normals<Arithmetic>(in, first, v, turned);
+    set_length<Arithmetic>(squared, turned);
+  }
+  pcs::internal::unroll<3>([&](auto r) PCS_LAMBDA_INLINE {
+    pcs::internal::store(turned[r], out.normal.value[r] + first);
+  });
+}
+
+/// Draws the gradients `g` towards the handles, and stores them.
+template <class Arithmetic, class Doubles>
+PCS_ALWAYS_INLINE void
+store_gradients(const Block_input& in, std::size_t first, Doubles* g, Block_output& out)
+{
+  pcs::internal::unroll<9>([&](auto k) PCS_LAMBDA_INLINE {
+    for (const Block_fade* f = in.fade; f != in.fade_end; ++f) {
+      Doubles weight, target;
+      pcs::internal::load(f->weight + first, weight);
+      Arithmetic::fill(in.handles[f->handle].map.a[k], target);
+      Arithmetic::fma(weight, Doubles(target - g[k]), g[k]);
+    }
+    pcs::internal::store(g[k], out.gradient[k] + first);
+  });
+}
+
 /*!
   Equations (2.4) and (2.5) of the dissertation for one block. With `sum w = 1`,
 
@@ -141,86 +258,25 @@ PCS_ALWAYS_INLINE void carry_block(const Block_input& in, Block_output& out)
 template <Blend_outputs Outputs, class Arithmetic>
 PCS_ALWAYS_INLINE void blend_block(const Block_input& in, Block_output& out)
 {
-  using pcs::internal::load;
-  using pcs::internal::store;
-  using pcs::internal::unroll;
   using Doubles = typename Arithmetic::Doubles;
   constexpr std::size_t width = sizeof(Doubles) / sizeof(double);
   if (in.holder) {
     carry_block<Outputs, Arithmetic>(in, out);
     return;
   }
-  const Base_map& base = *in.base;
-  unroll<lanes / width>([&](auto part) PCS_LAMBDA_INLINE {
+  pcs::internal::unroll<lanes / width>([&](auto part) PCS_LAMBDA_INLINE {
     constexpr std::size_t first = width * decltype(part)::value;
-    Doubles g[9], position[3], v[3];
-    unroll<9>([&](auto k) PCS_LAMBDA_INLINE { Arithmetic::fill(base.a[k], g[k]); });
-    unroll<3>([&](auto r) PCS_LAMBDA_INLINE { Arithmetic::fill(base.center[r], position[r]); });
-    for (const Block_entry* entry = in.entry; entry != in.entry_end; ++entry) {
-      const double* difference = in.differences[entry->pair].value;
-      Doubles weight;
-      Arithmetic::to_doubles(entry->weight + first, weight);
-      unroll<9>([&](auto k) PCS_LAMBDA_INLINE { Arithmetic::fma(difference[k], weight, g[k]); });
-      unroll<3>([&](auto r)
-                    PCS_LAMBDA_INLINE { Arithmetic::fma(difference[9 + r], weight, position[r]); });
-    }
-    load_vectors(*in.rest, first, v);
-    unroll<3>([&](auto c) PCS_LAMBDA_INLINE { Arithmetic::subtract(base.origin[c], v[c]); });
-    unroll<3>([&](auto row) PCS_LAMBDA_INLINE {
-      constexpr std::size_t r = decltype(row)::value;
-      Arithmetic::fma(g[3 * r + 2], v[2], position[r]);
-      Arithmetic::fma(g[3 * r + 1], v[1], position[r]);
-      Arithmetic::fma(g[3 * r], v[0], position[r]);
-    });
-    for (const Block_fade* f = in.fade; f != in.fade_end; ++f) {
-      const Affine_map& map = in.handles[f->handle].map;
-      Doubles weight;
-      load(f->weight + first, weight);
-      load_vectors(*in.rest, first, v);
-      unroll<3>([&](auto r) PCS_LAMBDA_INLINE {
-        Doubles target;
-        Arithmetic::fill(map.t[r], target);
-        add_image<Arithmetic>(map.a + 3 * r, v, target);
-        Arithmetic::fma(weight, Doubles(target - position[r]), position[r]);
-      });
-    }
+    Doubles g[9], position[3];
+    blend_maps<Arithmetic>(in, first, g, position);
+    add_offsets<Arithmetic>(in, first, g, position);
+    fade_positions<Arithmetic>(in, first, position);
     store_positions<Arithmetic>(in, position, first, out);
     if constexpr (Outputs != Blend_outputs::positions) {
-      if (Outputs == Blend_outputs::normals || in.normal) {
-        Doubles turned[3], squared, scale;
-        load_vectors(*in.normal, first, v);
-        squared_length<Arithmetic>(v, squared);
-        multiply_by_cofactors<Arithmetic>(g, v, turned);
-        scale_to_length<Arithmetic>(squared, turned, scale);
-        unroll<3>([&](auto r) PCS_LAMBDA_INLINE { turned[r] = turned[r] * scale; });
-        if (in.fade != in.fade_end) {
-          for (const Block_fade* f = in.fade; f != in.fade_end; ++f) {
-            Doubles weight, rest_weight;
-            load(f->weight + first, weight);
-            rest_weight = 1.0 - weight;
-            unroll<3>([&](auto r) PCS_LAMBDA_INLINE {
-              Doubles target{};
-              add_image<Arithmetic>(in.handles[f->handle].turn + 3 * r, v, target);
-              turned[r] = turned[r] * rest_weight;
-              Arithmetic::fma(weight, target, turned[r]);
-            });
-          }
-          scale_to_length<Arithmetic>(squared, turned, scale);
-          unroll<3>([&](auto r) PCS_LAMBDA_INLINE { turned[r] = turned[r] * scale; });
-        }
-        unroll<3>([&](auto r) PCS_LAMBDA_INLINE { store(turned[r], out.normal.value[r] + first); });
-      }
+      if (Outputs == Blend_outputs::normals || in.normal)
+        blend_normals<Arithmetic>(in, first, g, out);
     }
     if constexpr (Outputs == Blend_outputs::gradients)
-      unroll<9>([&](auto k) PCS_LAMBDA_INLINE {
-        for (const Block_fade* f = in.fade; f != in.fade_end; ++f) {
-          Doubles weight, target;
-          load(f->weight + first, weight);
-          Arithmetic::fill(in.handles[f->handle].map.a[k], target);
-          Arithmetic::fma(weight, Doubles(target - g[k]), g[k]);
-        }
-        store(g[k], out.gradient[k] + first);
-      });
+      store_gradients<Arithmetic>(in, first, g, out);
   });
 }
 
