@@ -26,6 +26,21 @@ public:
   Orl_space_data read()
   {
     Orl_space_data s;
+    read_head(s);
+    read_branches(s);
+    read_trees(s);
+    read_weights(s.weights);
+    read_pairs(s.pairs);
+    read_points(s);
+    read_partners(s);
+    if (!m_file.is_at_end())
+      m_file.fail("expected the end of the file");
+    return s;
+  }
+
+private:
+  void read_head(Orl_space_data& s)
+  {
     m_file.expect("pcs_shape_space");
     m_file.expect("5");
     m_file.expect("orientation");
@@ -33,6 +48,10 @@ public:
     read_all(s.origin);
     m_file.expect("matching");
     read_all(s.matching);
+  }
+  /// Reads the branches and the edges that refer to earlier ones.
+  void read_branches(Orl_space_data& s)
+  {
     m_file.expect("branches");
     for (std::size_t n = m_file.count("the number of branches"); n > 0; --n) {
       Orl_space_data::Branch b;
@@ -46,18 +65,28 @@ public:
       const std::size_t edge = m_file.count("the number of an edge");
       s.references.push_back({edge, m_file.count("the number of an edge")});
     }
+  }
+  /// Reads all trees, and the tree of reference last.
+  void read_trees(Orl_space_data& s)
+  {
     m_file.expect("trees");
     for (std::size_t n = m_file.count("the number of trees"); n > 0; --n)
       s.trees.push_back(read_tree());
     s.reference = read_tree();
+  }
+  void read_weights(Orl_space_data::Weights& weights)
+  {
     m_file.expect("weights");
-    s.weights.root = m_file.real("a weight");
-    for (auto* values : {&s.weights.orientation,
-                         &s.weights.length,
-                         &s.weights.radius,
-                         &s.weights.base_radius,
-                         &s.weights.attachment})
+    weights.root = m_file.real("a weight");
+    for (auto* values : {&weights.orientation,
+                         &weights.length,
+                         &weights.radius,
+                         &weights.base_radius,
+                         &weights.attachment})
       *values = read_numbers();
+  }
+  void read_pairs(std::vector<Orl_correspondences::Pair>& pairs)
+  {
     m_file.expect("pairs");
     for (std::size_t n = m_file.count("the number of pairs"); n > 0; --n) {
       Orl_correspondences::Pair p{};
@@ -65,8 +94,11 @@ public:
       for (std::uint32_t& i : p.point)
         i = m_file.skip("-") ? Orl_correspondences::no_point
                              : m_file.number<std::uint32_t>("the number of a point");
-      s.pairs.push_back(p);
+      pairs.push_back(p);
     }
+  }
+  void read_points(Orl_space_data& s)
+  {
     m_file.expect("points");
     const std::size_t number_of_points = m_file.count("the number of points");
     m_file.expect("normals");
@@ -76,28 +108,31 @@ public:
       p.tree = m_file.number<std::uint32_t>("the number of a tree");
       p.index = m_file.number<std::uint32_t>("the number of a point");
       p.edge = m_file.number<std::uint32_t>("the number of an edge");
-      read_all(p.position);
-      if (s.has_normals)
-        read_all(p.normal);
+      read_place(s.has_normals, p);
       s.points.push_back(p);
     }
+  }
+  void read_partners(Orl_space_data& s)
+  {
     m_file.expect("partners");
     for (std::size_t n = m_file.count("the number of partners"); n > 0; --n) {
       Orl_space_data::Partner p;
       p.point = m_file.number<std::uint32_t>("the number of a point");
       p.tree = m_file.number<std::uint32_t>("the number of a tree");
       p.index = m_file.number<std::uint32_t>("the number of a point");
-      read_all(p.position);
-      if (s.has_normals)
-        read_all(p.normal);
+      read_place(s.has_normals, p);
       s.partners.push_back(p);
     }
-    if (!m_file.is_at_end())
-      m_file.fail("expected the end of the file");
-    return s;
   }
 
-private:
+  /// Reads the position and, if present, the normal of a point or of a partner.
+  template <class Point>
+  void read_place(bool has_normals, Point& p)
+  {
+    read_all(p.position);
+    if (has_normals)
+      read_all(p.normal);
+  }
   template <class Range>
   void read_all(Range& values)
   {
@@ -108,7 +143,7 @@ private:
   {
     return m_file.skip("-") ? Orl_space_data::none : m_file.count("the number of an element");
   }
-  // a false count is found out by the end of the file, before it fills the memory
+  // the end of the file reveals a wrong count before the memory is exhausted
   std::vector<double> read_numbers()
   {
     std::vector<double> values;
@@ -152,10 +187,10 @@ private:
 
 /*!
   \ingroup PkgPcsIORef
-  \brief reads what `write_shape_space()` wrote.
+  \brief reads a file of `write_shape_space()`.
 
-  Whether the numbers make sense together is checked by `Orl_shape_space::restore()`.
-  \throws pcs::IO_error naming the line and what was expected there
+  `Orl_shape_space::restore()` checks whether the numbers are consistent.
+  \throws pcs::IO_error naming the line and the expected content
 */
 inline Orl_space_data read_shape_space(const std::string& path)
 {

@@ -10,6 +10,7 @@
 #include <pcs/core/Orl_correspondences.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -17,55 +18,82 @@
 namespace pcs {
 namespace IO {
 
-/*!
-  \ingroup PkgPcsIORef
-  \brief writes the correspondences of two trees as text; `read_correspondences()` gives them back
-      unchanged.
+namespace internal {
 
-  The file is complete or absent.
-  \throws pcs::IO_error when the file cannot be written
-*/
-inline void write_correspondences(const std::string& path, const Orl_correspondences& c)
+class Correspondence_writer
 {
-  internal::Output_file file(path);
-  std::string line = "pcs_correspondences 3\nnote";
-  const auto add = [&](auto value) {
-    line += ' ';
-    internal::append_number(line, value);
-  };
-  const auto add_index = [&](std::size_t i) {
+public:
+  explicit Correspondence_writer(const std::string& path) : m_file(path) {}
+
+  void write(const Orl_correspondences& c)
+  {
+    m_line = "pcs_correspondences 3\nnote";
+    add_words(c.note);
+    end();
+    write_trees(c);
+    begin("branches", c.branches.size());
+    for (const Orl_correspondences::Branch& b : c.branches)
+      write_branch(b);
+    begin("pairs", c.pairs.size());
+    for (const Orl_correspondences::Pair& p : c.pairs)
+      write_pair(p);
+    m_file.commit();
+  }
+
+private:
+  template <class T>
+  void add(T value)
+  {
+    m_line += ' ';
+    append_number(m_line, value);
+  }
+  void add_index(std::size_t i)
+  {
     if (i == Orl_correspondences::none)
-      line += " -";
+      m_line += " -";
     else
       add(i);
-  };
-  const auto end = [&] {
-    line += '\n';
-    file.write(line);
-    line.clear();
-  };
-  std::vector<std::string> words;
-  std::istringstream note(c.note);
-  for (std::string word; note >> word;)
-    words.push_back(word);
-  add(words.size());
-  for (const std::string& word : words)
-    line += ' ' + word;
-  end();
-  line += "trees";
-  for (std::size_t t = 0; t < 2; ++t) {
-    add(c.fingerprint[t]);
-    add(c.fingerprint_of_points[t]);
   }
-  end();
-  line += "turn";
-  for (const double x : c.turn)
-    add(x);
-  end();
-  line += "branches";
-  add(c.branches.size());
-  end();
-  for (const Orl_correspondences::Branch& b : c.branches) {
+  void end()
+  {
+    m_line += '\n';
+    m_file.write(m_line);
+    m_line.clear();
+  }
+  void begin(const char* name, std::size_t count)
+  {
+    m_line += name;
+    add(count);
+    end();
+  }
+
+  /// Adds the number of words of a text, then the words.
+  void add_words(const std::string& text)
+  {
+    std::vector<std::string> words;
+    std::istringstream stream(text);
+    for (std::string word; stream >> word;)
+      words.push_back(word);
+    add(words.size());
+    for (const std::string& word : words)
+      m_line += ' ' + word;
+  }
+  /// Writes the fingerprints of both trees and the turn between them.
+  void write_trees(const Orl_correspondences& c)
+  {
+    m_line += "trees";
+    for (std::size_t t = 0; t < 2; ++t) {
+      add(c.fingerprint[t]);
+      add(c.fingerprint_of_points[t]);
+    }
+    end();
+    m_line += "turn";
+    for (const double x : c.turn)
+      add(x);
+    end();
+  }
+  void write_branch(const Orl_correspondences::Branch& b)
+  {
     add_index(b.parent);
     for (std::size_t t = 0; t < 2; ++t) {
       add_index(b.first[t]);
@@ -78,16 +106,31 @@ inline void write_correspondences(const std::string& path, const Orl_corresponde
     }
     end();
   }
-  line += "pairs";
-  add(c.pairs.size());
-  end();
-  for (const Orl_correspondences::Pair& p : c.pairs) {
+  void write_pair(const Orl_correspondences::Pair& p)
+  {
     add(p.edge);
     for (const std::uint32_t i : p.point)
       add_index(i == Orl_correspondences::no_point ? Orl_correspondences::none : i);
     end();
   }
-  file.commit();
+
+  Output_file m_file;
+  std::string m_line;
+};
+
+} // namespace internal
+
+/*!
+  \ingroup PkgPcsIORef
+  \brief writes the correspondences of two trees as text; `read_correspondences()` restores them
+      exactly.
+
+  The file is complete or absent.
+  \throws pcs::IO_error when the file cannot be written
+*/
+inline void write_correspondences(const std::string& path, const Orl_correspondences& c)
+{
+  internal::Correspondence_writer(path).write(c);
 }
 
 } // namespace IO

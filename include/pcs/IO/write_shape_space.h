@@ -26,6 +26,19 @@ public:
 
   void write(const Orl_space_data& s)
   {
+    write_head(s);
+    write_branches(s);
+    write_trees(s);
+    write_weights(s.weights);
+    write_pairs(s.pairs);
+    write_points(s);
+    write_partners(s);
+    m_file.commit();
+  }
+
+private:
+  void write_head(const Orl_space_data& s)
+  {
     m_line = "pcs_shape_space 5\norientation";
     add(s.orientation);
     add_all(s.origin);
@@ -33,6 +46,10 @@ public:
     m_line = "matching";
     add_all(s.matching);
     end();
+  }
+  /// Writes the branches and the edges that refer to earlier ones.
+  void write_branches(const Orl_space_data& s)
+  {
     begin("branches", s.branches.size());
     for (const Orl_space_data::Branch& b : s.branches) {
       add_index(b.parent);
@@ -46,26 +63,39 @@ public:
       add(earlier);
       end();
     }
+  }
+  /// Writes all trees, and the tree of reference last.
+  void write_trees(const Orl_space_data& s)
+  {
     begin("trees", s.trees.size());
     for (const Orl_space_data::Tree& t : s.trees)
       write_tree(t);
     write_tree(s.reference);
+  }
+  void write_weights(const Orl_space_data::Weights& weights)
+  {
     m_line = "weights";
-    add(s.weights.root);
+    add(weights.root);
     end();
-    for (const auto* values : {&s.weights.orientation,
-                               &s.weights.length,
-                               &s.weights.radius,
-                               &s.weights.base_radius,
-                               &s.weights.attachment})
+    for (const auto* values : {&weights.orientation,
+                               &weights.length,
+                               &weights.radius,
+                               &weights.base_radius,
+                               &weights.attachment})
       write_numbers(*values);
-    begin("pairs", s.pairs.size());
-    for (const Orl_correspondences::Pair& p : s.pairs) {
+  }
+  void write_pairs(const std::vector<Orl_correspondences::Pair>& pairs)
+  {
+    begin("pairs", pairs.size());
+    for (const Orl_correspondences::Pair& p : pairs) {
       add(p.edge);
       for (const std::uint32_t i : p.point)
         add_index(i == Orl_correspondences::no_point ? Orl_space_data::none : i);
       end();
     }
+  }
+  void write_points(const Orl_space_data& s)
+  {
     begin("points", s.points.size());
     m_line = s.has_normals ? "normals 1" : "normals 0";
     end();
@@ -73,25 +103,30 @@ public:
       add(p.tree);
       add(p.index);
       add(p.edge);
-      add_all(p.position);
-      if (s.has_normals)
-        add_all(p.normal);
+      add_place(s.has_normals, p);
       end();
     }
+  }
+  void write_partners(const Orl_space_data& s)
+  {
     begin("partners", s.partners.size());
     for (const Orl_space_data::Partner& p : s.partners) {
       add(p.point);
       add(p.tree);
       add(p.index);
-      add_all(p.position);
-      if (s.has_normals)
-        add_all(p.normal);
+      add_place(s.has_normals, p);
       end();
     }
-    m_file.commit();
   }
 
-private:
+  /// Adds the position and, if present, the normal of a point or of a partner.
+  template <class Point>
+  void add_place(bool has_normals, const Point& p)
+  {
+    add_all(p.position);
+    if (has_normals)
+      add_all(p.normal);
+  }
   template <class T>
   void add(T value)
   {
@@ -169,8 +204,8 @@ private:
 
 /*!
   \ingroup PkgPcsIORef
-  \brief writes what `Orl_shape_space::data()` gives as text; `read_shape_space()` gives it back
-      unchanged.
+  \brief writes the result of `Orl_shape_space::data()` as text; `read_shape_space()` restores it
+      exactly.
 
   The file is complete or absent.
   \throws pcs::IO_error when the file cannot be written
