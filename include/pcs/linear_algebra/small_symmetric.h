@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace pcs {
 namespace linear_algebra {
@@ -24,11 +25,82 @@ struct Symmetric_eigen
   Eigen::Matrix<double, N, N> vectors;
 };
 
+namespace internal {
+
+/// Rotates the axes `p < q` by the Jacobi rotation for which `a(p, q)` vanishes; `v` follows.
+template <int N>
+void rotate_axes(Eigen::Index p,
+                 Eigen::Index q,
+                 Eigen::Matrix<double, N, N>& a,
+                 Eigen::Matrix<double, N, N>& v)
+{
+  const Eigen::Index n = a.rows();
+  const double off = a(p, q);
+  // tangent of the smaller angle for which a(p, q) vanishes
+  const double half = 0.5 * (a(q, q) - a(p, p));
+  const double t = (half < 0 ? -1 : 1) * off / (std::abs(half) + std::hypot(half, off));
+  const double c = 1 / std::sqrt(1 + t * t), s = t * c;
+  a(p, p) -= t * off;
+  a(q, q) += t * off;
+  a(p, q) = 0;
+  for (Eigen::Index k = 0; k < n; ++k) {
+    if (k != p && k != q) {
+      double& kp = k < p ? a(k, p) : a(p, k);
+      double& kq = k < q ? a(k, q) : a(q, k);
+      const double old = kp;
+      kp = c * old - s * kq;
+      kq = s * old + c * kq;
+    }
+    const double old = v(k, p);
+    v(k, p) = c * old - s * v(k, q);
+    v(k, q) = s * old + c * v(k, q);
+  }
+}
+
+/// Rotates all pairs of axes once. Returns `false` if `a` is diagonal up to rounding.
+template <int N>
+bool sweep_rotations(Eigen::Matrix<double, N, N>& a, Eigen::Matrix<double, N, N>& v)
+{
+  const Eigen::Index n = a.rows();
+  bool is_diagonal = true;
+  for (Eigen::Index p = 0; p < n; ++p)
+    for (Eigen::Index q = p + 1; q < n; ++q) {
+      const double size = std::abs(a(p, p)) + std::abs(a(q, q));
+      if (std::abs(a(p, q)) <= 0.5 * std::numeric_limits<double>::epsilon() * size) {
+        a(p, q) = 0;
+        continue;
+      }
+      is_diagonal = false;
+      rotate_axes(p, q, a, v);
+    }
+  return !is_diagonal;
+}
+
+/// Sorts eigenvalues in ascending order together with their eigenvectors.
+template <int N>
+void sort_eigenvalues(Symmetric_eigen<N>& eigen)
+{
+  const Eigen::Index n = eigen.values.size();
+  for (Eigen::Index i = 0; i < n; ++i) { // n is small: by selection
+    Eigen::Index least = i;
+    for (Eigen::Index j = i + 1; j < n; ++j)
+      if (eigen.values[j] < eigen.values[least])
+        least = j;
+    if (least == i)
+      continue;
+    std::swap(eigen.values[i], eigen.values[least]);
+    for (Eigen::Index k = 0; k < n; ++k)
+      std::swap(eigen.vectors(k, i), eigen.vectors(k, least));
+  }
+}
+
+} // namespace internal
+
 /*!
-  Eigenvalues and eigenvectors of a symmetric matrix by cyclic rotations of Jacobi, accurate to
-  rounding relative to the largest eigenvalue, and for equal eigenvalues as well. Both halves of `a`
-  are expected. A matrix that is not finite has eigenvalues that are not finite. `N` may be
-  `Eigen::Dynamic`; O(n^3), some eight sweeps: meant for n up to a few hundred.
+  Computes the eigenvalues and eigenvectors of a symmetric matrix by cyclic Jacobi rotations, with
+  an error of rounding relative to the largest eigenvalue, also for equal eigenvalues. Both halves
+  of `a` must be set. A matrix that is not finite has eigenvalues that are not finite. `N` may be
+  `Eigen::Dynamic`. O(n^3) with about eight sweeps: meant for n up to a few hundred.
 */
 template <int N>
 Symmetric_eigen<N> symmetric_eigen(const Eigen::Matrix<double, N, N>& matrix)
@@ -37,68 +109,26 @@ Symmetric_eigen<N> symmetric_eigen(const Eigen::Matrix<double, N, N>& matrix)
   Eigen::Matrix<double, N, N> a = matrix;
   Symmetric_eigen<N> result;
   result.values.resize(n);
-  auto& v = result.vectors;
-  v.resize(n, n);
+  result.vectors.resize(n, n);
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j < n; ++j)
-      v(i, j) = i == j ? 1 : 0;
+      result.vectors(i, j) = i == j ? 1 : 0;
 
-  constexpr int most_sweeps = 60; // of a matrix that is not finite; others take fewer than ten
-  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-    bool is_diagonal = true;
-    for (Eigen::Index p = 0; p < n; ++p)
-      for (Eigen::Index q = p + 1; q < n; ++q) {
-        const double off = a(p, q);
-        const double size = std::abs(a(p, p)) + std::abs(a(q, q));
-        if (std::abs(off) <= 0.5 * std::numeric_limits<double>::epsilon() * size) {
-          a(p, q) = 0;
-          continue;
-        }
-        is_diagonal = false;
-        // tan of the angle that makes a(p, q) vanish, the smaller one
-        const double half = 0.5 * (a(q, q) - a(p, p));
-        const double t = (half < 0 ? -1 : 1) * off / (std::abs(half) + std::hypot(half, off));
-        const double c = 1 / std::sqrt(1 + t * t), s = t * c;
-        a(p, p) -= t * off;
-        a(q, q) += t * off;
-        a(p, q) = 0;
-        for (Eigen::Index k = 0; k < n; ++k) {
-          if (k != p && k != q) {
-            double& kp = k < p ? a(k, p) : a(p, k);
-            double& kq = k < q ? a(k, q) : a(q, k);
-            const double old = kp;
-            kp = c * old - s * kq;
-            kq = s * old + c * kq;
-          }
-          const double old = v(k, p);
-          v(k, p) = c * old - s * v(k, q);
-          v(k, q) = s * old + c * v(k, q);
-        }
-      }
-    if (is_diagonal)
+  constexpr int most_sweeps = 60; // for matrices that are not finite; others need fewer than ten
+  for (int sweep = 0; sweep < most_sweeps; ++sweep)
+    if (!internal::sweep_rotations(a, result.vectors))
       break;
-  }
 
   for (Eigen::Index i = 0; i < n; ++i)
     result.values[i] = a(i, i);
-  for (Eigen::Index i = 0; i < n; ++i) { // n is small: by selection
-    Eigen::Index least = i;
-    for (Eigen::Index j = i + 1; j < n; ++j)
-      if (result.values[j] < result.values[least])
-        least = j;
-    if (least == i)
-      continue;
-    std::swap(result.values[i], result.values[least]);
-    for (Eigen::Index k = 0; k < n; ++k)
-      std::swap(v(k, i), v(k, least));
-  }
+  internal::sort_eigenvalues(result);
   return result;
 }
 
 /*!
   Solves `a x = b` for a symmetric positive semi-definite `a` by `L D L^T` with the largest pivot
-  first. Directions in which `a` vanishes, to rounding, get the value 0. `false` if a pivot is
-  negative beyond rounding or something is not finite; `x` is 0 then. O(n^3).
+  first. Components in the null space of `a` (up to rounding) are set to 0. Sets `x` to 0 and
+  returns `false` if a pivot is negative beyond rounding or a value is not finite. O(n^3).
 */
 template <int N, int Columns>
 bool solve_symmetric(const Eigen::Matrix<double, N, N>& matrix,
