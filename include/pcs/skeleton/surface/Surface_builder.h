@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_SURFACE_SURFACE_BUILDER_H
 #define PCS_SKELETON_SURFACE_SURFACE_BUILDER_H
 
+#include <pcs/internal/constants.h>
 #include <pcs/skeleton/surface/Branch_surface.h>
 #include <pcs/skeleton/surface/find_branch_exit.h>
 
@@ -71,12 +72,45 @@ private:
   {
     double u = 0, s = 0;
   };
+  /// The surface of a parent at the exit of a branch.
+  struct Exit_frame
+  {
+    Place center;         ///< the exit
+    Vec3 axis, around;    ///< directions of arc length and of sides
+    double turn = 0;      ///< of a side [rad]
+    double thickness = 0; ///< radius of the parent [L]
+  };
+  /// The loop of a branch on the surface of its parent, around the exit.
+  struct Base_loop
+  {
+    std::vector<Place> places;
+    double du = 0, ds = 0; ///< half extents
+  };
+  /// Translation and scale of a loop to the inside of a block.
+  struct Loop_fit
+  {
+    Place center;
+    double u = 1, s = 1; ///< scales
+    double first = 0;    ///< first side of the block, in the period of the center
+  };
 
   Branch_exit exit_of(std::size_t b) const;
   void make_tube(std::size_t b, std::vector<double> rings);
   bool join(std::size_t b);
   void begin_inside(std::size_t b);
   bool find_block(Surface_tube& parent, const Place& center, double du, double ds, Block& block);
+  Exit_frame frame_of_exit(std::size_t b) const;
+  Base_loop extend_backwards(std::size_t b, const Exit_frame& frame) const;
+  Loop_fit fit_into(const Surface_tube& parent,
+                    const Block& block,
+                    const Base_loop& loop,
+                    double scale_u,
+                    Place center) const;
+  void cut_hole(Surface_tube& parent,
+                const Block& block,
+                double first,
+                Loop& border,
+                std::vector<Place>& places) const;
   Vec3 on_grid(const Surface_tube& tube, const Place& place) const;
   void sew(const Loop& outer,
            const std::vector<Place>& outer_places,
@@ -126,8 +160,7 @@ inline void Surface_builder::make_tube(std::size_t b, std::vector<double> rings)
     thickest = std::max(thickest, tube.rings.back().radius);
   }
   const double t = std::min(0.9, m_rules.tolerance / std::max(thickest, 1e-300));
-  const double sides =
-      t > 0 ? 3.14159265358979323846 / std::acos(1 - t) : double(m_rules.most_sides);
+  const double sides = t > 0 ? pcs::internal::pi / std::acos(1 - t) : double(m_rules.most_sides);
   tube.sides =
       static_cast<std::size_t>(std::min(double(m_rules.most_sides),
                                         std::max(double(m_rules.fewest_sides), std::ceil(sides))));
@@ -195,70 +228,81 @@ inline Vec3 Surface_builder::on_grid(const Surface_tube& tube, const Place& plac
          t * ((1 - f) * p[tube.vertex(r + 1, k)] + f * p[tube.vertex(r + 1, k + 1)]);
 }
 
-inline bool Surface_builder::join(std::size_t b)
+/// Returns the frame of the parent at the exit of branch `b`.
+inline Surface_builder::Exit_frame Surface_builder::frame_of_exit(std::size_t b) const
 {
-  Surface_tube &tube = m_tubes[b], &parent = m_tubes[m_parent[b]];
+  const Surface_tube& parent = m_tubes[m_parent[b]];
   const Branch_exit& e = m_exits[b];
-  if (!m_rules.do_join || !e.is_there || parent.rings.empty())
-    return false;
-  // the frame of the parent at the exit
   std::size_t row = 0;
   while (row + 2 < parent.rings.size() && parent.at[row + 1] <= e.at)
     ++row;
-  const Vec3 axis = m_lines[m_parent[b]].direction(e.at);
-  const Vec3 around = axis.cross(e.normal);
+  Exit_frame frame;
+  frame.axis = m_lines[m_parent[b]].direction(e.at);
+  frame.around = frame.axis.cross(e.normal);
   const Vec3 &e1 = parent.side[row], e2 = parent.along[row].cross(e1);
-  const double turn = parent.angle(1);
-  const double thick = std::max(m_lines[m_parent[b]].section(e.at).radius, 1e-300);
-  Place center{std::atan2(e.normal.dot(e2), e.normal.dot(e1)) / turn, e.at};
-  if (center.u < 0)
-    center.u += double(parent.sides);
-  // the tube of the branch, extended backwards to the surface
-  std::vector<Place> loop;
+  frame.turn = parent.angle(1);
+  frame.thickness = std::max(m_lines[m_parent[b]].section(e.at).radius, 1e-300);
+  frame.center = {std::atan2(e.normal.dot(e2), e.normal.dot(e1)) / frame.turn, e.at};
+  if (frame.center.u < 0)
+    frame.center.u += double(parent.sides);
+  return frame;
+}
+
+/// Extends the tube of branch `b` backwards to the surface of its parent.
+inline Surface_builder::Base_loop Surface_builder::extend_backwards(std::size_t b,
+                                                                    const Exit_frame& frame) const
+{
+  const Surface_tube& tube = m_tubes[b];
+  const Branch_exit& e = m_exits[b];
   Vec3 s1 = tube.side.front() - tube.side.front().dot(e.direction) * e.direction;
   s1 = s1.norm() > 1e-9 ? Vec3(s1.normalized()) : Vec3(e.direction.unitOrthogonal());
   const Vec3 s2 = e.direction.cross(s1);
-  double du = 0, ds = 0;
+  Base_loop loop;
   for (std::size_t k = 0; k < tube.sides; ++k) {
     const double a = tube.angle(double(k));
     Vec3 o = e.radius * (std::cos(a) * s1 + std::sin(a) * s2);
     o -= o.dot(e.normal) / e.direction.dot(e.normal) * e.direction;
-    loop.push_back({o.dot(around) / thick / turn, o.dot(axis)});
-    du = std::max(du, std::abs(loop.back().u));
-    ds = std::max(ds, std::abs(loop.back().s));
+    const Place p{o.dot(frame.around) / frame.thickness / frame.turn, o.dot(frame.axis)};
+    loop.places.push_back(p);
+    loop.du = std::max(loop.du, std::abs(p.u));
+    loop.ds = std::max(loop.ds, std::abs(p.s));
   }
-  if (!(du > 0) || !(ds > 0))
-    return false;
-  const double most_u = m_rules.widest / turn, scale_u = std::min(1.0, most_u / du);
-  const double room = 1 + m_rules.margin, from = parent.at.front(), to = parent.at.back();
-  const double half = std::min(room * ds, 0.5 * (to - from));
-  center.s = std::min(to - half, std::max(from + half, center.s));
-  Block block;
-  if (!find_block(parent, center, room * scale_u * du, half, block))
-    return false;
-  // the loop, scaled and translated into the block
-  const double s0 = parent.at[block.r0], s_1 = parent.at[block.r1];
+  return loop;
+}
+
+/// Scales and translates a loop into a block, near `center`; `scale_u` is the largest scale of
+/// sides.
+inline Surface_builder::Loop_fit Surface_builder::fit_into(const Surface_tube& parent,
+                                                           const Block& block,
+                                                           const Base_loop& loop,
+                                                           double scale_u,
+                                                           Place center) const
+{
+  const double s0 = parent.at[block.r0], s1 = parent.at[block.r1];
   double c0 = double(block.c0);
   if (center.u < c0 - 1e-9 - 0.5 * double(block.count))
     c0 -= double(parent.sides);
   else if (center.u > c0 + 1.5 * double(block.count))
     c0 += double(parent.sides);
   const double c1 = c0 + double(block.count);
-  const double fit_u = std::min(scale_u, 0.5 * (c1 - c0) / (1.1 * du));
-  const double fit_s = std::min(1.0, 0.5 * (s_1 - s0) / (1.1 * ds));
-  center.u = std::min(c1 - 1.1 * fit_u * du, std::max(c0 + 1.1 * fit_u * du, center.u));
-  center.s = std::min(s_1 - 1.1 * fit_s * ds, std::max(s0 + 1.1 * fit_s * ds, center.s));
-  for (Place& p : loop) {
-    p = {center.u + fit_u * p.u, center.s + fit_s * p.s};
-    tube.base.push_back(m_surface.points.size());
-    m_surface.points.push_back(on_grid(parent, p));
-  }
-  // the border of the block, counter-clockwise seen from outside
-  Loop border;
-  std::vector<Place> places;
+  const double fit_u = std::min(scale_u, 0.5 * (c1 - c0) / (1.1 * loop.du));
+  const double fit_s = std::min(1.0, 0.5 * (s1 - s0) / (1.1 * loop.ds));
+  center.u = std::min(c1 - 1.1 * fit_u * loop.du, std::max(c0 + 1.1 * fit_u * loop.du, center.u));
+  center.s = std::min(s1 - 1.1 * fit_s * loop.ds, std::max(s0 + 1.1 * fit_s * loop.ds, center.s));
+  return {center, fit_u, fit_s, c0};
+}
+
+/// Removes the quads of a block. Sets `border` to the points around it, counter-clockwise seen from
+/// outside, and `places` to their positions, in which the block begins at side `first`.
+inline void Surface_builder::cut_hole(Surface_tube& parent,
+                                      const Block& block,
+                                      double first,
+                                      Loop& border,
+                                      std::vector<Place>& places) const
+{
   const auto pass = [&](std::size_t r, std::size_t c) {
     border.push_back(parent.vertex(r, block.c0 + c));
-    places.push_back({c0 + double(c), parent.at[r]});
+    places.push_back({first + double(c), parent.at[r]});
   };
   for (std::size_t r = block.r0; r < block.r1; ++r)
     for (std::size_t c = 0; c < block.count; ++c)
@@ -271,10 +315,39 @@ inline bool Surface_builder::join(std::size_t b)
     pass(block.r1, c);
   for (std::size_t r = block.r1; r > block.r0; --r)
     pass(r, 0);
-  for (std::vector<Place>* list : {&places, &loop}) // scaled so that the loop is a circle
+}
+
+/// Joins branch `b` to a hole in its parent. Returns `false` if there is no free block for it.
+inline bool Surface_builder::join(std::size_t b)
+{
+  Surface_tube &tube = m_tubes[b], &parent = m_tubes[m_parent[b]];
+  if (!m_rules.do_join || !m_exits[b].is_there || parent.rings.empty())
+    return false;
+  const Exit_frame frame = frame_of_exit(b);
+  Base_loop loop = extend_backwards(b, frame);
+  if (!(loop.du > 0) || !(loop.ds > 0))
+    return false;
+  const double most_u = m_rules.widest / frame.turn, scale_u = std::min(1.0, most_u / loop.du);
+  const double room = 1 + m_rules.margin, from = parent.at.front(), to = parent.at.back();
+  const double half = std::min(room * loop.ds, 0.5 * (to - from));
+  Place center = frame.center;
+  center.s = std::min(to - half, std::max(from + half, center.s));
+  Block block;
+  if (!find_block(parent, center, room * scale_u * loop.du, half, block))
+    return false;
+  const Loop_fit fit = fit_into(parent, block, loop, scale_u, center);
+  for (Place& p : loop.places) {
+    p = {fit.center.u + fit.u * p.u, fit.center.s + fit.s * p.s};
+    tube.base.push_back(m_surface.points.size());
+    m_surface.points.push_back(on_grid(parent, p));
+  }
+  Loop border;
+  std::vector<Place> places;
+  cut_hole(parent, block, fit.first, border, places);
+  for (std::vector<Place>* list : {&places, &loop.places}) // scaled so that the loop is a circle
     for (Place& p : *list)
-      p = {(p.u - center.u) / (fit_u * du), (p.s - center.s) / (fit_s * ds)};
-  sew(border, places, tube.base, loop);
+      p = {(p.u - fit.center.u) / (fit.u * loop.du), (p.s - fit.center.s) / (fit.s * loop.ds)};
+  sew(border, places, tube.base, loop.places);
   ++m_surface.number_of_joined;
   return true;
 }
@@ -300,7 +373,7 @@ inline void Surface_builder::sew(const Loop& outer,
                                  const Loop& inner,
                                  const std::vector<Place>& inner_places)
 {
-  constexpr double pi = 3.14159265358979323846, sight = 1.75; // just over a right angle [rad]
+  constexpr double pi = pcs::internal::pi, sight = 1.75; // just over a right angle [rad]
   const std::size_t n = outer.size(), m = inner.size();
   const auto distance = [&](std::size_t i, std::size_t j) {
     const Place &a = outer_places[i % n], &b = inner_places[j % m];
