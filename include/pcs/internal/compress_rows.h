@@ -12,14 +12,14 @@ namespace pcs {
 namespace internal {
 
 /*!
-  Sorts entries into rows of one array: row `r` takes the positions `[first[r], first[r + 1])`.
+  Sorts entries into the rows of one array: row `r` has the positions `[first[r], first[r + 1])`.
   Entries of a row keep their order.
 
   \param number_of_rows the number of rows
   \param number_of_entries entries are numbered from 0
-  \param row_of `row_of(k)` is the row of entry `k`, or a value `>= number_of_rows` for an entry
-      that is left out
-  \param resize `resize(n)` is called once with the number of entries that are kept
+  \param row_of `row_of(k)` is the row of entry `k`; entries with a value `>= number_of_rows` are
+      omitted
+  \param resize `resize(n)` is called once with the number of remaining entries
   \param put `put(k, position)` stores entry `k`
   \return `first`, with `number_of_rows + 1` elements
 

@@ -5,6 +5,7 @@
 #ifndef PCS_NEIGHBORHOOD_PROXIMITY_GRAPH_H
 #define PCS_NEIGHBORHOOD_PROXIMITY_GRAPH_H
 
+#include <pcs/internal/compress_rows.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/neighborhood/Nearest_neighbors.h>
 
@@ -17,8 +18,8 @@
 namespace pcs {
 namespace neighborhood {
 
-/// Undirected graph over `[0, n)`: row `i` lists the neighbours of `i` in increasing order, each
-/// edge twice.
+/// An undirected graph over `[0, n)`: row `i` lists the neighbours of `i` in increasing order, so
+/// each edge is stored twice.
 struct Proximity_graph
 {
   std::vector<std::uint32_t> first{0}; ///< n + 1 offsets into `neighbor`
@@ -30,7 +31,7 @@ struct Proximity_graph
   const std::uint32_t* end(std::size_t i) const { return neighbor.data() + first[i + 1]; }
 };
 
-/// Builds rows from undirected pairs; duplicates and loops are dropped.
+/// Builds the rows from undirected pairs; removes duplicates and loops.
 inline Proximity_graph graph_from_edges(std::size_t n,
                                         std::vector<std::pair<std::uint32_t, std::uint32_t>> edges)
 {
@@ -41,97 +42,137 @@ inline Proximity_graph graph_from_edges(std::size_t n,
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   Proximity_graph graph;
-  graph.first.assign(n + 1, 0);
-  for (const auto& e : edges)
-    if (e.first != e.second) {
-      ++graph.first[e.first + 1];
-      graph.neighbor.push_back(e.second);
-    }
-  for (std::size_t i = 0; i < n; ++i)
-    graph.first[i + 1] += graph.first[i];
+  graph.first = pcs::internal::compress_rows<std::uint32_t>(
+      n,
+      edges.size(),
+      [&](std::size_t e) { return edges[e].first != edges[e].second ? edges[e].first : n; },
+      [&](std::size_t count) { graph.neighbor.resize(count); },
+      [&](std::size_t e, std::size_t at) { graph.neighbor[at] = edges[e].second; });
   return graph;
 }
 
-/// Neighbours whose distance exceeds that of the k-th by no more than this factor belong to the row
-/// as well: on a grid the k nearest are otherwise an arbitrary, lopsided choice among equals.
+/// Neighbours are added to a row if their distance exceeds that of the k-th by at most this factor:
+/// on a regular grid the k nearest would be an arbitrary, asymmetric choice among equal distances.
 constexpr double distance_tie_factor = 1.01;
-/// ... but no more than this many of them.
+/// The largest number of neighbours added for this reason.
 constexpr std::size_t maximal_number_of_ties = 4;
-/// The largest `k`: one-directional links are marked in 64 bits.
+/// The largest `k`: links in only one direction are marked in 64 bits.
 constexpr std::size_t maximal_number_of_neighbors = 64 - maximal_number_of_ties;
 
+namespace internal {
+
+/// The nearest neighbours of each point in rows of the same width, nearest first.
+struct Neighbor_lists
+{
+  std::size_t width = 0;
+  std::vector<std::uint32_t> neighbor;
+  std::vector<std::uint8_t> length; ///< number of neighbours in each row
+
+  std::uint32_t at(std::size_t i, std::size_t b) const { return neighbor[i * width + b]; }
+  bool holds(std::size_t i, std::size_t j) const
+  {
+    const auto* row = neighbor.data() + i * width;
+    return std::find(row, row + length[i], static_cast<std::uint32_t>(j)) != row + length[i];
+  }
+};
+
+/// Returns the `k` nearest neighbours of each point, ties included.
+template <class ConcurrencyTag>
+Neighbor_lists find_neighbor_lists(const std::vector<Vec3>& points, std::size_t k)
+{
+  const std::size_t n = points.size();
+  const std::size_t width = std::min(k + maximal_number_of_ties, n > 0 ? n - 1 : 0);
+  Neighbor_lists lists{width,
+                       std::vector<std::uint32_t>(n * width),
+                       std::vector<std::uint8_t>(n, 0)};
+  const Nearest_neighbors nearest(points);
+  pcs::internal::for_each_block<ConcurrencyTag>(n, 512, [&](std::size_t begin, std::size_t end) {
+    std::vector<Nearest_neighbors::Neighbor> found;
+    for (std::size_t i = begin; i < end; ++i) {
+      nearest(points[i], width + 1, found);
+      found.erase(
+          std::remove_if(found.begin(), found.end(), [i](const auto& f) { return f.index == i; }),
+          found.end());
+      std::size_t count = std::min(k, found.size());
+      if (count > 0) {
+        const double tie =
+            distance_tie_factor * distance_tie_factor * found[count - 1].squared_distance;
+        while (count < std::min(width, found.size()) && found[count].squared_distance <= tie)
+          ++count;
+      }
+      for (std::size_t b = 0; b < count; ++b)
+        lists.neighbor[i * width + b] = found[b].index;
+      lists.length[i] = static_cast<std::uint8_t>(count);
+    }
+  });
+  return lists;
+}
+
+/// Returns the links in only one direction, marked in parallel: bit `b` of a point if its `b`-th
+/// neighbour lacks the reverse link.
+template <class ConcurrencyTag>
+std::vector<std::uint64_t> mark_missing_links(const Neighbor_lists& lists)
+{
+  std::vector<std::uint64_t> is_missing(lists.length.size(), 0);
+  pcs::internal::for_each_index<ConcurrencyTag>(lists.length.size(), [&](std::size_t i) {
+    for (std::size_t b = 0; b < lists.length[i]; ++b)
+      if (!lists.holds(lists.at(i, b), i))
+        is_missing[i] |= std::uint64_t(1) << b;
+  });
+  return is_missing;
+}
+
+/// Returns the missing reverse links as rows by the point that lacks them.
+template <class ConcurrencyTag>
+Proximity_graph find_missing_links(const Neighbor_lists& lists)
+{
+  const std::vector<std::uint64_t> is_missing = mark_missing_links<ConcurrencyTag>(lists);
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> links; // from a neighbour back to its point
+  for (std::size_t i = 0; i < is_missing.size(); ++i)
+    for (std::size_t b = 0; is_missing[i] != 0 && b < lists.length[i]; ++b)
+      if (is_missing[i] >> b & 1)
+        links.emplace_back(lists.at(i, b), static_cast<std::uint32_t>(i));
+  Proximity_graph graph;
+  graph.first = pcs::internal::compress_rows<std::uint32_t>(
+      is_missing.size(),
+      links.size(),
+      [&](std::size_t e) { return links[e].first; },
+      [&](std::size_t count) { graph.neighbor.resize(count); },
+      [&](std::size_t e, std::size_t at) { graph.neighbor[at] = links[e].second; });
+  return graph;
+}
+
+} // namespace internal
+
 /*!
-  Links every point to its `k` nearest (ties included), then adds the missing reverse links.
-  `points` must be distinct, `k <= maximal_number_of_neighbors`. Every row holds at least `min(k, n
-  - 1)` neighbours. O(n log n + n k).
+  Links every point to its `k` nearest neighbours (ties included), then adds the missing reverse
+  links. `points` must be distinct, `k <= maximal_number_of_neighbors`. Every row has at least
+  `min(k, n - 1)` neighbours. O(n log n + n k).
 */
 template <class ConcurrencyTag>
 Proximity_graph nearest_neighbor_graph(const std::vector<Vec3>& points, std::size_t k)
 {
   const std::size_t n = points.size();
-  const std::size_t width = std::min(k + maximal_number_of_ties, n > 0 ? n - 1 : 0);
-  std::vector<std::uint32_t> list(n * width);
-  std::vector<std::uint8_t> length(n, 0);
-  {
-    const Nearest_neighbors nearest(points);
-    pcs::internal::for_each_block<ConcurrencyTag>(n, 512, [&](std::size_t begin, std::size_t end) {
-      std::vector<Nearest_neighbors::Neighbor> found;
-      for (std::size_t i = begin; i < end; ++i) {
-        nearest(points[i], width + 1, found);
-        found.erase(
-            std::remove_if(found.begin(), found.end(), [i](const auto& f) { return f.index == i; }),
-            found.end());
-        std::size_t count = std::min(k, found.size());
-        if (count > 0) {
-          const double tie =
-              distance_tie_factor * distance_tie_factor * found[count - 1].squared_distance;
-          while (count < std::min(width, found.size()) && found[count].squared_distance <= tie)
-            ++count;
-        }
-        for (std::size_t b = 0; b < count; ++b)
-          list[i * width + b] = found[b].index;
-        length[i] = static_cast<std::uint8_t>(count);
-      }
-    });
-  }
-  const auto holds = [&](std::size_t i, std::size_t j) {
-    const auto* row = list.data() + i * width;
-    return std::find(row, row + length[i], static_cast<std::uint32_t>(j)) != row + length[i];
-  };
-  // One-directional links, by source, marked in parallel and added in order.
-  std::vector<std::uint64_t> is_missing(n, 0); // bit b: the b-th neighbour lacks the link back
-  pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
-    for (std::size_t b = 0; b < length[i]; ++b)
-      if (!holds(list[i * width + b], i))
-        is_missing[i] |= std::uint64_t(1) << b;
-  });
+  const internal::Neighbor_lists lists = internal::find_neighbor_lists<ConcurrencyTag>(points, k);
+  const Proximity_graph missing = internal::find_missing_links<ConcurrencyTag>(lists);
   Proximity_graph graph;
   graph.first.assign(n + 1, 0);
-  for (std::size_t i = 0; i < n; ++i) {
-    graph.first[i + 1] += length[i];
-    for (std::size_t b = 0; b < length[i]; ++b)
-      if (is_missing[i] >> b & 1)
-        ++graph.first[list[i * width + b] + 1];
-  }
   for (std::size_t i = 0; i < n; ++i)
-    graph.first[i + 1] += graph.first[i];
+    graph.first[i + 1] =
+        graph.first[i] + lists.length[i] + static_cast<std::uint32_t>(missing.degree(i));
   graph.neighbor.resize(graph.first[n]);
-  std::vector<std::uint32_t> next(graph.first.begin(), graph.first.end() - 1);
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t b = 0; b < length[i]; ++b) {
-      const std::uint32_t j = list[i * width + b];
-      graph.neighbor[next[i]++] = j;
-      if (is_missing[i] >> b & 1)
-        graph.neighbor[next[j]++] = static_cast<std::uint32_t>(i);
-    }
   pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
-    std::sort(graph.neighbor.begin() + graph.first[i], graph.neighbor.begin() + graph.first[i + 1]);
+    const auto row = graph.neighbor.begin() + graph.first[i];
+    const auto own = lists.neighbor.begin() + static_cast<std::ptrdiff_t>(i * lists.width);
+    const auto end =
+        std::copy(missing.begin(i), missing.end(i), std::copy_n(own, lists.length[i], row));
+    std::sort(row, end);
   });
   return graph;
 }
 
-/// Component of every vertex, numbered by their smallest vertex; `count` receives the number of
-/// components.
+/// Returns the component of every vertex; components are numbered by their smallest vertex. `count`
+/// receives their number.
 inline std::vector<std::uint32_t> connected_components(const Proximity_graph& graph,
                                                        std::size_t& count)
 {
