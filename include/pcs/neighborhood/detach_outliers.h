@@ -5,6 +5,7 @@
 #ifndef PCS_NEIGHBORHOOD_DETACH_OUTLIERS_H
 #define PCS_NEIGHBORHOOD_DETACH_OUTLIERS_H
 
+#include <pcs/core/median.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/neighborhood/Proximity_graph.h>
 
@@ -20,12 +21,12 @@
 namespace pcs {
 namespace neighborhood {
 
-/// A point is an outlier if its shortest link is longer than this many spacings of the points it is
-/// linked to. Six nearest neighbours of uniformly random points on a surface reach that with a
-/// probability below 1e-15.
+/// A point is an outlier if its shortest link is longer than this many spacings of its neighbours.
+/// The probability of such a link is below 1e-15 for six nearest neighbours among uniformly random
+/// points on a surface. [-]
 constexpr double smallest_outlier_gap = 3;
 
-/// A point far from all others, and the nearest one that is not.
+/// A point far from all others, and the nearest point that is not an outlier.
 struct Outlier
 {
   std::uint32_t point, host;
@@ -33,15 +34,7 @@ struct Outlier
 
 namespace internal {
 
-/// The value in the middle; `values` is reordered, not empty.
-inline double take_median(std::vector<double>& values)
-{
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-/// 1 for points whose shortest link is much longer than the usual spacing of their neighbours.
+/// Returns 1 for points whose shortest link is much longer than the spacing of their neighbours.
 template <class ConcurrencyTag>
 std::vector<char> mark_outliers(const std::vector<Eigen::Vector3d>& points,
                                 const Proximity_graph& graph)
@@ -57,7 +50,7 @@ std::vector<char> mark_outliers(const std::vector<Eigen::Vector3d>& points,
       if (lengths.empty())
         continue;
       shortest[i] = *std::min_element(lengths.begin(), lengths.end());
-      spacing[i] = take_median(lengths);
+      spacing[i] = pcs::internal::upper_median(lengths);
     }
   });
   std::vector<char> is_outlier(n, 0);
@@ -67,14 +60,17 @@ std::vector<char> mark_outliers(const std::vector<Eigen::Vector3d>& points,
       spacings.clear();
       for (auto j = graph.begin(i); j != graph.end(i); ++j)
         spacings.push_back(spacing[*j]);
-      is_outlier[i] =
-          !spacings.empty() && shortest[i] > smallest_outlier_gap * take_median(spacings) ? 1 : 0;
+      is_outlier[i] = !spacings.empty() && shortest[i] > smallest_outlier_gap *
+                                                             pcs::internal::upper_median(spacings)
+                          ? 1
+                          : 0;
     }
   });
   return is_outlier;
 }
 
-/// The outliers with a host: the nearest neighbour that is no outlier and has other neighbours.
+/// Returns outliers with a host: the nearest neighbour that is not an outlier and has other
+/// neighbours.
 inline std::vector<Outlier> find_hosts(const std::vector<Eigen::Vector3d>& points,
                                        const Proximity_graph& graph,
                                        const std::vector<char>& is_outlier)
@@ -101,7 +97,7 @@ inline std::vector<Outlier> find_hosts(const std::vector<Eigen::Vector3d>& point
   return outliers;
 }
 
-/// Drops all links of outliers except those to their hosts.
+/// Removes all links of outliers except those to their hosts.
 inline void drop_links_of_outliers(const std::vector<Outlier>& outliers, Proximity_graph& graph)
 {
   const std::size_t n = graph.first.size() - 1;
@@ -129,11 +125,11 @@ inline void drop_links_of_outliers(const std::vector<Outlier>& outliers, Proximi
 } // namespace internal
 
 /*!
-  Drops all links of every outlier except the shortest, so that it follows one point and does not
-  affect others.
+  Removes all links of every outlier except the shortest, so that an outlier follows one point and
+  does not affect others.
 
-  Outliers are judged by the spacings of their neighbours, so dense and sparse parts are each
-  compared with themselves. No point loses all of its links. O(n k).
+  Outliers are detected relative to the spacings of their neighbours, which adapts the criterion to
+  dense and sparse regions. No point loses all its links. O(n k).
   \return the outliers, increasing by point
 */
 template <class ConcurrencyTag>
