@@ -37,7 +37,7 @@ template <class ConcurrencyTag>
 struct Session_state;
 
 /*!
-  What `Point_set_deformation` does, without its point types. Indices are the caller's;
+  The algorithm of `Point_set_deformation`, independent of point types. Indices are the caller's;
   transformations are in the caller's coordinates; errors are thrown before anything changes.
 */
 template <class ConcurrencyTag>
@@ -110,13 +110,12 @@ public:
   }
 
   /*!
-    Where the present deformation takes a point that need not belong to the session, and the normal
-    there: like the points around it. Points whose nearest point stays, stay bit for bit.
-    `prepare_carrying()` comes first.
+    Moves a point that need not belong to the session, and its normal, like the points around it. It
+    stays bit for bit if its nearest point stays. `prepare_carrying()` must be called before.
   */
   void carry(Vec3& point, Vec3& normal) const;
 
-  /// Builds what `carry()` needs, unless it is there. O(n log n).
+  /// Builds the search trees of `carry()` when they are missing. O(n log n).
   void prepare_carrying();
 
   const Deformation_report& report() const;

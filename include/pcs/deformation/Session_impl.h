@@ -83,7 +83,7 @@ struct Session_state
   std::vector<Affine_map> next_maps;
   std::vector<int> are_finite;
 
-  // ---- what is written follows from the present shape
+  // ---- output, which follows from the present shape
   Dirty_handles dirty_handles; ///< since the last time that points were written
   Outlier_maps outlier_maps;
   std::vector<Handle_map> handle_maps;
@@ -239,7 +239,7 @@ Elastic_result solve_levels(Session_state<Tag>& s,
   return s.solver.solve(s.next_transforms, options, progress, *guess);
 }
 
-/// Solves from the last solution if that is wanted and near, otherwise from the rest shape.
+/// Solves from the last solution if `start` is warm and it is near, otherwise from the rest shape.
 template <class Tag>
 Elastic_result solve_samples(Session_state<Tag>& s,
                              const Elastic_options& options,
@@ -268,7 +268,7 @@ void describe_result(Session_state<Tag>& s, const Elastic_result& result)
   s.report.energy = result.energy * unit * unit;
 }
 
-/// Makes what was solved the present shape. Returns `false`, and changes nothing, if it is not
+/// Makes the solution the present shape. Returns `false`, and changes nothing, if it is not
 /// finite.
 template <class Tag>
 bool take_shape(Session_state<Tag>& s)

@@ -43,8 +43,9 @@ struct No_map
 } // namespace internal
 
 /*!
-  What a range of points and a chain of named parameters stand for. Checks the concepts of both;
-  where `is_ok` is false, a message was given, and nothing else should be instantiated.
+  Reads and writes the points of a range by the maps of a chain of named parameters. Checks the
+  concepts of both. Where `is_ok` is false, a message was given, and nothing else should be
+  instantiated.
 */
 template <class PointRange, class NamedParameters>
 class Point_access
@@ -229,7 +230,7 @@ public:
         m_rest_tensors[i] = attribute(*m_tensor_map, i).template cast<double>();
   }
 
-  /// Asks for the memory that `write()` will touch.
+  /// Prefetches the memory that `write()` will change.
   PCS_ALWAYS_INLINE void prefetch(std::size_t i) const
   {
     with_element(i, [this](auto&& key) PCS_LAMBDA_INLINE {
@@ -321,7 +322,7 @@ private:
     return with_element(i, [&](auto&& key) -> Map_value<Map> { return get(map, key); });
   }
 
-  /// Where the coordinates of a block lie one after the other; null if they do not.
+  /// Addresses of the coordinates of a block if they are consecutive in memory, otherwise null.
   struct Rows
   {
     double *point = nullptr, *normal = nullptr;
@@ -347,8 +348,8 @@ private:
     return {};
   }
 
-  /// Where the values of the block that begins at `first` lie, if they are `stride` doubles apart;
-  /// else null.
+  /// Address of the values of the block that begins at `first`, if they are `stride` doubles apart;
+  /// otherwise null.
   template <class Map, class Iterator>
   static PCS_ALWAYS_INLINE double* run(const Map& map, const Iterator& first, std::size_t stride)
   {

@@ -22,10 +22,10 @@
 namespace pcs {
 namespace deformation {
 
-/// Bytes that must be written at least: what fits into a last level of cache is better left there.
+/// Smallest output that is written past the caches, in bytes: less fits into a last-level cache.
 constexpr std::size_t smallest_stream = std::size_t(32) << 20;
 
-/// Whether a `Triple` may be written as three doubles; `is_triple()` tells whether it is just its
+/// Whether a `Triple` has the size of three doubles; `is_triple()` checks that these are its
 /// coordinates in order.
 template <class Triple>
 constexpr bool has_size_of_triple()
@@ -43,8 +43,8 @@ bool is_triple()
   return value[0] == 1 && value[1] == 2 && value[2] == 3;
 }
 
-/// Whether `get()` of the map returns the memory that `put()` writes, and this does not lie in the
-/// key: elements of the range may live no longer than an iterator looks at them.
+/// Whether `get()` of the map returns the memory that `put()` writes, and this memory does not
+/// belong to the key: elements of a range may be temporary objects of its iterators.
 template <class Map, class ElementReference>
 constexpr bool is_memory_map()
 {

@@ -22,7 +22,7 @@ namespace pcs {
 
 namespace deformation {
 
-/// `k` samples per point with weights that sum to one; unused places hold `no_sample` and weight 0.
+/// `k` samples per point with weights that sum to one; unused entries are `no_sample` and weight 0.
 struct Sample_links
 {
   std::size_t k = 0;
@@ -32,8 +32,7 @@ struct Sample_links
 
 namespace internal {
 
-/// Candidate samples of one point, nearest first, and the distance at which a sample no longer
-/// counts.
+/// A candidate sample of a point. Candidates are sorted by distance.
 struct Sample_candidate
 {
   double distance;
@@ -69,7 +68,7 @@ inline void sample_weights(const std::vector<Sample_candidate>& nearest,
     weight.assign(weight.size(), 1);
     sum = static_cast<double>(weight.size());
   }
-  // Whole steps of 16 bits, in which they will be stored; the nearest takes what rounding leaves.
+  // Round to the 16 bits in which weights are stored; the nearest sample gets the remainder.
   double others = 0;
   for (std::size_t b = weight.size(); b-- > 0;) {
     weight[b] = std::round(weight_steps * weight[b] / sum) / weight_steps;
@@ -134,12 +133,12 @@ inline void nearest_samples(const Vec3& point,
 } // namespace internal
 
 /*!
-  Nearest samples among the two rings of touching regions around the point's own, by distance in
-  space.
+  Finds the nearest samples, by Euclidean distance, among the two rings of touching regions around
+  the region of each point.
 
-  On a smooth surface distances within two regions are all but geodesic, and unlike sums of edges
-  they are smooth functions of the point; that the rings follow the surface keeps out what is near
-  in space only. Every point is independent of all others. O(n ring).
+  On a smooth surface, distances within two regions are almost geodesic, and unlike sums of edges
+  they are smooth functions of the point. The rings follow the surface and exclude samples that are
+  near in space only. Points are independent of each other. O(n ring).
 */
 template <class ConcurrencyTag>
 Sample_links link_by_regions(const std::vector<Vec3>& points,

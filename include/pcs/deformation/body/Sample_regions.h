@@ -36,8 +36,8 @@ constexpr std::uint32_t largest_edge_steps = 4096;
 
 /*!
   Grows all samples at once over the edges, by length (Dijkstra with buckets). Ties go to the sample
-  with the smaller number. O(n degree), whatever the number of samples; the dissertation's Algorithm
-  1 searches from every point.
+  with the smaller number. O(n degree) for any number of samples; Algorithm 1 of [Aiteanu 2022]
+  searches from every point.
 */
 inline Sample_regions grow_regions(const std::vector<Vec3>& points,
                                    const neighborhood::Proximity_graph& graph,
@@ -56,8 +56,8 @@ inline Sample_regions grow_regions(const std::vector<Vec3>& points,
     regions.sample_of_point[samples[s]] = static_cast<std::uint32_t>(s);
     bucket[0].push_back(samples[s]);
   }
-  // Every edge takes at least one step: what a bucket holds is final when its turn comes, in any
-  // order.
+  // Every edge takes at least one step. The entries of a bucket are therefore final when it is
+  // read, and their order does not matter.
   for (std::uint64_t d = 0; number_of_waiting > 0; ++d) {
     auto& now = bucket[d % bucket.size()];
     number_of_waiting -= now.size();
@@ -87,8 +87,8 @@ inline Sample_regions grow_regions(const std::vector<Vec3>& points,
   return regions;
 }
 
-/// What an edge adds to the length of a border it crosses: no more than the spacing, so that
-/// outliers count little. [L]
+/// Length that an edge adds to the border that it crosses: at most the spacing, so that outliers
+/// count little. [L]
 inline double crossing_length(const std::vector<Vec3>& points,
                               const neighborhood::Proximity_graph& graph,
                               std::size_t i,

@@ -25,10 +25,11 @@ namespace pcs {
 namespace deformation {
 
 /*!
-  Points are numbered three ways. An *input* index is the caller's. A *site* stands for all points
-  at the same coordinates, in spatial order; graphs and components are over sites. A *place* is the
-  position in the order in which points are upsampled: the spatial order, all points included, or
-  the caller's where that is as coherent.
+  The points, their neighbourhood graph and their samples. There are three numberings of points. An
+  *input* index is the caller's. A *site* is the group of all points with the same coordinates;
+  sites are in spatial order, and graphs and components are over sites. A *place* is an index in the
+  order in which points are upsampled: the spatial order of all points, or the caller's if that is
+  as coherent.
 */
 template <class ConcurrencyTag>
 struct Sampled_body
@@ -38,23 +39,23 @@ struct Sampled_body
   std::vector<std::uint32_t> input_of_place;
   bool is_in_callers_order = false; ///< whether `input_of_place[i]` is `i`
   std::vector<std::uint32_t> site_of_place;
-  std::vector<std::uint32_t>
-      place_of_site; ///< the first one; empty if every site's place has its number
+  /// The first place of each site; empty if site and place have the same number.
+  std::vector<std::uint32_t> place_of_site;
   std::vector<std::uint32_t> site_of_input;
   std::vector<std::uint32_t> component_of_site;
   std::vector<std::uint32_t> component_size; ///< in points
   std::vector<std::uint32_t> site_of_sample;
-  std::vector<std::uint32_t>
-      sample_of_site; ///< nearest along the surface; `no_sample` where there is none
-  neighborhood::Proximity_graph
-      site_graph;                       ///< kept for the borders of handles; empty if not sampled
-  Elastic_network network;              ///< over the samples
-  double weight_unit = 1;               ///< see `sample_graph()`
-  Point_blocks rest_points;             ///< at rest, over the places
-  Sample_links links_of_site;           ///< only until the upsampling is built from them
-  std::size_t number_of_short_cuts = 0; ///< links dropped between sheets
-  bool has_fragments = false;           ///< whether there are sites without a sample
-  std::vector<neighborhood::Outlier> outliers; ///< sites that hang on one other
+  /// The nearest sample along the surface; `no_sample` if a component has none.
+  std::vector<std::uint32_t> sample_of_site;
+  /// Kept for the borders of handles; empty if not sampled.
+  neighborhood::Proximity_graph site_graph;
+  Elastic_network network;                     ///< over the samples
+  double weight_unit = 1;                      ///< see `sample_graph()`
+  Point_blocks rest_points;                    ///< the points at rest, in the order of the places
+  Sample_links links_of_site;                  ///< only until the upsampling is built from them
+  std::size_t number_of_short_cuts = 0;        ///< links dropped between sheets
+  bool has_fragments = false;                  ///< whether there are sites without a sample
+  std::vector<neighborhood::Outlier> outliers; ///< sites attached to one other site
   bool is_sampled = true;                      ///< whether there are fewer samples than sites
 
   std::size_t number_of_points() const { return input_of_place.size(); }
@@ -83,7 +84,7 @@ private:
                       std::vector<Vec3>& sites,
                       Graph& graph,
                       pcs::internal::Progress& progress);
-  /// Coordinate by coordinate: near the cloud, wherever a few outliers are.
+  /// The median of each coordinate: it lies near the cloud, and outliers do not move it.
   static Vec3 median_point(const std::vector<Vec3>& points);
   void to_local(std::vector<Vec3>& points);
   /// Numbers sites and places.
@@ -93,7 +94,7 @@ private:
 
   // ---- samples
   bool sample(const std::vector<Vec3>& sites, Graph graph, pcs::internal::Progress& progress);
-  /// Outliers are no samples: nothing but themselves would follow them.
+  /// Chooses samples among the points that are no outliers: a sample there would move only itself.
   void choose_samples(const std::vector<Vec3>& sites);
   void choose_samples_without_outliers(const std::vector<Vec3>& sites);
   /// Builds the graph of the samples, and the links of the sites to them.

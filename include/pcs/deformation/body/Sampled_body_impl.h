@@ -185,7 +185,7 @@ void Sampled_body<ConcurrencyTag>::choose_samples_without_outliers(const std::ve
       others.push_back(sites[site]);
       site_of_other.push_back(static_cast<std::uint32_t>(site));
     }
-  // Without the outliers, the octree is another one.
+  // The octree of the remaining points needs their own spatial order.
   const auto order = neighborhood::spatial_order<ConcurrencyTag>(others);
   std::vector<Vec3> ordered(others.size());
   for (std::size_t i = 0; i < order.size(); ++i)

@@ -62,8 +62,8 @@ public:
       if ((m_side[k] > 0) == (m_side[l] > 0))
         continue;
       const double t = m_side[k] / (m_side[k] - m_side[l]);
-      // What begins here: the bisector where the old outline is left, else the rest of the old
-      // side.
+      // The side that begins here is the bisector if the outline is left, otherwise the rest of
+      // the old side.
       m_next.push_back({m_corners[k].point + t * (m_corners[l].point - m_corners[k].point),
                         m_side[k] > 0 ? m_corners[k].neighbor : neighbor});
     }
@@ -97,8 +97,7 @@ public:
 
 private:
   static constexpr std::uint32_t open = ~std::uint32_t(0);
-  static constexpr double touching =
-      1e-9; ///< share of the distance within which rounding may decide
+  static constexpr double touching = 1e-9; ///< fraction of the distance that rounding may change
   struct Corner
   {
     Vec2 point;

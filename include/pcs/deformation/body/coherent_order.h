@@ -16,11 +16,10 @@
 namespace pcs {
 namespace deformation {
 
-/// A block of the caller's order may be so many times as long as one of the spatial order. A row of
-/// a grid is twice as long; with rows of another twice that length, and 50 points per sample, what
-/// is saved and what is lost are equal.
+/// Largest ratio of the lengths of a block in the caller's order and in the spatial order. Rows of
+/// a grid have the ratio 2; at ratio 4 and 50 points per sample, costs and savings are equal.
 constexpr double largest_coherent_ratio = 4;
-/// Share of the blocks that may be longer: ends of scan lines, outliers.
+/// Fraction of the blocks that may be longer: ends of scan lines, outliers.
 constexpr double largest_incoherent_share = 0.1;
 
 /*!

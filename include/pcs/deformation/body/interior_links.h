@@ -35,8 +35,8 @@ namespace deformation {
 struct Interior_link_options
 {
   double strength = 28;     ///< [-], measured on twisted bars: 8 loses volume, 64 stiffens bends
-  double reach = 0.75;      ///< a ray hits what lies within this distance of it [h]
-  double shortest = 2;      ///< shorter links say nothing that the surface does not [h]
+  double reach = 0.75;      ///< a ray hits nodes within this distance of it [h]
+  double shortest = 2;      ///< shorter links add nothing to the edges of the surface [h]
   double longest = 2;       ///< relative to the median length [-]
   double opposition = -0.3; ///< upper bound of the cosine between the normals of the two ends
   double smallest_hit_share = 0.1; ///< fewer rays than this that hit: the surface has no inside
@@ -98,7 +98,7 @@ std::vector<Vec3> oriented_normals(const Elastic_network& network)
   return normal;
 }
 
-/// Sphere tracing through the nodes: a ray hits what lies within `reach * h` of it.
+/// Traces rays through the nodes (sphere tracing): a ray hits nodes within `reach * h` of it.
 class Ray_caster
 {
 public:
@@ -154,8 +154,8 @@ public:
   }
 
 private:
-  /// On grids a ray may pass between nodes that are equally near; rounding must not choose among
-  /// them.
+  /// On grids a ray may pass between nodes at equal distance; the choice must not depend on
+  /// rounding.
   static constexpr std::size_t number_of_equals = 4;
 
   static std::uint32_t

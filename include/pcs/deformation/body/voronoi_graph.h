@@ -25,7 +25,7 @@
 namespace pcs {
 namespace deformation {
 
-/// Share of the proximity weights where there are no cells to speak of. [-]
+/// Fraction of the proximity weights that is used where no cell can be cut. [-]
 constexpr double proximity_share = 0.05;
 /// Sides that weigh less than this in total do not hold a point: it lies on a wire, at a corner, or
 /// is an outlier. [-]
@@ -203,10 +203,9 @@ Weighted_graph star_graph(const Voronoi_stars& stars,
 
   On a plane, linear functions are harmonic for these weights, however irregular the points; for
   those of `set_edge_weights()` they are only on average. Every cell is cut in the tangent plane of
-  its point, among the neighbours of neighbours; cells that are large or open look again among those
-  of the cells around them. Where no cell can be cut (wires, outliers), a share of the proximity
-  weights takes over. Of clouds without any typical spacing, the proximity graph is returned as it
-  is.
+  its point, by the neighbours of neighbours; large or open cells are cut again by those of the
+  cells around them. Where no cell can be cut (wires, outliers), a fraction of the proximity weights
+  is used. For clouds without a typical spacing, the proximity graph is returned unchanged.
 
   \param proximity weighted by `set_edge_weights()`; the result has the same components
 

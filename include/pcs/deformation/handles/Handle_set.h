@@ -24,16 +24,16 @@
 namespace pcs {
 namespace deformation {
 
-/// Of a site that is not in the region of interest.
+/// A site that is not in the region of interest.
 constexpr Node_constraint outside_region = -3;
 
-/// Transformations are in the caller's coordinates. The number of a handle that was removed is not
-/// used again.
+/// The handles of a session: points, softness and motion. Transformations are in the caller's
+/// coordinates; the number of a removed handle is not used again.
 class Handle_set
 {
 public:
-  /// \param region indices of the region of interest, or null for all points. A place is in it with
-  /// all of its points
+  /// \param region indices of the region of interest, or null for all points. A site is in it only
+  /// with all of its points
   template <class ConcurrencyTag>
   void start(const Sampled_body<ConcurrencyTag>& body, const std::vector<std::uint32_t>* region)
   {
@@ -49,7 +49,7 @@ public:
         m_handle_of_site[body.site_of_input[i]] = outside_region;
   }
 
-  /// Of all handles that ever were.
+  /// Number of handles, removed ones included.
   std::size_t size() const { return m_transforms.size(); }
   bool contains(std::size_t handle) const { return handle < m_is_used.size() && m_is_used[handle]; }
   bool empty() const { return std::find(m_is_used.begin(), m_is_used.end(), 1) == m_is_used.end(); }
@@ -63,7 +63,7 @@ public:
   /// Centroid of the handle's points at rest.
   const Vec3& centroid(std::size_t handle) const { return m_centroid[handle]; }
 
-  /// As the caller said: a handle, `free_node` or `outside_region`.
+  /// As set by the caller: a handle, `free_node` or `outside_region`.
   Node_constraint of_site(std::size_t site) const { return m_handle_of_site[site]; }
   bool is_soft(Node_constraint h) const
   {
@@ -174,7 +174,7 @@ public:
     m_transforms[handle] = transform;
   }
 
-  /// Those of an earlier moment; handles that were added since are at rest.
+  /// Restores earlier transformations; handles that were added since are at rest.
   void restore(const std::vector<Similarity>& transforms)
   {
     m_transforms = transforms;
@@ -200,7 +200,7 @@ public:
       local.emplace_back();
   }
 
-  /// After the rest shape has changed.
+  /// Recomputes the centroids of a new rest shape.
   template <class ConcurrencyTag>
   void update_centroids(const Sampled_body<ConcurrencyTag>& body)
   {

@@ -21,11 +21,12 @@
 namespace pcs {
 namespace deformation {
 
-/// Of a site that follows its host as if they were one rigid body.
+/// A site that follows its host as one rigid body.
 constexpr Node_constraint outlier_site = -4;
-/// Of a site that no handle reaches any more: it goes back to where it rests.
+/// A site that lost its last handle: it returns to its position at rest.
 constexpr Node_constraint returning_site = -5;
 
+/// How every site is written: with a handle, blended from samples, or not at all.
 class Site_constraints
 {
 public:
@@ -36,12 +37,11 @@ public:
   Node_constraint operator[](std::size_t site) const { return m_of_site[site]; }
   /// One bit per place, `lanes` of them in a byte: whether it is blended from samples.
   const std::vector<std::uint8_t>& is_blended() const { return m_is_blended; }
-  /// Of a block of places: the handle that holds all of them, `still_block` if nothing moves any of
-  /// them, else `mixed_block`.
+  /// For each block of places: the handle that holds all of them, `still_block` if nothing moves
+  /// any of them, otherwise `mixed_block`.
   const std::vector<std::int32_t>& holder() const { return m_holder; }
 
-  /// Finds what becomes of every site, and counts it; returns which samples are held by which
-  /// handle.
+  /// Classifies and counts all sites; returns which samples are held by which handle.
   template <class ConcurrencyTag>
   Node_constraints find(const Sampled_body<ConcurrencyTag>& body,
                         const Handle_set& handles,
@@ -54,11 +54,11 @@ public:
     return of_samples(body, handles, is_reached);
   }
 
-  /// Handles that fragments without a sample have come to follow since the last call: these are
-  /// elsewhere.
+  /// Returns the handles that fragments without a sample have begun to follow since the last call.
+  /// Their points may be displaced.
   std::vector<Node_constraint> take_followed_handles() { return std::exchange(m_followed, {}); }
 
-  /// The present shape is the rest shape: nothing has to go back.
+  /// Makes the present shape the rest shape: nothing has to return.
   void accept() { m_was_reached.clear(); }
 
 private:
@@ -97,7 +97,7 @@ private:
         has_sample.emplace(h, body.component_of_site[site]);
       }
     }
-    // A soft handle between the samples draws those in whose regions its points lie; an exact one
+    // A soft handle without samples draws the samples of the regions of its points; an exact handle
     // has nodes on its border.
     const bool has_soft_handles = handles.has_soft_handles();
     for (std::size_t site = 0; has_soft_handles && site < body.number_of_sites(); ++site) {
@@ -125,7 +125,7 @@ private:
           body.sample_of_site[site] == no_sample)
         m_followed.push_back(f = handles.of_site(site));
     }
-    // What was written once goes back to rest when its last handle is removed.
+    // A component that lost its last handle returns to rest.
     m_was_reached.resize(body.number_of_components(), 0);
     m_of_site.resize(body.number_of_sites());
     pcs::internal::for_each_index<ConcurrencyTag>(body.number_of_sites(), [&](std::size_t site) {
@@ -149,7 +149,7 @@ private:
       m_was_reached[c] = m_was_reached[c] || is_reached[c] ? 1 : 0;
   }
 
-  /// Eight places share a byte, as eight points share a block of the upsampling.
+  /// Finds the blended places and the holder of every block; eight places make one byte.
   template <class ConcurrencyTag>
   void mark_places(const Sampled_body<ConcurrencyTag>& body)
   {

@@ -25,7 +25,7 @@ namespace deformation {
 /// A boundary node is taken to lie at least this far from its sample, in units of `typical_edge()`.
 constexpr double shortest_boundary_edge = 0.1;
 
-/// What `add_boundary_nodes()` reads. `handle_of_site(site)` is the handle that prescribes a site
+/// Input of `add_boundary_nodes()`. `handle_of_site(site)` is the handle that prescribes a site
 /// on a border.
 template <class HandleOfSite, class SitePosition>
 struct Boundary_input
@@ -44,8 +44,8 @@ namespace internal {
 /// one.
 struct Border_crossing
 {
-  std::uint32_t sample; ///< whose region lies outside the handle there
-  std::uint32_t beyond; ///< whose region lies inside; may be the same
+  std::uint32_t sample; ///< the sample of the region outside the handle
+  std::uint32_t beyond; ///< the sample of the region inside; may be the same
   Node_constraint handle;
   std::uint32_t site; ///< in the handle
   double length;      ///< of the edge that crosses [L]

@@ -28,11 +28,11 @@ struct Border_advance
   double distance = 0;           ///< [L]
 };
 
-/// Handle nodes farther to the side than this say nothing about the border at a node. [spacings]
+/// Handle nodes farther to the side than this do not affect the border at a node. [spacings]
 constexpr double widest_border_patch = 2;
-/// The border leaves at least this share of an edge to the free node. [-]
+/// The border leaves at least this fraction of an edge to the free node. [-]
 constexpr double least_free_share = 0.2;
-/// Borders this near to their node stay there. [shares of the edge]
+/// Borders nearer to their node than this are not moved. [fractions of the edge]
 constexpr double negligible_advance = 1e-6;
 
 /// The line through the outermost nodes of the handle around node `j`, seen from `j`.
@@ -179,12 +179,12 @@ inline Elastic_network cut_held_edges(const Elastic_network& network,
   Gives the edges between free nodes and exact handles their true length up to the border of the
   handle.
 
-  Points that are picked by a region of space end on average half a spacing before its border, and
-  fields that are held at each of them alone yield as if the handle were that much shorter. Here the
-  border runs through the outermost points of the handle around each of them (on a grid: through
-  all). Where it crosses an edge at a share `t` of its length, a node that is prescribed like the
-  handle is added to `result`, with the edge's weight over `1 - t`. Constraints are extended to the
-  new nodes.
+  Points that are selected by a region of space end on average half a spacing before its border. If
+  only these points were held, the body would yield as if the handle were half a spacing shorter.
+  Here the border runs through the outermost points of the handle around each point (on a grid:
+  through all). Where it crosses an edge at a fraction `t` of its length, a node that is prescribed
+  like the handle is added to `result`, with the edge's weight over `1 - t`. Constraints are
+  extended to the new nodes.
 
   Returns `false`, with `result` untouched, if no border leaves its nodes. O(n).
 */

@@ -34,10 +34,10 @@ struct Elastic_network
   std::vector<Vec3> rest; ///< positions of the nodes [L]
   Weighted_graph surface; ///< edges along the surface
   Weighted_graph links;   ///< springs through the inside; may be empty (then `links.size() == 0`)
-  /// Of the first nodes: the fraction of the surface of their component that each represents. [-]
+  /// Fractions of the surface of their components that the first nodes represent. [-]
   std::vector<double> area;
-  /// Of the first nodes, an order of elimination for factors over the surface, and over the links
-  /// as well: found once, good for any choice of free nodes. Empty if it is not worth it.
+  /// Orders of elimination of the first nodes, for factors over the surface, and over surface and
+  /// links. Found once, they serve any choice of free nodes; empty if they do not pay.
   std::vector<std::uint32_t> surface_rank, rank;
   std::size_t size() const { return rest.size(); }
 };
@@ -121,8 +121,8 @@ inline double typical_edge(const std::vector<Vec3>& rest,
 /*!
   Weights `w_ij = (s_i^2 + s_j^2) / (2 |x_j - x_i|^2)`, scaled to mean 1, where `s_i` is
   `local_spacing()`, the larger taken for at most `widest_spacing_step` times the smaller. `1 / d^2`
-  turns differences into slopes; the factor `s^2` is the area that a point stands for, so that
-  densely sampled parts do not become stiffer than sparse ones, and far outliers pull on nothing.
+  turns differences into slopes. The factor `s^2` is the area of the surface per point: densely
+  sampled parts do not become stiffer than sparse ones, and far outliers have no effect.
 */
 template <class ConcurrencyTag>
 void set_edge_weights(const std::vector<Vec3>& rest, Weighted_graph& graph)

@@ -77,22 +77,22 @@ struct Elastic_result
   int number_of_passes = 0;
   double energy = 0;         ///< [L^2]
   double initial_energy = 0; ///< after the first positions, before any pass [L^2]
-  /// After the first pass, if the passes started from the field of the handles; else zero. [L^2]
+  /// After the first pass if the passes started from the field of the handles, otherwise 0. [L^2]
   double first_pass_energy = 0;
   /// Whether the guess turned out clearly better than the field of the handles, here or on a
   /// coarser network.
   bool is_far_from_field = false;
 };
 
-/// What was found on a coarser network, for the first nodes of this one: deviations from the field
-/// of the handles.
+/// Solution of a coarser network, for the first nodes of this one: deviations from the field of the
+/// handles.
 struct Deviation_guess
 {
   std::vector<Vec3> deviations; ///< empty if they are not worth a trial
   bool is_far_from_field =
       false; ///< clearly better than the field there, which need not be tried again
   std::vector<Vec3>
-      /// what the interior links of coarser networks add to the positions; may be empty
+      /// offsets of positions by the interior links of coarser networks; may be empty
       link_offsets;
 };
 

@@ -17,7 +17,7 @@
 namespace pcs {
 namespace deformation {
 
-/// What is prescribed at a node: the number of its handle, or one of the two values below.
+/// Constraint of a node: the number of its handle, or one of the two values below.
 using Node_constraint = std::int32_t;
 constexpr Node_constraint free_node = -1;
 /// The node belongs to no part that a handle reaches; it stays where it is.
@@ -41,8 +41,8 @@ struct Node_constraints
     const Node_constraint h = handle_of_node[node];
     return h >= 0 && softness_weight[static_cast<std::size_t>(h)] > 0;
   }
-  /// Weight of the spring of a soft node whose edge weights sum to `degree`; one without edges has
-  /// its spring alone.
+  /// Weight of the spring of a soft node; `degree` is the sum of its edge weights. A node without
+  /// edges has only its spring.
   double soft_weight(std::size_t node, double degree) const
   {
     return softness_weight[static_cast<std::size_t>(handle_of_node[node])] *
@@ -70,7 +70,7 @@ struct Free_rows
   std::size_t size() const { return node_of_row.size(); }
 };
 
-/// Finds the orders of elimination of a network whose constraints will change.
+/// Finds orders of elimination of a network that serve all constraints.
 inline void rank_nodes(Elastic_network& network)
 {
   Node_constraints all_free;

@@ -12,10 +12,10 @@
 namespace pcs {
 
 //! \ingroup PkgPcsDeformationRef
-//! samples on which the non-linear problem is solved, unless the caller says otherwise [count]
+//! default number of samples on which the non-linear problem is solved [count]
 constexpr std::size_t default_number_of_samples = 2000;
 //! \ingroup PkgPcsDeformationRef
-//! nearest neighbours that a point is linked to; the dissertation's 5 to 6 [count]
+//! nearest neighbours that a point is linked to; 5 to 6 in \cite aiteanu2022 [count]
 constexpr std::size_t default_number_of_neighbors = 6;
 //! \ingroup PkgPcsDeformationRef
 //! nearest samples that move a point [count]

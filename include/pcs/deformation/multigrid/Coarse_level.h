@@ -30,11 +30,11 @@ namespace deformation {
 constexpr std::size_t coarsening_ratio = 5;
 /// Networks with fewer nodes get no coarser level.
 constexpr std::size_t smallest_coarsened_network = 1000;
-/// Largest number of passes on a coarse level; they are cheap there, and reach far.
+/// Largest number of passes on a coarse level; they are cheap, and each reaches far.
 constexpr int number_of_coarse_passes = 100;
 
-/// Of the fall of the energy that would end the passes of the finest level, were it as small: a
-/// pass there costs more than one here, and what stays undone here costs passes there. [-]
+/// Tolerance of a coarse level, relative to the tolerance that ends the passes of the finest level:
+/// a pass there costs more than one here, and errors that remain here cost passes there. [-]
 constexpr double coarse_share_of_tolerance = 0.5;
 
 /*!
@@ -122,9 +122,9 @@ public:
     return m_solver.constrain(m_bounded, std::move(constraints), stiffness);
   }
 
-  /// Runs the passes of this level, less of them if `progress` asks to stop. `guess`: in, of this
-  /// level's nodes, or empty; out, of the finer one's. A pass may gain as much less than one over
-  /// `finest_size` nodes as it costs less: what it leaves has to be done there.
+  /// Runs the passes of this level, fewer if `progress` cancels. On input, `guess` is empty or of
+  /// the nodes of this level; on output it is of the nodes of the finer level. The gain at which
+  /// passes end is proportional to their cost, relative to a pass over `finest_size` nodes.
   void improve(const std::vector<Similarity>& transforms,
                Elastic_options options,
                std::size_t finest_size,
@@ -148,7 +148,7 @@ public:
     carry(guess);
   }
 
-  /// From a guess of this level's nodes to one of the finer level's.
+  /// Interpolates a guess for the nodes of this level at the nodes of the finer level.
   void carry(Deviation_guess& guess)
   {
     if (!guess.deviations.empty())
@@ -157,7 +157,7 @@ public:
       to_finer(guess.link_offsets);
   }
 
-  /// The finer level has a new rest shape.
+  /// Takes over the new rest shape of the finer level.
   void accept(const Elastic_network& finer)
   {
     for (std::size_t s = 0; s < m_node_of_sample.size(); ++s)
@@ -165,8 +165,8 @@ public:
   }
 
 private:
-  /// A soft handle between the nodes draws those in whose regions it lies, in every component that
-  /// it holds.
+  /// Applies soft handles without nodes to the nodes of the regions of their points, in every
+  /// component that they hold.
   void draw_nodes_of_soft_handles(const Node_constraints& of_finer)
   {
     auto& of_node = m_constraints.handle_of_node;

@@ -21,9 +21,9 @@ namespace pcs {
 namespace deformation {
 
 /*!
-  Networks above a certain size have no interior links. If coarser ones have, the finest of these
-  makes passes until it converges; those between it and the session's network only carry what it
-  finds.
+  Networks above a certain size have no interior links. If coarser networks have links, the finest
+  of these makes passes until it converges; the levels between it and the session's network only
+  interpolate its solution.
 */
 template <class ConcurrencyTag>
 class Coarse_levels
@@ -69,7 +69,7 @@ public:
     return is_regular;
   }
 
-  /// Runs the passes of all levels; less of them if `progress` says so.
+  /// Runs the passes of all levels, fewer if `progress` cancels.
   const Deviation_guess& solve(const std::vector<Similarity>& transforms,
                                const Elastic_options& options,
                                pcs::internal::Progress& progress)
@@ -94,7 +94,7 @@ public:
   /// Whether they have links that the session's network lacks.
   bool has_link_offsets() const { return m_has_offsets; }
 
-  /// The session's network has a new rest shape.
+  /// Takes over the new rest shape of the session's network.
   void accept(const Elastic_network& finest)
   {
     const Elastic_network* finer = &finest;
@@ -108,7 +108,7 @@ private:
   std::deque<Coarse_level<ConcurrencyTag>>
       m_level; ///< the finest first; a deque does not move them
   Deviation_guess m_guess;
-  std::size_t m_first = 0;          ///< finer ones only carry
+  std::size_t m_first = 0;          ///< finer levels only interpolate
   bool m_has_offsets = false;       ///< whether the first has links that finer networks lack
   std::size_t m_size_of_passes = 0; ///< of the finest network that makes passes until it converges
 };

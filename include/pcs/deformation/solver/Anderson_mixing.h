@@ -30,7 +30,7 @@ public:
   using Vec3 = Eigen::Vector3d;
   static constexpr std::size_t depth = 5;
 
-  /// Forgets what was seen. The memory is kept.
+  /// Discards all earlier iterates; their memory is reused.
   void restart()
   {
     m_count = 0;
@@ -70,7 +70,7 @@ public:
   }
 
 private:
-  /// Of the differences of residuals with the newest of them, and with the present residual.
+  /// Dot products of the differences of residuals with the newest one and the present residual.
   struct Products
   {
     std::array<double, depth> with_new{}, with_residual{};

@@ -25,9 +25,9 @@ namespace deformation {
 
 /*!
   The logarithm of the scale is harmonic between handles. Edges across its gradient grow with it;
-  along the gradient they grow by a share of it, as much as the handles leave room for: a rod whose
-  end is scaled where it is gets thicker, not longer, or it would have to buckle. One share for all
-  bodies.
+  along the gradient they grow by a fraction of it, as far as the handles leave room: a rod with one
+  end scaled in place gets thicker, not longer, or it would have to buckle. The fraction is the same
+  for all bodies.
 */
 template <class ConcurrencyTag>
 class Blended_scales
@@ -51,8 +51,8 @@ public:
     set_share(0);
   }
 
-  /// What the edges of every node grow by before they are turned: symmetric; empty if no handle has
-  /// a scale. [-]
+  /// Growth of the edges of every node before the rotation: symmetric; empty if no handle has a
+  /// scale. [-]
   const std::vector<Eigen::Matrix3d>& growth() const { return m_growth; }
 
   /// Edges along the gradient of the scale grow by this fraction of it. [-]
@@ -86,11 +86,10 @@ private:
 
   /// Scales that differ by less than this across an edge have no direction. [-]
   static constexpr double least_difference = 1e-9;
-  /// Over one ring, differences of a harmonic function scatter so much that bodies get longer by
-  /// some per cent of the scale, which is enough to buckle.
+  /// Over one ring, differences of a harmonic function scatter: bodies would get longer by some per
+  /// cent of the scale, and buckle.
   static constexpr int number_of_rings = 3;
-  static constexpr double normal_share =
-      1e-3; ///< across a surface, where the edges say nothing [-]
+  static constexpr double normal_share = 1e-3; ///< across a surface, where there are no edges [-]
   /// Of an edge along the gradient, where a negative fraction would turn it around. [-]
   static constexpr double least_growth = 0.25;
 
@@ -133,8 +132,8 @@ private:
         m_log_scale[i] = value(i);
   }
 
-  /// Along the gradient of the logarithm of scale at rest, by least squares over some rings of
-  /// neighbours. Null where that is constant.
+  /// Finds the directions of the gradient of the logarithm of scale at rest, by least squares over
+  /// rings of neighbours. Null where the scale is constant.
   void find_directions(const Elastic_network& network, const Node_constraints& constraints)
   {
     const auto& graph = network.surface;

@@ -28,7 +28,7 @@ public:
   const Free_rows& rows() const { return m_rows; }
   const linear_algebra::Sparse_cholesky& field() const { return m_field; }
   const linear_algebra::Sparse_cholesky& smoothing() const { return m_smoothing; }
-  /// That of the field, but for networks with links.
+  /// The factor of the positions: without links, that of the field.
   const linear_algebra::Sparse_cholesky& position() const { return m_has_links ? m_link : m_field; }
   /// `mu D` of a row: weight of the best local rotation against those of the neighbours.
   double fit_weight(std::size_t row) const { return m_fit_weight[row]; }

@@ -59,9 +59,10 @@ public:
     return m_shape.constrain(network, std::move(constraints), stiffness);
   }
 
-  /// Solves for one transformation per handle, from the rest shape. The guess is the first state,
-  /// or tried after the first pass, when that is not known to be worth it. Where it was found with
-  /// links that this network lacks, energies do not compare: it is taken, and little is changed.
+  /// Solves for one transformation per handle, from the rest shape. The guess is the first state if
+  /// it is known to be better, otherwise it is compared after the first pass. If it was found with
+  /// links that this network lacks, energies cannot be compared: it is accepted, and a single pass
+  /// follows.
   Elastic_result solve(const std::vector<Similarity>& transforms,
                        const Elastic_options& options,
                        pcs::internal::Progress& progress,
@@ -156,8 +157,8 @@ private:
     }
   }
 
-  /// One pass: accelerated if that lowers the energy, else plain; `false` if neither does (rounding
-  /// at the optimum).
+  /// Makes one pass: accelerated if that lowers the energy, otherwise plain. Returns `false` if
+  /// neither does (rounding at the optimum).
   bool improve(bool is_accelerated, bool is_last, Elastic_result& result)
   {
     m_shape.keep();
@@ -182,9 +183,9 @@ private:
     return true;
   }
 
-  /// What a pass starts from and what it makes of that: the deviations and, where there are links,
-  /// the positions that give them their directions. Without these, the resistance of the links
-  /// would be taken for the effect of the deviations.
+  /// Mixes the input and the output of a pass: the deviations and, with links, the positions that
+  /// direct them. Without the positions, the resistance of the links would be attributed to the
+  /// deviations.
   void mix(bool is_wanted)
   {
     if (!m_shape.has_links()) {
@@ -216,16 +217,16 @@ private:
       m_smooth[i] = i < guess.deviations.size() ? guess.deviations[i] : Vec3(Vec3::Zero());
   }
 
-  /// A guess replaces the present state if it is clearly better: where the field of the handles
-  /// explains the motion, it is more exact than a coarse network, and what folds up there is no
-  /// shape here. Returns whether it did.
+  /// Replaces the present state by the guess if that is clearly better, and returns whether it did.
+  /// Where the field of the handles explains the motion, it is more exact than a coarse network; a
+  /// coarse network may also fold where this one does not.
   bool start_from(const Deviation_guess& guess, Elastic_result& result)
   {
     m_shape.keep_all();
     m_best_smooth.swap(m_smooth);
     take(guess);
     m_shape.turn(m_smooth);
-    m_shape.follow(true); // the present positions know nothing of the guess
+    m_shape.follow(true); // the present positions do not contain the guess
     if (m_shape.has_links())
       for (int i = 0; i < settling_solves; ++i)
         m_shape.solve_positions(false);
@@ -250,7 +251,7 @@ private:
 
   Elastic_step<ConcurrencyTag> m_shape;
   Anderson_mixing<ConcurrencyTag> m_mixing;
-  std::vector<Vec3> m_smooth, m_best_smooth, m_plain; ///< deviations, smoothed: what is used
+  std::vector<Vec3> m_smooth, m_best_smooth, m_plain; ///< deviations, smoothed
   std::vector<Vec3> m_state, m_image;                 ///< of a pass, for the mixing
 };
 

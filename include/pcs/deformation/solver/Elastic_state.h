@@ -23,7 +23,7 @@
 namespace pcs {
 namespace deformation {
 
-/// A network, where its nodes are now, and what its edges aim at: a view.
+/// View of a network: present positions of its nodes, and targets of its edges.
 struct Elastic_state
 {
   const Elastic_network& network;
@@ -33,11 +33,11 @@ struct Elastic_state
   const std::vector<Eigen::Matrix3d>& frame;
   /// The frame, times the stretch that the material allows. [-]
   const std::vector<Eigen::Matrix3d>& target;
-  /// What edges grow by between handles that are scaled, `A_i`; empty if none is. [-]
+  /// Growth of edges between scaled handles, `A_i`; empty if no handle is scaled. [-]
   const std::vector<Eigen::Matrix3d>& growth;
 
   /// Weight of the frame in `deformation_gradient()`, relative to the spread of the edges: it
-  /// decides where the edges say nothing, across a surface.
+  /// determines the direction across a surface, in which there are no edges.
   static constexpr double frame_share = 0.05;
   /// Of shorter edges, relative to the coordinates, rounding leaves too little to measure a
   /// gradient. [-]
@@ -82,7 +82,7 @@ struct Elastic_state
     return length > 0 ? Vec3(rest_length(i, j) / length * present) : Vec3(Vec3::Zero());
   }
 
-  /// What `Measure_edges` asks for.
+  /// Input of `Measure_edges`.
   Edge_input edges() const
   {
     const auto& graph = network.surface;
@@ -128,8 +128,8 @@ struct Elastic_state
     return (s1 - across) * v * v.transpose() + across * Eigen::Matrix3d::Identity();
   }
 
-  /// Best linear map of the edges at node `i` from rest to now, completed by the frame across the
-  /// surface. [-]
+  /// Least-squares linear map of the edges at node `i` from rest to the present, completed by the
+  /// frame across the surface. [-]
   Eigen::Matrix3d deformation_gradient(std::size_t i) const
   {
     // Number by number, as in `newton_turn()`.

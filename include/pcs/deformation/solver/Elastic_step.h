@@ -73,8 +73,7 @@ public:
   /*!
     New motions of the handles; rotations are those of their field.
     \param is_further whether the stretch of the material is kept
-    \param link_offsets what links that this network lacks add to the positions of the first nodes;
-        may be null
+    \param link_offsets offsets of the first nodes by links that this network lacks; may be null
   */
   void begin(const std::vector<Similarity>& transforms,
              const Elastic_options& options,
@@ -100,8 +99,8 @@ public:
     m_link_offsets = link_offsets;
   }
 
-  /// Whether positions hold what links of another network add to them: energies do not compare with
-  /// those of others.
+  /// Whether positions contain offsets by links of another network: energies cannot be compared
+  /// with those of other solutions.
   bool has_link_offsets() const { return m_link_offsets != nullptr; }
 
   /// Rotations from deviations. [rad]
@@ -180,7 +179,7 @@ public:
     m_position_solver.link_offsets(state(), *m_transforms, m_factors, offsets);
   }
 
-  /// \name What was kept may be taken back
+  /// \name Kept states can be restored
   /// @{
 
   /// Positions and frames; the frames are to be made anew.

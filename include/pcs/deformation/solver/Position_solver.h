@@ -18,7 +18,7 @@
 namespace pcs {
 namespace deformation {
 
-/// Nodes of handles go where these take them; what no handle reaches stays at rest.
+/// Moves nodes of handles with these; nodes that no handle reaches stay at rest.
 inline void place_constrained_nodes(const Elastic_network& network,
                                     const Node_constraints& constraints,
                                     const std::vector<Similarity>& transforms,

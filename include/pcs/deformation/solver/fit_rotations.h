@@ -150,7 +150,7 @@ PCS_ALWAYS_INLINE void newton_turn(const Doubles* m, double damping, Doubles* tu
   });
 }
 
-/// Of the fits at `first` and the lanes after it.
+/// Fits the rotations of one register of lanes, from `first` on.
 template <class Arithmetic>
 PCS_ALWAYS_INLINE void fit_lanes(double damping, std::size_t first, Rotation_fits& fits)
 {

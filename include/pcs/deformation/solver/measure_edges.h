@@ -24,7 +24,7 @@ struct Edge_input
   const double* weight;            ///< of a half-edge [-]
   const Eigen::Vector3d* rest;     ///< [L]
   const Eigen::Vector3d* position; ///< [L]
-  const Eigen::Matrix3d* target;   ///< what the edges at a node should be multiplied by [-]
+  const Eigen::Matrix3d* target;   ///< the map that the edges at a node should undergo [-]
 };
 
 namespace internal {

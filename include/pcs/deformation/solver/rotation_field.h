@@ -144,8 +144,8 @@ private:
     pcs::internal::for_each_index<ConcurrencyTag>(m_rows->size(), [&](std::size_t r) {
       const std::size_t i = m_rows->node_of_row[r];
       const double length = m_value4[i].norm();
-      // Opposite handles cancel somewhere between them; there the field is undefined and any
-      // rotation serves.
+      // Opposite handles cancel between them; the field is undefined there, and any rotation will
+      // do.
       if (length > 1e-12)
         field[i].coeffs() = m_value4[i] / length;
     });

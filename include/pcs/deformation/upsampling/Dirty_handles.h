@@ -14,16 +14,17 @@
 namespace pcs {
 namespace deformation {
 
+/// The handles with displaced points.
 class Dirty_handles
 {
 public:
   /*!
-    Of each handle, whether its points are written: those that move, or did so the last time.
+    Finds for each handle whether its points are written: if it moves, or has moved before.
     Allocates nothing while the number of handles stays.
 
     \param transforms of the handles, in local coordinates; the outside of the region of interest,
            which never moves, comes last if there is one
-    \param followed handles that points elsewhere have come to follow
+    \param followed handles that displaced points have begun to follow
     \param is_at_rest whether the samples are
   */
   const std::vector<char>& find(const std::vector<Similarity>& transforms,
@@ -33,7 +34,7 @@ public:
   {
     const std::size_t outside_count = has_outside && !transforms.empty() ? 1 : 0;
     const std::size_t count = transforms.size() - outside_count;
-    // Points of a new handle may have been carried away before they became a handle.
+    // Points of a new handle may have been displaced before.
     m_was_moved.resize(count, m_is_displaced ? 1 : 0);
     for (const Node_constraint h : followed)
       if (static_cast<std::size_t>(h) < count && m_is_displaced)
@@ -48,7 +49,7 @@ public:
     return m_is_written;
   }
 
-  /// The present shape is the rest shape.
+  /// Makes the present shape the rest shape.
   void accept()
   {
     m_was_moved.clear();
@@ -57,7 +58,7 @@ public:
 
 private:
   std::vector<char> m_was_moved, m_is_written;
-  bool m_is_displaced = false; ///< whether points were written elsewhere than at rest
+  bool m_is_displaced = false; ///< whether points have been written displaced
 };
 
 } // namespace deformation

@@ -21,12 +21,12 @@
 namespace pcs {
 namespace deformation {
 
-/// What is read while points are written.
+/// The input of writing.
 template <class ConcurrencyTag>
 struct Moved_points
 {
   const Sampled_body<ConcurrencyTag>& body;
-  Upsampling& upsampling;              ///< keeps what it makes of the maps
+  Upsampling& upsampling;              ///< stores maps of its own
   const std::vector<Affine_map>& maps; ///< of the samples
   const Outlier_maps& outlier_maps;
   const Site_constraints& sites;
@@ -37,8 +37,8 @@ struct Moved_points
 };
 
 /*!
-  The `Writer` of `Upsampling::apply()`, over places. `Output` stands for the caller's points, by
-  input index, with `write(i, position, normal, gradient)` and, for what `Writer` has them for,
+  The `Writer` of `Upsampling::apply()`, over places. `Output` writes the caller's points, by input
+  index: `write(i, position, normal, gradient)` and, with the meaning of the calls of `Writer`,
   `prefetch(i)`, `can_stream()` and `stream(i, positions, normals)`.
 */
 template <class ConcurrencyTag, class Output>

@@ -46,7 +46,7 @@ public:
     });
   }
 
-  /// Of a site that is an outlier of the body.
+  /// The map of a site that is an outlier of the body.
   template <class ConcurrencyTag>
   const Affine_map& of_site(const Sampled_body<ConcurrencyTag>& body, std::size_t site) const
   {

@@ -57,7 +57,7 @@ public:
     return found.front().index;
   }
 
-  /// The blended map at `point`, whose nearest site is `site`.
+  /// The blended map at `point`, which has the nearest site `site`.
   Affine_map map_at(const Vec3& point, std::size_t site, const std::vector<Affine_map>& maps) const
   {
     thread_local std::vector<internal::Sample_candidate> nearest;

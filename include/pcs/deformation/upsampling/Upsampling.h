@@ -31,8 +31,8 @@
 namespace pcs {
 namespace deformation {
 
-/// The samples that move any of the points of each block. Memory per point: some 2.5 bytes per
-/// sample of its block.
+/// The samples that move the points of each block. Memory per point: about 2.5 bytes per sample of
+/// its block.
 class Upsampling
 {
 public:
@@ -70,8 +70,8 @@ public:
     const Block_fade* entry = nullptr;
   };
 
-  /// What moves the points of a block: the samples those whose bit is set in `is_blended[block]`,
-  /// or the handle `holder[block]` all of them, if that is neither `mixed_block` nor `still_block`.
+  /// How the points of a block move: those with a bit in `is_blended[block]` by the samples, or all
+  /// by the handle `holder[block]`, if that is neither `mixed_block` nor `still_block`.
   struct Block_motions
   {
     const std::uint8_t* is_blended = nullptr;
@@ -89,10 +89,10 @@ public:
     |---|---|
     | `write(i, position, normal, gradient)` | for all that the samples or the holder of a block
       move; `normal` is zero without normals, `gradient` only set if `HasGradients` |
-    | `does_stream()`, `stream(i, block_output)` | whether, and now do, the same for eight points
-      from `i` on, past the caches; may decline by `false` |
-    | `expect(i)` | if not `does_stream()`: some time before, for what `write` will touch to be
-      asked for |
+    | `does_stream()` | whether `stream()` may be called |
+    | `stream(i, block_output)` | the same as `write` for eight points from `i` on, past the caches;
+      `false` if it declines |
+    | `expect(i)` | if not `does_stream()`: called before `write`, to prefetch its output |
     | `write_other(i)` | for the points of a mixed block that are not blended |
   */
   template <class ConcurrencyTag, bool HasGradients, class Writer>
@@ -189,8 +189,8 @@ private:
     m_first.push_back(static_cast<std::uint32_t>(m_entry.size()));
   }
 
-  /// The maps of bases, and what changes from the base of a block to each of its other samples;
-  /// shared by all blocks of the base.
+  /// Computes the maps of bases, and the differences from the base of a block to its other samples,
+  /// which all blocks of the base use.
   template <class ConcurrencyTag>
   void update_pairs(const std::vector<Vec3>& samples, const std::vector<Affine_map>& maps)
   {
@@ -224,8 +224,8 @@ private:
         m_base.size(),
         256,
         [&](std::size_t begin, std::size_t end) {
-          // A block is written while the next one is computed: what waits for a result would keep
-          // the processor from looking ahead.
+          // A block is written while the next one is computed: instructions that wait for a result
+          // would stop speculative execution.
           Block_output out[2]{};
           Block_input in{};
           in.differences = m_differences.data();
@@ -256,7 +256,7 @@ private:
         });
   }
 
-  /// Asks for what a later block reads: the processor foresees it only up to the next page of 4 KB.
+  /// Prefetches the input of a later block: the processor does so only up to the next page of 4 KB.
   template <class Writer>
   PCS_ALWAYS_INLINE void prefetch(const Point_blocks& points,
                                   std::size_t block,
@@ -269,8 +269,7 @@ private:
     pcs::internal::prefetch(&points.positions(block), sizeof(Lane_vectors));
     if (points.has_normals())
       pcs::internal::prefetch(&points.normals(block), sizeof(Lane_vectors));
-    // A fixed number of bytes: a branch that depends on how many there are would be foreseen too
-    // seldom.
+    // A fixed number of bytes: a branch on the true number would often be mispredicted.
     pcs::internal::prefetch(m_entry.data() + m_first[block], bytes_of_entries);
   }
 

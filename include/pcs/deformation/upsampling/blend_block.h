@@ -15,7 +15,7 @@
 namespace pcs {
 namespace deformation {
 
-/// What a kernel computes for every point.
+/// The output of a kernel for every point.
 enum class Blend_outputs {
   positions,
   normals,  ///< and normals

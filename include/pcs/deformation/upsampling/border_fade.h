@@ -155,12 +155,12 @@ private:
 };
 
 /*!
-  The share of a handle at `d` spacings is `(1 - d)^2`. What the handle and the samples ask for
-  differs the more, the farther a point is from the handle: falling at once where they agree keeps
-  the field less steep than leaving the handle smoothly would.
+  The weight of a handle at `d` spacings is `(1 - d)^2`. The motions by the handle and by the
+  samples differ more with the distance from the handle. A weight that falls at once, where they
+  agree, makes the field less steep than one that leaves the handle smoothly.
 
-  Between several handles, all of them together get `1 - prod(1 - share)`, each in proportion to
-  `share / (1 - share)`, which is one at the border of each.
+  Several handles have together the weight `1 - prod(1 - w)`, each in proportion to `w / (1 - w)`
+  with its own weight `w`; the weight is 1 at the border of each.
   \param begin, end the handles that reach one site, increasing
 */
 template <class Iterator>
@@ -176,7 +176,7 @@ void append_fades(Iterator begin, Iterator end, std::vector<Border_fade>& fades)
     rest *= 1 - share(*s);
     sum += share(*s) / (1 - share(*s));
   }
-  // Drawn one after the other: what is drawn first is drawn farther, since the others take from it.
+  // Handles draw one after the other: earlier weights are larger, since later ones reduce them.
   const std::size_t first = fades.size();
   double left = 1;
   for (Iterator s = end; s-- != begin;) {
@@ -190,7 +190,7 @@ void append_fades(Iterator begin, Iterator end, std::vector<Border_fade>& fades)
 } // namespace internal
 
 /*!
-  Free sites nearer to exact handles, along the graph, than one sample spacing, and their shares.
+  Free sites nearer to exact handles, along the graph, than one sample spacing, and their weights.
   Without them the handle's points, which are placed exactly, part from their neighbours, which are
   blended from samples. Increasing by site, then by handle. Costs the width of the bands only.
   \param border edges from sites of exact handles to others

@@ -72,7 +72,7 @@ bool read_maps(const Elastic_state& state,
   return is_finite == 1;
 }
 
-/// Of the handles, in the coordinates of their transformations.
+/// Writes the maps of the handles, in the coordinates of their transformations.
 inline void read_handle_maps(const std::vector<Similarity>& transforms,
                              std::vector<Handle_map>& maps)
 {
