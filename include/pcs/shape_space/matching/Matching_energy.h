@@ -29,7 +29,41 @@
 namespace pcs {
 namespace shape_space {
 
-/// All terms of the energy of a matching of two trees, for any of the ways to take them apart.
+/*!
+  All terms of the energy of a matching of two trees, for any of their decompositions into branches.
+  All lengths are in units of the longest path of each tree, or of both trees where growth is at
+  tips [-]; factors are those of `Matching_weights`.
+
+  Two branches of lengths `L1` and `L2`, with all that they support, cost
+
+      C = curve 2 L (1 - M(g) + turn (1 - cos(alpha))) + length single |L1 - L2|
+          + sum_{(i, j) in A} (C_ij + P_ij) + single sum_{i not in A} w_i,
+      P_ij = position (l_i + l_j) / 2 d / (1 + d / far),   d = |s_i - s_j|,
+
+  with `L = sqrt(L1 L2)`, the agreement `M` of curve 1 with curve 2, rotated by `R`, under the
+  correspondence `g` (`Elastic_matcher`), the angle `alpha` between `R` and the rotation `R_p` of
+  the parents, and the one-to-one assignment `A` of the children of both. Children have the longest
+  path `l`, the total length `w`, and attachments `s` in [0, 1] along curve 1.
+
+  `Branch_matching` minimises `C` over paths and assignments; `g` maximises `M` for `R_p`, and `R`
+  maximises `tr(R^T B)` (Wahba's problem) for
+
+      B = L mean_k(u1_k u2(g)_k^T) + carried L R_p
+          + children sum_{(i, j)} sqrt(w_i w_j) v_i v_j^T
+
+  with the unit tangents `u` and mean directions `v`. The pairs of the last sum are assigned by
+  quick costs, for which a subtree is one straight branch of length `w`. Without this sum and
+  `sqrt(g')`, and for `carried = turn / 2`, `R` minimises the first term of `C`.
+
+  - Growth at tips: `min(l_i, l_j)` replaces the mean. The longer branch is compared up to the
+    length of the shorter one; the length of its remainder, with the children there, is single.
+  - Without `is_carried`: `R = R_p`, the terms of `turn` and `length` vanish, and the
+    elastic energy is `L1 + L2 - 2 L M` instead of `2 L (1 - M)`.
+  - `is_published` (after section 4.7 of \cite aiteanu2022): likewise, with `single = 1` and
+    `P_ij = position L1 d^2`.
+
+  A pair of curves of n samples costs O(n^2), an assignment of k children O(k^3).
+*/
 class Matching_energy : public Path_curves
 {
 public:
