@@ -169,7 +169,7 @@ public:
         \npdefault `Leaf_removal::where_found`; with `wood_map` `false`
       \np{point_branch_map} written by `extract()`: the branch of a point, an index in the result,
           or `npos`
-        \nptype model of `WritablePropertyMap`, key: element of `points`, value: `std::size_t`
+        \nptype model of `WritablePropertyMap`, key: element of `points`, value: an integer type
         \npdefault none
       \np{point_residual_map} written by `extract()`: distance from the surface of the branch,
           negative inside, 0 for points without a branch; where stations are moved, of the moved
