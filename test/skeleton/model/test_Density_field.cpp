@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // Densities and sides by place and direction; which axes of two points are believed.
 
+#include <pcs/core/median.h>
 #include <pcs/internal/Random_stream.h>
 #include <pcs/skeleton/axes/drop_two_point_axes.h>
 #include <pcs/skeleton/axes/fit_fields.h>
@@ -134,7 +135,7 @@ BOOST_AUTO_TEST_CASE(it_follows_distance_and_direction_in_spite_of_odd_samples)
   std::vector<double> densities;
   for (const Density_sample& s : samples)
     densities.push_back(s.density);
-  const double middle = median(densities);
+  const double middle = pcs::internal::lower_median(densities);
   Density_field field;
   field.learn(samples);
   BOOST_TEST_REQUIRE(field.is_known());

@@ -5,6 +5,8 @@
 #ifndef PCS_SKELETON_AXES_CHAIN_FIT_H
 #define PCS_SKELETON_AXES_CHAIN_FIT_H
 
+#include <pcs/core/median.h>
+#include <pcs/internal/constants.h>
 #include <pcs/skeleton/axes/Axis_fit.h>
 #include <pcs/skeleton/axes/Axis_oval.h>
 #include <pcs/skeleton/axes/Chain_options.h>
@@ -149,8 +151,7 @@ inline void Chain_fit::start_at_circles(Axis_fit& fit) const
     const bool is_good = c.radius > m_rules.circle_noise * m_set.noise &&
                          c.deviation < m_rules.circle_deviation * c.radius &&
                          covered_sectors(plane, c.center) >= m_rules.sectors;
-    const double expected =
-        2 * 3.14159265358979323846 * c.radius * length * m_set.density_at(axis, k);
+    const double expected = 2 * pcs::internal::pi * c.radius * length * m_set.density_at(axis, k);
     if (is_good && double(plane.size()) >= m_rules.expected_share * expected)
       circles[k] = c;
   }
@@ -383,13 +384,14 @@ inline void Chain_fit::round_ovals(Axis_fit& fit) const
   std::vector<double> radii, facing;
   for (const Axis_node& node : fit.axis())
     radii.push_back(node.radius);
-  if (median(radii) < std::max(rules.thickness * m_set.noise, rules.spacings * m_scan.spacing))
+  if (pcs::internal::lower_median(radii) <
+      std::max(rules.thickness * m_set.noise, rules.spacings * m_scan.spacing))
     return;
   const Section_visibility sides(m_view, fit);
   for (std::size_t k = 0; k < radii.size(); ++k)
     if (sides.count[k] > 0)
       facing.push_back(sides.normal[k].norm());
-  if (facing.empty() || median(facing) < rules.one_sided)
+  if (facing.empty() || pcs::internal::lower_median(facing) < rules.one_sided)
     return;
   Axis_oval oval(fit.axis());
   const std::vector<Vec3> points = fit.points();

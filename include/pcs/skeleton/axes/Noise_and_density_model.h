@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_AXES_NOISE_AND_DENSITY_MODEL_H
 #define PCS_SKELETON_AXES_NOISE_AND_DENSITY_MODEL_H
 
+#include <pcs/core/median.h>
 #include <pcs/skeleton/axes/fit_fields.h>
 #include <pcs/skeleton/model/Axis_set.h>
 #include <pcs/skeleton/model/Density_field.h>
@@ -44,7 +45,7 @@ public:
   {
     // standard deviation from the median of |e|
     return deviations.size() >= enough_deviations
-               ? std::max(m_least_noise, 1.4826 * median(deviations))
+               ? std::max(m_least_noise, 1.4826 * pcs::internal::lower_median(deviations))
                : 0;
   }
   /// Updates the noise, density and fields of `set` if there are enough new samples.
@@ -64,7 +65,7 @@ public:
         if (s.radius > thick_radius * set.noise)
           thick.push_back(s.density);
       }
-      set.density = median(thick.size() >= enough_densities ? thick : all);
+      set.density = pcs::internal::lower_median(thick.size() >= enough_densities ? thick : all);
       if (double(m_densities.size()) >= field_growth * double(m_samples_of_field)) {
         m_samples_of_field = std::max(m_densities.size(), Density_field::fewest_samples);
         fit_fields(set);

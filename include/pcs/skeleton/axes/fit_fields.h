@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_AXES_FIT_FIELDS_H
 #define PCS_SKELETON_AXES_FIT_FIELDS_H
 
+#include <pcs/core/median.h>
 #include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/model/Density_field.h>
 #include <pcs/skeleton/model/Scan.h>
@@ -76,7 +77,7 @@ inline void Density_field::learn(const std::vector<Density_sample>& all)
     for (std::size_t i = 0; i < rows.size(); ++i)
       errors[i] = std::abs(values[i] - m_middle - m_weights.dot(rows[i]));
     std::vector<double> copy = errors;
-    const double deviation = std::max(least_deviation, 1.4826 * median(copy));
+    const double deviation = std::max(least_deviation, 1.4826 * pcs::internal::lower_median(copy));
     Eigen::Matrix<double, size, size> matrix = Eigen::Matrix<double, size, size>::Identity();
     Row right = Row::Zero();
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -104,7 +105,7 @@ inline void Visibility_field::learn(const std::vector<Density_sample>& all)
     for (std::size_t i = 0; i < samples.size(); ++i)
       errors[i] = (samples[i].facing - (*this)(samples[i].place, samples[i].along)).norm();
     std::vector<double> copy = errors;
-    m_deviation = std::max(least_deviation, median(copy));
+    m_deviation = std::max(least_deviation, pcs::internal::lower_median(copy));
     Matrix matrix = Matrix::Identity();
     Weights right = Weights::Zero();
     for (std::size_t i = 0; i < samples.size(); ++i) {

@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_AXES_SECTION_PRIORS_H
 #define PCS_SKELETON_AXES_SECTION_PRIORS_H
 
+#include <pcs/core/median.h>
 #include <pcs/skeleton/axes/Axis_fit.h>
 #include <pcs/skeleton/axes/Chain_options.h>
 #include <pcs/skeleton/axes/section_counts.h>
@@ -55,7 +56,8 @@ hidden_factor(const Chain_view& view, const std::vector<double>& counted, const 
   if (ratios.empty())
     return 1;
   const double size = double(ratios.size());
-  const double level = median(ratios) * size / (size + view.rules.hidden_nodes);
+  const double level =
+      pcs::internal::lower_median(ratios) * size / (size + view.rules.hidden_nodes);
   return std::min(view.rules.most_hidden, std::max(1.0, std::exp(level)));
 }
 
@@ -102,7 +104,7 @@ inline std::vector<Radius_prior> taper_priors(const Chain_view& view,
     place[k] = place[k - 1] + (axis[k].point - axis[k - 1].point).norm();
   for (std::size_t k = 0; k < axis.size() && place[k] <= rules.taper_from * place.back(); ++k)
     radii.push_back(axis[k].radius);
-  const double base = median(radii);
+  const double base = pcs::internal::lower_median(radii);
   length = std::max(length, place.back());
   if (!(length > 0) || base >= rules.thick * view.scan.spacing)
     return priors;

@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_CLUTTER_TERRAIN_H
 #define PCS_SKELETON_CLUTTER_TERRAIN_H
 
+#include <pcs/core/median.h>
 #include <pcs/skeleton/model/Scan.h>
 
 #include <Eigen/Core>
@@ -137,10 +138,9 @@ public:
     }
     if (distances.empty())
       return 0;
-    const auto at =
-        distances.begin() + static_cast<std::ptrdiff_t>(0.9 * double(distances.size() - 1));
-    std::nth_element(distances.begin(), at, distances.end());
-    return *at;
+    return pcs::internal::value_of_rank(
+        distances,
+        static_cast<std::size_t>(0.9 * double(distances.size() - 1)));
   }
 
   /// Replaces the surface in a disc around `center`, the foot of a stem, by a plane fitted to the

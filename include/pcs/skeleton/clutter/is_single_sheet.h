@@ -5,6 +5,8 @@
 #ifndef PCS_SKELETON_CLUTTER_IS_SINGLE_SHEET_H
 #define PCS_SKELETON_CLUTTER_IS_SINGLE_SHEET_H
 
+#include <pcs/core/median.h>
+#include <pcs/internal/constants.h>
 #include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/model/Scan.h>
 #include <pcs/skeleton/model/Slab_shape.h>
@@ -57,9 +59,8 @@ struct Sheet_disc
     }
     if (places.empty())
       return;
-    const auto at = distance.begin() + static_cast<std::ptrdiff_t>(0.9 * double(distance.size()));
-    std::nth_element(distance.begin(), at, distance.end());
-    radius = *at;
+    radius = pcs::internal::value_of_rank(distance,
+                                          static_cast<std::size_t>(0.9 * double(distance.size())));
     places.erase(std::remove_if(places.begin(),
                                 places.end(),
                                 [&](const auto& p) { return std::hypot(p[0], p[1]) > radius; }),
@@ -88,7 +89,7 @@ struct Sheet_disc
   }
 
 private:
-  double area() const { return 3.14159265358979323846 * radius * radius; }
+  double area() const { return pcs::internal::pi * radius * radius; }
 };
 
 /// Whether a tree is upright or lying on a sheet: few points, but high relative to their width.
@@ -101,15 +102,14 @@ inline bool carries_a_tree(const Scan& scan,
   for (const Index i : points)
     heights.push_back(normal.dot(scan.points[i]));
   std::vector<double> sorted = heights;
-  const double level = median(sorted);
+  const double level = pcs::internal::lower_median(sorted);
   for (double& h : heights)
     h = std::abs(h - level);
   sorted = heights;
-  const double usual = median(sorted);
-  const auto at =
-      sorted.begin() + static_cast<std::ptrdiff_t>(rules.standing * double(sorted.size()));
-  std::nth_element(sorted.begin(), at, sorted.end());
-  const double high = *at;
+  const double usual = pcs::internal::lower_median(sorted);
+  const double high = pcs::internal::value_of_rank(
+      sorted,
+      static_cast<std::size_t>(rules.standing * double(sorted.size())));
   if (!(high > rules.outstanding * usual))
     return false;
   std::vector<Index> standing;

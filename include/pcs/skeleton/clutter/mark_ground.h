@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_CLUTTER_MARK_GROUND_H
 #define PCS_SKELETON_CLUTTER_MARK_GROUND_H
 
+#include <pcs/core/median.h>
 #include <pcs/skeleton/clutter/Terrain.h>
 #include <pcs/skeleton/clutter/is_single_sheet.h>
 #include <pcs/skeleton/graph/Neighbor_graph.h>
@@ -73,13 +74,9 @@ struct Low_bins
         heights.push_back(static_cast<float>(height_of[i]));
     if (heights.empty())
       return;
-    const auto quantile = [&](std::size_t k) {
-      const auto at = heights.begin() + static_cast<std::ptrdiff_t>(k);
-      std::nth_element(heights.begin(), at, heights.end());
-      return double(*at);
-    };
-    low = quantile(heights.size() / 1000);
-    high = quantile(heights.size() - 1 - heights.size() / 1000);
+    const std::size_t tail = heights.size() / 1000;
+    low = double(pcs::internal::value_of_rank(heights, tail));
+    high = double(pcs::internal::value_of_rank(heights, heights.size() - 1 - tail));
     height = std::max(rules.bin * (high - low), 4 * scan.spacing);
     for (Index i = 0; i < n; ++i) {
       const double b = (height_of[i] - low) / height;

@@ -6,6 +6,7 @@
 #define PCS_SKELETON_FOREST_STAND_IMPL_H
 
 #include <pcs/core/Skeleton_options.h>
+#include <pcs/core/median.h>
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Session.h>
 #include <pcs/skeleton/Session_options.h>
@@ -83,7 +84,7 @@ bool find_stand(const std::vector<Vec3>& input,
       spacings.push_back(scan.local_spacing[i]);
   if (spacings.empty())
     spacings = scan.local_spacing;
-  const double spacing = median(spacings);
+  const double spacing = pcs::internal::lower_median(spacings);
   stand.spacing_of_input.resize(input.size());
   for (std::size_t i = 0; i < input.size(); ++i) {
     stand.tree_of_input[i] = finder.tree_of_point()[point_of(i)];
@@ -104,7 +105,7 @@ sparse_stems(const Stand_state& coarse, const Stand_options& rules, const Stand_
     if (coarse.stem_of_input[i] != none)
       spacings[coarse.stem_of_input[i]].push_back(stand.spacing_of_input[i]);
   for (std::size_t s = 0; s < result.size(); ++s)
-    result[s] = double(median(spacings[s])) >= rules.sparse;
+    result[s] = double(pcs::internal::lower_median(spacings[s])) >= rules.sparse;
   return result;
 }
 

@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_LAYERS_JOIN_SPARSE_LAYERS_H
 #define PCS_SKELETON_LAYERS_JOIN_SPARSE_LAYERS_H
 
+#include <pcs/core/median.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/skeleton/graph/Neighbor_graph.h>
 #include <pcs/skeleton/model/Scan.h>
@@ -57,11 +58,12 @@ std::vector<std::uint8_t> doublings_of_layers(const Scan& scan,
         others[count++] = scan.local_spacing[j];
     if (count == 0)
       return;
-    const auto middle = others.begin() + static_cast<std::ptrdiff_t>(count / 2);
-    std::nth_element(others.begin(), middle, others.begin() + static_cast<std::ptrdiff_t>(count));
+    const double middle =
+        pcs::internal::upper_median(others.begin(),
+                                    others.begin() + static_cast<std::ptrdiff_t>(count));
     // the cost of long steps exceeds their length
     const double wanted =
-        rules.thinnest * *middle * std::max(1.0, *middle / (cheap_step * scan.spacing));
+        rules.thinnest * middle * std::max(1.0, middle / (cheap_step * scan.spacing));
     while (level[i] < rules.doublings && std::ldexp(thickness, level[i]) < wanted)
       ++level[i];
   });

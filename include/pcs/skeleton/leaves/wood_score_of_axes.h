@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_LEAVES_WOOD_SCORE_OF_AXES_H
 #define PCS_SKELETON_LEAVES_WOOD_SCORE_OF_AXES_H
 
+#include <pcs/core/median.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/graph/shortest_paths.h>
@@ -137,9 +138,7 @@ void add_evidence_of_points(const Scan& scan,
   e.residual /= count * scan.spacing;
   e.local_spacing /= count * scan.spacing;
   e.leaves /= std::max(1.0, neighbors);
-  const auto high = of_points.begin() + static_cast<std::ptrdiff_t>(of_points.size() * 4 / 5);
-  std::nth_element(of_points.begin(), high, of_points.end());
-  e.high_likeness = double(*high);
+  e.high_likeness = double(pcs::internal::value_of_rank(of_points, of_points.size() * 4 / 5));
   std::sort(segments.begin(), segments.end());
   segments.erase(std::unique(segments.begin(), segments.end()), segments.end());
   e.seen = double(segments.size()) / std::max(1.0, double(axis.size()) - 1);

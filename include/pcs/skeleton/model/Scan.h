@@ -9,7 +9,6 @@
 #include <pcs/neighborhood/Nearest_neighbors.h>
 #include <pcs/skeleton/model/Scan_frame.h>
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -50,17 +49,6 @@ struct Scan
 
   std::size_t size() const { return points.size(); }
 };
-
-/// Returns the lower median; 0 if there are no values. Reorders `values`.
-template <class T>
-T median(std::vector<T>& values)
-{
-  if (values.empty())
-    return T(0);
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 } // namespace skeleton
 } // namespace pcs

@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_RADII_MEASURE_GIVEN_H
 #define PCS_SKELETON_RADII_MEASURE_GIVEN_H
 
+#include <pcs/core/median.h>
 #include <pcs/skeleton/model/Branch_grouper.h>
 #include <pcs/skeleton/model/Branch_tree.h>
 #include <pcs/skeleton/model/Given_skeleton.h>
@@ -29,9 +30,8 @@ namespace skeleton {
 struct Given_skeleton_options
 {
   double reach = 2,
-         reach_offset =
-             4;    ///< largest distance of points from the edge, in radii plus spacings [-]
-  int sectors = 5; ///< of 12 that must have points [count]
+         reach_offset = 4; ///< largest distance of points from the edge, in radii plus spacings [-]
+  int sectors = 5;         ///< of 12 that must have points [count]
   double deviation = 0.25; ///< largest deviation of a circle, in radii
   double widening =
       /// largest radius of a circle or of a detected branch, in median distances from the edge [-]
@@ -39,8 +39,8 @@ struct Given_skeleton_options
   double inside =
       1.3; ///< nodes within this many parent radii of the base lie inside the parent [-]
   std::size_t lowest_count = 3; ///< least number of points for the radius of an edge [count]
-  double thicker = 1.5; ///< largest ratio of a circle to the last one below [-]
-  double slack = 1.5;   ///< largest change of a radius by points without a circle, as a factor [-]
+  double thicker = 1.5;         ///< largest ratio of a circle to the last one below [-]
+  double slack = 1.5; ///< largest change of a radius by points without a circle, as a factor [-]
   double found_thicker =
       1.3; ///< largest ratio of a detected branch to the radius from the points of the edge [-]
   double aligned = 0.7; ///< least cosine between an edge and a detected branch along it [-]
@@ -263,7 +263,7 @@ private:
       for (const Index i : points[v])
         distances.push_back(distance(v, m_scan.points[i]));
       const double count = double(distances.size());
-      m_radius[v] = median(distances);
+      m_radius[v] = pcs::internal::lower_median(distances);
       double deviation = 0;
       for (const double x : distances)
         deviation += std::abs(x - m_radius[v]) / count;

@@ -5,6 +5,8 @@
 #ifndef PCS_SKELETON_RADII_REBUILD_TRUNK_BASE_H
 #define PCS_SKELETON_RADII_REBUILD_TRUNK_BASE_H
 
+#include <pcs/core/median.h>
+#include <pcs/internal/constants.h>
 #include <pcs/skeleton/model/Branch_tree.h>
 #include <pcs/skeleton/model/Scan.h>
 #include <pcs/skeleton/radii/bound_radii.h>
@@ -22,13 +24,13 @@ namespace skeleton {
 /// Options for the reconstruction of the trunk base.
 struct Trunk_base_options
 {
-  double sound = 8;      ///< trunk length that defines the direction below it, in radii [-] ...
-  double proven = 0.8;   ///< ... with this least fraction of its length proven by points [-]
-  double shortest = 2;   ///< height below which a foot remains unchanged, in radii [-]
-  double highest = 0.25; ///< largest height of a foot, as a fraction of the tree height [-]
-  double steep = 0.7;    ///< least rise per length of the trunk above [-]
-  double reach = 2.5;    ///< largest distance of points of the foot, in radii [-]
-  double slab = 0.25;    ///< half thickness of a section, in radii ...
+  double sound = 8;         ///< trunk length that defines the direction below it, in radii [-] ...
+  double proven = 0.8;      ///< ... with this least fraction of its length proven by points [-]
+  double shortest = 2;      ///< height below which a foot remains unchanged, in radii [-]
+  double highest = 0.25;    ///< largest height of a foot, as a fraction of the tree height [-]
+  double steep = 0.7;       ///< least rise per length of the trunk above [-]
+  double reach = 2.5;       ///< largest distance of points of the foot, in radii [-]
+  double slab = 0.25;       ///< half thickness of a section, in radii ...
   double slab_spacings = 2; ///< ... and in spacings, whichever is larger [-]
   int sectors = 8;          ///< of 24 that must have points [count]
 };
@@ -43,7 +45,7 @@ public:
 
   void add(double x, double y)
   {
-    const double turn = std::atan2(y, x) / (2 * 3.14159265358979323846) + 0.5;
+    const double turn = std::atan2(y, x) / (2 * pcs::internal::pi) + 0.5;
     const std::size_t s = static_cast<std::size_t>(turn * double(number_of_sectors));
     m_distances[s % number_of_sectors].push_back(std::hypot(x, y));
   }
@@ -60,7 +62,7 @@ public:
     constexpr std::size_t n = number_of_sectors;
     std::array<double, n> middle{};
     for (std::size_t s = 0; s < n; ++s)
-      middle[s] = m_distances[s].empty() ? 0 : median(m_distances[s]);
+      middle[s] = pcs::internal::lower_median(m_distances[s]);
     double sum = 0;
     for (std::size_t s = 0; s < n; ++s) {
       std::size_t left = 0, right = 0;

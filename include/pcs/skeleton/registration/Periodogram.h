@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_REGISTRATION_PERIODOGRAM_H
 #define PCS_SKELETON_REGISTRATION_PERIODOGRAM_H
 
+#include <pcs/core/median.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/skeleton/registration/Scan_grid.h>
 
@@ -114,7 +115,7 @@ public:
     for (std::size_t s = 0; s < size(); ++s) {
       for (std::size_t h = 0; h < n; ++h)
         values[h] = std::abs(double(m_contrast[h * size() + s]));
-      const double deviation = std::max(chance, 1.4826 * median(values));
+      const double deviation = std::max(chance, 1.4826 * pcs::internal::lower_median(values));
       for (std::size_t h = 0; h < n; ++h) {
         const double contrast = m_contrast[h * size() + s];
         if (contrast >= evidence * deviation)

@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_REGISTRATION_POINT_PAIRS_H
 #define PCS_SKELETON_REGISTRATION_POINT_PAIRS_H
 
+#include <pcs/core/median.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/skeleton/model/Scan.h>
 
@@ -102,7 +103,7 @@ private:
           least = std::min(least, (m_points[i] - m_points[j]).norm());
       distances.push_back(least);
     }
-    return median(distances);
+    return pcs::internal::lower_median(distances);
   }
 
   const std::vector<Vec3>& m_points;

@@ -7,6 +7,7 @@
 
 #include <pcs/core/Skeleton_report.h>
 #include <pcs/core/Status.h>
+#include <pcs/core/median.h>
 #include <pcs/skeleton/model/Axis_set.h>
 #include <pcs/skeleton/model/Branch_tree.h>
 #include <pcs/skeleton/model/Scan.h>
@@ -34,9 +35,8 @@ elevation_of_root(const Scan& scan, const Branch_tree& tree, const Vec3& up, con
       heights.push_back(up.dot(scan.points[i]));
   if (heights.empty() || tree.nodes.empty())
     return 0;
-  const auto low = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 500);
-  std::nth_element(heights.begin(), low, heights.end());
-  return std::max(0.0, up.dot(tree.nodes[0].point) - *low);
+  const double low = pcs::internal::value_of_rank(heights, heights.size() / 500);
+  return std::max(0.0, up.dot(tree.nodes[0].point) - low);
 }
 
 /*!

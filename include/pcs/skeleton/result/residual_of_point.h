@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_RESULT_RESIDUAL_OF_POINT_H
 #define PCS_SKELETON_RESULT_RESIDUAL_OF_POINT_H
 
+#include <pcs/core/median.h>
 #include <pcs/skeleton/model/Branch_tree.h>
 #include <pcs/skeleton/model/Scan.h>
 #include <pcs/skeleton/model/nearest_edge.h>
@@ -48,7 +49,7 @@ median_residual(const Scan& scan, const Branch_tree& tree, const std::vector<Ind
   for (std::size_t i = 0; i < n; i += step)
     if (tree.node_of_point[i] != none)
       distances.push_back(std::abs(residual_of_point(scan, tree, next, static_cast<Index>(i))));
-  return median(distances);
+  return pcs::internal::lower_median(distances);
 }
 
 } // namespace skeleton

@@ -6,6 +6,7 @@
 #define PCS_SKELETON_SCAN_POINT_LABELS_H
 
 #include <pcs/core/Skeleton_report.h>
+#include <pcs/core/median.h>
 #include <pcs/skeleton/model/Scan.h>
 #include <pcs/skeleton/scan/prepare_scan.h>
 
@@ -131,9 +132,7 @@ public:
         heights.push_back(up.dot(m_scan.points[i]));
     if (heights.empty())
       return std::numeric_limits<double>::lowest();
-    const auto at = heights.end() - 1 - static_cast<std::ptrdiff_t>(heights.size() / 1000);
-    std::nth_element(heights.begin(), at, heights.end());
-    return *at;
+    return pcs::internal::value_of_rank(heights, heights.size() - 1 - heights.size() / 1000);
   }
 
 private:

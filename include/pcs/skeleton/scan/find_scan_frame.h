@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_SCAN_FIND_SCAN_FRAME_H
 #define PCS_SKELETON_SCAN_FIND_SCAN_FRAME_H
 
+#include <pcs/core/median.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/skeleton/model/Scan.h>
 #include <pcs/skeleton/model/Scan_frame.h>
@@ -12,7 +13,6 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -92,9 +92,7 @@ Scan_frame find_scan_frame(const std::vector<Vec3>& input, const Vec3& up)
     pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
       distance[i] = (place(input[i]) - center).squaredNorm();
     });
-    const auto middle = distance.begin() + static_cast<std::ptrdiff_t>(n / 2);
-    std::nth_element(distance.begin(), middle, distance.end());
-    reach = std::sqrt(*middle);
+    reach = std::sqrt(pcs::internal::upper_median(distance));
   }
   frame.origin = is_extended ? Vec3(low + extent * center) : low;
   if (is_extended)

@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_SCAN_PREPARE_SCAN_H
 #define PCS_SKELETON_SCAN_PREPARE_SCAN_H
 
+#include <pcs/core/median.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/neighborhood/Nearest_neighbors.h>
 #include <pcs/neighborhood/spatial_order.h>
@@ -113,7 +114,7 @@ void find_neighbors(Scan& scan)
       scan.local_spacing[i] = fourth;
     }
   });
-  scan.spacing = median(nearest);
+  scan.spacing = pcs::internal::lower_median(nearest);
 }
 
 /// Returns the distance within which points are copies of each other, if most of the scan is
@@ -129,7 +130,7 @@ inline double reach_of_copies(const Scan& scan)
     std::vector<double> distances;
     for (std::size_t i = 0; i < n; i += step)
       distances.push_back((scan.points[i] - scan.points[scan.neighbors[i][k]]).norm());
-    const double usual = median(distances);
+    const double usual = pcs::internal::lower_median(distances);
     if (k > 0 && usual > factor * before)
       return std::sqrt(before * usual);
     before = usual;
@@ -174,7 +175,7 @@ void mark_outliers(const std::vector<std::uint8_t>& is_part, Scan& scan)
   for (std::size_t i = 0; i < n; ++i)
     if (is_part[i])
       spacings.push_back(scan.local_spacing[i]);
-  const double usual = median(spacings);
+  const double usual = pcs::internal::lower_median(spacings);
   pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
     if (!is_part[i])
       return;
@@ -189,8 +190,9 @@ void mark_outliers(const std::vector<std::uint8_t>& is_part, Scan& scan)
     for (const Index j : scan.neighbors[i])
       if (j != none)
         others[count++] = scan.local_spacing[j];
-    std::sort(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(count));
-    const double theirs = count > 0 ? others[count / 2] : 0;
+    const double theirs =
+        pcs::internal::upper_median(others.begin(),
+                                    others.begin() + static_cast<std::ptrdiff_t>(count));
     scan.is_outlier[i] = own > outlier_factor * theirs || own > outlier_far_factor * usual;
   });
 }
@@ -244,7 +246,7 @@ void measure_part(const std::vector<std::uint8_t>& is_part, Scan& scan)
   for (std::size_t i = 0; i < scan.size(); ++i)
     if (is_part[i])
       nearest.push_back((scan.points[i] - scan.points[scan.neighbors[i][0]]).norm());
-  scan.spacing = median(nearest);
+  scan.spacing = pcs::internal::lower_median(nearest);
   internal::mark_outliers<ConcurrencyTag>(is_part, scan);
 }
 
