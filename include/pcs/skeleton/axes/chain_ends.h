@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_AXES_CHAIN_ENDS_H
 #define PCS_SKELETON_AXES_CHAIN_ENDS_H
 
+#include <pcs/internal/constants.h>
 #include <pcs/skeleton/axes/Axis_fit.h>
 #include <pcs/skeleton/axes/Chain_options.h>
 
@@ -154,6 +155,22 @@ inline double steady_radius(const Chain_view& view, const Axis_fit& fit)
   return thickest;
 }
 
+namespace internal {
+
+/// Projects the points onto an axis whose first `shift` segments were removed.
+inline void project_after_cut(Index shift, Axis_fit& fit)
+{
+  std::vector<Vec3> points = fit.points();
+  std::vector<Index> segments;
+  segments.reserve(points.size());
+  for (const Axis_place& p : fit.places())
+    segments.push_back(p.segment > shift ? p.segment - shift : 0);
+  fit.set_points(std::move(points), std::move(segments));
+  fit.project();
+}
+
+} // namespace internal
+
 /*!
   Removes a thin base. Wood tapers: an axis whose base is much thinner than a hollow stretch farther
   out was reached by a path through another object, such as a twig in contact with it. The axis then
@@ -181,12 +198,7 @@ inline void cut_thin_base(const Chain_view& view, Axis_fit& fit)
     return;
   const Index shift = static_cast<Index>(begin - axis.begin());
   axis.erase(axis.begin(), begin);
-  std::vector<Vec3> points = fit.points();
-  std::vector<Index> segments;
-  for (const Axis_place& p : fit.places())
-    segments.push_back(p.segment > shift ? p.segment - shift : 0);
-  fit.set_points(std::move(points), std::move(segments));
-  fit.project();
+  internal::project_after_cut(shift, fit);
 }
 
 /// Returns the number of nodes before a tip whose radius collapses within a few radii, as where a
@@ -207,71 +219,87 @@ inline std::size_t size_without_collapse(const Chain_options& rules, const Axis&
   return size;
 }
 
+namespace internal {
+
+/// The points near the surface of each segment of an axis.
+struct Segment_coverage
+{
+  std::vector<double> count;           ///< number of points
+  std::vector<double> lowest, highest; ///< bounds of their parameters on the segment [-]
+
+  Segment_coverage(const Chain_view& view, const Axis_fit& fit)
+    : count(fit.axis().size() - 1, 0), lowest(count.size(), 1), highest(count.size(), 0)
+  {
+    for (const Axis_place& p : fit.places()) {
+      const double r = radius_at(fit.axis(), p);
+      if (p.distance >
+          r + std::max(view.rules.cover_offset * view.scan.spacing, view.rules.cover_factor * r))
+        continue;
+      if (p.share < 0 || p.share > 1)
+        continue;
+      count[p.segment] += 1;
+      lowest[p.segment] = std::min(lowest[p.segment], p.share);
+      highest[p.segment] = std::max(highest[p.segment], p.share);
+    }
+  }
+
+  /// Whether segment `s` has enough of the expected points to extend the axis.
+  bool is_supported(const Chain_view& view, const Axis& axis, std::size_t s) const
+  {
+    const double expected = 2 * pcs::internal::pi * axis[s].radius * view.set.density_at(axis, s) *
+                            (axis[s + 1].point - axis[s].point).norm();
+    return count[s] >= std::max(1.0, view.rules.extension_share * expected);
+  }
+};
+
+/// Part of an axis: sums of a segment and a parameter in [0, 1].
+struct Axis_range
+{
+  double begin = 0, end = 0;
+};
+
+/// Returns the part of an axis from `base` to `tip` that has points, extended outwards over
+/// supported segments; an empty range if there are no points.
+inline Axis_range find_covered_range(const Chain_view& view,
+                                     const Axis& axis,
+                                     const Segment_coverage& coverage,
+                                     const Vec3& base,
+                                     const Vec3& tip)
+{
+  std::size_t from = nearest_place(axis, base).segment, to = nearest_place(axis, tip).segment;
+  if (from > to)
+    std::swap(from, to);
+  while (from < to && coverage.count[from] == 0)
+    ++from;
+  while (to > from && coverage.count[to] == 0)
+    --to;
+  if (coverage.count[from] == 0)
+    return {};
+  while (from > 0 && coverage.is_supported(view, axis, from - 1))
+    --from;
+  while (to + 1 < coverage.count.size() && coverage.is_supported(view, axis, to + 1))
+    ++to;
+  return {double(from) + coverage.lowest[from], double(to) + coverage.highest[to]};
+}
+
+} // namespace internal
+
 /// Trims both ends to the extent of the points: from the projections of `base` and `tip` outwards
 /// as far as segments have enough points.
 inline void trim(const Chain_view& view, const Vec3& base, const Vec3& tip, Axis_fit& fit)
 {
   Axis& axis = fit.axis();
-  const std::size_t segments_of_axis = axis.size() - 1;
-  std::vector<double> count(segments_of_axis, 0), lowest(segments_of_axis, 1),
-      highest(segments_of_axis, 0);
-  for (const Axis_place& p : fit.places()) {
-    const double r = radius_at(axis, p);
-    if (p.distance >
-        r + std::max(view.rules.cover_offset * view.scan.spacing, view.rules.cover_factor * r))
-      continue;
-    if (p.share < 0 || p.share > 1)
-      continue;
-    count[p.segment] += 1;
-    lowest[p.segment] = std::min(lowest[p.segment], p.share);
-    highest[p.segment] = std::max(highest[p.segment], p.share);
-  }
-  const auto is_supported = [&](std::size_t s) {
-    const double expected = 2 * 3.14159265358979323846 * axis[s].radius *
-                            view.set.density_at(axis, s) *
-                            (axis[s + 1].point - axis[s].point).norm();
-    return count[s] >= std::max(1.0, view.rules.extension_share * expected);
-  };
-  std::size_t from = nearest_place(axis, base).segment, to = nearest_place(axis, tip).segment;
-  if (from > to)
-    std::swap(from, to);
-  while (from < to && count[from] == 0)
-    ++from;
-  while (to > from && count[to] == 0)
-    --to;
-  if (count[from] == 0)
-    return;
-  while (from > 0 && is_supported(from - 1))
-    --from;
-  while (to + 1 < segments_of_axis && is_supported(to + 1))
-    ++to;
-  const double begin = double(from) + lowest[from], end = double(to) + highest[to];
-  Axis result;
-  const auto cut = [&](double a) {
-    const std::size_t s = std::min(axis.size() - 2, static_cast<std::size_t>(a));
-    Axis_node node = a - double(s) < 0.5 ? axis[s] : axis[s + 1];
-    const double t = a - double(s);
-    node.point = (1 - t) * axis[s].point + t * axis[s + 1].point;
-    node.radius = (1 - t) * axis[s].radius + t * axis[s + 1].radius;
-    return node;
-  };
+  const auto [begin, end] =
+      internal::find_covered_range(view, axis, internal::Segment_coverage(view, fit), base, tip);
   if (!(end > begin))
     return;
   fit.estimate_errors();
-  result.push_back(cut(begin));
+  Axis result{node_at(axis, begin)};
   for (std::size_t k = static_cast<std::size_t>(begin) + 1; double(k) < end; ++k)
     result.push_back(axis[k]);
-  result.push_back(cut(end));
+  result.push_back(node_at(axis, end));
   axis = std::move(result);
-  std::vector<Vec3> points = fit.points();
-  std::vector<Index> segments;
-  segments.reserve(points.size());
-  for (const Axis_place& p : fit.places()) {
-    const Index shift = static_cast<Index>(begin);
-    segments.push_back(p.segment > shift ? p.segment - shift : 0);
-  }
-  fit.set_points(std::move(points), std::move(segments));
-  fit.project();
+  internal::project_after_cut(static_cast<Index>(begin), fit);
 }
 
 } // namespace skeleton

@@ -56,75 +56,98 @@ private:
     double at; ///< segment + parameter in [0, 1]
     Index axis;
   };
+  /// An axis of which nodes are being copied, from the joint with its parent outwards.
+  struct Copied_axis
+  {
+    Index index;
+    const Axis& nodes;
+    bool is_reversed;
+    std::vector<Inserted> seats; ///< joints of the child axes, in the order of copying
+    std::size_t next = 0;        ///< first joint that is not inserted
+    Index before = none;         ///< last node of the tree on this axis
+  };
 
   /// Copies the axes in depth-first order from the root, and inserts a node at each joint.
   void add_axes(Index root)
   {
-    std::vector<std::pair<Index, Index>> stack{{root, none}}; // axis, parent node
-    while (!stack.empty()) {
-      const Index a = stack.back().first, seat = stack.back().second; // captured by a lambda
-      stack.pop_back();
-      const Axis& axis = m_set.axes[a].axis;
-      std::vector<Inserted> seats;
-      for (const Index c : m_children[a]) {
-        const Axis_place& p = m_joints[c].place;
-        seats.push_back({double(p.segment) + std::min(1.0, std::max(0.0, p.share)), c});
-      }
-      std::sort(seats.begin(), seats.end(), [](const Inserted& x, const Inserted& y) {
-        return x.at != y.at ? x.at < y.at : x.axis < y.axis;
-      });
-      const bool is_reversed = m_joints[a].is_reversed;
-      if (is_reversed)
-        std::reverse(seats.begin(), seats.end());
-      Index before = seat;
-      if (seat != none) { // a separate node on the axis of the parent
-        Branch_node base;
-        static_cast<Axis_node&>(base) = is_reversed ? axis.back() : axis.front();
-        base.point = m_tree.nodes[seat].point;
-        base.is_measured = false;
-        before = add(base, seat);
-      }
-      m_first_node[a] = static_cast<Index>(m_tree.nodes.size());
-      m_node_of_place.emplace_back();
-      auto& places = m_node_of_place.back();
-      m_places_of_axis.resize(m_set.axes.size(), none);
-      m_places_of_axis[a] = static_cast<Index>(m_node_of_place.size() - 1);
-      places.assign(axis.size(), none);
-      std::size_t next = 0;
-      const auto add_seats = [&](double until) { // all joints up to `until`
-        for (; next < seats.size() &&
-               (is_reversed ? seats[next].at >= until : seats[next].at <= until);
-             ++next) {
-          const double at = seats[next].at;
-          const std::size_t s = std::min(axis.size() - 2, static_cast<std::size_t>(at));
-          const double t = at - double(s);
-          Branch_node node;
-          static_cast<Axis_node&>(node) = t < 0.5 ? axis[s] : axis[s + 1];
-          node.point = (1 - t) * axis[s].point + t * axis[s + 1].point;
-          node.radius = (1 - t) * axis[s].radius + t * axis[s + 1].radius;
-          const bool is_there = before != none && before >= m_first_node[a] &&
-                                (m_tree.nodes[before].point - node.point).norm() < 1e-3 * m_spacing;
-          if (!is_there)
-            before = add(node, before);
-          stack.emplace_back(seats[next].axis, before);
-        }
-      };
-      for (std::size_t i = 0; i < axis.size(); ++i) {
-        const std::size_t k = is_reversed ? axis.size() - 1 - i : i;
-        // a joint between the nodes comes before the next node
-        if (i > 0)
-          add_seats(is_reversed ? double(k) + 1e-9 : double(k) - 1e-9);
-        Branch_node node;
-        static_cast<Axis_node&>(node) = axis[k];
-        const bool is_there =
-            i > 0 && (m_tree.nodes[before].point - node.point).norm() < 1e-3 * m_spacing;
-        if (!is_there)
-          before = add(node, before);
-        places[k] = before;
-        add_seats(double(k));
-      }
-      add_seats(is_reversed ? -1.0 : double(axis.size()));
+    m_places_of_axis.assign(m_set.axes.size(), none);
+    m_stack = {{root, none}};
+    while (!m_stack.empty()) {
+      const auto [axis, seat] = m_stack.back();
+      m_stack.pop_back();
+      add_axis(axis, seat);
     }
+  }
+
+  /// Copies axis `a`, which begins at node `seat` of its parent.
+  void add_axis(Index a, Index seat)
+  {
+    const Axis& axis = m_set.axes[a].axis;
+    const bool is_reversed = m_joints[a].is_reversed;
+    Copied_axis copy{a, axis, is_reversed, seats_on(a)};
+    if (seat != none) // a separate node on the axis of the parent
+      copy.before = add_base(is_reversed ? axis.back() : axis.front(), seat);
+    m_first_node[a] = static_cast<Index>(m_tree.nodes.size());
+    m_places_of_axis[a] = static_cast<Index>(m_node_of_place.size());
+    m_node_of_place.emplace_back(axis.size(), none);
+    for (std::size_t i = 0; i < axis.size(); ++i) {
+      const std::size_t k = is_reversed ? axis.size() - 1 - i : i;
+      // a joint between the nodes comes before the next node
+      if (i > 0)
+        add_seats(is_reversed ? double(k) + 1e-9 : double(k) - 1e-9, copy);
+      add_unless_there(axis[k], copy);
+      m_node_of_place.back()[k] = copy.before;
+      add_seats(double(k), copy);
+    }
+    add_seats(is_reversed ? -1.0 : double(axis.size()), copy);
+  }
+
+  /// Returns the joints of the children of axis `a` in the order of copying.
+  std::vector<Inserted> seats_on(Index a) const
+  {
+    std::vector<Inserted> seats;
+    for (const Index c : m_children[a]) {
+      const Axis_place& p = m_joints[c].place;
+      seats.push_back({double(p.segment) + std::min(1.0, std::max(0.0, p.share)), c});
+    }
+    std::sort(seats.begin(), seats.end(), [](const Inserted& x, const Inserted& y) {
+      return x.at != y.at ? x.at < y.at : x.axis < y.axis;
+    });
+    if (m_joints[a].is_reversed)
+      std::reverse(seats.begin(), seats.end());
+    return seats;
+  }
+
+  Index add_base(const Axis_node& end, Index seat)
+  {
+    Branch_node base;
+    static_cast<Axis_node&>(base) = end;
+    base.point = m_tree.nodes[seat].point;
+    base.is_measured = false;
+    return add(base, seat);
+  }
+
+  /// Inserts all joints up to `until`, and puts their axes on the stack.
+  void add_seats(double until, Copied_axis& copy)
+  {
+    for (; copy.next < copy.seats.size(); ++copy.next) {
+      const auto [at, child] = copy.seats[copy.next];
+      if (copy.is_reversed ? !(at >= until) : !(at <= until))
+        return;
+      add_unless_there(node_at(copy.nodes, at), copy);
+      m_stack.emplace_back(child, copy.before);
+    }
+  }
+
+  /// Adds a node unless the last node of the axis lies at its position.
+  void add_unless_there(const Axis_node& at, Copied_axis& copy)
+  {
+    Branch_node node;
+    static_cast<Axis_node&>(node) = at;
+    const bool is_there = copy.before != none && copy.before >= m_first_node[copy.index] &&
+                          (m_tree.nodes[copy.before].point - node.point).norm() < 1e-3 * m_spacing;
+    if (!is_there)
+      copy.before = add(node, copy.before);
   }
 
   Index add(const Branch_node& node, Index parent)
@@ -154,6 +177,7 @@ private:
   Branch_tree m_tree;
   std::vector<std::vector<Index>> m_children, m_node_of_place;
   std::vector<Index> m_first_node, m_places_of_axis, m_number;
+  std::vector<std::pair<Index, Index>> m_stack; ///< axes to copy, and their parent nodes
 };
 
 } // namespace internal

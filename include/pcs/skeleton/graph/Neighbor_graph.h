@@ -230,6 +230,123 @@ Point_parts connected_parts(const std::vector<std::uint8_t>& is_used, const Link
   return parts;
 }
 
+namespace internal {
+
+/// Joins connected components of points by their shortest links, in rounds of the method of
+/// Boruvka.
+class Gap_closer
+{
+public:
+  Gap_closer(const Scan& scan,
+             const std::vector<std::uint8_t>& is_used,
+             double widest,
+             const Point_parts& parts)
+    : m_scan(scan),
+      m_is_used(is_used),
+      m_parts(parts),
+      m_widest(widest),
+      m_sets(scan.size()),
+      m_label(parts.part)
+  {
+  }
+
+  Links operator()()
+  {
+    while (m_widest > 0 && label_points()) {
+      find_links();
+      if (!add_links())
+        break;
+    }
+    return std::move(m_across);
+  }
+
+private:
+  /// Shortest link from a component to another one.
+  struct Best
+  {
+    double squared_distance;
+    Link link;
+
+    friend bool operator<(const Best& a, const Best& b)
+    {
+      return a.squared_distance != b.squared_distance ? a.squared_distance < b.squared_distance
+                                                      : a.link < b.link;
+    }
+  };
+
+  /// Labels all points by their components. Returns `false` if there is only one component.
+  bool label_points()
+  {
+    const std::size_t n = m_scan.size();
+    m_size.assign(n, 0);
+    std::size_t number_of_others = 0; // points outside of the largest component
+    for (Index i = 0; i < n; ++i)
+      if (m_is_used[i]) {
+        ++m_size[m_label[i] = m_sets.find(m_parts.part[i])];
+        ++number_of_others;
+      }
+    m_largest = static_cast<Index>(std::max_element(m_size.begin(), m_size.end()) - m_size.begin());
+    number_of_others -= m_size[m_largest];
+    if (number_of_others > n / 8 && !m_cells) // otherwise the cells cost more than they save
+      m_cells.emplace(m_scan.points, m_is_used, m_widest);
+    return number_of_others > 0;
+  }
+
+  /// Finds the shortest link of each component except the largest, in the order of the points.
+  void find_links()
+  {
+    const std::size_t n = m_scan.size();
+    m_best.assign(n, {m_widest * m_widest, {none, none}});
+    const std::vector<Index> around =
+        m_cells ? m_cells->common_label(m_label) : std::vector<Index>();
+    for (Index i = 0; i < n; ++i) {
+      if (!m_is_used[i] || m_label[i] == m_largest ||
+          (m_cells && around[m_cells->cell_of(i)] == m_label[i]))
+        continue;
+      Best& b = m_best[m_label[i]];
+      const auto found =
+          m_scan.search->nearest_if(m_scan.points[i], std::sqrt(b.squared_distance), [&](Index j) {
+            return m_is_used[j] && m_label[j] != m_label[i];
+          });
+      if (found.squared_distance < b.squared_distance)
+        b = {found.squared_distance, {std::min(i, found.index), std::max(i, found.index)}};
+    }
+  }
+
+  /// Adds the links that join two components, shortest first. Returns `false` if there are none.
+  bool add_links()
+  {
+    std::vector<Best> chosen;
+    for (const Best& b : m_best)
+      if (b.link.first != none)
+        chosen.push_back(b);
+    std::sort(chosen.begin(), chosen.end());
+    bool is_joined = false;
+    for (const Best& b : chosen) {
+      const Index one = m_parts.part[b.link.first], other = m_parts.part[b.link.second];
+      if (m_sets.find(one) != m_sets.find(other)) {
+        m_sets.unite(one, other);
+        m_across.push_back(b.link);
+        is_joined = true;
+      }
+    }
+    return is_joined;
+  }
+
+  const Scan& m_scan;
+  const std::vector<std::uint8_t>& m_is_used;
+  const Point_parts& m_parts;
+  double m_widest;
+  Point_sets m_sets; ///< of components
+  std::vector<Index> m_label, m_size;
+  Index m_largest = none; ///< label of the largest component
+  std::vector<Best> m_best;
+  std::optional<Point_cells> m_cells;
+  Links m_across;
+};
+
+} // namespace internal
+
 /*!
   Returns the shortest links that join the connected components of the points of `is_used` up to the
   widest gap of the rule, by the method of Boruvka. The largest component is only found by searches
@@ -240,67 +357,7 @@ inline Links links_across_gaps(const Scan& scan,
                                const Link_rule& rule,
                                const Point_parts& parts)
 {
-  Links across;
-  const std::size_t n = scan.size();
-  const double widest = rule.gap * scan.spacing;
-  Point_sets sets(n); // of components
-  struct Best
-  {
-    double squared_distance;
-    Link link;
-  };
-  std::vector<Index> label = parts.part, size;
-  std::vector<Best> best;
-  std::optional<Point_cells> cells;
-  while (widest > 0) {
-    size.assign(n, 0);
-    std::size_t number_of_others = 0; // points outside of the largest component
-    for (Index i = 0; i < n; ++i)
-      if (is_used[i]) {
-        ++size[label[i] = sets.find(parts.part[i])];
-        ++number_of_others;
-      }
-    const Index largest =
-        static_cast<Index>(std::max_element(size.begin(), size.end()) - size.begin());
-    best.assign(n, {widest * widest, {none, none}});
-    number_of_others -= size[largest];
-    if (number_of_others == 0)
-      break;
-    if (number_of_others > n / 8 && !cells) // otherwise the cells cost more than they save
-      cells.emplace(scan.points, is_used, widest);
-    const std::vector<Index> around = cells ? cells->common_label(label) : std::vector<Index>();
-    for (Index i = 0; i < n; ++i) {
-      if (!is_used[i] || label[i] == largest || (cells && around[cells->cell_of(i)] == label[i]))
-        continue;
-      Best& b = best[label[i]];
-      const auto found =
-          scan.search->nearest_if(scan.points[i], std::sqrt(b.squared_distance), [&](Index j) {
-            return is_used[j] && label[j] != label[i];
-          });
-      if (found.squared_distance < b.squared_distance)
-        b = {found.squared_distance, {std::min(i, found.index), std::max(i, found.index)}};
-    }
-    std::vector<Best> chosen;
-    for (const Best& b : best)
-      if (b.link.first != none)
-        chosen.push_back(b);
-    std::sort(chosen.begin(), chosen.end(), [](const Best& a, const Best& b) {
-      return a.squared_distance != b.squared_distance ? a.squared_distance < b.squared_distance
-                                                      : a.link < b.link;
-    });
-    bool is_joined = false;
-    for (const Best& b : chosen) {
-      const Index one = parts.part[b.link.first], other = parts.part[b.link.second];
-      if (sets.find(one) != sets.find(other)) {
-        sets.unite(one, other);
-        across.push_back(b.link);
-        is_joined = true;
-      }
-    }
-    if (!is_joined)
-      break;
-  }
-  return across;
+  return internal::Gap_closer(scan, is_used, rule.gap * scan.spacing, parts)();
 }
 
 namespace internal {

@@ -174,6 +174,23 @@ inline Vec3 point_at(const Axis& axis, const Axis_place& place)
   return (1 - t) * axis[place.segment].point + t * axis[place.segment + 1].point;
 }
 
+/// Interpolates the position and the radius at parameter `t` of segment `s`; all other values are
+/// those of the nearer node.
+inline Axis_node node_between(const Axis& axis, std::size_t s, double t)
+{
+  Axis_node node = t < 0.5 ? axis[s] : axis[s + 1];
+  node.point = (1 - t) * axis[s].point + t * axis[s + 1].point;
+  node.radius = (1 - t) * axis[s].radius + t * axis[s + 1].radius;
+  return node;
+}
+
+/// Interpolates a node at `at`, the sum of a segment and a parameter in [0, 1].
+inline Axis_node node_at(const Axis& axis, double at)
+{
+  const std::size_t s = std::min(axis.size() - 2, static_cast<std::size_t>(at));
+  return node_between(axis, s, at - double(s));
+}
+
 /// Returns the length of the polyline [L].
 inline double length_of(const Axis& axis)
 {
@@ -217,11 +234,7 @@ inline Axis resample(const Axis& axis, const Node_spacing& spacing)
     while (s + 2 < axis.size() && steps[s + 1] < at)
       ++s;
     const double span = steps[s + 1] - steps[s];
-    const double t = span > 0 ? (at - steps[s]) / span : 0;
-    Axis_node node = t < 0.5 ? axis[s] : axis[s + 1];
-    node.point = (1 - t) * axis[s].point + t * axis[s + 1].point;
-    node.radius = (1 - t) * axis[s].radius + t * axis[s + 1].radius;
-    result.push_back(node);
+    result.push_back(node_between(axis, s, span > 0 ? (at - steps[s]) / span : 0));
   }
   result.push_back(axis.back());
   return result;

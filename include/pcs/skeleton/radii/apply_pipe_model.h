@@ -118,8 +118,9 @@ private:
     double factor = 1; ///< for the squared radii
     double share = 0;  ///< squared radius of equal branches, the lower bound of scaling
   };
-  using Passings = std::vector<Passing>; // per bin
-  using Limits = std::vector<Limit>;     // per bin; empty: none
+  using Passings = std::vector<Passing>;                     // per bin
+  using Limits = std::vector<Limit>;                         // per bin; empty: none
+  using Node_limits = std::vector<std::pair<Index, Limits>>; // by node, from the tip
 
   /// Calls `visit(v, passings)` for the nodes of a branch from its tip to its base. `passings` sums
   /// up the branches above `v`.
@@ -148,68 +149,112 @@ private:
     return sums;
   }
 
+  /// Limits radii once. Returns whether any radius has changed.
   bool limit(std::vector<std::uint8_t>& is_limited)
   {
     const std::size_t n = m_tree.branches.size();
     std::vector<Passings> of_branch(n);
-    std::vector<std::vector<std::pair<Index, Limits>>> limits(n); // by node, from the tip
-    for (std::size_t b = n; b-- > 0;) {
-      const std::vector<Index>& nodes = m_tree.branches[b].nodes;
-      std::vector<double> thickest(m_rules.bins, 0); // thickest proven radius in each bin
-      for (const Index v : nodes)
-        if (m_is_proven[v])
-          thickest[m_bin[v]] = std::max(thickest[m_bin[v]], m_tree.nodes[v].radius);
-      std::size_t last = std::numeric_limits<std::size_t>::max();
-      of_branch[b] = walk(static_cast<Index>(b), of_branch, [&](Index v, const Passings& sums) {
-        if (m_bin[v] == last)
-          return;
-        last = m_bin[v];
-        double radius = thickest[last];
-        if (last > m_bin[nodes.front()])
-          radius = std::max(radius, thickest[last - 1]);
-        if (last + 1 < m_rules.bins)
-          radius = std::max(radius, thickest[last + 1]);
-        if (!(radius > 0))
-          return;
-        const double most = m_rules.slack * radius * radius;
-        Limits own;
-        for (std::size_t i = last + 1; i < m_rules.bins; ++i)
-          if (sums[i].area > most) {
-            own.resize(m_rules.bins);
-            own[i] = {most / sums[i].area, most / sums[i].count};
-          }
-        if (!own.empty())
-          limits[b].emplace_back(v, std::move(own));
-      });
-    }
+    std::vector<Node_limits> limits(n);
+    for (std::size_t b = n; b-- > 0;)
+      limits[b] = find_limits(static_cast<Index>(b), of_branch);
     bool did_change = false;
     std::vector<Limits> at_seat(n);
-    for (Index b = 0; b < n; ++b) {
-      Limits present = m_is_independent[b] ? Limits() : std::move(at_seat[b]);
-      std::size_t next = limits[b].size();
-      for (const Index v : m_tree.branches[b].nodes) {
-        Branch_node& node = m_tree.nodes[v];
-        const Limit here = present.empty() ? Limit() : present[m_bin[v]];
-        const double area = node.radius * node.radius;
-        if (!m_is_kept[v] && here.factor < 1 && area > 1.01 * here.share) {
-          node.radius = std::sqrt(std::max(here.share, here.factor * area));
-          node.radius_error = std::max(node.radius_error, node.radius);
-          node.is_measured = false;
-          is_limited[v] = 1;
-          did_change = true;
-        }
-        if (next > 0 && limits[b][next - 1].first == v) {
-          const Limits& own = limits[b][--next].second;
-          present.resize(m_rules.bins);
-          for (std::size_t i = 0; i < present.size(); ++i)
-            if (own[i].factor < present[i].factor)
-              present[i] = own[i];
-        }
-        for (const Index c : m_children[v])
-          at_seat[c] = present;
+    for (Index b = 0; b < n; ++b)
+      did_change |= apply_limits(b, limits[b], at_seat, is_limited);
+    return did_change;
+  }
+
+  /// Returns the limits by the nodes of a branch, from its tip; fills in its element of
+  /// `of_branch`, which has those of its children.
+  Node_limits find_limits(Index b, std::vector<Passings>& of_branch) const
+  {
+    const std::vector<Index>& nodes = m_tree.branches[b].nodes;
+    const std::vector<double> thickest = thickest_proven(nodes);
+    Node_limits limits;
+    std::size_t last = std::numeric_limits<std::size_t>::max();
+    of_branch[b] = walk(b, of_branch, [&](Index v, const Passings& sums) {
+      if (m_bin[v] == last)
+        return;
+      last = m_bin[v];
+      double radius = thickest[last];
+      if (last > m_bin[nodes.front()])
+        radius = std::max(radius, thickest[last - 1]);
+      if (last + 1 < m_rules.bins)
+        radius = std::max(radius, thickest[last + 1]);
+      Limits own = limits_beyond(last, radius, sums);
+      if (!own.empty())
+        limits.emplace_back(v, std::move(own));
+    });
+    return limits;
+  }
+
+  /// Returns the thickest proven radius of some nodes in each bin; 0: none.
+  std::vector<double> thickest_proven(const std::vector<Index>& nodes) const
+  {
+    std::vector<double> thickest(m_rules.bins, 0);
+    for (const Index v : nodes)
+      if (m_is_proven[v])
+        thickest[m_bin[v]] = std::max(thickest[m_bin[v]], m_tree.nodes[v].radius);
+    return thickest;
+  }
+
+  /// Returns the limits of the bins beyond `bin` by a section of radius `radius` there.
+  Limits limits_beyond(std::size_t bin, double radius, const Passings& sums) const
+  {
+    Limits limits;
+    if (!(radius > 0))
+      return limits;
+    const double most = m_rules.slack * radius * radius;
+    for (std::size_t i = bin + 1; i < m_rules.bins; ++i)
+      if (sums[i].area > most) {
+        limits.resize(m_rules.bins);
+        limits[i] = {most / sums[i].area, most / sums[i].count};
       }
+    return limits;
+  }
+
+  /// Limits the radii of a branch by the nodes towards the root, and passes the limits on to its
+  /// children. Returns whether any radius has changed.
+  bool apply_limits(Index b,
+                    const Node_limits& of_nodes,
+                    std::vector<Limits>& at_seat,
+                    std::vector<std::uint8_t>& is_limited)
+  {
+    bool did_change = false;
+    Limits present = m_is_independent[b] ? Limits() : std::move(at_seat[b]);
+    std::size_t next = of_nodes.size();
+    for (const Index v : m_tree.branches[b].nodes) {
+      if (!m_is_kept[v] && !present.empty() && limit_radius(present[m_bin[v]], m_tree.nodes[v])) {
+        is_limited[v] = 1;
+        did_change = true;
+      }
+      if (next > 0 && of_nodes[next - 1].first == v)
+        keep_smaller(of_nodes[--next].second, present);
+      for (const Index c : m_children[v])
+        at_seat[c] = present;
     }
     return did_change;
+  }
+
+  /// Reduces the radius of a node to a limit. Returns whether it has changed.
+  static bool limit_radius(const Limit& limit, Branch_node& node)
+  {
+    const double area = node.radius * node.radius;
+    if (!(limit.factor < 1 && area > 1.01 * limit.share))
+      return false;
+    node.radius = std::sqrt(std::max(limit.share, limit.factor * area));
+    node.radius_error = std::max(node.radius_error, node.radius);
+    node.is_measured = false;
+    return true;
+  }
+
+  /// Replaces the limits of `present` by those with smaller factors.
+  void keep_smaller(const Limits& limits, Limits& present) const
+  {
+    present.resize(m_rules.bins);
+    for (std::size_t i = 0; i < present.size(); ++i)
+      if (limits[i].factor < present[i].factor)
+        present[i] = limits[i];
   }
 
   const std::vector<std::uint8_t>& m_is_proven;

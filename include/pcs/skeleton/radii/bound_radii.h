@@ -5,6 +5,7 @@
 #ifndef PCS_SKELETON_RADII_BOUND_RADII_H
 #define PCS_SKELETON_RADII_BOUND_RADII_H
 
+#include <pcs/internal/constants.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/skeleton/model/Branch_tree.h>
 #include <pcs/skeleton/model/Scan.h>
@@ -32,8 +33,8 @@ struct Support_options
   std::size_t reach = 2;       ///< nodes included on both sides [count]
   double fewest = 12;          ///< least number of points of a supported section [count]
   double expected = 0.25;      ///< ... and their least fraction of the expected number [-]
-  double thicker = 1.5; ///< largest ratio of the radius to that below, unless points prove a
-                        ///< larger one by ...
+  double thicker = 1.5;        ///< largest ratio of the radius to that below, unless points prove a
+                               ///< larger one by ...
   double proof_expected = 0.5; ///< ... this fraction of the expected points on the surface,
   double proof_filled = 0.05;  ///< ... at most this fraction of points inside,
   double proof_error = 0.1;    ///< ... and a standard error below this many radii [-]
@@ -41,8 +42,7 @@ struct Support_options
   //! one side may be occluded [-]
   double proof_precise = 0.03;
   double mostly = 0.7; ///< least proven fraction of the volume of a branch that is not leaves [-]
-  double slack =
-      3; ///< bound of a section without evidence, in allometric radii [-]
+  double slack = 3;    ///< bound of a section without evidence, in allometric radii [-]
   double filled_slack = 1; ///< the same for a filled section [-]
   double foot = 8;         ///< length of the foot of a trunk, in radii [-]
   Pipe_model_options pipes;
@@ -125,8 +125,7 @@ struct Branch_support
         const Index w = branch.nodes[j];
         on[k] += support.on[w];
         inside[k] += support.inside[w];
-        expected[k] +=
-            2 * 3.14159265358979323846 * tree.nodes[w].radius * density * length_at(tree, w);
+        expected[k] += 2 * pcs::internal::pi * tree.nodes[w].radius * density * length_at(tree, w);
       }
       const bool is_hollow = inside[k] <= rules.proof_filled * (on[k] + inside[k]);
       is_proven[k] = on[k] >= rules.proof_expected * expected[k] && is_hollow &&
@@ -206,6 +205,147 @@ inline std::vector<double> ways_to_tips(const Branch_tree& tree)
   return way;
 }
 
+/// Bounds the radii of one branch after another, parents first.
+class Radius_bounds
+{
+public:
+  Radius_bounds(const Scan& scan,
+                const Section_support& support,
+                double density,
+                const Support_options& rules,
+                Branch_tree& tree)
+    : m_scan(scan),
+      m_support(support),
+      m_density(density),
+      m_rules(rules),
+      m_tree(tree),
+      m_way(ways_to_tips(tree)),
+      m_reference(tree.nodes.size()),
+      m_is_sure(tree.nodes.size(), 0)
+  {
+  }
+
+  /// Returns the number of changed radii.
+  std::size_t operator()()
+  {
+    std::size_t count = 0;
+    for (const Branch& branch : m_tree.branches) {
+      find_bounds(branch);
+      count += apply_bounds(branch);
+    }
+    return count + apply_pipe_model(m_is_sure, m_rules.pipes, m_tree);
+  }
+
+private:
+  /// The supported nodes from a node to the root.
+  struct Reference
+  {
+    double radius = 0, way = 0; ///< of the last supported node towards the root; 0: none
+    double narrowest = 0;       ///< least radius since the last proven one
+    double thickest = 0;        ///< largest of all supported radii
+  };
+  /// The evidence for the radius of a node.
+  struct Evidence
+  {
+    bool is_proven = false;    ///< by points, also if thicker than below
+    bool is_supported = false; ///< by sufficient points
+    bool is_leafy = false;     ///< points lie inside the section, or inside those below
+  };
+
+  /// Finds the bounds of a branch, the supported radii, and the references of its nodes.
+  void find_bounds(const Branch& branch)
+  {
+    const Branch_support sections(m_support, branch, m_tree, m_density, m_rules);
+    const Trunk_foot foot(m_tree, branch, sections, m_rules);
+    double all_on = 0, all_inside = 0; // from the base to here
+    const std::size_t n = branch.nodes.size();
+    m_bounds.assign(n, std::numeric_limits<double>::infinity());
+    m_supported.assign(n, 0);
+    for (std::size_t k = 0; k < n; ++k) {
+      const Index v = branch.nodes[k];
+      const Branch_node& node = m_tree.nodes[v];
+      all_on += m_support.on[v];
+      all_inside += m_support.inside[v];
+      const bool is_inside = all_inside > m_rules.branch_filled * (all_on + all_inside);
+      const Reference below = node.parent == none ? Reference() : m_reference[node.parent];
+      const Evidence evidence = judge(sections, k, node, below, is_inside);
+      const bool is_odd = foot.is_odd(k, node.radius, m_rules);
+      m_is_sure[v] = evidence.is_supported && evidence.is_proven && !is_odd;
+      m_reference[v] = below;
+      if (evidence.is_supported) {
+        m_supported[k] = node.radius;
+        m_reference[v] =
+            reference_at(v, is_odd ? foot.radius : node.radius, evidence.is_proven, below);
+      } else if (below.way > 0) {
+        const double slack = evidence.is_leafy ? m_rules.filled_slack : m_rules.slack;
+        m_bounds[k] = std::max(m_rules.thinnest * m_scan.spacing,
+                               below.radius * std::min(1.0, slack * m_way[v] / below.way));
+      }
+    }
+  }
+
+  /// Judges the radius of the `k`-th node of a branch. `is_inside`: the sections from the base to
+  /// this one contain many inside points.
+  Evidence judge(const Branch_support& sections,
+                 std::size_t k,
+                 const Branch_node& node,
+                 const Reference& below,
+                 bool is_inside) const
+  {
+    const double on = sections.on[k], inside = sections.inside[k];
+    Evidence evidence;
+    // a proven section thicker than its parent indicates a wrong joint or parent
+    evidence.is_proven = sections.is_proven[k] != 0 ||
+                         (sections.is_precise[k] != 0 && node.radius <= below.thickest);
+    const bool is_bush = is_inside && !(evidence.is_proven && sections.is_mostly_proven);
+    const bool is_filled = inside > m_rules.filled * (on + inside);
+    const bool is_too_thick =
+        below.way > 0 && !evidence.is_proven && node.radius > m_rules.thicker * below.narrowest;
+    evidence.is_leafy = is_filled || is_bush;
+    evidence.is_supported = node.is_measured && !evidence.is_leafy && !is_too_thick &&
+                            on >= m_rules.fewest && on >= m_rules.expected * sections.expected[k];
+    return evidence;
+  }
+
+  /// Returns the reference of nodes beyond the supported node `v`.
+  Reference reference_at(Index v, double radius, bool is_proven, const Reference& below) const
+  {
+    return {radius,
+            m_way[v],
+            is_proven || !(below.way > 0) ? radius : std::min(radius, below.narrowest),
+            std::max(radius, below.thickest)};
+  }
+
+  /// Applies the bounds of a branch from its tip. Returns the number of changed radii.
+  std::size_t apply_bounds(const Branch& branch)
+  {
+    std::size_t count = 0;
+    double carried = 0; // the thickest supported section farther out
+    for (std::size_t k = branch.nodes.size(); k-- > 0;) {
+      Branch_node& node = m_tree.nodes[branch.nodes[k]];
+      carried = std::max(carried, m_supported[k]);
+      const double bound = std::max(m_bounds[k], carried);
+      if (node.radius <= bound)
+        continue;
+      node.radius = bound;
+      node.radius_error = bound;
+      node.is_measured = false;
+      ++count;
+    }
+    return count;
+  }
+
+  const Scan& m_scan;
+  const Section_support& m_support;
+  double m_density;
+  const Support_options& m_rules;
+  Branch_tree& m_tree;
+  std::vector<double> m_way;
+  std::vector<Reference> m_reference;        ///< by node
+  std::vector<std::uint8_t> m_is_sure;       ///< by node
+  std::vector<double> m_bounds, m_supported; ///< of one branch [L]
+};
+
 } // namespace internal
 
 /*!
@@ -243,72 +383,7 @@ inline std::size_t bound_radii(const Scan& scan,
 {
   if (tree.nodes.empty())
     return 0;
-  const std::vector<double> way = internal::ways_to_tips(tree);
-  struct Reference
-  {
-    double radius = 0, way = 0; ///< of the last supported node towards the root; 0: none
-    double narrowest = 0;       ///< least radius since the last proven one
-    double thickest = 0;        ///< largest of all supported radii
-  };
-  std::vector<Reference> reference(tree.nodes.size());
-  std::vector<std::uint8_t> is_sure(tree.nodes.size(), 0);
-  std::size_t count = 0;
-  for (const Branch& branch : tree.branches) { // parents before their children
-    const internal::Branch_support sections(support, branch, tree, density, rules);
-    const internal::Trunk_foot foot(tree, branch, sections, rules);
-    double all_on = 0, all_inside = 0; // from the base to here
-    const std::size_t n = branch.nodes.size();
-    std::vector<double> bounds(n, std::numeric_limits<double>::infinity()), supported(n, 0);
-    for (std::size_t k = 0; k < n; ++k) {
-      const Index v = branch.nodes[k];
-      const Branch_node& node = tree.nodes[v];
-      const double on = sections.on[k], inside = sections.inside[k];
-      const double expected = sections.expected[k];
-      all_on += support.on[v];
-      all_inside += support.inside[v];
-      const Reference below = node.parent == none ? Reference() : reference[node.parent];
-      // a proven section thicker than its parent indicates a wrong joint or parent
-      const bool is_proven = sections.is_proven[k] != 0 ||
-                             (sections.is_precise[k] != 0 && node.radius <= below.thickest);
-      const bool is_bush = all_inside > rules.branch_filled * (all_on + all_inside) &&
-                           !(is_proven && sections.is_mostly_proven);
-      const bool is_filled = inside > rules.filled * (on + inside);
-      const bool is_too_thick =
-          below.way > 0 && !is_proven && node.radius > rules.thicker * below.narrowest;
-      const bool is_supported = node.is_measured && !is_bush && !is_filled && !is_too_thick &&
-                                on >= rules.fewest && on >= rules.expected * expected;
-      const bool is_odd = foot.is_odd(k, node.radius, rules);
-      const double typical = is_odd ? foot.radius : node.radius;
-      is_sure[v] = is_supported && is_proven && !is_odd;
-      reference[v] = below;
-      if (is_supported || !(below.way > 0)) {
-        supported[k] = is_supported ? node.radius : 0;
-        if (is_supported)
-          reference[v] = {typical,
-                          way[v],
-                          is_proven || !(below.way > 0) ? typical
-                                                        : std::min(typical, below.narrowest),
-                          std::max(typical, below.thickest)};
-        continue;
-      }
-      const double slack = is_filled || is_bush ? rules.filled_slack : rules.slack;
-      bounds[k] = std::max(rules.thinnest * scan.spacing,
-                           below.radius * std::min(1.0, slack * way[v] / below.way));
-    }
-    double carried = 0; // the thickest supported section farther out
-    for (std::size_t k = n; k-- > 0;) {
-      Branch_node& node = tree.nodes[branch.nodes[k]];
-      carried = std::max(carried, supported[k]);
-      const double bound = std::max(bounds[k], carried);
-      if (node.radius <= bound)
-        continue;
-      node.radius = bound;
-      node.radius_error = bound;
-      node.is_measured = false;
-      ++count;
-    }
-  }
-  return count + apply_pipe_model(is_sure, rules.pipes, tree);
+  return internal::Radius_bounds(scan, support, density, rules, tree)();
 }
 
 } // namespace skeleton

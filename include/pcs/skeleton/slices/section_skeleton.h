@@ -237,6 +237,16 @@ private:
     }
   }
 
+  /// Spanning trees over sparse points: level sets, and the dense nodes that they begin at.
+  struct Sparse_trees
+  {
+    Layer_tree layers;
+    std::vector<double> importance; ///< length of all edges beyond each node [L]
+    std::vector<Vec3> center;       ///< smoothed centers
+    std::vector<Index> top;         ///< the first node of the tree of each node
+    std::vector<Index> joint;       ///< by that node: the dense node there, or `none`
+  };
+
   /// Adds spanning trees over the remaining points, contracted to level sets. Radii follow from
   /// importance and from the radius at the joint.
   void add_sparse(const std::vector<Index>& root)
@@ -245,34 +255,64 @@ private:
     std::vector<std::uint8_t> is_rest(n);
     for (std::size_t i = 0; i < n; ++i)
       is_rest[i] = m_is_used[i] && m_node_of_point[i] == none;
-    std::vector<std::uint8_t> is_used = m_is_used;
-    Link_rule rule;
-    Links links = neighbor_links<CGAL::Sequential_tag>(m_scan, is_used, rule);
+    const Links links = link_points();
+    const Shortest_paths paths =
+        shortest_paths(m_scan, graph_of(n, links), sources_of(is_rest, root));
+    Sparse_trees trees;
+    trees.layers = layers_of(is_rest, links, paths);
+    measure_importance(trees);
+    smooth(trees);
+    find_joints(paths, trees);
+    add_nodes(trees);
+  }
+
+  Links link_points() const
+  {
+    const Link_rule rule;
+    Links links = neighbor_links<CGAL::Sequential_tag>(m_scan, m_is_used, rule);
     const Links gaps = links_across_gaps(m_scan,
-                                         is_used,
+                                         m_is_used,
                                          rule,
-                                         connected_parts<CGAL::Sequential_tag>(is_used, links));
+                                         connected_parts<CGAL::Sequential_tag>(m_is_used, links));
     links.insert(links.end(), gaps.begin(), gaps.end());
-    // all dense points are sources: every sparse subtree begins at the border of the dense region
+    return links;
+  }
+
+  /// Returns all dense points, so that every sparse subtree begins at the border of the dense
+  /// region; the root if there are none.
+  std::vector<Index> sources_of(const std::vector<std::uint8_t>& is_rest,
+                                const std::vector<Index>& root) const
+  {
     std::vector<Index> sources;
-    for (Index i = 0; i < n; ++i)
+    for (Index i = 0; i < m_scan.size(); ++i)
       if (m_is_used[i] && !is_rest[i])
         sources.push_back(i);
-    if (sources.empty())
-      sources = root;
-    const Shortest_paths paths = shortest_paths(m_scan, graph_of(n, links), sources);
+    return sources.empty() ? root : sources;
+  }
+
+  /// Returns the level sets of the remaining points alone.
+  Layer_tree layers_of(const std::vector<std::uint8_t>& is_rest,
+                       const Links& links,
+                       const Shortest_paths& paths) const
+  {
     Links inner;
     for (const Link& l : links)
       if (is_rest[l.first] && is_rest[l.second])
         inner.push_back(l);
     Shortest_paths rest = paths;
-    for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t i = 0; i < m_scan.size(); ++i)
       if (!is_rest[i])
         rest.distance[i] = std::numeric_limits<double>::infinity();
       else if (m_node_of_point[paths.predecessor[i]] != none)
         rest.predecessor[i] = static_cast<Index>(i);
-    const Layer_tree tree = layer_tree<CGAL::Sequential_tag>(m_scan, inner, rest);
-    std::vector<double> importance(tree.size(), 0);
+    return layer_tree<CGAL::Sequential_tag>(m_scan, inner, rest);
+  }
+
+  void measure_importance(Sparse_trees& trees) const
+  {
+    const Layer_tree& tree = trees.layers;
+    std::vector<double>& importance = trees.importance;
+    importance.assign(tree.size(), 0);
     for (std::size_t v = tree.size(); v-- > 0;) {
       importance[v] +=
           tree.parent[v] == none ? 0 : (tree.center[v] - tree.center[tree.parent[v]]).norm();
@@ -280,30 +320,52 @@ private:
       if (tree.parent[v] != none)
         importance[tree.parent[v]] += importance[v];
     }
-    std::vector<Vec3> smooth = tree.center;
-    std::vector<Index> top(tree.size()), joint(tree.size(), none), number(tree.size(), none);
+  }
+
+  /// Smooths the centers along the paths from the joints.
+  static void smooth(Sparse_trees& trees)
+  {
+    const Layer_tree& tree = trees.layers;
+    std::vector<Vec3>& center = trees.center;
+    center = tree.center;
+    for (Index v = 0; v < tree.size(); ++v)
+      if (tree.parent[v] != none)
+        center[v] = 0.5 * tree.center[v] + 0.5 * (0.5 * (center[tree.parent[v]] + tree.center[v]));
+  }
+
+  void find_joints(const Shortest_paths& paths, Sparse_trees& trees) const
+  {
+    const Layer_tree& tree = trees.layers;
+    trees.top.resize(tree.size());
+    trees.joint.assign(tree.size(), none);
     for (Index v = 0; v < tree.size(); ++v) {
       if (tree.parent[v] != none) {
-        top[v] = top[tree.parent[v]];
-        smooth[v] = 0.5 * tree.center[v] + 0.5 * (0.5 * (smooth[tree.parent[v]] + tree.center[v]));
+        trees.top[v] = trees.top[tree.parent[v]];
         continue;
       }
-      top[v] = v;
-      for (Index k = tree.first[v]; k < tree.first[v + 1] && joint[v] == none; ++k)
-        joint[v] = m_node_of_point[paths.predecessor[tree.point[k]]];
+      trees.top[v] = v;
+      for (Index k = tree.first[v]; k < tree.first[v + 1] && trees.joint[v] == none; ++k)
+        trees.joint[v] = m_node_of_point[paths.predecessor[tree.point[k]]];
     }
+  }
+
+  /// Adds the reachable level sets as nodes.
+  void add_nodes(const Sparse_trees& trees)
+  {
+    const Layer_tree& tree = trees.layers;
+    std::vector<Index> number(tree.size(), none);
     for (Index v = 0; v < tree.size(); ++v) {
-      const Index at = joint[top[v]];
-      if (at == none && !m_nodes.empty() && number[top[v]] == none && top[v] != v)
+      const Index top = trees.top[v], at = trees.joint[top];
+      if (at == none && !m_nodes.empty() && number[top] == none && top != v)
         continue; // unreachable
-      if (at == none && top[v] == v && !m_nodes.empty())
+      if (at == none && top == v && !m_nodes.empty())
         continue;
       const double base = at == none ? m_scan.spacing : m_nodes[at].radius;
+      const double importance = trees.importance[v] / trees.importance[top];
       Branch_node node;
-      node.point = smooth[v];
-      node.radius = std::max(
-          m_rules.twig_radius * m_scan.spacing,
-          std::min(base, base * std::pow(importance[v] / importance[top[v]], m_rules.allometry)));
+      node.point = trees.center[v];
+      node.radius = std::max(m_rules.twig_radius * m_scan.spacing,
+                             std::min(base, base * std::pow(importance, m_rules.allometry)));
       node.parent = tree.parent[v] == none ? at : number[tree.parent[v]];
       number[v] = static_cast<Index>(m_nodes.size());
       m_nodes.push_back(node);
