@@ -7,6 +7,7 @@
 
 #include <pcs/core/Deformation_report.h>
 #include <pcs/deformation/body/Sample_links.h>
+#include <pcs/deformation/body/Sample_regions.h>
 #include <pcs/deformation/model/Affine_map.h>
 #include <pcs/deformation/model/Elastic_network.h>
 #include <pcs/deformation/model/Local_frame.h>
@@ -86,6 +87,8 @@ private:
                       pcs::internal::Progress& progress);
   /// The median of each coordinate: it lies near the cloud, and outliers do not move it.
   static Vec3 median_point(const std::vector<Vec3>& points);
+  /// Diameter of the bounding box. Throws `Invalid_input` if its squares are not representable. [L]
+  static double checked_extent(const std::vector<Vec3>& points);
   void to_local(std::vector<Vec3>& points);
   /// Numbers sites and places.
   void order_points(const std::vector<Vec3>& points, std::vector<Vec3>& sites);
@@ -96,11 +99,16 @@ private:
   bool sample(const std::vector<Vec3>& sites, Graph graph, pcs::internal::Progress& progress);
   /// Chooses samples among the points that are no outliers: a sample there would move only itself.
   void choose_samples(const std::vector<Vec3>& sites);
+  std::vector<std::uint32_t> sites_without_outliers() const;
   void choose_samples_without_outliers(const std::vector<Vec3>& sites);
+  Sample_links link_sites(const std::vector<Vec3>& sites,
+                          const Graph& graph,
+                          const Sample_regions& regions) const;
   /// Builds the graph of the samples, and the links of the sites to them.
   bool link_samples(const std::vector<Vec3>& sites, Graph graph, pcs::internal::Progress& progress);
   /// Every site is a sample.
   void take_all_sites(const std::vector<Vec3>& sites, Graph graph);
+  void link_interior(const std::vector<std::uint32_t>& component);
 };
 
 } // namespace deformation

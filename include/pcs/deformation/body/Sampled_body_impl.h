@@ -8,6 +8,7 @@
 #include <pcs/core/Deformation_options.h>
 #include <pcs/core/Deformation_report.h>
 #include <pcs/core/errors.h>
+#include <pcs/core/median.h>
 #include <pcs/deformation/body/Sample_links.h>
 #include <pcs/deformation/body/Sample_regions.h>
 #include <pcs/deformation/body/Sampled_body.h>
@@ -88,15 +89,13 @@ Vec3 Sampled_body<ConcurrencyTag>::median_point(const std::vector<Vec3>& points)
   for (int c = 0; c < 3; ++c) {
     for (std::size_t i = 0; i < points.size(); ++i)
       values[i] = points[i][c];
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    median[c] = *middle;
+    median[c] = pcs::internal::upper_median(values);
   }
   return median;
 }
 
 template <class ConcurrencyTag>
-void Sampled_body<ConcurrencyTag>::to_local(std::vector<Vec3>& points)
+double Sampled_body<ConcurrencyTag>::checked_extent(const std::vector<Vec3>& points)
 {
   Vec3 low = points.front(), high = low;
   for (const Vec3& p : points) {
@@ -112,6 +111,13 @@ void Sampled_body<ConcurrencyTag>::to_local(std::vector<Vec3>& points)
     throw Invalid_input("pcs deformation: the points extend over " +
                         pcs::internal::to_text(extent) +
                         "; extents must lie between 1e-100 and 1e100");
+  return extent;
+}
+
+template <class ConcurrencyTag>
+void Sampled_body<ConcurrencyTag>::to_local(std::vector<Vec3>& points)
+{
+  const double extent = checked_extent(points);
   frame.origin = median_point(points);
   frame.unit = std::exp2(std::floor(std::log2(extent)));
   pcs::internal::for_each_index<ConcurrencyTag>(points.size(), [&](std::size_t i) {
@@ -173,27 +179,51 @@ void Sampled_body<ConcurrencyTag>::choose_samples(const std::vector<Vec3>& sites
 }
 
 template <class ConcurrencyTag>
-void Sampled_body<ConcurrencyTag>::choose_samples_without_outliers(const std::vector<Vec3>& sites)
+std::vector<std::uint32_t> Sampled_body<ConcurrencyTag>::sites_without_outliers() const
 {
-  std::vector<Vec3> others;
-  std::vector<std::uint32_t> site_of_other;
+  std::vector<std::uint32_t> result;
   auto next = outliers.begin();
-  for (std::size_t site = 0; site < sites.size(); ++site)
+  for (std::uint32_t site = 0; site < number_of_sites(); ++site)
     if (next != outliers.end() && next->point == site)
       ++next;
-    else {
-      others.push_back(sites[site]);
-      site_of_other.push_back(static_cast<std::uint32_t>(site));
-    }
-  // The octree of the remaining points needs their own spatial order.
+    else
+      result.push_back(site);
+  return result;
+}
+
+template <class ConcurrencyTag>
+void Sampled_body<ConcurrencyTag>::choose_samples_without_outliers(const std::vector<Vec3>& sites)
+{
+  const std::vector<std::uint32_t> kept = sites_without_outliers();
+  std::vector<Vec3> others;
+  for (const auto site : kept)
+    others.push_back(sites[site]);
+  // their octree needs their own spatial order
   const auto order = neighborhood::spatial_order<ConcurrencyTag>(others);
   std::vector<Vec3> ordered(others.size());
   for (std::size_t i = 0; i < order.size(); ++i)
     ordered[i] = others[order[i]];
   site_of_sample = octree_samples(ordered, options.number_of_samples);
   for (auto& s : site_of_sample)
-    s = site_of_other[order[s]];
+    s = kept[order[s]];
   std::sort(site_of_sample.begin(), site_of_sample.end());
+}
+
+template <class ConcurrencyTag>
+Sample_links Sampled_body<ConcurrencyTag>::link_sites(const std::vector<Vec3>& sites,
+                                                      const Graph& graph,
+                                                      const Sample_regions& regions) const
+{
+  const std::size_t k = options.number_of_sample_neighbors;
+  const Sample_weights weights = options.sample_weights;
+  if (options.sample_search == Sample_search::breadth_first_hops)
+    return link_by_hops<ConcurrencyTag>(sites, graph, site_of_sample, k, weights);
+  return link_by_regions<ConcurrencyTag>(sites,
+                                         site_of_sample,
+                                         regions,
+                                         network.surface,
+                                         k,
+                                         weights);
 }
 
 template <class ConcurrencyTag>
@@ -205,16 +235,7 @@ bool Sampled_body<ConcurrencyTag>::link_samples(const std::vector<Vec3>& sites,
   network.surface = sample_graph(sites, graph, site_of_sample, regions, weight_unit);
   if (!progress(internal::end_of_sample_graph))
     return false;
-  const std::size_t k = options.number_of_sample_neighbors;
-  const Sample_weights weights = options.sample_weights;
-  links_of_site = options.sample_search == Sample_search::breadth_first_hops
-                      ? link_by_hops<ConcurrencyTag>(sites, graph, site_of_sample, k, weights)
-                      : link_by_regions<ConcurrencyTag>(sites,
-                                                        site_of_sample,
-                                                        regions,
-                                                        network.surface,
-                                                        k,
-                                                        weights);
+  links_of_site = link_sites(sites, graph, regions);
   sample_of_site = std::move(regions.sample_of_point);
   has_fragments =
       std::find(sample_of_site.begin(), sample_of_site.end(), no_sample) != sample_of_site.end();
@@ -242,6 +263,15 @@ std::vector<std::uint32_t> Sampled_body<ConcurrencyTag>::component_of_sample() c
 }
 
 template <class ConcurrencyTag>
+void Sampled_body<ConcurrencyTag>::link_interior(const std::vector<std::uint32_t>& component)
+{
+  if (options.do_preserve_volume && network.size() <= largest_linked_network)
+    network.links = interior_links<ConcurrencyTag>(network, component);
+  if (is_sampled)
+    rank_nodes(network);
+}
+
+template <class ConcurrencyTag>
 bool Sampled_body<ConcurrencyTag>::sample(const std::vector<Vec3>& sites,
                                           Graph graph,
                                           pcs::internal::Progress& progress)
@@ -254,16 +284,12 @@ bool Sampled_body<ConcurrencyTag>::sample(const std::vector<Vec3>& sites,
     return false;
   for (const auto site : site_of_sample)
     network.rest.push_back(sites[site]);
-  const std::vector<std::uint32_t> component = component_of_sample();
-  set_areas<ConcurrencyTag>(component, network);
+  set_areas<ConcurrencyTag>(component_of_sample(), network);
   if (!progress(internal::end_of_network))
     return false;
-  if (options.do_preserve_volume && network.size() <= largest_linked_network)
-    network.links = interior_links<ConcurrencyTag>(network, component);
-  if (is_sampled)
-    rank_nodes(network);
-  rest_points = Point_blocks(number_of_points(),
-                             [&](std::size_t place) { return sites[site_of_place[place]]; });
+  link_interior(component_of_sample());
+  const auto rest = [&](std::size_t place) { return sites[site_of_place[place]]; };
+  rest_points = Point_blocks(number_of_points(), rest);
   return progress(1);
 }
 

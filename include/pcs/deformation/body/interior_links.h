@@ -5,6 +5,7 @@
 #ifndef PCS_DEFORMATION_BODY_INTERIOR_LINKS_H
 #define PCS_DEFORMATION_BODY_INTERIOR_LINKS_H
 
+#include <pcs/core/median.h>
 #include <pcs/deformation/model/Elastic_network.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/neighborhood/Nearest_neighbors.h>
@@ -217,13 +218,10 @@ inline void drop_long_links(const Elastic_network& network, double factor, std::
   const auto length = [&](const Link& l) {
     return (network.rest[l.first] - network.rest[l.second]).norm();
   };
-  std::vector<double> sorted;
+  std::vector<double> lengths;
   for (const Link& l : links)
-    sorted.push_back(length(l));
-  std::nth_element(sorted.begin(),
-                   sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
-                   sorted.end());
-  const double longest = factor * sorted[sorted.size() / 2];
+    lengths.push_back(length(l));
+  const double longest = factor * pcs::internal::upper_median(lengths);
   links.erase(std::remove_if(links.begin(),
                              links.end(),
                              [&](const Link& l) { return length(l) > longest; }),

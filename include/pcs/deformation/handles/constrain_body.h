@@ -22,6 +22,7 @@
 namespace pcs {
 namespace deformation {
 
+/// The constraints of handles on a body.
 struct Body_constraints
 {
   Node_constraints of_samples; ///< in every component that a handle reaches, one sample is held
@@ -39,21 +40,37 @@ inline auto exact_handles(const Handle_set& handles)
 
 namespace internal {
 
-/// The samples with nodes on the borders of the handles, to which `constraints` are extended.
+/// Holds the components that only handles without samples reach. In the network of the finest
+/// level, nodes on borders hold them.
 template <class ConcurrencyTag, class HandleOfSite>
-Elastic_network network_with_borders(const Sampled_body<ConcurrencyTag>& body,
-                                     const std::vector<Border_edge>& border,
-                                     const HandleOfSite& handle_of_site,
-                                     Node_constraints& constraints)
+void anchor_samples(const Sampled_body<ConcurrencyTag>& body,
+                    const HandleOfSite& handle_of_site,
+                    Node_constraints& constraints)
 {
+  const auto component = [&](std::size_t s) {
+    return body.component_of_site[body.site_of_sample[s]];
+  };
+  anchor_free_components(component, body.sample_of_site, handle_of_site, constraints);
+}
+
+/// Finds the borders of exact handles, and adds nodes there.
+template <class ConcurrencyTag, class HandleOfSite>
+void add_border_nodes(const Sampled_body<ConcurrencyTag>& body,
+                      const Border_finder& finder,
+                      const HandleOfSite& handle_of_site,
+                      Body_constraints& result)
+{
+  const auto is_held = [&](std::size_t site) { return handle_of_site(site) >= 0; };
   const auto position = [&](std::size_t site) { return body.rest_of_site(site); };
-  return add_boundary_nodes(Boundary_input<HandleOfSite, decltype(position)>{body.network,
-                                                                             body.weight_unit,
-                                                                             border,
-                                                                             body.sample_of_site,
-                                                                             handle_of_site,
-                                                                             position},
-                            constraints);
+  result.border = finder.find<ConcurrencyTag>(body.site_graph, is_held);
+  result.network =
+      add_boundary_nodes(Boundary_input<HandleOfSite, decltype(position)>{body.network,
+                                                                          body.weight_unit,
+                                                                          result.border,
+                                                                          body.sample_of_site,
+                                                                          handle_of_site,
+                                                                          position},
+                         result.of_nodes);
 }
 
 } // namespace internal
@@ -70,19 +87,11 @@ Body_constraints constrain_body(const Sampled_body<ConcurrencyTag>& body,
   const auto handle_of_site = exact_handles(handles);
   Body_constraints result;
   result.of_samples = result.of_nodes = sites.find(body, handles, report);
-  anchor_free_components(
-      [&](std::size_t s) { return body.component_of_site[body.site_of_sample[s]]; },
-      body.sample_of_site,
-      handle_of_site,
-      result.of_samples); // on the finest level, nodes on borders hold these components
-  if (body.is_sampled) {
-    result.border = border_finder.find<ConcurrencyTag>(body.site_graph, [&](std::size_t site) {
-      return handle_of_site(site) >= 0;
-    });
-    result.network =
-        internal::network_with_borders(body, result.border, handle_of_site, result.of_nodes);
-    result.has_network = true;
-  } else
+  internal::anchor_samples(body, handle_of_site, result.of_samples);
+  result.has_network = true;
+  if (body.is_sampled)
+    internal::add_border_nodes(body, border_finder, handle_of_site, result);
+  else
     result.has_network = straighten_borders(body.network, result.of_nodes, result.network);
   return result;
 }
