@@ -16,7 +16,6 @@
   /* Shared by all algorithms, with the tags of CGAL */                                            \
   PCS_SHARED(point_t, point_map)                                                                   \
   PCS_SHARED(normal_t, normal_map)                                                                 \
-  PCS_SHARED(geom_traits_t, geom_traits)                                                           \
   PCS_SHARED(callback_t, callback)                                                                 \
   PCS_SHARED(number_of_iterations_t, number_of_iterations)                                         \
   PCS_SHARED(random_seed_t, random_seed)                                                           \
