@@ -3,7 +3,11 @@
 // A family of trees: mean, modes of variation and new trees, with points in the same order.
 
 #include <pcs/Orl_shape_space.h>
+#include <pcs/compare_trees.h>
+#include <pcs/find_modes.h>
 #include <pcs/generators/grow_tree.h>
+#include <pcs/mean_tree.h>
+#include <pcs/sample_tree.h>
 
 #include <CGAL/Simple_cartesian.h>
 
@@ -33,29 +37,29 @@ int main()
     space.add(tree, scan);
   }
   std::cout << space.build() << '\n';
-  const pcs::Orl_tree mean = space.mean();
-  std::cout << "the mean is " << space.figures(mean).height << " m high\n";
+  const pcs::Orl_tree mean = pcs::mean_tree(space);
+  std::cout << "the mean is " << pcs::measure_shape(space, mean).height << " m high\n";
   //! [family]
 
   //! [modes]
-  const auto modes = space.modes(2);
+  const auto modes = pcs::find_modes(space, 2);
   std::cout << "the first mode has " << 100 * modes.share(1) << " % of the variance\n";
   for (std::size_t h = 0; h < space.number_of_trees(); ++h)
     std::cout << "tree " << h << ": score " << modes.scores(static_cast<Eigen::Index>(h), 0)
               << '\n';
-  const pcs::Orl_tree extreme = space.tree(modes, {2}); // two standard deviations
+  const pcs::Orl_tree extreme = pcs::tree_of_modes(space, modes, {2}); // two standard deviations
   //! [modes]
 
   //! [samples]
-  const auto distribution = space.distribution();
+  const auto distribution = pcs::learn_distribution(space);
   std::vector<Kernel::Point_3> points; // its memory is used again
-  double shortest = space.figures(extreme).height;
+  double shortest = pcs::measure_shape(space, extreme).height;
   for (std::uint64_t i = 0; i < 3; ++i) {
-    const pcs::Orl_tree tree = space.sample(distribution, 42, i);
+    const pcs::Orl_tree tree = pcs::sample_tree(space, distribution, 42, i);
     space.points(tree, points);
-    std::cout << "new tree " << i << ": " << space.figures(tree).height << " m high, "
+    std::cout << "new tree " << i << ": " << pcs::measure_shape(space, tree).height << " m high, "
               << points.size() << " points\n";
-    shortest = std::min(shortest, space.figures(tree).height);
+    shortest = std::min(shortest, pcs::measure_shape(space, tree).height);
   }
   //! [samples]
   return shortest > 0 && !points.empty() ? EXIT_SUCCESS : EXIT_FAILURE;

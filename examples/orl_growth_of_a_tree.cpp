@@ -3,6 +3,8 @@
 // One tree at three dates: a smooth growth path, and a table of changes.
 
 #include <pcs/Orl_shape_space.h>
+#include <pcs/compare_trees.h>
+#include <pcs/fit_growth_path.h>
 #include <pcs/generators/grow_tree.h>
 #include <pcs/generators/tree_at_age.h>
 
@@ -27,11 +29,12 @@ int main()
   for (const double age : ages)
     space.add_skeleton(pcs::tree_at_age(old_tree, age));
   space.build();
-  const auto path = space.growth({0, 1, 2}, {0.4, 0.7, 1}, pcs::parameters::is_monotone(true));
+  const auto path =
+      pcs::fit_growth_path(space, {0, 1, 2}, {0.4, 0.7, 1}, pcs::parameters::is_monotone(true));
   double last = 0;
   bool is_growing = true;
   for (int k = 4; k <= 10; ++k) {
-    const double length = space.figures(space.tree(path, 0.1 * k)).length;
+    const double length = pcs::measure_shape(space, pcs::tree_at_time(space, path, 0.1 * k)).length;
     std::cout << "at " << 0.1 * k << ": " << length << " m of branches\n";
     is_growing = is_growing && length >= last;
     last = length;
@@ -40,7 +43,7 @@ int main()
 
   //! [changes]
   int number_new = 0, number_longer = 0;
-  for (const auto& change : space.changes(0, 2)) {
+  for (const auto& change : pcs::find_branch_changes(space, 0, 2)) {
     number_new += change.is_new;
     number_longer += change.is_longer;
   }

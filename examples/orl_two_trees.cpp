@@ -14,7 +14,7 @@
 
 using Kernel = CGAL::Simple_cartesian<double>;
 
-/// A ring of points around every node, as a minimal scan.
+/// Makes a ring of points around every node, as a minimal scan.
 std::vector<Kernel::Point_3> rings(const pcs::Tree_skeleton<Kernel>& tree)
 {
   std::vector<Kernel::Point_3> points;

@@ -123,14 +123,14 @@ BOOST_AUTO_TEST_CASE(distances_are_symmetric_and_obey_the_triangle)
   std::size_t number_of_defects = 0;
   for (const Orl_metric metric : {Orl_metric::sum, Orl_metric::square, Orl_metric::cone})
     for (int i = 0; i < 3334; ++i) {
-      const auto x = random_coordinates(space.layout(), random);
-      const auto y = random_coordinates(space.layout(), random);
-      const auto z = random_coordinates(space.layout(), random);
-      const double xy = distance(x, y, space.weights(), metric);
-      const double yz = distance(y, z, space.weights(), metric);
-      const double xz = distance(x, z, space.weights(), metric);
-      if (distance(x, x, space.weights(), metric) != 0 || xy <= 0 ||
-          std::abs(xy - distance(y, x, space.weights(), metric)) > 1e-12 * xy ||
+      const auto x = random_coordinates(space.family().layout, random);
+      const auto y = random_coordinates(space.family().layout, random);
+      const auto z = random_coordinates(space.family().layout, random);
+      const double xy = distance(x, y, space.family().weights, metric);
+      const double yz = distance(y, z, space.family().weights, metric);
+      const double xz = distance(x, z, space.family().weights, metric);
+      if (distance(x, x, space.family().weights, metric) != 0 || xy <= 0 ||
+          std::abs(xy - distance(y, x, space.family().weights, metric)) > 1e-12 * xy ||
           xz > (xy + yz) * (1 + 1e-12))
         ++number_of_defects;
     }
@@ -144,16 +144,16 @@ BOOST_AUTO_TEST_CASE(the_path_has_constant_speed_whatever_the_signs_of_quaternio
   std::uniform_real_distribution<double> uniform(0, 1);
   for (const Orl_metric metric : {Orl_metric::sum, Orl_metric::square})
     for (int i = 0; i < 20; ++i) {
-      const auto x = random_coordinates(space.layout(), random);
-      const auto y = random_coordinates(space.layout(), random);
-      const double d = distance(x, y, space.weights(), metric);
+      const auto x = random_coordinates(space.family().layout, random);
+      const auto y = random_coordinates(space.family().layout, random);
+      const double d = distance(x, y, space.family().weights, metric);
       Orl_coordinates p, q;
       const double s = uniform(random), t = i == 0 ? 0.5 : uniform(random);
-      coordinates_at(space.layout(), x, y, s, 1, p);
-      coordinates_at(space.layout(), x, y, t, 1, q);
-      BOOST_TEST(std::abs(distance(p, q, space.weights(), metric) - std::abs(s - t) * d) <=
+      coordinates_at(space.family().layout, x, y, s, 1, p);
+      coordinates_at(space.family().layout, x, y, t, 1, q);
+      BOOST_TEST(std::abs(distance(p, q, space.family().weights, metric) - std::abs(s - t) * d) <=
                  1e-12 * d);
-      BOOST_TEST(std::abs(distance(x, q, space.weights(), metric) - t * d) <= 1e-12 * d);
+      BOOST_TEST(std::abs(distance(x, q, space.family().weights, metric) - t * d) <= 1e-12 * d);
     }
 }
 
@@ -447,7 +447,7 @@ BOOST_AUTO_TEST_CASE(a_branch_that_is_turned_keeps_its_lengths_and_costs_its_ang
       double worst = 0;
       std::size_t number_turned =
           0; // angles between all other edges and what they grow from are as before
-      for (std::size_t e = 0; e < turned.layout().number_of_edges(); ++e) {
+      for (std::size_t e = 0; e < turned.family().layout.number_of_edges(); ++e) {
         worst =
             std::max(worst, std::abs(end.coordinates().length[e] - middle.coordinates().length[e]));
         const double half =
@@ -597,7 +597,7 @@ BOOST_AUTO_TEST_CASE(growth_at_tips_is_believed_where_it_explains_clearly_more)
       space.add_skeleton(random_tree(seed + 1, 5, 3));
       const pcs::Orl_report report = space.build(np::matching_weights(weights));
       is_at_tips = report.is_grown_at_tips;
-      return report.unexplained_share;
+      return report.unexplained_fraction;
     };
     bool is_at_tips = true;
     const double along = share(Branch_growth::along_branches, is_at_tips);
@@ -786,7 +786,7 @@ BOOST_AUTO_TEST_CASE(a_tree_in_another_unit_is_the_same)
     const auto report = space.build();
     BOOST_TEST_CONTEXT("scale " << scale)
     {
-      BOOST_TEST(report.unexplained_share < 1e-3);
+      BOOST_TEST(report.unexplained_fraction < 1e-3);
       for (const pcs::Branch_match& m : space.matches())
         BOOST_TEST(m.tip[0] == m.tip[1]);
     }
@@ -1060,7 +1060,7 @@ BOOST_AUTO_TEST_CASE(broken_trees_are_refused_with_a_reason)
                     pcs::Invalid_input);
   BOOST_TEST(space.distance(0, 1) < 1e-9);
   Matching_weights weights;
-  weights.far = std::numeric_limits<double>::infinity(); // could not be saved
+  weights.half_cost_distance = std::numeric_limits<double>::infinity(); // could not be saved
   BOOST_CHECK_EXCEPTION(space.build(np::matching_weights(weights)),
                         pcs::Invalid_input,
                         message_has("far"));
@@ -1084,7 +1084,7 @@ BOOST_AUTO_TEST_CASE(trees_of_other_spaces_and_spaces_that_were_moved_are_refuse
   };
   const Space other = make_space(random_tree(23, 3, 2), random_tree(24, 3, 2)), four = same(4);
   Space three = same(3);
-  BOOST_TEST(three.layout().number_of_edges() == four.layout().number_of_edges());
+  BOOST_TEST(three.family().layout.number_of_edges() == four.family().layout.number_of_edges());
   const auto own = three.tree(0);
   for (const pcs::Orl_tree& strange : {other.tree(0), four.tree(3), pcs::Orl_tree()}) {
     BOOST_CHECK_EXCEPTION(three.geodesic(own, strange, 0.5),

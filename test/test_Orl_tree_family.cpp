@@ -6,6 +6,11 @@
 #include <pcs/IO/read_txtskl.h>
 #include <pcs/IO/write_shape_space.h>
 #include <pcs/Orl_shape_space.h>
+#include <pcs/compare_trees.h>
+#include <pcs/find_modes.h>
+#include <pcs/fit_growth_path.h>
+#include <pcs/mean_tree.h>
+#include <pcs/sample_tree.h>
 #include <pcs/shape_space/embedding/mean_rotation.h>
 #include <pcs/shape_space/path/apply_pipe_model.h>
 #include <pcs/shape_space/statistics/Tangent_space.h>
@@ -111,7 +116,7 @@ double sum_of_distances(const Space& space, const Orl_coordinates& x, bool is_sq
   for (std::size_t h = 0; h < space.number_of_trees(); ++h) {
     const double d = distance(x,
                               space.tree(h).coordinates(),
-                              space.weights(),
+                              space.family().weights,
                               is_squared ? Orl_metric::square : Orl_metric::sum);
     sum += is_squared ? d * d : d;
   }
@@ -131,7 +136,7 @@ BOOST_AUTO_TEST_CASE(branches_of_relatives_are_the_same_branches)
 {
   // the original tree has 1 + 5 + 25 branches; wrong matches would add more
   const Family space(8);
-  const std::size_t n = space.layout().branches.size();
+  const std::size_t n = space.family().layout.branches.size();
   BOOST_TEST(n >= 31u);
   BOOST_TEST(n <= 33u);
   for (std::size_t h = 0; h < 8; ++h)
@@ -154,7 +159,7 @@ BOOST_AUTO_TEST_CASE(trees_of_the_space_are_the_inputs)
     };
     // axes are straight between nodes, and branches begin on them
     BOOST_TEST(std::abs(total_length(space.tree(h).coordinates()) / length(trees[h]) - 1) < 0.03);
-    for (std::size_t b = 0; b < space.layout().branches.size(); ++b)
+    for (std::size_t b = 0; b < space.family().layout.branches.size(); ++b)
       if (space.has_branch(h, b)) {
         // tips are where they were, up to what the straight axes of the parents shift
         const Point tip = trees[h][space.tip_of_branch(h, b)].point;
@@ -175,7 +180,7 @@ BOOST_AUTO_TEST_CASE(the_axioms_hold_on_the_shared_topology)
     std::vector<double> w(space.number_of_trees());
     for (double& x : w)
       x = std::abs(normal(random));
-    return space.weighted_mean(w);
+    return pcs::weighted_mean(space, w);
   };
   for (int i = 0; i < 200; ++i) {
     const pcs::Orl_tree x = draw(), y = draw(), z = draw();
@@ -189,7 +194,7 @@ BOOST_AUTO_TEST_CASE(the_axioms_hold_on_the_shared_topology)
       BOOST_TEST(d(x, z) <= (d(x, y) + d(y, z)) * (1 + 1e-12));
     }
   }
-  const std::vector<double> all = space.distances();
+  const std::vector<double> all = pcs::distance_matrix(space);
   for (std::size_t a = 0; a < 6; ++a)
     for (std::size_t b = 0; b < 6; ++b) {
       BOOST_TEST(all[a * 6 + b] == all[b * 6 + a]);
@@ -209,17 +214,19 @@ BOOST_AUTO_TEST_CASE(the_order_of_the_trees_does_not_matter)
     for (const std::size_t k : order)
       other.push_back(trees[k]);
     const Space permuted = make_space(other);
-    BOOST_REQUIRE(permuted.layout().branches.size() == space.layout().branches.size());
+    BOOST_REQUIRE(permuted.family().layout.branches.size() ==
+                  space.family().layout.branches.size());
     for (std::size_t a = 0; a < 7; ++a)
       for (std::size_t b = 0; b < a; ++b)
         BOOST_TEST(std::abs(permuted.distance(a, b) - space.distance(order[a], order[b])) <
                    1e-6 * space.distance(order[a], order[b]));
     for (const Tree_mean kind : {Tree_mean::median, Tree_mean::frechet}) {
-      const pcs::Orl_tree m = space.mean(np::tree_mean(kind)),
-                          p = permuted.mean(np::tree_mean(kind));
+      const pcs::Orl_tree m = pcs::mean_tree(space, np::tree_mean(kind)),
+                          p = pcs::mean_tree(permuted, np::tree_mean(kind));
       // roots of both are in the axes of their first tree, which is at the same place here
-      BOOST_TEST(distance(m.coordinates(), p.coordinates(), space.weights(), Orl_metric::sum) <
-                 1e-6 * total_length(m.coordinates()));
+      BOOST_TEST(
+          distance(m.coordinates(), p.coordinates(), space.family().weights, Orl_metric::sum) <
+          1e-6 * total_length(m.coordinates()));
     }
   }
 }
@@ -237,11 +244,11 @@ BOOST_AUTO_TEST_CASE(odd_groups_have_a_topology)
         std::vector<Tree>(3, relatives(1, 8)[0]),
         std::vector<Tree>{line, relatives(1, 8)[0], relatives(1, 99)[0]}}) {
     const Space space = make_space(trees);
-    const pcs::Orl_tree mean = space.mean();
+    const pcs::Orl_tree mean = pcs::mean_tree(space);
     BOOST_TEST(std::isfinite(total_length(mean.coordinates())));
-    const auto modes = space.modes(5);
+    const auto modes = pcs::find_modes(space, 5);
     BOOST_TEST(modes.size() < trees.size());
-    const auto tree = space.sample(1);
+    const auto tree = pcs::sample_tree(space, 1);
     BOOST_TEST(std::isfinite(total_length(tree.coordinates())));
     BOOST_TEST(total_length(tree.coordinates()) > 0);
     if (trees[0][0].point == trees[1][0].point &&
@@ -265,12 +272,12 @@ BOOST_AUTO_TEST_CASE(a_further_tree_finds_its_place)
   // an added tree comes back
   const pcs::Orl_tree own = space.embed(trees[2]);
   BOOST_TEST(space.distance(own, space.tree(2)) < 0.1 * space.distance(own, space.tree(3)));
-  const auto modes = space.modes(3);
-  const double usual = space.outlier_score(modes, placed);
+  const auto modes = pcs::find_modes(space, 3);
+  const double usual = pcs::outlier_score(space, modes, placed);
   BOOST_TEST(usual > 0.3);
   BOOST_TEST(usual < 2);
   const pcs::Orl_tree strange = space.embed(relatives(1, 77)[0]);
-  BOOST_TEST(space.outlier_score(modes, strange) > 1.5 * usual);
+  BOOST_TEST(pcs::outlier_score(space, modes, strange) > 1.5 * usual);
 }
 
 BOOST_AUTO_TEST_SUITE_END()
@@ -284,7 +291,7 @@ BOOST_AUTO_TEST_CASE(no_tree_near_the_mean_is_better)
   std::normal_distribution<double> normal;
   for (const bool is_squared : {false, true}) {
     const Orl_coordinates mean =
-        space.mean(np::tree_mean(is_squared ? Tree_mean::frechet : Tree_mean::median))
+        pcs::mean_tree(space, np::tree_mean(is_squared ? Tree_mean::frechet : Tree_mean::median))
             .coordinates();
     const double least = sum_of_distances(space, mean, is_squared);
     std::size_t number_better = 0;
@@ -312,11 +319,11 @@ BOOST_AUTO_TEST_CASE(the_mean_of_two_is_a_midpoint)
   const Space space = make_space(relatives(2, 9));
   const double whole = space.distance(0, 1);
   for (const Tree_mean kind : {Tree_mean::median, Tree_mean::frechet}) {
-    const pcs::Orl_tree mean = space.mean(np::tree_mean(kind));
+    const pcs::Orl_tree mean = pcs::mean_tree(space, np::tree_mean(kind));
     BOOST_TEST(std::abs(space.distance(mean, space.tree(0)) - whole / 2) < 1e-9 * whole);
     BOOST_TEST(std::abs(space.distance(mean, space.tree(1)) - whole / 2) < 1e-9 * whole);
   }
-  const pcs::Orl_tree part = space.weighted_mean({3, 1});
+  const pcs::Orl_tree part = pcs::weighted_mean(space, {3, 1});
   BOOST_TEST(space.distance(part, space.geodesic(0, 1, 0.25)) < 1e-9 * whole);
 }
 
@@ -364,17 +371,17 @@ BOOST_AUTO_TEST_CASE(combinations_are_between_and_directions_are_free)
   for (std::size_t h = 0; h < 4; ++h) {
     std::vector<double> w(4, 0);
     w[h] = 2;
-    BOOST_TEST(space.distance(space.weighted_mean(w), space.tree(h)) < 1e-9);
+    BOOST_TEST(space.distance(pcs::weighted_mean(space, w), space.tree(h)) < 1e-9);
   }
-  const pcs::Orl_tree half = space.weighted_mean({1, 1, 0, 0});
+  const pcs::Orl_tree half = pcs::weighted_mean(space, {1, 1, 0, 0});
   BOOST_TEST(space.distance(half, space.geodesic(0, 1, 0.5)) < 1e-9 * space.distance(0, 1));
   const pcs::Orl_tree moved =
-      space.parallel_displacement(space.tree(0), space.tree(0), space.tree(1), 1);
+      pcs::parallel_displacement(space, space.tree(0), space.tree(0), space.tree(1), 1);
   BOOST_TEST(space.distance(moved, space.tree(1)) < 1e-9 * space.distance(0, 1));
   const pcs::Orl_tree same =
-      space.parallel_displacement(space.tree(2), space.tree(0), space.tree(1), 0);
+      pcs::parallel_displacement(space, space.tree(2), space.tree(0), space.tree(1), 0);
   BOOST_TEST(space.distance(same, space.tree(2)) < 1e-9);
-  const pcs::Orl_tree beyond = space.weighted_mean({2, -1, 0.5, 0});
+  const pcs::Orl_tree beyond = pcs::weighted_mean(space, {2, -1, 0.5, 0});
   for (const double l : beyond.coordinates().length)
     BOOST_TEST(l >= 0);
 }
@@ -391,7 +398,7 @@ BOOST_AUTO_TEST_CASE(radii_stay_positive_beyond_the_inputs)
   std::vector<std::size_t> tip;
   const Space space =
       make_space({make_tree(thick, still, all, tip), make_tree(thin, still, all, tip)});
-  const pcs::Orl_tree beyond = space.weighted_mean({-1, 2});
+  const pcs::Orl_tree beyond = pcs::weighted_mean(space, {-1, 2});
   const auto& x = beyond.coordinates();
   std::size_t number_there = 0;
   for (std::size_t e = 0; e < x.length.size(); ++e)
@@ -415,10 +422,10 @@ BOOST_AUTO_TEST_CASE(equal_trees_are_no_outliers)
     space.build();
     for (const Mode_inner_product measure :
          {Mode_inner_product::branches, Mode_inner_product::metric}) {
-      const auto modes = space.modes(9, np::mode_inner_product(measure));
+      const auto modes = pcs::find_modes(space, 9, np::mode_inner_product(measure));
       BOOST_TEST(modes.size() == 0u);
       for (std::size_t h = 0; h < n; ++h)
-        BOOST_TEST(space.outlier_score(modes, space.tree(h)) == 0);
+        BOOST_TEST(pcs::outlier_score(space, modes, space.tree(h)) == 0);
     }
   }
 }
@@ -426,13 +433,13 @@ BOOST_AUTO_TEST_CASE(equal_trees_are_no_outliers)
 BOOST_AUTO_TEST_CASE(all_modes_give_the_inputs_back)
 {
   const Family space(6);
-  const auto modes = space.modes(100);
+  const auto modes = pcs::find_modes(space, 100);
   BOOST_TEST(modes.size() == 5u);
   BOOST_TEST(std::abs(modes.share(5) - 1) < 1e-9);
   for (std::size_t h = 0; h < 6; ++h) {
     const pcs::Orl_tree tree = space.tree(h);
     const double size = total_length(tree.coordinates());
-    const pcs::Orl_tree same = space.reconstruct(modes, tree, 5);
+    const pcs::Orl_tree same = pcs::reconstruct_tree(space, modes, tree, 5);
     BOOST_TEST(space.distance(same, tree) < 1e-9 * size);
     Tree one, two; // branches that the tree lacks do not come with a length of rounding
     space.skeleton(tree, one);
@@ -440,7 +447,7 @@ BOOST_AUTO_TEST_CASE(all_modes_give_the_inputs_back)
     BOOST_TEST(num_vertices(one) == num_vertices(two));
     double last = 1e300;
     for (std::size_t k = 1; k <= 5; ++k) {
-      const double d = space.project(space.modes(k), tree).distance;
+      const double d = pcs::project_on_modes(space, pcs::find_modes(space, k), tree).distance;
       BOOST_TEST(d < last + 1e-9 * size);
       last = d;
     }
@@ -448,7 +455,7 @@ BOOST_AUTO_TEST_CASE(all_modes_give_the_inputs_back)
   }
   for (const Mode_inner_product measure :
        {Mode_inner_product::branches, Mode_inner_product::metric}) {
-    const auto all = space.modes(100, np::mode_inner_product(measure));
+    const auto all = pcs::find_modes(space, 100, np::mode_inner_product(measure));
     BOOST_TEST(all.size() == 5u);
     const Eigen::MatrixXd products = all.scores.transpose() * all.scores / 5;
     BOOST_TEST((products - Eigen::MatrixXd::Identity(5, 5)).norm() < 1e-9); // uncorrelated
@@ -456,7 +463,7 @@ BOOST_AUTO_TEST_CASE(all_modes_give_the_inputs_back)
     for (Eigen::Index k = 1; k < 5; ++k)
       BOOST_TEST(all.shares[k] <= all.shares[k - 1]);
     const pcs::Orl_tree tree = space.tree(3);
-    BOOST_TEST(space.distance(space.reconstruct(all, tree, 5), tree) <
+    BOOST_TEST(space.distance(pcs::reconstruct_tree(space, all, tree, 5), tree) <
                1e-9 * total_length(tree.coordinates()));
     if (measure == Mode_inner_product::metric)
       BOOST_TEST(
@@ -484,14 +491,15 @@ BOOST_AUTO_TEST_CASE(trees_that_only_lack_branches_have_modes)
     return tree;
   };
   const Space space = make_space({with(4), with(2), with(4), with(2)});
-  const auto modes = space.modes(3);
+  const auto modes = pcs::find_modes(space, 3);
   BOOST_TEST_REQUIRE(modes.size() == 1u);
   BOOST_TEST((modes.features.measure == Mode_inner_product::metric));
   BOOST_TEST(modes.scores(0, 0) * modes.scores(1, 0) < 0);
   BOOST_TEST(std::abs(modes.scores(0, 0) - modes.scores(2, 0)) < 1e-9);
   for (std::size_t h = 0; h < 4; ++h)
-    BOOST_TEST(space.distance(space.reconstruct(modes, space.tree(h), 1), space.tree(h)) < 1e-9);
-  BOOST_TEST(space.modes(0).size() == 0u);
+    BOOST_TEST(space.distance(pcs::reconstruct_tree(space, modes, space.tree(h), 1),
+                              space.tree(h)) < 1e-9);
+  BOOST_TEST(pcs::find_modes(space, 0).size() == 0u);
 }
 
 BOOST_AUTO_TEST_CASE(trees_far_out_on_a_mode_are_trees)
@@ -499,8 +507,8 @@ BOOST_AUTO_TEST_CASE(trees_far_out_on_a_mode_are_trees)
   const Family space(6);
   const auto check = [&](const pcs::Orl_tree& tree) {
     const Orl_coordinates& x = tree.coordinates();
-    for (std::size_t b = 0; b < space.layout().branches.size(); ++b) {
-      const Orl_layout::Branch& branch = space.layout().branches[b];
+    for (std::size_t b = 0; b < space.family().layout.branches.size(); ++b) {
+      const Orl_layout::Branch& branch = space.family().layout.branches[b];
       for (std::size_t e = branch.first_edge; e < branch.first_edge + branch.number_of_edges; ++e) {
         BOOST_TEST(std::isfinite(x.length[e]));
         BOOST_TEST((b > 0 || x.length[e] > 0));
@@ -512,26 +520,28 @@ BOOST_AUTO_TEST_CASE(trees_far_out_on_a_mode_are_trees)
     space.skeleton(tree, skeleton);
     BOOST_TEST(num_vertices(skeleton) >= 2u);
   };
-  const auto modes = space.modes(5);
+  const auto modes = pcs::find_modes(space, 5);
   for (std::size_t k = 0; k < modes.size(); ++k)
     for (const double score : {-1000., -50., -5., 5., 50., 1000.}) {
       std::vector<double> scores(k, 0);
       scores.push_back(score);
-      check(space.tree(modes, scores));
+      check(pcs::tree_of_modes(space, modes, scores));
     }
   for (const double step : {-100., -3., 4., 100.})
-    check(space.parallel_displacement(space.mean(np::tree_mean(Tree_mean::frechet)),
-                                      space.tree(0),
-                                      space.tree(1),
-                                      step));
+    check(pcs::parallel_displacement(space,
+                                     pcs::mean_tree(space, np::tree_mean(Tree_mean::frechet)),
+                                     space.tree(0),
+                                     space.tree(1),
+                                     step));
 }
 
 BOOST_AUTO_TEST_CASE(two_known_modes_are_found)
 {
   // trees at random places of a plane through a mean
   const Family base(5);
-  const Orl_coordinates mean = base.mean(np::tree_mean(Tree_mean::frechet)).coordinates();
-  const Tangent_space tangent(base.layout(), mean, base.weights());
+  const Orl_coordinates mean =
+      pcs::mean_tree(base, np::tree_mean(Tree_mean::frechet)).coordinates();
+  const Tangent_space tangent(base.family().layout, mean, base.family().weights);
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
   Eigen::MatrixXd plane(tangent.dimension(), 2);
@@ -547,11 +557,13 @@ BOOST_AUTO_TEST_CASE(two_known_modes_are_found)
   for (const Orl_coordinates& x : trees)
     pointers.push_back(&x);
   using Tag = CGAL::Parallel_if_available_tag;
-  const Orl_coordinates middle =
-      mean_tree<Tag>(base.layout(), pointers, std::vector<double>(20, 1), Tree_mean::frechet);
-  const auto modes = find_modes<Tag>(base.layout(),
+  const Orl_coordinates middle = mean_tree<Tag>(base.family().layout,
+                                                pointers,
+                                                std::vector<double>(20, 1),
+                                                Tree_mean::frechet);
+  const auto modes = find_modes<Tag>(base.family().layout,
                                      pointers,
-                                     base.weights(),
+                                     base.family().weights,
                                      Orl_orientation::gauge_fixed,
                                      middle,
                                      2);
@@ -604,7 +616,7 @@ BOOST_AUTO_TEST_CASE(age_and_crown_angle_of_trees_with_different_branches_are_fo
     }
     BOOST_TEST(counts.size() > 6u); // they are different trees
     const Space space = make_space(trees);
-    const auto modes = space.modes(2);
+    const auto modes = pcs::find_modes(space, 2);
     BOOST_REQUIRE(modes.size() == 2u);
     BOOST_TEST(correlation(modes.scores, known.col(0)) > 0.95, seed);
     BOOST_TEST(correlation(modes.scores, known.col(1)) > 0.95, seed);
@@ -619,13 +631,14 @@ BOOST_AUTO_TEST_CASE(parameters_of_grown_trees_are_found)
     habit.number_of_orders = 3;
     const Trees_of_parameters family = grow_trees(habit, second, 9, 12);
     const Space space = make_space(family.trees);
-    const auto modes = space.modes(2);
+    const auto modes = pcs::find_modes(space, 2);
     const double age = correlation(modes.scores, family.known.col(0)),
                  other = correlation(modes.scores, family.known.col(1));
     BOOST_TEST(age > 0.95, age);
     BOOST_TEST(other > 0.95, other);
     // the metric takes branches that are lost for the second parameter
-    const auto plain = space.modes(2, np::mode_inner_product(Mode_inner_product::metric));
+    const auto plain =
+        pcs::find_modes(space, 2, np::mode_inner_product(Mode_inner_product::metric));
     BOOST_TEST(correlation(plain.scores, family.known.col(1)) < other);
   }
 }
@@ -633,7 +646,7 @@ BOOST_AUTO_TEST_CASE(parameters_of_grown_trees_are_found)
 BOOST_AUTO_TEST_CASE(left_out_trees_are_nearer_with_more_modes)
 {
   const Family space(7);
-  const auto modes = space.modes(6);
+  const auto modes = pcs::find_modes(space, 6);
   for (std::size_t k = 0; k < 5; ++k)
     BOOST_TEST(modes.left_out_error(k + 1) < modes.left_out_error(k) * (1 + 1e-12));
   BOOST_TEST(modes.left_out_error(5) < 0.999 * modes.left_out_error(0));
@@ -645,15 +658,18 @@ BOOST_AUTO_TEST_CASE(left_out_trees_are_nearer_with_more_modes)
     x.push_back(space.tree(h).coordinates());
   for (std::size_t h = 1; h < 7; ++h)
     pointers.push_back(&x[h]);
-  const auto rest = find_modes<CGAL::Sequential_tag>(space.layout(),
+  const auto rest = find_modes<CGAL::Sequential_tag>(space.family().layout,
                                                      pointers,
-                                                     space.weights(),
+                                                     space.family().weights,
                                                      Orl_orientation::gauge_fixed,
                                                      modes.mean,
                                                      2);
-  const double d =
-      project_on_modes(space.layout(), space.weights(), Orl_orientation::gauge_fixed, rest, x[0])
-          .distance;
+  const double d = project_on_modes(space.family().layout,
+                                    space.family().weights,
+                                    Orl_orientation::gauge_fixed,
+                                    rest,
+                                    x[0])
+                       .distance;
   BOOST_TEST(std::abs(d - modes.left_out[0][2]) < 1e-4 * d); // covariances are iterated
 }
 
@@ -688,7 +704,7 @@ BOOST_AUTO_TEST_CASE(a_tree_without_part_in_the_topology_is_nearer_with_more_mod
     const Space space = make_space(others);
     const pcs::Orl_tree placed = space.embed(trees[left]);
     for (std::size_t k = 0; k < 3; ++k)
-      error[k] += space.project(space.modes(k), placed).distance;
+      error[k] += pcs::project_on_modes(space, pcs::find_modes(space, k), placed).distance;
   }
   BOOST_TEST(error[1] < 0.9 * error[0]);
   BOOST_TEST(error[2] < 0.4 * error[0]);
@@ -701,18 +717,19 @@ BOOST_AUTO_TEST_SUITE(orl_samples)
 BOOST_AUTO_TEST_CASE(new_trees_are_different_and_within_the_inputs)
 {
   const Family space(8);
-  const auto distribution = space.distribution();
+  const auto distribution = pcs::learn_distribution(space);
   std::vector<Tree_descriptors> inputs;
   for (std::size_t h = 0; h < 8; ++h)
-    inputs.push_back(space.figures(space.tree(h)));
+    inputs.push_back(pcs::measure_shape(space, space.tree(h)));
   std::set<double> lengths;
   std::size_t number_inside = 0, number_beyond = 0;
   for (std::uint64_t i = 0; i < 30; ++i) {
     pcs::Sample_report report;
-    const pcs::Orl_tree tree = space.sample(distribution, 11, i, np::default_values(), &report);
+    const pcs::Orl_tree tree =
+        pcs::sample_tree(space, distribution, 11, i, np::default_values(), &report);
     number_inside += report.range_violation == 0;
     BOOST_TEST(report.range_violation < 0.1); // orders of few branches have narrow ranges
-    const Tree_descriptors f = space.figures(tree);
+    const Tree_descriptors f = pcs::measure_shape(space, tree);
     BOOST_TEST(range_violation(f, inputs) == report.range_violation);
     // whatever `range_violation()` says
     for (const auto& get : {+[](const Tree_descriptors& x) { return x.length; },
@@ -731,15 +748,15 @@ BOOST_AUTO_TEST_CASE(new_trees_are_different_and_within_the_inputs)
     }
     const Orl_coordinates& x = tree.coordinates();
     lengths.insert(total_length(x));
-    for (std::size_t b = 0; b < space.layout().branches.size(); ++b) {
-      const auto& branch = space.layout().branches[b];
+    for (std::size_t b = 0; b < space.family().layout.branches.size(); ++b) {
+      const auto& branch = space.family().layout.branches[b];
       const bool is_there = x.length[branch.first_edge] > 0;
       for (std::size_t e = branch.first_edge; e < branch.first_edge + branch.number_of_edges; ++e) {
         BOOST_TEST((x.length[e] > 0) == is_there);
         BOOST_TEST((x.radius[e] > 0) == is_there);
       }
       if (is_there && b > 0)
-        BOOST_TEST(x.length[space.layout().branches[branch.parent].first_edge] > 0);
+        BOOST_TEST(x.length[space.family().layout.branches[branch.parent].first_edge] > 0);
     }
   }
   BOOST_TEST(lengths.size() == 30u);
@@ -753,15 +770,16 @@ BOOST_AUTO_TEST_CASE(new_trees_of_a_few_are_within_them_by_order)
   // each order
   for (const unsigned seed : {14u, 15u, 16u}) {
     const Space space = make_space(relatives(3, seed, 0.3, 0.3, 4));
-    const auto distribution = space.distribution();
+    const auto distribution = pcs::learn_distribution(space);
     std::vector<Tree_descriptors> inputs;
     for (std::size_t h = 0; h < 3; ++h)
-      inputs.push_back(space.figures(space.tree(h)));
+      inputs.push_back(pcs::measure_shape(space, space.tree(h)));
     std::size_t number_inside = 0;
     for (std::uint64_t i = 0; i < 12; ++i) {
       pcs::Sample_report report;
-      const Tree_descriptors f =
-          space.figures(space.sample(distribution, 1, i, np::default_values(), &report));
+      const Tree_descriptors f = pcs::measure_shape(
+          space,
+          pcs::sample_tree(space, distribution, 1, i, np::default_values(), &report));
       BOOST_TEST(report.number_of_trials <= 100u);
       bool is_inside = true;
       for (std::size_t k = 1; k < f.mean_angle.size(); ++k) {
@@ -837,13 +855,13 @@ BOOST_AUTO_TEST_CASE(branches_keep_their_slant)
     trees.push_back(make_tree(branches));
   }
   const Space space = make_space(trees);
-  const auto distribution = space.distribution();
+  const auto distribution = pcs::learn_distribution(space);
   Tree_sampling_options free;
   free.do_keep_in_range = false;
   double spread = 0;
   for (std::uint64_t i = 0; i < 20; ++i) {
     Tree drawn;
-    space.skeleton(space.sample(distribution, 4, i, np::sampling_options(free)), drawn);
+    space.skeleton(pcs::sample_tree(space, distribution, 4, i, np::sampling_options(free)), drawn);
     for (const auto e : boost::make_iterator_range(edges(drawn))) {
       const Vec3 v =
           to_eigen(drawn[target(e, drawn)].point) - to_eigen(drawn[source(e, drawn)].point);
@@ -861,17 +879,18 @@ BOOST_AUTO_TEST_CASE(branches_keep_their_slant)
 BOOST_AUTO_TEST_CASE(a_seed_gives_a_family_and_a_tree_does_not_depend_on_the_others)
 {
   const Family space(4);
-  const auto d = space.distribution();
-  const pcs::Orl_tree a = space.sample(d, 5, 7), b = space.sample(space.distribution(), 5, 7);
+  const auto d = pcs::learn_distribution(space);
+  const pcs::Orl_tree a = pcs::sample_tree(space, d, 5, 7),
+                      b = pcs::sample_tree(space, pcs::learn_distribution(space), 5, 7);
   BOOST_TEST(space.distance(a, b) == 0);
-  BOOST_TEST(space.distance(a, space.sample(d, 5, 8)) > 0);
-  BOOST_TEST(space.distance(a, space.sample(d, 6, 7)) > 0);
+  BOOST_TEST(space.distance(a, pcs::sample_tree(space, d, 5, 8)) > 0);
+  BOOST_TEST(space.distance(a, pcs::sample_tree(space, d, 6, 7)) > 0);
 }
 
 BOOST_AUTO_TEST_CASE(moments_of_new_trees_are_those_of_the_inputs)
 {
   const Space space = make_space(relatives(12, 21, 0.15, 0)); // all branches everywhere
-  const auto distribution = space.distribution();
+  const auto distribution = pcs::learn_distribution(space);
   Tree_sampling_options free;
   free.do_keep_in_range = false;
   free.truncation = 6;
@@ -879,11 +898,11 @@ BOOST_AUTO_TEST_CASE(moments_of_new_trees_are_those_of_the_inputs)
     return std::log(x.length[e]);
   };
   // logarithms of lengths: the means are those of the inputs, and so are variances on average
-  const std::size_t n = space.layout().number_of_edges(), m = 4000;
+  const std::size_t n = space.family().layout.number_of_edges(), m = 4000;
   std::vector<double> mean(n, 0), square(n, 0), input_mean(n, 0), input_square(n, 0);
   for (std::size_t i = 0; i < m; ++i) {
     const Orl_coordinates x =
-        space.sample(distribution, 1, i, np::sampling_options(free)).coordinates();
+        pcs::sample_tree(space, distribution, 1, i, np::sampling_options(free)).coordinates();
     for (std::size_t e = 0; e < n; ++e) {
       mean[e] += figures(e, x) / static_cast<double>(m);
       square[e] += figures(e, x) * figures(e, x) / static_cast<double>(m);
@@ -911,8 +930,8 @@ BOOST_AUTO_TEST_CASE(moments_of_new_trees_are_those_of_the_inputs)
 BOOST_AUTO_TEST_CASE(limits_hold_when_asked_for)
 {
   const Family space(5);
-  const auto distribution = space.distribution();
-  const Orl_layout& layout = space.layout();
+  const auto distribution = pcs::learn_distribution(space);
+  const Orl_layout& layout = space.family().layout;
   const auto radius_at = [&](const Orl_coordinates& x, std::size_t b, double t) {
     const auto k = std::min(layout.branches[b].number_of_edges - 1, static_cast<std::size_t>(t));
     const auto at = [&](std::size_t i) {
@@ -926,7 +945,7 @@ BOOST_AUTO_TEST_CASE(limits_hold_when_asked_for)
   options.do_keep_in_range = false;
   for (std::uint64_t i = 0; i < 10; ++i) {
     const Orl_coordinates x =
-        space.sample(distribution, 2, i, np::sampling_options(options)).coordinates();
+        pcs::sample_tree(space, distribution, 2, i, np::sampling_options(options)).coordinates();
     for (std::size_t b = 1; b < layout.branches.size(); ++b)
       BOOST_TEST(x.base_radius[b] <=
                  radius_at(x, layout.branches[b].parent, x.attachment[b]) * (1 + 1e-12));
@@ -935,7 +954,7 @@ BOOST_AUTO_TEST_CASE(limits_hold_when_asked_for)
   options.do_limit_radii = false;
   for (std::uint64_t i = 0; i < 10; ++i) {
     const Orl_coordinates x =
-        space.sample(distribution, 2, i, np::sampling_options(options)).coordinates();
+        pcs::sample_tree(space, distribution, 2, i, np::sampling_options(options)).coordinates();
     // what leaves the trunk and what is left at its tip
     double sum = std::pow(x.radius[layout.branches[0].number_of_edges - 1], 2);
     for (std::size_t b = 1; b < layout.branches.size(); ++b)
@@ -980,7 +999,8 @@ BOOST_AUTO_TEST_CASE(points_follow_their_branches_in_one_order)
   }
   // the mean has part of all scans, each as much as is asked for
   const std::vector<double> weights{1, 2, 3, 2};
-  const pcs::Orl_tree mean = space.mean(np::tree_weights(weights).tree_mean(Tree_mean::frechet));
+  const pcs::Orl_tree mean =
+      pcs::mean_tree(space, np::tree_weights(weights).tree_mean(Tree_mean::frechet));
   std::vector<double> total(mean.number_of_points(), 0);
   std::vector<std::array<double, 4>> share(total.size(), {0, 0, 0, 0});
   space.for_each_source(mean, [&](std::size_t i, std::size_t h, std::size_t, double w) {
@@ -1016,7 +1036,7 @@ BOOST_AUTO_TEST_CASE(points_follow_their_branches_in_one_order)
   }
   BOOST_TEST(number_of_own == scans[2].size());
   // points of a new tree lie about its axes, as far as its radii say
-  const pcs::Orl_tree drawn = space.sample(3);
+  const pcs::Orl_tree drawn = pcs::sample_tree(space, 3);
   space.points(drawn, points);
   Tree skeleton;
   space.skeleton(drawn, skeleton);
@@ -1066,14 +1086,15 @@ BOOST_AUTO_TEST_CASE(new_trees_of_a_real_group_are_within_it)
     space.build();
     std::vector<Tree_descriptors> inputs;
     for (std::size_t h = 0; h < files.size(); ++h)
-      inputs.push_back(space.figures(space.tree(h)));
-    const Tree_descriptors mean = space.figures(space.mean());
+      inputs.push_back(pcs::measure_shape(space, space.tree(h)));
+    const Tree_descriptors mean = pcs::measure_shape(space, pcs::mean_tree(space));
     BOOST_TEST(mean.length > 0.5 * inputs[0].length);
-    const auto distribution = space.distribution();
+    const auto distribution = pcs::learn_distribution(space);
     std::size_t number_inside = 0;
     for (std::uint64_t i = 0; i < 12; ++i)
       number_inside +=
-          range_violation(space.figures(space.sample(distribution, 1, i)), inputs) == 0;
+          range_violation(pcs::measure_shape(space, pcs::sample_tree(space, distribution, 1, i)),
+                          inputs) == 0;
     BOOST_TEST(number_inside >= 11u, group << " " << number_inside);
   }
 }
@@ -1117,7 +1138,7 @@ BOOST_AUTO_TEST_CASE(archetypes_of_graph_range_key_map_and_value)
                  0.2 * space.distance(0, 2));
     }
   }
-  const pcs::Orl_tree tree = space.mean();
+  const pcs::Orl_tree tree = pcs::mean_tree(space);
   std::vector<Bare_point> out(tree.number_of_points(), Bare_point(0, 0, 0));
   pcs_test::Range_archetype range(out.size());
   BOOST_TEST(space.points(tree, range, np::point_map(pcs_test::Map_archetype<Bare_point>(out))) ==
@@ -1132,11 +1153,11 @@ BOOST_AUTO_TEST_CASE(the_path_goes_through_all_trees_smoothly)
 {
   const Family space(4);
   const std::vector<double> times{0, 1, 3, 4};
-  const auto path = space.growth({2, 0, 1, 3}, times);
+  const auto path = pcs::fit_growth_path(space, {2, 0, 1, 3}, times);
   const std::size_t order[] = {2, 0, 1, 3};
   for (std::size_t i = 0; i < 4; ++i) {
     Tree a, b;
-    space.skeleton(space.tree(path, times[i]), a);
+    space.skeleton(pcs::tree_at_time(space, path, times[i]), a);
     space.skeleton(space.tree(order[i]), b);
     BOOST_REQUIRE(num_vertices(a) == num_vertices(b));
     for (std::size_t v = 0; v < num_vertices(a); ++v)
@@ -1144,7 +1165,7 @@ BOOST_AUTO_TEST_CASE(the_path_goes_through_all_trees_smoothly)
   }
   // the speed is the same on both sides of an inner tree
   const double h = 1e-5;
-  const auto at = [&](double t) { return space.tree(path, t); };
+  const auto at = [&](double t) { return pcs::tree_at_time(space, path, t); };
   const Orl_coordinates l = at(1 - h).coordinates(), m = at(1).coordinates(),
                         r = at(1 + h).coordinates();
   double worst = 0;
@@ -1156,20 +1177,22 @@ BOOST_AUTO_TEST_CASE(the_path_goes_through_all_trees_smoothly)
     worst = std::max(worst, (after - before).norm() / h);
   }
   BOOST_TEST(worst < 1e-3);
-  BOOST_TEST(space.distance(space.tree(path, -5), space.tree(path, 0)) == 0);
+  BOOST_TEST(
+      space.distance(pcs::tree_at_time(space, path, -5), pcs::tree_at_time(space, path, 0)) == 0);
 }
 
 BOOST_AUTO_TEST_CASE(nothing_shrinks_when_asked)
 {
   const Family space(5);
-  const auto path = space.growth({0, 1, 2, 3, 4}, {0, 1, 2, 3, 4}, np::is_monotone(true));
-  const auto free = space.growth({0, 1, 2, 3, 4}, {0, 1, 2, 3, 4});
-  Orl_coordinates last = space.tree(path, 0).coordinates();
-  Orl_coordinates last_free = space.tree(free, 0).coordinates();
+  const auto path =
+      pcs::fit_growth_path(space, {0, 1, 2, 3, 4}, {0, 1, 2, 3, 4}, np::is_monotone(true));
+  const auto free = pcs::fit_growth_path(space, {0, 1, 2, 3, 4}, {0, 1, 2, 3, 4});
+  Orl_coordinates last = pcs::tree_at_time(space, path, 0).coordinates();
+  Orl_coordinates last_free = pcs::tree_at_time(space, free, 0).coordinates();
   std::size_t number_shrunk = 0, number_shrunk_free = 0;
   for (int k = 1; k <= 80; ++k) {
-    const Orl_coordinates x = space.tree(path, 0.05 * k).coordinates();
-    const Orl_coordinates y = space.tree(free, 0.05 * k).coordinates();
+    const Orl_coordinates x = pcs::tree_at_time(space, path, 0.05 * k).coordinates();
+    const Orl_coordinates y = pcs::tree_at_time(space, free, 0.05 * k).coordinates();
     for (std::size_t e = 0; e < x.length.size(); ++e) {
       number_shrunk +=
           x.length[e] < last.length[e] * (1 - 1e-12) || x.radius[e] < last.radius[e] * (1 - 1e-12);
@@ -1199,13 +1222,13 @@ BOOST_AUTO_TEST_CASE(changes_are_named)
   const Tree a = make_tree(all, still, first, tip_a),
              b = make_tree(later, turned, std::vector<char>(all.size(), 1), tip_b);
   const Space space = make_space({a, b});
-  const auto changes = space.changes(0, 1);
+  const auto changes = pcs::find_branch_changes(space, 0, 1);
   BOOST_TEST(changes.size() == 5u);
   Space in_world_axes;
   in_world_axes.add_skeleton(a);
   in_world_axes.add_skeleton(b);
   in_world_axes.build(np::orientation(pcs::Orl_orientation::world_axes));
-  const auto same = in_world_axes.changes(0, 1);
+  const auto same = pcs::find_branch_changes(in_world_axes, 0, 1);
   BOOST_TEST_REQUIRE(same.size() == changes.size());
   for (std::size_t i = 0; i < same.size(); ++i) {
     BOOST_TEST(same[i].is_turned == changes[i].is_turned);
@@ -1238,7 +1261,7 @@ BOOST_AUTO_TEST_CASE(changes_are_named)
   }
   // seen the other way
   std::size_t number_lost = 0, number_shorter = 0, number_thinner = 0, number_new = 0;
-  for (const Branch_change& c : space.changes(1, 0)) {
+  for (const Branch_change& c : pcs::find_branch_changes(space, 1, 0)) {
     number_lost += c.is_lost;
     number_shorter += c.is_shorter;
     number_thinner += c.is_thinner;
@@ -1319,7 +1342,7 @@ BOOST_AUTO_TEST_CASE(a_space_is_saved_and_restored)
     Space other;
     other.restore(pcs::IO::read_shape_space(path));
     BOOST_TEST(other.number_of_trees() == n);
-    const pcs::Orl_tree a = space.sample(9), b = other.sample(9);
+    const pcs::Orl_tree a = pcs::sample_tree(space, 9), b = pcs::sample_tree(other, 9);
     BOOST_TEST(space.distance(a, b) == 0);
     std::vector<Point> p, q;
     space.points(a, p);
@@ -1387,14 +1410,14 @@ BOOST_AUTO_TEST_CASE(threads_do_not_matter)
     for (const Tree& tree : trees)
       space.add(tree, rings(tree));
     space.build();
-    std::vector<double> figures = space.distances();
-    for (const pcs::Orl_tree& tree : {space.mean(), space.sample(4)}) {
+    std::vector<double> figures = pcs::distance_matrix(space);
+    for (const pcs::Orl_tree& tree : {pcs::mean_tree(space), pcs::sample_tree(space, 4)}) {
       std::vector<Point> points;
       space.points(tree, points);
       for (const Point& p : points)
         figures.push_back(p.x() + 3 * p.y() + 7 * p.z());
     }
-    const auto modes = space.modes(3);
+    const auto modes = pcs::find_modes(space, 3);
     figures.insert(figures.end(), modes.scores.data(), modes.scores.data() + modes.scores.size());
     return figures;
   };
@@ -1418,7 +1441,7 @@ BOOST_AUTO_TEST_CASE(a_cancelled_build_leaves_no_space)
   }));
   BOOST_TEST(report.status == pcs::Status::cancelled);
   BOOST_TEST(std::is_sorted(seen.begin(), seen.end()));
-  BOOST_CHECK_THROW(space.mean(), pcs::Invalid_input);
+  BOOST_CHECK_THROW(pcs::mean_tree(space), pcs::Invalid_input);
   BOOST_TEST(space.build().status == pcs::Status::converged);
   BOOST_TEST(space.number_of_trees() == 4u);
 }
@@ -1426,7 +1449,9 @@ BOOST_AUTO_TEST_CASE(a_cancelled_build_leaves_no_space)
 BOOST_AUTO_TEST_CASE(wrong_values_are_named)
 {
   Space space;
-  BOOST_CHECK_EXCEPTION(space.mean(), pcs::Invalid_input, message_has("call build() first"));
+  BOOST_CHECK_EXCEPTION(pcs::mean_tree(space),
+                        pcs::Invalid_input,
+                        message_has("call build() first"));
   BOOST_CHECK_EXCEPTION(space.data(), pcs::Invalid_input, message_has("call build() first"));
   for (const Tree& tree : relatives(3, 72))
     space.add_skeleton(tree);
@@ -1439,32 +1464,33 @@ BOOST_AUTO_TEST_CASE(wrong_values_are_named)
   space.build();
   const double nan = std::numeric_limits<double>::quiet_NaN();
   BOOST_CHECK_EXCEPTION(space.tree(3), pcs::Invalid_input, message_has("no tree 3"));
-  BOOST_CHECK_EXCEPTION(space.weighted_mean({1, 1}),
+  BOOST_CHECK_EXCEPTION(pcs::weighted_mean(space, {1, 1}),
                         pcs::Invalid_input,
                         message_has("2 weights for 3"));
-  BOOST_CHECK_THROW(space.weighted_mean({1, nan, 1}), pcs::Invalid_input);
-  BOOST_CHECK_THROW(space.weighted_mean({1, -1, 0}), pcs::Invalid_input);
-  BOOST_CHECK_THROW(space.mean(np::tree_weights(std::vector<double>{1, -1, 3})),
+  BOOST_CHECK_THROW(pcs::weighted_mean(space, {1, nan, 1}), pcs::Invalid_input);
+  BOOST_CHECK_THROW(pcs::weighted_mean(space, {1, -1, 0}), pcs::Invalid_input);
+  BOOST_CHECK_THROW(pcs::mean_tree(space, np::tree_weights(std::vector<double>{1, -1, 3})),
                     pcs::Invalid_input);
-  BOOST_CHECK_THROW(space.growth({0}, {0}), pcs::Invalid_input);
-  BOOST_CHECK_THROW(space.growth({0, 1}, {1, 1}), pcs::Invalid_input);
-  BOOST_CHECK_THROW(space.growth({0, 7}, {0, 1}), pcs::Invalid_input);
+  BOOST_CHECK_THROW(pcs::fit_growth_path(space, {0}, {0}), pcs::Invalid_input);
+  BOOST_CHECK_THROW(pcs::fit_growth_path(space, {0, 1}, {1, 1}), pcs::Invalid_input);
+  BOOST_CHECK_THROW(pcs::fit_growth_path(space, {0, 7}, {0, 1}), pcs::Invalid_input);
   BOOST_CHECK_THROW(space.for_each_point(space.tree(0), [](auto...) {}), pcs::Invalid_input);
   BOOST_CHECK_THROW(space.correspondences(), pcs::Invalid_input);
   pcs::Orl_space_data stored = space.data();
   stored.trees[1].length[0] = 1e300; // finite, but its square is not
   BOOST_CHECK_EXCEPTION(Space().restore(stored), pcs::Invalid_input, message_has("1e100"));
-  const auto modes = space.modes(2);
-  BOOST_CHECK_THROW(space.tree(modes, {1, 2, 3}), pcs::Invalid_input);
-  BOOST_CHECK_THROW(space.tree(modes, {nan}), pcs::Invalid_input);
+  const auto modes = pcs::find_modes(space, 2);
+  BOOST_CHECK_THROW(pcs::tree_of_modes(space, modes, {1, 2, 3}), pcs::Invalid_input);
+  BOOST_CHECK_THROW(pcs::tree_of_modes(space, modes, {nan}), pcs::Invalid_input);
   Tree_sampling_options options;
   options.truncation = 0;
-  BOOST_CHECK_THROW(space.sample(1, np::sampling_options(options)), pcs::Invalid_input);
+  BOOST_CHECK_THROW(pcs::sample_tree(space, 1, np::sampling_options(options)), pcs::Invalid_input);
   const Family other(4);
-  BOOST_CHECK_THROW(other.tree(modes, {1}), pcs::Invalid_input);
+  BOOST_CHECK_THROW(pcs::tree_of_modes(other, modes, {1}), pcs::Invalid_input);
   BOOST_CHECK_THROW(other.distance(space.tree(0), other.tree(0)), pcs::Invalid_input);
-  BOOST_CHECK_THROW(space.changes(0, 1, np::change_limits(Change_limits{nan, 0, 0})),
-                    pcs::Invalid_input);
+  BOOST_CHECK_THROW(
+      pcs::find_branch_changes(space, 0, 1, np::change_limits(Change_limits{nan, 0, 0})),
+      pcs::Invalid_input);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -116,8 +116,8 @@ BOOST_FIXTURE_TEST_CASE(a_tree_that_was_turned_is_itself, Nodes)
                             .up_direction(Kernel::Vector_3(up.x(), up.y(), up.z())));
         BOOST_TEST_CONTEXT("seed " << seed << ", " << degrees << " degrees about " << axis)
         {
-          BOOST_TEST(std::abs(report.turn + angle) < 1e-6);
-          BOOST_TEST(report.unexplained_share < 1e-6);
+          BOOST_TEST(std::abs(report.yaw + angle) < 1e-6);
+          BOOST_TEST(report.unexplained_fraction < 1e-6);
           for (const pcs::Branch_match& m : space.matches())
             BOOST_TEST(m.tip[0] == m.tip[1]);
           // half-way it is the same tree, and half of the turn is done
@@ -147,7 +147,7 @@ BOOST_AUTO_TEST_CASE(a_grown_tree_is_found_however_it_stands)
       turned.add_skeleton(a);
       turned.add_skeleton(moved(b, about(Vec3::UnitZ(), angle), Vec3::Zero()));
       const auto report = turned.build(turns);
-      BOOST_TEST(std::abs(std::remainder(report.turn + angle, 2 * CGAL_PI)) <
+      BOOST_TEST(std::abs(std::remainder(report.yaw + angle, 2 * CGAL_PI)) <
                  0.3); // trunks and branches were turned, too
       const auto expected = still.matches(), found = turned.matches();
       for (const pcs::Branch_match& m : expected) {
@@ -175,7 +175,7 @@ BOOST_AUTO_TEST_CASE(trees_that_stand_right_are_not_turned)
       space.add(a, scan_a);
       space.add(b, scan_b);
       const auto report = k == 0 ? space.build() : space.build(turns);
-      BOOST_TEST(report.turn == 0);
+      BOOST_TEST(report.yaw == 0);
       space.points(space.geodesic(0, 1, 0.5), points[k]);
     }
     BOOST_TEST((points[0] == points[1]));
@@ -190,7 +190,7 @@ BOOST_AUTO_TEST_CASE(the_ends_of_a_path_with_a_turn_are_the_inputs)
   Space space;
   space.add(a, scans[0]);
   space.add(b, scans[1]);
-  BOOST_TEST(std::abs(space.build(turns).turn + 2) < 0.2);
+  BOOST_TEST(std::abs(space.build(turns).yaw + 2) < 0.2);
   for (const std::size_t end : {0u, 1u}) {
     const pcs::Orl_tree tree = space.tree(end);
     std::vector<Point> points;
@@ -213,13 +213,13 @@ BOOST_AUTO_TEST_CASE(the_ends_of_a_path_with_a_turn_are_the_inputs)
   auto kept = pcs::IO::read_correspondences(path);
   std::filesystem::remove(path);
   const pcs::Orl_report report = again.build_from(kept);
-  BOOST_TEST(std::abs(report.turn - space.build(turns).turn) < 1e-12);
-  BOOST_TEST(std::isnan(report.unexplained_share)); // the file does not tell
+  BOOST_TEST(std::abs(report.yaw - space.build(turns).yaw) < 1e-12);
+  BOOST_TEST(std::isnan(report.unexplained_fraction)); // the file does not tell
   std::vector<Point> one, two;
   space.points(space.geodesic(0, 1, 0.7), one);
   again.points(again.geodesic(0, 1, 0.7), two);
   BOOST_TEST((one == two));
-  kept.turn[0] += 1;
+  kept.rotation[0] += 1;
   BOOST_CHECK_EXCEPTION(again.build_from(kept), pcs::Invalid_input, message_has("no rotation"));
 }
 
@@ -230,14 +230,14 @@ BOOST_AUTO_TEST_CASE(turns_do_not_depend_on_the_number_of_threads)
   pcs::Orl_shape_space<Kernel, CGAL::Sequential_tag> expected;
   expected.add_skeleton(a);
   expected.add_skeleton(b);
-  const double turn = expected.build(turns).turn;
+  const double turn = expected.build(turns).yaw;
   BOOST_TEST(turn != 0);
   for (const int n : pcs_test::thread_counts)
     pcs_test::with_threads(n, [&] {
       Space space;
       space.add_skeleton(a);
       space.add_skeleton(b);
-      BOOST_TEST(space.build(turns).turn == turn);
+      BOOST_TEST(space.build(turns).yaw == turn);
       BOOST_TEST(space.distance(0, 1) == expected.distance(0, 1));
     });
 }

@@ -205,7 +205,7 @@ using pcs::shape_space::Orl_geometry;
 Orl_geometry in_space(const Space& space, const Orl_coordinates& x)
 {
   Orl_geometry result;
-  build_geometry(space.layout(), x, pcs::Orl_orientation::gauge_fixed, result);
+  build_geometry(space.family().layout, x, pcs::Orl_orientation::gauge_fixed, result);
   return result;
 }
 
@@ -214,7 +214,7 @@ double depth(const Space& space, const Orl_coordinates& x)
 {
   double least = 0;
   for (const Vec3& p : in_space(space, x).node)
-    least = std::min(least, space.growth_direction().dot(p - x.root));
+    least = std::min(least, space.family().up.dot(p - x.root));
   return least;
 }
 
@@ -235,7 +235,8 @@ BOOST_AUTO_TEST_CASE(turns_do_not_add_up_along_branches)
     const Orl_coordinates x = space.tree(0).coordinates(), y = space.tree(1).coordinates();
     for (const double most : {0.2, 0.25 * CGAL_PI, 2.0, 3.5})
       for (const double lambda : {-1.5, -0.5, 1.5, 2.5}) {
-        const auto tree = space.geodesic(0, 1, lambda, pcs::parameters::maximal_turn(most));
+        const auto tree =
+            space.geodesic(0, 1, lambda, pcs::parameters::max_extrapolation_angle(most));
         const double worst =
             farthest(in_space(space, tree.coordinates()), in_space(space, lambda < 0 ? x : y));
         BOOST_TEST(worst <= most + 1e-9);
@@ -248,7 +249,7 @@ BOOST_AUTO_TEST_CASE(turns_do_not_add_up_along_branches)
   for (const double lambda : {-1.5, 2.5}) {
     constexpr double most = 0.8;
     Orl_coordinates alone;
-    coordinates_at(space.layout(), x, y, lambda, most, alone);
+    coordinates_at(space.family().layout, x, y, lambda, most, alone);
     const Orl_geometry sum = in_space(space, alone), end = in_space(space, lambda < 0 ? x : y);
     BOOST_TEST(std::abs(farthest(sum, end) - 3 * 1.5 * 0.5) < 1e-6);
   }
@@ -267,7 +268,7 @@ BOOST_AUTO_TEST_CASE(nothing_grows_into_the_ground)
       const Orl_coordinates& z = tree.coordinates();
       BOOST_TEST(depth(space, z) >= floor - 1e-9);
       Orl_coordinates alone;
-      coordinates_at(space.layout(), x, y, lambda, 0.25 * CGAL_PI, alone);
+      coordinates_at(space.family().layout, x, y, lambda, 0.25 * CGAL_PI, alone);
       number_below += depth(space, alone) < floor - 1e-3 ? 1 : 0;
       // a branch is there if it is there at the end, and branches hang together
       const Orl_coordinates& end = lambda < 0 ? x : y;
@@ -303,7 +304,7 @@ BOOST_AUTO_TEST_CASE(the_path_goes_on_without_jumps_and_is_unchanged_between_the
     BOOST_TEST(step_at(1, 1e-6) < 1e-3);
     for (const double lambda : {0.1, 0.5, 0.9}) {
       Orl_coordinates plain;
-      coordinates_at(space.layout(), x, y, lambda, 1, plain);
+      coordinates_at(space.family().layout, x, y, lambda, 1, plain);
       const auto tree = space.geodesic(0, 1, lambda);
       const Orl_coordinates& z = tree.coordinates();
       bool is_same = plain.length == z.length && plain.attachment == z.attachment;
@@ -321,7 +322,7 @@ BOOST_AUTO_TEST_CASE(sections_keep_their_area_and_branches_hang_together)
   space.add(a, tube_points(a, 20000, 1));
   space.add(b, tube_points(b, 20000, 2));
   space.build();
-  const auto& layout = space.layout();
+  const auto& layout = space.family().layout;
   // squared distances from the axis over squared radii: shares of the area of sections, sorted
   const auto areas_at = [&](double lambda) {
     const auto tree = space.geodesic(0, 1, lambda);
@@ -476,7 +477,7 @@ BOOST_AUTO_TEST_CASE(equal_trees_are_in_one_place)
   const auto report = morph(a, scan, a, scan);
   BOOST_TEST(report.distance < 1e-9);
   BOOST_TEST(report.number_of_matched_branches == report.number_of_branches[0]);
-  BOOST_TEST(report.number_of_single_points == 0u);
+  BOOST_TEST(report.number_of_unmatched_points == 0u);
 }
 
 BOOST_AUTO_TEST_CASE(thousands_of_points_in_one_place)
@@ -510,7 +511,7 @@ BOOST_AUTO_TEST_CASE(points_that_one_scan_lacks_have_no_partners_far_away)
     space.add(tree, scan);
     space.add(tree, low);
     const auto report = space.build();
-    BOOST_TEST(report.number_of_single_points > 15000u);
+    BOOST_TEST(report.number_of_unmatched_points > 15000u);
     std::vector<double> distance(report.number_of_point_pairs, 0);
     space.for_each_point(space.tree(0),
                          [&](std::size_t i, std::size_t first, std::size_t second, double) {

@@ -89,7 +89,7 @@ BOOST_AUTO_TEST_CASE(the_trunk_of_a_growing_tree_goes_on_as_the_trunk)
     const auto report = space.build(pcs::parameters::alignment(
         is_turned ? pcs::Orl_alignment::rotate_about_up : pcs::Orl_alignment::as_given));
     BOOST_TEST(report.is_grown_at_tips);
-    BOOST_TEST(std::abs(report.turn + (is_turned ? 2 : 0)) < 1e-6); // wood does not turn
+    BOOST_TEST(std::abs(report.yaw + (is_turned ? 2 : 0)) < 1e-6); // wood does not turn
     std::size_t before = space.matches()[0].tip[0];
     while (old_nodes[before] == pcs::npos)
       before = pcs::parent_node<Kernel>(before, young);

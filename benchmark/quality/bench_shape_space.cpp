@@ -7,9 +7,13 @@
 #include <pcs/IO/write_points.h>
 #include <pcs/IO/write_swc.h>
 #include <pcs/Orl_shape_space.h>
+#include <pcs/compare_trees.h>
+#include <pcs/find_modes.h>
 #include <pcs/generators/grow_tree.h>
 #include <pcs/internal/Random_stream.h>
 #include <pcs/internal/Stopwatch.h>
+#include <pcs/mean_tree.h>
+#include <pcs/sample_tree.h>
 #include <pcs/shape_space/statistics/Tree_distribution.h>
 #include <pcs/shape_space/statistics/find_modes.h>
 #include <support/trees_of_parameters.h>
@@ -78,23 +82,23 @@ void run_group(const std::vector<std::string>& files, const std::string& folder)
   std::cout << space.build() << '\n';
   std::printf("%zu trees, %zu branches, built in %.1f s\n",
               files.size(),
-              space.layout().branches.size(),
+              space.family().layout.branches.size(),
               watch.lap());
   std::vector<Tree_descriptors> inputs;
   for (std::size_t h = 0; h < files.size(); ++h) {
-    inputs.push_back(space.figures(space.tree(h)));
+    inputs.push_back(pcs::measure_shape(space, space.tree(h)));
     print("input", inputs.back());
     write(space, space.tree(h), folder, "input_" + std::to_string(h));
   }
   watch.lap();
-  const pcs::Orl_tree mean = space.mean();
-  const pcs::Orl_tree square = space.mean(np::tree_mean(Tree_mean::frechet));
+  const pcs::Orl_tree mean = pcs::mean_tree(space);
+  const pcs::Orl_tree square = pcs::mean_tree(space, np::tree_mean(Tree_mean::frechet));
   std::printf("both means in %.3f s\n", watch.lap());
-  print("L1 mean", space.figures(mean));
-  print("L2 mean", space.figures(square));
+  print("L1 mean", pcs::measure_shape(space, mean));
+  print("L2 mean", pcs::measure_shape(space, square));
   write(space, mean, folder, "mean_1");
   write(space, square, folder, "mean_2");
-  const auto modes = space.modes(files.size());
+  const auto modes = pcs::find_modes(space, files.size());
   std::printf("modes in %.3f s; share of variance, left-out error:\n   0  0.000 %9.3f\n",
               watch.lap(),
               modes.left_out_error(0));
@@ -105,16 +109,16 @@ void run_group(const std::vector<std::string>& files, const std::string& folder)
       std::vector<double> scores(k, 0);
       scores.push_back(side);
       write(space,
-            space.tree(modes, scores),
+            pcs::tree_of_modes(space, modes, scores),
             folder,
             "mode_" + std::to_string(k + 1) + (side < 0 ? "_minus" : "_plus"));
     }
-  const auto distribution = space.distribution();
+  const auto distribution = pcs::learn_distribution(space);
   std::printf("shrinkage %.2f\n", distribution.distribution->shrinkage());
   std::size_t number_inside = 0, number_alike = 0;
   for (std::uint64_t i = 0; i < 12; ++i) {
-    const pcs::Orl_tree tree = space.sample(distribution, 1, i);
-    const Tree_descriptors f = space.figures(tree);
+    const pcs::Orl_tree tree = pcs::sample_tree(space, distribution, 1, i);
+    const Tree_descriptors f = pcs::measure_shape(space, tree);
     number_inside += range_violation(f, inputs, false) == 0;
     number_alike += range_violation(f, inputs) == 0;
     print("new", f);
@@ -143,10 +147,10 @@ void run_left_out(const std::vector<std::string>& files)
     double share = 0;
     const pcs::Orl_tree placed = space.embed(trees[left], np::default_values(), &share);
     represented += share / static_cast<double>(trees.size());
-    const auto modes = space.modes(trees.size());
+    const auto modes = pcs::find_modes(space, trees.size());
     for (std::size_t k = 0; k < error.size(); ++k)
-      error[k] += project_on_modes(space.layout(),
-                                   space.weights(),
+      error[k] += project_on_modes(space.family().layout,
+                                   space.family().weights,
                                    Orl_orientation::gauge_fixed,
                                    modes,
                                    placed.coordinates(),
@@ -182,7 +186,7 @@ void run_parameters(std::size_t n, std::uint64_t seed)
       pcs::internal::Stopwatch watch;
       for (const Mode_inner_product measure :
            {Mode_inner_product::branches, Mode_inner_product::metric}) {
-        const auto modes = space.modes(2, np::mode_inner_product(measure));
+        const auto modes = pcs::find_modes(space, 2, np::mode_inner_product(measure));
         std::printf(" %.3f | %.3f |",
                     correlation(modes.scores, family.known.col(0)),
                     correlation(modes.scores, family.known.col(1)));
@@ -230,7 +234,7 @@ void run_speed(std::size_t number_of_points, std::size_t number_of_trees)
     space.add(tree, scan);
   }
   std::cout << space.build(np::points_of(std::size_t(1))) << '\n';
-  const auto distribution = space.distribution();
+  const auto distribution = pcs::learn_distribution(space);
   std::vector<Point> points;
   double making = 0, writing = 0, before = 0;
   std::size_t total = 0;
@@ -238,7 +242,7 @@ void run_speed(std::size_t number_of_points, std::size_t number_of_trees)
       (std::filesystem::temp_directory_path() / "pcs_bench_shape_space.ply").string();
   for (std::uint64_t i = 0; i < number_of_trees; ++i) {
     pcs::internal::Stopwatch watch;
-    const pcs::Orl_tree tree = space.sample(distribution, 1, i);
+    const pcs::Orl_tree tree = pcs::sample_tree(space, distribution, 1, i);
     space.points(tree, points);
     making += watch.lap();
     pcs::IO::write_points(path, pcs::IO::Point_table(points));

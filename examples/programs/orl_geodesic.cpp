@@ -51,7 +51,7 @@ void add(Space& space, const Tree_file& file)
                 .normal_map(CGAL::make_property_map(normals)));
 }
 
-/// Whether branches and points were matched before: nothing is known of how.
+/// Whether branches and points were matched in an earlier run, whose method is unknown.
 bool is_stored(const Options& o)
 {
   std::error_code error;
@@ -66,14 +66,14 @@ pcs::Matching_weights weights_of(const Options& o)
   return weights;
 }
 
-/// How branches and points are matched, in words that are kept with what was found.
+/// Describes the method of matching branches and points, for files of correspondences.
 std::string method(const Options& o)
 {
   return "--align " + o.align + " --up " + o.up + " --transport " + o.transport +
          (o.is_published ? " --published-energy" : "");
 }
 
-/// What is stored may be asked for again, but nothing else.
+/// Reads stored correspondences. Options may repeat the stored method, but not change it.
 pcs::Orl_correspondences read_stored(const Options& o)
 {
   pcs::Orl_correspondences stored = pcs::IO::read_correspondences(o.correspondences);
@@ -110,8 +110,8 @@ build(Space& space, const Options& o, const std::optional<pcs::Orl_correspondenc
     } catch (const pcs::Invalid_input& refusal) {
       throw pcs::Invalid_input(o.correspondences + ": " + refusal.what());
     }
-  // of more trees, each stands as it was given
-  const bool may_turn = o.align == "turns" && o.number_of_trees() == 2;
+  // more than two trees keep their given orientation
+  const bool may_turn = o.align == "yaw" && o.number_of_trees() == 2;
   pcs::Orl_report report = space.build(
       form.matching_weights(weights_of(o))
           .transport_options(transport)
@@ -126,7 +126,8 @@ build(Space& space, const Options& o, const std::optional<pcs::Orl_correspondenc
   return report;
 }
 
-/// Trees that grew at their tips have branches that go on where those of the other tree end.
+/// Selects sequential emergence if branches of one of two trees continue at the tips of those of
+/// the other, as in growth at the tips.
 pcs::Branch_emergence branch_emergence(const Space& space, const Options& o)
 {
   using pcs::Branch_emergence;
@@ -147,7 +148,7 @@ std::string matches_text(const Space& space, const Tree_file& one, const Tree_fi
   return text.str();
 }
 
-/// What was not found in this run is left out.
+/// Makes the report; values that were not computed in this run are omitted.
 nlohmann::ordered_json report_json(const Space& space,
                                    const pcs::Orl_report& r,
                                    const std::vector<Tree_file>& files,
@@ -167,15 +168,15 @@ nlohmann::ordered_json report_json(const Space& space,
   const bool is_pair = r.number_of_trees == 2;
   if (!is_stored && is_pair) {
     json["matching_energy"] = r.matching_energy;
-    json["unexplained_share"] = r.unexplained_share;
+    json["unexplained_fraction"] = r.unexplained_fraction;
     json["is_grown_at_tips"] = r.is_grown_at_tips;
-    json["turn_degrees"] = r.turn * 180 / CGAL_PI;
+    json["yaw_degrees"] = r.yaw * 180 / CGAL_PI;
   }
   if (!is_stored) {
     if (!is_pair)
-      json["share_of_changes"] = r.share_of_changes;
+      json["fraction_of_changed_matches"] = r.fraction_of_changed_matches;
     for (const double turn : turns)
-      json["turns_degrees"].push_back(turn * 180 / CGAL_PI);
+      json["yaws_degrees"].push_back(turn * 180 / CGAL_PI);
     json["number_of_windows"] = r.number_of_windows;
     json["number_of_failed_windows"] = r.number_of_failed_windows;
     json["marginal_violation"] = {{"worst", r.worst_marginal_violation},
@@ -193,7 +194,7 @@ nlohmann::ordered_json report_json(const Space& space,
     for (const Tree_file& file : files)
       json["number_of_points"].push_back(file.points.number_of_points());
     json["number_of_point_pairs"] = r.number_of_point_pairs;
-    json["number_of_single_points"] = r.number_of_single_points;
+    json["number_of_unmatched_points"] = r.number_of_unmatched_points;
   }
   json["seconds"] = {{"matching", r.seconds.matching},
                      {"topology", r.seconds.topology},
@@ -204,7 +205,7 @@ nlohmann::ordered_json report_json(const Space& space,
   return json;
 }
 
-/// All files first: to find skeletons takes time.
+/// Reads all files before skeletons are computed, which takes time.
 std::vector<Tree_file> read_trees(const Options& o)
 {
   std::vector<Tree_file> files;
@@ -222,7 +223,7 @@ void complete_trees(const Options& o, std::vector<Tree_file>& files)
     complete_tree(files[i], o.trees.empty() ? "" : o.trees[i], o.do_extend_axes, o.up);
 }
 
-/// A file with a path of its own, found to be writable before the work.
+/// A file with a separate path, which is checked to be writable before the work.
 class Extra_file
 {
 public:
@@ -263,7 +264,7 @@ void run(const Options& o)
     stored = read_stored(o);
   complete_trees(o, files);
 
-  std::vector<double> turns; // of more than two trees, which stand turned in the files
+  std::vector<double> turns; // angles of more than two trees, which are stored rotated
   pcs::Orl_report report;
   if (o.load.empty()) {
     for (std::size_t i = 0; i < files.size(); ++i)
@@ -273,7 +274,7 @@ void run(const Options& o)
         throw pcs::Invalid_input((o.skeletons.empty() ? o.trees : o.skeletons)[i] + ": " +
                                  refusal.what());
       }
-    if (files.size() > 2 && o.is_given("--align") && o.align == "turns") {
+    if (files.size() > 2 && o.is_given("--align") && o.align == "yaw") {
       turns = align_trees(files, o.up, weights_of(o));
       space = Space();
       for (const Tree_file& file : files)
@@ -283,14 +284,14 @@ void run(const Options& o)
   } else {
     report.status = pcs::Status::converged;
     report.number_of_trees = space.number_of_trees();
-    report.number_of_common_branches = space.layout().branches.size();
-    report.number_of_edges = space.layout().number_of_edges();
+    report.number_of_common_branches = space.family().layout.branches.size();
+    report.number_of_edges = space.family().layout.number_of_edges();
     report.distance = space.distance(Space::Handle(0), Space::Handle(1));
   }
   if (!o.save.empty())
     pcs::IO::write_shape_space(o.save, space.data());
   if (o.has_places()) {
-    const auto path = np::maximal_turn(o.maximal_turn * CGAL_PI / 180)
+    const auto path = np::max_extrapolation_angle(o.max_extrapolation_angle * CGAL_PI / 180)
                           .do_limit_radii(o.do_limit_radii)
                           .branch_emergence(branch_emergence(space, o));
     for (const double lambda : o.lambda)

@@ -73,7 +73,7 @@
   PCS_OWN(alignment)                                                                               \
   PCS_OWN(do_use_unit_weights)                                                                     \
   /* Orl_shape_space: paths between trees */                                                       \
-  PCS_OWN(maximal_turn)                                                                            \
+  PCS_OWN(max_extrapolation_angle)                                                                 \
   PCS_OWN(do_limit_radii)                                                                          \
   PCS_OWN(branch_emergence)                                                                        \
   PCS_OWN(point_path)                                                                              \

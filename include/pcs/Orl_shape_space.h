@@ -8,28 +8,36 @@
 
 #include <pcs/Named_function_parameters.h>
 #include <pcs/Orl_tree.h>
-#include <pcs/Orl_tree_paths.h>
+#include <pcs/concepts.h>
 #include <pcs/core/Orl_correspondences.h>
 #include <pcs/core/Orl_options.h>
 #include <pcs/core/Orl_report.h>
 #include <pcs/core/Orl_space_data.h>
 #include <pcs/core/Tree_skeleton.h>
-#include <pcs/core/errors.h>
-#include <pcs/internal/Stopwatch.h>
+#include <pcs/core/check_value.h>
+#include <pcs/core/read_parameter.h>
+#include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
-#include <pcs/shape_space/Space_engine.h>
+#include <pcs/shape_space/Space_state.h>
+#include <pcs/shape_space/build_space.h>
+#include <pcs/shape_space/family/embed_tree.h>
+#include <pcs/shape_space/input/check_space.h>
 #include <pcs/shape_space/input/read_options.h>
 #include <pcs/shape_space/input/tree_input.h>
-#include <pcs/shape_space/model/Build_options.h>
-#include <pcs/shape_space/pair/Embedded_pair.h>
+#include <pcs/shape_space/input/write_skeleton.h>
+#include <pcs/shape_space/path/interpolate_trees.h>
+#include <pcs/shape_space/points/write_points.h>
+#include <pcs/shape_space/statistics/make_tree.h>
 
 #include <CGAL/Simple_cartesian.h>
+#include <CGAL/property_map.h>
 
-#include <array>
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <functional>
-#include <limits>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -39,42 +47,43 @@ namespace pcs {
   \ingroup PkgPcsShapeSpaceRef
   \brief A shape space of two trees or more, with the points of their scans.
 
-  Follows chapter 4 of \cite aiteanu2022: branches are matched by elastic curves, both trees get one
+  Follows chapter 4 of \cite aiteanu2022: branches are matched by elastic curves, all trees get one
   topology, points are matched by optimal transport along corresponding edges, and a tree is the
   list of orientations, radii and lengths (ORL) of the edges of the topology. Distances are those of
   (4.7), geodesics interpolate the coordinates; points follow their edges.
 
-  Trees of any Boost.Graph type are added, then `build()` finds the correspondences, then trees of
-  the space are made by `geodesic()` and turned into skeletons and points. Inputs are copied,
-  nothing refers to them afterwards.
+  Trees of any Boost.Graph type are added, `build()` finds the correspondences, and trees of the
+  space are made by `geodesic()` and written as skeletons and points. Inputs are copied. Functions
+  for means, modes of variation, random trees, growth and comparison take a built space:
+  `mean_tree()`, `find_modes()`, `sample_tree()`, `fit_growth_path()`, `compare_trees.h`.
 
   Two trees are represented exactly. More trees share the nodes of their branches: axes are
-  straightened between them, by `shape_space::axis_tolerance` of the length of a branch at most.
-  Each branch has as many points as in one scan, so that points have the same order in all trees;
-  each of them has a partner in every other scan of the branch, found by transport, and lies between
-  these. The order in which trees are added does not matter then, save for rounding. See the base
-  class for means, modes and new trees.
+  simplified by at most 1 % of the length of a branch. Each branch has the points of one scan, so
+  that points have the same order in all trees; each of them has a corresponding point in every
+  other scan of the branch, found by optimal transport. The order in which trees are added does not
+  matter then, save for rounding.
 
   \tparam Kernel a kernel of CGAL; computations are in double precision about a local origin
   \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or
       `CGAL::Parallel_if_available_tag`
+  \par Errors
+  All functions but `add()`, `add_skeleton()`, `build()` and `restore()` need a space that was built
+  and throw `pcs::Invalid_input` otherwise.
   \par Determinism
   Same bits for every number of threads and for the sequential tag. The order of vertices and edges
-  in the graphs does not matter, save for exact copies of branches.
+  in the graphs does not matter, save for exact copies of branches. `const` functions may run
+  concurrently.
 */
 template <class Kernel = CGAL::Simple_cartesian<double>,
           class ConcurrencyTag = CGAL::Parallel_if_available_tag>
-class Orl_shape_space : public Orl_tree_paths<ConcurrencyTag>
+class Orl_shape_space
 {
-  using Paths = Orl_tree_paths<ConcurrencyTag>;
-  using Engine = typename Paths::Engine;
-
 public:
   using FT = typename Kernel::FT;
   using Point_3 = typename Kernel::Point_3;
   using Vector_3 = typename Kernel::Vector_3;
-  //! names an added tree
-  using Handle = typename Paths::Handle;
+  //! number of an added tree, from 0
+  using Handle = std::size_t;
 
   Orl_shape_space() = default;
   Orl_shape_space(const Orl_shape_space&) = delete;
@@ -82,14 +91,16 @@ public:
   Orl_shape_space(Orl_shape_space&&) = default;
   Orl_shape_space& operator=(Orl_shape_space&&) = default;
 
+  /// \name Construction
+  //!@{
+
   /*!
     \brief adds a tree and the points of its scan.
 
     \tparam TreeGraph a model of `boost::VertexListGraph` and `boost::IncidenceGraph`, edges from
         parent to child
-    \param tree with one root, at least 2 nodes, positions up to 1e100 from it and radii in [0,
-        1e100], branches that hang on
-    others 250 times at most; nodes in the same place are joined
+    \param tree with one root, at least 2 nodes, positions up to 1e100 from it, radii in [0, 1e100],
+        and at most 250 levels of branches; coincident nodes are joined
     \param scan a model of `RandomAccessRange`; may be empty; it should lie about the tree
     \npbegin
       \np{node_point_map} position of a vertex [L]
@@ -104,7 +115,7 @@ public:
       \np{point_map} position of an element of `scan` [L]
         \nptype readable, value with `x()`, `y()`, `z()`
         \npdefault `CGAL::Identity_property_map`
-      \np{normal_map} normal of an element; given for both trees, instances have normals
+      \np{normal_map} normal of an element; given for all trees, trees of the space have normals
         \nptype readable, value with `x()`, `y()`, `z()`
         \npdefault none: normals are estimated at forks
     \npend
@@ -118,14 +129,15 @@ public:
   Handle
   add(const TreeGraph& tree, const PointRange& scan, const NamedParameters& np = NamedParameters())
   {
-    if (m_is_restored)
-      throw Invalid_input(
-          "pcs::Orl_shape_space::add(): the space was restored; add trees to a new one");
-    m_inputs.push_back(
-        shape_space::make_tree_input<Kernel>(tree, scan, np, "pcs::Orl_shape_space::add()"));
-    this->m_is_built = false;
-    this->m_family = shape_space::Tree_family();
-    return m_inputs.size() - 1;
+    const char* const caller = "pcs::Orl_shape_space::add()";
+    pcs::internal::check(!m_state.is_restored,
+                         caller,
+                         "the space was restored; add trees to a new one");
+    shape_space::Space_state state;
+    state.inputs = std::move(m_state.inputs);
+    m_state = std::move(state);
+    m_state.inputs.push_back(shape_space::make_tree_input<Kernel>(tree, scan, np, caller));
+    return m_state.inputs.size() - 1;
   }
 
   //! adds a tree without points
@@ -139,36 +151,35 @@ public:
     \brief finds the correspondences of branches and points, and the coordinates of all trees.
 
     \npbegin
-      \np{matching_weights} of the energy of matching branches
+      \np{matching_weights} weights of the energy of a matching of branches
         \nptype `Matching_weights`
-        \npdefault changed energy; `is_published` gives the text's
+        \npdefault an extended energy; `is_published` selects that of the dissertation
       \np{assignment_options} of points to branches
         \nptype `Point_assignment_options`
-      \np{transport_options} of the correspondence of points: exact or by Sinkhorn's algorithm, how
-        far mass is carried, and sizes
+      \np{transport_options} of the correspondence of points by optimal transport
         \nptype `Transport_options`
-      \np{alignment} whether the second of two trees may stand turned about the vertical
+      \np{alignment} whether the second of two trees may be rotated about the vertical
         \nptype `Orl_alignment`
-        \npdefault `as_given`: both stand in the same axes; with `turns` the branches tell, and the
-            report has the turn
+        \npdefault `as_given`; with `rotate_about_up` the report has the angle
       \np{up_direction} the vertical
         \nptype a vector with `x()`, `y()`, `z()`, finite and not null
         \npdefault `(0, 0, 1)`
       \np{orientation} how orientations are measured
         \nptype `Orl_orientation`
-        \npdefault `gauge_fixed`; `world_axes` is the text's
-      \np{virtual_direction} where branches without partner point
+        \npdefault `gauge_fixed`; `world_axes` is the published one
+      \np{virtual_direction} direction of a branch in a tree that lacks it
         \nptype `Virtual_direction`
-        \npdefault `of_partner`; `along_parent` is the text's
-      \np{do_use_unit_weights} whether all weights of the metric are 1, as in the text
+        \npdefault `of_partner`; `along_parent` is the published one
+      \np{do_use_unit_weights} whether all weights of the metric are 1, as published
         \nptype `bool`
-        \npdefault `false`: turns count with the length of the edge, so that distances are lengths
+        \npdefault `false`: rotations are multiplied by the length of the edge, so that distances
+            are lengths
       \np{number_of_rounds} for more than two trees: how often all are matched to a tree in their
           middle
         \nptype an integer, `>= 1`
         \npdefault `3`
       \np{points_of} for more than two trees: the tree whose scan gives the points of the branches
-        that it has, to which those of other scans are matched
+          that it has
         \nptype `Handle`
         \npdefault none: for each branch, the tree with most points there
       \np{callback} progress in [0, 1]; `false` cancels
@@ -183,240 +194,484 @@ public:
   template <class NamedParameters = parameters::Default_named_parameters>
   Orl_report build(const NamedParameters& np = NamedParameters())
   {
-    using namespace shape_space;
-    if (m_is_restored)
-      throw Invalid_input("pcs::Orl_shape_space::build(): the space was restored, it is built");
-    const Build_options options =
-        read_options(np, m_inputs.size(), "pcs::Orl_shape_space::build()");
-    pcs::internal::Progress progress(
-        pcs::internal::choose(np, CGAL::internal_np::callback, std::function<bool(double)>()));
-    Orl_report report = new_report();
-    if (m_inputs.size() > 2)
-      return build_many(np, options, progress);
-    Embedded_pair built;
-    read_form(np, built);
-    std::vector<Point_pair> pairs;
-    if (!Engine::find_correspondences(inputs(), options, progress, built, pairs, report))
-      return cancelled(report);
-    pcs::internal::Stopwatch watch;
-    finish(built, std::move(pairs), options.weights, report);
-    report.seconds.instances = watch.lap();
-    progress.finish();
-    return report;
+    const char* const caller = "pcs::Orl_shape_space::build()";
+    pcs::internal::check(!m_state.is_restored, caller, "the space was restored, it is built");
+    const shape_space::Build_options options =
+        shape_space::read_build_options(np, m_state.inputs.size(), caller);
+    std::function<bool(double)> callback;
+    pcs::internal::read_callback(np, callback);
+    pcs::internal::Progress progress(std::move(callback));
+    return shape_space::build_space<ConcurrencyTag>(options, progress, m_state);
   }
 
   /*!
-    \brief the same with correspondences that were computed before, for the same trees with the same
-        points, or none.
+    \brief does the same for two trees with correspondences that were computed before.
 
     Reads `orientation`, `virtual_direction` and `do_use_unit_weights`, `matching_weights` for trees
-    that are embedded later, and `up_direction` for the sign of the turn.
-    \return a report in which `matching_energy` and `unexplained_share` are not numbers, and
-        `is_grown_at_tips` is `false`: the
-    correspondences do not tell
+    that are embedded later, and `up_direction` for the sign of the yaw.
+    \return a report in which `matching_energy` and `unexplained_fraction` are not numbers and
+        `is_grown_at_tips` is `false`: correspondences do not include these
     \throws pcs::Invalid_input when the correspondences do not fit the trees
   */
   template <class NamedParameters = parameters::Default_named_parameters>
   Orl_report build_from(const Orl_correspondences& correspondences,
                         const NamedParameters& np = NamedParameters())
   {
-    check_inputs("build_from");
+    const char* const caller = "pcs::Orl_shape_space::build_from()";
+    check_two_inputs(caller);
     const shape_space::Build_options options =
-        shape_space::read_options(np, m_inputs.size(), "pcs::Orl_shape_space::build_from()");
-    Orl_report report = new_report();
-    report.matching_energy = report.unexplained_share = std::numeric_limits<double>::quiet_NaN();
-    pcs::internal::Stopwatch watch;
-    shape_space::Embedded_pair built;
-    shape_space::read_form(np, built);
-    Engine::embed_stored(correspondences, inputs(), "pcs::Orl_shape_space::build_from()", built);
-    report.turn = shape_space::angle_about(options.standing.up, built.turn);
-    report.seconds.topology = watch.lap();
-    const bool has_points = !m_inputs[0].points.empty() || !m_inputs[1].points.empty();
-    finish(built,
-           has_points ? correspondences.pairs : std::vector<shape_space::Point_pair>(),
-           options.weights,
-           report);
-    report.seconds.instances = watch.lap();
-    return report;
-  }
-
-  //! what `build()` found, to be kept; \pre it was built
-  Orl_correspondences correspondences() const
-  {
-    this->check_built("correspondences");
-    check_inputs("correspondences");
-    return Engine::store_topology(this->m_built, inputs());
-  }
-
-  //! branches that correspond, parents first; \pre it was built
-  std::vector<Branch_match> matches() const
-  {
-    this->check_built("matches");
-    this->check_two("matches");
-    std::vector<Branch_match> result;
-    for (std::size_t b = 0; b < this->m_family.layout.branches.size(); ++b) {
-      Branch_match match;
-      match.parent = this->m_family.layout.branches[b].parent;
-      for (std::size_t t = 0; t < 2; ++t)
-        match.tip[t] = this->m_family.tip[t][b];
-      result.push_back(match);
-    }
-    return result;
-  }
-
-  /*!
-    \brief a tree that was not added, as a tree of the space.
-
-    It is matched to a tree in the middle of the added ones; its branches that find no partner are
-    left out.
-    \param tree, np as for `add()`
-    \param share if not null: the share of its length that is represented [-]
-  */
-  template <class TreeGraph, class NamedParameters = parameters::Default_named_parameters>
-  Orl_tree embed(const TreeGraph& tree,
-                 const NamedParameters& np = parameters::default_values(),
-                 double* share = nullptr) const
-  {
-    this->check_built("embed");
-    const shape_space::Tree_input input =
-        shape_space::make_tree_input<Kernel>(tree,
-                                             std::vector<Point_3>(),
-                                             np,
-                                             "pcs::Orl_shape_space::embed()");
-    return this->make(Engine::embed_tree(this->m_family, input.tree, share));
-  }
-
-  //! the whole space as numbers, for `IO::write_shape_space()`; \pre it was built
-  Orl_space_data data() const
-  {
-    this->check_built("data");
-    Orl_space_data result = Engine::store_family(this->m_family);
-    result.points = m_stored_points;
-    result.partners = m_stored_partners;
-    result.has_normals = this->has_normals();
-    if (this->is_pair()) {
-      result.pairs = this->m_built.instances.pairs();
-      Engine::store_points(inputs(), result);
-    }
-    return result;
+        shape_space::read_build_options(np, m_state.inputs.size(), caller);
+    return shape_space::build_space_from<ConcurrencyTag>(correspondences, options, caller, m_state);
   }
 
   /*!
     \brief makes the space that `data()` was taken from; all but `correspondences()`, `add()` and
         `build()` works as before.
-    \throws pcs::Invalid_input when the numbers do not make sense; the space is unchanged then
+    \throws pcs::Invalid_input when the numbers are inconsistent; the space is unchanged then
   */
   void restore(const Orl_space_data& stored)
   {
-    Orl_shape_space space;
-    space.m_family = Engine::restore_family(stored, "pcs::Orl_shape_space::restore()");
-    space.set_points(stored);
-    space.m_is_built = space.m_is_restored = true;
-    *this = std::move(space);
+    m_state = shape_space::restore_space<ConcurrencyTag>(stored, "pcs::Orl_shape_space::restore()");
   }
+  //!@}
+
+  /// \name Added Trees
+  //!@{
+
+  //! trees that were added when the space was built [count]
+  std::size_t number_of_trees() const { return family().x.size(); }
+
+  //! an added tree as a tree of the space
+  Orl_tree tree(Handle h) const
+  {
+    check_handle(h, "tree");
+    std::vector<double> scan_weights(number_of_trees(), 0);
+    scan_weights[h] = 1;
+    return Orl_tree(
+        shape_space::make_tree(family(), family().x[h], h == 1 ? 1 : 0, std::move(scan_weights)));
+  }
+
+  //! whether tree `h` has branch `b` of the topology
+  bool has_branch(Handle h, std::size_t b) const
+  {
+    check_handle(h, "has_branch");
+    return b < family().has[h].size() && family().has[h][b] != 0;
+  }
+
+  //! number of the vertex at the tip of branch `b` in the graph of tree `h`, `npos` if it lacks it
+  std::size_t tip_of_branch(Handle h, std::size_t b) const
+  {
+    return has_branch(h, b) ? family().tip[h][b] : npos;
+  }
+
+  //! branches of two trees that correspond, parents first
+  std::vector<Branch_match> matches() const
+  {
+    check_two_trees("matches");
+    std::vector<Branch_match> result;
+    for (std::size_t b = 0; b < family().layout.branches.size(); ++b)
+      result.push_back(
+          {family().layout.branches[b].parent, {family().tip[0][b], family().tip[1][b]}});
+    return result;
+  }
+
+  //! correspondences of two trees, for `build_from()`
+  Orl_correspondences correspondences() const
+  {
+    check_built("correspondences");
+    check_two_inputs("pcs::Orl_shape_space::correspondences()");
+    return shape_space::store_correspondences<ConcurrencyTag>(m_state);
+  }
+
+  //! the whole space as numbers, for `IO::write_shape_space()`
+  Orl_space_data data() const
+  {
+    check_built("data");
+    return shape_space::store_space<ConcurrencyTag>(m_state);
+  }
+
+  /*!
+    \brief makes a tree of the space from a tree that was not added.
+
+    It is matched to a tree in the middle of the added ones; its branches without correspondence are
+    left out.
+    \param tree, np as for `add()`
+    \param represented if not null: fraction of its length that is represented [-]
+  */
+  template <class TreeGraph, class NamedParameters = parameters::Default_named_parameters>
+  Orl_tree embed(const TreeGraph& tree,
+                 const NamedParameters& np = parameters::default_values(),
+                 double* represented = nullptr) const
+  {
+    check_built("embed");
+    const shape_space::Tree_input input =
+        shape_space::make_tree_input<Kernel>(tree,
+                                             std::vector<Point_3>(),
+                                             np,
+                                             "pcs::Orl_shape_space::embed()");
+    return Orl_tree(shape_space::make_tree(
+        family(),
+        shape_space::embed_tree<ConcurrencyTag>(family(), input.tree, represented)));
+  }
+
+  //! topology, coordinates and metric of all trees; empty before `build()`
+  const shape_space::Tree_family& family() const { return m_state.family; }
+  //!@}
+
+  /// \name Distance and Geodesic
+  //!@{
+
+  /*!
+    \brief returns the distance between two trees of the space [L].
+
+    \npbegin
+      \np{metric} sum of differences (4.7), root of the sum of their squares, or edges as vectors
+        \nptype `Orl_metric`
+        \npdefault `sum`
+    \npend
+  */
+  template <class NamedParameters = parameters::Default_named_parameters>
+  double distance(const Orl_tree& a,
+                  const Orl_tree& b,
+                  const NamedParameters& np = NamedParameters()) const
+  {
+    check_tree(a, "distance");
+    check_tree(b, "distance");
+    return shape_space::distance(a.coordinates(),
+                                 b.coordinates(),
+                                 family().weights,
+                                 shape_space::read_metric(np));
+  }
+  //! the same between two added trees
+  template <class NamedParameters = parameters::Default_named_parameters>
+  double distance(Handle a, Handle b, const NamedParameters& np = NamedParameters()) const
+  {
+    check_handle(a, "distance");
+    check_handle(b, "distance");
+    return shape_space::distance(family().x[a],
+                                 family().x[b],
+                                 family().weights,
+                                 shape_space::read_metric(np));
+  }
+
+  /*!
+    \brief returns the tree at `lambda` on the geodesic from `a` (0) to `b` (1), or beyond its ends.
+
+    Beyond the ends lengths and radii stay positive, and edges rotate by at most
+    `max_extrapolation_angle`: relative to their parent edge, and in space. Nothing grows below the
+    base, against the direction of growth, unless it does at one of the ends: such branches are
+    extrapolated less.
+
+    \npbegin
+      \np{max_extrapolation_angle} how far an edge rotates beyond an end of the path [rad]
+        \nptype `double`, `>= 0`; from pi on there is no limit
+        \npdefault `pi / 4`
+      \np{do_limit_radii} whether no branch is thicker than its parent at its base
+        \nptype `bool`
+        \npdefault `false`: real trees break that rule
+      \np{branch_emergence} how branches emerge that only one of the trees has
+        \nptype `Branch_emergence`
+        \npdefault `simultaneous`: coordinates are linear; `sequential` suits trees that grow at
+            their tips
+    \npend
+    \throws pcs::Invalid_input when `lambda` is not finite, or so large that coordinates are not, or
+        a handle is wrong
+  */
+  template <class NamedParameters = parameters::Default_named_parameters>
+  Orl_tree
+  geodesic(Handle a, Handle b, double lambda, const NamedParameters& np = NamedParameters()) const
+  {
+    Orl_tree result;
+    geodesic(a, b, lambda, result, np);
+    return result;
+  }
+
+  //! the same into `result`, whose memory is used again
+  template <class NamedParameters = parameters::Default_named_parameters>
+  void geodesic(Handle a,
+                Handle b,
+                double lambda,
+                Orl_tree& result,
+                const NamedParameters& np = NamedParameters()) const
+  {
+    check_handle(std::max(a, b), "geodesic");
+    if (a == b && std::isfinite(lambda))
+      lambda = 0;
+    shape_space::Tree_state& state = result.state();
+    if (!m_state.is_pair()) {
+      state.scan_weights.assign(number_of_trees(), 0);
+      const double weight = std::min(1.0, std::max(0.0, a == b ? 0.0 : lambda));
+      state.scan_weights[a] += 1 - weight;
+      state.scan_weights[b] += weight;
+    }
+    // in one direction only, so that the path back is the same
+    const double t = a <= b ? lambda : 1 - lambda;
+    interpolate(family().x[std::min(a, b)], family().x[std::max(a, b)], t, np, state);
+    state.lambda = a != b ? t : a == 1 ? 1 : 0;
+  }
+
+  //! the same between trees of the space
+  template <class NamedParameters = parameters::Default_named_parameters>
+  Orl_tree geodesic(const Orl_tree& a,
+                    const Orl_tree& b,
+                    double lambda,
+                    const NamedParameters& np = NamedParameters()) const
+  {
+    check_tree(a, "geodesic");
+    check_tree(b, "geodesic");
+    const double weight = std::min(1.0, std::max(0.0, lambda));
+    shape_space::Tree_state result;
+    shape_space::mix_scan_weights(family(), {&a.state(), &b.state()}, {1 - weight, weight}, result);
+    interpolate(a.coordinates(), b.coordinates(), lambda, np, result);
+    result.lambda = (1 - lambda) * a.lambda() + lambda * b.lambda();
+    return Orl_tree(std::move(result));
+  }
+  //!@}
+
+  /// \name Skeletons and Points
+  //!@{
+
+  /*!
+    \brief writes a tree of the space as a skeleton; branches of length 0 are left out.
+
+    Every branch begins with a node of its own on the axis of its parent.
+    \param result is replaced
+  */
+  template <class OutKernel>
+  void skeleton(const Orl_tree& t, Tree_skeleton<OutKernel>& result) const
+  {
+    check_tree(t, "skeleton");
+    shape_space::write_skeleton(family().layout,
+                                t.coordinates(),
+                                t.state().geometry,
+                                family().origin,
+                                result);
+  }
+
+  /*!
+    \brief writes the points of a tree of the space.
+
+    They come by edge; points of branches that the tree lacks are left out. Of two trees, the points
+    at `lambda` 0 and 1 are those of the scans, as often as they have correspondences. Where a
+    branch of both trees has points in one scan only, these are there all along the path.
+
+    \param result a random access range; a container with `resize()` gets the size
+           `t.number_of_points()`, which allocates nothing if its capacity suffices; another range
+           must have that size at least
+    \npbegin
+      \np{point_map} where a position is written
+        \nptype model of `WritablePropertyMap`, key: element of `result`, value: `Kernel::Point_3`
+        \npdefault `CGAL::Identity_property_map`
+      \np{normal_map} where a normal is written, if all scans have normals
+        \nptype model of `WritablePropertyMap`, value: `Kernel::Vector_3`
+        \npdefault none
+      \np{point_path} how points of two trees are interpolated; refused for more trees
+        \nptype `Point_path`
+        \npdefault `cylindrical`; `virtual_edges` is the published one
+    \npend
+    \return the number of points
+    \par Complexity
+    Linear in the number of points; no allocation.
+  */
+  template <class PointRange, class NamedParameters = parameters::Default_named_parameters>
+  std::size_t
+  points(const Orl_tree& t, PointRange& result, const NamedParameters& np = NamedParameters()) const
+  {
+    const char* const caller = "pcs::Orl_shape_space::points()";
+    check_tree(t, "points");
+    const Point_path path = shape_space::read_point_path(np, m_state.is_pair(), caller);
+    constexpr bool is_range = is_random_access_range_v<PointRange>;
+    static_assert(is_range,
+                  "pcs::Orl_shape_space::points(): `result` must be a random access range");
+    if constexpr (is_range) {
+      using Key = Element_reference<PointRange>;
+      const auto point_map =
+          pcs::internal::choose(np,
+                                CGAL::internal_np::point_map,
+                                CGAL::Identity_property_map<std::decay_t<Key>>());
+      constexpr bool has_normals =
+          pcs::internal::is_given_v<NamedParameters, CGAL::internal_np::normal_t>;
+      const auto normal_map =
+          pcs::internal::choose(np, CGAL::internal_np::normal_map, shape_space::No_map());
+      constexpr bool is_point_map = is_writable_point_map_v<std::decay_t<decltype(point_map)>, Key>;
+      constexpr bool is_normal_map =
+          !has_normals || is_writable_point_map_v<std::decay_t<decltype(normal_map)>, Key>;
+      static_assert(is_point_map,
+                    "pcs::Orl_shape_space::points(): named parameter `point_map` must be writable, "
+                    "with elements of `result` as keys and points as values");
+      static_assert(is_normal_map,
+                    "pcs::Orl_shape_space::points(): named parameter `normal_map` must be "
+                    "writable, with elements of `result` as keys and vectors as values");
+      pcs::internal::check(!has_normals || m_state.has_normals(),
+                           caller,
+                           "`normal_map` needs trees that were added with normals");
+      shape_space::internal::resize_range(result, t.number_of_points(), caller);
+      if constexpr (is_point_map && is_normal_map)
+        write_points(
+            t.state(),
+            path,
+            shape_space::Point_writer<std::decay_t<decltype(std::begin(result))>,
+                                      std::decay_t<decltype(point_map)>,
+                                      std::decay_t<decltype(normal_map)>>{std::begin(result),
+                                                                          point_map,
+                                                                          normal_map,
+                                                                          family().origin});
+    }
+    return t.number_of_points();
+  }
+
+  /*!
+    \brief calls `f(i, a, b, w)` for every point of a tree of a space of two trees.
+
+    `a` and `b` are the numbers of the points of the two scans that point `i` comes from, `npos` if
+    there is none; `w` is the weight of the second in [0, 1]. Attributes are interpolated by
+    `result[i] = (1 - w) * one[a] + w * two[b]`. `f` may be called concurrently.
+  */
+  template <class F>
+  void for_each_point(const Orl_tree& t, const F& f) const
+  {
+    constexpr bool is_callable =
+        std::is_invocable_v<const F&, std::size_t, std::size_t, std::size_t, double>;
+    static_assert(
+        is_callable,
+        "pcs::Orl_shape_space::for_each_point(): `f` must take the numbers of a point and "
+        "of its two sources, and a weight");
+    check_two_trees("for_each_point");
+    check_tree(t, "for_each_point");
+    const double weight = std::min(1.0, std::max(0.0, t.lambda()));
+    if constexpr (is_callable)
+      m_state.pair.instances.for_each_pair(
+          t.coordinates(),
+          t.state().first_point,
+          [&](std::size_t i, const shape_space::Point_pair& pair) {
+            const bool has_a = pair.point[0] != shape_space::no_point;
+            const bool has_b = pair.point[1] != shape_space::no_point;
+            f(i,
+              has_a ? std::size_t(pair.point[0]) : npos,
+              has_b ? std::size_t(pair.point[1]) : npos,
+              has_a ? (has_b ? weight : 0.0) : 1.0);
+          },
+          ConcurrencyTag());
+  }
+
+  /*!
+    \brief calls `f(i, h, k, w)` for every point of a tree of a space of more than two trees, and
+        every point of a scan that it comes from.
+
+    `k` is the number of a point of the scan of tree `h`, `w` its weight in (0, 1]; the weights of a
+    point add up to 1. Attributes are interpolated by `result[i] += w * scan[h][k]`. `f` may be
+    called concurrently, but not for one `i`.
+  */
+  template <class F>
+  void for_each_source(const Orl_tree& t, const F& f) const
+  {
+    constexpr bool is_callable =
+        std::is_invocable_v<const F&, std::size_t, std::size_t, std::size_t, double>;
+    static_assert(
+        is_callable,
+        "pcs::Orl_shape_space::for_each_source(): `f` must take the numbers of a point, a "
+        "tree and a point of its scan, and a weight");
+    check_tree(t, "for_each_source");
+    pcs::internal::check(!m_state.is_pair(),
+                         "pcs::Orl_shape_space::for_each_source()",
+                         "points of two trees come from both; use for_each_point()");
+    const std::vector<std::size_t>& first = m_state.family_points.first();
+    const shape_space::Tree_state& tree = t.state();
+    if constexpr (is_callable)
+      pcs::internal::for_each_index<ConcurrencyTag>(
+          tree.x.length.size(),
+          [&](std::size_t e) {
+            if (tree.x.length[e] > 0)
+              for (std::size_t k = first[e]; k < first[e + 1]; ++k)
+                m_state.family_points.for_each_source(
+                    k,
+                    tree.scan_weights,
+                    [&](std::size_t h, std::size_t point, double w) {
+                      f(tree.first_point[e] + k - first[e], h, point, w);
+                    });
+          },
+          64);
+  }
+
+  //! whether trees of the space have points
+  bool has_points() const
+  {
+    return !family().first_point.empty() && family().first_point.back() > 0;
+  }
+  //! whether these have normals
+  bool has_normals() const { return m_state.has_normals(); }
+  //!@}
 
 private:
-  std::array<const shape_space::Tree_input*, 2> inputs() const
+  static std::string name_of(const char* function)
   {
-    return {&m_inputs[0], &m_inputs[1]};
+    return std::string("pcs::Orl_shape_space::") + function + "()";
   }
-
-  void check_inputs(const char* caller) const
+  void check_built(const char* caller) const
   {
-    if (m_is_restored)
-      throw Invalid_input(std::string("pcs::Orl_shape_space::") + caller +
-                          "(): the space was restored, the trees themselves are not there");
-    if (m_inputs.size() != 2)
-      throw Invalid_input(std::string("pcs::Orl_shape_space::") + caller + "(): " +
-                          std::to_string(m_inputs.size()) + " trees were added, expected 2");
+    shape_space::check_built(family(), name_of(caller));
   }
-  Orl_report new_report() const
+  void check_handle(Handle h, const char* caller) const
   {
-    Orl_report report;
-    report.number_of_trees = m_inputs.size();
-    for (std::size_t t = 0; t < 2; ++t) {
-      report.number_of_nodes[t] = m_inputs[t].tree.node_of_source.size();
-      report.number_of_points[t] = m_inputs[t].points.size();
-    }
-    return report;
+    shape_space::check_handle(family(), h, name_of(caller));
   }
-  static Orl_report cancelled(Orl_report report)
+  void check_tree(const Orl_tree& t, const char* caller) const
   {
-    report.status = Status::cancelled;
-    return report;
+    shape_space::check_tree(family(), t.coordinates(), t.state().scan_weights, name_of(caller));
   }
-
-  void finish(shape_space::Embedded_pair& built,
-              std::vector<shape_space::Point_pair> pairs,
-              const Matching_weights& weights,
-              Orl_report& report)
+  void check_two_trees(const char* caller) const
   {
-    this->m_family = Engine::finish_pair(inputs(), std::move(pairs), weights, built, report);
-    this->m_built = std::move(built);
-    this->m_points = shape_space::Family_points();
-    m_stored_points.clear();
-    m_stored_partners.clear();
-    this->m_is_built = true;
-    report.status = Status::converged;
+    check_built(caller);
+    pcs::internal::check(m_state.is_pair(),
+                         name_of(caller),
+                         "for two trees only, there are " + std::to_string(number_of_trees()));
+  }
+  void check_two_inputs(const char* caller) const
+  {
+    pcs::internal::check(!m_state.is_restored,
+                         caller,
+                         "the space was restored, the trees themselves are not there");
+    pcs::internal::check(m_state.inputs.size() == 2,
+                         caller,
+                         std::to_string(m_state.inputs.size()) + " trees were added, expected 2");
   }
 
   template <class NamedParameters>
-  Orl_report build_many(const NamedParameters& np,
-                        const shape_space::Build_options& options,
-                        pcs::internal::Progress& progress)
+  void interpolate(const shape_space::Orl_coordinates& a,
+                   const shape_space::Orl_coordinates& b,
+                   double t,
+                   const NamedParameters& np,
+                   shape_space::Tree_state& result) const
   {
-    Orl_report report = new_report();
-    shape_space::Embedded_pair form;
-    shape_space::read_form(np, form);
-    shape_space::Built_family built;
-    built.family.orientation = form.orientation;
-    if (!Engine::build_family(m_inputs,
-                              options,
-                              form.direction,
-                              form.has_unit_weights,
-                              progress,
-                              built,
-                              report))
-      return cancelled(report);
-    pcs::internal::Stopwatch watch;
-    this->m_family = std::move(built.family);
-    this->m_built = shape_space::Embedded_pair();
-    set_family_points(std::move(built.points), std::move(built.partners), built.has_normals);
-    this->m_is_built = true;
-    report.seconds.instances = watch.lap();
-    report.status = Status::converged;
-    report.distance = this->distance(Handle(0), Handle(1));
-    report.number_of_point_pairs = this->m_points.size();
-    progress.finish();
-    return report;
+    const char* const caller = "pcs::Orl_shape_space::geodesic()";
+    const shape_space::Path_options options = shape_space::read_path_options(np, caller);
+    pcs::internal::check(std::isfinite(t), caller, "`lambda` is not finite");
+    shape_space::interpolate_trees(family(), a, b, t, options, caller, result);
   }
 
-  /// Points of a space of more than two trees, by edge.
-  void set_family_points(std::vector<Orl_space_data::Point> points,
-                         std::vector<Orl_space_data::Partner> partners,
-                         bool has_normals)
+  template <class Writer>
+  void write_points(const shape_space::Tree_state& t, Point_path path, const Writer& writer) const
   {
-    Engine::set_points(points, partners, has_normals, this->m_family, this->m_points);
-    m_stored_points = std::move(points);
-    m_stored_partners = std::move(partners);
+    if (m_state.is_pair())
+      m_state.pair.instances.write(family().layout,
+                                   t.x,
+                                   t.geometry,
+                                   t.lambda,
+                                   path,
+                                   t.first_point,
+                                   writer,
+                                   ConcurrencyTag());
+    else
+      m_state.family_points.write(family().layout,
+                                  t.x,
+                                  t.geometry,
+                                  t.first_point,
+                                  t.scan_weights,
+                                  writer,
+                                  ConcurrencyTag());
   }
 
-  /// What `data()` gave, once the family is there.
-  void set_points(const Orl_space_data& stored)
-  {
-    const char* const caller = "pcs::Orl_shape_space::restore()";
-    if (this->number_of_trees() > 2) {
-      Engine::check_family_points(stored, this->m_family.layout.number_of_edges(), caller);
-      set_family_points(stored.points, stored.partners, stored.has_normals);
-      return;
-    }
-    m_inputs = Engine::restore_pair(stored, caller, this->m_family, this->m_built);
-  }
-
-  std::vector<shape_space::Tree_input> m_inputs;
-  std::vector<Orl_space_data::Point> m_stored_points; // of more than two trees
-  std::vector<Orl_space_data::Partner> m_stored_partners;
-  bool m_is_restored = false;
+  shape_space::Space_state m_state;
 };
 
 } // namespace pcs

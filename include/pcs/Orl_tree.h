@@ -7,12 +7,11 @@
 
 #include <pcs/core/Tree_skeleton.h>
 #include <pcs/shape_space/model/Orl_coordinates.h>
-#include <pcs/shape_space/path/Extrapolation_limits.h>
-#include <pcs/shape_space/path/Sequential_births.h>
+#include <pcs/shape_space/path/Tree_state.h>
 
 #include <array>
 #include <cstddef>
-#include <vector>
+#include <utility>
 
 namespace pcs {
 
@@ -21,43 +20,41 @@ namespace pcs {
   \brief A tree of an `Orl_shape_space`: orientations, radii and lengths of the edges of its
       topology, a value.
 
-  Kept and assigned to again, it keeps its memory.
+  Functions that write to a tree use its memory again.
 */
 class Orl_tree
 {
 public:
-  //! the place on the path it comes from: 0 and 1 are the ends [-]
-  double lambda() const { return m_lambda; }
+  Orl_tree() = default;
+  //! for functions of the shape space
+  explicit Orl_tree(shape_space::Tree_state state) : m_state(std::move(state)) {}
+
+  //! parameter of the geodesic between two trees: 0 and 1 are its ends [-]
+  double lambda() const { return m_state.lambda; }
   //! number of points that `Orl_shape_space::points()` writes [count]
-  std::size_t number_of_points() const { return m_offset.empty() ? 0 : m_offset.back(); }
+  std::size_t number_of_points() const
+  {
+    return m_state.first_point.empty() ? 0 : m_state.first_point.back();
+  }
   //! orientations, radii, lengths and attachments
-  const shape_space::Orl_coordinates& coordinates() const { return m_x; }
+  const shape_space::Orl_coordinates& coordinates() const { return m_state.x; }
+
+  //! for functions of the shape space
+  const shape_space::Tree_state& state() const { return m_state; }
+  //! for functions of the shape space
+  shape_space::Tree_state& state() { return m_state; }
 
 private:
-  template <class, class>
-  friend class Orl_shape_space;
-  template <class>
-  friend class Orl_tree_paths;
-  template <class>
-  friend class Orl_tree_set;
-  template <class>
-  friend class Orl_tree_family;
-  shape_space::Orl_coordinates m_x;
-  shape_space::Orl_geometry m_geometry;
-  shape_space::Extrapolation_buffers m_buffers;
-  shape_space::Sequential_births_buffers m_births;
-  std::vector<std::size_t> m_offset;
-  double m_lambda = 0;
-  std::vector<double> m_share; // of scans in the points, for more than two trees; empty: all alike
+  shape_space::Tree_state m_state;
 };
 
 //! \ingroup PkgPcsShapeSpaceRef
 //! two branches that correspond, named by the vertices at their tips
 struct Branch_match
 {
-  std::size_t parent = npos; ///< index of the parents' match, `npos` for the trunks
-  std::array<std::size_t, 2> tip = {npos,
-                                    npos}; ///< index of a vertex; `npos`: the tree lacks the branch
+  std::size_t parent = npos; ///< index of the match of the parents, `npos` for the trunks
+  /// Index of the vertex at the tip in each tree; `npos`: the tree lacks the branch.
+  std::array<std::size_t, 2> tip = {npos, npos};
 };
 
 } // namespace pcs

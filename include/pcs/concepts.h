@@ -206,6 +206,11 @@ template <class Map, class Key>
 constexpr bool is_readable_point_map_v =
     is_point_or_vector_v<Map_value<Map>>&& is_readable_map_v<Map, Key, Map_value<Map>>;
 
+//! whether `Map` is writable and its values are made of three coordinates
+template <class Map, class Key>
+constexpr bool is_writable_point_map_v = is_point_or_vector_v<Map_value<Map>>&&
+    internal::Is_writable_map<Map, Key, Map_value<Map>>::value;
+
 //! whether `Map` is readable and writable and its values have three coordinates
 template <class Map, class Key>
 constexpr bool is_read_write_point_map_v =

@@ -79,7 +79,7 @@ BOOST_FIXTURE_TEST_SUITE(orl_family_program, Three_trees)
 
 BOOST_AUTO_TEST_CASE(a_mean_mixes_points_and_properties)
 {
-  succeeds(trees + "--mean --mean-kind l2 --weights 0,1,0 --mesh --output out");
+  succeeds(trees + "--mean --mean-kind frechet --weights 0,1,0 --mesh --output out");
   const Table mean = pcs::IO::read_points(path("out/mean.ply"));
   BOOST_TEST(mean.number_of_points() >= 1500u);
   std::size_t number_mixed = 0;
@@ -96,9 +96,9 @@ BOOST_AUTO_TEST_CASE(a_mean_mixes_points_and_properties)
   const double middle = (length("a.swc") + length("b.swc") + length("c.swc")) / 3;
   BOOST_TEST(std::abs(length("out/mean.swc") / middle - 1) <
              0.02); // of all; weights are another tree
-  BOOST_TEST(std::abs(length("out/combination.swc") / length("b.swc") - 1) < 0.02);
+  BOOST_TEST(std::abs(length("out/weighted_mean.swc") / length("b.swc") - 1) < 0.02);
   BOOST_TEST(exists("out/mean_surface.ply"));
-  BOOST_TEST(exists("out/combination_surface.ply"));
+  BOOST_TEST(exists("out/weighted_mean_surface.ply"));
 }
 
 BOOST_AUTO_TEST_CASE(modes_and_new_trees_are_written)
@@ -123,20 +123,20 @@ BOOST_AUTO_TEST_CASE(modes_and_new_trees_are_written)
   BOOST_TEST(modes["measure"] == "branches");
   succeeds(skeletons + "--modes 5 --output many");
   BOOST_TEST(err.find("no more than 2 mode(s)") != std::string::npos, err);
-  succeeds(skeletons + "--modes 2 --mode-measure metric --output metric --report three.json");
+  succeeds(skeletons + "--modes 2 --mode-inner-product metric --output metric --report three.json");
   // of more than two trees there are no figures of pairs
   BOOST_TEST(out.find("3 trees, ") != std::string::npos, out);
   BOOST_TEST(out.find("distance") == std::string::npos, out);
   const Json three = Json::parse(content("three.json"));
   for (const char* name : {"matching_energy",
-                           "unexplained_share",
+                           "unexplained_fraction",
                            "is_grown_at_tips",
-                           "turn_degrees",
+                           "yaw_degrees",
                            "number_of_matched_branches"})
     BOOST_TEST(!three.contains(name), name);
   BOOST_TEST(three["number_of_nodes"].size() == 3u);
   BOOST_TEST(three["number_of_points"].size() == 3u);
-  BOOST_TEST(three.contains("share_of_changes"));
+  BOOST_TEST(three.contains("fraction_of_changed_matches"));
   BOOST_TEST(Json::parse(content("metric/modes.json"))["measure"] == "metric");
   BOOST_TEST(content("metric/mode_1_plus.swc") != content("out/mode_1_plus.swc"));
   // a seed is a family
@@ -193,7 +193,7 @@ BOOST_AUTO_TEST_CASE(trees_that_were_put_down_anew_are_turned_back_on_request)
   }
   const std::string wanted = "--growth --frames 3 --lambda 0.5 --output ";
   succeeds("--skeleton a_up.swc --skeleton b_up.swc --skeleton c_up.swc " + wanted + "still");
-  succeeds(turned_skeletons + turned_trees + "--align turns --up y --report r.json " + wanted +
+  succeeds(turned_skeletons + turned_trees + "--align yaw --up y --report r.json " + wanted +
            "back");
   succeeds(turned_skeletons + wanted + "turned");
   const auto difference = [&](const std::string& one, const std::string& two) {
@@ -212,7 +212,7 @@ BOOST_AUTO_TEST_CASE(trees_that_were_put_down_anew_are_turned_back_on_request)
   }
   for (const double n : pcs::IO::read_points(path("back/growth_0002.ply")).property_as_double("nx"))
     BOOST_TEST(n > 1 - 1e-6);
-  const Json turns = Json::parse(content("r.json"))["turns_degrees"];
+  const Json turns = Json::parse(content("r.json"))["yaws_degrees"];
   BOOST_TEST_REQUIRE(turns.size() == 3u);
   BOOST_TEST(turns[0].get<double>() == 0);
   for (const std::size_t k : {1u, 2u}) // all others refer to the one before, which was turned back
@@ -256,7 +256,7 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_with_a_sentence)
   BOOST_TEST(!exists("out"));
   refuses(skeletons + "--mean --times 0,1,2 --output out", "--growth");
   refuses(skeletons + "--mean --mean-kind l3 --output out", "mean-kind");
-  refuses(skeletons + "--modes 1 --mode-measure l2 --output out", "mode-measure");
+  refuses(skeletons + "--modes 1 --mode-inner-product l2 --output out", "mode-inner-product");
   refuses(skeletons + "--sample -1 --output out", "sample");
   refuses(skeletons + "--modes -1 --output out", "modes");
   refuses(skeletons + "--mean --matches m.csv --output out", "two trees");
@@ -265,7 +265,7 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_with_a_sentence)
   refuses(skeletons + "--skeleton missing.swc --mean --output out", "missing.swc");
   write("file", "");
   refuses(skeletons + "--mean --output file", "file");
-  for (const char* name : {"mean", "combination", "growth_0000", "sample_0000"})
+  for (const char* name : {"mean", "weighted_mean", "growth_0000", "sample_0000"})
     BOOST_TEST(!exists("out/" + std::string(name) + ".swc"));
 }
 
@@ -286,11 +286,11 @@ BOOST_AUTO_TEST_CASE(options_that_would_have_no_effect_are_refused)
   BOOST_TEST(!exists("again"));
   refuses(skeletons + "--mean --extend-axes --output again", "--extend-axes has no effect without");
   refuses(skeletons + "--mean --transport sinkhorn --output again", "--transport has no effect");
-  for (const std::string option : {"--maximal-turn 30",
-                                   "--births-in-order",
-                                   "--births-together",
+  for (const std::string option : {"--max-extrapolation-degrees 30",
+                                   "--sequential-emergence",
+                                   "--simultaneous-emergence",
                                    "--limit-radii",
-                                   "--mode-measure metric",
+                                   "--mode-inner-product metric",
                                    "--seed 1",
                                    "--any-range",
                                    "--pipe-model 2",
@@ -298,9 +298,9 @@ BOOST_AUTO_TEST_CASE(options_that_would_have_no_effect_are_refused)
                                    "--monotone"})
     refuses(skeletons + "--mean --output again " + option,
             option.substr(0, option.find(' ')) + " has no effect without");
-  refuses(skeletons + "--growth --mean-kind l1 --output again", "--mean-kind has no effect");
+  refuses(skeletons + "--growth --mean-kind median --output again", "--mean-kind has no effect");
   succeeds(skeletons + "--mean --align none --orientation transported --output again");
-  succeeds("--load-space s.txt --lambda 0.5 --maximal-turn 30 --births-in-order --limit-radii "
+  succeeds("--load-space s.txt --lambda 0.5 --max-extrapolation-degrees 30 --sequential-emergence --limit-radii "
            "--output again");
 }
 

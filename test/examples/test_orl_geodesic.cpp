@@ -281,8 +281,8 @@ BOOST_AUTO_TEST_CASE(options_change_the_result)
     succeeds(trees + "--lambda 0.5 --output other " + option);
     BOOST_TEST(content("other/lambda_0.500.ply") != plain, option);
   }
-  succeeds(trees + "--lambda 1.5 --output plain --maximal-turn 90");
-  succeeds(trees + "--lambda 1.5 --output other --maximal-turn 0 --limit-radii");
+  succeeds(trees + "--lambda 1.5 --output plain --max-extrapolation-degrees 90");
+  succeeds(trees + "--lambda 1.5 --output other --max-extrapolation-degrees 0 --limit-radii");
   BOOST_TEST(content("other/lambda_1.500.ply") != content("plain/lambda_1.500.ply"));
   // a trunk that all its branches grow on
   auto branches = orl_test::random_branches(61, 4, 2);
@@ -290,11 +290,11 @@ BOOST_AUTO_TEST_CASE(options_change_the_result)
   pcs::IO::write_swc(path("trunk.swc"), orl_test::make_tree(branches));
   const std::string grown = "--skeleton trunk.swc --skeleton a.swc --lambda 0.5 ";
   succeeds(grown + "--output plain");
-  succeeds(grown + "--output other --births-in-order");
+  succeeds(grown + "--output other --sequential-emergence");
   BOOST_TEST(content("other/lambda_0.500.swc") != content("plain/lambda_0.500.swc"));
-  succeeds(grown + "--output other --births-together");
+  succeeds(grown + "--output other --simultaneous-emergence");
   BOOST_TEST(content("other/lambda_0.500.swc") == content("plain/lambda_0.500.swc"));
-  refuses(grown + "--output other --births-together --births-in-order", "excludes");
+  refuses(grown + "--output other --simultaneous-emergence --sequential-emergence", "excludes");
   succeeds(trees + "--lambda 0.5 --output other --published-energy --orientation transported");
 }
 
@@ -325,8 +325,8 @@ BOOST_AUTO_TEST_CASE(branches_of_trees_that_grew_at_their_tips_are_born_in_order
       "--skeleton young.swc --skeleton old.swc --lambda 0.5 --correspondences grown.txt --output ";
   for (const std::string run : {"first", "again"}) { // as found, and as kept
     succeeds(grown + run);
-    succeeds(grown + run + "_in_order --births-in-order");
-    succeeds(grown + run + "_together --births-together");
+    succeeds(grown + run + "_in_order --sequential-emergence");
+    succeeds(grown + run + "_together --simultaneous-emergence");
     const std::string name = "/lambda_0.500.swc";
     BOOST_TEST(content(run + name) == content(run + "_in_order" + name));
     BOOST_TEST(content(run + name) != content(run + "_together" + name));
@@ -348,7 +348,7 @@ BOOST_AUTO_TEST_CASE(a_tree_that_stands_turned_is_found)
         (is_y_up ? "--up y " : "");
     const auto degrees = [&](const std::string& arguments) {
       succeeds(both + arguments);
-      return Json::parse(content("r.json"))["turn_degrees"].get<double>();
+      return Json::parse(content("r.json"))["yaw_degrees"].get<double>();
     };
     BOOST_TEST(std::abs(degrees("--output turned") + 90) < 1e-3);
     BOOST_TEST(degrees("--output still --align none") == 0);
@@ -373,7 +373,7 @@ BOOST_AUTO_TEST_CASE(correspondences_are_kept)
   BOOST_TEST(stored["number_of_points"] == Json::parse(content("fresh.json"))["number_of_points"]);
   BOOST_TEST(stored["distance"] == Json::parse(content("fresh.json"))["distance"]);
   // the same may be asked for again, and nothing else
-  succeeds(trees + "--lambda 0.3 --output two --correspondences c.txt --align turns --up z "
+  succeeds(trees + "--lambda 0.3 --output two --correspondences c.txt --align yaw --up z "
                    "--transport exact");
   BOOST_TEST(content("one/lambda_0.300.ply") == content("two/lambda_0.300.ply"));
   for (const std::string option :

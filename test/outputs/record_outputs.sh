@@ -100,7 +100,7 @@ for age in 0.6 0.8 1; do
 done
 run young orl_geodesic --tree age_0.6.ply --skeleton age_0.6.swc --tree age_1.ply --skeleton age_1.swc --lambda 0.5 \
   --transport sinkhorn --align "$(option orl_geodesic yaw turns)" --extend-axes \
-  "$(option orl_geodesic --sequential-births --births-in-order)" \
+  "$(option orl_geodesic --sequential-emergence --births-in-order)" \
   --limit-radii --mesh --changes young_changes.csv --output young
 family=(--skeleton age_0.6.swc --skeleton age_0.8.swc --skeleton age_1.swc)
 run family orl_geodesic "${family[@]}" --mean --modes 2 --sample 3 --seed 4 --pipe-model 2.5 --growth --frames 4 \

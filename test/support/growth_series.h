@@ -371,9 +371,9 @@ inline Prediction predict(const Series& series)
           measure(one),
           measure(two),
           chamfer(evened(half[0], cell), evened(half[1], cell)),
-          report.unexplained_share,
+          report.unexplained_fraction,
           report.is_grown_at_tips,
-          report.turn};
+          report.yaw};
 }
 
 } // namespace orl_test

@@ -33,17 +33,17 @@ struct Options
   std::set<std::string> given; ///< names of all options of the command line
   std::vector<double> lambda = {0, 0.25, 0.5, 0.75, 1};
   std::string output, matches, report, correspondences;
-  std::string transport = "exact", orientation = "gauge-fixed", align = "turns", up = "z";
-  double maximal_turn = 45;
+  std::string transport = "exact", orientation = "gauge-fixed", align = "yaw", up = "z";
+  double max_extrapolation_angle = 45;
   bool do_extend_axes = false, do_limit_radii = false, do_order_births = false,
        do_join_births = false, is_published = false, is_quiet = false;
 
   // families
   bool do_mean = false, do_growth = false, do_mesh = false;
   bool is_monotone = false, may_leave_range = false;
-  std::string mean_kind = "l1", mode_inner_product = "branches", load, save, changes, distances;
+  std::string mean_kind = "median", mode_inner_product = "branches", load, save, changes, distances;
   std::size_t number_of_modes = 0, number_of_samples = 0, number_of_frames = 11;
-  std::int64_t seed = 1; // signed, so that CLI11 does not take -1 for a large number
+  std::int64_t seed = 1; // signed, because CLI11 would convert -1 to a large unsigned number
   std::vector<double> weights, times;
   double pipe_exponent = 0;
 
@@ -55,12 +55,12 @@ struct Options
            !weights.empty() || !save.empty() || !load.empty() || !changes.empty() ||
            !distances.empty();
   }
-  /// Whether trees are made at the places of `lambda`.
+  /// Whether trees are made at the positions of `lambda`.
   bool has_places() const { return is_given("--lambda") || !is_family(); }
 };
 
-/// Numbers separated by commas. CLI11 takes nothing for 0, and leaves out what is between two
-/// commas.
+/// Adds an option for numbers separated by commas. CLI11 would read an empty string as 0, and omit
+/// empty numbers between two commas.
 inline CLI::Option* add_numbers(CLI::App& app,
                                 const std::string& name,
                                 std::vector<double>& values,
@@ -84,7 +84,7 @@ inline CLI::Option* add_numbers(CLI::App& app,
       ->type_name("FLOAT,...");
 }
 
-/// The name of the files of a place on the path.
+/// Returns the file name of a position on the path.
 inline std::string name_of(double lambda)
 {
   char text[64];
@@ -97,7 +97,7 @@ inline void declare_family(CLI::App& app, Options& o)
   const char* const group = "Families of trees";
   app.add_flag("--mean", o.do_mean, "the mean of all trees: mean.swc, mean.ply")->group(group);
   app.add_option("--mean-kind", o.mean_kind, "least sum of distances, or of their squares")
-      ->check(CLI::IsMember({"l1", "l2"}))
+      ->check(CLI::IsMember({"median", "frechet"}))
       ->capture_default_str()
       ->group(group);
   app.add_option("--modes",
@@ -107,7 +107,7 @@ inline void declare_family(CLI::App& app, Options& o)
       ->check(CLI::Range(0, 10000))
       ->group(group);
   app.add_option(
-         "--mode-measure",
+         "--mode-inner-product",
          o.mode_inner_product,
          "what modes explain: how branches differ where trees have them, or the metric, for "
          "trees that differ by which branches they have")
@@ -131,7 +131,7 @@ inline void declare_family(CLI::App& app, Options& o)
                  "radii of new trees to this power do not add up to more at forks; 2 to 2.5")
       ->check(CLI::Range(0.0, 10.0))
       ->group(group);
-  add_numbers(app, "--weights", o.weights, "one per tree: the tree between, combination.swc")
+  add_numbers(app, "--weights", o.weights, "one per tree: the tree between, weighted_mean.swc")
       ->group(group);
   app.add_flag("--growth", o.do_growth, "a smooth path through all trees: growth_0000.swc, ...")
       ->group(group);
@@ -182,7 +182,7 @@ Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
                  "whether the second of two trees may stand turned about the vertical, as a pot "
                  "that was put down anew; of more trees each is turned to stand like the one "
                  "before, if this is given")
-      ->check(CLI::IsMember({"none", "turns"}))
+      ->check(CLI::IsMember({"none", "yaw"}))
       ->capture_default_str();
   app.add_option("--up", o.up, "the vertical")
       ->check(CLI::IsMember({"x", "y", "z"}))
@@ -193,19 +193,21 @@ Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
   app.add_option("--orientation", o.orientation, "how orientations are measured")
       ->check(CLI::IsMember({"gauge-fixed", "transported", "world-axes"}))
       ->capture_default_str();
-  app.add_option("--maximal-turn", o.maximal_turn, "of an edge beyond the ends, in all [degrees]")
+  app.add_option("--max-extrapolation-degrees",
+                 o.max_extrapolation_angle,
+                 "of an edge beyond the ends, in all [degrees]")
       ->check(CLI::Range(0.0, 180.0))
       ->capture_default_str();
   app.add_flag("--extend-axes",
                o.do_extend_axes,
                "axes of given skeletons go to where the points end");
   CLI::Option* const in_order =
-      app.add_flag("--births-in-order",
+      app.add_flag("--sequential-emergence",
                    o.do_order_births,
                    "new branches begin when the tip of their parent passes, as wood grows; default "
                    "for two trees that were found to have "
                    "grown at their tips");
-  app.add_flag("--births-together",
+  app.add_flag("--simultaneous-emergence",
                o.do_join_births,
                "new branches begin all at once; default for all others, and with --load-space")
       ->excludes(in_order);
@@ -220,7 +222,7 @@ Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
   });
 }
 
-/// What is asked for must have an effect.
+/// Rejects options without effect.
 inline void check_effects(const Options& o)
 {
   const auto refuse =
@@ -239,20 +241,20 @@ inline void check_effects(const Options& o)
          {"--extend-axes"},
          "without --skeleton: extracted axes go to where the points end");
   refuse(!o.has_places(),
-         {"--maximal-turn", "--births-in-order", "--births-together"},
+         {"--max-extrapolation-degrees", "--sequential-emergence", "--simultaneous-emergence"},
          "without --lambda");
   refuse(!o.has_places() && o.number_of_samples == 0,
          {"--limit-radii"},
          "without --lambda or --sample");
   refuse(!o.do_mean, {"--mean-kind"}, "without --mean");
-  refuse(o.number_of_modes == 0, {"--mode-measure"}, "without --modes");
+  refuse(o.number_of_modes == 0, {"--mode-inner-product"}, "without --modes");
   refuse(o.number_of_samples == 0,
          {"--seed", "--any-range", "--pipe-model"},
          "without --sample: no new trees are drawn");
   refuse(!o.do_growth, {"--times", "--frames", "--monotone"}, "without --growth");
 }
 
-/// Lists with a number for each tree, and other numbers that are read late.
+/// Checks lists with a number for each tree, and other numbers that are checked after reading.
 inline void check_numbers(const Options& o, std::size_t number_of_trees)
 {
   const auto check_list = [&](const char* name, const std::vector<double>& list) {

@@ -28,7 +28,7 @@ inline std::string numbered(const char* name, std::size_t i)
   return text;
 }
 
-/// Of all files that may be made in the folder of the results; there may be fewer modes.
+/// Returns the names of all possible files in the folder of the results; there may be fewer modes.
 inline std::set<std::string> names_of_results(const Options& o)
 {
   std::vector<std::string> trees;
@@ -38,7 +38,7 @@ inline std::set<std::string> names_of_results(const Options& o)
   if (o.do_mean)
     trees.push_back("mean");
   if (!o.weights.empty())
-    trees.push_back("combination");
+    trees.push_back("weighted_mean");
   for (std::size_t k = 1; k <= o.number_of_modes; ++k)
     for (const char* side : {"_minus", "_plus"})
       trees.push_back("mode_" + std::to_string(k) + side);
@@ -55,12 +55,12 @@ inline std::set<std::string> names_of_results(const Options& o)
   return names;
 }
 
-/// No result may be an input, another result, or a folder.
+/// Checks that no result is an input, another result, or a folder.
 inline void check_files(const Options& o)
 {
   namespace fs = std::filesystem;
   program::Distinct_files files;
-  std::set<std::string> seen; // names of files that are or will be somewhere
+  std::set<std::string> seen; // names of existing and future files
   const auto add = [&](const std::string& path, bool is_written) {
     is_written ? files.add_output(path) : files.add_input(path);
     seen.insert(fs::path(path).filename().string());
@@ -85,8 +85,8 @@ inline void check_files(const Options& o)
       files.add_output((fs::path(o.output) / name).string());
 }
 
-/// The folder of the results. Folders that were made for it go again when the work fails before
-/// there is a result.
+/// The folder of the results. Folders created for it are removed if the work fails before there is
+/// a result.
 class Result_folder
 {
 public:
@@ -123,7 +123,7 @@ private:
   void remove_empty() const
   {
     std::error_code error;
-    for (const std::filesystem::path& folder : m_made) // the innermost first
+    for (const std::filesystem::path& folder : m_made) // innermost folder first
       std::filesystem::remove(folder, error);
   }
 
@@ -131,8 +131,8 @@ private:
   int m_number_of_exceptions = std::uncaught_exceptions();
 };
 
-/// Throws unless a file that is written later, by other means, can be. To open a pipe would be to
-/// write to it.
+/// Throws unless a file can be written later by other functions. Pipes are not opened, because this
+/// would write to them.
 inline void probe_file(const std::string& path)
 {
   std::error_code error;

@@ -39,7 +39,7 @@ struct Tree_file
 {
   Skeleton skeleton;
   pcs::IO::Point_table points;
-  std::vector<std::int64_t> ids; ///< of the nodes, as in the file
+  std::vector<std::int64_t> ids; ///< ids of the nodes in the file
   bool has_valid_normals = false;
 };
 
@@ -78,7 +78,7 @@ inline void extract_skeleton(const std::string& points, const std::string& up, T
 #endif
 }
 
-/// Skeletons and points of which most are far from each other are in different coordinates.
+/// Rejects points in other coordinates than the skeleton: most of them are far from it.
 inline void
 check_place(const std::string& points, const std::string& skeleton, const Tree_file& tree)
 {
@@ -101,7 +101,7 @@ check_place(const std::string& points, const std::string& skeleton, const Tree_f
                              " than it is large; both must be in the same coordinates and unit");
 }
 
-/// What the files say. Either path may be empty, not both.
+/// Reads a tree from its files. Either path may be empty, but not both.
 inline Tree_file read_tree(const std::string& points, const std::string& skeleton)
 {
   Tree_file tree;
@@ -122,8 +122,8 @@ inline Tree_file read_tree(const std::string& points, const std::string& skeleto
   return tree;
 }
 
-/// Finds the skeleton if there is none, and names for nodes that have none. `up`: the axis along
-/// which trees grow.
+/// Computes the skeleton and the ids of nodes if they are missing. `up`: the growth axis of the
+/// trees.
 inline void complete_tree(Tree_file& tree,
                           const std::string& points,
                           bool do_extend_axes,
@@ -133,7 +133,7 @@ inline void complete_tree(Tree_file& tree,
     extract_skeleton(points, up, tree);
   else if (do_extend_axes)
     pcs::shape_space::extend_axes(tree.skeleton, tree.points.points());
-  for (std::size_t v = tree.ids.size(); v < num_vertices(tree.skeleton); ++v) // the file has none
+  for (std::size_t v = tree.ids.size(); v < num_vertices(tree.skeleton); ++v) // no ids in the file
     tree.ids.push_back(static_cast<std::int64_t>(v) + 1);
 }
 

@@ -18,7 +18,7 @@
 
 namespace orl_program {
 
-/// By `angle` about the vertical through the root.
+/// Rotates a tree by `angle` about the vertical axis through the root. [rad]
 inline void turn_tree(Tree_file& tree, const std::string& up, double angle)
 {
   const double c = std::cos(angle), s = std::sin(angle);
@@ -40,7 +40,7 @@ inline void turn_tree(Tree_file& tree, const std::string& up, double angle)
   tree.points.set_normals(normals);
 }
 
-/// Turns each tree to stand like the one before; by which angles. [rad]
+/// Rotates each tree to align it with the previous one. Returns the angles. [rad]
 inline std::vector<double> align_trees(std::vector<Tree_file>& trees,
                                        const std::string& up,
                                        const pcs::Matching_weights& weights)
@@ -54,7 +54,7 @@ inline std::vector<double> align_trees(std::vector<Tree_file>& trees,
                    .build(pcs::parameters::matching_weights(weights)
                               .alignment(pcs::Orl_alignment::rotate_about_up)
                               .up_direction(program::up_direction<Kernel>(up)))
-                   .turn;
+                   .yaw;
     if (turns[i] != 0)
       turn_tree(trees[i], up, turns[i]);
   }

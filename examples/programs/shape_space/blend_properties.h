@@ -31,7 +31,7 @@ inline bool is_normal(const std::string& name)
   return name == "nx" || name == "ny" || name == "nz";
 }
 
-/// The nearest number of a type.
+/// Returns the nearest number of a type.
 template <class T>
 T to_type(double value)
 {
@@ -45,7 +45,7 @@ T to_type(double value)
 
 namespace internal {
 
-/// What a type of columns can hold.
+/// The range of a type of columns.
 struct Type_range
 {
   bool is_floating, is_signed;
@@ -68,8 +68,8 @@ struct Type_range
 
 } // namespace internal
 
-/// The least type of columns that holds the values of both, of at most four bytes if whole: PLY has
-/// no others.
+/// Returns the smallest type of columns that represents the values of both types. Integers have at
+/// most four bytes, the limit of PLY.
 inline pcs::IO::Scalar_type wider_type(pcs::IO::Scalar_type a, pcs::IO::Scalar_type b)
 {
   using Type = pcs::IO::Scalar_type;
@@ -88,7 +88,7 @@ inline pcs::IO::Scalar_type wider_type(pcs::IO::Scalar_type a, pcs::IO::Scalar_t
   return Type::float64;
 }
 
-/// Adds a property; values beyond the ends of the type become those.
+/// Adds a property; values are clamped to the range of the type.
 inline void add_property(const std::string& name,
                          pcs::IO::Scalar_type type,
                          const std::vector<double>& values,
@@ -104,11 +104,10 @@ inline void add_property(const std::string& name,
 }
 
 /*!
-  A value from many points with weights that add up to 1. Numbers with fractions are mixed, colours
-  too, and of these light,
-  not its code: the codes of sRGB follow a power of it. Whole numbers are labels, those of the
-  greatest share are taken.
-  What is no finite number has no part in it.
+  Combines the values of many points with weights that sum to 1. Numbers with fractions are
+  averaged. Colours are averaged as light intensities, which are powers of their sRGB codes. Other
+  whole numbers are labels, of which the one with the largest weight is selected. Values that are
+  not finite are ignored.
 */
 class Mixed_value
 {
@@ -149,8 +148,8 @@ private:
   double m_sum = 0, m_light = 0, m_most = 0, m_main = 0, m_left_out = 0;
 };
 
-/// Adds every property that both tables have to `out`, the points of `tree`, in a type that holds
-/// the values of both.
+/// Adds every property that both tables have to `out`, the points of `tree`, in a type that
+/// represents the values of both.
 template <class Space>
 void blend_properties(const Space& space,
                       const pcs::Orl_tree& tree,

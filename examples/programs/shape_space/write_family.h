@@ -25,7 +25,8 @@ namespace orl_program {
 inline void write_modes(const Space& space, const std::vector<Tree_file>& files, const Options& o)
 {
   program::Report_file report((std::filesystem::path(o.output) / "modes.json").string());
-  const pcs::shape_space::Modes_of_variation modes = space.modes(
+  const pcs::shape_space::Modes_of_variation modes = pcs::find_modes(
+      space,
       o.number_of_modes,
       np::mode_inner_product(o.mode_inner_product == "metric" ? pcs::Mode_inner_product::metric
                                                               : pcs::Mode_inner_product::branches));
@@ -48,7 +49,7 @@ inline void write_modes(const Space& space, const std::vector<Tree_file>& files,
       std::vector<double> scores(k, 0);
       scores.push_back(side);
       write_tree(space,
-                 space.tree(modes, scores),
+                 pcs::tree_of_modes(space, modes, scores),
                  files,
                  o,
                  "mode_" + std::to_string(k + 1) + (side < 0 ? "_minus" : "_plus"));
@@ -56,7 +57,7 @@ inline void write_modes(const Space& space, const std::vector<Tree_file>& files,
   }
   json["left_out_error_of_mean"] = modes.left_out_error(0);
   for (std::size_t h = 0; h < space.number_of_trees(); ++h)
-    json["outlier_scores"].push_back(space.outlier_score(modes, space.tree(h)));
+    json["outlier_scores"].push_back(pcs::outlier_score(space, modes, space.tree(h)));
   report.commit(json);
 }
 
@@ -67,14 +68,15 @@ inline void write_samples(const Space& space, const std::vector<Tree_file>& file
   options.do_keep_in_range = !o.may_leave_range;
   options.do_limit_radii = o.do_limit_radii;
   options.pipe_exponent = o.pipe_exponent;
-  const pcs::Orl_distribution distribution = space.distribution();
+  const pcs::Orl_distribution distribution = pcs::learn_distribution(space);
   for (std::size_t i = 0; i < o.number_of_samples; ++i) {
     line.show("new trees", static_cast<double>(i) / static_cast<double>(o.number_of_samples));
     write_tree(space,
-               space.sample(distribution,
-                            static_cast<std::uint64_t>(o.seed),
-                            i,
-                            np::sampling_options(options)),
+               pcs::sample_tree(space,
+                                distribution,
+                                static_cast<std::uint64_t>(o.seed),
+                                i,
+                                np::sampling_options(options)),
                files,
                o,
                numbered("sample", i));
@@ -90,11 +92,11 @@ inline void write_growth(const Space& space, const std::vector<Tree_file>& files
     if (o.times.empty())
       times.push_back(static_cast<double>(h));
   }
-  const auto path = space.growth(trees, times, np::is_monotone(o.is_monotone));
+  const auto path = pcs::fit_growth_path(space, trees, times, np::is_monotone(o.is_monotone));
   for (std::size_t i = 0; i < o.number_of_frames; ++i) {
     const double f = static_cast<double>(i) / static_cast<double>(o.number_of_frames - 1);
     write_tree(space,
-               space.tree(path, (1 - f) * times.front() + f * times.back()),
+               pcs::tree_at_time(space, path, (1 - f) * times.front() + f * times.back()),
                files,
                o,
                numbered("growth", i));
@@ -105,7 +107,7 @@ inline std::string changes_text(const Space& space, const std::vector<Tree_file>
 {
   std::ostringstream text;
   text << "tip_a,tip_b,order,change,length_a,length_b,radius_a,radius_b,angle_degrees\n";
-  for (const pcs::shape_space::Branch_change& c : space.changes(0, 1)) {
+  for (const pcs::shape_space::Branch_change& c : pcs::find_branch_changes(space, 0, 1)) {
     const auto id = [&](std::size_t h) {
       const std::size_t v = space.tip_of_branch(h, c.branch);
       return v == pcs::npos  ? std::int64_t(-1)
@@ -136,26 +138,27 @@ inline std::string distances_text(const Space& space)
   std::ostringstream text;
   text.precision(17);
   const std::size_t n = space.number_of_trees();
-  const std::vector<double> distances = space.distances();
+  const std::vector<double> distances = pcs::distance_matrix(space);
   for (std::size_t a = 0; a < n; ++a)
     for (std::size_t b = 0; b < n; ++b)
       text << distances[a * n + b] << (b + 1 < n ? ',' : '\n');
   return text.str();
 }
 
-/// Everything but the files that have a path of their own.
+/// Writes all results except the files with a separate path.
 inline void write_family(const Space& space, const std::vector<Tree_file>& files, const Options& o)
 {
   using pcs::Tree_mean;
   if (o.do_mean)
-    write_tree(
-        space,
-        space.mean(np::tree_mean(o.mean_kind == "l1" ? Tree_mean::median : Tree_mean::frechet)),
-        files,
-        o,
-        "mean");
+    write_tree(space,
+               pcs::mean_tree(
+                   space,
+                   np::tree_mean(o.mean_kind == "median" ? Tree_mean::median : Tree_mean::frechet)),
+               files,
+               o,
+               "mean");
   if (!o.weights.empty())
-    write_tree(space, space.weighted_mean(o.weights), files, o, "combination");
+    write_tree(space, pcs::weighted_mean(space, o.weights), files, o, "weighted_mean");
   if (o.number_of_modes > 0)
     write_modes(space, files, o);
   if (o.number_of_samples > 0)

@@ -28,7 +28,7 @@ namespace orl_program {
 namespace np = pcs::parameters;
 using Space = pcs::Orl_shape_space<Kernel>;
 
-/// Properties that the points of all trees have, mixed from the points that each comes from.
+/// Copies properties common to the points of all trees, mixed from the corresponding points.
 inline void copy_properties(const Space& space,
                             const pcs::Orl_tree& tree,
                             const std::vector<Tree_file>& files,
@@ -86,8 +86,8 @@ inline void write_scan(const Space& space,
   pcs::IO::write_points(path, out);
 }
 
-/// NAME.swc, NAME.ply if there are points, NAME_surface.ply if wanted, in the folder of the
-/// results.
+/// Writes NAME.swc, NAME.ply if there are points, and NAME_surface.ply if requested, to the folder
+/// of the results.
 inline void write_tree(const Space& space,
                        const pcs::Orl_tree& tree,
                        const std::vector<Tree_file>& files,

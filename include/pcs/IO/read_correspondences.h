@@ -17,10 +17,10 @@ namespace IO {
 
 /*!
   \ingroup PkgPcsIORef
-  \brief reads what `write_correspondences()` wrote.
+  \brief reads a file of `write_correspondences()`.
 
-  Whether the correspondences fit the trees is checked by `Orl_shape_space::build_from()`.
-  \throws pcs::IO_error naming the line and what was expected there
+  `Orl_shape_space::build_from()` checks whether the correspondences match the trees.
+  \throws pcs::IO_error naming the line and the expected content
 */
 inline Orl_correspondences read_correspondences(const std::string& path)
 {
@@ -37,7 +37,7 @@ inline Orl_correspondences read_correspondences(const std::string& path)
     result.fingerprint_of_points[t] = file.number<std::uint64_t>("a fingerprint");
   }
   file.expect("turn");
-  for (double& x : result.turn)
+  for (double& x : result.rotation)
     x = file.real("a quaternion");
   const auto index = [&] {
     return file.skip("-") ? Orl_correspondences::none : file.count("the number of an element");

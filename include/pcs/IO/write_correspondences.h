@@ -78,7 +78,7 @@ private:
     for (const std::string& word : words)
       m_line += ' ' + word;
   }
-  /// Writes the fingerprints of both trees and the turn between them.
+  /// Writes the fingerprints of both trees and the rotation between them.
   void write_trees(const Orl_correspondences& c)
   {
     m_line += "trees";
@@ -88,7 +88,7 @@ private:
     }
     end();
     m_line += "turn";
-    for (const double x : c.turn)
+    for (const double x : c.rotation)
       add(x);
     end();
   }

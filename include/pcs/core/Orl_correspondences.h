@@ -45,8 +45,8 @@ struct Orl_correspondences
   std::string note; ///< words of the caller's, kept with them; single spaces between
   std::array<std::uint64_t, 2> fingerprint = {0, 0};           ///< of the nodes of the trees
   std::array<std::uint64_t, 2> fingerprint_of_points = {0, 0}; ///< of their scans; 0: no points
-  std::array<double, 4> turn =
-      {1, 0, 0, 0}; ///< quaternion w, x, y, z of the turn after which tree 2 stands like tree 1
+  std::array<double, 4> rotation =
+      {1, 0, 0, 0}; ///< quaternion w, x, y, z of the rotation that aligns tree 2 with tree 1
   std::vector<Branch> branches; ///< parents first
   std::vector<Pair>
       pairs; ///< by edge; of the partners of a point of tree 1, the main one comes first

@@ -39,15 +39,16 @@ struct Matching_weights
   double curve = 1;                          ///< of the elastic energy of two branches [-]
   double position = 1;                       ///< of the distance of attachments, in units of the
                                              ///< branches' lengths [-]
-  double far = 1;         ///< attachments this far apart, of the parent's length, cost
-                          ///< half of that [-]
-  double single = 0.5;    ///< of the length of an unmatched subtree [-]
-  double length = 1;      ///< of a difference of lengths, in units of `single` [-]
-  double turn = 0.2;      ///< of the rotation of a branch relative to its parents [-]
-  double children = 1;    ///< of the children's part in the rotation that is passed on [-]
-  double carried = 0.1;   ///< of the parents' rotation in that of their children [-]
-  bool is_carried = true; ///< whether rotations of parents are passed on to their children
-  //! the published energy: no rotations, `single` is 1, positions in units of
+  double half_cost_distance = 1;   ///< attachments this far apart, of the parent's length, cost
+                                   ///< half of that [-]
+  double unmatched = 0.5;          ///< of the length of an unmatched subtree [-]
+  double length = 1;               ///< of a difference of lengths, in units of `unmatched` [-]
+  double rotation = 0.2;           ///< of the rotation of a branch relative to its parents [-]
+  double children = 1;             ///< of the children's part in the rotation that is passed on [-]
+  double inherited_rotation = 0.1; ///< of the parents' rotation in that of their children [-]
+  bool is_rotation_inherited =
+      true; ///< whether rotations of parents are passed on to their children
+  //! the published energy: no rotations, `unmatched` is 1, positions in units of
   //! the parent's length
   bool is_published = false;
   double fork_ratio = default_fork_ratio;       ///< see `default_fork_ratio` [-]

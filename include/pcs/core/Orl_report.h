@@ -19,37 +19,33 @@ struct Orl_report
 {
   Status status = Status::nothing_to_do;
 
-  std::size_t number_of_trees = 2;           ///< figures of single trees are those of the first two
+  std::size_t number_of_trees = 2; ///< [count]; values of single trees are those of the first two
   std::size_t number_of_common_branches = 0; ///< of the topology [count]
-  double share_of_changes =
-      0; ///< branches that got another partner in the last round, for more than two trees [-]
+  //! more than two trees: branches whose correspondence changed in the last round [-]
+  double fraction_of_changed_matches = 0;
 
   std::array<std::size_t, 2> number_of_nodes = {0, 0};    ///< of the trees [count]
   std::array<std::size_t, 2> number_of_branches = {0, 0}; ///< of the trees, as matched [count]
   std::size_t number_of_matched_branches = 0;             ///< pairs of branches [count]
   std::size_t number_of_edges = 0;                        ///< of the common topology [count]
   double matching_energy = 0; ///< of the branches, in units of the longest paths [-]
-  double unexplained_share =
-      /// of two trees: 0 if the smaller one is all found in the other, 1 if nothing of it is [-]
-      0;
-  bool is_grown_at_tips =
-      /// of two trees: whether the branches of one are beginnings of those of the other, rather
-      /// than shrunken
-      false;
-  double turn =
-      /// of two trees: angle about the vertical after which the second stands like the first [rad]
-      0;
+  //! two trees: 0 if the smaller one is found in the other as a whole, 1 if nothing of it is [-]
+  double unexplained_fraction = 0;
+  //! two trees: whether branches of one are the beginnings of those of the other, not scaled copies
+  bool is_grown_at_tips = false;
+  //! two trees: rotation about the vertical that aligns the second with the first [rad]
+  double yaw = 0;
   double distance = 0; ///< between the trees, (4.7) [L]
 
   std::array<std::size_t, 2> number_of_points = {0, 0}; ///< of the scans [count]
-  std::size_t number_of_point_pairs = 0;                ///< points of an instance [count]
-  std::size_t number_of_single_points = 0;  ///< of the pairs: points without partner [count]
-  std::size_t number_of_windows = 0;        ///< transports between sets of points [count]
-  std::size_t number_of_failed_windows = 0; ///< transports that could not be completed [count]
-  double worst_marginal_violation = 0;      ///< mass of a window, of 1, that went elsewhere [-]
-  double mean_marginal_violation = 0;       ///< the same, mean over windows [-]
-  double untransported_mass_share =
-      0; ///< mass of a window, of 1, without counterpart within reach, mean over windows [-]
+  std::size_t number_of_point_pairs = 0;                ///< points of a tree of the space [count]
+  std::size_t number_of_unmatched_points = 0; ///< of these: points of one scan only [count]
+  std::size_t number_of_windows = 0;          ///< optimal transports that were solved [count]
+  std::size_t number_of_failed_windows = 0;   ///< transports that did not converge [count]
+  double worst_marginal_violation = 0;        ///< mass of a window, of 1, at a wrong point [-]
+  double mean_marginal_violation = 0;         ///< the same, mean over windows [-]
+  //! mass of a window, of 1, without counterpart within reach, mean over windows [-]
+  double untransported_mass_share = 0;
 
   //! wall-clock time of each stage [s]
   struct Seconds
@@ -67,8 +63,8 @@ inline std::ostream& operator<<(std::ostream& out, const Orl_report& r)
     out << r.number_of_branches[0] << " and " << r.number_of_branches[1] << " branches, "
         << r.number_of_matched_branches << " matched, " << r.number_of_edges << " edges, distance "
         << r.distance << "; " << r.number_of_points[0] << " and " << r.number_of_points[1]
-        << " points, " << r.number_of_point_pairs << " pairs (" << r.number_of_single_points
-        << " single), ";
+        << " points, " << r.number_of_point_pairs << " pairs (" << r.number_of_unmatched_points
+        << " unmatched), ";
   else
     out << r.number_of_trees << " trees, " << r.number_of_common_branches << " common branches, "
         << r.number_of_edges << " edges; " << r.number_of_point_pairs << " points, ";

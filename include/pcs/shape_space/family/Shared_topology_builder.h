@@ -101,7 +101,7 @@ public:
   std::vector<Branch_paths>& paths() { return m_paths; }
   const Orl_coordinates& reference() const { return m_x; }
   /// Share of the branches of the trees that had another partner in the round before the last. [-]
-  double share_of_changes() const { return m_share_of_changes; }
+  double fraction_of_changed_matches() const { return m_fraction_of_changed_matches; }
 
 private:
   void clear(Shared_branch& b) const
@@ -307,7 +307,7 @@ private:
                          ? 0
                          : 1;
         }
-    m_share_of_changes = changed / std::max(1.0, all);
+    m_fraction_of_changed_matches = changed / std::max(1.0, all);
   }
 
   /// A branch of the middle tree and one of tree `t`, and what hangs on both.
@@ -398,7 +398,7 @@ private:
   Reference_tree m_reference;
   Elastic_matcher m_matcher{65, 6};
   bool m_do_extend = true;
-  double m_share_of_changes = 0;
+  double m_fraction_of_changed_matches = 0;
 };
 
 } // namespace shape_space

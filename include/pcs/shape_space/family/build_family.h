@@ -11,11 +11,12 @@
 #include <pcs/internal/Stopwatch.h>
 #include <pcs/internal/progress.h>
 #include <pcs/shape_space/family/Family_points_impl.h>
-#include <pcs/shape_space/family/Tree_family.h>
 #include <pcs/shape_space/family/make_family.h>
 #include <pcs/shape_space/family/star_correspondences.h>
 #include <pcs/shape_space/matching/find_yaw_candidates.h>
 #include <pcs/shape_space/model/Build_options.h>
+#include <pcs/shape_space/model/Point_pair.h>
+#include <pcs/shape_space/model/Tree_family.h>
 
 #include <cstddef>
 #include <utility>
@@ -24,21 +25,10 @@
 namespace pcs {
 namespace shape_space {
 
-inline void describe(const Transport_summary& summary, Orl_report& report)
-{
-  report.number_of_windows = summary.number_of_windows;
-  report.number_of_failed_windows = summary.number_of_failures;
-  report.worst_marginal_violation = summary.worst_violation;
-  report.untransported_mass_share = summary.mean_remaining;
-  report.mean_marginal_violation = summary.mean_violation;
-}
-
-/// `false` when `progress` asks to stop. Reads `built.family.orientation`.
+/// Returns `false` when `progress` asks to stop.
 template <class ConcurrencyTag>
 bool build_family(const std::vector<Tree_input>& inputs,
                   const Build_options& options,
-                  Virtual_direction direction,
-                  bool has_unit_weights,
                   pcs::internal::Progress& progress,
                   Built_family& built,
                   Orl_report& report)
@@ -54,12 +44,7 @@ bool build_family(const std::vector<Tree_input>& inputs,
   if (!topology.run(progress))
     return false;
   report.seconds.matching = watch.lap();
-  built.family = make_family<ConcurrencyTag>(topology,
-                                             trees,
-                                             options.weights,
-                                             built.family.orientation,
-                                             direction,
-                                             has_unit_weights);
+  built.family = make_family<ConcurrencyTag>(topology, trees, options.weights, options.form);
   const Tree_family& family = built.family;
   report.seconds.topology = watch.lap();
 
@@ -107,7 +92,7 @@ bool build_family(const std::vector<Tree_input>& inputs,
   }
   report.number_of_common_branches = family.layout.branches.size();
   report.number_of_edges = family.layout.number_of_edges();
-  report.share_of_changes = topology.share_of_changes();
+  report.fraction_of_changed_matches = topology.fraction_of_changed_matches();
   return true;
 }
 

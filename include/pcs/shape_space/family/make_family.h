@@ -8,9 +8,9 @@
 #include <pcs/core/Orl_options.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/shape_space/family/Shared_topology_builder.h>
-#include <pcs/shape_space/family/Tree_family.h>
 #include <pcs/shape_space/input/tree_input.h>
 #include <pcs/shape_space/measures/Tree_descriptors.h>
+#include <pcs/shape_space/model/Tree_family.h>
 #include <pcs/shape_space/pair/Embedded_pair.h>
 #include <pcs/shape_space/points/assign_points.h>
 #include <pcs/shape_space/points/surface_patches.h>
@@ -59,7 +59,7 @@ inline Tree_family make_family(const Embedded_pair& pair,
                                const Matching_weights& weights)
 {
   Tree_family family;
-  family.orientation = pair.orientation;
+  family.orientation = pair.form.orientation;
   family.layout = pair.layout;
   family.x.assign(pair.x.begin(), pair.x.end());
   family.weights = pair.weights;
@@ -101,10 +101,9 @@ template <class ConcurrencyTag>
 Tree_family make_family(Shared_topology_builder<ConcurrencyTag>& topology,
                         const std::vector<const Rooted_tree*>& trees,
                         const Matching_weights& weights,
-                        Orl_orientation orientation,
-                        Virtual_direction direction,
-                        bool has_unit_weights)
+                        const Representation_options& form)
 {
+  const Orl_orientation orientation = form.orientation;
   Tree_family family;
   family.orientation = orientation;
   family.matching = weights;
@@ -118,14 +117,14 @@ Tree_family make_family(Shared_topology_builder<ConcurrencyTag>& topology,
                                                         topology.paths(),
                                                         topology.reference(),
                                                         orientation,
-                                                        direction);
+                                                        form.direction);
   family.x = std::move(embedded.x);
   // others are matched to a tree in frames, whatever the orientations mean
   family.reference =
       orientation == Orl_orientation::gauge_fixed
           ? std::move(embedded.reference)
           : internal::with_parent_edges(make_layout(branches), topology.reference(), family.layout);
-  family.weights = make_weights(family.layout, family.x, has_unit_weights);
+  family.weights = make_weights(family.layout, family.x, form.has_unit_weights);
   for (std::size_t t = 0; t < trees.size(); ++t) {
     family.has.emplace_back();
     family.tip.emplace_back();
@@ -149,52 +148,6 @@ inline std::vector<std::size_t> first_of_edges(const std::vector<Point_pair>& pa
   for (std::size_t e = 0; e < number_of_edges; ++e)
     first[e + 1] += first[e];
   return first;
-}
-
-/// A further tree on the topology of a family. `share`, if not null: of its length that is
-/// represented. [-]
-template <class ConcurrencyTag>
-Orl_coordinates embed_tree(const Tree_family& family, const Rooted_tree& tree, double* share)
-{
-  std::vector<Shared_branch> branches(family.layout.branches.size());
-  for (std::size_t b = 0; b < branches.size(); ++b) {
-    const Orl_layout::Branch& branch = family.layout.branches[b];
-    branches[b].parent = branch.parent;
-    branches[b].number_of_edges = branch.number_of_edges;
-    branches[b].reference_edge =
-        branch.parent == none
-            ? 0
-            : branch.reference_edge - family.layout.branches[branch.parent].first_edge;
-  }
-  Branch_paths paths;
-  Shared_topology_builder<ConcurrencyTag> builder({&tree}, family.matching, 1);
-  const double represented =
-      builder.project(tree, make_reference(family.layout, family.reference), branches, paths);
-  if (share)
-    *share = represented;
-  internal::Embedding x =
-      internal::embed(family.layout, branches, tree, paths, 0, tree.origin - family.origin);
-  if (family.orientation == Orl_orientation::world_axes)
-    internal::set_world_frames(family.layout, x);
-  else if (family.orientation == Orl_orientation::transported)
-    internal::set_frames(family.layout, Quaternion::Identity(), x);
-  else
-    internal::turn_frames(family.layout,
-                          internal::as_embedding(family.layout, family.reference),
-                          Quaternion::Identity(),
-                          x);
-  internal::set_own_orientations(family.layout, family.orientation, x);
-  Orl_coordinates reference = family.reference;
-  if (family.orientation == Orl_orientation::world_axes) // it is measured in frames
-    internal::measure_as(Orl_orientation::world_axes, family.layout, reference);
-  for (std::size_t b = 0; b < branches.size(); ++b)
-    if (!branches[b].has(0)) {
-      x.x.attachment[b] = reference.attachment[b];
-      const std::size_t first = family.layout.branches[b].first_edge;
-      for (std::size_t e = first; e < first + branches[b].number_of_edges; ++e)
-        x.x.orientation[e] = reference.orientation[e];
-    }
-  return std::move(x.x);
 }
 
 /// The edge of each point of tree `t`, `none` for no points.

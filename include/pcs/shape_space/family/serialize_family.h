@@ -8,9 +8,9 @@
 #include <pcs/core/Orl_options.h>
 #include <pcs/core/Orl_space_data.h>
 #include <pcs/core/errors.h>
-#include <pcs/shape_space/family/Tree_family.h>
 #include <pcs/shape_space/family/make_family.h>
 #include <pcs/shape_space/input/tree_input.h>
+#include <pcs/shape_space/model/Tree_family.h>
 #include <pcs/shape_space/pair/Embedded_pair.h>
 #include <pcs/shape_space/pair/serialize_topology.h>
 #include <pcs/shape_space/points/Point_instances_impl.h>
@@ -80,17 +80,17 @@ inline Orl_space_data store_family(const Tree_family& family)
   const Matching_weights& m = family.matching;
   result.matching = {m.curve,
                      m.position,
-                     m.single,
+                     m.unmatched,
                      m.children,
-                     m.carried,
-                     m.is_carried ? 1.0 : 0.0,
+                     m.inherited_rotation,
+                     m.is_rotation_inherited ? 1.0 : 0.0,
                      m.is_published ? 1.0 : 0.0,
                      m.fork_ratio,
                      static_cast<double>(m.number_of_paths),
                      static_cast<double>(m.number_of_trials),
                      m.length,
-                     m.turn,
-                     m.far,
+                     m.rotation,
+                     m.half_cost_distance,
                      m.trunk_fork_ratio};
   return result;
 }
@@ -231,17 +231,17 @@ private:
     Matching_weights& weights = m_family.matching;
     weights.curve = stored[0];
     weights.position = stored[1];
-    weights.single = stored[2];
+    weights.unmatched = stored[2];
     weights.children = stored[3];
-    weights.carried = stored[4];
-    weights.is_carried = stored[5] != 0;
+    weights.inherited_rotation = stored[4];
+    weights.is_rotation_inherited = stored[5] != 0;
     weights.is_published = stored[6] != 0;
     weights.fork_ratio = stored[7];
     weights.number_of_paths = static_cast<std::size_t>(stored[8]);
     weights.number_of_trials = static_cast<std::size_t>(stored[9]);
     weights.length = stored[10];
-    weights.turn = stored[11];
-    weights.far = stored[12];
+    weights.rotation = stored[11];
+    weights.half_cost_distance = stored[12];
     weights.trunk_fork_ratio = stored[13];
   }
 

@@ -8,8 +8,8 @@
 #include <pcs/core/Orl_options.h>
 #include <pcs/core/Orl_space_data.h>
 #include <pcs/shape_space/family/Family_points.h>
-#include <pcs/shape_space/family/Tree_family.h>
 #include <pcs/shape_space/family/make_family.h>
+#include <pcs/shape_space/model/Tree_family.h>
 #include <pcs/shape_space/points/point_correspondences.h>
 
 #include <algorithm>

@@ -7,7 +7,7 @@
 
 #include <pcs/core/Orl_options.h>
 #include <pcs/core/errors.h>
-#include <pcs/shape_space/matching/Matched_branch.h>
+#include <pcs/shape_space/model/Matched_branch.h>
 
 #include <cmath>
 #include <string>
@@ -27,10 +27,11 @@ inline void check_options(const Matching_weights& w,
   };
   const auto is_weight = [](double x) { return x >= 0 && std::isfinite(x); };
   check(w.curve > 0 && std::isfinite(w.curve), "the weight `curve` must be > 0 and finite");
-  check(is_weight(w.position) && is_weight(w.single) && is_weight(w.children) &&
-            is_weight(w.carried) && is_weight(w.turn) && is_weight(w.length),
+  check(is_weight(w.position) && is_weight(w.unmatched) && is_weight(w.children) &&
+            is_weight(w.inherited_rotation) && is_weight(w.rotation) && is_weight(w.length),
         "the weights of the matching must be >= 0 and finite");
-  check(w.far > 0 && std::isfinite(w.far), "the distance `far` must be > 0 and finite");
+  check(w.half_cost_distance > 0 && std::isfinite(w.half_cost_distance),
+        "`half_cost_distance` must be > 0 and finite");
   check(w.fork_ratio > 0 && w.fork_ratio <= 1, "`fork_ratio` must be in (0, 1]");
   check(w.trunk_fork_ratio > 0 && w.trunk_fork_ratio <= 1, "`trunk_fork_ratio` must be in (0, 1]");
   check(w.number_of_paths > 0 && w.number_of_trials > 0,

@@ -7,68 +7,247 @@
 
 #include <pcs/Named_function_parameters.h>
 #include <pcs/core/Orl_options.h>
-#include <pcs/core/errors.h>
+#include <pcs/core/check_value.h>
+#include <pcs/core/read_parameter.h>
+#include <pcs/internal/constants.h>
 #include <pcs/shape_space/input/check_options.h>
-#include <pcs/shape_space/input/tree_input.h>
-#include <pcs/shape_space/model/Alignment_options.h>
+#include <pcs/shape_space/input/check_sampling.h>
 #include <pcs/shape_space/model/Build_options.h>
-#include <pcs/shape_space/pair/Embedded_pair.h>
+#include <pcs/shape_space/path/interpolate_trees.h>
 
-#include <cmath>
+#include <array>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <type_traits>
+#include <vector>
+
+// All of these throw `pcs::Invalid_input`, with a message that begins with `caller`, if a value is
+// out of range.
 
 namespace pcs {
 namespace shape_space {
 
-/// Throws `pcs::Invalid_input`, with a message that begins with `caller`, if they cannot be met.
+namespace internal {
+
 template <class NamedParameters>
-Build_options
-read_options(const NamedParameters& np, std::size_t number_of_trees, const std::string& caller)
+void read_matching(const NamedParameters& np, Build_options& options)
 {
-  using pcs::internal::choose;
+  namespace tags = pcs::internal_np;
+  using pcs::internal::is_parameter_v;
+  using pcs::internal::read_parameter;
+  static_assert(is_parameter_v<Matching_weights, NamedParameters, tags::matching_weights_t>,
+                "pcs: named parameter `matching_weights` must be a pcs::Matching_weights");
+  static_assert(
+      is_parameter_v<Point_assignment_options, NamedParameters, tags::assignment_options_t>,
+      "pcs: named parameter `assignment_options` must be a pcs::Point_assignment_options");
+  static_assert(is_parameter_v<Transport_options, NamedParameters, tags::transport_options_t>,
+                "pcs: named parameter `transport_options` must be a pcs::Transport_options");
+  read_parameter(np, tags::matching_weights, options.weights);
+  read_parameter(np, tags::assignment_options, options.assignment);
+  read_parameter(np, tags::transport_options, options.transport);
+}
+
+template <class NamedParameters>
+void read_representation(const NamedParameters& np, Representation_options& form)
+{
+  namespace tags = pcs::internal_np;
+  using pcs::internal::is_parameter_v;
+  using pcs::internal::read_parameter;
+  static_assert(is_parameter_v<Orl_orientation, NamedParameters, tags::orientation_t>,
+                "pcs: named parameter `orientation` must be a pcs::Orl_orientation");
+  static_assert(is_parameter_v<Virtual_direction, NamedParameters, tags::virtual_direction_t>,
+                "pcs: named parameter `virtual_direction` must be a pcs::Virtual_direction");
+  static_assert(is_parameter_v<bool, NamedParameters, tags::do_use_unit_weights_t>,
+                "pcs: named parameter `do_use_unit_weights` must be a bool");
+  read_parameter(np, tags::orientation, form.orientation);
+  read_parameter(np, tags::virtual_direction, form.direction);
+  read_parameter(np, tags::do_use_unit_weights, form.has_unit_weights);
+}
+
+template <class NamedParameters>
+void read_alignment(const NamedParameters& np,
+                    std::size_t number_of_trees,
+                    const std::string& caller,
+                    Alignment_options& options)
+{
+  using Tag = pcs::internal_np::alignment_t;
+  static_assert(pcs::internal::is_parameter_v<Orl_alignment, NamedParameters, Tag>,
+                "pcs: named parameter `alignment` must be a pcs::Orl_alignment");
+  pcs::internal::read_parameter(np, Tag(), options.alignment);
+  pcs::internal::check(options.alignment == Orl_alignment::as_given || number_of_trees == 2,
+                       caller,
+                       "`alignment` is for two trees, " + std::to_string(number_of_trees) +
+                           " were added");
+  const std::array<double, 3> up = pcs::internal::read_up_direction(np, caller);
+  options.up = Vec3(up[0], up[1], up[2]);
+}
+
+template <class NamedParameters>
+void read_family_options(const NamedParameters& np,
+                         std::size_t number_of_trees,
+                         const std::string& caller,
+                         Build_options& options)
+{
+  namespace tags = pcs::internal_np;
+  const auto rounds = pcs::internal::choose(np, tags::number_of_rounds, options.number_of_rounds);
+  constexpr bool is_integer = std::is_integral_v<std::decay_t<decltype(rounds)>>;
+  static_assert(is_integer, "pcs: named parameter `number_of_rounds` must be an integer");
+  if constexpr (is_integer)
+    options.number_of_rounds = pcs::internal::check_count(caller,
+                                                          "`number_of_rounds`",
+                                                          rounds,
+                                                          1,
+                                                          std::numeric_limits<int>::max());
+  static_assert(pcs::internal::is_parameter_v<std::size_t, NamedParameters, tags::points_of_t>,
+                "pcs: named parameter `points_of` must be the handle of a tree");
+  pcs::internal::read_parameter(np, tags::points_of, options.points_of);
+  pcs::internal::check(options.points_of == none || options.points_of < number_of_trees,
+                       caller,
+                       "`points_of` is " + std::to_string(options.points_of) +
+                           ", but there is no such tree");
+}
+
+} // namespace internal
+
+template <class NamedParameters>
+Build_options read_build_options(const NamedParameters& np,
+                                 std::size_t number_of_trees,
+                                 const std::string& caller)
+{
+  pcs::internal::check(number_of_trees >= 2,
+                       caller,
+                       std::to_string(number_of_trees) + " trees were added, expected 2 at least");
   Build_options options;
-  options.weights = choose(np, pcs::internal_np::matching_weights, options.weights);
-  options.assignment = choose(np, pcs::internal_np::assignment_options, options.assignment);
-  options.transport = choose(np, pcs::internal_np::transport_options, options.transport);
+  internal::read_matching(np, options);
   check_options(options.weights, options.assignment, options.transport, caller);
-  options.standing.alignment = choose(np, pcs::internal_np::alignment, options.standing.alignment);
-  if constexpr (pcs::internal::is_given_v<NamedParameters, pcs::internal_np::up_direction_t>)
-    options.standing.up =
-        internal::to_vector(CGAL::parameters::get_parameter(np, pcs::internal_np::up_direction));
-  const double length = options.standing.up.stableNorm();
-  if (!(length > 0) || !std::isfinite(length))
-    throw Invalid_input(caller + ": `up_direction` must be finite and not the null vector");
-  options.standing.up /= length;
-  if (options.standing.alignment != Orl_alignment::as_given && number_of_trees > 2)
-    throw Invalid_input(caller + ": `alignment` is for two trees, " +
-                        std::to_string(number_of_trees) + " were added");
-  const auto rounds = choose(np, pcs::internal_np::number_of_rounds, 3);
-  static_assert(std::is_integral_v<std::decay_t<decltype(rounds)>>,
-                "pcs::Orl_shape_space::build(): `number_of_rounds` must be an integer");
-  if (rounds < 1)
-    throw Invalid_input(caller + ": `number_of_rounds` is " + std::to_string(rounds) +
-                        ", expected at least 1");
-  options.number_of_rounds = static_cast<std::size_t>(rounds);
-  if (number_of_trees < 2)
-    throw Invalid_input(caller + ": " + std::to_string(number_of_trees) +
-                        " trees were added, expected 2 at least");
-  options.points_of = choose(np, pcs::internal_np::points_of, options.points_of);
-  if (options.points_of != none && options.points_of >= number_of_trees)
-    throw Invalid_input(caller + ": `points_of` is " + std::to_string(options.points_of) +
-                        ", but there is no such tree");
+  internal::read_representation(np, options.form);
+  internal::read_alignment(np, number_of_trees, caller, options.alignment);
+  internal::read_family_options(np, number_of_trees, caller, options);
   return options;
 }
 
-/// How trees are represented.
 template <class NamedParameters>
-void read_form(const NamedParameters& np, Embedded_pair& pair)
+Path_options read_path_options(const NamedParameters& np, const std::string& caller)
 {
-  using pcs::internal::choose;
-  pair.orientation = choose(np, pcs::internal_np::orientation, pair.orientation);
-  pair.direction = choose(np, pcs::internal_np::virtual_direction, pair.direction);
-  pair.has_unit_weights = choose(np, pcs::internal_np::do_use_unit_weights, pair.has_unit_weights);
+  namespace tags = pcs::internal_np;
+  using pcs::internal::is_parameter_v;
+  using pcs::internal::read_parameter;
+  Path_options options;
+  options.max_extrapolation_angle = pcs::internal::pi / 4;
+  static_assert(is_parameter_v<double, NamedParameters, tags::max_extrapolation_angle_t>,
+                "pcs: named parameter `max_extrapolation_angle` must be a number");
+  static_assert(is_parameter_v<bool, NamedParameters, tags::do_limit_radii_t>,
+                "pcs: named parameter `do_limit_radii` must be a bool");
+  static_assert(is_parameter_v<Branch_emergence, NamedParameters, tags::branch_emergence_t>,
+                "pcs: named parameter `branch_emergence` must be a pcs::Branch_emergence");
+  read_parameter(np, tags::max_extrapolation_angle, options.max_extrapolation_angle);
+  read_parameter(np, tags::do_limit_radii, options.do_limit_radii);
+  read_parameter(np, tags::branch_emergence, options.emergence);
+  pcs::internal::check_value(caller,
+                             "`max_extrapolation_angle`",
+                             options.max_extrapolation_angle,
+                             options.max_extrapolation_angle >= 0,
+                             "at least 0");
+  return options;
+}
+
+/// For more than two trees there are no pairs of points to be joined.
+template <class NamedParameters>
+Point_path read_point_path(const NamedParameters& np, bool is_pair, const std::string& caller)
+{
+  using Tag = pcs::internal_np::point_path_t;
+  Point_path path = Point_path::cylindrical;
+  static_assert(pcs::internal::is_parameter_v<Point_path, NamedParameters, Tag>,
+                "pcs: named parameter `point_path` must be a pcs::Point_path");
+  pcs::internal::read_parameter(np, Tag(), path);
+  pcs::internal::check(is_pair || path == Point_path::cylindrical,
+                       caller,
+                       "`point_path` is for two trees; points of more trees move in cylindrical "
+                       "coordinates");
+  return path;
+}
+
+template <class NamedParameters>
+Orl_metric read_metric(const NamedParameters& np)
+{
+  using Tag = pcs::internal_np::metric_t;
+  Orl_metric metric = Orl_metric::sum;
+  static_assert(pcs::internal::is_parameter_v<Orl_metric, NamedParameters, Tag>,
+                "pcs: named parameter `metric` must be a pcs::Orl_metric");
+  pcs::internal::read_parameter(np, Tag(), metric);
+  return metric;
+}
+
+template <class NamedParameters>
+Change_limits read_change_limits(const NamedParameters& np, const std::string& caller)
+{
+  using Tag = pcs::internal_np::change_limits_t;
+  Change_limits limits;
+  static_assert(pcs::internal::is_parameter_v<Change_limits, NamedParameters, Tag>,
+                "pcs: named parameter `change_limits` must be a pcs::Change_limits");
+  pcs::internal::read_parameter(np, Tag(), limits);
+  for (const double x : {limits.length, limits.radius, limits.angle})
+    pcs::internal::check_value(caller, "a limit", x, x >= 0, "at least 0");
+  return limits;
+}
+
+struct Mean_options
+{
+  Tree_mean kind = Tree_mean::median;
+  std::vector<double> weights; ///< one per tree
+};
+
+template <class NamedParameters>
+Mean_options
+read_mean_options(const NamedParameters& np, std::size_t number_of_trees, const std::string& caller)
+{
+  namespace tags = pcs::internal_np;
+  Mean_options options;
+  options.weights.assign(number_of_trees, 1);
+  static_assert(pcs::internal::is_parameter_v<Tree_mean, NamedParameters, tags::tree_mean_t>,
+                "pcs: named parameter `tree_mean` must be a pcs::Tree_mean");
+  static_assert(
+      pcs::internal::is_parameter_v<std::vector<double>, NamedParameters, tags::tree_weights_t>,
+      "pcs: named parameter `tree_weights` must be a std::vector<double>");
+  pcs::internal::read_parameter(np, tags::tree_mean, options.kind);
+  pcs::internal::read_parameter(np, tags::tree_weights, options.weights);
+  check_tree_weights(options.weights, number_of_trees, false, caller);
+  return options;
+}
+
+template <class NamedParameters>
+Mode_inner_product read_mode_inner_product(const NamedParameters& np)
+{
+  using Tag = pcs::internal_np::mode_inner_product_t;
+  Mode_inner_product product = Mode_inner_product::branches;
+  static_assert(pcs::internal::is_parameter_v<Mode_inner_product, NamedParameters, Tag>,
+                "pcs: named parameter `mode_inner_product` must be a pcs::Mode_inner_product");
+  pcs::internal::read_parameter(np, Tag(), product);
+  return product;
+}
+
+template <class NamedParameters>
+Tree_sampling_options read_sampling_options(const NamedParameters& np, const std::string& caller)
+{
+  using Tag = pcs::internal_np::sampling_options_t;
+  Tree_sampling_options options;
+  static_assert(pcs::internal::is_parameter_v<Tree_sampling_options, NamedParameters, Tag>,
+                "pcs: named parameter `sampling_options` must be a pcs::Tree_sampling_options");
+  pcs::internal::read_parameter(np, Tag(), options);
+  check_sampling(options, caller);
+  return options;
+}
+
+template <class NamedParameters>
+bool read_is_monotone(const NamedParameters& np)
+{
+  using Tag = pcs::internal_np::is_monotone_t;
+  bool is_monotone = false;
+  static_assert(pcs::internal::is_parameter_v<bool, NamedParameters, Tag>,
+                "pcs: named parameter `is_monotone` must be a bool");
+  pcs::internal::read_parameter(np, Tag(), is_monotone);
+  return is_monotone;
 }
 
 } // namespace shape_space

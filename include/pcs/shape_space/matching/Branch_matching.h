@@ -8,11 +8,11 @@
 #include <pcs/core/Orl_options.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
-#include <pcs/shape_space/matching/Matched_branch.h>
 #include <pcs/shape_space/matching/Matching_energy.h>
 #include <pcs/shape_space/matching/Matching_memo.h>
 #include <pcs/shape_space/matching/linear_assignment.h>
 #include <pcs/shape_space/model/Branch_paths.h>
+#include <pcs/shape_space/model/Matched_branch.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

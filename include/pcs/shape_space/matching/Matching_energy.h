@@ -7,12 +7,12 @@
 
 #include <pcs/core/Orl_options.h>
 #include <pcs/core/rotations.h>
-#include <pcs/shape_space/matching/Matched_branch.h>
 #include <pcs/shape_space/matching/Path_curves.h>
 #include <pcs/shape_space/matching/align_vectors.h>
 #include <pcs/shape_space/matching/elastic_curves.h>
 #include <pcs/shape_space/matching/linear_assignment.h>
 #include <pcs/shape_space/model/Branch_paths.h>
+#include <pcs/shape_space/model/Matched_branch.h>
 
 #include <Eigen/Core>
 
@@ -36,9 +36,9 @@ namespace shape_space {
 
   Two branches of lengths `L1` and `L2`, with all that they support, cost
 
-      C = curve 2 L (1 - M(g) + turn (1 - cos(alpha))) + length single |L1 - L2|
-          + sum_{(i, j) in A} (C_ij + P_ij) + single sum_{i not in A} w_i,
-      P_ij = position (l_i + l_j) / 2 d / (1 + d / far),   d = |s_i - s_j|,
+      C = curve 2 L (1 - M(g) + rotation (1 - cos(alpha))) + length unmatched |L1 - L2|
+          + sum_{(i, j) in A} (C_ij + P_ij) + unmatched sum_{i not in A} w_i,
+      P_ij = position (l_i + l_j) / 2 d / (1 + d / half_cost_distance),   d = |s_i - s_j|,
 
   with `L = sqrt(L1 L2)`, the agreement `M` of curve 1 with curve 2, rotated by `R`, under the
   correspondence `g` (`Elastic_matcher`), the angle `alpha` between `R` and the rotation `R_p` of
@@ -48,18 +48,18 @@ namespace shape_space {
   `Branch_matching` minimises `C` over paths and assignments; `g` maximises `M` for `R_p`, and `R`
   maximises `tr(R^T B)` (Wahba's problem) for
 
-      B = L mean_k(u1_k u2(g)_k^T) + carried L R_p
+      B = L mean_k(u1_k u2(g)_k^T) + inherited_rotation L R_p
           + children sum_{(i, j)} sqrt(w_i w_j) v_i v_j^T
 
   with the unit tangents `u` and mean directions `v`. The pairs of the last sum are assigned by
   quick costs, for which a subtree is one straight branch of length `w`. Without this sum and
-  `sqrt(g')`, and for `carried = turn / 2`, `R` minimises the first term of `C`.
+  `sqrt(g')`, and for `inherited_rotation = rotation / 2`, `R` minimises the first term of `C`.
 
   - Growth at tips: `min(l_i, l_j)` replaces the mean. The longer branch is compared up to the
-    length of the shorter one; the length of its remainder, with the children there, is single.
-  - Without `is_carried`: `R = R_p`, the terms of `turn` and `length` vanish, and the
+    length of the shorter one; the length of its remainder, with the children there, is unmatched.
+  - Without `is_rotation_inherited`: `R = R_p`, the terms of `rotation` and `length` vanish, and the
     elastic energy is `L1 + L2 - 2 L M` instead of `2 L (1 - M)`.
-  - `is_published` (after section 4.7 of \cite aiteanu2022): likewise, with `single = 1` and
+  - `is_published` (after section 4.7 of \cite aiteanu2022): likewise, with `unmatched = 1` and
     `P_ij = position L1 d^2`.
 
   A pair of curves of n samples costs O(n^2), an assignment of k children O(k^3).
@@ -126,10 +126,10 @@ public:
       length_1 = length_2 = std::min(length_1, length_2);
     const double cosine = std::min(1.0, std::max(-1.0, a.direction.dot(rotation * b.direction)));
     const double angle = std::max(0.0, std::acos(cosine) - a.spread - b.spread);
-    if (m_weights.is_published || !m_weights.is_carried)
+    if (m_weights.is_published || !m_weights.is_rotation_inherited)
       return elastic_energy(length_1, length_2, std::max(0.0, std::cos(angle)) * (1 + 1e-12));
     // the branch may turn by a part of the angle
-    const double t = m_weights.turn;
+    const double t = m_weights.rotation;
     const double gain = std::sqrt(1 + t * t + 2 * t * std::cos(angle)) - t;
     return elastic_energy(length_1, length_2, gain * (1 + 1e-12));
   }
@@ -146,7 +146,7 @@ public:
 
   double least_difference(std::size_t start_1, std::size_t start_2) const
   {
-    return is_turned() ? m_weights.single * std::min(1.0, m_weights.length) *
+    return is_turned() ? m_weights.unmatched * std::min(1.0, m_weights.length) *
                              std::abs(weight(0, start_1) - weight(1, start_2)) * (1 - 1e-12)
                        : 0;
   }
@@ -174,7 +174,7 @@ public:
     return m_weights.curve * elastic_energy(one.length,
                                             two.length,
                                             std::max(0.0, sum / static_cast<double>(n - 1))) +
-           m_weights.curve * m_weights.turn * 2 * length * (1 - cosine) +
+           m_weights.curve * m_weights.rotation * 2 * length * (1 - cosine) +
            length_term(one.length, two.length);
   }
 
@@ -185,7 +185,7 @@ public:
       return m_weights.position * parent_length * d * d;
     // far is far: branches of other species are not single for their place alone
     const double w = grows_at_tips() ? std::min(w1, w2) : 0.5 * (w1 + w2);
-    return m_weights.position * w * d / (1 + d / m_weights.far);
+    return m_weights.position * w * d / (1 + d / m_weights.half_cost_distance);
   }
 
   /// Indices, the heaviest first.
@@ -199,9 +199,12 @@ public:
     return order;
   }
 
-  bool is_turned() const { return m_weights.is_carried && !m_weights.is_published; }
+  bool is_turned() const { return m_weights.is_rotation_inherited && !m_weights.is_published; }
 
-  double single_term(double w) const { return (m_weights.is_published ? 1 : m_weights.single) * w; }
+  double single_term(double w) const
+  {
+    return (m_weights.is_published ? 1 : m_weights.unmatched) * w;
+  }
 
   /// Up to the node `last`.
   Children children_of(int t,
@@ -305,7 +308,7 @@ public:
                        const Eigen::Matrix3d& carried,
                        int passes) const
   {
-    if (!m_weights.is_carried || m_weights.is_published)
+    if (!m_weights.is_rotation_inherited || m_weights.is_published)
       return carried;
     std::array<Children, 2> few;
     std::array<double, 2> light;
@@ -324,7 +327,7 @@ public:
     }
     const double length = std::sqrt(one.length * two.length);
     covariance *= length / static_cast<double>(n);
-    covariance += m_weights.carried * length * carried;
+    covariance += m_weights.inherited_rotation * length * carried;
     Quaternion q = align_vectors(covariance, Quaternion(carried));
     if (m_weights.children <= 0 || a.s.empty() || b.s.empty())
       return q.toRotationMatrix();
@@ -369,7 +372,7 @@ private:
 
   double length_term(double a, double b) const
   {
-    return m_weights.length * m_weights.single * std::abs(a - b);
+    return m_weights.length * m_weights.unmatched * std::abs(a - b);
   }
 
   /// All children if they are not too many, else the heaviest in the same order, kept in `few`;
@@ -421,7 +424,7 @@ private:
   {
     double cosine = std::max(0.0, dot);
     if (is_turned()) {
-      const double t = m_weights.turn;
+      const double t = m_weights.rotation;
       cosine = std::sqrt(1 + t * t + 2 * t * dot) - t;
     }
     if (grows_at_tips())

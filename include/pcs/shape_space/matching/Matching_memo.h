@@ -6,7 +6,7 @@
 #define PCS_SHAPE_SPACE_MATCHING_MATCHING_MEMO_H
 
 #include <pcs/core/rotations.h>
-#include <pcs/shape_space/matching/Matched_branch.h>
+#include <pcs/shape_space/model/Matched_branch.h>
 
 #include <Eigen/Core>
 

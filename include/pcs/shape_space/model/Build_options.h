@@ -7,9 +7,9 @@
 
 #include <pcs/core/Orl_options.h>
 #include <pcs/core/Orl_space_data.h>
-#include <pcs/shape_space/family/Tree_family.h>
-#include <pcs/shape_space/matching/Matched_branch.h>
 #include <pcs/shape_space/model/Alignment_options.h>
+#include <pcs/shape_space/model/Matched_branch.h>
+#include <pcs/shape_space/model/Tree_family.h>
 
 #include <cstddef>
 #include <vector>
@@ -17,10 +17,19 @@
 namespace pcs {
 namespace shape_space {
 
+/// How trees are represented in coordinates.
+struct Representation_options
+{
+  Orl_orientation orientation = Orl_orientation::gauge_fixed;
+  Virtual_direction direction = Virtual_direction::of_partner;
+  bool has_unit_weights = false; ///< of the metric
+};
+
 struct Build_options
 {
   Matching_weights weights;
-  Alignment_options standing;
+  Alignment_options alignment;
+  Representation_options form;
   Point_assignment_options assignment;
   Transport_options transport;
   std::size_t number_of_rounds = 3;

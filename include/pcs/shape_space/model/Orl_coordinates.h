@@ -235,9 +235,9 @@ inline double bounded_value(double x, double y, double t, double last)
                     : std::max(0.0, last - positive_value(last - x, last - y, t));
 }
 
-/// The orientation at `t`; beyond an end at most `maximal_turn` further. [rad]
+/// The orientation at `t`; beyond an end at most `max_extrapolation_angle` further. [rad]
 inline Quaternion
-orientation_at(const Quaternion& x, const Quaternion& y, double t, double maximal_turn)
+orientation_at(const Quaternion& x, const Quaternion& y, double t, double max_extrapolation_angle)
 {
   if (t == 0)
     return x;
@@ -245,10 +245,10 @@ orientation_at(const Quaternion& x, const Quaternion& y, double t, double maxima
     return y;
   const Vec3 u = rotation_log(x.conjugate() * y);
   const double angle = u.norm();
-  if (t > 1 && angle * (t - 1) > maximal_turn)
-    t = 1 + maximal_turn / angle;
-  else if (t < 0 && -angle * t > maximal_turn)
-    t = -maximal_turn / angle;
+  if (t > 1 && angle * (t - 1) > max_extrapolation_angle)
+    t = 1 + max_extrapolation_angle / angle;
+  else if (t < 0 && -angle * t > max_extrapolation_angle)
+    t = -max_extrapolation_angle / angle;
   Quaternion q = x * rotation_exp(t * u);
   q.normalize();
   return q;
@@ -259,7 +259,7 @@ inline void coordinates_at(const Orl_layout& layout,
                            const Orl_coordinates& x,
                            const Orl_coordinates& y,
                            double t,
-                           double maximal_turn,
+                           double max_extrapolation_angle,
                            Orl_coordinates& result)
 {
   const std::size_t n = layout.number_of_edges(), m = layout.branches.size();
@@ -270,7 +270,8 @@ inline void coordinates_at(const Orl_layout& layout,
   result.base_radius.resize(m);
   result.attachment.resize(m);
   for (std::size_t e = 0; e < n; ++e) {
-    result.orientation[e] = orientation_at(x.orientation[e], y.orientation[e], t, maximal_turn);
+    result.orientation[e] =
+        orientation_at(x.orientation[e], y.orientation[e], t, max_extrapolation_angle);
     result.length[e] = positive_value(x.length[e], y.length[e], t);
     result.radius[e] = positive_value(x.radius[e], y.radius[e], t);
   }

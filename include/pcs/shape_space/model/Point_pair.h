@@ -6,6 +6,7 @@
 #define PCS_SHAPE_SPACE_MODEL_POINT_PAIR_H
 
 #include <pcs/core/Orl_correspondences.h>
+#include <pcs/core/Orl_report.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -26,6 +27,15 @@ struct Transport_summary
   double mean_violation = 0;          ///< over windows
   double mean_remaining = 0;          ///< mass without counterpart within reach, over windows [-]
 };
+
+inline void describe(const Transport_summary& summary, Orl_report& report)
+{
+  report.number_of_windows = summary.number_of_windows;
+  report.number_of_failed_windows = summary.number_of_failures;
+  report.worst_marginal_violation = summary.worst_violation;
+  report.untransported_mass_share = summary.mean_remaining;
+  report.mean_marginal_violation = summary.mean_violation;
+}
 
 } // namespace shape_space
 } // namespace pcs

@@ -5,7 +5,7 @@
 #ifndef PCS_SHAPE_SPACE_PAIR_EMBEDDED_PAIR_H
 #define PCS_SHAPE_SPACE_PAIR_EMBEDDED_PAIR_H
 
-#include <pcs/core/Orl_options.h>
+#include <pcs/shape_space/model/Build_options.h>
 #include <pcs/shape_space/model/Common_topology.h>
 #include <pcs/shape_space/model/Orl_coordinates.h>
 #include <pcs/shape_space/points/Point_instances.h>
@@ -18,10 +18,8 @@ namespace shape_space {
 
 struct Embedded_pair
 {
-  Orl_orientation orientation = Orl_orientation::gauge_fixed;
-  Virtual_direction direction = Virtual_direction::of_partner;
-  bool has_unit_weights = false;
-  Quaternion turn = Quaternion::Identity(); ///< after which tree 2 stands like tree 1
+  Representation_options form;
+  Quaternion rotation = Quaternion::Identity(); ///< aligns tree 2 with tree 1
   Common_topology topology;
   Orl_layout layout;
   std::array<Orl_coordinates, 2> x;

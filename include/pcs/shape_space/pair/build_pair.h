@@ -5,30 +5,31 @@
 #ifndef PCS_SHAPE_SPACE_PAIR_BUILD_PAIR_H
 #define PCS_SHAPE_SPACE_PAIR_BUILD_PAIR_H
 
+#include <pcs/core/Orl_correspondences.h>
 #include <pcs/core/Orl_options.h>
 #include <pcs/core/Orl_report.h>
 #include <pcs/core/Orl_space_data.h>
 #include <pcs/internal/Stopwatch.h>
 #include <pcs/internal/progress.h>
-#include <pcs/shape_space/family/build_family.h>
 #include <pcs/shape_space/model/Build_options.h>
 #include <pcs/shape_space/model/Point_pair.h>
 #include <pcs/shape_space/pair/Embedded_pair.h>
 #include <pcs/shape_space/pair/embed_pair.h>
 #include <pcs/shape_space/pair/match_trees.h>
+#include <pcs/shape_space/pair/serialize_topology.h>
 #include <pcs/shape_space/points/Point_instances.h>
 #include <pcs/shape_space/points/point_correspondences.h>
 
 #include <array>
 #include <cstddef>
+#include <string>
 #include <utility>
 #include <vector>
 
 namespace pcs {
 namespace shape_space {
 
-/// `false` when `progress` asks to stop. Reads the form of `built`, fills all of it but the
-/// instances.
+/// Returns `false` when `progress` asks to stop. Reads `built.form`, fills all but the instances.
 template <class ConcurrencyTag>
 bool find_correspondences(const std::array<const Tree_input*, 2>& inputs,
                           const Build_options& options,
@@ -43,13 +44,13 @@ bool find_correspondences(const std::array<const Tree_input*, 2>& inputs,
     return false;
   const Matching_cost cost = match_trees<ConcurrencyTag>({&inputs[0]->tree, &inputs[1]->tree},
                                                          options.weights,
-                                                         options.standing,
+                                                         options.alignment,
                                                          progress,
                                                          built.topology);
-  built.turn = rotation_exp(cost.turn * options.standing.up);
-  report.turn = cost.turn;
+  built.rotation = rotation_exp(cost.yaw * options.alignment.up);
+  report.yaw = cost.yaw;
   report.matching_energy = cost.energy;
-  report.unexplained_share = cost.share;
+  report.unexplained_fraction = cost.share;
   report.is_grown_at_tips = cost.is_at_tips;
   report.seconds.matching = watch.lap();
   if (progress.is_cancelled())
@@ -96,7 +97,25 @@ inline void describe(const Embedded_pair& pair, Orl_report& report)
   report.distance = distance(pair.x[0], pair.x[1], pair.weights, Orl_metric::sum);
   report.number_of_point_pairs = pair.instances.pairs().size();
   for (const Point_pair& p : pair.instances.pairs())
-    report.number_of_single_points += p.point[0] == no_point || p.point[1] == no_point ? 1 : 0;
+    report.number_of_unmatched_points += p.point[0] == no_point || p.point[1] == no_point ? 1 : 0;
+}
+
+/// Topology and coordinates from correspondences that were stored. Throws `Invalid_input`, with a
+/// message that begins with `caller`, if they do not fit.
+inline void embed_stored(const Orl_correspondences& stored,
+                         const std::array<const Tree_input*, 2>& inputs,
+                         const std::string& caller,
+                         Embedded_pair& built)
+{
+  built.topology = restore_topology(stored, inputs, caller);
+  const auto& [w, x, y, z] = stored.rotation;
+  built.rotation = Quaternion(w, x, y, z);
+  embed(inputs, built);
+  if (!inputs[0]->points.empty() || !inputs[1]->points.empty())
+    check_pairs(stored,
+                built.layout.number_of_edges(),
+                {inputs[0]->points.size(), inputs[1]->points.size()},
+                caller);
 }
 
 /// Points and normals of both scans, as `restore_pair()` reads them.

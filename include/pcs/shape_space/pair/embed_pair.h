@@ -35,17 +35,17 @@ inline void embed(const std::array<const Tree_input*, 2>& inputs, Embedded_pair&
                                          Vec3::Zero())
                              .direction);
   skip_fold_edges(directions, pair.layout);
-  set_parent_edges(pair.layout, pair.orientation);
+  set_parent_edges(pair.layout, pair.form.orientation);
   pair.x = embed_trees(pair.layout,
                        pair.topology.branches,
                        {&inputs[0]->tree, &inputs[1]->tree},
                        pair.topology.paths,
-                       pair.orientation,
-                       pair.direction,
-                       pair.turn);
+                       pair.form.orientation,
+                       pair.form.direction,
+                       pair.rotation);
   for (std::size_t t = 0; t < 2; ++t)
-    build_geometry(pair.layout, pair.x[t], pair.orientation, pair.geometry[t]);
-  pair.weights = make_weights(pair.layout, pair.x, pair.has_unit_weights);
+    build_geometry(pair.layout, pair.x[t], pair.form.orientation, pair.geometry[t]);
+  pair.weights = make_weights(pair.layout, pair.x, pair.form.has_unit_weights);
   pair.is_relative = edges_with_radius(pair.layout, pair.topology, pair.geometry);
 }
 

@@ -35,7 +35,7 @@ struct Matching_cost
       /// [-]
       0;
   bool is_at_tips = false; ///< which kind of growth it is
-  double turn = 0;         ///< angle about the vertical by which tree 2 stands like tree 1 [rad]
+  double yaw = 0;          ///< rotation about the vertical that aligns tree 2 with tree 1 [rad]
 };
 
 /*!
@@ -95,8 +95,8 @@ private:
   Range range(double unit_1, double unit_2) const
   {
     const double a = m_trees[0]->weights[0] / unit_1, b = m_trees[1]->weights[0] / unit_2;
-    const double least = m_weights.single * std::min(1.0, m_weights.length) * std::abs(a - b);
-    return {least, m_weights.single * (a + b) - least};
+    const double least = m_weights.unmatched * std::min(1.0, m_weights.length) * std::abs(a - b);
+    return {least, m_weights.unmatched * (a + b) - least};
   }
 
   void build(const Matching& matching, const Result& trunk, bool is_at_tips, const Range& from)
@@ -104,8 +104,8 @@ private:
     m_result.paths = {matching.paths(0), matching.paths(1)};
     internal::Topology_builder builder(*m_trees[0], *m_trees[1], m_result.paths);
     m_result.branches = builder.run(*trunk);
-    if (m_cost.turn != 0)
-      m_cost.turn = refine_yaw(m_trees, m_result, m_standing.up, m_cost.turn);
+    if (m_cost.yaw != 0)
+      m_cost.yaw = refine_yaw(m_trees, m_result, m_standing.up, m_cost.yaw);
     m_cost.is_at_tips = is_at_tips;
     m_cost.energy = trunk->cost;
     m_cost.share =
@@ -156,7 +156,7 @@ private:
     }
     if (!best || m_progress.is_cancelled())
       return nullptr;
-    m_cost.turn = turn;
+    m_cost.yaw = turn;
     return best;
   }
 
@@ -286,7 +286,7 @@ Matching_cost match_trees(const std::array<const Rooted_tree*, 2>& trees,
   }
   if (!(cost_back.share < cost.share * (1 - rounding)))
     return cost;
-  cost_back.turn = 0 - cost_back.turn; // no negative zero
+  cost_back.yaw = 0 - cost_back.yaw; // no negative zero
   std::swap(back.paths[0], back.paths[1]);
   for (Common_branch& b : back.branches) {
     std::swap(b.path[0], b.path[1]);

@@ -34,7 +34,7 @@ inline Orl_correspondences store_topology(const Common_topology& topology,
     result.fingerprint[t] = inputs[t]->fingerprint;
     result.fingerprint_of_points[t] = inputs[t]->fingerprint_of_points;
   }
-  result.turn = {turn.w(), turn.x(), turn.y(), turn.z()};
+  result.rotation = {turn.w(), turn.x(), turn.y(), turn.z()};
   for (const Common_branch& b : topology.branches) {
     Orl_correspondences::Branch branch;
     branch.parent = b.parent;
@@ -69,7 +69,7 @@ inline Common_topology restore_topology(const Orl_correspondences& stored,
   for (std::size_t t = 0; t < 2; ++t)
     check(!has_points || stored.fingerprint_of_points[t] == inputs[t]->fingerprint_of_points,
           "the correspondences were computed for the same trees with other points, or without");
-  const auto& [w, x, y, z] = stored.turn;
+  const auto& [w, x, y, z] = stored.rotation;
   check(std::abs(w * w + x * x + y * y + z * z - 1) < 1e-6, "the turn is no rotation");
   check(!stored.branches.empty(), "there are no branches");
   Common_topology result;

@@ -43,9 +43,13 @@ public:
   Extrapolation_limits(const Orl_layout& layout,
                        Orl_orientation kind,
                        const Vec3& up,
-                       double maximal_turn,
+                       double max_extrapolation_angle,
                        Extrapolation_buffers& buffers)
-    : m_layout(layout), m_kind(kind), m_up(up), m_maximal_turn(maximal_turn), m_buffers(buffers)
+    : m_layout(layout),
+      m_kind(kind),
+      m_up(up),
+      m_max_extrapolation_angle(max_extrapolation_angle),
+      m_buffers(buffers)
   {
   }
 
@@ -99,11 +103,11 @@ private:
   Quaternion limited(const Quaternion& frame, const Quaternion& at_end) const
   {
     constexpr double pi = static_cast<double>(EIGEN_PI);
-    if (!(m_maximal_turn < pi))
+    if (!(m_max_extrapolation_angle < pi))
       return frame;
     const Vec3 turn = rotation_log(frame * at_end.conjugate());
     // near half a turn the axis flips: there the frame goes back to that of the end
-    const double angle = turn.norm(), most = std::min(m_maximal_turn, 4 * (pi - angle));
+    const double angle = turn.norm(), most = std::min(m_max_extrapolation_angle, 4 * (pi - angle));
     if (!(angle > most))
       return frame;
     Quaternion result = rotation_exp(turn * (most / angle)) * at_end;
@@ -161,7 +165,7 @@ private:
   const Orl_layout& m_layout;
   Orl_orientation m_kind;
   Vec3 m_up;
-  double m_maximal_turn, m_floor = 0;
+  double m_max_extrapolation_angle, m_floor = 0;
   Extrapolation_buffers& m_buffers;
 };
 

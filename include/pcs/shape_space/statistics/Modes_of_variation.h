@@ -66,6 +66,27 @@ struct Modes_of_variation
   }
 };
 
+/*!
+  Dissimilarity of a tree from the trees of the modes: the root of the mean of two squares. One is
+  of its scores, the other of its distance from the space of the modes, in units of the median
+  left-out distance. About 1 for a tree of the same kind. Without modes or spread, 0 for the mean
+  and infinite for all others. [-]
+*/
+inline double outlier_score(const Modes_of_variation& modes, const Mode_coordinates& at)
+{
+  const double inside =
+      at.scores.size() > 0 ? at.scores.squaredNorm() / static_cast<double>(at.scores.size()) : 0;
+  if (at.distance <= 1e-9) // rounding
+    return std::sqrt(0.5 * inside);
+  std::vector<double> usual;
+  for (const auto& d : modes.left_out)
+    usual.push_back(d[std::min(modes.size(), d.size() - 1)]);
+  std::sort(usual.begin(), usual.end());
+  const double scale = usual.empty() ? 1 : usual[usual.size() / 2];
+  const double outside = at.distance / scale; // infinite without spread
+  return std::sqrt(0.5 * (inside + outside * outside));
+}
+
 } // namespace shape_space
 } // namespace pcs
 

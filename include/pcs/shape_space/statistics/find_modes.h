@@ -329,42 +329,6 @@ inline Mode_coordinates project_on_modes(const Orl_layout& layout,
   return {std::move(fit.scores), fit.distance.back()};
 }
 
-/// The tree with given scores; missing ones are 0.
-inline Orl_coordinates tree_of_modes(const Orl_layout& layout,
-                                     const Orl_weights& weights,
-                                     const Modes_of_variation& modes,
-                                     const std::vector<double>& scores)
-{
-  const Tangent_space tangent(layout, modes.mean, weights);
-  Eigen::VectorXd z = modes.center;
-  for (std::size_t k = 0; k < scores.size() && k < modes.size(); ++k) {
-    const auto i = static_cast<Eigen::Index>(k);
-    z += scores[k] * modes.deviations[i] * modes.directions.col(i);
-  }
-  return tangent.exp(z);
-}
-
-/*!
-  How unlike the trees of the modes a tree is: the root of the mean of two squares, of its scores
-  and of its distance from the space of the modes, over the middle one of the trees themselves when
-  left out. About 1 for a tree of the same kind; without modes or spread, 0 for the mean and
-  infinite for all others. [-]
-*/
-inline double outlier_score(const Modes_of_variation& modes, const Mode_coordinates& at)
-{
-  const double inside =
-      at.scores.size() > 0 ? at.scores.squaredNorm() / static_cast<double>(at.scores.size()) : 0;
-  if (at.distance <= 1e-9) // rounding
-    return std::sqrt(0.5 * inside);
-  std::vector<double> usual;
-  for (const auto& d : modes.left_out)
-    usual.push_back(d[std::min(modes.size(), d.size() - 1)]);
-  std::sort(usual.begin(), usual.end());
-  const double scale = usual.empty() ? 1 : usual[usual.size() / 2];
-  const double outside = at.distance / scale; // infinite without spread
-  return std::sqrt(0.5 * (inside + outside * outside));
-}
-
 } // namespace shape_space
 } // namespace pcs
 

@@ -1,0 +1,171 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Random trees like those of a shape space.
+
+#ifndef PCS_SAMPLE_TREE_H
+#define PCS_SAMPLE_TREE_H
+
+#include <pcs/Named_function_parameters.h>
+#include <pcs/Orl_shape_space.h>
+#include <pcs/Orl_tree.h>
+#include <pcs/compare_trees.h>
+#include <pcs/core/Orl_options.h>
+#include <pcs/core/check_value.h>
+#include <pcs/internal/Random_stream.h>
+#include <pcs/shape_space/input/check_space.h>
+#include <pcs/shape_space/input/read_options.h>
+#include <pcs/shape_space/measures/Tree_descriptors.h>
+#include <pcs/shape_space/statistics/make_tree.h>
+#include <pcs/shape_space/statistics/tree_statistics.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+
+//! \ingroup PkgPcsShapeSpaceRef
+//! a distribution of trees, with the descriptors of the trees it was estimated from
+struct Orl_distribution
+{
+  std::shared_ptr<const shape_space::Tree_distribution> distribution; ///< null: of no space
+  std::vector<Tree_descriptors> descriptors;                          ///< of the inputs
+};
+
+//! \ingroup PkgPcsShapeSpaceRef
+//! how a random tree was found
+struct Sample_report
+{
+  std::size_t number_of_trials = 0; ///< [count]
+  /// How far its descriptors are outside the range of the inputs, 0 if they are within [-].
+  double range_violation = 0;
+};
+
+namespace internal {
+
+/// Uniform on all weights of scans that add up to 1, by exponential variates.
+inline std::vector<double>
+draw_scan_weights(std::size_t number_of_trees, std::uint64_t seed, std::uint64_t index)
+{
+  Random_stream random(mix_bits(~seed), index);
+  std::vector<double> result(number_of_trees);
+  for (double& w : result)
+    w = -std::log(1 - random.uniform());
+  return result;
+}
+
+} // namespace internal
+
+//! \ingroup PkgPcsShapeSpaceRef
+//! estimates the distribution of the added trees; once for any number of `sample_tree()`
+template <class Kernel, class ConcurrencyTag>
+Orl_distribution learn_distribution(const Orl_shape_space<Kernel, ConcurrencyTag>& space)
+{
+  shape_space::check_built(space.family(), "pcs::learn_distribution()");
+  Orl_distribution result{shape_space::distribution_of_family<ConcurrencyTag>(space.family()), {}};
+  for (std::size_t t = 0; t < space.number_of_trees(); ++t)
+    result.descriptors.push_back(measure_shape(space, space.tree(t)));
+  return result;
+}
+
+/*!
+  \ingroup PkgPcsShapeSpaceRef
+  \brief draws a random tree like the added ones, the outlook of section 5.2 of \cite aiteanu2022.
+
+  `Tree_sampling_options` says what can be asked of the trees. Lengths and radii are positive. All
+  trees have the same topology and the same order of points.
+
+  \param space a space that was built
+  \param from what `learn_distribution()` returned for it
+  \param seed of a series of trees
+  \param index of the tree in its series: a tree does not depend on which others are drawn
+  \param np
+  \npbegin
+    \np{sampling_options} limits and weights
+      \nptype `Tree_sampling_options`
+  \npend
+  \param report if not null, how the tree was found
+  \throws pcs::Invalid_input for a distribution of another space, or options out of range
+  \par Complexity
+  \f$O(n e)\f$ for each of at most `number_of_trials` trials, `n` trees of `e` edges.
+*/
+template <class Kernel,
+          class ConcurrencyTag,
+          class NamedParameters = parameters::Default_named_parameters>
+Orl_tree sample_tree(const Orl_shape_space<Kernel, ConcurrencyTag>& space,
+                     const Orl_distribution& from,
+                     std::uint64_t seed,
+                     std::uint64_t index,
+                     const NamedParameters& np = NamedParameters(),
+                     Sample_report* report = nullptr)
+{
+  const char* const caller = "pcs::sample_tree()";
+  const shape_space::Tree_family& family = space.family();
+  shape_space::check_built(family, caller);
+  const Tree_sampling_options options = shape_space::read_sampling_options(np, caller);
+  pcs::internal::check(from.distribution && from.descriptors.size() == space.number_of_trees(),
+                       caller,
+                       "the distribution is of another space");
+  const std::vector<double> scan_weights =
+      internal::draw_scan_weights(space.number_of_trees(), seed, index);
+  const std::size_t trials = options.do_keep_in_range ? options.number_of_trials : 1;
+  Orl_tree best;
+  Sample_report found;
+  double least = 0; // violation by the descriptors of the tree as a whole
+  Tree_sampling_options nearer = options;
+  for (std::size_t k = 0; k < trials; ++k) {
+    // the second half of the trials approaches the median tree, with lengths in range
+    nearer.spread =
+        options.spread * std::min(1.0, 1.5 - static_cast<double>(k) / static_cast<double>(trials));
+    Orl_tree candidate(shape_space::make_tree(
+        family,
+        shape_space::draw_tree<ConcurrencyTag>(family,
+                                               *from.distribution,
+                                               from.descriptors,
+                                               // each trial is a stream of its own
+                                               pcs::internal::mix_bits(seed) + k,
+                                               index,
+                                               nearer,
+                                               2 * k >= trials),
+        -1,
+        scan_weights));
+    double violation = 0, violation_as_a_whole = 0;
+    if (options.do_keep_in_range) {
+      const Tree_descriptors d = measure_shape(space, candidate);
+      violation = shape_space::range_violation(d, from.descriptors, true);
+      violation_as_a_whole = shape_space::range_violation(d, from.descriptors, false);
+    }
+    if (k == 0 || violation_as_a_whole < least ||
+        (violation_as_a_whole == least && violation < found.range_violation)) {
+      best = std::move(candidate);
+      found.range_violation = violation;
+      least = violation_as_a_whole;
+    }
+    found.number_of_trials = k + 1;
+    if (found.range_violation == 0)
+      break;
+  }
+  if (report)
+    *report = found;
+  return best;
+}
+
+//! \ingroup PkgPcsShapeSpaceRef
+//! the same once; for more than one tree keep what `learn_distribution()` returns
+template <class Kernel,
+          class ConcurrencyTag,
+          class NamedParameters = parameters::Default_named_parameters>
+Orl_tree sample_tree(const Orl_shape_space<Kernel, ConcurrencyTag>& space,
+                     std::uint64_t seed,
+                     const NamedParameters& np = NamedParameters())
+{
+  return sample_tree(space, learn_distribution(space), seed, 0, np);
+}
+
+} // namespace pcs
+
+#endif // PCS_SAMPLE_TREE_H
