@@ -1,0 +1,148 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The matching of least energy: equal trees cost nothing, what has no partner costs its length.
+
+#include <pcs/internal/progress.h>
+#include <pcs/shape_space/matching/Branch_matching.h>
+#include <support/rooted_trees.h>
+
+#include <CGAL/tags.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace test_Branch_matching {
+
+using namespace pcs::shape_space;
+using pcs::Matching_weights;
+using pcs_test::rooted;
+using pcs_test::Stick;
+
+namespace {
+
+using Matching = Branch_matching<CGAL::Sequential_tag>;
+
+Matching matching_of(const Rooted_tree& one, const Rooted_tree& two)
+{
+  const Matching_weights weights;
+  return Matching(one,
+                  two,
+                  weights,
+                  {Matching::find_paths(one, weights), Matching::find_paths(two, weights)});
+}
+
+double cost_of(const Rooted_tree& one, const Rooted_tree& two)
+{
+  pcs::internal::Progress progress;
+  Matching matching = matching_of(one, two);
+  return matching.run(progress)->cost;
+}
+
+/// Calls `visit` for a pair of branches and for all that hang on it.
+template <class Match, class Visit>
+void for_each_pair(const Match& match, const Visit& visit)
+{
+  visit(match);
+  for (const auto& pair : match.pairs)
+    for_each_pair(*pair.branch, visit);
+}
+
+const Stick trunk{pcs::npos, 0, Vec3(0, 0, 4), 8};
+const Stick low{0, 3, Vec3(1, 0, 0.5)}, high{0, 6, Vec3(0, 0.8, 0.3)};
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(matchings_of_branches)
+
+BOOST_AUTO_TEST_CASE(each_branch_of_equal_trees_is_its_own_partner_at_no_cost)
+{
+  const Rooted_tree tree = rooted(orl_test::random_tree(1));
+  Matching matching = matching_of(tree, tree);
+  pcs::internal::Progress progress;
+  const auto found = matching.run(progress);
+  BOOST_TEST_REQUIRE(bool(found));
+  BOOST_TEST(std::abs(found->cost) < 1e-9);
+  std::size_t count = 0;
+  for_each_pair(*found, [&](const auto& match) {
+    ++count;
+    BOOST_TEST(match.path_1 == match.path_2);
+    BOOST_TEST((match.rotation - Eigen::Matrix3d::Identity()).norm() < 1e-6);
+  });
+  BOOST_TEST(count == 1u + 6 + 36); // all branches that the tree was made of
+}
+
+BOOST_AUTO_TEST_CASE(what_has_no_partner_costs_its_length)
+{
+  const Rooted_tree more = rooted({trunk, low, high}), less = rooted({trunk, low});
+  const double single = Matching_weights().unmatched * high.way.norm() / trunk.way.norm();
+  BOOST_TEST(std::abs(cost_of(more, less) - single) < 1e-9);
+  BOOST_TEST(std::abs(cost_of(less, more) - single) < 1e-9);
+  BOOST_TEST(cost_of(more, more) < 1e-9);
+  // no pair costs more than both branches alone
+  const Rooted_tree one = rooted(orl_test::random_tree(2)), two = rooted(orl_test::random_tree(3));
+  Matching matching = matching_of(one, two);
+  pcs::internal::Progress progress;
+  const auto found = matching.run(progress);
+  const Matching_energy& energy = matching.energy();
+  std::size_t count = 0;
+  for_each_pair(*found, [&](const auto& match) {
+    ++count;
+    const std::size_t a = matching.paths(0).paths[match.path_1].nodes[count > 1 ? 1 : 0];
+    const std::size_t b = matching.paths(1).paths[match.path_2].nodes[count > 1 ? 1 : 0];
+    BOOST_TEST(match.cost <=
+               energy.single_term(energy.weight(0, a)) + energy.single_term(energy.weight(1, b)));
+  });
+  BOOST_TEST(count > 10u);
+}
+
+BOOST_AUTO_TEST_CASE(the_cost_does_not_change_with_place_stand_and_unit)
+{
+  const orl_test::Tree a = orl_test::random_tree(4), b = orl_test::random_tree(5);
+  const double cost = cost_of(rooted(a), rooted(b));
+  BOOST_TEST(cost > 0.1);
+  const double there = cost_of(rooted(pcs_test::elsewhere(a)), rooted(pcs_test::elsewhere(b)));
+  BOOST_TEST(std::abs(there - cost) < 1e-6 * cost);
+  // the unit and the place of one of them do not matter either
+  const double moved =
+      cost_of(rooted(a),
+              rooted(orl_test::moved(b, Eigen::Matrix3d::Identity(), Vec3(1, 2, 3), 0.1)));
+  BOOST_TEST(std::abs(moved - cost) < 1e-6 * cost);
+}
+
+BOOST_AUTO_TEST_CASE(a_turn_of_the_whole_tree_costs_nothing_where_it_is_told)
+{
+  const orl_test::Tree tree = orl_test::random_tree(6);
+  const Eigen::AngleAxisd turn(1.3, Vec3::UnitZ());
+  const Rooted_tree one = rooted(tree),
+                    two = rooted(orl_test::moved(tree, turn.toRotationMatrix(), Vec3::Zero()));
+  Matching matching = matching_of(one, two);
+  pcs::internal::Progress progress;
+  BOOST_TEST(matching.run(progress)->cost > 0.1);
+  matching.set_turn(-1.3, Vec3::UnitZ()); // back
+  BOOST_TEST(matching.look() < 1e-6);
+  const auto found = matching.run(progress);
+  BOOST_TEST(found->cost < 1e-6);
+  BOOST_TEST((found->rotation - turn.inverse().toRotationMatrix()).norm() < 1e-6);
+}
+
+BOOST_AUTO_TEST_CASE(nothing_is_returned_above_a_limit_or_when_asked_to_stop)
+{
+  const Rooted_tree one = rooted({trunk, low, high}), two = rooted({trunk, low});
+  pcs::internal::Progress progress;
+  Matching matching = matching_of(one, two);
+  const double cost = matching.run(progress)->cost;
+  BOOST_TEST(!matching.run(progress, 0.99 * cost));
+  BOOST_TEST_REQUIRE(bool(matching.run(progress, 1.01 * cost)));
+  BOOST_TEST(std::abs(matching.run(progress, 1.01 * cost)->cost - cost) < 1e-12);
+  pcs::internal::Progress stop([](double) { return false; });
+  BOOST_TEST(!matching.run(stop));
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_Branch_matching
