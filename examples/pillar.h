@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-/// `n` points, evenly spread, ordered from the foot to the head.
+/// Makes `n` evenly distributed points, ordered from the foot to the head.
 template <class Triple>
 std::vector<Triple> make_pillar(std::size_t n)
 {

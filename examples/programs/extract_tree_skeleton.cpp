@@ -70,7 +70,7 @@ pcs::Leaf_removal leaf_removal(const Skeleton_options& options, bool is_labelled
   return options.do_remove_leaves ? Leaf_removal::always : Leaf_removal::where_found;
 }
 
-/// Of the points.
+/// Labels of the points.
 struct Labels
 {
   std::vector<std::size_t> branch;
@@ -78,7 +78,7 @@ struct Labels
   std::vector<std::uint8_t> dense, leaf;
 };
 
-/// Labels are computed only if they are written.
+/// Extracts the skeleton; labels are computed only if they are written.
 template <class Range, class NamedParameters>
 pcs::Skeleton_report extract_with_labels(const Range& indices,
                                          const Skeleton_options& options,
@@ -113,7 +113,7 @@ pcs::Skeleton_report extract(const std::string& input,
     std::cerr << "extract_tree_skeleton: warning: " << input
               << ": the wood labels of the points are used; --keep-leaves and --remove-leaves are "
                  "ignored\n";
-  // points are indices here, and their attributes are property maps
+  // points are represented by indices, and their attributes by property maps
   const auto indices = boost::make_iterator_range(boost::counting_iterator<std::size_t>(0),
                                                   boost::counting_iterator<std::size_t>(n));
   const auto identity = boost::typed_identity_property_map<std::size_t>();
@@ -189,7 +189,7 @@ std::size_t write_leaves(const std::string& path, const Tree& tree)
   return count;
 }
 
-/// With `do_commit` false only checks that the file can be written.
+/// Writes the points; if `do_commit` is false, only checks that the file can be written.
 void write_points_to(const std::string& path,
                      pcs::IO::Point_table table,
                      const Labels& labels,
@@ -221,7 +221,7 @@ nlohmann::ordered_json work_on(const std::string& input, const Skeleton_options&
                                   &options.edges,
                                   &options.points})
     if (!path->empty())
-      const pcs::IO::internal::Output_file probe(*path); // never committed
+      const pcs::IO::internal::Output_file probe(*path); // is not committed
   pcs::internal::Stopwatch watch;
   pcs::IO::Point_table table = pcs::IO::read_points(input);
   const std::size_t number_of_empty_rays = remove_rays_without_return(table);
@@ -262,7 +262,7 @@ nlohmann::ordered_json work_on(const std::string& input, const Skeleton_options&
   return json;
 }
 
-/// Processes one scan. Throws if it has no tree, or before the work if a result cannot be written.
+/// Processes one scan. Throws if it contains no tree, or beforehand if a result cannot be written.
 nlohmann::ordered_json run_one(const std::string& input, const Skeleton_options& options)
 {
   try {
@@ -290,7 +290,7 @@ void run_single(const Skeleton_options& options)
               << '\n';
 }
 
-/// Processes several scans; returns whether all have a skeleton.
+/// Processes several scans. Returns whether all have a skeleton.
 bool run_batch(const Skeleton_options& options)
 {
   Batch_log log(options.folder);
@@ -308,7 +308,7 @@ bool run_batch(const Skeleton_options& options)
         continue;
       }
       json = run_one(input, one);
-    } catch (const std::exception& e) { // a failed scan does not end the batch
+    } catch (const std::exception& e) { // the batch continues after a failed scan
       const std::string what = e.what(),
                         scan = what.find(input) == std::string::npos ? input + ": " : "";
       std::cerr << "extract_tree_skeleton: " << scan << what << '\n';

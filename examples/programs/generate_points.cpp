@@ -17,8 +17,8 @@
 
 using Table = pcs::IO::Point_table;
 
-/// Point `i` of `n` on an upright ellipsoid of height 6, along a spiral of even density, with
-/// bumps.
+/// Returns point `i` of `n` on an upright ellipsoid of height 6 with bumps, along a spiral of
+/// uniform density.
 Table::Point_3 surface_point(std::uint64_t i, std::uint64_t n)
 {
   constexpr double golden_ratio = 1.618033988749895, pi = 3.141592653589793;
@@ -29,7 +29,7 @@ Table::Point_3 surface_point(std::uint64_t i, std::uint64_t n)
   return {radius * std::cos(angle), radius * std::sin(angle), 3 * z};
 }
 
-/// Throws if it is not a valid number of points.
+/// Reads a number of points. Throws if it is invalid.
 std::uint64_t read_count(const std::string& text)
 {
   std::uint64_t n = 0;

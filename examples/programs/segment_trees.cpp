@@ -75,7 +75,7 @@ void declare(CLI::App& app, Options& options)
   app.add_flag("--quiet", options.is_quiet, "print errors only");
 }
 
-/// The path of the file of a tree; numbers begin with 1.
+/// Returns the path of the file of a tree; numbers begin with 1.
 std::string file_of_tree(const Options& options, std::size_t tree)
 {
   const std::filesystem::path scan(options.input);
@@ -119,7 +119,7 @@ segment(const pcs::IO::Point_table& table, const Options& options, std::vector<s
 {
   const std::size_t n = table.number_of_points();
   std::vector<std::size_t> tree_of_point(n, pcs::npos);
-  // points are indices here, and their attributes are property maps
+  // points are represented by indices, and their attributes by property maps
   const auto indices = boost::make_iterator_range(boost::counting_iterator<std::size_t>(0),
                                                   boost::counting_iterator<std::size_t>(n));
   const auto identity = boost::typed_identity_property_map<std::size_t>();

@@ -69,7 +69,7 @@ Tree make_tree(const Scan_options& options)
   return options.age == 1 ? tree : pcs::tree_at_age(tree, options.age);
 }
 
-/// The table that is written.
+/// Returns the table to be written.
 pcs::IO::Point_table table_of(Scan& scan)
 {
   pcs::IO::Point_table table(std::move(scan.points));

@@ -18,10 +18,10 @@ namespace program {
 class Distinct_files
 {
 public:
-  /// The same file may be an input twice. Empty paths are ignored.
+  /// Adds an input. The same file may be an input twice; empty paths are ignored.
   void add_input(const std::string& path) { add(path, false); }
 
-  /// Throws `pcs::Invalid_input` if `path` is an input or a result that was added before.
+  /// Adds a result. Throws `pcs::Invalid_input` if `path` is an input or a previous result.
   void add_output(const std::string& path) { add(path, true); }
 
 private:
@@ -31,8 +31,8 @@ private:
     bool is_written;
   };
 
-  /// The canonical path, so that spellings can be compared; a path that does not exist yet stays as
-  /// it is.
+  /// Returns the canonical path, which makes spellings comparable. A path that does not exist yet
+  /// is normalised.
   static std::string real(const std::string& path)
   {
     std::error_code error;
@@ -49,7 +49,7 @@ private:
     std::string other = at->second.path;
     std::error_code error;
     const auto links = std::filesystem::hard_link_count(path, error);
-    if (is_new && !error && links > 1) // each of which has a name of its own
+    if (is_new && !error && links > 1) // several names refer to the same file
       for (const auto& [name, use] : m_uses)
         if (name != at->first && (is_written || use.is_written) &&
             std::filesystem::equivalent(name, at->first, error)) {

@@ -84,7 +84,7 @@ public:
   {
     if (!m_value->is_number())
       fail_expected(expected);
-    return m_value->get<double>(); // finite: the parser refuses what overflows
+    return m_value->get<double>(); // finite: the parser rejects numbers that overflow
   }
 
   Eigen::Vector3d vector_3() const
@@ -103,7 +103,7 @@ private:
     return text;
   }
 
-  /// Never prints the content, which may be large or deeply nested.
+  /// Describes the value without its contents, which may be large or deeply nested.
   std::string description() const
   {
     if (m_value->is_object())
@@ -125,12 +125,12 @@ inline Json read_json(const std::string& path)
   if (!in)
     throw pcs::IO_error(path, "cannot be opened for reading");
   std::ostringstream content;
-  content << in.rdbuf(); // unlike iterators, does not throw for a directory
+  content << in.rdbuf(); // unlike iterators, does not throw for a folder
   const std::string text = content.str();
   if (text.empty())
     throw pcs::IO_error(path, "is empty or cannot be read, expected an edit in JSON");
 
-  std::vector<std::set<std::string>> keys; // of the objects that are open
+  std::vector<std::set<std::string>> keys; // keys of the open objects
   const auto refuse_duplicates = [&](int, Json::parse_event_t event, Json& value) {
     if (event == Json::parse_event_t::object_start)
       keys.emplace_back();

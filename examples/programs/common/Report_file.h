@@ -31,11 +31,11 @@ public:
     if (fs::is_directory(status))
       throw pcs::IO_error(path, "is a directory, expected a file name");
     if (fs::exists(status) && !fs::is_regular_file(status))
-      m_out.open(path); // a device or a pipe: renaming would replace it
+      m_out.open(path); // a device or a pipe, which renaming would replace
     else {
       if (fs::exists(status))
-        m_target = fs::canonical(path, error); // a symbolic link stays one
-      static int number = 0;                   // two reports may be open in one folder
+        m_target = fs::canonical(path, error); // a symbolic link is kept
+      static int number = 0;                   // distinguishes reports that are open in one folder
       m_temporary = m_target.parent_path() / (".unfinished_report_" + std::to_string(getpid()) +
                                               "_" + std::to_string(++number) + ".tmp");
       m_out.open(m_temporary);
@@ -43,7 +43,7 @@ public:
     if (!m_out)
       throw pcs::IO_error(path,
                           std::string("cannot be opened for writing: ") + std::strerror(errno));
-    remove_temporary(); // it only exists while it is written: the work may be killed
+    remove_temporary(); // exists only while it is written, because the work may be interrupted
   }
 
   Report_file(const Report_file&) = delete;
@@ -51,7 +51,7 @@ public:
 
   ~Report_file() { remove_temporary(); }
 
-  /// Invalid UTF-8 in file names is replaced.
+  /// Writes the report. Invalid UTF-8 in file names is replaced.
   void commit(const nlohmann::ordered_json& json)
   {
     commit(json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
@@ -84,7 +84,7 @@ private:
 
   std::string m_path;
   std::filesystem::path m_target;
-  std::filesystem::path m_temporary; // empty when there is none
+  std::filesystem::path m_temporary; // empty if there is none
   std::ofstream m_out;
 };
 

@@ -22,12 +22,12 @@ inline void check_output(const std::string& path, const pcs::IO::Point_schema& s
   const auto status = std::filesystem::status(path, error);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
       !std::filesystem::is_directory(status))
-    return; // to open a pipe would be to write to it
+    return; // opening a pipe would write to it
   pcs::IO::Write_options options;
   options.number_of_points = 0;
   options.las_scale = {1, 1, 1};
   options.las_offset = {0, 0, 0};
-  const pcs::IO::Point_writer writer(path, schema, options); // never committed
+  const pcs::IO::Point_writer writer(path, schema, options); // is not committed
 }
 
 } // namespace program

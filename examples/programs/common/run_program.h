@@ -19,8 +19,8 @@
 
 namespace program {
 
-/// Parses, then calls `work()`, which returns whether it succeeded. Returns 0: success, 1: bad
-/// input, 2: internal error.
+/// Parses the options, then calls `work()`, which returns whether it succeeded. Returns 0: success,
+/// 1: invalid input, 2: internal error.
 template <class Work>
 int run_program(CLI::App& app, int argc, char** argv, const Work& work)
 {
@@ -30,14 +30,14 @@ int run_program(CLI::App& app, int argc, char** argv, const Work& work)
     return exit_code;
   };
 #ifdef SIGXFSZ
-  std::signal(SIGXFSZ, SIG_IGN); // a limit of the size of files is an error like a full disk
+  std::signal(SIGXFSZ, SIG_IGN); // exceeding a limit of the file size is an error like a full disk
 #endif
   pcs::keep_memory();
   try {
     app.parse(argc, argv);
     for (const CLI::Option* option : app.get_options())
       for (const std::string& value : option->results())
-        if (value.empty()) // a variable of a script that is not set
+        if (value.empty()) // for example an undefined variable of a script
           throw pcs::Invalid_input(option->get_name() + " has an empty value");
     return work() ? 0 : bad_input;
   } catch (const CLI::ParseError& e) {

@@ -9,7 +9,7 @@
 
 namespace program {
 
-/// The unit vector of x, y, z, -x, -y or -z.
+/// Returns the unit vector of x, y, z, -x, -y or -z.
 template <class Kernel>
 typename Kernel::Vector_3 up_direction(const std::string& name)
 {

@@ -24,7 +24,7 @@ namespace program {
 struct Options
 {
   std::string input, edit, output, report;
-  // signed, so that CLI11 does not take -5 for a large number
+  // signed, because CLI11 would convert -5 to a large unsigned number
   std::int64_t number_of_samples = pcs::default_number_of_samples;
   std::int64_t number_of_neighbors = pcs::default_number_of_neighbors;
   std::int64_t number_of_kept_points = 1000000; // with --stream
@@ -101,12 +101,12 @@ inline void declare(CLI::App& app, Options& options)
   app.add_flag("--quiet", options.is_quiet, "print warnings and errors only");
 }
 
-/// Checks that CLI11 cannot make. Throws `pcs::Invalid_input`.
+/// Checks the options further than CLI11 can. Throws `pcs::Invalid_input`.
 inline void check(const Options& options)
 {
   if (options.edit.empty() != options.is_default_edit)
     throw pcs::Invalid_input("expected exactly one of --edit and --default-edit");
-  // The input may be the output; any other pair would destroy a file that is needed.
+  // The input may be the output; other equal paths would overwrite a file that is needed.
   using Named_path = std::pair<const char*, const std::string*>;
   const std::array<std::pair<Named_path, Named_path>, 4> pairs = {
       {{{"--output", &options.output}, {"--edit", &options.edit}},

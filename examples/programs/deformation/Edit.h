@@ -25,28 +25,28 @@ inline Vec3 to_vec3(const pcs::IO::Point_table::Point_3& p)
   return {p.x(), p.y(), p.z()};
 }
 
-/// Points between two corners, bounds included.
+/// Selects points between two corners, bounds included.
 struct Box
 {
   Vec3 low, high;
 };
 
-/// Points within `radius` of `center`.
+/// Selects points within `radius` of `center`.
 struct Sphere
 {
   Vec3 center;
   double radius = 0;
 };
 
-/// Points whose property has this value. Integers stay integers, since a double cannot hold 64
-/// bits.
+/// Selects points by the value of a property. Integers are stored as integers, since a double
+/// cannot represent 64 bits.
 struct Property_equals
 {
   std::string name;
   std::variant<std::int64_t, std::uint64_t, double> value;
 };
 
-/// Points by index, from 0.
+/// Selects points by index, from 0.
 struct Index_list
 {
   std::vector<std::uint64_t> indices;
@@ -75,7 +75,7 @@ struct Motion
 
 struct Handle
 {
-  std::string pointer; ///< JSON pointer of the handle, for messages
+  std::string pointer; ///< JSON pointer to the handle, for messages
   Selector selector;
   Motion motion;
   double softness = 0;

@@ -17,16 +17,16 @@
 
 namespace program {
 
-/// Points with their indices in the file, ascending.
+/// A subset of the points with their indices in the file, ascending.
 struct Kept_points
 {
   std::vector<std::uint64_t> numbers;
   pcs::IO::Point_table table;         ///< positions only
   Normal_vectors normals;             ///< may be empty
-  std::vector<std::uint32_t> handles; ///< `no_handle` until they are known
+  std::vector<std::uint32_t> handles; ///< `no_handle` until they are determined
 };
 
-/// A bijective hash of a number.
+/// Computes a bijective hash of a number.
 inline std::uint64_t splitmix64(std::uint64_t x)
 {
   x += 0x9e3779b97f4a7c15u;
@@ -36,10 +36,10 @@ inline std::uint64_t splitmix64(std::uint64_t x)
 }
 
 /*!
-  Keeps all points if there are no more than `limit`. Otherwise the file is cut into runs of equal
-  length, and each run gives one point, chosen by a hash: a plain step would beat with the scan
-  lines of the file. Some places are reserved for handles, so that none is lost because it is small.
-  What is kept depends on the numbers of the points only.
+  Keeps all points if there are at most `limit`. Otherwise the file is divided into runs of equal
+  length, and one point of each run is selected by a hash: a constant step would interfere with the
+  scan lines of the file. Some points are reserved for handles, so that small handles are kept. The
+  selection depends only on the numbers of the points.
 */
 class Keeper
 {
@@ -47,14 +47,14 @@ public:
   Keeper(std::uint64_t number_of_points, std::uint64_t limit, std::size_t number_of_handles)
     : m_number_of_points(number_of_points), m_reserves(number_of_handles)
   {
-    constexpr std::uint64_t enough = 64; // for the rotation of a handle to be well defined
+    constexpr std::uint64_t enough = 64; // sufficient for a well-defined rotation of a handle
     if (number_of_points > limit && number_of_handles > 0)
       m_size_of_reserve = std::min(enough, limit / (4 * number_of_handles));
     m_number_of_runs = std::min(number_of_points, limit - m_size_of_reserve * number_of_handles);
     choose_next();
   }
 
-  /// `normals` may be empty; `handles` gives the handle of each point or is empty.
+  /// Adds a chunk. `normals` may be empty; `handles` contains the handle of each point or is empty.
   void add(const pcs::IO::Point_table& chunk,
            const Normal_vectors& normals,
            const std::vector<std::uint32_t>& handles,
@@ -113,7 +113,7 @@ private:
     to.handles.push_back(point.handle);
   }
 
-  /// Number of points in front of a run; no product overflows.
+  /// Returns the number of points before a run; no product overflows.
   std::uint64_t begin_of(std::uint64_t run) const
   {
     return run * (m_number_of_points / m_number_of_runs) +
@@ -123,14 +123,14 @@ private:
   void choose_next()
   {
     if (m_run >= m_number_of_runs) {
-      m_next = m_number_of_points; // no point has this number
+      m_next = m_number_of_points; // not the number of a point
       return;
     }
     const std::uint64_t begin = begin_of(m_run), length = begin_of(m_run + 1) - begin;
     m_next = begin + splitmix64(m_run) % length;
   }
 
-  /// A reserve holds the points with the lowest hashes as a heap.
+  /// Offers a point to a reserve, which is a heap of the points with the lowest hashes.
   void offer(std::vector<Point>& reserve, const Point& point) const
   {
     if (reserve.size() == m_size_of_reserve) {

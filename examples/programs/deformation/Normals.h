@@ -25,7 +25,7 @@ inline bool is_finite(const pcs::IO::Point_table::Vector_3& v)
   return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
 }
 
-/// The first point whose normal is not finite.
+/// Returns the first point whose normal is not finite.
 inline std::optional<std::size_t> first_invalid(const Normal_vectors& normals)
 {
   for (std::size_t i = 0; i < normals.size(); ++i)
@@ -34,7 +34,7 @@ inline std::optional<std::size_t> first_invalid(const Normal_vectors& normals)
   return std::nullopt;
 }
 
-/// Rounds and clamps if `T` is an integer type.
+/// Converts a value; rounds and clamps it if `T` is an integer type.
 template <class T>
 T to_property(double value)
 {
@@ -50,7 +50,7 @@ T to_property(double value)
     return static_cast<T>(value);
 }
 
-/// Normals whose squared length overflows are left unchanged.
+/// Stores normals; those whose squared length overflows are left unchanged.
 inline void store_normals(pcs::IO::Point_table& table, const Normal_vectors& normals)
 {
   constexpr const char* names[] = {"nx", "ny", "nz"};

@@ -33,7 +33,7 @@ private:
   Clock::time_point m_start = Clock::now();
 };
 
-/// Largest memory of this process so far, to a tenth. [10^6 byte]
+/// Returns the peak memory of this process, rounded to a tenth. [10^6 byte]
 inline double peak_memory()
 {
   rusage usage{};
@@ -41,7 +41,7 @@ inline double peak_memory()
 #ifdef __APPLE__
   constexpr double unit = 1e-6;
 #else
-  constexpr double unit = 1024e-6; // counted in KiB
+  constexpr double unit = 1024e-6; // the system counts in KiB
 #endif
   return std::round(10 * unit * static_cast<double>(usage.ru_maxrss)) / 10;
 }
@@ -50,7 +50,7 @@ struct Run_report
 {
   pcs::Deformation_report deformation;
   std::string edit;
-  std::uint64_t number_of_points = 0; ///< of the input; `deformation` counts those in memory
+  std::uint64_t number_of_points = 0; ///< points of the input; `deformation` counts those in memory
   std::int64_t number_of_neighbors = 0;
   std::uint64_t number_of_chunks = 0; ///< 0 unless streamed
   std::vector<std::uint64_t> points_of_handles;

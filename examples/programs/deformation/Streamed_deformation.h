@@ -42,7 +42,7 @@ public:
   {
   }
 
-  /// Without an edit, the default edit is made from the kept points.
+  /// Runs the deformation. Without an edit, the default edit is derived from the kept points.
   void run(std::optional<Edit> edit)
   {
     const Stopwatch reading;
@@ -76,9 +76,9 @@ public:
 private:
   using Table = pcs::IO::Point_table;
 
-  /// A random choice of points is uneven: with 6 links, as many as a scan needs, one group of 8 in
-  /// a million points
-  /// was disconnected and kept its position together with all points near it.
+  /// The number of links is increased because randomly selected points are uneven: with 6 links,
+  /// which suffice for a scan, a group of 8 in a million points was disconnected and kept its
+  /// position together with all points near it.
   static constexpr std::int64_t least_neighbors = 10;
 
   bool do_normals() const { return m_run.normals == "deformed"; }
@@ -95,7 +95,7 @@ private:
       use(chunk, first);
       first += size;
       ++number_of_chunks;
-      if (m_run.number_of_points > 0) // else they are being counted
+      if (m_run.number_of_points > 0) // otherwise they are being counted
         m_progress.show(stage,
                         std::min(1.0, double(first) / static_cast<double>(m_run.number_of_points)));
     }
@@ -121,7 +121,7 @@ private:
       throw pcs::IO_error(m_options.input, "was changed by someone else while it was read");
   }
 
-  /// The first pass: fills `m_kept` and everything that belongs to the edit.
+  /// The first pass: fills `m_kept` and all members that depend on the edit.
   void keep_points(std::optional<Edit>& edit)
   {
     const std::size_t number_of_handles = edit ? edit->handles.size() : 0;
@@ -192,7 +192,7 @@ private:
     m_run.seconds_write = writing.seconds();
   }
 
-  /// The grid that `write_points()` gives to the whole table: it depends on the bounding box only.
+  /// Returns the grid that `write_points()` computes for the whole table from its bounding box.
   template <class Session>
   void choose_las_grid(Session& session, pcs::IO::Write_options& options)
   {
@@ -212,7 +212,7 @@ private:
     pcs::IO::internal::choose_las_grid(m_options.output, corners, options);
   }
 
-  /// Moves the points of a chunk; chunks come in order. Returns the handle of each point.
+  /// Moves the points of the next chunk. Returns the handle of each point.
   template <class Session>
   std::vector<std::uint32_t> move(Session& session, Table& chunk, std::uint64_t first)
   {
@@ -250,7 +250,7 @@ private:
   static void
   move_rigidly(const pcs::Similarity& motion, Table::Point_3& point, Table::Vector_3* normal)
   {
-    if (motion.is_identity()) // keeps every bit
+    if (motion.is_identity()) // keeps the positions exactly
       return;
     const Vec3 p = motion(to_vec3(point));
     point = {p.x(), p.y(), p.z()};
@@ -268,7 +268,7 @@ private:
   std::optional<Edit_scan> m_scan; // refers to m_edit
   std::vector<pcs::Similarity> m_motions;
   Kept_points m_kept;
-  std::size_t m_next_kept = 0; // the first one behind the points of the second pass so far
+  std::size_t m_next_kept = 0; // the first one after the points processed by the second pass
 };
 
 } // namespace program

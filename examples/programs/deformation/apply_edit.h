@@ -27,10 +27,10 @@
 
 namespace program {
 
-/// Says that a point is in no handle.
+/// Denotes a point without a handle.
 constexpr std::uint32_t no_handle = std::numeric_limits<std::uint32_t>::max();
 
-/// Finds the points of a selector in a piece of the input.
+/// Finds the points of a selector in a chunk of the input.
 class Selection
 {
 public:
@@ -57,7 +57,7 @@ public:
              (names.empty() ? "none besides x, y, z" : names));
   }
 
-  /// Throws if a listed number is not below `n`, the number of all points.
+  /// Throws if a listed index is not below `n`, the number of all points.
   void check_numbers(std::uint64_t n) const
   {
     if (m_indices.empty() || m_indices.back() < n)
@@ -71,7 +71,7 @@ public:
              ", counted from 0");
   }
 
-  /// Positions in the piece, ascending and each once. Its points are numbered from `first` on.
+  /// Returns distinct positions in the chunk, ascending. Its points are numbered from `first` on.
   std::vector<std::size_t> in(const pcs::IO::Point_table& piece, std::uint64_t first) const
   {
     return std::visit([&](const auto& selector) { return select(selector, piece, first); },
@@ -142,8 +142,8 @@ private:
     return result;
   }
 
-  /// Integers are compared as integers; a wanted number is first rounded to `float` if the property
-  /// is.
+  /// Compares integers as integers; a wanted number is first rounded to `float` if the property is
+  /// one.
   template <class Value, class Wanted>
   static bool is_equal(Value value, Wanted wanted)
   {
@@ -162,7 +162,7 @@ private:
 
   const Edit& m_edit;
   const Handle& m_handle;
-  std::vector<std::uint64_t> m_indices; // sorted, each once
+  std::vector<std::uint64_t> m_indices; // sorted and distinct
 };
 
 inline pcs::Similarity similarity(const Motion& motion, const Vec3& centroid)
@@ -183,12 +183,12 @@ inline pcs::Similarity similarity(const Motion& motion, const Vec3& centroid)
   return result;
 }
 
-/// Visits all points once, in chunks and in order; then gives the motions, or the error of the
-/// edit.
+/// Visits all points once, in chunks and in order; then returns the motions, or throws the error of
+/// the edit.
 class Edit_scan
 {
 public:
-  /// `empty` has the properties of the input.
+  /// Checks the properties of the input, which `empty` must have.
   Edit_scan(const Edit& edit, const pcs::IO::Point_table& empty) : m_edit(edit)
   {
     for (const Handle& handle : edit.handles) {
@@ -198,14 +198,14 @@ public:
     m_moments.resize(edit.handles.size());
   }
 
-  /// The handle of each point of a piece whose points are numbered from `first` on, or `no_handle`.
+  /// Returns the handle of each point of a chunk, numbered from `first` on, or `no_handle`.
   std::vector<std::uint32_t> handles_of(const pcs::IO::Point_table& piece,
                                         std::uint64_t first) const
   {
     return find_handles(piece, first, [](std::uint32_t, std::uint32_t, std::uint64_t) {});
   }
 
-  /// The same, for the next points of the input.
+  /// Returns the same for the next points of the input.
   std::vector<std::uint32_t> add(const pcs::IO::Point_table& piece)
   {
     const auto note_overlap = [&](std::uint32_t a, std::uint32_t b, std::uint64_t number) {
@@ -225,7 +225,7 @@ public:
     return handles;
   }
 
-  /// After the last point: the motion of each handle. Throws `pcs::IO_error` that names the handle.
+  /// Returns the motions of the handles after the last point. Errors name the handle.
   std::vector<pcs::Similarity> motions() const
   {
     for (std::size_t h = 0; h < m_selections.size(); ++h) {
@@ -243,7 +243,7 @@ public:
   }
 
 private:
-  /// Relative to one of the points: no digits are lost far from the origin.
+  /// Sums relative to one of the points, which keeps the precision far from the origin.
   struct Moment
   {
     std::uint64_t count = 0;
@@ -285,7 +285,7 @@ private:
     });
   }
 
-  /// Throws if a point is selected twice, and says by which handles.
+  /// Throws if two handles select the same point, and names them.
   void check_overlaps() const
   {
     if (m_overlaps.empty())
@@ -301,7 +301,7 @@ private:
     throw pcs::IO_error(m_edit.source, message);
   }
 
-  /// The bounding box of the points, which shows a wrong unit or axis.
+  /// Describes the bounding box of the points, which indicates a wrong unit or axis.
   std::string hint() const
   {
     if (m_count == 0)

@@ -20,7 +20,7 @@ namespace program {
 struct Extent
 {
   double low, high;
-  double half() const { return 0.5 * high - 0.5 * low; } // the whole may overflow
+  double half() const { return 0.5 * high - 0.5 * low; } // the full extent may overflow
 };
 
 inline Extent robust_extent(const std::vector<pcs::IO::Point_table::Point_3>& points, int axis)
@@ -41,9 +41,8 @@ inline Extent robust_extent(const std::vector<pcs::IO::Point_table::Point_3>& po
   return extent;
 }
 
-/// Along the longest axis: the lowest 20 % are fixed; the highest 15 % turn by 40 degrees about
-/// that axis and move
-/// sideways by 10 % of the extent.
+/// Makes an edit along the longest axis: the lowest 20 % are fixed; the highest 15 % are rotated by
+/// 40 degrees about that axis and translated sideways by 10 % of the extent.
 inline Edit default_edit(const std::vector<pcs::IO::Point_table::Point_3>& points)
 {
   if (points.empty())

@@ -151,7 +151,7 @@ inline Handle read_handle(const Json_value& json)
   return handle;
 }
 
-/// Throws `pcs::IO_error` with the file, the JSON pointer, and what was expected.
+/// Reads an edit. Throws `pcs::IO_error` with the file, the JSON pointer, and the expected value.
 inline Edit read_edit(const std::string& path)
 {
   const Json json = read_json(path);

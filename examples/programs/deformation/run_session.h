@@ -58,8 +58,8 @@ struct Edited_points
   const std::vector<pcs::Similarity>& motions;
   const std::vector<std::uint32_t>& handles;
   std::vector<pcs::IO::Point_table::Point_3>& points;
-  Normal_vectors* normals; ///< null: not to be deformed
-  std::string note;        ///< for messages that give the number of a point
+  Normal_vectors* normals; ///< null: normals are not deformed
+  std::string note;        ///< for messages that contain the number of a point
 };
 
 inline bool is_hard(const Handle& handle)
@@ -67,7 +67,8 @@ inline bool is_hard(const Handle& handle)
   return handle.softness == 0;
 }
 
-/// The points of fixed handles: the library returns them up to rounding, the program bit for bit.
+/// Returns the points of fixed handles, which the library returns up to rounding and the program
+/// exactly.
 inline std::vector<char> fixed_points(const Edit& edit, const std::vector<std::uint32_t>& handles)
 {
   std::vector<char> is_fixed(handles.size(), 0);
@@ -94,7 +95,7 @@ void add_handles(Session& session, const Edited_points& cloud)
     }
 }
 
-/// Deforms, then calls `use(session)`.
+/// Deforms the points, then calls `use(session)`.
 template <class Use>
 pcs::Deformation_report run_session(const Edited_points& cloud,
                                     const Options& options,
@@ -127,7 +128,7 @@ pcs::Deformation_report run_session(const Edited_points& cloud,
                                   : run(np);
 }
 
-/// Throws if a coordinate is not finite any more. Points are numbered from `first` on.
+/// Throws if a coordinate is not finite. Points are numbered from `first` on.
 inline void check_range(const Edit& edit, const pcs::IO::Point_table& table, std::uint64_t first)
 {
   for (std::size_t i = 0; i < table.number_of_points(); ++i)

@@ -142,7 +142,7 @@ inline void declare(CLI::App& app, Scan_options& o)
   app.add_flag("--post", o.has_post, "add a lamp post beside the tree")->group(around);
 }
 
-/// Pairs of an id and a number. Throws `pcs::Invalid_input`.
+/// Converts a list to pairs of an id and a number. Throws `pcs::Invalid_input`.
 inline std::vector<std::pair<std::size_t, double>> id_pairs(const std::vector<double>& numbers,
                                                             const std::string& option)
 {
@@ -157,7 +157,7 @@ inline std::vector<std::pair<std::size_t, double>> id_pairs(const std::vector<do
   return pairs;
 }
 
-/// Checks that CLI11 cannot make; completes the scanner. Throws `pcs::Invalid_input`.
+/// Checks the options further than CLI11 can; completes the scanner. Throws `pcs::Invalid_input`.
 inline void complete(Scan_options& o)
 {
   constexpr double degree = 0.017453292519943295;

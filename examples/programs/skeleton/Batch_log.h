@@ -21,7 +21,7 @@
 
 namespace program {
 
-/// The present state of a scan, and the options that its results depend on.
+/// Returns the current state of a scan and the options on which its results depend.
 inline nlohmann::ordered_json origin_of(const std::string& input, const Skeleton_options& one)
 {
   namespace fs = std::filesystem;
@@ -33,7 +33,7 @@ inline nlohmann::ordered_json origin_of(const std::string& input, const Skeleton
           {"options", to_json(one)}};
 }
 
-/// FOLDER/batch.jsonl: one line per processed scan. The last success of each result counts.
+/// FOLDER/batch.jsonl: one line per processed scan. The last success of each result is valid.
 class Batch_log
 {
 public:
@@ -64,7 +64,7 @@ public:
     const Sizes& sizes = m_entries.at(one.swc).sizes;
     for (const std::string& name : names_of_results(one)) {
       const auto size =
-          sizes.find(name); // others may have been written since, by a batch that was stopped
+          sizes.find(name); // an interrupted batch may have written other results since then
       if (size == sizes.end() || size_of(name) != size->second)
         return false;
     }
@@ -83,9 +83,8 @@ public:
       throw pcs::Invalid_input(one.swc + " is the skeleton of " + before + "; use another folder");
   }
 
-  /// Removes results of a former state of the scan or of other options, except those in `made`.
-  /// Called after the work,
-  /// which may be interrupted.
+  /// Removes results of a previous state of the scan or of other options, except those in `made`.
+  /// Called after the work, which may be interrupted.
   void remove_outdated(const Skeleton_options& one,
                        const Json& origin,
                        const std::set<std::string>& made = {})
@@ -103,7 +102,7 @@ public:
     m_entries.erase(entry);
   }
 
-  /// Of results that are written. Throws `pcs::IO_error`.
+  /// Records results after they were written. Throws `pcs::IO_error`.
   void add_success(const Skeleton_options& one, const Json& origin, Json line)
   {
     const std::set<std::string> made = names_of_results(one);
@@ -118,7 +117,7 @@ public:
     add(line);
   }
 
-  /// Throws `pcs::IO_error`.
+  /// Records a failure. Throws `pcs::IO_error`.
   void add_failure(const std::string& input, const std::string& what)
   {
     add({{"input", input}, {"status", "failed"}, {"error", what}});
@@ -139,7 +138,7 @@ private:
     return std::filesystem::exists(path, error);
   }
 
-  /// The largest number if the file does not exist.
+  /// Returns the size of a file, or the largest number if it does not exist.
   std::uintmax_t size_of(const std::string& name) const
   {
     std::error_code error;
@@ -155,7 +154,7 @@ private:
     return names;
   }
 
-  /// Of results that were made then and are not wanted now, there may be more options.
+  /// Compares the origins. Options of results that were made but are not requested are ignored.
   bool is_same(const Skeleton_options& one, const Json& origin) const
   {
     const auto entry = m_entries.find(one.swc);
@@ -171,8 +170,8 @@ private:
     return true;
   }
 
-  /// Returns whether the last line is incomplete. Lines that are not a success of this version are
-  /// ignored.
+  /// Returns whether the last line is incomplete. Lines that do not record a success of this
+  /// version are ignored.
   bool read()
   {
     std::ifstream in(m_path);

@@ -41,7 +41,7 @@ struct Skeleton_options
   }
 };
 
-/// The options that results depend on, without those that belong to a single scan.
+/// Returns the options on which results depend, without those of a single scan.
 inline nlohmann::ordered_json to_json(const Skeleton_options& o)
 {
   nlohmann::ordered_json json = {{"up", o.up},
@@ -202,13 +202,13 @@ inline void check_single(const Skeleton_options& options)
   }
 }
 
-/// The common beginning of the paths of the results of one scan of a batch.
+/// Returns the common beginning of the paths of the results of one scan of a batch.
 inline std::string name_of_results(const std::string& input, const std::string& folder)
 {
   return (std::filesystem::path(folder) / std::filesystem::path(input).stem()).string();
 }
 
-/// The options for one scan of a batch, with the paths of its results.
+/// Returns the options for one scan of a batch, with the paths of its results.
 inline Skeleton_options options_of_one(const std::string& input, const Skeleton_options& options)
 {
   Skeleton_options one = options;
@@ -257,13 +257,13 @@ inline void check_batch(const Skeleton_options& options)
   }
 }
 
-/// Checks that CLI11 cannot make. Throws `pcs::Invalid_input` or `pcs::IO_error`.
+/// Checks the options further than CLI11 can. Throws `pcs::Invalid_input` or `pcs::IO_error`.
 inline void check(const Skeleton_options& options)
 {
   if (options.scanners.size() % 3 != 0)
     throw pcs::Invalid_input("--scanner takes three coordinates for each scanner, found " +
                              std::to_string(options.scanners.size()) + " numbers");
-  if (!std::isfinite(options.tolerance)) // for CLI11 everything is in range that is not out of it
+  if (!std::isfinite(options.tolerance)) // CLI11 accepts NaN in every range
     throw pcs::Invalid_input("--tolerance must be a finite number");
   const auto refuse = [](bool is_given, const char* name, const char* lacking) {
     if (is_given)

@@ -26,10 +26,10 @@ namespace program {
 struct Wood_option
 {
   std::string property;
-  std::optional<double> value; ///< of wood; none: 1
+  std::optional<double> value; ///< value of wood; none: 1
 };
 
-/// Throws `pcs::Invalid_input` if the part behind the last `=` is not a number.
+/// Parses the option. Throws `pcs::Invalid_input` if the text after the last `=` is not a number.
 inline Wood_option parse_wood(const std::string& text)
 {
   const std::size_t at = text.rfind('=');
@@ -43,7 +43,7 @@ inline Wood_option parse_wood(const std::string& text)
   return {text.substr(0, at), value};
 }
 
-/// The first few distinct values, for messages.
+/// Lists the first distinct values, for messages.
 inline std::string list_values(const std::vector<double>& values)
 {
   constexpr std::size_t max_listed = 6;
@@ -62,11 +62,10 @@ inline std::string list_values(const std::vector<double>& values)
 }
 
 /*!
-  Which points are wood by the property of --wood, or by a property `wood`. Empty if there is no
-  such property.
-  Throws `pcs::Invalid_input` if the property that was named is missing, or if its values are not 0
-  and 1 and the
-  value of wood was not named: other programs number their classes in their own way.
+  Returns which points are wood, from the property of --wood or from a property `wood`; empty if it
+  does not exist. Throws `pcs::Invalid_input` if the property of --wood is missing, or if its values
+  are not 0 and 1 and the value of wood is not specified, because programs number their classes
+  differently.
 */
 inline std::vector<std::uint8_t> wood_of_points(const pcs::IO::Point_table& table,
                                                 const std::string& option)
@@ -96,11 +95,10 @@ inline std::vector<std::uint8_t> wood_of_points(const pcs::IO::Point_table& tabl
 }
 
 /*!
-  The station of each point by the property of --stations, or by a property `station`; -1 if
-  unknown. Empty without
-  such a property. The LAS attribute `point_source_id` counts only if it is named: in scans from the
-  air it is the
-  flight line, whose points do not come from one position.
+  Returns the station of each point, from the property of --stations or from a property `station`;
+  -1 if unknown. Empty if there is no such property. The LAS attribute `point_source_id` is used
+  only if it is specified: in airborne scans it is the flight line, whose points have no common
+  scanner position.
 */
 inline std::vector<long long> stations_of_points(const pcs::IO::Point_table& table,
                                                  const std::string& option)
@@ -119,9 +117,8 @@ inline std::vector<long long> stations_of_points(const pcs::IO::Point_table& tab
 
 /*!
   Removes rays without return from a ray cloud of raycloudtools, where their `alpha` is 0 and their
-  position is an
-  arbitrary point in the air. Returns how many. Colours with an alpha of 0 throughout are left
-  alone.
+  position is an arbitrary point in the air. Returns their number. Colours with an alpha of 0
+  throughout are unchanged.
 */
 inline std::size_t remove_rays_without_return(pcs::IO::Point_table& table)
 {

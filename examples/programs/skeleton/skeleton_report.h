@@ -15,7 +15,7 @@
 
 namespace program {
 
-/// A warning of the library, with options of the program instead of named parameters.
+/// Converts a warning of the library: replaces named parameters by options of the program.
 inline std::string in_options(std::string sentence)
 {
   for (const auto& [parameter, option] :
@@ -48,7 +48,7 @@ inline nlohmann::ordered_json to_json(const pcs::Scan_station& s)
   return json;
 }
 
-/// All members of the report; lengths in the unit of the input.
+/// Returns all members of the report; lengths are in the unit of the input.
 inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skeleton_report& r)
 {
   nlohmann::ordered_json json;

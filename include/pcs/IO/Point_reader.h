@@ -30,27 +30,27 @@ namespace IO {
   \ingroup PkgPcsIORef
   \brief Reads a point file in chunks.
 
-  The format is recognised by its first bytes (`ply`, `LASF`, `OFF` and its variants); a file
-  without them is text if its extension is xyz, txt, csv, asc, pts or pwn.
+  The format is recognised by its first bytes (`ply`, `LASF`, `OFF` and its variants). A file
+  without them is read as text if its extension is xyz, txt, csv, asc, pts or pwn.
 
   The reader is strict. Counts are compared with the size of the file before memory is allocated;
-  coordinates must be finite, other properties need not be; the file must end where its header says.
-  Anything else is a `pcs::IO_error` that names the file, the line or byte, and what was expected.
+  coordinates must be finite, other properties need not be; the file must end as its header states.
+  All violations throw `pcs::IO_error` with the file, the line or byte, and the expected content.
 
   - PLY: ascii and binary of both byte orders. Scalar properties of `vertex` are read in their own
-    type (`int64` and `uint64` are an extension); lists and other elements, such as faces, are
-    checked, stepped over and not kept.
+    type (`int64` and `uint64` are an extension). Lists and other elements, such as faces, are
+    checked and discarded.
   - Text: columns separated by blanks, tabs, commas or semicolons, all read as `float64`. Lines
     that begin with `#` or `//` are comments. A first line without any number names the columns;
     otherwise they are `x`, `y`, `z`, `column_4`, `column_5`, ...
   - OFF, NOFF, COFF, CNOFF: `nx`, `ny`, `nz` and `red`, `green`, `blue`, `alpha`; faces are
-    checked and not kept.
-  - LAS 1.0 to 1.4, point formats 0 to 10, uncompressed: every dimension is a property; extra bytes
-    are properties of their own name where the file describes them, else `extra_byte_0`, ...
-    Header, VLRs and EVLRs are kept in `Point_schema::las`, which holds them in memory.
+    checked and discarded.
+  - LAS 1.0 to 1.4, point formats 0 to 10, uncompressed: every dimension is a property. Extra bytes
+    are properties with the name in the file if it describes them, otherwise `extra_byte_0`, ...
+    Header, VLRs and EVLRs are stored in `Point_schema::las`, in memory.
 
   \par Memory
-  One chunk and buffers of less than 1 MB; a line of text may need up to 16 MB more.
+  One chunk and buffers of less than 1 MB; a line of text may require up to 16 MB more.
 */
 class Point_reader
 {
@@ -58,19 +58,19 @@ public:
   //! opens the file and reads its header; throws `pcs::IO_error`
   explicit Point_reader(const std::string& path) : m_format(open(path)) {}
 
-  //! the number of points if the file states it, as all formats but text do
+  //! returns the number of points if the file states it, as all formats except text do
   std::optional<std::uint64_t> number_of_points() const { return m_format->number_of_points(); }
 
-  //! the properties of the points
+  //! returns the properties of the points
   const Point_schema& schema() const { return m_format->schema(); }
 
   /*!
     \brief replaces `chunk` by the next points, at most `max_points` of them.
 
-    \return whether there were any; after the last points the file was checked up to its end
+    \return whether points were read; after the last points the file was checked up to its end
     \pre `max_points > 0`, else `pcs::Invalid_input`
 
-    When it throws, `chunk` is empty and the reader can only be destroyed.
+    If it throws, `chunk` is empty and the reader can only be destroyed.
   */
   bool read(Point_table& chunk, std::size_t max_points)
   {
@@ -107,7 +107,7 @@ private:
     return std::make_unique<internal::Text_reader>(path);
   }
 
-  //! keeps the memory of a chunk that was filled before
+  //! prepares a chunk and reuses its memory
   void prepare(Point_table& chunk) const
   {
     if (chunk.schema().properties == schema().properties && chunk.schema().las == schema().las &&
@@ -121,7 +121,7 @@ private:
   void fill(Point_table& chunk, std::size_t max_points)
   {
     const std::size_t rows_per_block = internal::rows_per_block(m_format->layout());
-    if (points_left()) // known and checked against the file, so memory may be reserved
+    if (points_left()) // known and checked against the size of the file
       chunk.points().reserve(
           static_cast<std::size_t>(std::min<std::uint64_t>(max_points, *points_left())));
     while (chunk.number_of_points() < max_points) {

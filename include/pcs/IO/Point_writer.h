@@ -30,17 +30,17 @@ namespace IO {
   \ingroup PkgPcsIORef
   \brief Writes a point file in chunks.
 
-  Everything goes to a temporary file in the same folder, which `commit()` renames. Until then an
-  old file of that name is untouched and may be the one that is being read; without `commit()` the
-  destructor removes the temporary file. A target that is a device or a pipe is written directly.
+  The data are written to a temporary file in the same folder, which `commit()` renames. Until then
+  an existing file of that name is unchanged and may be read at the same time. Without `commit()`
+  the destructor removes the temporary file. Devices and pipes are written directly.
 
   Properties are written in the order and type of the schema; coordinates are doubles unless
   `Write_options::keep_coordinate_types` is set. Faces of a file that was read are not written.
-  Text reads back as `float64` columns; OFF refuses properties that it cannot store; LAS rounds
+  Text is read back as `float64` columns. OFF rejects properties that it cannot store. LAS rounds
   coordinates to its grid and stores properties that its point format lacks as extra bytes.
 
-  Errors of the file system and of the format are `pcs::IO_error`, data that does not match the
-  schema is `pcs::Invalid_input`. After either, nothing can be committed.
+  Errors of the file system and of the format throw `pcs::IO_error`, data that do not match the
+  schema throw `pcs::Invalid_input`. After either, `commit()` is not possible.
 */
 class Point_writer
 {
@@ -71,10 +71,10 @@ public:
     m_is_usable = true;
   }
 
-  //! number of points written so far
+  //! returns the number of points written so far
   std::uint64_t number_of_points() const { return m_count; }
 
-  //! completes the file and gives it its name; nothing can be appended afterwards
+  //! completes the file and renames it to its final name; `append()` is not possible afterwards
   void commit()
   {
     check_usable("commit");

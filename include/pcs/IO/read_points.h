@@ -27,11 +27,11 @@ namespace IO {
   \ingroup PkgPcsIORef
   \brief reads all points of a file with all their properties.
 
-  The formats and the rules are those of `Point_reader`. Faces and other elements are not kept.
+  Formats and rules are those of `Point_reader`. Faces and other elements are discarded.
 
   \param path name of the file
   \return the points; an empty table for a file that declares zero points
-  \throws pcs::IO_error naming the file, the line or byte, and what was expected
+  \throws pcs::IO_error naming the file, the line or byte, and the expected content
   \par Determinism
   The same file gives the same bits in every locale and on every machine.
 */

@@ -23,8 +23,8 @@ namespace IO {
 
 namespace internal {
 
-//! the child of each node that has its type, or `npos`; empty unless types are 5 plus the order of
-//! a branch
+//! returns the child of each node that has its type, or `npos`; empty unless types are 5 plus the
+//! order of a branch
 inline std::vector<std::size_t> same_type_behind(const std::vector<std::int64_t>& types,
                                                  const std::vector<std::size_t>& parents)
 {
@@ -50,10 +50,10 @@ inline std::vector<std::size_t> same_type_behind(const std::vector<std::int64_t>
   \ingroup PkgPcsIORef
   \brief reads a tree skeleton from an SWC file: lines `id type x y z radius parent`.
 
-  Lines that are blank or begin with `#` are skipped; parents may stand behind their children. Nodes
-  are numbered in the order of the file. The format knows no branches. Where its types are 5 plus an
-  order, as `write_swc()` writes them, they tell the branches; else these come from
-  `assign_branches()`. It knows no sections, so all are circles.
+  Lines that are blank or begin with `#` are skipped; parents may follow their children. Nodes are
+  numbered in the order of the file. The format does not contain branches. If its types are 5 plus
+  an order, as `write_swc()` writes them, the branches are determined from the types, otherwise by
+  `assign_branches()`. The format does not contain cross-sections, so all are circles.
 
   \tparam Kernel a kernel of CGAL
   \param path name of the file
@@ -124,7 +124,7 @@ void read_swc(const std::string& path, Tree_skeleton<Kernel>& tree, std::vector<
 }
 
 //! \ingroup PkgPcsIORef
-//! the same for a caller who does not want the ids
+//! overload without the ids
 template <class Kernel>
 void read_swc(const std::string& path, Tree_skeleton<Kernel>& tree)
 {

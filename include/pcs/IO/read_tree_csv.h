@@ -23,10 +23,10 @@ namespace pcs {
 namespace IO {
 namespace internal {
 
-//! the columns of a tree as CSV, in the order in which they are written
+//! the columns of a tree as CSV, in the order of writing
 constexpr std::array<const char*, 11> tree_columns =
     {"id", "parent", "branch", "order", "x", "y", "z", "r", "a", "b", "hits"};
-constexpr std::size_t column_hits = 10; // the only one that may be missing
+constexpr std::size_t column_hits = 10; // the only optional column
 
 inline std::vector<std::string_view> split_at_commas(std::string_view line)
 {
@@ -40,7 +40,7 @@ inline std::vector<std::string_view> split_at_commas(std::string_view line)
   }
 }
 
-//! for each of `tree_columns` its index in the header, `npos` if it is missing
+//! returns for each of `tree_columns` its index in the header, `npos` if it is missing
 inline std::array<std::size_t, 11> find_tree_columns(const Input_file& file,
                                                      std::string_view header)
 {
@@ -66,7 +66,7 @@ inline std::array<std::size_t, 11> find_tree_columns(const Input_file& file,
   return place;
 }
 
-//! Gives the rows their branches: numbered as they first appear, each one a chain of nodes.
+//! Assigns branches to rows: numbered in the order of the rows, each one a chain of nodes.
 template <class Kernel>
 class Branch_rows
 {
@@ -126,15 +126,15 @@ private:
   \brief reads a tree skeleton from a CSV file with the columns
          `id,parent,branch,order,x,y,z,r,a,b,hits`.
 
-  The first line names the columns, in any order; `hits` may be missing. One row is one node: its
-  id, that of its parent (-1: the root), the id and order of its branch, position, radius, the half
-  axes of its section, and the number of points that a scan has there. Nodes are numbered in the
+  The first line names the columns, in any order; `hits` is optional. Each row is one node: its id,
+  the id of its parent (-1: the root), the id and order of its branch, position, radius, the half
+  axes of its section, and the number of points that a scan has on it. Nodes are numbered in the
   order of the file, branches in the order of their first rows.
 
   \tparam Kernel a kernel of CGAL
   \param path name of the file
   \param tree is replaced; unchanged when an exception is thrown
-  \param hits is replaced by one number per node, or emptied when the file has no such column
+  \param hits is replaced by one number per node, or cleared if the file has no such column
   \param ids is replaced by the ids of the nodes in the file
   \throws pcs::IO_error when the file cannot be read, a line is malformed, the nodes do not form one
           tree with one root, or the nodes of a branch are not a chain
@@ -217,7 +217,7 @@ void read_tree_csv(const std::string& path,
 }
 
 //! \ingroup PkgPcsIORef
-//! the same for a caller who does not want the ids
+//! overload without the ids
 template <class Kernel>
 void read_tree_csv(const std::string& path,
                    Tree_skeleton<Kernel>& tree,
@@ -228,7 +228,7 @@ void read_tree_csv(const std::string& path,
 }
 
 //! \ingroup PkgPcsIORef
-//! the same for a caller who does not want the numbers of points
+//! overload without the numbers of points
 template <class Kernel>
 void read_tree_csv(const std::string& path, Tree_skeleton<Kernel>& tree)
 {

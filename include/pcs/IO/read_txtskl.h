@@ -29,7 +29,7 @@ namespace IO {
   \tparam Kernel a kernel of CGAL
   \param path name of the file
   \param tree is replaced; unchanged when an exception is thrown
-  \throws pcs::IO_error naming the line and what was expected there
+  \throws pcs::IO_error naming the line and the expected content
 */
 template <class Kernel>
 void read_txtskl(const std::string& path, Tree_skeleton<Kernel>& tree)

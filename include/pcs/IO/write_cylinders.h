@@ -24,11 +24,11 @@ namespace IO {
 
 /*!
   \ingroup PkgPcsIORef
-  \brief writes one cylinder per edge inside a branch, with the columns that TreeQSM has for them.
+  \brief writes one cylinder per edge inside a branch, with the cylinder columns of TreeQSM.
 
   Columns: `sx, sy, sz` (start), `ax, ay, az` (axis), `length, radius, parent, branch, order,
-  radius_error, is_measured`. The axis is a unit vector, `parent` the number of a row from 1, 0 for
-  the first, `branch` counts from 1. Edges of length zero have no cylinder. The file is complete or
+  radius_error, is_measured`. The axis is a unit vector; `parent` is a row number from 1, 0 for the
+  first; `branch` counts from 1. Edges of length zero have no cylinder. The file is complete or
   absent.
 
   \throws pcs::IO_error when the file cannot be written
@@ -40,7 +40,7 @@ void write_cylinders(const std::string& path, const Tree_skeleton<Kernel>& tree)
   const Tree_bundle& bundle = tree[boost::graph_bundle];
   const std::vector<std::size_t> order =
       internal::writing_order(tree, bundle.root, "write_cylinders");
-  std::vector<std::size_t> row(num_vertices(tree), 0); // of the cylinder that ends at a node
+  std::vector<std::size_t> row(num_vertices(tree), 0); // row of the cylinder that ends at a node
   internal::Output_file file(path);
   file.write("sx,sy,sz,ax,ay,az,length,radius,parent,branch,order,"
              "radius_error,is_measured\n");

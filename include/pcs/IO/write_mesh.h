@@ -24,7 +24,7 @@ namespace IO {
 
 /*!
   \ingroup PkgPcsIORef
-  \brief writes a triangle mesh; the extension of the file, `.ply` or `.obj`, tells the format.
+  \brief writes a triangle mesh in the format of the file extension, `.ply` or `.obj`.
 
   PLY is binary, with coordinates in double precision. The file is complete or absent.
 
@@ -58,7 +58,7 @@ void write_mesh(const std::string& path,
                std::to_string(triangles.size()) +
                "\nproperty list uchar int vertex_indices\nend_header\n");
     for (const auto& row : rows)
-      file.write(row.data(), sizeof(row)); // little endian machines only, like all of the writers
+      file.write(row.data(), sizeof(row)); // requires a little endian machine, like all writers
     for (const auto& t : triangles) {
       unsigned char bytes[13] = {3};
       for (std::size_t k = 0; k < 3; ++k) {

@@ -24,14 +24,14 @@ namespace IO {
   \ingroup PkgPcsIORef
   \brief writes a table with all its properties.
 
-  The rules are those of `Point_writer`; the file is complete or absent, and may be the one the
-  table was read from. LAS: points from a LAS file keep scale and offset as long as they fit, else
-  the offset is renewed; other points get a scale of at least 5e8 steps for the longest side of
-  their bounding box.
+  The rules are those of `Point_writer`. The file is complete or absent, and may be the one from
+  which the table was read. LAS: points from a LAS file keep scale and offset if their coordinates
+  can be represented, otherwise the offset is updated. Other points get the finest power of ten as
+  scale that gives at most 5e8 steps along the longest side of their bounding box.
 
-  \param path name of the file; its extension tells the format unless `options.format` does
+  \param path name of the file; its extension determines the format unless `options.format` is set
   \param table the points
-  \param options how to write; `number_of_points` is ignored
+  \param options options for writing; `number_of_points` is ignored
   \throws pcs::IO_error when the file cannot be written, or the format cannot hold the data
   \throws pcs::Invalid_input when a coordinate is not finite or a property has the wrong size
 */

@@ -32,7 +32,7 @@ void write_swc(const std::string& path,
   std::vector<std::size_t> id(order.size());
   for (std::size_t i = 0; i < order.size(); ++i)
     id[order[i]] = i + 1;
-  std::vector<std::size_t> parent(order.size(), 0); // 0 is the id of no node
+  std::vector<std::size_t> parent(order.size(), 0); // 0 is not the id of a node
   for (const std::size_t v : order)
     for (const auto e : boost::make_iterator_range(out_edges(v, graph)))
       parent[target(e, graph)] = id[v];
@@ -73,8 +73,8 @@ void write_swc(const std::string& path,
   \ingroup PkgPcsIORef
   \brief writes any graph that is a tree to an SWC file.
 
-  Ids count from 1; parents come before their children. Numbers have as many digits as they need to
-  be read back unchanged. The file is complete or absent. The type of all nodes is 0.
+  Ids begin with 1; parents precede their children. Numbers have as many digits as required to read
+  them back unchanged. The file is complete or absent. The type of all nodes is 0.
 
   \tparam Graph a model of `boost::VertexListGraph` and `boost::IncidenceGraph` with edges from
           parent to child, whose vertices are the numbers `0, ..., n - 1`
@@ -99,8 +99,8 @@ void write_swc(const std::string& path,
   \ingroup PkgPcsIORef
   \brief writes a tree skeleton to an SWC file.
 
-  As above; the type of a node is 5 plus the order of its branch, 5 being the first of the types
-  that SWC leaves to its users.
+  The format is the same, except that the type of a node is 5 plus the order of its branch, 5 being
+  the first of the types that SWC leaves to its users.
 */
 template <class Kernel>
 void write_swc(const std::string& path, const Tree_skeleton<Kernel>& tree)

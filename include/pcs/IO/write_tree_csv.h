@@ -21,12 +21,12 @@ namespace IO {
   \ingroup PkgPcsIORef
   \brief writes a tree skeleton with the columns `id,parent,branch,order,x,y,z,r,a,b,hits`.
 
-  Ids are the numbers of the nodes, so labels of points stay valid; `branch` is the `id` of the
-  branch, or its number if it has none. Numbers have as many digits as they need to be read back
+  Ids are the numbers of the nodes, so labels of points remain valid; `branch` is the `id` of the
+  branch, or its number if it has none. Numbers have as many digits as required to read them back
   unchanged. The file is complete or absent.
 
   \tparam Kernel a kernel of CGAL
-  \param hits the number of points on each node; empty: the column is left out
+  \param hits the number of points on each node; empty: the column is omitted
   \throws pcs::IO_error when the file cannot be written
   \throws pcs::Invalid_input when the graph is not a tree below its root, a number is not finite,
           a branch of a node does not exist, or `hits` has another size than there are nodes

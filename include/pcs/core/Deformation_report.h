@@ -13,30 +13,30 @@
 namespace pcs {
 
 //! \ingroup PkgPcsDeformationRef
-//! what `deform_point_set()` or `Point_set_deformation::deform()` did
+//! statistics of `deform_point_set()` or `Point_set_deformation::deform()`
 struct Deformation_report
 {
   Status status = Status::nothing_to_do;
 
   std::size_t number_of_points = 0;         ///< of the input [count]
-  std::size_t number_of_duplicates = 0;     ///< points at the place of another one [count]
+  std::size_t number_of_duplicates = 0;     ///< points that coincide with another point [count]
   std::size_t number_of_samples = 0;        ///< nodes of the non-linear problem [count]
-  std::size_t number_of_interior_links = 0; ///< springs through the inside [count]
-  std::size_t number_of_short_cuts = 0;     ///< links dropped that jumped between sheets [count]
+  std::size_t number_of_interior_links = 0; ///< springs through the interior [count]
+  std::size_t number_of_short_cuts = 0;     ///< links removed between separate sheets [count]
   std::size_t number_of_components = 0;     ///< of the neighbour graph [count]
   std::size_t number_of_unreached_components =
-      0; ///< components without handle: they stay where they are [count]
+      0; ///< components without handle, which keep their positions [count]
   std::size_t number_of_unreached_points = 0; ///< points of those components [count]
-  std::size_t number_of_iterations = 0;       ///< passes of rotations and positions [count]
+  std::size_t number_of_iterations = 0;       ///< iterations over rotations and positions [count]
 
-  double initial_energy = 0; ///< of the state from which the passes start [L^2]
+  double initial_energy = 0; ///< of the state from which the iterations start [L^2]
   double energy = 0;         ///< of the result [L^2]
 
-  //! wall-clock time of each stage [s]; stages that were not needed again show zero
+  //! wall-clock time of each stage [s]; 0 for stages that were not repeated
   struct Seconds
   {
     double neighbors = 0, sampling = 0, factorization = 0, solving = 0, upsampling = 0;
-    double coarse_levels = 0; ///< of `solving`: before the passes, on networks of fewer nodes
+    double coarse_levels = 0; ///< part of `solving`: initial solves on coarser networks
   } seconds;
 };
 

@@ -27,19 +27,20 @@ namespace pcs {
 
 /*!
   \ingroup PkgPcsCoreRef
-  \brief The map x -> s R x + t, where R is kept as a sequence of turns about axes.
+  \brief The map x -> s R x + t, where R is stored as a sequence of rotations about axes.
 
-  A rotation matrix cannot tell 720 degrees from none; the turns can. Turns about the same axis are
-  added up, so an editor may multiply small rotations for ever. Coordinates are in double precision.
+  A rotation matrix cannot distinguish 720 degrees from 0 degrees; the sequence can. Rotations about
+  the same axis are added, so any number of small rotations can be multiplied. Coordinates are in
+  double precision.
 */
 class Similarity
 {
 public:
   using Vec3 = Eigen::Vector3d;
 
-  /// One rotation about an axis through the origin: `axis * angle` [rad], of any length.
+  /// One rotation about an axis through the origin: `axis * angle` [rad], of any angle.
   using Turn = Vec3;
-  /// Few turns need no memory of their own.
+  /// Up to four rotations need no heap memory.
   using Turns = boost::container::small_vector<Turn, 4>;
 
   Similarity() = default;
@@ -69,18 +70,18 @@ public:
     return s;
   }
 
-  /// `s` with `center` as its fixed point instead of the origin.
+  /// The similarity `s` with the fixed point `center` instead of the origin.
   static Similarity about(const Similarity& s, const Vec3& center)
   {
     Similarity result = s;
-    // Differences first: exact for the identity, and small for small turns far from the origin.
+    // Differences first: exact for the identity, and accurate for small turns far from the origin.
     result.m_translation = s.m_translation + (center - s.m_scale * (s.m_rotation * center));
     return result;
   }
 
-  /// From a row-major 3 x 4 or 4 x 4 matrix. Throws `Invalid_input` unless it is a rotation (no
-  /// reflection), a uniform scale and a translation, to 1e-6. Its rotation counts as the one of at
-  /// most 180 degrees.
+  /// Converts a row-major 3 x 4 or 4 x 4 matrix. Throws `Invalid_input` unless it is composed of a
+  /// rotation (no reflection), a uniform scale and a translation, to 1e-6. The rotation is
+  /// interpreted as one of at most 180 degrees.
   static Similarity from_matrix(const Eigen::Matrix<double, 3, 4>& m)
   {
     if (!m.allFinite())
@@ -123,7 +124,7 @@ public:
 
   Vec3 operator()(const Vec3& x) const { return m_scale * (m_rotation * x) + m_translation; }
 
-  /// First `b`, then `a`.
+  /// Applies `b`, then `a`.
   friend Similarity operator*(const Similarity& a, const Similarity& b)
   {
     Similarity s = b;
@@ -134,7 +135,7 @@ public:
     return s;
   }
 
-  /// Whether it moves nothing, bit for bit.
+  /// Whether the map is exactly the identity.
   bool is_identity() const
   {
     return m_scale == 1 && m_turns.empty() && m_translation == Vec3::Zero();
@@ -150,8 +151,7 @@ private:
   {
     check_turn(turn);
     if (turn.squaredNorm() > 0) {
-      // Same axis, either sense: one turn with the sum of the angles, and nothing at all when they
-      // cancel.
+      // Rotations about the same or the opposite axis are added; if they cancel, none remains.
       const bool is_same_axis = !m_turns.empty() && turn.cross(m_turns.back()).norm() <=
                                                         1e-12 * turn.norm() * m_turns.back().norm();
       if (!is_same_axis)
@@ -182,7 +182,7 @@ private:
                           internal::to_text(largest_turn) + " rad on");
   }
 
-  static constexpr double largest_turn = 1e12; ///< a double resolves 1e-4 rad there [rad]
+  static constexpr double largest_turn = 1e12; ///< where a double resolves 1e-4 rad [rad]
 
   Turns m_turns;
   Eigen::Matrix3d m_rotation = Eigen::Matrix3d::Identity();
@@ -230,7 +230,7 @@ constexpr bool is_similarity_like_v =
 
 /*!
   \ingroup PkgPcsCoreRef
-  \brief a `Similarity` from itself, or from a `CGAL::Aff_transformation_3`.
+  \brief converts a `Similarity` or a `CGAL::Aff_transformation_3` to a `Similarity`.
   \throws Invalid_input if the transformation reflects, shears or scales unequally
 */
 template <class Transformation>
@@ -252,8 +252,7 @@ Similarity to_similarity(const Transformation& t)
 
 /*!
   \ingroup PkgPcsCoreRef
-  \brief rotation by `angle` [rad] about `axis` through `center`; any number of turns, of either
-      sign.
+  \brief rotation by `angle` [rad], of any sign and number of turns, about `axis` through `center`.
   \throws Invalid_input if `axis` is zero or a value is not finite
 */
 template <class Vector_3, class Point_3>

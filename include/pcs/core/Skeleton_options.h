@@ -13,15 +13,14 @@ namespace pcs {
 //! \ingroup PkgPcsSkeletonRef
 //! how branches are found
 enum class Skeleton_method {
-  chains,  ///< whole axes are fitted to chains of geodesic level sets
-  sections ///< as published: sections at centers of curvature, spanning trees
-           ///< where there are none
+  chains,  ///< axes are fitted to chains of geodesic level-set components
+  sections ///< as published: cross-sections at centers of curvature, and spanning trees elsewhere
 };
 
 //! \ingroup PkgPcsSkeletonRef
 //! whether leaf points are removed
 enum class Leaf_removal {
-  where_found, ///< if there is evidence of leaves
+  where_found, ///< if leaves are detected
   always,
   never
 };
@@ -29,10 +28,10 @@ enum class Leaf_removal {
 //! \ingroup PkgPcsSkeletonRef
 //! how a section is fitted
 enum class Section_fit {
-  conic,   ///< least squares for the conic with constant term 1, as published
-  ellipse, ///< the direct fit of Halir and Flusser; never a hyperbola
-  circle,  ///< Taubin's circle; accurate on short arcs
-  by_arc   ///< an ellipse if nearly the whole section is seen, otherwise a circle
+  conic,   ///< least-squares conic with constant term 1, as published
+  ellipse, ///< direct ellipse fit of Halir and Flusser; never a hyperbola
+  circle,  ///< Taubin's circle fit; accurate on short arcs
+  by_arc   ///< an ellipse if nearly the whole cross-section is visible, otherwise a circle
 };
 
 /// A conic has five degrees of freedom [count].
@@ -47,16 +46,16 @@ constexpr std::size_t fewest_points_of_section = 6;
 struct Slice_options
 {
   Section_fit fit = Section_fit::conic;
-  double height = 5;              ///< of a slice, in spacings [-]
-  bool is_height_local = false;   ///< in local spacings instead of the median spacing
+  double height = 5;              ///< height of a slice, in spacings [-]
+  bool is_height_local = false;   ///< whether local spacings replace the median spacing
   std::size_t lowest_count = 10;  ///< smallest number of points of a slice [count]
-  std::size_t highest_count = 20; ///< more are sampled at random; 0: all are used [count]
+  std::size_t highest_count = 20; ///< larger slices are sampled at random; 0: no limit [count]
   double upright = 0.9;           ///< ratio of the half axes below which a slice is tilted [-]
   int tilts = 5;                  ///< largest number of tilts [count]
-  bool do_mark_support = true;    ///< points that agree with a section get none of their own
+  bool do_mark_support = true;    ///< whether points that agree with a section are skipped
   double support_radius = 0.35;   ///< relative difference of the radii that counts as agreement [-]
   double support_cosine = 0.9;    ///< cosine of the angle between the axes, likewise [-]
-  double largest_radius = 200;    ///< of a center candidate, in spacings [-]
+  double largest_radius = 200;    ///< largest radius of a candidate center, in spacings [-]
   unsigned seed = 0;              ///< of the random sample
 };
 

@@ -10,11 +10,11 @@
 namespace pcs {
 
 //! \ingroup PkgPcsCoreRef
-//! how an algorithm ended; whatever the status, nothing is half done
+//! how an algorithm ended; no status leaves a partial result
 enum class Status {
   converged,        //!< the result meets the tolerance
   iteration_limit,  //!< the result is valid; more iterations might improve it
-  nothing_to_do,    //!< no handle, or nothing that a handle reaches; the output is the input
+  nothing_to_do,    //!< no handle, or no point connected to a handle; the output equals the input
   cancelled,        //!< the callback returned `false`; the output is untouched
   numerical_failure //!< a matrix could not be factorised; the output is untouched
 };

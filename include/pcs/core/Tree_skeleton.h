@@ -16,12 +16,12 @@
 namespace pcs {
 
 //! \ingroup PkgPcsCoreRef
-//! means "none" wherever a node or a branch is named by its number
+//! the index that denotes no node or no branch
 constexpr std::size_t npos = std::numeric_limits<std::size_t>::max();
 
 /*!
   \ingroup PkgPcsCoreRef
-  \brief A node of a tree skeleton: a point of a branch's axis, and the section of the branch there.
+  \brief A node of a tree skeleton: a point on a branch axis with the cross-section there.
 
   \tparam Kernel a kernel of CGAL, or any class with `FT`, `Point_3` and `Vector_3`
 */
@@ -33,13 +33,13 @@ struct Tree_node
   using Vector_3 = typename Kernel::Vector_3;
 
   Point_3 point = Point_3(FT(0), FT(0), FT(0));
-  FT radius = FT(0);        //!< of the circle with the area of the section [L]
-  FT radius_error = FT(0);  //!< standard error of `radius`; 0 where it is not known [L]
-  bool is_measured = false; //!< whether points of the scan, not a model, gave the radius
+  FT radius = FT(0);        //!< of the circle with the area of the cross-section [L]
+  FT radius_error = FT(0);  //!< standard error of `radius`; 0 if unknown [L]
+  bool is_measured = false; //!< whether the radius was fitted to points, not predicted by a model
 
-  FT major_radius = FT(0); //!< half the longest diameter of the section [L]
+  FT major_radius = FT(0); //!< half the longest diameter of the cross-section [L]
   FT minor_radius = FT(0); //!< half the shortest diameter; both equal `radius` for a circle [L]
-  //! unit vector along the longest diameter; the null vector for a circle or where it is not known
+  //! unit vector along the longest diameter; the null vector for a circle or if unknown
   Vector_3 major_axis = Vector_3(FT(0), FT(0), FT(0));
 
   std::size_t branch = 0; //!< index in `Tree_bundle::branches`
@@ -47,10 +47,10 @@ struct Tree_node
 
 /*!
   \ingroup PkgPcsCoreRef
-  \brief A branch: a chain of nodes from where it leaves its parent to its tip.
+  \brief A branch: a chain of nodes from the axis of its parent to its tip.
 
   The first node of a branch lies on the axis of its parent and has the radius of the branch, not
-  of the parent; the edge that leads to it may have the length 0.
+  of the parent. The edge that leads to it may have the length 0.
 */
 struct Tree_branch
 {
@@ -58,12 +58,12 @@ struct Tree_branch
   std::size_t parent = npos;
   //! 0 for the trunk, 1 for branches on it, and so on
   int order = 0;
-  //! the name of this branch, the same in other shapes of the same tree; `npos` if it has none
+  //! identifier of this branch in all shapes of the same tree; `npos` if it has none
   std::size_t id = npos;
 };
 
 //! \ingroup PkgPcsCoreRef
-//! what belongs to a tree skeleton as a whole
+//! the properties of a tree skeleton that belong to no single node
 struct Tree_bundle
 {
   std::size_t root = npos; //!< the lowest node of the trunk; `npos` in a graph without nodes
@@ -72,11 +72,11 @@ struct Tree_bundle
 
 /*!
   \ingroup PkgPcsCoreRef
-  \brief The ready-made type of tree skeletons: a directed graph with edges from parent to child.
+  \brief The default type of tree skeletons: a directed graph with edges from parent to child.
 
   `tree[v].point` is the position of node `v`, `tree[boost::graph_bundle].root` the root. Property
-  maps come from `get(&pcs::Tree_node<Kernel>::radius, tree)`. Algorithms of pcs take any model of
-  the concepts of Boost.Graph with maps for position and radius.
+  maps are obtained from `get(&pcs::Tree_node<Kernel>::radius, tree)`. Algorithms of pcs accept any
+  model of the concepts of Boost.Graph with maps for position and radius.
 */
 template <class Kernel>
 using Tree_skeleton = boost::adjacency_list<boost::vecS,
@@ -101,7 +101,7 @@ struct Is_tree_skeleton<Tree_skeleton<Kernel>> : std::true_type
 
 /*!
   \ingroup PkgPcsCoreRef
-  \brief returns the node that carries `v`, or `npos` for the root.
+  \brief returns the parent of node `v`, or `npos` for the root.
 */
 template <class Kernel>
 std::size_t parent_node(std::size_t v, const Tree_skeleton<Kernel>& tree)

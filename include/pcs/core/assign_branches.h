@@ -20,8 +20,8 @@
 namespace pcs {
 namespace internal {
 
-//! length of the longest path from each node to a tip; throws unless all nodes descend from the
-//! root
+//! returns the length of the longest path from each node to a tip; throws unless all nodes descend
+//! from the root
 template <class Kernel>
 std::vector<double> lengths_to_tips(const Tree_skeleton<Kernel>& tree)
 {
@@ -55,7 +55,7 @@ std::vector<double> lengths_to_tips(const Tree_skeleton<Kernel>& tree)
   return length;
 }
 
-//! as below; `child(v)` continues the branch of node `v`, or is `npos`
+//! assigns branches as below; `child(v)` continues the branch of node `v`, or is `npos`
 template <class Kernel, class Child>
 void assign_branches(Tree_skeleton<Kernel>& tree, const Child& child)
 {
@@ -87,12 +87,12 @@ void assign_branches(Tree_skeleton<Kernel>& tree, const Child& child)
 
 /*!
   \ingroup PkgPcsCoreRef
-  \brief groups the nodes of a tree into branches, where a file or an algorithm gave none.
+  \brief groups the nodes of a tree into branches if its source defines none.
 
-  At every fork the thickest child continues the branch of its parent; among equally thick ones that
-  with the longest way to a tip, then the one with the lowest number. The others begin new branches.
-  Branches are numbered in the order of a walk that finishes a branch before those on it; their
-  `id` is their number.
+  At every fork the thickest child continues the branch of its parent. Among equally thick children
+  it is the one with the longest path to a tip, then the one with the lowest number. The other
+  children begin new branches. Branches are numbered breadth-first from the trunk; their `id` is
+  their number.
 
   \tparam Kernel a kernel of CGAL
   \param tree its `branches`, and `branch` of all nodes, are overwritten

@@ -12,10 +12,10 @@ namespace pcs {
 
 /*!
   \ingroup PkgPcsCoreRef
-  \brief An argument breaks the contract of the function it was given to.
+  \brief An argument violates a precondition of the called function.
 
-  The message names the function, the argument, the offending value or index, and the rule.
-  Nothing was changed when it is thrown. It is thrown in release builds as well.
+  The message names the function, the argument, the offending value or index, and the rule. The
+  function has no effect when it throws. Release builds throw it as well.
 */
 class Invalid_input : public std::invalid_argument
 {
@@ -27,7 +27,7 @@ public:
   \ingroup PkgPcsIORef
   \brief A file is missing, malformed, or cannot be written.
 
-  The message names the file, the line or byte, and what was expected there.
+  The message names the file, the line or byte, and the expected content.
 */
 class IO_error : public std::runtime_error
 {
@@ -37,7 +37,7 @@ public:
   {
   }
 
-  //! the name of the file as the caller gave it
+  //! the name of the file as passed by the caller
   const std::string& file_name() const noexcept { return m_file_name; }
 
 private:

@@ -18,15 +18,15 @@
 namespace pcs {
 
 //! \ingroup PkgPcsGeneratorsRef
-//! how far branches reach from the trunk, from the foot of the crown to its top
+//! crown shape: the reach of branches from the trunk, from the base of the crown to its top
 enum class Crown_shape {
   dome, //!< widest in the lower half
-  cone, //!< widest at the foot
+  cone, //!< widest at the base
   vase  //!< widest near the top
 };
 
 //! \ingroup PkgPcsGeneratorsRef
-//! the least and the largest value that is drawn
+//! the interval of a random value
 struct Value_range
 {
   double least = 0, largest = 0;
@@ -34,52 +34,52 @@ struct Value_range
 
 /*!
   \ingroup PkgPcsGeneratorsRef
-  \brief How a virtual tree grows; the defaults are those of a broadleaf in metres.
+  \brief Growth parameters of a virtual tree; the defaults describe a broadleaf in metres.
 
-  Arrays hold the values of the trunk, of branches on it, and of all others. Bends and tropisms are
-  per `bend_length` of growth. Lengths are in any one unit; `scaled()` changes it.
+  Arrays contain the values of the trunk, of branches on it, and of all others. Bends and tropisms
+  refer to `bend_length` of growth. Lengths are in any one unit; `scaled()` changes it.
 */
 struct Tree_habit
 {
   double height = 12;          //!< length of the trunk [L]
-  double trunk_radius = 0.18;  //!< at its base, without the root flare [L]
-  double flare = 0.35;         //!< additional share of the radius at the ground [-]
-  double flare_height = 0.35;  //!< over which it fades by 1/e [L]
-  double lean = 0.02;          //!< standard deviation of the trunk's first direction [rad]
+  double trunk_radius = 0.18;  //!< at its base, without root flare [L]
+  double flare = 0.35;         //!< relative increase of the radius at the ground [-]
+  double flare_height = 0.35;  //!< height over which the flare decays by 1/e [L]
+  double lean = 0.02;          //!< standard deviation of the initial direction of the trunk [rad]
   int number_of_orders = 4;    //!< the trunk, branches, twigs, ... [count]
-  double largest_step = 0.1;   //!< distance of nodes, everywhere on the trunk [L]
-  double smallest_step = 0.03; //!< between them, steps are twice the radius [L]
+  double largest_step = 0.1;   //!< largest distance of nodes, and their distance on the trunk [L]
+  double smallest_step = 0.03; //!< smallest distance; otherwise it is twice the radius [L]
 
-  double bend_length = 0.1;                           //!< unit of the next three [L]
+  double bend_length = 0.1;                           //!< unit of the next three values [L]
   std::array<double, 3> bend = {0.012, 0.05, 0.05};   //!< standard deviation [rad]
-  double bend_renewal = 0.06;                         //!< chance of a new bend per step [-]
-  std::array<double, 3> tropism = {0.01, 0.06, 0.02}; //!< upwards, or down if negative [-]
-  double sag = 0; //!< tropism that a branch loses from its base to its tip [-]
+  double bend_renewal = 0.06;                         //!< probability of a new bend per step [-]
+  std::array<double, 3> tropism = {0.01, 0.06, 0.02}; //!< upwards; negative: downwards [-]
+  double sag = 0; //!< decrease of the tropism from the base of a branch to its tip [-]
 
   std::array<double, 2> taper = {0.75, 0.6};     //!< exponent: trunk, branches [-]
-  std::array<double, 2> tip_share = {0.03, 0.1}; //!< of the radius at the base [-]
-  double tip_radius = 0.002;                     //!< no radius is smaller [L]
+  std::array<double, 2> tip_share = {0.03, 0.1}; //!< ratio of the radii at tip and base [-]
+  double tip_radius = 0.002;                     //!< smallest radius [L]
 
-  std::array<double, 3> spacing = {0.28, 0.22, 0.14}; //!< of branches, on average [L]
-  std::array<double, 3> bare = {0.18, 0.15, 0.15};    //!< share of the length without branches [-]
-  std::size_t whorl = 1; //!< branches that leave the trunk together [count]
+  std::array<double, 3> spacing = {0.28, 0.22, 0.14}; //!< mean distance of branches [L]
+  std::array<double, 3> bare = {0.18, 0.15, 0.15};    //!< branchless fraction of the length [-]
+  std::size_t whorl = 1; //!< number of branches per whorl on the trunk [count]
   std::array<Value_range, 2> insertion = {
-      {{0.7, 1.3}, {0.7, 1.3}}}; //!< angle: trunk, branches [rad]
-  std::array<Value_range, 2> child_radius = {{{0.25, 0.52}, {0.25, 0.52}}}; //!< of the parent's [-]
-  double largest_branch = 0.065;         //!< radius of branches on the trunk [L]
-  double smallest_branch = 0.003;        //!< thinner ones do not grow [L]
-  Value_range slenderness = {55, 80};    //!< length of a branch by its radius [-]
-  Crown_shape crown = Crown_shape::dome; //!< limits branches on the trunk
+      {{0.7, 1.3}, {0.7, 1.3}}}; //!< insertion angle: trunk, branches [rad]
+  std::array<Value_range, 2> child_radius = {{{0.25, 0.52}, {0.25, 0.52}}}; //!< by the parent's [-]
+  double largest_branch = 0.065;         //!< largest radius of branches on the trunk [L]
+  double smallest_branch = 0.003;        //!< smallest radius at the base of a branch [L]
+  Value_range slenderness = {55, 80};    //!< ratio of length and radius of a branch [-]
+  Crown_shape crown = Crown_shape::dome; //!< bounds the length of branches on the trunk
   double crown_radius = 3.2;             //!< [L]
 
-  std::size_t number_of_leaders = 1;    //!< stems that go on behind the fork [count]
-  double fork = 0.3;                    //!< share of the trunk below the fork [-]
+  std::size_t number_of_leaders = 1;    //!< number of stems above the fork [count]
+  double fork = 0.3;                    //!< fraction of the trunk below the fork [-]
   Value_range fork_angle = {0.45, 0.7}; //!< between the stems [rad]
   std::size_t number_of_stubs = 0;      //!< dead stubs below the crown [count]
 
-  double flattest_section = 0.88; //!< least ratio of the half axes of a section, up to 1 [-]
+  double flattest_section = 0.88; //!< smallest ratio of half axes of a section, at most 1 [-]
 
-  //! the same habit in another unit: all lengths times `factor`
+  //! returns the same habit in another unit: multiplies all lengths by `factor`
   Tree_habit scaled(double factor) const
   {
     Tree_habit result = *this;
@@ -176,7 +176,7 @@ inline Tree_habit forked_habit()
 }
 
 //! \ingroup PkgPcsGeneratorsRef
-//! a weeping tree of 7 m: branches rise, arch over and hang
+//! a weeping tree of 7 m: branches rise, arch over and droop
 inline Tree_habit weeping_habit()
 {
   Tree_habit h;
@@ -207,7 +207,7 @@ inline std::vector<std::pair<std::string, Tree_habit>> tree_habits()
 
 namespace internal {
 
-/// Checks of single values of a habit; each throws `Invalid_input`.
+/// Checks single values of a habit; throws `Invalid_input`.
 struct Habit_checks
 {
   static void check(bool is_fine, const char* name, double value, const char* rule)
@@ -242,7 +242,7 @@ struct Habit_checks
   static void branching(const Tree_habit& h);
 };
 
-/// Trunk, steps and bends.
+/// Checks trunk, steps and bends.
 inline void Habit_checks::axes(const Tree_habit& h)
 {
   positive(h.height, "height");
@@ -270,7 +270,7 @@ inline void Habit_checks::axes(const Tree_habit& h)
   check(std::isfinite(h.sag), "sag", h.sag, "finite");
 }
 
-/// Branches on branches, forks, stubs and sections.
+/// Checks branches on branches, forks, stubs and sections.
 inline void Habit_checks::branching(const Tree_habit& h)
 {
   for (std::size_t i = 0; i < 2; ++i) {

@@ -14,9 +14,9 @@
 namespace pcs {
 
 //! \ingroup PkgPcsGeneratorsRef
-//! what a point of a virtual scan lies on, if not on a node of the tree
+//! labels of points of a virtual scan that do not lie on a node of the tree
 enum Scan_label : int {
-  scan_label_ghost = -1,  //!< on nothing: between two surfaces, or anywhere (an outlier)
+  scan_label_ghost = -1,  //!< on no surface: between two surfaces, or an outlier
   scan_label_ground = -2, //!< on the ground
   scan_label_leaf = -3,   //!< on a leaf
   scan_label_post = -4    //!< on a post
@@ -24,7 +24,7 @@ enum Scan_label : int {
 
 /*!
   \ingroup PkgPcsGeneratorsRef
-  \brief The points of a virtual scan with their truth.
+  \brief The points of a virtual scan with their ground truth.
 
   `points`, `node` and `station` have one element for each point.
 
@@ -34,26 +34,26 @@ template <class Kernel>
 struct Virtual_scan
 {
   std::vector<typename Kernel::Point_3> points; //!< in the coordinates of the tree
-  std::vector<int> node;         //!< the nearest node of the branch that was hit, or a `Scan_label`
+  std::vector<int> node;         //!< nearest node of the branch that was hit, or a `Scan_label`
   std::vector<int> station;      //!< index in `stations`
-  std::vector<std::size_t> hits; //!< for each node of the tree its points [count]
-  std::vector<typename Kernel::Point_3> stations; //!< where the scanner stood
+  std::vector<std::size_t> hits; //!< number of points of each node of the tree [count]
+  std::vector<typename Kernel::Point_3> stations; //!< positions of the scanner
 };
 
 //! \ingroup PkgPcsGeneratorsRef
-//! what `scan_tree()` did
+//! statistics of `scan_tree()`
 struct Scan_report
 {
-  //! `converged`: complete; `nothing_to_do`: no beam met anything
+  //! `converged`: complete; `nothing_to_do`: no beam hit a surface
   Status status = Status::nothing_to_do;
 
-  std::size_t number_of_triangles = 0; //!< of the surface [count]
-  std::size_t number_of_beams = 0;     //!< of three rays each [count]
+  std::size_t number_of_triangles = 0; //!< triangles of the surface [count]
+  std::size_t number_of_beams = 0;     //!< beams of three rays each [count]
   std::size_t number_of_points = 0;    //!< [count]
   std::size_t number_of_wood_points = 0, number_of_ghosts = 0, number_of_outliers = 0;
   std::size_t number_of_ground_points = 0, number_of_leaf_points = 0, number_of_post_points = 0;
-  std::size_t number_of_thinned_points = 0; //!< dropped by `voxel_size` [count]
-  std::size_t number_of_hidden_nodes = 0;   //!< nodes without a point [count]
+  std::size_t number_of_thinned_points = 0; //!< points removed by `voxel_size` [count]
+  std::size_t number_of_hidden_nodes = 0;   //!< nodes without points [count]
 
   //! wall-clock time of each stage [s]
   struct Seconds

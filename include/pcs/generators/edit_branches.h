@@ -23,7 +23,7 @@ namespace pcs {
 namespace generators {
 namespace internal {
 
-//! the index of the branch with an id; throws if there is none
+//! returns the index of the branch with an id; throws if there is none
 template <class Kernel>
 std::size_t
 branch_of_id(const Tree_skeleton<Kernel>& tree, std::size_t branch_id, const char* caller)
@@ -36,7 +36,7 @@ branch_of_id(const Tree_skeleton<Kernel>& tree, std::size_t branch_id, const cha
                       std::to_string(branch_id));
 }
 
-//! for each branch whether it is `branch` or hangs on it
+//! returns for each branch whether it is `branch` or one of its descendants
 template <class Kernel>
 std::vector<bool> subtree(const Tree_skeleton<Kernel>& tree, std::size_t branch)
 {
@@ -71,7 +71,7 @@ void move_to(const Eigen::Vector3d& p, Tree_node<Kernel>& node)
 
 /*!
   \ingroup PkgPcsGeneratorsRef
-  \brief returns the tree without one of its branches and all that hangs on it.
+  \brief returns the tree without one of its branches and the descendants of this branch.
 
   The other nodes and branches keep their order; branches keep their `id`.
 
@@ -114,7 +114,7 @@ Tree_skeleton<Kernel> prune_branch(const Tree_skeleton<Kernel>& tree, std::size_
 
 /*!
   \ingroup PkgPcsGeneratorsRef
-  \brief turns a branch about its base, with all that hangs on it.
+  \brief rotates a branch and its descendants about the base of the branch.
 
   \param tree nodes and branches keep their numbers
   \param branch_id `Tree_branch::id` of the branch
@@ -157,9 +157,9 @@ void turn_branch(Tree_skeleton<Kernel>& tree,
 
 /*!
   \ingroup PkgPcsGeneratorsRef
-  \brief makes a branch longer or shorter; what hangs on it moves along and keeps its shape.
+  \brief changes the length of a branch; its descendants are translated without deformation.
 
-  The axis of the branch is scaled about its base. Radii stay.
+  The axis of the branch is scaled about its base. Radii are unchanged.
 
   \param tree nodes and branches keep their numbers
   \param branch_id `Tree_branch::id` of the branch
@@ -181,7 +181,7 @@ void lengthen_branch(Tree_skeleton<Kernel>& tree, std::size_t branch_id, double 
   std::vector<Eigen::Vector3d> shift(num_vertices(tree), Eigen::Vector3d::Zero());
   for (const std::size_t v : nodes[branch])
     shift[v] = (factor - 1) * (generators::internal::vector_of<Kernel>(tree[v]) - base);
-  // parents pass their shift on to the branches that they carry
+  // nodes pass their displacement on to the branches attached to them
   std::vector<std::size_t> stack = nodes[branch];
   while (!stack.empty()) {
     const std::size_t v = stack.back();

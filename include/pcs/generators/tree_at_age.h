@@ -21,7 +21,7 @@ namespace pcs {
 namespace generators {
 namespace internal {
 
-//! Grows the branches of a tree up to an age, each from when the tip of its parent passed its base.
+//! Grows the branches of a tree up to an age; each begins when its parent's tip passes its base.
 template <class Kernel>
 class Younger_tree
 {
@@ -72,7 +72,7 @@ private:
     for (std::size_t i = 0; i < nodes.size(); ++i)
       m_birth[nodes[i]] = birth + (1 - birth) * time_of_length(length > 0 ? at[i] / length : 0);
     if (birth >= m_age || (carrier != npos && m_copy[carrier] == npos))
-      return; // not yet born, or its base is not yet there
+      return; // not yet begun, or its base does not exist yet
 
     Tree_branch branch = m_tree[boost::graph_bundle].branches[b];
     branch.parent = carrier == npos ? npos : m_new_branch[m_tree[carrier].branch];
@@ -87,7 +87,7 @@ private:
         m_old.push_back(nodes[i]);
         continue;
       }
-      // the tip is on the way from the last node to this one
+      // the tip lies between the last node and this one
       const double now = length * length_at_time((m_age - birth) / (1 - birth));
       const double t = std::min(1.0, (now - at[i - 1]) / (at[i] - at[i - 1]));
       if (t > 1e-9) {
@@ -98,7 +98,8 @@ private:
     }
   }
 
-  // Growth slows down evenly to a halt: the length after the share `t` of a life is 1 - (1 - t)^2.
+  // Growth decelerates uniformly to 0: the length after the fraction `t` of a life is
+  // 1 - (1 - t)^2.
   static double length_at_time(double t) { return t * (2 - t); }
   static double time_of_length(double s) { return 1 - std::sqrt(std::max(0.0, 1 - s)); }
 
@@ -127,7 +128,7 @@ private:
   std::size_t add(Tree_node<Kernel> node, double birth, std::size_t b, std::size_t parent)
   {
     using FT = typename Kernel::FT;
-    // wood thickens from when the tip passed; at the tip it has the radius of the old tree's tip
+    // radii grow from the passage of the tip on, from the radius of the tip of the old tree
     const double grown = birth < 1 ? (m_age - birth) / (1 - birth) : 1;
     const double tip = CGAL::to_double(m_tips[b]);
     const double radius = CGAL::to_double(node.radius);
@@ -146,9 +147,9 @@ private:
 
   const Tree_skeleton<Kernel>& m_tree;
   double m_age;
-  std::vector<double> m_birth;     // of each node: when the tip passed
-  std::vector<std::size_t> m_copy; // of each node of the old tree in the young one
-  std::vector<std::size_t> m_old;  // of each node of the young tree in the old one
+  std::vector<double> m_birth;     // of each node: the time of the passage of the tip
+  std::vector<std::size_t> m_copy; // for each node of the old tree its node in the young tree
+  std::vector<std::size_t> m_old;  // for each node of the young tree its node in the old tree
   std::vector<std::size_t> m_new_branch;
   std::vector<typename Kernel::FT> m_tips;
   Tree_skeleton<Kernel> m_result;
@@ -161,16 +162,16 @@ private:
   \ingroup PkgPcsGeneratorsRef
   \brief returns the shape of a tree when it was younger.
 
-  The trunk grows ever slower until the age 1, which is the given tree; a branch begins when the tip
-  of its parent passes its base, and grows ever slower until the age 1. Radii grow evenly from the
-  radius of the branch's tip. Wood stays where it is, so an axis of the young tree is the
-  beginning of the old one: that is the truth for correspondences.
+  The given tree has the age 1. The trunk grows with decreasing speed until then. A branch begins
+  when the tip of its parent passes its base and also grows with decreasing speed until the age 1.
+  Radii grow linearly from the radius of the branch's tip. The wood does not move, so an axis of the
+  young tree is the beginning of the old axis: this is the ground truth for correspondences.
 
   \tparam Kernel a class with `FT`, `Point_3` and `Vector_3`, such as a kernel of CGAL
   \param tree a tree with branches, of any origin
-  \param age share of the life of the tree, in (0, 1]
-  \param old_nodes is replaced: for each node of the result the same node of `tree`; `npos` for the
-         tips that were on the way between two nodes
+  \param age fraction of the life of the tree, in (0, 1]
+  \param old_nodes is replaced: for each node of the result the same node of `tree`; `npos` for tips
+         that lie between two nodes
   \return a tree with fewer branches, which keep their `id`
   \throws pcs::Invalid_input when `age` is out of range
   \par Complexity
@@ -187,7 +188,7 @@ tree_at_age(const Tree_skeleton<Kernel>& tree, double age, std::vector<std::size
 }
 
 //! \ingroup PkgPcsGeneratorsRef
-//! the same for a caller who does not need the correspondence of nodes
+//! overload without the correspondence of nodes
 template <class Kernel>
 Tree_skeleton<Kernel> tree_at_age(const Tree_skeleton<Kernel>& tree, double age)
 {

@@ -23,7 +23,7 @@ template <class Kernel>
 class Fixture
 {
 public:
-  //! a branch along the points; the first one is doubled at the parent's node
+  //! adds a branch along the points; the first node coincides with the node of the parent
   void add(std::size_t parent,
            const std::vector<Eigen::Vector3d>& points,
            double radius,
@@ -166,7 +166,7 @@ make_oblique_ellipse_tree(double length, double radius, double tilt, double flat
 
 /*!
   \ingroup PkgPcsGeneratorsRef
-  \brief a Y: a stem of length `length` that goes on, and a branch that leaves its upper end.
+  \brief a Y: a stem of length `length` that continues, and a branch that leaves its upper end.
 
   \param angle between the two arms [rad]
   \param branch_radius of the branch; the stem has `radius`
@@ -216,8 +216,8 @@ Tree_skeleton<Kernel> make_parallel_twigs_tree(double length, double radius, dou
   \ingroup PkgPcsGeneratorsRef
   \brief two branches of a trunk that cross without touching, `gap` between their surfaces.
 
-  The trunk stands on the origin, with height `length`; the branches leave it at a half and at three
-  quarters of its height.
+  The trunk begins at the origin and has the height `length`; the branches leave it at a half and at
+  three quarters of its height.
 */
 template <class Kernel>
 Tree_skeleton<Kernel> make_crossing_branches_tree(double length, double radius, double gap)
@@ -226,7 +226,7 @@ Tree_skeleton<Kernel> make_crossing_branches_tree(double length, double radius, 
   generators::internal::Fixture<Kernel> f;
   const double l = length;
   f.add(npos, {{0, 0, 0}, {0, 0, l / 2}, {0, 0, 3 * l / 4}, {0, 0, l}}, 3 * radius, 3 * radius);
-  // both pass (l / 2, 0, 5 l / 8), one in front of it and one behind
+  // both pass (l / 2, 0, 5 l / 8) at the distance `side`, on opposite sides
   const Eigen::Vector3d side(0, radius + gap / 2, 0);
   const Eigen::Vector3d middle(l / 2, 0, 5 * l / 8);
   const Eigen::Vector3d low(0, 0, l / 2), high(0, 0, 3 * l / 4);

@@ -19,11 +19,11 @@
 namespace pcs {
 namespace internal {
 
-/// Like `std::allocator`. Blocks of several huge pages begin at the border of one, and Linux is
-/// advised to use them: a walk through 50 MB misses the cache of page addresses 12,000 times
-/// otherwise. Elements that are made without arguments, as by `resize()`, are default-initialised:
-/// numbers have no value until they get one, and threads that fill an array side by side are the
-/// first to touch its pages, which the system clears then.
+/// An allocator like `std::allocator` that aligns blocks of several huge pages to page borders and
+/// advises Linux to use huge pages; otherwise a traversal of 50 MB causes 12,000 misses of the
+/// address translation cache. Elements constructed without arguments, as by `resize()`, are
+/// default-initialised: numbers remain uninitialised. The threads that fill an array in parallel
+/// are therefore the first to access its pages, which the system clears at that moment.
 template <class T>
 struct Huge_page_allocator
 {
@@ -43,7 +43,7 @@ struct Huge_page_allocator
     void* memory = ::operator new(bytes, alignment_of(bytes));
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
     if (bytes >= least_size)
-      madvise(memory, bytes - bytes % huge_page, MADV_HUGEPAGE); // a wish: it may be refused
+      madvise(memory, bytes - bytes % huge_page, MADV_HUGEPAGE); // may be refused
 #endif
     return static_cast<T*>(memory);
   }

@@ -13,7 +13,7 @@ namespace internal {
 class Stopwatch
 {
 public:
-  /// Seconds since construction or the previous call.
+  /// Returns the seconds since construction or the previous call.
   double lap()
   {
     const auto now = std::chrono::steady_clock::now();

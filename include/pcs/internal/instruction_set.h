@@ -5,14 +5,14 @@
 #ifndef PCS_INTERNAL_INSTRUCTION_SET_H
 #define PCS_INTERNAL_INSTRUCTION_SET_H
 
-// Kernels say where a multiply-add is fused, so all machines give the same bits; those without the
+// Kernels fuse multiply-adds explicitly, so all machines give the same bits; those without the
 // instruction are slow.
 #if (defined(__GNUC__) || defined(__clang__)) && defined(__x86_64__) &&                            \
     !defined(PCS_NO_RUNTIME_DISPATCH)
 #define PCS_HAS_RUNTIME_DISPATCH 1
 #define PCS_TARGET_AVX2 __attribute__((target("avx2,fma")))
 #define PCS_ALWAYS_INLINE inline __attribute__((always_inline))
-// Clang wants the instruction set at each function with assembly, and does well without.
+// Clang needs the instruction set only at functions with assembly.
 #if defined(__clang__)
 #define PCS_TARGET_AVX512                                                                          \
   __attribute__((target("avx512f,avx512vl,avx512dq,fma"), min_vector_width(512)))
@@ -25,8 +25,8 @@
 #define PCS_ALWAYS_INLINE inline
 #endif
 
-// A lambda in a kernel must become part of it: alone it would be compiled for another instruction
-// set.
+// A lambda in a kernel must be inlined: a separate function would be compiled for another
+// instruction set.
 #if defined(__GNUC__) || defined(__clang__)
 #define PCS_LAMBDA_INLINE __attribute__((always_inline))
 #else
@@ -47,8 +47,8 @@ inline bool has_avx2()
 #endif
 }
 
-/// AVX-512 on whole registers: the extensions that all processors have that are not slowed down by
-/// it.
+/// Whether to use full AVX-512 registers. The required extensions are common to all processors that
+/// these registers do not slow down.
 inline bool has_avx512()
 {
 #if PCS_HAS_RUNTIME_DISPATCH

@@ -19,12 +19,12 @@ namespace internal {
 
 #if (defined(__GNUC__) || defined(__clang__)) && !defined(PCS_NO_VECTOR_EXTENSIONS)
 
-// Both compilers split a vector that the machine does not have; the operations, and so the bits,
-// stay the same.
-using Double2 = double __attribute__((vector_size(16))); // of every machine
+// Compilers split vectors that exceed the registers of the machine; the operations, and thus the
+// bits, are unchanged.
+using Double2 = double __attribute__((vector_size(16))); // on every machine
 using Double4 = double __attribute__((vector_size(32)));
 using Double8 = double __attribute__((vector_size(64)));
-/// Eight that may lie anywhere.
+/// Eight integers without alignment.
 using Uint16x8 = std::uint16_t __attribute__((vector_size(16), aligned(2), may_alias));
 
 constexpr std::uint64_t reciprocal_root_bits = 0x5fe6eb50c7b537a9;
@@ -40,14 +40,14 @@ PCS_ALWAYS_INLINE void guess_reciprocal_root(const Double8& x, Double8& y)
   y = reinterpret_cast<Double8>(reciprocal_root_bits - (reinterpret_cast<Bits>(x) >> 1));
 }
 
-/// All lanes alike. A list of eight equal values would be put together one by one.
+/// Sets all lanes to one value. An initialiser list would insert the values one by one.
 template <class T, class Lanes>
 PCS_ALWAYS_INLINE void fill(T value, Lanes& to)
 {
   to = value - Lanes{};
 }
 
-/// Lane by lane `a < b ? x : y`; `to` may be one of these.
+/// Selects lane by lane `a < b ? x : y`; `to` may be one of the arguments.
 template <class Lanes>
 PCS_ALWAYS_INLINE void
 select_less(const Lanes& a, const Lanes& b, const Lanes& x, const Lanes& y, Lanes& to)
@@ -139,7 +139,7 @@ void select_less(const Array_lanes<T, N>& a,
 
 #endif
 
-/// Loads and stores without a demand on alignment.
+/// Unaligned loads and stores.
 template <class Lanes, class T>
 PCS_ALWAYS_INLINE void load(const T* from, Lanes& to)
 {
@@ -152,7 +152,7 @@ PCS_ALWAYS_INLINE void store(const Lanes& from, T* to)
   std::memcpy(to, &from, sizeof(Lanes));
 }
 
-/// Asks for `bytes` of memory that are read soon.
+/// Prefetches `bytes` of memory that are read soon.
 PCS_ALWAYS_INLINE void prefetch([[maybe_unused]] const void* memory,
                                 [[maybe_unused]] std::size_t bytes)
 {
@@ -164,8 +164,8 @@ PCS_ALWAYS_INLINE void prefetch([[maybe_unused]] const void* memory,
 #endif
 }
 
-/// Calls `f(std::integral_constant<std::size_t, I>)` for I = 0 ... N - 1, unrolled: arrays of lanes
-/// that are indexed by constants live in registers.
+/// Calls `f(std::integral_constant<std::size_t, I>)` for I = 0 ... N - 1, unrolled: with constant
+/// indices, arrays of lanes remain in registers.
 template <class F, std::size_t... I>
 PCS_ALWAYS_INLINE void unroll(const F& f, std::index_sequence<I...>)
 {
@@ -178,10 +178,10 @@ PCS_ALWAYS_INLINE void unroll(const F& f)
 }
 
 /*!
-  How a kernel computes, on the doubles that fit a register: `fma` is `x * y + z` with one rounding,
-  and nothing else is fused, so that all kernels give the same bits; `subtract_product` is `z - x *
-  y`. A single number stands for all lanes. `to_doubles` reads as many steps of weights as there are
-  lanes.
+  The arithmetic of a kernel on as many doubles as a register holds. `fma` is `x * y + z` with one
+  rounding; no other operation is fused, so that all kernels give the same bits. `subtract_product`
+  is `z - x * y`. A scalar argument applies to all lanes. `to_doubles` converts as many quantised
+  weights as there are lanes.
 */
 template <class Lanes>
 struct Plain_arithmetic
@@ -219,9 +219,9 @@ struct Plain_arithmetic
 using Portable_arithmetic = Plain_arithmetic<Double4>;
 
 #ifdef PCS_HAS_AVX_ASSEMBLY
-// Written out: whether a compiler fuses `x * y + z` depends on its options, conversions it takes to
-// pieces, and a number for all lanes it first loads into a register, from where it costs an
-// operation to spread.
+// Assembly, because the fusion of `x * y + z` depends on compiler options, and because compilers
+// split the conversions and broadcast scalars from registers with an additional operation instead
+// of from memory.
 struct Avx2_arithmetic
 {
   using Doubles = Double4;
@@ -300,11 +300,11 @@ using Avx512_arithmetic = Plain_arithmetic<Double8>;
 inline constexpr double reciprocal_root_series[] = {1, 0.5, 0.375, 0.3125};
 
 /*!
-  `1 / sqrt(x)` to one or two units in the last place, from a guess on the bits of `x`: neither a
-  division nor a root, which take longer than all else in a kernel. `x` must be positive. With `d =
-  1 - x y^2`, the series `1 / sqrt(x) = y (1 + d / 2 + 3 d^2 / 8 + 5 d^3 / 16 + ...)` is cut after
-  `d^3`, then once more after `d^2`: from an error of 3.5 % to 7e-6 and to 1e-15, in a shorter chain
-  than four steps of Newton.
+  Computes `1 / sqrt(x)` to one or two units in the last place, from a guess based on the bits of
+  `x`, without divisions and roots, which would dominate the time of a kernel. `x` must be positive.
+  With `d = 1 - x y^2`, the series `1 / sqrt(x) = y (1 + d / 2 + 3 d^2 / 8 + 5 d^3 / 16 + ...)` is
+  truncated after `d^3`, then in a second step after `d^2`: the error decreases from 3.5 % to 7e-6
+  and to 1e-15, with a shorter chain of operations than four steps of Newton's method.
 */
 template <class Arithmetic>
 PCS_ALWAYS_INLINE void reciprocal_root(const typename Arithmetic::Doubles& x,

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-// Copied headers follow CGAL's own switch; the CMake target sets PCS_WITH_TBB itself.
+// Copied headers follow the definition of CGAL; the CMake target sets PCS_WITH_TBB itself.
 #if !defined(PCS_WITH_TBB) && defined(CGAL_LINKED_WITH_TBB)
 #define PCS_WITH_TBB 1
 #endif
@@ -48,8 +48,8 @@ constexpr bool is_parallel()
 #if PCS_HAS_TBB
   return wants_parallel;
 #else
-  // Parallel_if_available_tag derives from Parallel_tag exactly when CGAL sees TBB; it must keep
-  // working here.
+  // Parallel_if_available_tag derives from Parallel_tag exactly if CGAL uses TBB; it must remain
+  // valid here.
   static_assert(!wants_parallel || !std::is_same_v<ConcurrencyTag, CGAL::Parallel_tag>,
                 "pcs: CGAL::Parallel_tag needs TBB; link TBB (PCS_WITH_TBB) or use "
                 "CGAL::Parallel_if_available_tag");
@@ -57,8 +57,7 @@ constexpr bool is_parallel()
 #endif
 }
 
-/// Number of indices that one task takes. Fixed, so that no result depends on the number of
-/// threads.
+/// Number of indices per task. It is fixed, so that no result depends on the number of threads.
 constexpr std::size_t default_block = 1024;
 
 /// Calls `f(begin, end)` for consecutive blocks of at most `block` indices that cover `[0, n)`.
@@ -87,7 +86,7 @@ void for_each_block(std::size_t n, std::size_t block, const F& f)
     f(begin, std::min(n, begin + block));
 }
 
-/// Calls `f(i)` once for every `i` in `[0, n)`; `f(i)` may write only what belongs to `i`.
+/// Calls `f(i)` once for every `i` in `[0, n)`; `f(i)` may write only data that belong to `i`.
 template <class ConcurrencyTag, class F>
 void for_each_index(std::size_t n, const F& f, std::size_t block = default_block)
 {
@@ -97,8 +96,8 @@ void for_each_index(std::size_t n, const F& f, std::size_t block = default_block
   });
 }
 
-/// Joins `value(i)` over `[0, n)`: sequentially inside blocks of fixed size, then block by block in
-/// order. `partial` is room for what they give, for callers that keep it.
+/// Combines `value(i)` over `[0, n)`: sequentially inside blocks of fixed size, then block by block
+/// in order. `partial` stores the results of the blocks, so that callers can reuse its memory.
 template <class ConcurrencyTag, class T, class Value, class Join>
 T blocked_reduce(std::size_t n,
                  T init,
@@ -131,7 +130,7 @@ T blocked_reduce(std::size_t n,
   return blocked_reduce<ConcurrencyTag>(n, init, value, join, block, partial);
 }
 
-/// Runs two independent pieces of work, side by side where the tag allows it.
+/// Runs two independent functions, concurrently if the tag allows it.
 template <class ConcurrencyTag, class F, class G>
 void invoke_both(const F& f, const G& g)
 {
@@ -149,7 +148,7 @@ void invoke_both(const F& f, const G& g)
   g();
 }
 
-/// Sorts by `less`, which must be a total order: then the result does not depend on the schedule.
+/// Sorts by `less`, which must be a total order so that the result is independent of the schedule.
 template <class ConcurrencyTag, class Iterator, class Less>
 void sort(Iterator begin, Iterator end, const Less& less)
 {

@@ -12,15 +12,15 @@
 namespace pcs {
 namespace internal {
 
-/// Called on the caller's thread between stages. Values never decrease; `false` from the callback
-/// means stop.
+/// Reports progress to a callback on the caller's thread between stages. The values never decrease;
+/// the callback returns `false` to stop the work.
 class Progress
 {
 public:
   Progress() = default;
   explicit Progress(std::function<bool(double)> callback) : m_callback(std::move(callback)) {}
 
-  /// Opens a stage that covers the fraction `[from, to]` of the whole work.
+  /// Begins a stage that covers the interval `[from, to]` of the total work, as fractions of it.
   void stage(double from, double to)
   {
     m_from = from;
@@ -39,7 +39,7 @@ public:
     return !m_is_cancelled;
   }
 
-  /// Reports that all is done; it is too late to stop.
+  /// Reports completion; the callback cannot stop the work here.
   void finish()
   {
     if (m_callback && !m_is_cancelled)

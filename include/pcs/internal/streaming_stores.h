@@ -19,22 +19,22 @@
 namespace pcs {
 namespace internal {
 
-/// Where not, `stream()` stores like any other.
+/// Whether `stream()` bypasses the cache; otherwise it is an ordinary store.
 constexpr bool has_streaming_stores = PCS_HAS_STREAMING_STORES != 0;
 
-/// Bytes that `to` in `stream()` must be a multiple of.
+/// Required alignment of `to` in `stream()`. [byte]
 constexpr std::size_t stream_alignment = 16;
 
 #if PCS_HAS_STREAMING_STORES
 
-/// Two numbers that lie, or are to lie, side by side.
+/// Two numbers that are adjacent in memory.
 using Double_pair = __m128d;
 
 PCS_ALWAYS_INLINE Double_pair load_pair(const double* from)
 {
   return _mm_loadu_pd(from);
 }
-/// The first of `a` and the first of `b`.
+/// Returns the first elements of `a` and `b`.
 PCS_ALWAYS_INLINE Double_pair first_of(Double_pair a, Double_pair b)
 {
   return _mm_unpacklo_pd(a, b);
@@ -43,19 +43,19 @@ PCS_ALWAYS_INLINE Double_pair second_of(Double_pair a, Double_pair b)
 {
   return _mm_unpackhi_pd(a, b);
 }
-/// The first of `a` and the second of `b`.
+/// Returns the first element of `a` and the second element of `b`.
 PCS_ALWAYS_INLINE Double_pair across(Double_pair a, Double_pair b)
 {
   return _mm_shuffle_pd(a, b, 2);
 }
 
-/// Writes two numbers that are not read again soon: a store would first read the memory around
-/// them. Lines of 64 bytes should be written at one go, from the first to the last byte.
+/// Writes two numbers that are not read again soon, without first reading their cache line. Cache
+/// lines of 64 bytes should be written completely, from the first to the last byte.
 PCS_ALWAYS_INLINE void stream(Double_pair both, double* to)
 {
 #if defined(__GNUC__) || defined(__clang__)
-  // Clang joins equal ends of branches and forgets what kind of store they have; one common store
-  // among the others to a line makes it ten times as slow.
+  // Clang merges equal ends of branches and loses the kind of store; a single ordinary store among
+  // the streaming stores to a cache line makes it ten times as slow.
 #ifdef __AVX__
   __asm__ volatile("vmovntpd %1, %0" : "=m"(*reinterpret_cast<__m128d*>(to)) : "x"(both));
 #else
@@ -97,7 +97,7 @@ inline void stream(Double_pair both, double* to)
 
 #endif
 
-/// Comes after the last `stream()`, before another thread may read what was written.
+/// Must follow the last `stream()` before another thread reads the data.
 PCS_ALWAYS_INLINE void end_stream()
 {
 #if PCS_HAS_STREAMING_STORES

@@ -11,7 +11,7 @@
 namespace pcs {
 namespace internal {
 
-/// `value` with six significant digits; `std::to_string` prints 1e300 with 300.
+/// Formats `value` with six significant digits; `std::to_string` prints 1e300 with 300 digits.
 template <class T>
 std::string to_text(const T& value)
 {

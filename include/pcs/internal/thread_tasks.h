@@ -12,7 +12,7 @@
 namespace pcs {
 namespace internal {
 
-/// Runs two tasks side by side; both end before an exception of one leaves this.
+/// Runs two tasks concurrently; both end before an exception is passed on.
 template <class F, class G>
 void run_in_two_threads(const F& f, const G& g)
 {
@@ -32,8 +32,8 @@ void run_in_two_threads(const F& f, const G& g)
       std::rethrow_exception(error);
 }
 
-/// Calls `f(i)` for `i` in `[0, n)`. Neighbours are in different threads, so that whatever two of
-/// them share is seen.
+/// Calls `f(i)` for `i` in `[0, n)`. Adjacent indices run in different threads, so that data races
+/// between them can be detected.
 template <class F>
 void run_tasks_in_two_threads(std::size_t n, const F& f)
 {

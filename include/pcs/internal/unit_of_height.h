@@ -12,8 +12,8 @@
 namespace pcs {
 namespace internal {
 
-/// Appends a sentence that begins with `subject` where `height` cannot be that of a tree. Both in
-/// one unit, or so it should be.
+/// Appends a sentence that begins with `subject` if `height` is implausible for a tree. Both values
+/// should have the same unit.
 inline void warn_of_unit(const std::string& subject,
                          double height,
                          double breast_height,

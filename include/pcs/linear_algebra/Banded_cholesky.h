@@ -16,13 +16,12 @@
 namespace pcs {
 namespace linear_algebra {
 
-/// A symmetric matrix with `Bandwidth` diagonals below the main one, kept as rows of the lower
-/// half.
+/// A symmetric matrix with `Bandwidth` diagonals below the main one; only the lower half is stored.
 template <std::size_t Bandwidth>
 class Banded_cholesky
 {
 public:
-  /// Becomes the zero matrix of size `n`.
+  /// Resets to the zero matrix of size `n`.
   void reset(std::size_t n)
   {
     m_size = n;
@@ -31,12 +30,12 @@ public:
 
   std::size_t size() const { return m_size; }
 
-  /// Entry of the lower half: `j <= i <= j + Bandwidth`.
+  /// Returns an entry of the lower half: `j <= i <= j + Bandwidth`.
   double& operator()(std::size_t i, std::size_t j) { return m_columns[j * width + (i - j)]; }
   double operator()(std::size_t i, std::size_t j) const { return m_columns[j * width + (i - j)]; }
 
-  /// Replaces the matrix by its factors, L D L^T: columns of L, and inverses of D in place of their
-  /// ones. `false` if it is not positive definite.
+  /// Replaces the matrix by its factors L D L^T: the columns of L, with the inverses of D on the
+  /// diagonal. Returns `false` if the matrix is not positive definite.
   bool factorize()
   {
     for (std::size_t j = 0; j < m_size; ++j) {
@@ -58,7 +57,7 @@ public:
   /// Solves in place, after `factorize()`.
   void solve(std::vector<double>& x) const
   {
-    x.resize(m_size + Bandwidth, 0.0); // the columns are as long as if the matrix went on
+    x.resize(m_size + Bandwidth, 0.0); // padded by zeros, because all columns have the same length
     for (std::size_t j = 0; j < m_size; ++j) {
       const double* column = &m_columns[j * width];
       for (std::size_t i = 1; i < width; ++i)
@@ -67,7 +66,7 @@ public:
     for (std::size_t j = m_size; j-- > 0;) {
       const double* column = &m_columns[j * width];
       double sum = 0;
-      for (std::size_t i = width - 1; i > 0; --i) // what is known last comes last
+      for (std::size_t i = width - 1; i > 0; --i) // the value computed last is used last
         sum += column[i] * x[j + i];
       x[j] = column[0] * x[j] - sum;
     }
@@ -75,8 +74,8 @@ public:
   }
 
   /*!
-    The diagonal of the inverse, after `factorize()`. O(size Bandwidth^2): of the inverse only the
-    band is computed, from the last row upwards (Takahashi's recurrence).
+    The diagonal of the inverse, after `factorize()`. O(size Bandwidth^2): only the band of the
+    inverse is computed, from the last row upwards (Takahashi's recurrence).
   */
   std::vector<double> inverse_diagonal() const
   {
@@ -105,7 +104,7 @@ public:
 private:
   static constexpr std::size_t width = Bandwidth + 1;
 
-  /// The share of a column of the columns behind it; each loop has a length known to the compiler.
+  /// Subtracts the update of a column from the next columns, in loops of constant length.
   template <std::size_t... K>
   static void
   take_out(const std::array<double, width>& scaled, double* column, std::index_sequence<K...>)
@@ -122,7 +121,7 @@ private:
   }
 
   std::size_t m_size = 0;
-  std::vector<double> m_columns; // each from its diagonal downwards; behind the last ones, zeros
+  std::vector<double> m_columns; // each from its diagonal downwards, padded by zeros
 };
 
 } // namespace linear_algebra

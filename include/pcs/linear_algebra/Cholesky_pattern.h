@@ -21,13 +21,13 @@ namespace pcs {
 namespace linear_algebra {
 
 /*!
-  The symbolic half of a Cholesky factorisation. Columns of the factor with (almost) the same rows
-  are kept side by side as one dense *panel*, a supernode: its own `w` rows first, then `m` rows
-  below, which lie in its ancestors. Panels are stored column by column, `(w + m) w` values each.
+  The symbolic half of a Cholesky factorisation. Adjacent columns of the factor with (almost) the
+  same rows form one dense *panel*, a supernode: its own `w` rows first, then `m` rows below, which
+  belong to its ancestors. Panels are stored column by column, `(w + m) w` values each.
 
-  Order: minimum degree (Amestoy, Davis, Duff 1996) or the caller's, then postorder of the
-  elimination tree (Liu 1990). Column counts: Gilbert, Ng, Peyton 1994. Linear in the entries of the
-  matrix but for the order, and in the rows of the supernodes.
+  Order: minimum degree (Amestoy, Davis, Duff 1996) or a given order, then postorder of the
+  elimination tree (Liu 1990). Column counts: Gilbert, Ng, Peyton 1994. Except for the order, the
+  time is linear in the entries of the matrix and in the rows of the supernodes.
 */
 class Cholesky_pattern
 {
@@ -36,30 +36,29 @@ public:
   static constexpr std::uint32_t none = ~std::uint32_t(0);
 
   std::vector<std::uint32_t>
-      new_of_old;                   ///< place of each row of the matrix in the order of elimination
-  std::vector<std::uint32_t> first; ///< column of each supernode, and the end
-  std::vector<std::uint32_t> parent;    ///< supernode, or `none`
+      new_of_old;                   ///< index of each row of the matrix in the order of elimination
+  std::vector<std::uint32_t> first; ///< first column of each supernode, and the end
+  std::vector<std::uint32_t> parent;    ///< parent of each supernode, or `none`
   std::vector<std::size_t> first_row;   ///< of each supernode in `row`, and the end
   std::vector<std::uint32_t> row;       ///< rows below the supernodes, increasing
-  std::vector<std::uint32_t> in_parent; ///< the place of each of these among the rows of the parent
+  std::vector<std::uint32_t> in_parent; ///< index of each of these rows in the rows of the parent
   std::vector<std::size_t> first_value; ///< of each panel, and the end
-  std::vector<std::size_t> place; ///< in the panels, of every entry of the matrix's lower triangle
-  std::size_t stack_size = 0;     ///< values that wait for their parent, at most
+  std::vector<std::size_t> place; ///< index in the panels of every entry of the lower triangle
+  std::size_t stack_size = 0;     ///< maximum number of values stored for a later parent
   std::size_t largest_number_of_rows_below = 0;
-  std::size_t largest_panel = 0; ///< values
+  std::size_t largest_panel = 0; ///< [count of values]
   Elimination_subtrees subtrees;
 
   Cholesky_pattern() = default;
 
-  /// \param a square; what stands above its diagonal is ignored
-  /// \param rank one number per row, all different: rows are eliminated by increasing rank, where
-  /// the entries leave a
-  ///        choice. If empty, by minimum degree.
+  /// \param a square; entries above the diagonal are ignored
+  /// \param rank distinct numbers, one per row: rows are eliminated by increasing rank as far as
+  ///        the entries permit. Empty: minimum degree order.
   explicit Cholesky_pattern(const Matrix& a, const std::vector<std::uint32_t>& rank = {})
   {
     new_of_old = rank.empty() ? minimum_degree_order(a) : order_by_rank(rank);
     std::vector<std::uint32_t> tree = elimination_tree(adjacency(a)), count;
-    renumber(postorder(tree, {}), tree, count); // which the counts need
+    renumber(postorder(tree, {}), tree, count); // required by the counts
     count = column_counts(adjacency(a), tree);
     renumber(postorder(tree, count), tree, count);
     find_supernodes(tree, count);
@@ -69,8 +68,8 @@ public:
     subtrees.find(*this);
   }
 
-  /// The place of each row in the order of elimination. A part of the rows in that order has no
-  /// entries that all have not.
+  /// Returns the index of each row in the order of elimination. The factor of any subset of the
+  /// rows in that order has no entries that the complete factor lacks.
   static std::vector<std::uint32_t> minimum_degree_order(const Matrix& a)
   {
     Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> old_of_new;
@@ -89,7 +88,7 @@ public:
   std::size_t number_of_values() const { return first_value.empty() ? 0 : first_value.back(); }
 
 private:
-  /// Both triangles without the diagonal, in the present order.
+  /// Both triangles without the diagonal, in the current order.
   struct Adjacency
   {
     std::vector<std::size_t> first;
@@ -137,7 +136,7 @@ private:
     return g;
   }
 
-  /// Applies an order to all that is known of the columns. The counts may be missing.
+  /// Applies an order to the elimination tree and, unless they are empty, to the column counts.
   void renumber(const std::vector<std::uint32_t>& order,
                 std::vector<std::uint32_t>& tree,
                 std::vector<std::uint32_t>& count)
@@ -155,7 +154,7 @@ private:
     count.swap(new_count);
   }
 
-  /// The parent of each column: the first row below its diagonal in the factor.
+  /// Returns the parent of each column: the first row below its diagonal in the factor.
   static std::vector<std::uint32_t> elimination_tree(const Adjacency& g)
   {
     const std::size_t n = g.first.size() - 1;
@@ -174,8 +173,8 @@ private:
     return tree;
   }
 
-  /// New number of each column: children before parents, subtrees together; the child with the
-  /// largest `count` last.
+  /// Returns the new number of each column: children before parents, subtrees contiguous, the child
+  /// with the largest `count` last.
   static std::vector<std::uint32_t> postorder(const std::vector<std::uint32_t>& tree,
                                               const std::vector<std::uint32_t>& count)
   {
@@ -226,7 +225,7 @@ private:
     return order;
   }
 
-  /// Entries of each column of the factor, the diagonal included. The columns are in postorder.
+  /// Counts the entries of each column of the factor, with the diagonal. Columns are in postorder.
   static std::vector<std::uint32_t> column_counts(const Adjacency& g,
                                                   const std::vector<std::uint32_t>& tree)
   {
@@ -234,7 +233,7 @@ private:
     std::vector<std::uint32_t> descendant(n), ancestor(n), largest_first(n, none),
         previous_leaf(n, none);
     std::vector<std::int64_t> count(n, 1);
-    std::iota(descendant.begin(), descendant.end(), 0u); // the first one
+    std::iota(descendant.begin(), descendant.end(), 0u); // the first descendant
     std::iota(ancestor.begin(), ancestor.end(), 0u);
     for (std::size_t j = 0; j < n; ++j)
       if (tree[j] != none) {
@@ -247,14 +246,14 @@ private:
       for (std::size_t e = g.first[j]; e < g.first[j + 1]; ++e) {
         const std::uint32_t i = g.neighbor[e];
         if (i < j || (largest_first[i] != none && descendant[j] <= largest_first[i]))
-          continue; // no leaf of the subtree of row i
+          continue; // not a leaf of the subtree of row i
         largest_first[i] = descendant[j];
         ++count[j];
         const std::uint32_t previous = previous_leaf[i];
         previous_leaf[i] = j;
         if (previous == none)
           continue;
-        std::uint32_t root = previous; // where the paths from both leaves meet
+        std::uint32_t root = previous; // the common ancestor of both leaves
         while (ancestor[root] != root)
           root = ancestor[root];
         for (std::uint32_t k = previous; k != root;)
@@ -273,8 +272,8 @@ private:
     return result;
   }
 
-  /// Whether a supernode of `width` columns may hold `zeros` among its `values`: wide ones are
-  /// worth some.
+  /// Whether a supernode of `width` columns may contain `zeros` among its `values`: wider ones
+  /// justify some.
   static bool is_worth(std::size_t width, std::size_t zeros, std::size_t values)
   {
     const double share = static_cast<double>(zeros) / static_cast<double>(values);
@@ -290,14 +289,14 @@ private:
       std::uint32_t first;
       std::size_t zeros;
     };
-    std::vector<Group> groups; // a stack: the last ones end at the present column
+    std::vector<Group> groups; // a stack: the last groups end at the current column
     const auto height = [&](const Group& g, std::size_t last) {
-      return last - g.first + count[last]; // rows of its panel
+      return last - g.first + count[last]; // number of rows of the panel
     };
     for (std::uint32_t j = 0; j < n; ++j) {
       groups.push_back({j, 0});
-      // The group before ends with column j - 1. It may become part of this one if j is the parent
-      // of that.
+      // The previous group ends with column j - 1. It may be merged into this one if j is the
+      // parent of that column.
       while (groups.size() > 1) {
         const Group own = groups.back(), before = groups[groups.size() - 2];
         if (own.first == 0 || tree[own.first - 1] == none || tree[own.first - 1] > j)
@@ -372,7 +371,8 @@ private:
           in_parent[r] = static_cast<std::uint32_t>(width(p) + at - first_row[p]);
         }
     }
-    // In postorder, what waits is a stack: the children of a supernode lie on top of it.
+    // In postorder, the pending updates form a stack: those of the children of a supernode are on
+    // top.
     std::size_t waiting = 0;
     std::vector<std::size_t> of_children(m, 0);
     for (std::size_t s = 0; s < m; ++s) {

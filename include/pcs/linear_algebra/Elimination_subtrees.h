@@ -14,11 +14,12 @@ namespace pcs {
 namespace linear_algebra {
 
 /*!
-  Disjoint subtrees of the supernodes of a `Cholesky_pattern`, none with more than a small share of
-  the values. They do not depend on the number of threads, so that sums over them do not either.
+  Disjoint subtrees of the supernodes of a `Cholesky_pattern`, each with at most a small fraction of
+  the values. They, and thus sums over them, do not depend on the number of threads.
 
-  What a subtree adds to the rows above it is gathered apart: every subtree has places of its own,
-  behind those of the unknowns in the work array of a solve, for the rows below its root, of which
+  The contributions of a subtree to rows above it are accumulated separately. Each subtree has its
+  own entries, behind those of the unknowns, in the work array of a solve. They represent the rows
+  below its root, which include the rows below all its supernodes.
   those below all its supernodes are part.
 */
 class Elimination_subtrees
@@ -26,21 +27,21 @@ class Elimination_subtrees
 public:
   struct Subtree
   {
-    std::uint32_t begin, end; ///< its supernodes, the root last
-    std::size_t first_place;  ///< of the rows below the root
-    std::size_t scratch;      ///< places for the rows below any one of its supernodes
+    std::uint32_t begin, end; ///< supernodes of the subtree, the root last
+    std::size_t first_place;  ///< index of the entries for the rows below the root
+    std::size_t scratch;      ///< index of the temporary entries for the rows below one supernode
   };
 
   std::vector<Subtree> subtree;
   std::vector<std::uint32_t> top; ///< the other supernodes, increasing
-  /// As the pattern's, but rows above the own subtree are places of it. Empty without subtrees.
+  /// Rows of the pattern, where rows above a subtree are replaced by its entries; may be empty.
   std::vector<std::uint32_t> row;
-  std::size_t number_of_places = 0; ///< of all work
+  std::size_t number_of_places = 0; ///< size of the work array
 
-  /// Factors of fewer values than this are solved faster than tasks are handed out.
+  /// Smaller factors are solved faster without tasks. [values]
   static constexpr std::size_t smallest_divided_factor = 500000;
 
-  /// \param pattern complete but for its subtrees
+  /// \param pattern complete except for its subtrees
   template <class Pattern>
   void find(const Pattern& pattern)
   {
@@ -69,12 +70,12 @@ public:
   }
 
 private:
-  /// Half of what `row` can count: the rest is for the places of the subtrees.
+  /// Half the range of `row`; the other half is reserved for the entries of the subtrees.
   static constexpr std::size_t largest_divided_size = std::size_t(1) << 31;
-  /// No subtree has more than one in this many of the values.
+  /// Each subtree contains at most the total number of values divided by this.
   static constexpr std::size_t smallest_number_of_shares = 16;
 
-  /// From the roots down, until what is left is small enough.
+  /// Descends from the roots until the remaining subtrees are small enough.
   template <class Pattern>
   void divide(const Pattern& pattern)
   {
@@ -89,7 +90,7 @@ private:
     for (std::size_t end = m; end > 0;) {
       const std::size_t values = pattern.first_value[end] - pattern.first_value[begin[end - 1]];
       if (values > most) {
-        --end; // its root stands above
+        --end; // its root belongs to `top`
         continue;
       }
       subtree.push_back({begin[end - 1], static_cast<std::uint32_t>(end), 0, 0});

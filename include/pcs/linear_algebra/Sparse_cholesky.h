@@ -25,23 +25,24 @@ namespace linear_algebra {
 
 /*!
   Factor of a symmetric positive definite sparse matrix, by the multifrontal method (Duff and Reid
-  1983) on the panels of a `Cholesky_pattern`. Factors of matrices with the same entries may share
-  the pattern, which takes half of the time of a small one. `solve()` is const, allocates nothing
-  once the caller's work vector has grown, and may run concurrently with other solves.
+  1983) on the panels of a `Cholesky_pattern`. Factors of matrices with the same sparsity pattern
+  may use the same `Cholesky_pattern`, whose computation takes half of the time for small matrices.
+  `solve()` is const, allocates nothing if the work vector of the caller is large enough, and may
+  run concurrently with other solves.
 */
 class Sparse_cholesky
 {
 public:
   using Matrix = Cholesky_pattern::Matrix;
 
-  /// Factorises `a`, of which only the lower triangle is read, with rows in the order of `rank`, if
-  /// it is not empty. Returns `false` if `a` is not positive definite.
+  /// Factorises `a`, of which only the lower triangle is read. Rows are eliminated in the order of
+  /// `rank` unless it is empty. Returns `false` if `a` is not positive definite.
   bool factorize(const Matrix& a, const std::vector<std::uint32_t>& rank = {})
   {
     return factorize(a, std::make_shared<const Cholesky_pattern>(a, rank));
   }
 
-  /// The same for a matrix with entries at the same places as that of `pattern`.
+  /// Factorises a matrix with the sparsity pattern of `pattern`.
   bool factorize(const Matrix& a, std::shared_ptr<const Cholesky_pattern> pattern)
   {
     m_pattern = std::move(pattern);
@@ -60,12 +61,12 @@ public:
     return factorize_panels(diagonal);
   }
 
-  /// Of the last matrix; null before the first.
+  /// The pattern of the last matrix; null before the first factorisation.
   const std::shared_ptr<const Cholesky_pattern>& pattern() const { return m_pattern; }
 
   std::size_t size() const { return m_pattern ? m_pattern->size() : 0; }
 
-  /// Number of entries of the factor below the diagonal, zeros in the panels included.
+  /// Number of entries of the factor below the diagonal, with the zeros in the panels.
   std::size_t number_of_nonzeros() const
   {
     std::size_t sum = 0;
@@ -77,8 +78,8 @@ public:
   }
 
   /// Solves `A x = b` for right-hand sides stored row by row: `Row` is a fixed-size Eigen vector.
-  /// The subtrees of a large factor are worked through side by side if the tag allows it, with the
-  /// same result for every number of threads.
+  /// The subtrees of a large factor are processed in parallel if the tag allows it, with the same
+  /// result for every number of threads.
   template <class ConcurrencyTag = CGAL::Sequential_tag, class Row>
   void solve(std::vector<Row>& b, std::vector<Row>& work) const
   {
@@ -125,7 +126,7 @@ private:
     std::size_t supernode, offset;
   };
 
-  /// Panel by panel. What a panel leaves to the rows below it waits on a stack for its parent.
+  /// Factorises panel by panel. A stack stores the updates of a panel until its parent is reached.
   bool factorize_panels(std::vector<double>& diagonal)
   {
     const Cholesky_pattern& p = *m_pattern;
@@ -193,7 +194,7 @@ private:
     }
   }
 
-  /// \param rows where the rows below stand in `work`
+  /// \param rows indices in `work` of the rows below
   template <class Row>
   void solve_forward(std::size_t s, const std::uint32_t* rows, std::vector<Row>& work) const
   {
@@ -223,7 +224,7 @@ private:
       own[c] *= m_inverse_diagonal[p.first[s] + c];
   }
 
-  /// \param scratch where `work` has room for the rows below
+  /// \param scratch index in `work` of temporary entries for the rows below
   template <class Row>
   void solve_backward(std::size_t s, std::size_t scratch, std::vector<Row>& work) const
   {
@@ -260,7 +261,7 @@ private:
   }
 
   std::shared_ptr<const Cholesky_pattern> m_pattern;
-  std::vector<double> m_value; ///< of the panels
+  std::vector<double> m_value; ///< values of the panels
   std::vector<double> m_inverse_diagonal;
 };
 

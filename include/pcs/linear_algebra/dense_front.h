@@ -14,7 +14,7 @@
 namespace pcs {
 namespace linear_algebra {
 
-/// A matrix by columns.
+/// A matrix stored by columns.
 struct Dense_columns
 {
   double* value;
@@ -24,29 +24,29 @@ struct Dense_columns
 };
 
 /*!
-  A panel of `width` columns and `height` rows on its way through a factorisation.
+  A panel of `width` columns and `height` rows during a factorisation.
 
-  The diagonal is kept apart: updates of updates would first be added up, and lose what is small
-  beside them. One difference at a time keeps the pivots of Laplacians positive, however far apart
-  the weights lie.
+  The diagonal is stored separately. If updates were first added up, small values would be lost
+  against large ones. Separate subtractions keep the pivots of Laplacians positive for any ratio of
+  the weights.
 */
 struct Front
 {
-  /// In: the matrix with the updates of the children. Out: `D` on the diagonal, `L` below.
+  /// Input: the matrix with the updates of the children. Output: `D` on the diagonal, `L` below.
   Dense_columns panel;
-  /// Gets `L D`.
+  /// Output: `L D`.
   Dense_columns scaled;
   std::size_t height, width;
-  /// `height - width` square. What the panel leaves to the rows below is subtracted from its lower
-  /// triangle.
+  /// Square matrix of size `height - width`; the update for the rows below is subtracted from its
+  /// lower triangle.
   Dense_columns rest;
-  /// Present values for the panel's own rows, and for the rows below.
+  /// Current values for the panel's own rows, and for the rows below.
   double *diagonal, *diagonal_below;
 };
 
 namespace internal {
 
-/// For machines without a fused multiply-add.
+/// Arithmetic for machines without a fused multiply-add.
 struct Plain_arithmetic
 {
   using Doubles = pcs::internal::Double4;
@@ -59,15 +59,16 @@ struct Plain_arithmetic
   }
 };
 
-/// Two matrices of as many columns, of which the rows of one are multiplied by rows of the other.
+/// Two matrices with the same number of columns; rows of the left are multiplied by rows of the
+/// right one.
 struct Dense_product
 {
   Dense_columns left, right;
 };
 
-/// `c -= left(rows) right(columns)^T` for `Vectors` registers of rows from `row` on and `Columns`
-/// columns of `c`, of which the first belongs to row `column` of the right matrix; over `count`
-/// columns of both.
+/// Computes `c -= left(rows) right(columns)^T` over `count` columns of both matrices, for `Vectors`
+/// registers of rows from `row` on. `c` has `Columns` columns, the first of which belongs to row
+/// `column` of the right matrix.
 template <class Arithmetic, class Lanes, std::size_t Vectors, std::size_t Columns>
 PCS_ALWAYS_INLINE void subtract_tile(const Dense_product& l,
                                      std::size_t row,
@@ -98,8 +99,8 @@ PCS_ALWAYS_INLINE void subtract_tile(const Dense_product& l,
   });
 }
 
-/// The same for the rows from `row` to `end`: large tiles, then smaller ones. Every entry is summed
-/// in the same order.
+/// Applies the same product to the rows from `row` to `end`, with large tiles first. Every entry is
+/// summed in the same order.
 template <class Arithmetic, std::size_t Columns>
 PCS_ALWAYS_INLINE void subtract_strip(const Dense_product& l,
                                       std::size_t row,
@@ -124,8 +125,8 @@ PCS_ALWAYS_INLINE void subtract_strip(const Dense_product& l,
     }
 }
 
-/// Factorises a panel in place, and subtracts what it leaves to the rows below. `false` if a pivot
-/// is not positive.
+/// Factorises a panel in place and subtracts its update from the rows below. Returns `false` if a
+/// pivot is not positive.
 template <class Arithmetic>
 PCS_ALWAYS_INLINE bool factorize_front(const Front& front)
 {
@@ -133,7 +134,7 @@ PCS_ALWAYS_INLINE bool factorize_front(const Front& front)
   const std::size_t height = front.height, width = front.width;
   constexpr std::size_t strip = 4;
   const Dense_product all{panel, scaled};
-  // Columns from `begin` to `end` of `c`, which starts at row and column `first` of the panel.
+  // Updates the columns from `begin` to `end` of `c`, which begins at entry (first, first).
   const auto subtract = [&](std::size_t begin,
                             std::size_t end,
                             std::size_t first,
@@ -197,7 +198,7 @@ PCS_TARGET_AVX512 inline bool factorize_front_avx512(const Front& front)
 
 using Factorize_front = bool (*)(const Front&);
 
-/// The kernel for this machine. Those with a fused multiply-add give the same bits.
+/// Returns the kernel for this machine. Kernels with a fused multiply-add give the same bits.
 inline Factorize_front choose_factorize_front()
 {
 #if PCS_HAS_RUNTIME_DISPATCH

@@ -15,13 +15,13 @@
 namespace pcs {
 namespace linear_algebra {
 
-/// A row index that stands for "eliminated": the node's value is prescribed.
+/// The row index of eliminated nodes, whose values are prescribed.
 constexpr std::uint32_t not_free = ~std::uint32_t(0);
 
 /*!
-  Lower triangle of `L_ff + diag(extra)`: `L` is the Laplacian of the sum of the given weighted
-  graphs, `f` the nodes with a row. A graph offers `first`, `neighbor` (rows increasing) and
-  `weight`, as `Weighted_graph` does.
+  Returns the lower triangle of `L_ff + diag(extra)`: `L` is the Laplacian of the sum of the given
+  weighted graphs, `f` the nodes with a row. A graph provides `first`, `neighbor` (rows increasing)
+  and `weight`, as `Weighted_graph` does.
   \param row_of_node the row of each node, increasing with the node, or `not_free`
   \param node_of_row its inverse
   \param extra one value per row, or empty

@@ -21,8 +21,8 @@ namespace pcs {
 namespace neighborhood {
 
 /*!
-  A k-d tree over `points`, which must stay alive and unchanged. Queries may run concurrently.
-  Coordinates should be relative to a near origin: distances are computed in double precision.
+  A k-d tree over `points`, which must remain valid and unchanged. Queries may run concurrently.
+  Coordinates should be relative to a nearby origin: distances are computed in double precision.
 */
 class Nearest_neighbors
 {
@@ -41,8 +41,7 @@ public:
   Nearest_neighbors(const Nearest_neighbors&) = delete;
   Nearest_neighbors& operator=(const Nearest_neighbors&) = delete;
 
-  /// Writes the `k` nearest points of `query` to `result`, nearest first; fewer if there are fewer
-  /// points.
+  /// Writes the `k` points nearest to `query` to `result`, nearest first; fewer if fewer exist.
   void operator()(const Vec3& query, std::size_t k, std::vector<Neighbor>& result) const
   {
     k = std::min(k, m_adaptor.points.size());
@@ -57,7 +56,7 @@ public:
     result.resize(found);
     for (std::size_t i = 0; i < found; ++i)
       result[i] = {indices[i], distances[i]};
-    bool has_tie = false; // they come nearest first
+    bool has_tie = false; // the neighbours are sorted by distance
     for (std::size_t i = 1; i < found; ++i)
       has_tie = has_tie || !(result[i - 1].squared_distance < result[i].squared_distance);
     if (!has_tie)
@@ -77,7 +76,7 @@ public:
     std::sort(result.begin() + static_cast<std::ptrdiff_t>(before), result.end());
   }
 
-  /// The same in the order in which they are found.
+  /// Appends the same indices in the order of the search.
   void append_within(const Vec3& query, double radius, std::vector<std::uint32_t>& result) const
   {
     Collector collector{radius * radius, &result};
@@ -85,8 +84,8 @@ public:
   }
 
   /*!
-    The nearest point among those for which `is_wanted(index)` holds and that is closer than
-    `radius`; ties by coordinates. `squared_distance` is infinite if there is none.
+    Returns the nearest point that is closer than `radius` and satisfies `is_wanted(index)`; ties by
+    coordinates. `squared_distance` is infinite if there is none.
   */
   template <class Predicate>
   Neighbor nearest_if(const Vec3& query, double radius, const Predicate& is_wanted) const
@@ -99,7 +98,7 @@ public:
   }
 
 private:
-  // Result sets in the sense of nanoflann; what later versions than 1.4 ask for, too.
+  // Result sets in the sense of nanoflann, with the members that versions after 1.4 require.
   struct Collector
   {
     using DistanceType = double;
@@ -131,7 +130,7 @@ private:
     void sort() {}
     double worstDist() const
     {
-      // one step up: a tie must be seen
+      // the next larger number, so that ties are found
       return is_found ? std::nextafter(best.squared_distance, 2 * best.squared_distance + 1)
                       : best.squared_distance;
     }
@@ -167,8 +166,8 @@ private:
                                                    3,
                                                    std::uint32_t>;
 
-  /// Hands points to `results`. The options are nanoflann's defaults, which have another name since
-  /// version 1.5.
+  /// Passes points to `results`. The options are the defaults of nanoflann, whose type was renamed
+  /// in version 1.5.
   template <class Results>
   void search(const Vec3& query, Results& results) const
   {
@@ -177,7 +176,7 @@ private:
   }
 
   Adaptor m_adaptor;
-  Tree m_tree; ///< its constructor builds it
+  Tree m_tree; ///< built by its constructor
 };
 
 } // namespace neighborhood

@@ -22,24 +22,25 @@
 namespace pcs {
 namespace neighborhood {
 
-/// A link is suspected if it makes at least this sine with the tangent planes of both its ends.
-/// Measured on sheets 1.5 spacings apart with jitter up to 0.3: 0.45 and 0.6 leave some links, 0.5
-/// none, of 2,720; bars and scans lose at most 0.2 % of theirs.
+/// A link is a short-cut candidate if the sine of its angle to the tangent planes at both ends is
+/// at least this. On sheets 1.5 spacings apart with jitter up to 0.3, 0.45 and 0.6 leave some of
+/// 2,720 links, 0.5 none; bars and scans lose at most 0.2 % of their links. [-]
 constexpr double smallest_short_cut_sine = 0.5;
-/// A point keeps suspected links if fewer than this many others are left: it is an outlier, and
-/// follows what is near.
+/// Candidate links of a point are kept if it has fewer other links than this: such a point is an
+/// outlier. [count]
 constexpr std::size_t smallest_remaining_degree = 2;
-/// A part of at most this many points that only dropped links join to the rest is no sheet but a
-/// clump of outliers: it keeps the shortest of them. [count]
+/// A component of at most this many points that is separated by removed links is a group of
+/// outliers, not a sheet: its shortest removed link is restored. [count]
 constexpr std::size_t largest_clump = 12;
-/// Neighbourhoods are flat enough to have a normal if the smallest eigenvalue is below this share
-/// of the middle one, and wide enough if the middle one is above `smallest_width` of the largest.
+/// A neighbourhood is flat enough to have a normal if its smallest eigenvalue is below this
+/// fraction of the middle one, and wide enough if the middle one exceeds `smallest_width` times the
+/// largest.
 constexpr double largest_thickness = 0.7;
 constexpr double smallest_width = 0.02;
 
 namespace internal {
 
-/// A normal and how far it may be trusted, in [0, 1].
+/// A surface normal and its confidence in [0, 1].
 struct Surface_normal
 {
   Eigen::Vector3f direction = Eigen::Vector3f::Zero();
@@ -53,8 +54,8 @@ inline Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen_system(const Eigen::
   return eigen;
 }
 
-/// Count, sum and second moments of a point and its neighbours, about the point. Differences, so
-/// single precision is enough; it halves the largest array of the construction.
+/// Count, sum and second moments of a point and its neighbours, relative to the point. Single
+/// precision suffices for differences and halves the largest array of the construction.
 struct Ring_moments
 {
   float count = 0;
@@ -71,13 +72,13 @@ struct Ring_moments
   }
 };
 
-/// Normals from two rings; a point counts as often as there are ways to it. Two parallel sheets
-/// share one normal, so links between them do little harm.
+/// Estimates normals from two rings of neighbours; a point counts once per path to it. Two parallel
+/// sheets have the same normal, so links between them hardly change it.
 template <class ConcurrencyTag>
 std::vector<Surface_normal> surface_normals(const std::vector<Vec3>& points,
                                             const Proximity_graph& graph)
 {
-  // Edges relative to their mean length: their squares must not leave the range of a float.
+  // Edges are divided by their mean length, to keep their squares in the range of a float.
   double sum_of_lengths = 0;
   for (std::size_t i = 0; i < points.size(); ++i)
     for (auto j = graph.begin(i); j != graph.end(i); ++j)
@@ -114,8 +115,8 @@ std::vector<Surface_normal> surface_normals(const std::vector<Vec3>& points,
   return normal;
 }
 
-/// Each normal becomes the mean of those around it by confidence, up to sign: at the rim of a sheet
-/// half the neighbourhood is missing, and the estimate there may lie in the sheet.
+/// Averages the normals of each neighbourhood by confidence, up to sign. At the boundary of a sheet
+/// half the neighbourhood is missing, and the estimated normal may lie in the sheet.
 template <class ConcurrencyTag>
 std::vector<Surface_normal> settled_normals(const Proximity_graph& graph,
                                             const std::vector<Surface_normal>& normal)
@@ -179,7 +180,7 @@ private:
   std::vector<std::uint32_t> m_parent, m_size;
 };
 
-/// Takes back the shortest drops that would cut off `largest_clump` points or fewer.
+/// Restores the shortest removed links that would separate `largest_clump` points or fewer.
 inline void keep_clumps(const std::vector<Vec3>& points,
                         const Proximity_graph& graph,
                         std::vector<char>& is_dropped)
@@ -226,13 +227,13 @@ inline void keep_clumps(const std::vector<Vec3>& points,
 } // namespace internal
 
 /*!
-  Drops links that leave the surface at both ends and have no common neighbour to go by: where two
-  sheets are hardly further apart than the points on them, the nearest points of one include points
-  of the other.
+  Removes links that leave the surface at both ends and whose ends have no common neighbour. They
+  occur between sheets whose distance is close to the point spacing, because the nearest neighbours
+  of a point then include points of the other sheet.
 
-  Volumes, lines and outliers have no surface to leave: their links stay. No point loses its last
-  links. O(n k).
-  \return the number of links dropped [count]
+  Links in volumes, on lines and of outliers are kept, because these have no surface. No point loses
+  its last links. O(n k).
+  \return the number of links removed [count]
 */
 template <class ConcurrencyTag>
 std::size_t drop_short_cuts(const std::vector<Vec3>& points, Proximity_graph& graph)

@@ -23,19 +23,19 @@ namespace neighborhood {
 
 using Vec3 = Eigen::Vector3d;
 
-/// Strict order by coordinates, x first; points that compare equal are exact duplicates.
+/// A strict order by coordinates, x first; points that compare equal are exact duplicates.
 inline bool lexicographically_less(const Vec3& a, const Vec3& b)
 {
   return std::make_tuple(a.x(), a.y(), a.z()) < std::make_tuple(b.x(), b.y(), b.z());
 }
 
-/// Where a cell is cut, as a share of its box. Not the middle: on grids whole planes of points
-/// would lie exactly there, and rounding (a translated copy of the cloud) would decide on which
-/// side.
+/// The position at which a cell is divided, as a fraction of its box. It differs from 0.5, because
+/// the points of regular grids lie exactly in the middle planes, and rounding (of a translated copy
+/// of the cloud) would decide their side. [-]
 constexpr double octree_cut = 0.49371;
 
-/// A cell of the octree: the octants around a point near the centre of the *tight* box of its
-/// points. Tight boxes keep the depth small however far away a single outlier lies.
+/// A cell of the octree: the octants around a point near the centre of the *tight* bounding box of
+/// its points. Tight boxes keep the depth small even with distant outliers.
 struct Octree_cell
 {
   Vec3 center = Vec3::Zero();
@@ -60,8 +60,8 @@ struct Octree_cell
   }
 };
 
-/// Cells of at most this many points are not split further by `spatial_order()`; it sorts them by
-/// coordinates.
+/// The largest number of points of an undivided cell in `spatial_order()`, which sorts them by
+/// coordinates. [count]
 constexpr std::size_t octree_leaf_size = 16;
 
 struct Order_entry
@@ -94,7 +94,7 @@ void order_cell(pcs::internal::Huge_vector<Order_entry>& entries,
   const Octree_cell cell(begin, end, [&](std::size_t i) -> const Vec3& {
     return entries[i].point;
   });
-  if (!(cell.extent > 0)) { // all duplicates of one another
+  if (!(cell.extent > 0)) { // all points are duplicates
     sort_leaf();
     return;
   }
@@ -110,7 +110,7 @@ void order_cell(pcs::internal::Huge_vector<Order_entry>& entries,
   std::copy(buffer.begin() + static_cast<std::ptrdiff_t>(begin),
             buffer.begin() + static_cast<std::ptrdiff_t>(end),
             entries.begin() + static_cast<std::ptrdiff_t>(begin));
-  // Two points on either side of the last representable centre may fall into one octant for ever.
+  // Two points next to the last representable centre may fall into one octant at every level.
   for (std::size_t c = 0; c < 8; ++c)
     if (first[c + 1] - first[c] == end - begin) {
       sort_leaf();
@@ -128,9 +128,9 @@ void order_cell(pcs::internal::Huge_vector<Order_entry>& entries,
 } // namespace internal
 
 /*!
-  The points `point_at(i)` of `[0, n)` with their indices, in octree order. Exact duplicates are
-  consecutive, the smaller index first. Apart from duplicates the sequence of positions does not
-  depend on the order of the input. O(n log n).
+  Returns the points `point_at(i)` of `[0, n)` with their indices, in octree order. Exact duplicates
+  are consecutive, the smaller index first. Except for duplicates, the sequence of positions is
+  independent of the order of the input. O(n log n).
 */
 template <class ConcurrencyTag, class PointAt>
 pcs::internal::Huge_vector<Order_entry> ordered_entries(std::size_t n, const PointAt& point_at)

@@ -27,13 +27,13 @@ public:
   virtual ~Format_reader() = default;
 
   /*!
-    Replaces the block by at most `max_rows` next rows; no rows mean the end. Everything behind the
-    points is checked before the last rows are handed out, so that whoever has all points has a
-    good file.
+    Replaces the block by at most `max_rows` next rows; no rows indicate the end. The data behind
+    the points are checked before the last rows are returned, so that a file whose points have all
+    been returned is valid.
   */
   virtual void read_rows(Row_block& block, std::size_t max_rows) = 0;
 
-  //! throws the error for a row of a block just read
+  //! throws the error for a row of the current block
   [[noreturn]] virtual void fail_at(std::uint64_t location, const std::string& what) const = 0;
 
   const Point_schema& schema() const { return m_schema; }
@@ -46,7 +46,7 @@ protected:
     m_layout.push_back(name, type);
     m_schema.properties.push_back({name, type});
   }
-  //! sizes the block for at most `max_rows` rows
+  //! resizes the block to at most `max_rows` rows
   void start_block(Row_block& block, std::size_t max_rows) const
   {
     block.bytes.resize(max_rows * m_layout.row_size);
@@ -59,7 +59,7 @@ protected:
   std::optional<std::uint64_t> m_number_of_points;
 };
 
-//! the first name that occurs twice, or an empty string
+//! returns the first name that occurs twice, or an empty string
 inline std::string first_duplicate(const Point_schema& schema)
 {
   std::unordered_set<std::string> names;
@@ -69,7 +69,7 @@ inline std::string first_duplicate(const Point_schema& schema)
   return {};
 }
 
-//! the sentence for a word that is not a number of the wanted type
+//! returns the message for a word that is not a number of the expected type
 inline std::string number_expected(std::string_view word,
                                    const std::string& name,
                                    Scalar_type type,

@@ -39,7 +39,7 @@ public:
     }
   }
 
-  //! completes the file, which holds `number_of_points` points, and gives it its name
+  //! completes the file, which contains `number_of_points` points, and renames it to its final name
   void commit(std::uint64_t number_of_points)
   {
     finish(number_of_points);
@@ -50,7 +50,7 @@ protected:
   virtual void write_rows(const Row_block& block) = 0;
   virtual void finish(std::uint64_t number_of_points) = 0;
 
-  //! a line per row; `do_mark_floats` keeps 1.0 from looking like the integer 1
+  //! writes a line per row; `do_mark_floats` distinguishes 1.0 from the integer 1
   void write_rows_as_text(const Row_block& block, char separator, bool do_mark_floats = false)
   {
     m_text.clear();
@@ -80,7 +80,7 @@ private:
   std::string m_text;
 };
 
-//! a count in a header: exact if known, else with room for the largest one
+//! formats a count of a header, padded to the length of the largest count unless it is final
 inline std::string count_in_header(std::uint64_t count, bool is_final)
 {
   std::string text = std::to_string(count);

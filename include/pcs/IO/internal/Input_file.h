@@ -36,18 +36,18 @@ public:
     m_size = std::filesystem::file_size(path, error);
     if (error)
       throw IO_error(path, "cannot be read: " + error.message());
-    m_file.pubsetbuf(nullptr, 0); // this class has its own buffer
+    m_file.pubsetbuf(nullptr, 0); // this class buffers the file itself
     if (m_file.open(path, std::ios::in | std::ios::binary) == nullptr)
       throw IO_error(path, "cannot be opened for reading");
   }
 
   const std::string& path() const { return m_path; }
   std::uint64_t size() const { return m_size; }
-  //! position of the next byte
+  //! returns the position of the next byte
   std::uint64_t position() const { return m_buffer_position + m_begin; }
-  //! bytes behind the next byte, counted once when the file was opened
+  //! returns the number of unread bytes, relative to the size of the file when it was opened
   std::uint64_t remaining() const { return m_size > position() ? m_size - position() : 0; }
-  //! number of the line that `read_line()` returned last, counted from 1
+  //! returns the number of the last line that `read_line()` returned, from 1
   std::uint64_t line_number() const { return m_line_number; }
 
   //! reads exactly `n` bytes
@@ -65,7 +65,7 @@ public:
     }
   }
 
-  //! moves `n` bytes forward
+  //! skips `n` bytes
   void skip(std::uint64_t n)
   {
     if (n > remaining())
@@ -76,7 +76,7 @@ public:
       seek(position() + n);
   }
 
-  //! moves to a byte of the file
+  //! moves to the byte `to` of the file
   void seek(std::uint64_t to)
   {
     const auto target = static_cast<std::streamoff>(to);
@@ -133,7 +133,7 @@ public:
 
 private:
   static constexpr std::size_t buffer_size = std::size_t(1) << 18;
-  // bounds the memory for a line; a point or a face of a real file is far shorter
+  // bounds the memory of a line; lines of points and faces in real files are far shorter
   static constexpr std::size_t longest_line = std::size_t(1) << 24;
 
   static std::string_view without_carriage_return(std::string_view line)
@@ -150,7 +150,7 @@ private:
     return n > 0 ? static_cast<std::size_t>(n) : 0;
   }
 
-  //! replaces the used-up buffer
+  //! replaces the contents of the buffer
   bool fill()
   {
     m_buffer_position += m_end;
@@ -159,7 +159,7 @@ private:
     return m_end > 0;
   }
 
-  //! keeps what is unread and reads more behind it
+  //! keeps the unread contents of the buffer and appends more
   bool fill_behind()
   {
     const std::size_t kept = m_end - m_begin;

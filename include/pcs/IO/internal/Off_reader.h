@@ -30,8 +30,8 @@ inline bool is_off_keyword(std::string_view word)
 }
 
 /*
-  OFF, NOFF, COFF and CNOFF: position, normal, colour. Faces are stepped over, but must be there.
-  Colours are uint8 if the first vertex writes them as integers, double otherwise.
+  OFF, NOFF, COFF and CNOFF: position, normal, colour. Faces are skipped, but must be present.
+  Colours are uint8 if those of the first vertex are integers, otherwise double.
 */
 class Off_reader : public Format_reader
 {
@@ -79,7 +79,7 @@ public:
   }
 
 private:
-  //! next line with content, without its comment; false at the end of the file
+  //! finds the next line with content and removes its comment; false at the end of the file
   bool find_line(std::string_view& line)
   {
     while (m_file.read_line(line)) {
@@ -108,7 +108,7 @@ private:
                             in_quotes(word));
     }
     expect_no_more(line);
-    // three digits with separators per vertex, one digit and a line break per face
+    // at least three digits with separators per vertex, one digit and a line break per face
     const std::uint64_t left = m_file.remaining() + 1;
     if (m_number_of_vertices > left / 6 ||
         m_number_of_faces > (left - 6 * m_number_of_vertices) / 2)
@@ -117,7 +117,7 @@ private:
     m_number_of_points = m_rows_left = m_number_of_vertices;
   }
 
-  //! the first vertex shows whether there is an alpha and whether colours are integers
+  //! adds colours; the first vertex determines whether they have an alpha and are integers
   void add_colors()
   {
     std::string_view rest = m_line;
@@ -157,7 +157,7 @@ private:
       m_file.fail_at_line("expected the end of the file, found " + in_quotes(line));
   }
 
-  //! indices, then any number of colour values
+  //! checks the indices of a face and any number of colour values
   void check_face(std::string_view line) const
   {
     std::uint64_t degree = 0;

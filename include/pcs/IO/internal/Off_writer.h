@@ -17,8 +17,8 @@ namespace IO {
 namespace internal {
 
 /*
-  Normals and colours are the only properties that OFF knows; the file is refused rather than
-  written without the others.
+  OFF stores only normals and colours. Data with other properties are rejected rather than written
+  without them.
 */
 class Off_writer : public Format_writer
 {

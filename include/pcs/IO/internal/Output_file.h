@@ -27,9 +27,9 @@ namespace IO {
 namespace internal {
 
 /*
-  Writes go to a temporary file in the directory of the target, which `commit()` renames. Where the
-  system can do it, that file has no name before, so that nothing is left when the program is
-  killed. A target that exists but is no regular file (a device, a pipe) is written to directly:
+  Writes to a temporary file in the directory of the target, which `commit()` renames. If the system
+  supports it, that file has no name before, so that no file remains when the program is killed. An
+  existing target that is not a regular file (a device, a pipe) is written directly, because
   renaming would replace the device itself.
 */
 class Output_file
@@ -44,7 +44,7 @@ public:
       throw IO_error(path, "is a directory, expected a file name");
     m_target = path;
     if (fs::exists(status)) {
-      // a symbolic link stays a link: the file behind it is replaced
+      // a symbolic link is kept: the file to which it refers is replaced
       const fs::path real = fs::canonical(path, error);
       if (!error)
         m_target = real;
@@ -83,7 +83,7 @@ public:
   }
   void write(std::string_view text) { write(text.data(), text.size()); }
 
-  //! number of bytes written so far
+  //! returns the number of bytes written so far
   std::size_t position() const { return m_position; }
 
   //! overwrites bytes near the front of the file
@@ -97,7 +97,7 @@ public:
       fail();
   }
 
-  //! closes the file and gives it its name
+  //! closes the file and renames it to its final name
   void commit()
   {
     flush();
@@ -125,7 +125,7 @@ private:
   static constexpr std::size_t buffer_size = std::size_t(1) << 18;
   static constexpr int most_names = 1000;
 
-  /// Names must not depend on that of the target, which may already have the largest length.
+  /// The name is independent of the target, whose name may have the largest possible length.
   std::filesystem::path temporary_name(int i) const
   {
     return m_target.parent_path() / (".pcs_unfinished_" + std::to_string(i) + ".tmp");
@@ -140,7 +140,7 @@ private:
         break;
     }
     if (m_file == nullptr)
-      m_temporary.clear(); // it is not ours
+      m_temporary.clear(); // belongs to another process
     else
       std::setvbuf(m_file, nullptr, _IONBF, 0);
   }
@@ -151,7 +151,7 @@ private:
     return "/proc/self/fd/" + std::to_string(file);
   }
 
-  /// `false` where the file system has no unnamed files, or they could not be named.
+  /// Returns `false` if the file system does not support unnamed files or their naming.
   bool open_nameless()
   {
     const std::filesystem::path folder = m_target.parent_path();
@@ -221,7 +221,7 @@ private:
 
   std::string m_path;
   std::filesystem::path m_target;
-  std::filesystem::path m_temporary; // empty when there is none, or it has no name yet
+  std::filesystem::path m_temporary; // empty if there is none, or if it has no name yet
   bool m_is_nameless = false;
   std::FILE* m_file = nullptr;
   std::vector<char> m_buffer;

@@ -25,7 +25,7 @@ namespace pcs {
 namespace IO {
 namespace internal {
 
-//! where a value sits in a row; a value of less than 8 bits shares its byte with others
+//! the position of a value in a row; several values of less than 8 bits may be in one byte
 struct Field
 {
   std::string name;
@@ -40,14 +40,14 @@ struct Row_layout
   std::vector<Field> fields;
   std::size_t row_size = 0;
   bool is_big_endian = is_big_endian_machine();
-  // position = scale * stored value + offset; used by LAS, identity elsewhere
+  // position = scale * stored value + offset; used by LAS, otherwise the identity
   std::array<double, 3> scale = {1, 1, 1};
   std::array<double, 3> offset = {0, 0, 0};
   bool is_scaled = false;
 
   bool do_swap() const { return is_big_endian != is_big_endian_machine(); }
 
-  //! adds a value behind the others
+  //! appends a value to the layout
   void push_back(const std::string& name, Scalar_type type)
   {
     fields.push_back({name, type, row_size});
@@ -55,7 +55,7 @@ struct Row_layout
   }
 };
 
-//! about how many bytes are handled at a time
+//! approximate number of bytes that are processed at a time
 constexpr std::size_t block_size = std::size_t(1) << 16;
 
 inline std::size_t rows_per_block(const Row_layout& layout)
@@ -64,7 +64,7 @@ inline std::size_t rows_per_block(const Row_layout& layout)
   return n > 0 ? n : 1;
 }
 
-//! some rows, and for each the line (text) or byte (binary) it came from
+//! a block of rows with the line (text) or byte (binary) of each row in the file
 struct Row_block
 {
   std::vector<unsigned char> bytes;
@@ -149,7 +149,7 @@ bool convert(From from, To& to)
     return true;
   } else if constexpr (std::is_same_v<To, double>) {
     to = static_cast<double>(from);
-    if constexpr (std::is_integral_v<From> && sizeof(From) == 8) // up to 2^53 all are exact
+    if constexpr (std::is_integral_v<From> && sizeof(From) == 8) // integers up to 2^53 are exact
       return from <= From(1) << 53 && (from >= From(0) || from >= -(From(1) << 53));
     return true;
   } else if constexpr (std::is_same_v<To, float>) {
@@ -204,15 +204,15 @@ void encode_field(std::size_t n,
   });
 }
 
-//! the integer that encodes a coordinate; as double, the caller checks the range
+//! returns the integer that encodes a coordinate, as a double; the caller checks the range
 inline double quantize(double value, double scale, double offset)
 {
   return std::round((value - offset) / scale);
 }
 
 /*!
-  Packs the points `[first, first + n)` of the table into rows. A field without a property of
-  its name in the table becomes zero. `columns` is from `find_columns()`.
+  Packs the points `[first, first + n)` of the table into rows. Fields without a property of the
+  same name in the table are set to zero. `columns` is the result of `find_columns()`.
 */
 inline void pack_rows(const Point_table& table,
                       const std::vector<std::size_t>& columns,
@@ -245,7 +245,7 @@ inline void pack_rows(const Point_table& table,
   }
 }
 
-//! for every field the position of the property of that name
+//! returns for every field the index of the property with its name
 inline std::vector<std::size_t> find_columns(const Point_schema& schema, const Row_layout& layout)
 {
   std::vector<std::size_t> columns;

@@ -21,12 +21,12 @@ namespace IO {
 namespace internal {
 
 /*
-  The first line that is neither blank nor a comment decides on the separator and the number of
-  columns. It may be a header line with names, among them x, y and z, of which the first may be
-  empty, as tables of pandas have it; so may the comment before it, as CloudCompare writes it.
-  Without one, the first three columns are x, y and z and the others are called column_4,
-  column_5, ...: whether six columns hold normals or colours cannot be known. A single integer on
-  the first line is the number of points of a PTS file.
+  The first line that is neither blank nor a comment determines the separator and the number of
+  columns. It may be a header line with names, which include x, y and z, and of which the first may
+  be empty, as in tables of pandas. The comment before it may be the header line instead, as in
+  files of CloudCompare. Without header line, the first three columns are x, y and z and the others
+  are named column_4, column_5, ..., because it is unknown whether six columns contain normals or
+  colours. A single integer on the first line is the number of points of a PTS file.
 */
 class Text_reader : public Format_reader
 {
@@ -76,7 +76,7 @@ private:
     return line[0] == '#' || line.substr(0, 2) == "//";
   }
 
-  //! moves to the next line that has content and splits it
+  //! moves to the next line with content and splits it
   bool next_row()
   {
     std::string_view line;
@@ -126,7 +126,7 @@ private:
     }
   }
 
-  //! "1,5 2,5": words separated by blanks inside a word separated by commas
+  //! whether a decimal comma is used, as in "1,5 2,5": words with blanks between commas
   bool has_decimal_comma() const
   {
     if (m_separator != ',')
@@ -158,7 +158,7 @@ private:
     m_number_of_points = count;
     m_separator = '\0';
     if (!next_row())
-      m_words.assign({"x", "y", "z"}); // no points: nothing to learn the columns from
+      m_words.assign({"x", "y", "z"}); // no points: the columns are unknown
   }
 
   bool is_header() const
@@ -188,8 +188,8 @@ private:
                             std::string(name) + "' is missing");
   }
 
-  //! takes the names from the last comment before the first row, if it has one for each column;
-  //! else nothing changes
+  //! uses the names in the last comment before the first row if there is one for each column,
+  //! otherwise has no effect
   bool use_comment()
   {
     std::string_view names = m_comment;
@@ -253,10 +253,10 @@ private:
   }
 
   Input_file m_file;
-  std::string m_comment;                 // the last one before the first row
-  char m_separator = '\0';               // ' ' means any number of blanks and tabs
-  std::vector<std::string_view> m_words; // of the current line
-  bool m_has_row = false;                // there is a line that was not handed out yet
+  std::string m_comment;                 // the last comment before the first row
+  char m_separator = '\0';               // ' ' represents any number of blanks and tabs
+  std::vector<std::string_view> m_words; // words of the current line
+  bool m_has_row = false;                // whether a line was read but not returned yet
   std::uint64_t m_number_of_rows = 0;
 };
 

@@ -28,7 +28,7 @@ namespace pcs {
 namespace IO {
 namespace internal {
 
-constexpr std::int64_t no_parent = -1; // of the root, in the file
+constexpr std::int64_t no_parent = -1; // parent of the root in the file
 
 struct Tree_row
 {
@@ -36,7 +36,7 @@ struct Tree_row
   std::uint64_t line = 0;
 };
 
-//! the whole word as a number, or an error that names the line and the column
+//! converts a word to a number; errors name the line and the column
 template <class T>
 T required_number(const Input_file& file, std::string_view word, const char* column)
 {
@@ -65,8 +65,8 @@ inline double required_length(const Input_file& file, std::string_view word, con
 }
 
 /*
-  The parents of all rows as indices, `npos` for the root. There must be exactly one root, and every
-  row must hang on it.
+  The parents of all rows as indices, `npos` for the root. There must be exactly one root, from
+  which every row descends.
 */
 class Tree_links
 {
@@ -108,7 +108,7 @@ private:
     throw IO_error(m_path, "line " + std::to_string(row.line) + ": " + what);
   }
 
-  //! walks up from every node until a node whose walk was fine
+  //! follows the parents of every node up to a node that was checked before
   void refuse_cycles(const std::vector<Tree_row>& rows) const
   {
     std::vector<std::size_t> walk_of(rows.size(), npos);
@@ -128,8 +128,8 @@ private:
 };
 
 /*
-  The nodes of a graph in the order in which they are written: as they are numbered if parents come
-  before their children, else as a walk from the root meets them.
+  The nodes of a graph in the order of the file: in the order of their numbers if parents precede
+  their children, otherwise in the order of a traversal from the root.
 */
 template <class Graph>
 std::vector<std::size_t> writing_order(const Graph& graph, std::size_t root, const char* caller)
@@ -162,7 +162,7 @@ std::vector<std::size_t> writing_order(const Graph& graph, std::size_t root, con
   return order;
 }
 
-//! `value` as text, or an error that names the node
+//! formats `value`; errors name the node
 template <class FT>
 double finite_value(const FT& value, const char* what, std::size_t node, const char* caller)
 {

@@ -18,7 +18,7 @@ namespace pcs {
 namespace IO {
 namespace internal {
 
-/// The words of a file, with line numbers in its errors.
+/// Reads the words of a file; errors contain line numbers.
 class Word_reader
 {
 public:
@@ -66,7 +66,7 @@ public:
       m_file.fail_at_line("expected '" + std::string(text) + "', found " + in_quotes(word));
   }
 
-  /// Whether the next word is `text`; then it is read.
+  /// Reads the next word if it is `text`, and returns whether it is.
   bool skip(std::string_view text)
   {
     if (next() == text)

@@ -21,7 +21,7 @@ namespace pcs {
 namespace IO {
 namespace internal {
 
-//! the extension in lower case and without its dot
+//! returns the extension in lower case and without its dot
 inline std::string extension_of(const std::string& path)
 {
   std::string text = std::filesystem::path(path).extension().string();
@@ -33,7 +33,7 @@ inline std::string extension_of(const std::string& path)
   return text;
 }
 
-//! the format of a file extension; throws if none
+//! returns the format of a file extension; throws if there is none
 inline File_format format_by_extension(const std::string& path)
 {
   const std::string extension = extension_of(path);
@@ -57,7 +57,7 @@ inline File_format format_by_extension(const std::string& path)
                      ", expected ply, las, off, xyz, txt, csv, asc, pts or pwn");
 }
 
-//! the format by the first bytes, else by the extension; opens the file
+//! opens the file and returns the format by its first bytes, otherwise by the extension
 inline File_format format_by_content(const std::string& path)
 {
   Input_file file(path);
@@ -75,7 +75,7 @@ inline File_format format_by_content(const std::string& path)
     return File_format::las;
   if (is_off_keyword(word))
     return File_format::off;
-  return format_by_extension(path); // the reader of that format reports what is missing
+  return format_by_extension(path); // the reader of that format reports missing data
 }
 
 } // namespace internal

@@ -40,7 +40,7 @@ inline std::string_view trim(std::string_view text)
   return text;
 }
 
-//! takes the next word off a line; empty when there is none
+//! removes the next word from a line and returns it; empty if there is none
 inline std::string_view next_word(std::string_view& line)
 {
   std::size_t begin = 0;
@@ -54,7 +54,7 @@ inline std::string_view next_word(std::string_view& line)
   return word;
 }
 
-//! a plus sign is legal in front of a number but unknown to std::from_chars
+//! removes a plus sign, which is valid in files but not accepted by std::from_chars
 inline std::string_view without_plus(std::string_view word)
 {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-' && word[1] != '+')
@@ -72,7 +72,7 @@ Parse_result parse_plain(std::string_view word, T& value)
   return result.ec == std::errc() ? Parse_result::ok : Parse_result::out_of_range;
 }
 
-//! the whole word as a `T`; an integer may be written as 12.0 or 1e3 but not as 1.5
+//! converts a complete word to a `T`; an integer may be written as 12.0 or 1e3 but not as 1.5
 template <class T>
 Parse_result parse_number(std::string_view word, T& value)
 {
@@ -85,13 +85,13 @@ Parse_result parse_number(std::string_view word, T& value)
   if (wide_result != Parse_result::ok)
     return wide_result;
   if constexpr (std::is_same_v<T, float>) {
-    // too small for a float is rounded to zero, too large is an error
+    // values too small for a float are rounded to zero, too large values are errors
     if (std::abs(wide) > 1)
       return Parse_result::out_of_range;
     value = static_cast<float>(wide);
     return Parse_result::ok;
   } else {
-    // both bounds are exact in double, also for 64 bits
+    // both bounds are exact in double, also for 64 bit integers
     const double end = std::ldexp(1.0, std::numeric_limits<T>::digits);
     if (!(wide >= static_cast<double>(std::numeric_limits<T>::min()) && wide < end))
       return Parse_result::out_of_range;
@@ -113,7 +113,7 @@ inline Parse_result parse_to_bytes(std::string_view word, Scalar_type type, unsi
   });
 }
 
-//! appends the shortest text that reads back as the same value
+//! appends the shortest text from which the same value is read
 template <class T>
 void append_number(std::string& text, T value)
 {
@@ -123,7 +123,7 @@ void append_number(std::string& text, T value)
   text.append(digits.data(), result.ptr);
 }
 
-//! a word as it is quoted in a message: never longer than a line of a terminal
+//! quotes a word for a message, shortened to less than a line of a terminal
 inline std::string in_quotes(std::string_view word)
 {
   std::string text = "'";
@@ -166,14 +166,14 @@ void store(T value, unsigned char* to, bool do_swap)
       std::swap(to[i], to[sizeof(T) - 1 - i]);
 }
 
-//! reads a little endian `T` at a byte of a block
+//! reads a little endian `T` at a byte position of a block
 template <class T, class Bytes>
 T load_little(const Bytes& bytes, std::size_t at)
 {
   return load<T>(bytes.data() + at, is_big_endian_machine());
 }
 
-//! writes a little endian `T` at a byte of a block
+//! writes a little endian `T` at a byte position of a block
 template <class T, class Bytes>
 void store_little(Bytes& bytes, std::size_t at, T value)
 {

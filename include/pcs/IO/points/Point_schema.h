@@ -19,7 +19,7 @@ namespace IO {
 
 /*!
   \ingroup PkgPcsIORef
-  \brief The families of point files that pcs reads and writes.
+  \brief The families of point file formats that pcs reads and writes.
 */
 enum class File_format : std::uint8_t {
   automatic, //!< reading: by content, then extension; writing: by extension
@@ -31,16 +31,16 @@ enum class File_format : std::uint8_t {
 
 /*!
   \ingroup PkgPcsIORef
-  \brief The parts of a LAS file around the point records, kept byte for byte.
+  \brief The parts of a LAS file around the point records, stored unchanged.
 
-  Counts, bounding box and positions inside `header` are renewed when the file is written.
+  Counts, bounding box and positions inside `header` are updated when the file is written.
 */
 struct Las_metadata
 {
   std::vector<unsigned char> header; //!< public header block
-  std::vector<unsigned char> vlrs;   //!< everything between the header and the first point record
-  std::vector<unsigned char> tail;   //!< everything after the last point record (EVLRs, waveforms)
-  std::uint64_t tail_position = 0;   //!< where `tail` began in the file it was read from [byte]
+  std::vector<unsigned char> vlrs;   //!< data between the header and the first point record
+  std::vector<unsigned char> tail;   //!< data after the last point record (EVLRs, waveforms)
+  std::uint64_t tail_position = 0;   //!< position of `tail` in the file [byte]
   std::array<double, 3> scale{};     //!< length of one step of the stored integers [L]
   std::array<double, 3> offset{};    //!< coordinate of the integer 0 [L]
 };
@@ -66,7 +66,7 @@ struct Property_description
 
 /*!
   \ingroup PkgPcsIORef
-  \brief The properties of a point file in file order, and the format's own extras.
+  \brief The properties of a point file in file order, and the data specific to its format.
 */
 struct Point_schema
 {
@@ -74,12 +74,12 @@ struct Point_schema
   std::vector<Property_description> properties = {{"x", Scalar_type::float64},
                                                   {"y", Scalar_type::float64},
                                                   {"z", Scalar_type::float64}};
-  File_format format = File_format::automatic; //!< where it was read from
+  File_format format = File_format::automatic; //!< format of the file that was read
   std::vector<std::string> comments;           //!< PLY comment lines, without the keyword
   std::vector<std::string> obj_info;           //!< PLY obj_info lines, without the keyword
   std::shared_ptr<const Las_metadata> las;     //!< null unless read from a LAS file
 
-  //! position of a property in `properties`, or `properties.size()`
+  //! returns the index of a property in `properties`, or `properties.size()`
   std::size_t find(const std::string& name) const
   {
     std::size_t i = 0;

@@ -24,12 +24,12 @@ namespace IO {
   \ingroup PkgPcsIORef
   \brief Points and any number of named properties per point, in file order.
 
-  Positions are doubles whatever the file stored. Every other property keeps its own type, so a
-  table read and written again changes nothing but the points the caller changed. A default
+  Positions are stored as doubles for every type in the file. Every other property keeps its own
+  type, so reading and writing a table changes only the points that the caller changes. A default
   constructed table has no points and no properties besides `x`, `y`, `z`.
 
-  The caller may change positions and the number of points through `points()`; a property whose
-  size then differs from the number of points is refused by the writers.
+  The caller may change positions and the number of points through `points()`. The writers reject
+  properties whose size differs from the number of points.
 */
 class Point_table
 {
@@ -40,14 +40,14 @@ public:
 
   Point_table() : Point_table(Point_schema()) {}
 
-  //! a table without points and with the properties of `schema`
+  //! constructs a table without points and with the properties of `schema`
   explicit Point_table(Point_schema schema) : m_schema(std::move(schema))
   {
     for (const Property_description& p : m_schema.properties)
       m_values.push_back(make_values(p.type));
   }
 
-  //! a table of positions only
+  //! constructs a table of positions only
   explicit Point_table(std::vector<Point_3> points) : Point_table()
   {
     m_points = std::move(points);
@@ -57,14 +57,14 @@ public:
   std::vector<Point_3>& points() { return m_points; }
   const std::vector<Point_3>& points() const { return m_points; }
 
-  //! names and types in file order, with what the format needs to be written back
+  //! returns names and types in file order, with the metadata of the format
   const Point_schema& schema() const { return m_schema; }
 
-  //! comment and obj_info lines of a PLY file
+  //! returns the comment and obj_info lines of a PLY file
   std::vector<std::string>& comments() { return m_schema.comments; }
   std::vector<std::string>& obj_info() { return m_schema.obj_info; }
 
-  //! names of the properties besides `x`, `y`, `z`, in file order
+  //! returns the names of the properties besides `x`, `y`, `z`, in file order
   std::vector<std::string> property_names() const
   {
     std::vector<std::string> names;
@@ -74,13 +74,13 @@ public:
     return names;
   }
 
-  //! whether there is a property of that name; the coordinates do not count
+  //! whether there is a property of that name, besides the coordinates
   bool has_property(const std::string& name) const
   {
     return !is_coordinate_name(name) && m_schema.has(name);
   }
 
-  //! the type of a property; throws `pcs::Invalid_input` when there is none of that name
+  //! returns the type of a property; throws `pcs::Invalid_input` if it does not exist
   Scalar_type property_type(const std::string& name) const
   {
     return m_schema.properties[index_of(name, "property_type")].type;
@@ -102,14 +102,14 @@ public:
     return *std::get_if<std::vector<T>>(&m_values[i]);
   }
 
-  //! the same for changing values; the number of values must stay
+  //! returns the values for modification; their number must not change
   template <class T>
   std::vector<T>& property(const std::string& name)
   {
     return const_cast<std::vector<T>&>(std::as_const(*this).template property<T>(name));
   }
 
-  //! the values of a property of any type, converted to double
+  //! returns the values of a property of any type, converted to double
   std::vector<double> property_as_double(const std::string& name) const
   {
     return std::visit(
@@ -123,17 +123,17 @@ public:
         m_values[index_of(name, "property_as_double")]);
   }
 
-  //! the values of a property as a variant over the ten types
+  //! returns the values of a property as a variant over the ten types
   const Property_values& property_values(const std::string& name) const
   {
     return m_values[index_of(name, "property_values")];
   }
 
   /*!
-    \brief adds a property behind the existing ones.
+    \brief appends a property.
 
-    Throws `pcs::Invalid_input`, and changes nothing, when the name is empty, taken, or a
-    coordinate, or when there is not one value per point.
+    Throws `pcs::Invalid_input` without effect if the name is empty, in use, or a coordinate, or if
+    the number of values differs from the number of points.
   */
   template <class T>
   void add_property(const std::string& name, std::vector<T> values)
@@ -147,7 +147,7 @@ public:
     m_values.emplace_back(std::move(values));
   }
 
-  //! gives an existing property new values, possibly of another type; it keeps its index
+  //! replaces the values of an existing property, possibly by another type; it keeps its index
   template <class T>
   void replace_property(const std::string& name, std::vector<T> values)
   {
@@ -171,7 +171,7 @@ public:
     return has_property("nx") && has_property("ny") && has_property("nz");
   }
 
-  //! the vectors `(nx, ny, nz)`; throws `pcs::Invalid_input` when one of them is missing
+  //! returns the vectors `(nx, ny, nz)`; throws `pcs::Invalid_input` if one property is missing
   std::vector<Vector_3> normals() const
   {
     const std::vector<double> nx = property_as_double("nx");
@@ -184,7 +184,7 @@ public:
     return result;
   }
 
-  //! stores normals in `nx`, `ny`, `nz`: in the existing float or double properties, or in new ones
+  //! stores normals in `nx`, `ny`, `nz`: in existing float or double properties, or in new ones
   void set_normals(const std::vector<Vector_3>& normals)
   {
     check_size("nx", normals.size(), "set_normals");
@@ -204,7 +204,7 @@ public:
   }
 
   /*!
-    \brief adds the points of another table with the same names and types in the same order.
+    \brief appends the points of another table with the same names and types in the same order.
 
     Throws `pcs::Invalid_input` when the properties differ.
   */
@@ -223,7 +223,7 @@ public:
   }
 
   /*!
-    \brief returns the points at the given positions with all their properties.
+    \brief returns the points with the given indices with all their properties.
 
     Throws `pcs::Invalid_input` when an index is not below `number_of_points()`.
   */
@@ -245,7 +245,7 @@ public:
     return result;
   }
 
-  //! removes all points, keeps the properties and the memory
+  //! removes all points; the properties and the memory remain
   void clear()
   {
     m_points.clear();

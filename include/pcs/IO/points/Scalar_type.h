@@ -35,7 +35,7 @@ enum class Scalar_type : std::uint8_t {
 
 /*!
   \ingroup PkgPcsIORef
-  \brief The values of one property, one per point, in the type they have in the file.
+  \brief The values of one property, one per point, in the type of the file.
 
   The alternatives are in the order of `Scalar_type`.
 */
@@ -50,7 +50,7 @@ using Property_values = std::variant<std::vector<std::int8_t>,
                                      std::vector<float>,
                                      std::vector<double>>;
 
-//! a value that carries a type, for `dispatch()`
+//! a value that represents a type, for `dispatch()`
 template <class T>
 struct Type_tag
 {
@@ -79,7 +79,7 @@ constexpr std::size_t scalar_index =
 template <class T>
 constexpr bool is_scalar_type_v = internal::scalar_index<T> < std::variant_size_v<Property_values>;
 
-//! the enumerator of `T`
+//! returns the enumerator of `T`
 template <class T>
 constexpr Scalar_type scalar_type_of()
 {
@@ -89,7 +89,7 @@ constexpr Scalar_type scalar_type_of()
   return static_cast<Scalar_type>(internal::scalar_index<T>);
 }
 
-//! calls `f(Type_tag<T>())` with the type that `type` names
+//! calls `f(Type_tag<T>())` with the type that `type` denotes
 template <class Function>
 decltype(auto) dispatch(Scalar_type type, Function&& f)
 {
@@ -118,13 +118,13 @@ decltype(auto) dispatch(Scalar_type type, Function&& f)
   return f(Type_tag<double>());
 }
 
-//! number of bytes of one value
+//! returns the number of bytes of one value
 inline std::size_t size_of(Scalar_type type)
 {
   return dispatch(type, [](auto tag) { return sizeof(typename decltype(tag)::type); });
 }
 
-//! the name used in messages, for example `uint16`
+//! returns the name used in messages, for example `uint16`
 inline const char* name_of(Scalar_type type)
 {
   constexpr std::array<const char*, 10> names = {"int8",
@@ -146,7 +146,7 @@ inline bool is_floating_point(Scalar_type type)
   return type == Scalar_type::float32 || type == Scalar_type::float64;
 }
 
-//! `n` zeros of the given type
+//! returns `n` zeros of the given type
 inline Property_values make_values(Scalar_type type, std::size_t n = 0)
 {
   return dispatch(type, [n](auto tag) {
@@ -154,13 +154,13 @@ inline Property_values make_values(Scalar_type type, std::size_t n = 0)
   });
 }
 
-//! the type of the values
+//! returns the type of the values
 inline Scalar_type type_of(const Property_values& values)
 {
   return static_cast<Scalar_type>(values.index());
 }
 
-//! the number of values
+//! returns the number of values
 inline std::size_t number_of_values(const Property_values& values)
 {
   return std::visit([](const auto& v) { return v.size(); }, values);

@@ -14,19 +14,19 @@
 namespace pcs {
 namespace IO {
 
-//! how a PLY file stores its numbers
+//! the representation of numbers in a PLY file
 enum class Ply_encoding { binary_little_endian, binary_big_endian, ascii };
 
 //! whether a text file begins with the names of its columns
 enum class Text_header {
-  automatic, //!< in csv files, and wherever a name would be lost without it
+  automatic, //!< in csv files, and if a name would be lost otherwise
   always,
   never
 };
 
 /*!
   \ingroup PkgPcsIORef
-  \brief How a point file is written; the defaults lose nothing.
+  \brief Options for writing a point file; the defaults are lossless.
 */
 struct Write_options
 {
@@ -39,14 +39,14 @@ struct Write_options
   //! 7 digits, too few for millimetres in most map projections.
   bool keep_coordinate_types = false;
 
-  //! checked by `Point_writer::commit()`; lets headers be written without gaps and to pipes
+  //! checked by `Point_writer::commit()`; permits headers without padding, and pipes
   std::optional<std::uint64_t> number_of_points;
 
-  //! text: one of blank, tab, comma, semicolon; by default a comma in csv files, else a blank
+  //! text: one of blank, tab, comma, semicolon; by default a comma in csv files, otherwise a blank
   std::optional<char> text_separator;
   Text_header text_header = Text_header::automatic;
 
-  //! LAS: length of one step of the stored integers [L], and the position of the integer 0 [L].
+  //! LAS: length of one step of the stored integers [L], and the coordinate of the integer 0 [L].
   //! By default those of the LAS file that was read; `write_points()` computes them otherwise.
   std::optional<std::array<double, 3>> las_scale;
   std::optional<std::array<double, 3>> las_offset;

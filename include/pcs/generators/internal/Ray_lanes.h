@@ -31,7 +31,7 @@ struct Ray_lanes
   Ray_lanes operator/(Ray_lanes b) const { return {_mm_div_ps(v, b.v)}; }
   friend Ray_lanes min(Ray_lanes a, Ray_lanes b) { return {_mm_min_ps(a.v, b.v)}; }
   friend Ray_lanes max(Ray_lanes a, Ray_lanes b) { return {_mm_max_ps(a.v, b.v)}; }
-  /// One bit for each lane in which `a <= b`.
+  /// Returns one bit for each lane in which `a <= b`.
   friend int mask_of_at_most(Ray_lanes a, Ray_lanes b)
   {
     return _mm_movemask_ps(_mm_cmple_ps(a.v, b.v));

@@ -32,14 +32,14 @@ struct Triangle
 
 constexpr std::uint32_t no_triangle = std::numeric_limits<std::uint32_t>::max();
 
-/// Rays that leave one point in almost the same direction; directions have the length 1.
+/// Rays from one point in almost the same direction; directions are unit vectors.
 struct Beam
 {
   Vector3f origin;
   std::array<Vector3f, number_of_lanes> direction;
 };
 
-/// What each ray of a beam hits first; infinity and `no_triangle` if nothing.
+/// The first hit of each ray of a beam; infinity and `no_triangle` if there is none.
 struct Beam_hits
 {
   std::array<float, number_of_lanes> range;
@@ -47,10 +47,10 @@ struct Beam_hits
 };
 
 /*
-  A binary tree of boxes, split where the surface area heuristic finds it cheapest among 16 places
-  per axis (Wald 2007). The four rays of a beam walk through it together: they visit nearly the same
-  boxes. Of two triangles at the same range the one with the lower number is hit, so the answer
-  depends on neither the shape of the tree nor the threads that built it.
+  A bounding volume hierarchy, split at the cheapest of 16 positions per axis according to the
+  surface area heuristic (Wald 2007). The four rays of a beam traverse it together, because they
+  visit nearly the same boxes. Of two triangles at the same range the one with the lower number is
+  hit, so the result depends on neither the shape of the tree nor the threads that built it.
 */
 class Ray_tree
 {
@@ -73,7 +73,7 @@ public:
       items[i].index = static_cast<std::uint32_t>(i);
     });
     split<ConcurrencyTag>(items, 0, n, 0, 0);
-    // triangles of a leaf side by side in memory
+    // the triangles of a leaf are adjacent in memory
     std::vector<Triangle> sorted(n);
     pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
       m_order[i] = items[i].index;
@@ -118,15 +118,15 @@ private:
   {
     Vector3f low = Vector3f::Zero(), high = Vector3f::Zero();
     std::uint32_t link =
-        0; // leaf: the first triangle; else axis and right child; the left one follows
-    std::uint32_t count = 0; // of triangles; 0: no leaf
+        0; // leaf: first triangle; else axis and right child, the left child being the next node
+    std::uint32_t count = 0; // of triangles; 0: not a leaf
   };
 
   struct Item
   {
     Vector3f low, high;
     std::uint32_t index;
-    float center(int axis) const { return low[axis] + high[axis]; } // twice it
+    float center(int axis) const { return low[axis] + high[axis]; } // doubled
   };
 
   struct Box
@@ -150,7 +150,7 @@ private:
     }
   };
 
-  /// The rays of a beam, one to a lane.
+  /// The rays of a beam, one per lane.
   struct Rays
   {
     explicit Rays(const Beam& beam)
@@ -162,7 +162,7 @@ private:
         float d[number_of_lanes], inverse[number_of_lanes];
         for (std::size_t lane = 0; lane < number_of_lanes; ++lane) {
           d[lane] = beam.direction[lane][axis];
-          // never 0 * infinity, which is not a number
+          // prevents 0 * infinity, which is not a number
           const float safe = std::abs(d[lane]) > 1e-18f ? d[lane] : std::copysign(1e-18f, d[lane]);
           inverse[lane] = 1 / safe;
         }
@@ -171,7 +171,7 @@ private:
       }
     }
 
-    /// Whether one of the rays meets the box before its best hit.
+    /// Whether a ray enters the box before its nearest hit.
     bool meet(const Vector3f& low, const Vector3f& high) const
     {
       Ray_lanes enter = Ray_lanes::of(0), leave = best;
@@ -181,12 +181,12 @@ private:
         enter = max(enter, min(a, b));
         leave = min(leave, max(a, b));
       }
-      // rounding must not make a flat box invisible
+      // flat boxes must be found in spite of rounding
       return mask_of_at_most(enter, leave * Ray_lanes::of(1.000001f)) != 0;
     }
 
-    /// Möller and Trumbore 1997; a little of the neighbours belongs to each triangle, so that no
-    /// ray slips between.
+    /// Intersection test of Möller and Trumbore 1997; triangles are slightly enlarged, so that no
+    /// ray passes between neighbours.
     void hit(const Triangle& triangle, std::uint32_t index, Beam_hits& hits)
     {
       constexpr float margin = 1e-5f;
@@ -199,7 +199,7 @@ private:
       const Ray_lanes py = direction[2] * lanes(e2.x()) - direction[0] * lanes(e2.z());
       const Ray_lanes pz = direction[0] * lanes(e2.y()) - direction[1] * lanes(e2.x());
       const Ray_lanes det = px * lanes(e1.x()) + py * lanes(e1.y()) + pz * lanes(e1.z());
-      const Ray_lanes scale = lanes(1) / det; // infinite for a ray in the plane: fails below
+      const Ray_lanes scale = lanes(1) / det; // infinite for a ray in the plane, which fails below
       const Ray_lanes u = (px * lanes(s.x()) + py * lanes(s.y()) + pz * lanes(s.z())) * scale;
       const Ray_lanes v = (direction[0] * lanes(q.x()) + direction[1] * lanes(q.y()) +
                            direction[2] * lanes(q.z())) *
@@ -230,10 +230,10 @@ private:
   };
 
   static constexpr std::size_t leaf_size = 4, number_of_bins = 16, stack_size = 128;
-  static constexpr std::size_t deepest_search = 64; // below, halves keep the depth in bounds
+  static constexpr std::size_t deepest_search = 64; // below, halving bounds the depth
   static constexpr std::uint32_t index_bits = 30, index_mask = (std::uint32_t(1) << index_bits) - 1;
 
-  /// Fills node `index` and what is below it, in the 2 (end - begin) - 1 nodes from there on.
+  /// Fills node `index` and its descendants, in the 2 (end - begin) - 1 nodes from there on.
   template <class ConcurrencyTag>
   void split(std::vector<Item>& items,
              std::size_t begin,
@@ -280,7 +280,7 @@ private:
     }
   }
 
-  /// Finds the cheapest of the places between bins, and sorts the items to its two sides.
+  /// Finds the cheapest boundary between bins, and sorts the items to its two sides.
   static bool partition(std::vector<Item>& items,
                         std::size_t begin,
                         std::size_t end,

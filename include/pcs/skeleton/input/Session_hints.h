@@ -18,17 +18,17 @@ namespace skeleton {
 struct Session_hints
 {
   Vec3 up = Vec3::UnitZ();
-  std::optional<Vec3> root; ///< in the coordinates of the input, as the next two
+  std::optional<Vec3> root; ///< in input coordinates, like the next two
   std::vector<Vec3> scanners;
-  std::optional<Given_skeleton> given; ///< measured; its positions stay
+  std::optional<Given_skeleton> given; ///< its positions remain fixed
   double beam_width = 0;               ///< of the scanners [rad]
-  bool do_register_stations = false;   ///< those of `stations`, or those that are found
-  std::vector<long long> stations;     ///< of the points; empty: not known
+  bool do_register_stations = false;   ///< those of `stations`, or detected ones
+  std::vector<long long> stations;     ///< of the points; empty: unknown
   bool do_mark_ground = true;
-  Leaf_removal leaf_removal = Leaf_removal::where_found; ///< by the method `chains`
+  Leaf_removal leaf_removal = Leaf_removal::where_found; ///< for the method `chains`
   double breast_height = 1.3;                            ///< [L]
   Skeleton_method method = Skeleton_method::chains;
-  Slice_options slices; ///< of the method `sections`
+  Slice_options slices; ///< for the method `sections`
 };
 
 } // namespace skeleton

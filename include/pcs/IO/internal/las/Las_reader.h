@@ -23,8 +23,8 @@ namespace IO {
 namespace internal {
 
 /*
-  LAS 1.0 to 1.4 with point formats 0 to 10. Header, VLRs and whatever follows the points are kept
-  as bytes in the schema, so that they can be written back.
+  Reads LAS 1.0 to 1.4 with point formats 0 to 10. Header, VLRs and all data behind the points are
+  stored as bytes in the schema, so that they can be written again.
 */
 class Las_reader : public Format_reader
 {
@@ -163,7 +163,7 @@ private:
     m_las->tail_position = m_first_point + count * length;
   }
 
-  //! extended records and waveforms are kept as they are
+  //! stores extended records and waveforms unchanged
   void read_tail()
   {
     const std::uint64_t waveforms = m_minor >= 3 ? header<std::uint64_t>(las_header::waveforms) : 0;

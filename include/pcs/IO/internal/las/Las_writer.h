@@ -24,10 +24,10 @@ namespace IO {
 namespace internal {
 
 /*
-  Points that came from LAS keep version, point format, VLRs, EVLRs, scale and offset of their
-  file. Others become LAS 1.4 with point format 6, or 7 with 16 bit colours. A property that the
-  point format lacks is written as extra bytes, with a descriptor. A dimension without a property
-  is written as zero.
+  Points from LAS files keep version, point format, VLRs, EVLRs, scale and offset of their file.
+  Other points are written as LAS 1.4 with point format 6, or 7 if they have 16 bit colours.
+  Properties that the point format lacks are written as extra bytes with a descriptor. Dimensions
+  without a property are set to zero.
 */
 class Las_writer : public Format_writer
 {
@@ -138,7 +138,7 @@ private:
     }
   }
 
-  //! positions in the header that point behind the points
+  //! updates the positions in the header that refer to data behind the points
   void move_tail(std::uint64_t new_position)
   {
     const unsigned minor = m_las.header[las_header::version_minor];

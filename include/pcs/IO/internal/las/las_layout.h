@@ -63,7 +63,7 @@ inline bool has_waveform(unsigned format)
   return format == 4 || format == 5 || format == 9 || format == 10;
 }
 
-//! adds values that share one byte, given as name and number of bits, lowest bits first
+//! adds values that are packed into one byte, as name and number of bits, lowest bits first
 inline void add_bits(Row_layout& layout,
                      std::initializer_list<std::pair<const char*, unsigned>> bits)
 {
@@ -105,7 +105,7 @@ inline void add_point_core_6_to_10(Row_layout& layout)
   layout.push_back("point_source_id", Scalar_type::uint16);
 }
 
-//! the dimensions of a point format, without extra bytes
+//! returns the dimensions of a point format, without extra bytes
 inline Row_layout las_point_layout(unsigned format)
 {
   Row_layout layout;
@@ -135,7 +135,7 @@ inline Row_layout las_point_layout(unsigned format)
   return layout;
 }
 
-//! the position of the extra bytes VLR in a block of VLRs, or nothing
+//! returns the position of the extra bytes VLR in a block of VLRs, or no value
 inline std::optional<std::size_t> find_extra_bytes_vlr(const Las_metadata& las)
 {
   const auto n = load_little<std::uint32_t>(las.header, las_header::number_of_vlrs);
@@ -162,7 +162,7 @@ constexpr std::array<Scalar_type, 10> extra_bytes_types = {Scalar_type::uint8,
                                                            Scalar_type::float32,
                                                            Scalar_type::float64};
 
-//! one descriptor: `size` bytes, with a type if it is a single number
+//! one descriptor: `size` bytes, with a type if they represent a single number
 struct Extra_dimension
 {
   std::string name;
@@ -177,7 +177,7 @@ inline Extra_dimension parse_extra_dimension(const unsigned char* descriptor)
   if (type == 0) {
     result.size = descriptor[3];
   } else if (type <= 30) {
-    // 11 to 20 are pairs and 21 to 30 triples of the types 1 to 10, kept as bytes
+    // 11 to 20 are pairs and 21 to 30 triples of the types 1 to 10, stored as bytes
     const Scalar_type scalar = extra_bytes_types[(type - 1) % 10];
     result.size = size_of(scalar) * ((type - 1) / 10 + 1);
     if (type <= 10)
@@ -205,9 +205,9 @@ inline std::vector<Extra_dimension> extra_dimensions(const Las_metadata& las)
 }
 
 /*!
-  The layout of the point records of a file. Extra bytes that a descriptor calls a single number
-  are columns of that name and type; scale and offset of a descriptor are not applied, so that
-  values stay as stored. All other extra bytes are columns extra_byte_0, extra_byte_1, ...
+  Returns the layout of the point records of a file. Extra bytes that a descriptor declares as a
+  single number are columns of its name and type. Scale and offset of a descriptor are not applied,
+  so that values remain as stored. All other extra bytes are columns extra_byte_0, extra_byte_1, ...
 */
 inline Row_layout las_record_layout(const Las_metadata& las)
 {
@@ -226,7 +226,7 @@ inline Row_layout las_record_layout(const Las_metadata& las)
   };
   for (const Extra_dimension& extra : extra_dimensions(las)) {
     if (extra.size == 0 || layout.row_size + extra.size > end)
-      break; // the descriptors do not describe these records
+      break; // the descriptors do not match these records
     const bool is_name_free = !extra.name.empty() && extra.name.rfind("extra_byte_", 0) != 0;
     if (extra.type && is_name_free && names.insert(extra.name).second)
       layout.push_back(extra.name, *extra.type);

@@ -26,7 +26,7 @@ namespace pcs {
 namespace IO {
 namespace internal {
 
-//! a LAS 1.4 header for points that did not come from LAS
+//! makes a LAS 1.4 header for points that are not from a LAS file
 inline Las_metadata make_las_metadata(const Point_schema& schema)
 {
   const auto is_16_bit = [&](const char* name) {
@@ -41,7 +41,7 @@ inline Las_metadata make_las_metadata(const Point_schema& schema)
   las.header[las_header::version_major] = 1;
   las.header[las_header::version_minor] = 4;
   las.header[las_header::point_format] = static_cast<unsigned char>(format);
-  // point formats from 6 on must say that a coordinate system, if any, is given as WKT
+  // point formats from 6 on must declare coordinate systems as WKT
   store_little<std::uint16_t>(las.header, las_header::global_encoding, 16);
   store_little(las.header,
                las_header::header_size,
@@ -52,7 +52,7 @@ inline Las_metadata make_las_metadata(const Point_schema& schema)
   return las;
 }
 
-//! appends a descriptor; type 0 means `size` bytes without a meaning
+//! appends a descriptor; type 0 denotes `size` bytes without interpretation
 inline void append_descriptor(std::vector<unsigned char>& to,
                               const std::string& name,
                               unsigned type,
@@ -71,14 +71,14 @@ inline unsigned extra_bytes_type(Scalar_type type)
   return static_cast<unsigned>(hit - extra_bytes_types.begin()) + 1;
 }
 
-//! inserts descriptors at the end of the extra bytes VLR, which is made if there is none
+//! inserts descriptors at the end of the extra bytes VLR, which is created if it is missing
 inline std::string insert_descriptors(Las_metadata& las, const std::vector<unsigned char>& added)
 {
   std::size_t at = find_extra_bytes_vlr(las).value_or(las.vlrs.size());
   const bool is_new = at == las.vlrs.size();
   if (is_new) {
     const auto n = load_little<std::uint32_t>(las.header, las_header::number_of_vlrs);
-    at = 0; // in front of the others: there may be padding behind them
+    at = 0; // before the others, which may be followed by padding
     std::vector<unsigned char> vlr(vlr_header_size, 0);
     std::memcpy(vlr.data() + las_vlr::user_id, "LASF_Spec", 9);
     std::memcpy(vlr.data() + las_vlr::description, "Extra bytes", 11);
@@ -96,8 +96,7 @@ inline std::string insert_descriptors(Las_metadata& las, const std::vector<unsig
 }
 
 /*!
-  Makes room in the records for the properties that they lack. Returns what is wrong, or an empty
-  string.
+  Adds the missing properties to the records. Returns an error message, or an empty string.
 */
 inline std::string add_extra_dimensions(Las_metadata& las, const Point_schema& schema)
 {
@@ -107,7 +106,7 @@ inline std::string add_extra_dimensions(Las_metadata& las, const Point_schema& s
     known.insert(field.name);
   std::vector<unsigned char> added;
   std::size_t record_length = old.row_size;
-  // descriptors count from the first extra byte, so bytes that have none need one now
+  // descriptors are counted from the first extra byte, so all extra bytes require one
   std::size_t described = las_point_layout(las.header[las_header::point_format]).row_size;
   for (const Extra_dimension& extra : extra_dimensions(las))
     described += extra.size;
@@ -130,7 +129,7 @@ inline std::string add_extra_dimensions(Las_metadata& las, const Point_schema& s
   return added.empty() ? std::string() : insert_descriptors(las, added);
 }
 
-//! smallest and largest coordinate along an axis
+//! returns the smallest and the largest coordinate along an axis
 inline std::array<double, 2> range_of(const Point_table& table, int axis)
 {
   std::array<double, 2> range = {0, 0};
@@ -153,10 +152,11 @@ inline bool fits_grid(const std::array<double, 2>& range, double scale, double o
 }
 
 /*!
-  Sets scale and offset where the caller did not. Points from LAS keep their scale, and their
-  offset as long as they fit. Others get the finest power of ten, at least 5e8 steps for the
-  longest side of the bounding box (four times as many would fill the integers), and the lower
-  corner of the box rounded down to about one digit of its size.
+  Sets scale and offset if the caller did not. Points from LAS keep their scale, and their offset if
+  their coordinates can be represented with it. Otherwise the scale is the finest power of ten that
+  gives at most 5e8 steps along the longest side of the bounding box (four times as many would
+  exhaust the integers). The offset is the lower corner of the box, rounded down to about one digit
+  of its size.
 */
 inline void
 choose_las_grid(const std::string& path, const Point_table& table, Write_options& options)

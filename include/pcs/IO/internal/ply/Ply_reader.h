@@ -23,8 +23,8 @@ namespace IO {
 namespace internal {
 
 /*
-  Scalar properties of the element `vertex` become columns; lists and other elements are stepped
-  over, but must be there in full.
+  Scalar properties of the element `vertex` become columns; lists and other elements are skipped,
+  but must be complete.
 */
 class Ply_reader : public Format_reader
 {
@@ -83,15 +83,15 @@ private:
       if (!m_schema.has(name))
         m_file.fail_at_line("the element 'vertex' has no scalar property '" + std::string(name) +
                             "'");
-    // text is converted to the byte order of the machine while it is parsed
+    // text is converted to the native byte order when it is parsed
     if (!is_ascii())
       m_layout.is_big_endian = m_header.storage == Ply_storage::big_endian;
   }
 
-  //! no count may promise more than the file can hold; nothing was allocated before
+  //! checks that no count exceeds the size of the file, before memory is allocated
   void check_sizes() const
   {
-    // the last line of a text needs no line break
+    // the last line of a text file may lack a line break
     std::uint64_t left = m_file.remaining() + (is_ascii() ? 1 : 0);
     for (const Ply_element& element : m_header.elements) {
       const std::uint64_t row = element.smallest_row(m_header.storage);
@@ -238,7 +238,7 @@ private:
 
   Input_file m_file;
   Ply_header m_header;
-  std::size_t m_vertex = 0; // position of the element `vertex`
+  std::size_t m_vertex = 0; // index of the element `vertex`
   std::uint64_t m_rows_left = 0;
   bool m_is_end_checked = false;
 };

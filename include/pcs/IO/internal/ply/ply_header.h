@@ -37,7 +37,7 @@ struct Ply_element
   std::uint64_t count = 0;
   std::vector<Ply_property> properties;
 
-  //! the fewest bytes a row can have
+  //! returns the smallest possible number of bytes of a row
   std::uint64_t smallest_row(Ply_storage storage) const
   {
     std::uint64_t size = 0;
@@ -61,7 +61,7 @@ struct Ply_header
   std::vector<std::string> comments, obj_info;
 };
 
-//! the type with the given PLY name; the 64 bit integers are an extension
+//! returns the type with the given PLY name; the 64 bit integers are an extension
 inline std::optional<Scalar_type> ply_type(std::string_view name)
 {
   struct Entry
@@ -85,7 +85,7 @@ inline std::optional<Scalar_type> ply_type(std::string_view name)
   return std::nullopt;
 }
 
-//! the name that all PLY readers know
+//! returns the name that is known to all PLY readers
 inline const char* ply_name(Scalar_type type)
 {
   constexpr const char* names[] =
@@ -224,7 +224,7 @@ private:
   Input_file& m_file;
   Ply_header m_header;
   bool m_has_format = false;
-  std::unordered_set<std::string> m_names; // of the properties of the last element
+  std::unordered_set<std::string> m_names; // names of the properties of the last element
 };
 
 } // namespace internal
