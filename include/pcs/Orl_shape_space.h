@@ -7,15 +7,15 @@
 #define PCS_ORL_SHAPE_SPACE_H
 
 #include <pcs/Named_function_parameters.h>
-#include <pcs/Orl_tree.h>
+#include <pcs/shape_space/Orl_tree.h>
 #include <pcs/concepts.h>
 #include <pcs/core/Orl_correspondences.h>
 #include <pcs/core/Orl_options.h>
 #include <pcs/core/Orl_report.h>
 #include <pcs/core/Orl_space_data.h>
 #include <pcs/core/Tree_skeleton.h>
-#include <pcs/core/check_value.h>
-#include <pcs/core/read_parameter.h>
+#include <pcs/core/parameters/check_value.h>
+#include <pcs/core/parameters/read_parameter.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
 #include <pcs/shape_space/Space_state.h>

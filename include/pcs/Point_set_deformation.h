@@ -11,8 +11,8 @@
 #include <pcs/core/Deformation_report.h>
 #include <pcs/core/Similarity.h>
 #include <pcs/core/Status.h>
-#include <pcs/core/check_value.h>
-#include <pcs/core/read_parameter.h>
+#include <pcs/core/parameters/check_value.h>
+#include <pcs/core/parameters/read_parameter.h>
 #include <pcs/deformation/Session.h>
 #include <pcs/deformation/access/Handle_motion.h>
 #include <pcs/deformation/access/Point_access.h>

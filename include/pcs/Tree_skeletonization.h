@@ -9,7 +9,7 @@
 #include <pcs/concepts.h>
 #include <pcs/core/Skeleton_report.h>
 #include <pcs/core/Tree_skeleton.h>
-#include <pcs/core/check_value.h>
+#include <pcs/core/parameters/check_value.h>
 #include <pcs/core/errors.h>
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Session.h>

@@ -7,7 +7,7 @@
 
 #include <pcs/Point_set_deformation.h>
 #include <pcs/concepts.h>
-#include <pcs/core/read_parameter.h>
+#include <pcs/core/parameters/read_parameter.h>
 #include <pcs/internal/progress.h>
 
 #include <cstddef>

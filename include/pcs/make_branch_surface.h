@@ -7,8 +7,8 @@
 
 #include <pcs/Named_function_parameters.h>
 #include <pcs/core/Tree_skeleton.h>
-#include <pcs/core/check_value.h>
-#include <pcs/core/read_parameter.h>
+#include <pcs/core/parameters/check_value.h>
+#include <pcs/core/parameters/read_parameter.h>
 #include <pcs/skeleton/input/caller_types.h>
 #include <pcs/skeleton/surface/Surface_builder.h>
 

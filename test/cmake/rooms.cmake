@@ -7,12 +7,6 @@
 
 
 # ---- deformation: deform_point_set
-
-
-# ---- deformation: deform_point_set
-
-
-# ---- deformation: deform_point_set
 set(root_deformation Session.h access)
 set(deformation_session
   body/Sampled_body.h
@@ -88,55 +82,42 @@ set(skeleton_forest
 
 # ---- shape_space: orl_geodesic, Orl_shape_space
 set(root_shape_space
-  Space_engine.h
-  family/Family_points.h
-  family/Tree_family.h
+  Orl_tree.h
+  Space_state.h
+  build_space.h
+  family/embed_tree.h
   input/check_sampling.h
+  input/check_space.h
   input/read_options.h
   input/tree_input.h
   input/write_skeleton.h
   measures/Tree_descriptors.h
   measures/change_table.h
-  model/Build_options.h
   model/Orl_coordinates.h
-  pair/Embedded_pair.h
-  path/Extrapolation_limits.h
   path/Growth_spline.h
-  path/Sequential_births.h
-  points/Point_instances.h
-  statistics/Modes_of_variation.h)
+  path/interpolate_trees.h
+  points/write_points.h
+  statistics/Modes_of_variation.h
+  statistics/make_tree.h
+  statistics/tree_statistics.h)
 set(shape_space_session
   family/Family_points.h
-  family/Family_points_impl.h
-  family/Tree_family.h
   family/build_family.h
   family/make_family.h
   family/serialize_family.h
   input/tree_input.h
-  measures/Tree_descriptors.h
-  measures/change_table.h
   pair/Embedded_pair.h
   pair/build_pair.h
   pair/embed_pair.h
   pair/serialize_topology.h
-  path/Extrapolation_limits.h
-  path/Sequential_births.h
-  path/apply_pipe_model.h
-  points/Point_instances_impl.h
-  statistics/Modes_of_variation.h
-  statistics/Tangent_space.h
-  statistics/Tree_distribution.h
-  statistics/find_modes.h
-  statistics/mean_tree.h
-  statistics/project_to_range.h)
-set(shape_space_input matching/Matched_branch.h pair/Embedded_pair.h)
+  path/Tree_state.h
+  points/Point_instances_impl.h)
 set(shape_space_embedding matching/align_vectors.h)
 set(shape_space_points transport/partial_transport.h)
 set(shape_space_pair
   embedding/embed_trees.h
   embedding/refine_yaw.h
   embedding/skip_fold_edges.h
-  family/build_family.h
   input/tree_input.h
   matching/Branch_matching.h
   matching/build_topology.h
@@ -149,7 +130,6 @@ set(shape_space_family
   embedding/embed_trees.h
   embedding/mean_rotation.h
   input/tree_input.h
-  matching/Matched_branch.h
   matching/build_topology.h
   matching/elastic_curves.h
   matching/find_yaw_candidates.h
@@ -162,5 +142,8 @@ set(shape_space_family
   points/point_correspondences.h
   points/surface_patches.h
   points/tube_coordinates.h)
-set(shape_space_statistics embedding/mean_rotation.h measures/Tree_descriptors.h)
-set(shape_space_model family/Tree_family.h matching/Matched_branch.h)
+set(shape_space_statistics
+  embedding/mean_rotation.h
+  measures/Tree_descriptors.h
+  path/Tree_state.h
+  path/apply_pipe_model.h)

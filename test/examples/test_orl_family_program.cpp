@@ -300,7 +300,8 @@ BOOST_AUTO_TEST_CASE(options_that_would_have_no_effect_are_refused)
             option.substr(0, option.find(' ')) + " has no effect without");
   refuses(skeletons + "--growth --mean-kind median --output again", "--mean-kind has no effect");
   succeeds(skeletons + "--mean --align none --orientation transported --output again");
-  succeeds("--load-space s.txt --lambda 0.5 --max-extrapolation-degrees 30 --sequential-emergence --limit-radii "
+  succeeds("--load-space s.txt --lambda 0.5 --max-extrapolation-degrees 30 "
+           "--sequential-emergence --limit-radii "
            "--output again");
 }
 

@@ -7,7 +7,7 @@
 
 #include <pcs/Named_function_parameters.h>
 #include <pcs/core/Tree_skeleton.h>
-#include <pcs/core/read_parameter.h>
+#include <pcs/core/parameters/read_parameter.h>
 #include <pcs/generators/Tree_habit.h>
 #include <pcs/generators/internal/Tree_growth.h>
 

@@ -5,7 +5,7 @@
 #ifndef PCS_NEIGHBORHOOD_DETACH_OUTLIERS_H
 #define PCS_NEIGHBORHOOD_DETACH_OUTLIERS_H
 
-#include <pcs/core/median.h>
+#include <pcs/internal/median.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/neighborhood/Proximity_graph.h>
 

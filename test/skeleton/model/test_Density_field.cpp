@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // Densities and sides by place and direction; which axes of two points are believed.
 
-#include <pcs/core/median.h>
+#include <pcs/internal/median.h>
 #include <pcs/internal/Random_stream.h>
 #include <pcs/skeleton/axes/drop_two_point_axes.h>
 #include <pcs/skeleton/axes/fit_fields.h>

@@ -5,7 +5,7 @@
 #ifndef PCS_DEFORMATION_ACCESS_CARRY_POINTS_H
 #define PCS_DEFORMATION_ACCESS_CARRY_POINTS_H
 
-#include <pcs/core/check_value.h>
+#include <pcs/core/parameters/check_value.h>
 #include <pcs/deformation/access/Point_access.h>
 #include <pcs/deformation/model/Affine_map.h>
 #include <pcs/internal/parallel.h>

@@ -5,7 +5,7 @@
 #ifndef PCS_DEFORMATION_ACCESS_CHECK_SESSION_H
 #define PCS_DEFORMATION_ACCESS_CHECK_SESSION_H
 
-#include <pcs/core/check_value.h>
+#include <pcs/core/parameters/check_value.h>
 #include <pcs/core/errors.h>
 
 #include <cstddef>

@@ -8,7 +8,7 @@
 #include <pcs/core/Deformation_options.h>
 #include <pcs/core/Deformation_report.h>
 #include <pcs/core/errors.h>
-#include <pcs/core/median.h>
+#include <pcs/internal/median.h>
 #include <pcs/deformation/body/Sample_links.h>
 #include <pcs/deformation/body/Sample_regions.h>
 #include <pcs/deformation/body/Sampled_body.h>

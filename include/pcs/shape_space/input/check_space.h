@@ -5,7 +5,7 @@
 #ifndef PCS_SHAPE_SPACE_INPUT_CHECK_SPACE_H
 #define PCS_SHAPE_SPACE_INPUT_CHECK_SPACE_H
 
-#include <pcs/core/check_value.h>
+#include <pcs/core/parameters/check_value.h>
 #include <pcs/shape_space/model/Orl_coordinates.h>
 #include <pcs/shape_space/model/Tree_family.h>
 

@@ -7,13 +7,13 @@
 
 #include <pcs/Named_function_parameters.h>
 #include <pcs/core/Orl_options.h>
-#include <pcs/core/check_value.h>
-#include <pcs/core/read_parameter.h>
+#include <pcs/core/parameters/check_value.h>
+#include <pcs/core/parameters/read_parameter.h>
 #include <pcs/internal/constants.h>
 #include <pcs/shape_space/input/check_options.h>
 #include <pcs/shape_space/input/check_sampling.h>
 #include <pcs/shape_space/model/Build_options.h>
-#include <pcs/shape_space/path/interpolate_trees.h>
+#include <pcs/shape_space/model/Path_options.h>
 
 #include <array>
 #include <cstddef>

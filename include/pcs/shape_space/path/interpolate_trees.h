@@ -5,10 +5,10 @@
 #ifndef PCS_SHAPE_SPACE_PATH_INTERPOLATE_TREES_H
 #define PCS_SHAPE_SPACE_PATH_INTERPOLATE_TREES_H
 
-#include <pcs/core/Orl_options.h>
 #include <pcs/core/errors.h>
 #include <pcs/internal/text.h>
 #include <pcs/shape_space/model/Orl_coordinates.h>
+#include <pcs/shape_space/model/Path_options.h>
 #include <pcs/shape_space/model/Tree_family.h>
 #include <pcs/shape_space/path/Extrapolation_limits.h>
 #include <pcs/shape_space/path/Sequential_births.h>
@@ -18,13 +18,6 @@
 
 namespace pcs {
 namespace shape_space {
-
-struct Path_options
-{
-  double max_extrapolation_angle = 0; ///< rotation of an edge beyond the ends of the path [rad]
-  bool do_limit_radii = false;
-  Branch_emergence emergence = Branch_emergence::simultaneous;
-};
 
 /// Writes the tree at `t` on the geodesic from `a` (0) to `b` (1) to `result`, whose memory is used
 /// again. Throws `Invalid_input`, with a message that begins with `caller`, if its positions are

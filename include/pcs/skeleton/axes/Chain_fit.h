@@ -5,7 +5,7 @@
 #ifndef PCS_SKELETON_AXES_CHAIN_FIT_H
 #define PCS_SKELETON_AXES_CHAIN_FIT_H
 
-#include <pcs/core/median.h>
+#include <pcs/internal/median.h>
 #include <pcs/internal/constants.h>
 #include <pcs/skeleton/axes/Axis_fit.h>
 #include <pcs/skeleton/axes/Axis_oval.h>

@@ -5,7 +5,7 @@
 #ifndef PCS_SKELETON_AXES_NOISE_AND_DENSITY_MODEL_H
 #define PCS_SKELETON_AXES_NOISE_AND_DENSITY_MODEL_H
 
-#include <pcs/core/median.h>
+#include <pcs/internal/median.h>
 #include <pcs/skeleton/axes/fit_fields.h>
 #include <pcs/skeleton/model/Axis_set.h>
 #include <pcs/skeleton/model/Density_field.h>

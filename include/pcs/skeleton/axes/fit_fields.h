@@ -5,7 +5,7 @@
 #ifndef PCS_SKELETON_AXES_FIT_FIELDS_H
 #define PCS_SKELETON_AXES_FIT_FIELDS_H
 
-#include <pcs/core/median.h>
+#include <pcs/internal/median.h>
 #include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/model/Density_field.h>
 #include <pcs/skeleton/model/Scan.h>

@@ -5,7 +5,7 @@
 #ifndef PCS_SKELETON_AXES_SECTION_PRIORS_H
 #define PCS_SKELETON_AXES_SECTION_PRIORS_H
 
-#include <pcs/core/median.h>
+#include <pcs/internal/median.h>
 #include <pcs/skeleton/axes/Axis_fit.h>
 #include <pcs/skeleton/axes/Chain_options.h>
 #include <pcs/skeleton/axes/section_counts.h>

@@ -5,7 +5,7 @@
 #ifndef PCS_SKELETON_CLUTTER_TERRAIN_H
 #define PCS_SKELETON_CLUTTER_TERRAIN_H
 
-#include <pcs/core/median.h>
+#include <pcs/internal/median.h>
 #include <pcs/skeleton/model/Scan.h>
 
 #include <Eigen/Core>

@@ -5,7 +5,7 @@
 #ifndef PCS_SKELETON_CLUTTER_IS_SINGLE_SHEET_H
 #define PCS_SKELETON_CLUTTER_IS_SINGLE_SHEET_H
 
-#include <pcs/core/median.h>
+#include <pcs/internal/median.h>
 #include <pcs/internal/constants.h>
 #include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/model/Scan.h>

@@ -5,7 +5,7 @@
 #ifndef PCS_SKELETON_CLUTTER_MARK_GROUND_H
 #define PCS_SKELETON_CLUTTER_MARK_GROUND_H
 
-#include <pcs/core/median.h>
+#include <pcs/internal/median.h>
 #include <pcs/skeleton/clutter/Terrain.h>
 #include <pcs/skeleton/clutter/is_single_sheet.h>
 #include <pcs/skeleton/graph/Neighbor_graph.h>

@@ -6,7 +6,7 @@
 #define PCS_SKELETON_FOREST_STAND_IMPL_H
 
 #include <pcs/core/Skeleton_options.h>
-#include <pcs/core/median.h>
+#include <pcs/internal/median.h>
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Session.h>
 #include <pcs/skeleton/Session_options.h>

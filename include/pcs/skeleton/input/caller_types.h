@@ -8,7 +8,7 @@
 #include <pcs/Named_function_parameters.h>
 #include <pcs/concepts.h>
 #include <pcs/core/Tree_skeleton.h>
-#include <pcs/core/check_value.h>
+#include <pcs/core/parameters/check_value.h>
 #include <pcs/skeleton/model/Given_skeleton.h>
 #include <pcs/skeleton/model/Scan.h>
 

@@ -5,7 +5,7 @@
 #ifndef PCS_SKELETON_INPUT_CHECK_INPUT_H
 #define PCS_SKELETON_INPUT_CHECK_INPUT_H
 
-#include <pcs/core/check_value.h>
+#include <pcs/core/parameters/check_value.h>
 #include <pcs/core/errors.h>
 #include <pcs/internal/text.h>
 #include <pcs/skeleton/input/Session_hints.h>

@@ -9,8 +9,8 @@
 #include <pcs/concepts.h>
 #include <pcs/core/Skeleton_options.h>
 #include <pcs/core/Tree_skeleton.h>
-#include <pcs/core/check_value.h>
-#include <pcs/core/read_parameter.h>
+#include <pcs/core/parameters/check_value.h>
+#include <pcs/core/parameters/read_parameter.h>
 #include <pcs/skeleton/input/Session_hints.h>
 #include <pcs/skeleton/input/caller_types.h>
 

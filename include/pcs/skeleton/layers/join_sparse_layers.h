@@ -5,7 +5,7 @@
 #ifndef PCS_SKELETON_LAYERS_JOIN_SPARSE_LAYERS_H
 #define PCS_SKELETON_LAYERS_JOIN_SPARSE_LAYERS_H
 
-#include <pcs/core/median.h>
+#include <pcs/internal/median.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/skeleton/graph/Neighbor_graph.h>
 #include <pcs/skeleton/model/Scan.h>

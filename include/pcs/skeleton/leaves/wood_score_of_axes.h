@@ -5,7 +5,7 @@
 #ifndef PCS_SKELETON_LEAVES_WOOD_SCORE_OF_AXES_H
 #define PCS_SKELETON_LEAVES_WOOD_SCORE_OF_AXES_H
 
-#include <pcs/core/median.h>
+#include <pcs/internal/median.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/graph/shortest_paths.h>

@@ -5,7 +5,7 @@
 #ifndef PCS_SKELETON_RADII_MEASURE_GIVEN_H
 #define PCS_SKELETON_RADII_MEASURE_GIVEN_H
 
-#include <pcs/core/median.h>
+#include <pcs/internal/median.h>
 #include <pcs/skeleton/model/Branch_grouper.h>
 #include <pcs/skeleton/model/Branch_tree.h>
 #include <pcs/skeleton/model/Given_skeleton.h>

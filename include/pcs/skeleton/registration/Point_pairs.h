@@ -5,7 +5,7 @@
 #ifndef PCS_SKELETON_REGISTRATION_POINT_PAIRS_H
 #define PCS_SKELETON_REGISTRATION_POINT_PAIRS_H
 
-#include <pcs/core/median.h>
+#include <pcs/internal/median.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/skeleton/model/Scan.h>
 

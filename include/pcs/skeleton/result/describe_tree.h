@@ -7,7 +7,7 @@
 
 #include <pcs/core/Skeleton_report.h>
 #include <pcs/core/Status.h>
-#include <pcs/core/median.h>
+#include <pcs/internal/median.h>
 #include <pcs/skeleton/model/Axis_set.h>
 #include <pcs/skeleton/model/Branch_tree.h>
 #include <pcs/skeleton/model/Scan.h>

@@ -5,7 +5,7 @@
 #ifndef PCS_SKELETON_RESULT_RESIDUAL_OF_POINT_H
 #define PCS_SKELETON_RESULT_RESIDUAL_OF_POINT_H
 
-#include <pcs/core/median.h>
+#include <pcs/internal/median.h>
 #include <pcs/skeleton/model/Branch_tree.h>
 #include <pcs/skeleton/model/Scan.h>
 #include <pcs/skeleton/model/nearest_edge.h>

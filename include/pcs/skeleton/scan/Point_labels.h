@@ -6,7 +6,7 @@
 #define PCS_SKELETON_SCAN_POINT_LABELS_H
 
 #include <pcs/core/Skeleton_report.h>
-#include <pcs/core/median.h>
+#include <pcs/internal/median.h>
 #include <pcs/skeleton/model/Scan.h>
 #include <pcs/skeleton/scan/prepare_scan.h>
 

@@ -5,7 +5,7 @@
 #ifndef PCS_SKELETON_SCAN_FIND_SCAN_FRAME_H
 #define PCS_SKELETON_SCAN_FIND_SCAN_FRAME_H
 
-#include <pcs/core/median.h>
+#include <pcs/internal/median.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/skeleton/model/Scan.h>
 #include <pcs/skeleton/model/Scan_frame.h>

@@ -5,7 +5,7 @@
 #ifndef PCS_SKELETON_SCAN_PREPARE_SCAN_H
 #define PCS_SKELETON_SCAN_PREPARE_SCAN_H
 
-#include <pcs/core/median.h>
+#include <pcs/internal/median.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/neighborhood/Nearest_neighbors.h>
 #include <pcs/neighborhood/spatial_order.h>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSL-1.0
 // Checks of values of named parameters, with messages that name the function and the rule.
 
-#ifndef PCS_CORE_CHECK_VALUE_H
-#define PCS_CORE_CHECK_VALUE_H
+#ifndef PCS_CORE_PARAMETERS_CHECK_VALUE_H
+#define PCS_CORE_PARAMETERS_CHECK_VALUE_H
 
 #include <pcs/core/errors.h>
 #include <pcs/internal/text.h>
@@ -103,4 +103,4 @@ std::size_t check_count(const std::string& caller,
 } // namespace internal
 } // namespace pcs
 
-#endif // PCS_CORE_CHECK_VALUE_H
+#endif // PCS_CORE_PARAMETERS_CHECK_VALUE_H

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSL-1.0
 // Medians by selection are those of the sorted values.
 
-#include <pcs/core/median.h>
+#include <pcs/internal/median.h>
 #include <pcs/internal/Random_stream.h>
 
 #include <boost/test/unit_test.hpp>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSL-1.0
 // Medians and other order statistics by selection, which reorders the values.
 
-#ifndef PCS_CORE_MEDIAN_H
-#define PCS_CORE_MEDIAN_H
+#ifndef PCS_INTERNAL_MEDIAN_H
+#define PCS_INTERNAL_MEDIAN_H
 
 #include <algorithm>
 #include <cstddef>
@@ -70,4 +70,4 @@ T mean_median(std::vector<T>& values)
 } // namespace internal
 } // namespace pcs
 
-#endif // PCS_CORE_MEDIAN_H
+#endif // PCS_INTERNAL_MEDIAN_H

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSL-1.0
 // A tree of a shape space, as a value, and branches that correspond.
 
-#ifndef PCS_ORL_TREE_H
-#define PCS_ORL_TREE_H
+#ifndef PCS_SHAPE_SPACE_ORL_TREE_H
+#define PCS_SHAPE_SPACE_ORL_TREE_H
 
 #include <pcs/core/Tree_skeleton.h>
 #include <pcs/shape_space/model/Orl_coordinates.h>
@@ -59,4 +59,4 @@ struct Branch_match
 
 } // namespace pcs
 
-#endif // PCS_ORL_TREE_H
+#endif // PCS_SHAPE_SPACE_ORL_TREE_H

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSL-1.0
 // Reading of named parameters into typed options.
 
-#ifndef PCS_CORE_READ_PARAMETER_H
-#define PCS_CORE_READ_PARAMETER_H
+#ifndef PCS_CORE_PARAMETERS_READ_PARAMETER_H
+#define PCS_CORE_PARAMETERS_READ_PARAMETER_H
 
 #include <pcs/Named_function_parameters.h>
 #include <pcs/concepts.h>
-#include <pcs/core/check_value.h>
+#include <pcs/core/parameters/check_value.h>
 
 #include <CGAL/number_utils.h>
 
@@ -110,4 +110,4 @@ std::array<double, 3> read_up_direction([[maybe_unused]] const NamedParameters& 
 } // namespace internal
 } // namespace pcs
 
-#endif // PCS_CORE_READ_PARAMETER_H
+#endif // PCS_CORE_PARAMETERS_READ_PARAMETER_H
