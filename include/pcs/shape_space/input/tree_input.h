@@ -73,6 +73,18 @@ struct Is_number_valued<
 {
 };
 
+template <class Map, class Key, class = void>
+struct Is_index_valued : std::false_type
+{
+};
+template <class Map, class Key>
+struct Is_index_valued<Map,
+                       Key,
+                       std::void_t<decltype(get(std::declval<const Map&>(), std::declval<Key>()))>>
+  : std::is_integral<std::decay_t<decltype(get(std::declval<const Map&>(), std::declval<Key>()))>>
+{
+};
+
 template <class Graph, class = void>
 struct Is_listable_graph : std::false_type
 {
@@ -266,7 +278,19 @@ Tree_input make_tree_input(const TreeGraph& graph,
     static_assert(are_points,
                   "pcs: `point_map` must be a readable property map from the elements of a scan to "
                   "points with x(), y(), z()");
-    if constexpr (are_node_points && are_node_radii && are_points) {
+    constexpr bool are_indices =
+        internal::Is_index_valued<std::decay_t<decltype(index_map)>, Vertex>::value;
+    static_assert(
+        are_indices,
+        "pcs: `node_index_map` must be a readable property map from vertices to integers");
+    using Normal_map =
+        std::decay_t<decltype(pcs::internal::choose(np, CGAL::internal_np::normal_map, point_map))>;
+    constexpr bool are_normals = internal::Is_point_valued<Normal_map, Element>::value;
+    static_assert(
+        are_normals,
+        "pcs: `normal_map` must be a readable property map from the elements of a scan to "
+        "vectors with x(), y(), z()");
+    if constexpr (are_node_points && are_node_radii && are_points && are_indices && are_normals) {
       BOOST_CONCEPT_ASSERT((boost::VertexListGraphConcept<TreeGraph>));
       BOOST_CONCEPT_ASSERT((boost::IncidenceGraphConcept<TreeGraph>));
       internal::read_tree(graph, maps.first, maps.second, index_map, caller, result);

@@ -1,0 +1,18 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// The option `alignment` of a shape space has a type of its own.
+
+#include <pcs/Orl_shape_space.h>
+
+using Space = pcs::Orl_shape_space<>;
+
+#ifdef PCS_BREAK_THE_RULE
+using Option = int;
+#else
+using Option = pcs::Orl_alignment;
+#endif
+
+void compile(Space& space, const Option& value)
+{
+  space.build(pcs::parameters::alignment(value));
+}

@@ -1,0 +1,18 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Branches emerge in one of the listed orders.
+
+#include <pcs/Orl_shape_space.h>
+
+using Space = pcs::Orl_shape_space<>;
+
+#ifdef PCS_BREAK_THE_RULE
+using Option = int;
+#else
+using Option = pcs::Branch_emergence;
+#endif
+
+void compile(const Space& space, const Option& value)
+{
+  space.geodesic(0, 1, 0.5, pcs::parameters::branch_emergence(value));
+}

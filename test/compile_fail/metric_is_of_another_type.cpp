@@ -1,0 +1,18 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Distances are measured by one of the listed metrics.
+
+#include <pcs/Orl_shape_space.h>
+
+using Space = pcs::Orl_shape_space<>;
+
+#ifdef PCS_BREAK_THE_RULE
+using Option = int;
+#else
+using Option = pcs::Orl_metric;
+#endif
+
+void compile(const Space& space, const Option& value)
+{
+  space.distance(0, 1, pcs::parameters::metric(value));
+}

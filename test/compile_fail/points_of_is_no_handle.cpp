@@ -1,0 +1,18 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Points come from a tree that was added.
+
+#include <pcs/Orl_shape_space.h>
+
+using Space = pcs::Orl_shape_space<>;
+
+#ifdef PCS_BREAK_THE_RULE
+using Option = pcs::Orl_metric;
+#else
+using Option = Space::Handle;
+#endif
+
+void compile(Space& space, const Option& value)
+{
+  space.build(pcs::parameters::points_of(value));
+}
