@@ -13,6 +13,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -44,8 +45,8 @@ inline std::vector<std::string_view> split_at_commas(std::string_view line)
 inline std::array<std::size_t, 11> find_tree_columns(const Input_file& file,
                                                      std::string_view header)
 {
-  std::array<std::size_t, 11> place;
-  place.fill(npos);
+  std::array<std::size_t, 11> index;
+  index.fill(npos);
   if (header.substr(0, 3) == "\xEF\xBB\xBF") // byte order mark
     header.remove_prefix(3);
   const std::vector<std::string_view> names = split_at_commas(header);
@@ -56,14 +57,106 @@ inline std::array<std::size_t, 11> find_tree_columns(const Input_file& file,
     if (c == tree_columns.size())
       file.fail_at_line("unknown column " + in_quotes(names[i]) +
                         ", expected id,parent,branch,order,x,y,z,r,a,b,hits");
-    if (place[c] != npos)
+    if (index[c] != npos)
       file.fail_at_line("the column " + in_quotes(names[i]) + " is named twice");
-    place[c] = i;
+    index[c] = i;
   }
   for (std::size_t c = 0; c < tree_columns.size(); ++c)
-    if (place[c] == npos && c != column_hits)
+    if (index[c] == npos && c != column_hits)
       file.fail_at_line(std::string("there is no column '") + tree_columns[c] + "'");
-  return place;
+  return index;
+}
+
+/// Nodes of a file with their links, branches and numbers of points.
+template <class Kernel>
+struct Node_rows
+{
+  std::vector<Tree_row> rows;
+  std::vector<Tree_node<Kernel>> nodes;
+  std::vector<std::pair<std::int64_t, int>> branches; ///< id and order
+  std::vector<std::size_t> hits;                      ///< empty without that column
+};
+
+/// Reads the fields of a line by column.
+class Field_reader
+{
+public:
+  Field_reader(const Input_file& file, std::string_view header)
+    : m_file(file),
+      m_index(find_tree_columns(file, header)),
+      m_number_of_columns(split_at_commas(header).size())
+  {
+  }
+
+  void set_line(std::string_view line)
+  {
+    m_words = split_at_commas(line);
+    if (m_words.size() != m_number_of_columns)
+      m_file.fail_at_line("expected " + std::to_string(m_number_of_columns) + " columns, found " +
+                          std::to_string(m_words.size()));
+  }
+
+  bool has_hits() const { return m_index[column_hits] != npos; }
+
+  std::int64_t integer(std::size_t c, std::int64_t least) const
+  {
+    const auto value = required_number<std::int64_t>(m_file, word(c), tree_columns[c]);
+    if (value < least)
+      m_file.fail_at_line(std::string("'") + tree_columns[c] + "' must not be less than " +
+                          std::to_string(least) + ", found " + std::to_string(value));
+    return value;
+  }
+  double number(std::size_t c) const
+  {
+    return required_number<double>(m_file, word(c), tree_columns[c]);
+  }
+  double length(std::size_t c) const { return required_length(m_file, word(c), tree_columns[c]); }
+
+private:
+  std::string_view word(std::size_t c) const { return m_words[m_index[c]]; }
+
+  const Input_file& m_file;
+  std::array<std::size_t, 11> m_index; // of each of `tree_columns` in a line
+  std::size_t m_number_of_columns;
+  std::vector<std::string_view> m_words;
+};
+
+template <class Kernel>
+void add_row(const Field_reader& field, const Input_file& file, Node_rows<Kernel>& result)
+{
+  using FT = typename Kernel::FT;
+  result.rows.push_back({field.integer(0, 0), field.integer(1, no_parent), file.line_number()});
+  const std::int64_t order = field.integer(3, 0);
+  if (order > std::numeric_limits<int>::max())
+    file.fail_at_line("'order' is out of range: " + std::to_string(order));
+  result.branches.emplace_back(field.integer(2, 0), static_cast<int>(order));
+  const FT x(field.number(4)), y(field.number(5)), z(field.number(6));
+  Tree_node<Kernel> node;
+  node.point = typename Kernel::Point_3(x, y, z);
+  node.radius = FT(field.length(7));
+  node.major_radius = FT(field.length(8));
+  node.minor_radius = FT(field.length(9));
+  node.is_measured = true;
+  result.nodes.push_back(node);
+  if (field.has_hits())
+    result.hits.push_back(static_cast<std::size_t>(field.integer(column_hits, 0)));
+}
+
+template <class Kernel>
+Node_rows<Kernel> read_node_rows(const std::string& path)
+{
+  Input_file file(path);
+  std::string_view line;
+  if (!file.read_line(line))
+    throw IO_error(path, "the file is empty, expected the names of the columns");
+  Field_reader field(file, line);
+  Node_rows<Kernel> result;
+  while (file.read_line(line))
+    if (!trim(line).empty()) {
+      field.set_line(line);
+      add_row(field, file, result);
+    }
+  return result;
 }
 
 //! Assigns branches to rows: numbered in the order of the rows, each one a chain of nodes.
@@ -119,6 +212,24 @@ private:
   std::vector<std::uint64_t> m_lines;
 };
 
+/// Makes a tree of rows: checks that they form one tree, and their branches chains.
+template <class Kernel>
+Tree_skeleton<Kernel> link_rows(const std::string& path, const Node_rows<Kernel>& from)
+{
+  const Tree_links links(path, from.rows);
+  Tree_skeleton<Kernel> result(from.nodes.size());
+  Branch_rows<Kernel> branch_rows(path, result);
+  for (std::size_t i = 0; i < from.nodes.size(); ++i) {
+    result[i] = from.nodes[i];
+    if (links.parents()[i] != npos)
+      add_edge(links.parents()[i], i, result);
+    branch_rows.add(i, from.branches[i].first, from.branches[i].second, from.rows[i].line);
+  }
+  branch_rows.link();
+  result[boost::graph_bundle].root = links.root();
+  return result;
+}
+
 } // namespace internal
 
 /*!
@@ -147,72 +258,11 @@ void read_tree_csv(const std::string& path,
                    std::vector<std::size_t>& hits,
                    std::vector<std::int64_t>& ids)
 {
-  using FT = typename Kernel::FT;
-  internal::Input_file file(path);
-  std::string_view line;
-  if (!file.read_line(line))
-    throw IO_error(path, "the file is empty, expected the names of the columns");
-  const auto place = internal::find_tree_columns(file, line);
-  const std::size_t number_of_columns = internal::split_at_commas(line).size();
-
-  std::vector<internal::Tree_row> rows;
-  std::vector<Tree_node<Kernel>> nodes;
-  std::vector<std::pair<std::int64_t, int>> branches; // id, order
-  std::vector<std::size_t> counts;
-  while (file.read_line(line)) {
-    if (internal::trim(line).empty())
-      continue;
-    const std::vector<std::string_view> words = internal::split_at_commas(line);
-    if (words.size() != number_of_columns)
-      file.fail_at_line("expected " + std::to_string(number_of_columns) + " columns, found " +
-                        std::to_string(words.size()));
-    const auto integer = [&](std::size_t c, std::int64_t least) {
-      const auto value =
-          internal::required_number<std::int64_t>(file, words[place[c]], internal::tree_columns[c]);
-      if (value < least)
-        file.fail_at_line(std::string("'") + internal::tree_columns[c] +
-                          "' must not be less than " + std::to_string(least) + ", found " +
-                          std::to_string(value));
-      return value;
-    };
-    const auto number = [&](std::size_t c) {
-      return FT(
-          internal::required_number<double>(file, words[place[c]], internal::tree_columns[c]));
-    };
-    const auto length = [&](std::size_t c) {
-      return FT(internal::required_length(file, words[place[c]], internal::tree_columns[c]));
-    };
-    rows.push_back({integer(0, 0), integer(1, internal::no_parent), file.line_number()});
-    const std::int64_t order = integer(3, 0);
-    if (order > std::numeric_limits<int>::max())
-      file.fail_at_line("'order' is out of range: " + std::to_string(order));
-    branches.emplace_back(integer(2, 0), static_cast<int>(order));
-    Tree_node<Kernel> node;
-    node.point = typename Kernel::Point_3(number(4), number(5), number(6));
-    node.radius = length(7);
-    node.major_radius = length(8);
-    node.minor_radius = length(9);
-    node.is_measured = true;
-    nodes.push_back(node);
-    if (place[internal::column_hits] != npos)
-      counts.push_back(static_cast<std::size_t>(integer(internal::column_hits, 0)));
-  }
-
-  const internal::Tree_links links(path, rows);
-  Tree_skeleton<Kernel> result(nodes.size());
-  internal::Branch_rows<Kernel> branch_rows(path, result);
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    result[i] = nodes[i];
-    if (links.parents()[i] != npos)
-      add_edge(links.parents()[i], i, result);
-    branch_rows.add(i, branches[i].first, branches[i].second, rows[i].line);
-  }
-  branch_rows.link();
-  result[boost::graph_bundle].root = links.root();
-  tree = result;
-  hits.swap(counts);
+  internal::Node_rows<Kernel> found = internal::read_node_rows<Kernel>(path);
+  tree = internal::link_rows(path, found);
+  hits.swap(found.hits);
   ids.clear();
-  for (const internal::Tree_row& row : rows)
+  for (const internal::Tree_row& row : found.rows)
     ids.push_back(row.id);
 }
 

@@ -12,10 +12,114 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pcs {
 namespace IO {
+
+namespace internal {
+
+/// Reads the layers of a `.txtskl` file.
+template <class Kernel>
+class Layer_reader
+{
+public:
+  explicit Layer_reader(const std::string& path) : m_file(path) {}
+
+  Tree_skeleton<Kernel> operator()()
+  {
+    const std::size_t number_of_layers = m_file.count("the number of layers");
+    for (std::size_t l = 0; l < number_of_layers; ++l)
+      read_layer(l);
+    if (!m_file.is_at_end())
+      m_file.fail("expected the end of the file behind " + std::to_string(number_of_layers) +
+                  " layers");
+    return std::move(m_tree);
+  }
+
+private:
+  /// Branches of a layer.
+  struct Layer
+  {
+    std::vector<std::vector<std::size_t>> nodes; ///< of each branch
+    std::vector<std::size_t> ids;                ///< index of each branch in the tree
+  };
+
+  void read_layer(std::size_t l)
+  {
+    m_file.expect("Layer");
+    m_file.count("the index of the layer");
+    const std::size_t number_of_branches = m_file.count("the number of branches");
+    if (l == 0 && number_of_branches != 1)
+      m_file.fail("expected 1 branch in the first layer, found " +
+                  std::to_string(number_of_branches));
+    Layer layer;
+    for (std::size_t b = 0; b < number_of_branches; ++b)
+      read_branch(l, layer);
+    m_above = std::move(layer);
+  }
+
+  void read_branch(std::size_t l, Layer& layer)
+  {
+    const auto father = m_file.number<std::int64_t>("the number of the father branch");
+    const auto point = m_file.number<std::int64_t>("the number of the father point");
+    const bool is_root = l == 0;
+    if (is_root ? father != -1 || point != -1 : !has_father(father, point))
+      m_file.fail("there is no father " + std::to_string(father) + " " + std::to_string(point) +
+                  " in the layer above");
+    const std::size_t n = m_file.count("the number of points");
+    if (n == 0)
+      m_file.fail("a branch has no points");
+    std::size_t previous = npos, parent = npos;
+    if (!is_root) {
+      parent = m_above.ids[static_cast<std::size_t>(father)];
+      previous = m_above.nodes[static_cast<std::size_t>(father)][static_cast<std::size_t>(point)];
+    }
+    std::vector<Tree_branch>& branches = m_tree[boost::graph_bundle].branches;
+    branches.push_back({parent, static_cast<int>(l), branches.size()});
+    layer.nodes.emplace_back();
+    layer.ids.push_back(branches.size() - 1);
+    for (std::size_t i = 0; i < n; ++i) {
+      previous = read_node(layer.ids.back(), previous);
+      layer.nodes.back().push_back(previous);
+    }
+  }
+
+  bool has_father(std::int64_t father, std::int64_t point) const
+  {
+    return father >= 0 && static_cast<std::size_t>(father) < m_above.nodes.size() && point >= 0 &&
+           static_cast<std::size_t>(point) < m_above.nodes[static_cast<std::size_t>(father)].size();
+  }
+
+  /// Adds a node behind `previous`; `npos`: the root. Returns its index.
+  std::size_t read_node(std::size_t branch, std::size_t previous)
+  {
+    using FT = typename Kernel::FT;
+    std::array<double, 4> v{};
+    for (double& value : v)
+      value = m_file.real("coordinate or radius");
+    if (v[3] < 0)
+      m_file.fail("a radius is negative");
+    Tree_node<Kernel> node;
+    node.point = typename Kernel::Point_3(FT(v[0]), FT(v[1]), FT(v[2]));
+    node.radius = node.major_radius = node.minor_radius = FT(v[3]);
+    node.branch = branch;
+    const std::size_t id = add_vertex(node, m_tree);
+    if (previous != npos)
+      add_edge(previous, id, m_tree);
+    else
+      m_tree[boost::graph_bundle].root = id;
+    return id;
+  }
+
+  Word_reader m_file;
+  Tree_skeleton<Kernel> m_tree;
+  Layer m_above;
+};
+
+} // namespace internal
+
 /*!
   \ingroup PkgPcsIORef
   \brief reads a tree skeleton from a `.txtskl` file.
@@ -34,68 +138,7 @@ namespace IO {
 template <class Kernel>
 void read_txtskl(const std::string& path, Tree_skeleton<Kernel>& tree)
 {
-  using FT = typename Kernel::FT;
-  internal::Word_reader file(path);
-  Tree_skeleton<Kernel> result;
-  Tree_bundle& bundle = result[boost::graph_bundle];
-  std::vector<std::vector<std::size_t>> above, layer; // nodes of each branch
-  std::vector<std::size_t> above_id, layer_id;
-  const std::size_t number_of_layers = file.count("the number of layers");
-  for (std::size_t l = 0; l < number_of_layers; ++l) {
-    file.expect("Layer");
-    file.count("the index of the layer");
-    const std::size_t number_of_branches = file.count("the number of branches");
-    if (l == 0 && number_of_branches != 1)
-      file.fail("expected 1 branch in the first layer, found " +
-                std::to_string(number_of_branches));
-    layer.clear();
-    layer_id.clear();
-    for (std::size_t b = 0; b < number_of_branches; ++b) {
-      const auto father = file.number<std::int64_t>("the number of the father branch");
-      const auto point = file.number<std::int64_t>("the number of the father point");
-      const bool is_root = l == 0;
-      if (is_root ? father != -1 || point != -1
-                  : father < 0 || static_cast<std::size_t>(father) >= above.size() || point < 0 ||
-                        static_cast<std::size_t>(point) >=
-                            above[static_cast<std::size_t>(father)].size())
-        file.fail("there is no father " + std::to_string(father) + " " + std::to_string(point) +
-                  " in the layer above");
-      const std::size_t n = file.count("the number of points");
-      if (n == 0)
-        file.fail("a branch has no points");
-      std::size_t previous =
-          is_root ? npos : above[static_cast<std::size_t>(father)][static_cast<std::size_t>(point)];
-      bundle.branches.push_back({is_root ? npos : above_id[static_cast<std::size_t>(father)],
-                                 static_cast<int>(l),
-                                 bundle.branches.size()});
-      layer.emplace_back();
-      layer_id.push_back(bundle.branches.size() - 1);
-      for (std::size_t i = 0; i < n; ++i) {
-        std::array<double, 4> v{};
-        for (double& value : v)
-          value = file.real("coordinate or radius");
-        if (v[3] < 0)
-          file.fail("a radius is negative");
-        Tree_node<Kernel> node;
-        node.point = typename Kernel::Point_3(FT(v[0]), FT(v[1]), FT(v[2]));
-        node.radius = node.major_radius = node.minor_radius = FT(v[3]);
-        node.branch = layer_id.back();
-        const std::size_t id = add_vertex(node, result);
-        if (previous != npos)
-          add_edge(previous, id, result);
-        else
-          bundle.root = id;
-        previous = id;
-        layer.back().push_back(id);
-      }
-    }
-    above.swap(layer);
-    above_id.swap(layer_id);
-  }
-  if (!file.is_at_end())
-    file.fail("expected the end of the file behind " + std::to_string(number_of_layers) +
-              " layers");
-  tree = result;
+  tree = internal::Layer_reader<Kernel>(path)();
 }
 
 } // namespace IO

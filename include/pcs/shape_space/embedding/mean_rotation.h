@@ -82,82 +82,101 @@ l1_step(const Quaternion& at, const std::vector<Quaternion>& q, const std::vecto
   return step;
 }
 
+/// A rotation and its sum of weighted angles to others. [rad]
+struct Rotation_and_cost
+{
+  Quaternion q;
+  double cost;
+};
+
+/// Replaces `best` by the data point of least cost, if that is lower. Two data points of equal cost
+/// are the ends of an arc of minima; its middle is taken then.
+inline void try_data_points(const std::vector<Quaternion>& q,
+                            const std::vector<double>& w,
+                            Rotation_and_cost& best)
+{
+  std::vector<Quaternion> ends;
+  std::vector<double> sums(q.size());
+  double least_at_data = best.cost * (1 + 1e-12);
+  for (std::size_t i = 0; i < q.size(); ++i)
+    if (w[i] > 0) {
+      sums[i] = sum_of_angles(q[i], q, w);
+      least_at_data = std::min(least_at_data, sums[i]);
+    }
+  for (std::size_t i = 0; i < q.size(); ++i)
+    if (w[i] > 0 && sums[i] <= least_at_data * (1 + 1e-12))
+      ends.push_back(q[i]);
+  if (ends.empty())
+    return;
+  const Quaternion middle = chordal_mean(ends, std::vector<double>(ends.size(), 1));
+  const double sum = sum_of_angles(middle, q, w);
+  if (sum <= best.cost * (1 + 1e-12))
+    best = {sum <= least_at_data * (1 + 1e-12) ? middle : ends.front(),
+            std::min(sum, least_at_data)};
+  else if (least_at_data <= best.cost)
+    best = {ends.front(), least_at_data};
+}
+
+/// Moves `best` by one step of Newton or Weiszfeld, halved until the cost decreases. Returns
+/// whether another step may improve it. At a data point, the step starts with its weight
+/// subtracted from the gradient.
+inline bool descend(const std::vector<Quaternion>& q,
+                    const std::vector<double>& w,
+                    double total_weight,
+                    Rotation_and_cost& best)
+{
+  constexpr int number_of_attempts = 40;
+  double weight_here = 0;
+  for (std::size_t i = 0; i < q.size(); ++i)
+    if (angle_between(best.q, q[i]) <= 1e-14)
+      weight_here += w[i];
+  const L1_step step = l1_step(best.q, q, w);
+  if (step.gradient <= std::max(weight_here, 1e-13 * total_weight))
+    return false;
+  Vec3 u = weight_here > 0 ? Vec3(step.weiszfeld * (1 - weight_here / step.gradient)) : step.newton;
+  bool is_better = false;
+  for (int attempt = 0; attempt < number_of_attempts && !is_better; ++attempt) {
+    if (attempt == 1 && !(weight_here > 0))
+      u = step.weiszfeld;
+    else if (attempt > 1)
+      u *= 0.5;
+    Quaternion next = best.q * rotation_exp(u);
+    next.normalize();
+    const double sum = sum_of_angles(next, q, w);
+    if (sum < best.cost) {
+      is_better = true;
+      best = {next, sum};
+    }
+  }
+  return is_better && !(u.norm() < 1e-15);
+}
+
 } // namespace internal
 
 /*!
-  The rotation with the least sum of weighted angles to others (R. Hartley, K. Aftab, J. Trumpf
-  2011), unique if they lie within a ball of radius pi/2. A data point is taken if the pull of all
-  others does not exceed its weight; else steps of Weiszfeld, or of Newton where they do better.
-  Where a whole arc has the least sum, its middle. Weights of 0 do not vote; `q` has one element at
-  least.
+  Returns the geometric median of rotations: that with the least sum of weighted angles to others
+  (R. Hartley, K. Aftab, J. Trumpf 2011), unique if they lie within a ball of radius pi/2. A data
+  point is taken if the pull of all others does not exceed its weight; else steps of Weiszfeld, or
+  of Newton where they do better. Where a whole arc has the least sum, its middle is returned.
+  Rotations of weight 0 are ignored; `q` has one element at least.
 */
 inline Quaternion l1_mean_rotation(const std::vector<Quaternion>& q, const std::vector<double>& w)
 {
-  using namespace internal;
-  Quaternion best = chordal_mean(q, w);
-  double least = sum_of_angles(best, q, w);
+  constexpr std::size_t most_for_all_pairs = 128;
+  constexpr int number_of_steps = 200;
+  internal::Rotation_and_cost best{internal::chordal_mean(q, w), 0};
+  best.cost = internal::sum_of_angles(best.q, q, w);
   double total = 0;
   for (const double weight : w)
     total += weight;
-  if (!(total > 0) || least <= 1e-12 * total)
-    return best;
-  // the best data points; two of them that are equally good are the ends of an arc of minima
-  std::vector<Quaternion> ends;
-  double least_at_data = least * (1 + 1e-12);
-  std::vector<double> sums(q.size());
-  constexpr std::size_t most_for_all_pairs = 128;
-  if (q.size() <= most_for_all_pairs) {
-    for (std::size_t i = 0; i < q.size(); ++i)
-      if (w[i] > 0) {
-        sums[i] = sum_of_angles(q[i], q, w);
-        least_at_data = std::min(least_at_data, sums[i]);
-      }
-    for (std::size_t i = 0; i < q.size(); ++i)
-      if (w[i] > 0 && sums[i] <= least_at_data * (1 + 1e-12))
-        ends.push_back(q[i]);
-    if (!ends.empty()) {
-      const Quaternion middle = chordal_mean(ends, std::vector<double>(ends.size(), 1));
-      const double sum = sum_of_angles(middle, q, w);
-      if (sum <= least * (1 + 1e-12)) {
-        best = sum <= least_at_data * (1 + 1e-12) ? middle : ends.front();
-        least = std::min(sum, least_at_data);
-      } else if (least_at_data <= least) {
-        best = ends.front();
-        least = least_at_data;
-      }
-    }
-  }
-  constexpr int number_of_steps = 200;
-  for (int k = 0; k < number_of_steps; ++k) {
-    // at a data point: the pull of the others against its own weight
-    double weight_here = 0;
-    for (std::size_t i = 0; i < q.size(); ++i)
-      if (angle_between(best, q[i]) <= 1e-14)
-        weight_here += w[i];
-    const L1_step step = l1_step(best, q, w);
-    if (step.gradient <= std::max(weight_here, 1e-13 * total))
+  if (!(total > 0) || best.cost <= 1e-12 * total)
+    return best.q;
+  if (q.size() <= most_for_all_pairs)
+    internal::try_data_points(q, w, best);
+  for (int k = 0; k < number_of_steps; ++k)
+    if (!internal::descend(q, w, total, best))
       break;
-    Vec3 way =
-        weight_here > 0 ? Vec3(step.weiszfeld * (1 - weight_here / step.gradient)) : step.newton;
-    bool is_better = false;
-    for (int attempt = 0; attempt < 40 && !is_better; ++attempt) {
-      if (attempt == 1 && !(weight_here > 0))
-        way = step.weiszfeld;
-      else if (attempt > 1)
-        way *= 0.5;
-      Quaternion next = best * rotation_exp(way);
-      next.normalize();
-      const double sum = sum_of_angles(next, q, w);
-      if (sum < least) {
-        is_better = true;
-        best = next;
-        least = sum;
-      }
-    }
-    if (!is_better || way.norm() < 1e-15)
-      break;
-  }
-  return best;
+  return best.q;
 }
 
 /// The rotation with the least sum of weighted squared angles; weights may be negative if their sum

@@ -25,7 +25,58 @@
 namespace pcs {
 namespace shape_space {
 
-/// Returns `false` when `progress` asks to stop.
+namespace internal {
+
+/// Finds the edge of each point of each scan. Returns `false` when `progress` asks to stop.
+template <class ConcurrencyTag>
+bool find_edges_of_points(const std::vector<Tree_input>& inputs,
+                          const Tree_family& family,
+                          const Point_assignment_options& options,
+                          pcs::internal::Progress& progress,
+                          std::vector<std::vector<std::size_t>>& edges)
+{
+  Orl_geometry geometry;
+  for (std::size_t t = 0; t < inputs.size(); ++t) {
+    if (!progress(static_cast<double>(t) / static_cast<double>(inputs.size())))
+      return false;
+    build_geometry(family.layout, family.x[t], family.orientation, geometry);
+    edges.push_back(edges_of_points<ConcurrencyTag>(family, inputs[t], t, geometry, options));
+  }
+  return progress(1);
+}
+
+/// Copies the points of the family from the scans; they have normals if all scans have.
+inline void copy_points(const std::vector<Tree_input>& inputs,
+                        const std::vector<Family_source>& sources,
+                        Built_family& built)
+{
+  built.has_normals = true;
+  for (const Tree_input& input : inputs)
+    built.has_normals = built.has_normals && input.normals.size() == input.points.size();
+  for (const Family_source& s : sources) {
+    const Tree_input& input = inputs[s.tree];
+    const Vec3 p = input.points[s.point] + (input.tree.origin - built.family.origin);
+    built.points.push_back({s.tree, s.point, s.edge, to_array(p), {0, 0, 0}});
+    if (built.has_normals)
+      built.points.back().normal = to_array(input.normals[s.point]);
+  }
+}
+
+/// Counts branches and edges. Matched branches are those of the first two trees.
+inline void describe_branches(const Tree_family& family, Orl_report& report)
+{
+  for (std::size_t b = 0; b < family.layout.branches.size(); ++b) {
+    for (std::size_t t = 0; t < 2; ++t)
+      report.number_of_branches[t] += family.has[t][b] ? 1 : 0;
+    report.number_of_matched_branches += family.has[0][b] && family.has[1][b] ? 1 : 0;
+  }
+  report.number_of_common_branches = family.layout.branches.size();
+  report.number_of_edges = family.layout.number_of_edges();
+}
+
+} // namespace internal
+
+/// Builds a family with points. Returns `false` when `progress` asks to stop.
 template <class ConcurrencyTag>
 bool build_family(const std::vector<Tree_input>& inputs,
                   const Build_options& options,
@@ -45,36 +96,25 @@ bool build_family(const std::vector<Tree_input>& inputs,
     return false;
   report.seconds.matching = watch.lap();
   built.family = make_family<ConcurrencyTag>(topology, trees, options.weights, options.form);
-  const Tree_family& family = built.family;
   report.seconds.topology = watch.lap();
 
   progress.stage(0.7, 0.8);
   std::vector<std::vector<std::size_t>> edges;
-  Orl_geometry geometry;
-  for (std::size_t t = 0; t < trees.size(); ++t) {
-    if (!progress(static_cast<double>(t) / static_cast<double>(trees.size())))
-      return false;
-    build_geometry(family.layout, family.x[t], family.orientation, geometry);
-    edges.push_back(
-        edges_of_points<ConcurrencyTag>(family, inputs[t], t, geometry, options.assignment));
-  }
+  const bool is_assigned = internal::find_edges_of_points<ConcurrencyTag>(inputs,
+                                                                          built.family,
+                                                                          options.assignment,
+                                                                          progress,
+                                                                          edges);
   report.seconds.assignment = watch.lap();
-  if (!progress(1))
+  if (!is_assigned)
     return false;
-  built.has_normals = true;
-  for (const Tree_input& input : inputs)
-    built.has_normals = built.has_normals && input.normals.size() == input.points.size();
-  const std::vector<Family_source> sources = choose_points(family.layout, edges, options.points_of);
-  for (const Family_source& s : sources) {
-    const Tree_input& input = inputs[s.tree];
-    const Vec3 p = input.points[s.point] + (input.tree.origin - family.origin);
-    built.points.push_back({s.tree, s.point, s.edge, internal::to_array(p), {0, 0, 0}});
-    if (built.has_normals)
-      built.points.back().normal = internal::to_array(input.normals[s.point]);
-  }
+  const std::vector<Family_source> sources =
+      choose_points(built.family.layout, edges, options.points_of);
+  internal::copy_points(inputs, sources, built);
+
   progress.stage(0.8, 1);
   Transport_summary summary;
-  built.partners = find_partners<ConcurrencyTag>(family,
+  built.partners = find_partners<ConcurrencyTag>(built.family,
                                                  inputs,
                                                  edges,
                                                  sources,
@@ -85,13 +125,7 @@ bool build_family(const std::vector<Tree_input>& inputs,
   if (progress.is_cancelled())
     return false;
   describe(summary, report);
-  for (std::size_t b = 0; b < family.layout.branches.size(); ++b) {
-    for (std::size_t t = 0; t < 2; ++t)
-      report.number_of_branches[t] += family.has[t][b] ? 1 : 0;
-    report.number_of_matched_branches += family.has[0][b] && family.has[1][b] ? 1 : 0;
-  }
-  report.number_of_common_branches = family.layout.branches.size();
-  report.number_of_edges = family.layout.number_of_edges();
+  internal::describe_branches(built.family, report);
   report.fraction_of_changed_matches = topology.fraction_of_changed_matches();
   return true;
 }

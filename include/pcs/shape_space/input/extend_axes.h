@@ -55,6 +55,69 @@ inline Vec3 extension(const Vec3& end, double radius, const std::vector<Vec3>& p
   return *last * direction;
 }
 
+/// Positions along all axes of a tree, of which some are ends.
+struct Axis_samples
+{
+  std::vector<Vec3> positions;
+  std::vector<std::size_t> end; ///< for each position: node of the end, or `npos`
+  std::vector<Vec3> outward;    ///< for each node: direction of the axis at an end
+};
+
+/// Samples the axes of a tree at distances of `step` or less. `nodes`: positions of the nodes. [L]
+template <class Kernel>
+Axis_samples
+sample_axes(const Tree_skeleton<Kernel>& tree, const std::vector<Vec3>& nodes, double step)
+{
+  const std::size_t root = tree[boost::graph_bundle].root;
+  Axis_samples result;
+  result.positions.push_back(nodes[root]);
+  result.outward.assign(nodes.size(), Vec3::Zero());
+  result.end.push_back(out_degree(root, tree) == 1 ? root : npos);
+  for (const auto e : boost::make_iterator_range(edges(tree))) {
+    const std::size_t u = source(e, tree), v = target(e, tree);
+    const Vec3 axis = nodes[v] - nodes[u];
+    const double pieces = std::ceil(axis.norm() / step);
+    if (!(pieces > 0))
+      continue;
+    for (double k = 1; k <= pieces; ++k) {
+      result.positions.push_back(nodes[u] + k / pieces * axis);
+      result.end.push_back(k == pieces && out_degree(v, tree) == 0 ? v : npos);
+    }
+    result.outward[v] = axis;
+    if (u == root)
+      result.outward[u] = -axis;
+  }
+  return result;
+}
+
+template <class Point>
+Vec3 position_of(const Point& p)
+{
+  return Vec3(CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z()));
+}
+
+/// Collects, for each end, the points that are nearest to it of all samples and lie beyond it.
+template <class PointRange>
+std::vector<std::vector<Vec3>> points_beyond_ends(const PointRange& scan,
+                                                  const Vec3& origin,
+                                                  const std::vector<Vec3>& nodes,
+                                                  const Axis_samples& samples)
+{
+  const neighborhood::Nearest_neighbors search(samples.positions);
+  std::vector<neighborhood::Nearest_neighbors::Neighbor> found;
+  std::vector<std::vector<Vec3>> result(nodes.size());
+  for (const auto& point : scan) {
+    const Vec3 p = position_of(point) - origin;
+    if (!is_place(p))
+      continue;
+    search(p, 1, found);
+    const std::size_t v = samples.end[found[0].index];
+    if (v != npos && (p - nodes[v]).dot(samples.outward[v]) > 0)
+      result[v].push_back(p);
+  }
+  return result;
+}
+
 } // namespace internal
 
 /*!
@@ -74,57 +137,25 @@ std::size_t extend_axes(Tree_skeleton<Kernel>& tree, const PointRange& scan)
   const std::size_t root = tree[boost::graph_bundle].root;
   if (root >= n || num_edges(tree) == 0)
     return 0;
-  const auto to_vector = [](const auto& p) {
-    return Vec3(CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z()));
-  };
-  const Vec3 origin = to_vector(tree[root].point);
-  std::vector<Vec3> place;
+  const Vec3 origin = internal::position_of(tree[root].point);
+  std::vector<Vec3> nodes;
   for (std::size_t v = 0; v < n; ++v)
-    place.push_back(to_vector(tree[v].point) - origin);
+    nodes.push_back(internal::position_of(tree[v].point) - origin);
   double total = 0;
   for (const auto e : boost::make_iterator_range(edges(tree)))
-    total += (place[target(e, tree)] - place[source(e, tree)]).norm();
+    total += (nodes[target(e, tree)] - nodes[source(e, tree)]).norm();
   if (!(total > 0) || !is_length(total))
     return 0;
   const double step = total / (samples_per_edge * static_cast<double>(num_edges(tree)));
-
-  // places on all axes; those at ends tell which
-  constexpr std::size_t no_end = npos;
-  std::vector<Vec3> samples{place[root]}, outward(n, Vec3::Zero());
-  std::vector<std::size_t> end{out_degree(root, tree) == 1 ? root : no_end};
-  for (const auto e : boost::make_iterator_range(edges(tree))) {
-    const std::size_t u = source(e, tree), v = target(e, tree);
-    const Vec3 axis = place[v] - place[u];
-    const double pieces = std::ceil(axis.norm() / step);
-    if (!(pieces > 0))
-      continue;
-    for (double k = 1; k <= pieces; ++k) {
-      samples.push_back(place[u] + k / pieces * axis);
-      end.push_back(k == pieces && out_degree(v, tree) == 0 ? v : no_end);
-    }
-    outward[v] = axis;
-    if (u == root)
-      outward[u] = -axis;
-  }
-
-  const neighborhood::Nearest_neighbors search(samples);
-  std::vector<neighborhood::Nearest_neighbors::Neighbor> found;
-  std::vector<std::vector<Vec3>> beyond(n);
-  for (const auto& point : scan) {
-    const Vec3 p = to_vector(point) - origin;
-    if (!is_place(p))
-      continue;
-    search(p, 1, found);
-    const std::size_t v = end[found[0].index];
-    if (v != no_end && (p - place[v]).dot(outward[v]) > 0)
-      beyond[v].push_back(p);
-  }
+  const internal::Axis_samples samples = internal::sample_axes(tree, nodes, step);
+  const std::vector<std::vector<Vec3>> beyond =
+      internal::points_beyond_ends(scan, origin, nodes, samples);
   std::size_t number_moved = 0;
   for (std::size_t v = 0; v < n; ++v) {
-    const Vec3 way = internal::extension(place[v], CGAL::to_double(tree[v].radius), beyond[v]);
-    if (way.isZero(0))
+    const Vec3 step_out = internal::extension(nodes[v], CGAL::to_double(tree[v].radius), beyond[v]);
+    if (step_out.isZero(0))
       continue;
-    const Vec3 to = origin + place[v] + way;
+    const Vec3 to = origin + nodes[v] + step_out;
     tree[v].point = typename Kernel::Point_3(to.x(), to.y(), to.z());
     ++number_moved;
   }

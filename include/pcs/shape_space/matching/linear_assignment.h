@@ -102,12 +102,29 @@ private:
     std::size_t stride; ///< in the table
   };
 
-  /// Gives `r` a partner, or leaves it or another one of its side single; what is single has no
-  /// price.
+  /// Result of a search: the free vertex of the other side that ends the path, or else the row that
+  /// is left single at least cost.
+  struct Path_end
+  {
+    std::size_t column, single_row;
+    double distance; ///< reduced cost of the path
+  };
+
+  /// Assigns row `r`, or leaves it or another row of its side single. What is single has no price.
   void augment(Side& own, Side& other, std::size_t r)
   {
     if (own.partner[r] != none || !(own.price[r] < 0))
       return;
+    const Path_end end = find_path(own, other, r);
+    m_bound += end.distance;
+    update_prices(own, other, end.distance);
+    flip_path(own, other, r, end);
+  }
+
+  /// Grows the shortest-path tree from row `r` until it reaches a free vertex or it is cheapest to
+  /// leave a row of the tree single.
+  Path_end find_path(const Side& own, const Side& other, std::size_t r)
+  {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const std::size_t m = other.price.size(), stride = other.stride;
     m_least.assign(m, infinity);
@@ -117,12 +134,11 @@ private:
     std::size_t* const previous = m_previous.data();
     m_tree.assign(1, {r, none, 0});
     double single = -own.price[r]; // least reduced cost of leaving one of the tree single
-    std::size_t single_row = r, end = none;
-    double reached = 0;
+    Path_end end{none, r, 0};
     for (;;) {
       const std::size_t row = m_tree.back().row;
       const double* const gain = m_gain.data() + row * own.stride;
-      const double begin = reached - own.price[row];
+      const double begin = end.distance - own.price[row];
       double nearest = single;
       std::size_t next = none;
       for (std::size_t j = 0; j < m; ++j) {
@@ -137,35 +153,42 @@ private:
           next = j;
         }
       }
-      reached = std::max(reached, nearest);
+      end.distance = std::max(end.distance, nearest);
       if (next == none)
-        break;
+        return end;
       if (other.partner[next] == none) {
-        end = next;
-        break;
+        end.column = next;
+        return end;
       }
       open[next] = -infinity;
-      m_tree.push_back({other.partner[next], next, reached});
-      const double alone = reached - own.price[m_tree.back().row];
+      m_tree.push_back({other.partner[next], next, end.distance});
+      const double alone = end.distance - own.price[m_tree.back().row];
       if (alone < single) {
         single = alone;
-        single_row = m_tree.back().row;
+        end.single_row = m_tree.back().row;
       }
     }
-    m_bound += reached;
+  }
+
+  void update_prices(Side& own, Side& other, double distance) const
+  {
     for (const Reached& t : m_tree) {
-      own.price[t.row] = std::min(0.0, own.price[t.row] + (reached - t.distance));
+      own.price[t.row] = std::min(0.0, own.price[t.row] + (distance - t.distance));
       if (t.column != none)
-        other.price[t.column] -= reached - t.distance;
+        other.price[t.column] -= distance - t.distance;
     }
-    // flip the path
-    std::size_t column = end;
+  }
+
+  /// Exchanges matched and unmatched pairs along the path from row `r`.
+  void flip_path(Side& own, Side& other, std::size_t r, const Path_end& end) const
+  {
+    std::size_t column = end.column;
     if (column == none) {
-      own.price[single_row] = 0; // but for rounding it is
-      if (single_row == r)
+      own.price[end.single_row] = 0; // but for rounding it is
+      if (end.single_row == r)
         return;
-      column = own.partner[single_row];
-      own.partner[single_row] = none;
+      column = own.partner[end.single_row];
+      own.partner[end.single_row] = none;
     }
     for (;;) {
       const std::size_t i = m_previous[column];

@@ -280,6 +280,141 @@ inline Rooted_tree without_coincident_nodes(const Rooted_tree& all, std::size_t 
   return tree;
 }
 
+/// Copies a graph of the caller and checks that it is a rooted tree.
+template <class TreeGraph, class NodePointMap, class RadiusMap, class VertexIndexMap>
+class Graph_reader
+{
+public:
+  Graph_reader(const TreeGraph& graph,
+               const NodePointMap& point_map,
+               const RadiusMap& radius_map,
+               const VertexIndexMap& index_map,
+               const std::string& caller)
+    : m_graph(graph),
+      m_point_map(point_map),
+      m_radius_map(radius_map),
+      m_index_map(index_map),
+      m_caller(caller),
+      m_size(static_cast<std::size_t>(num_vertices(graph)))
+  {
+  }
+
+  /// Returns positions, radii, parents and sources of all nodes.
+  Rooted_tree operator()()
+  {
+    if (m_size < 2)
+      fail("the tree has " + std::to_string(m_size) + " nodes, at least 2 are needed");
+    find_parents();
+    copy_nodes(find_root());
+    center();
+    return std::move(m_tree);
+  }
+
+private:
+  using Vertex = typename boost::graph_traits<TreeGraph>::vertex_descriptor;
+
+  [[noreturn]] void fail(const std::string& what) const
+  {
+    throw Invalid_input(m_caller + ": " + what);
+  }
+
+  std::size_t index_of(const Vertex& v) const
+  {
+    const auto i = static_cast<std::size_t>(get(m_index_map, v));
+    if (i >= m_size)
+      fail("a vertex has the index " + std::to_string(i) + ", which is not below the " +
+           std::to_string(m_size) + " nodes");
+    return i;
+  }
+
+  void find_parents()
+  {
+    m_parents.assign(m_size, none);
+    m_vertices.assign(m_size, *vertices(m_graph).first);
+    std::vector<char> is_taken(m_size, 0);
+    for (auto [v, end] = vertices(m_graph); v != end; ++v) {
+      const std::size_t i = index_of(*v);
+      if (is_taken[i])
+        fail("two vertices have the index " + std::to_string(i));
+      is_taken[i] = 1;
+      m_vertices[i] = *v;
+      for (auto [e, last] = out_edges(*v, m_graph); e != last; ++e) {
+        const std::size_t c = index_of(target(*e, m_graph));
+        if (m_parents[c] != none)
+          fail("node " + std::to_string(c) + " has two parents, " + std::to_string(m_parents[c]) +
+               " and " + std::to_string(i));
+        m_parents[c] = i;
+      }
+    }
+  }
+
+  std::size_t find_root() const
+  {
+    const auto root = std::find(m_parents.begin(), m_parents.end(), none);
+    if (root == m_parents.end())
+      fail("the graph has no root: every node has a parent");
+    const auto count = std::count(m_parents.begin(), m_parents.end(), none);
+    if (count > 1)
+      fail("the graph has " + std::to_string(count) + " nodes without parent; a tree has one root");
+    return static_cast<std::size_t>(root - m_parents.begin());
+  }
+
+  /// Copies nodes breadth first along out-edges, so that parents come first.
+  void copy_nodes(std::size_t root)
+  {
+    m_new_node.assign(m_size, none);
+    add(root);
+    for (std::size_t done = 0; done < m_tree.size(); ++done)
+      for (auto [e, last] = out_edges(m_vertices[m_tree.sources[done]], m_graph); e != last; ++e)
+        add(static_cast<std::size_t>(get(m_index_map, target(*e, m_graph))));
+    if (m_tree.size() != m_size)
+      fail(std::to_string(m_size - m_tree.size()) +
+           " nodes are not reached from the root: there is a cycle");
+  }
+
+  void add(std::size_t i)
+  {
+    const auto& p = get(m_point_map, m_vertices[i]);
+    const Vec3 position(CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z()));
+    const double radius = CGAL::to_double(get(m_radius_map, m_vertices[i]));
+    if (!position.allFinite())
+      fail("the coordinates of node " + std::to_string(i) + " are not finite");
+    if (!is_length(radius))
+      fail("the radius of node " + std::to_string(i) + " is not a number from 0 to 1e100");
+    m_new_node[i] = m_tree.size();
+    m_tree.points.push_back(position);
+    m_tree.radii.push_back(radius);
+    m_tree.parents.push_back(m_parents[i] == none ? none : m_new_node[m_parents[i]]);
+    m_tree.sources.push_back(i);
+  }
+
+  /// Moves the root to the origin.
+  void center()
+  {
+    Vec3 low = m_tree.points[0], high = low;
+    for (const Vec3& p : m_tree.points) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    m_tree.origin = m_tree.points[0];
+    m_tree.extent = (high - low).norm();
+    if (!(m_tree.extent > 0) || !is_length(m_tree.extent))
+      fail("the nodes of the tree do not span a box of a size between 0 and 1e100");
+    for (Vec3& p : m_tree.points)
+      p -= m_tree.origin;
+  }
+
+  const TreeGraph& m_graph;
+  const NodePointMap& m_point_map;
+  const RadiusMap& m_radius_map;
+  const VertexIndexMap& m_index_map;
+  const std::string& m_caller;
+  std::size_t m_size;
+  std::vector<std::size_t> m_parents, m_new_node; // by index
+  std::vector<Vertex> m_vertices;                 // by index
+  Rooted_tree m_tree;
+};
+
 } // namespace internal
 
 /*!
@@ -295,79 +430,8 @@ Rooted_tree make_rooted_tree(const TreeGraph& graph,
                              const VertexIndexMap& index_map,
                              const std::string& caller)
 {
-  using Vertex = typename boost::graph_traits<TreeGraph>::vertex_descriptor;
-  const auto fail = [&](const std::string& what) { throw Invalid_input(caller + ": " + what); };
-  const auto n = static_cast<std::size_t>(num_vertices(graph));
-  if (n < 2)
-    fail("the tree has " + std::to_string(n) + " nodes, at least 2 are needed");
-
-  std::vector<std::size_t> parents(n, none);
-  std::vector<Vertex> vertices_by_index(n, *vertices(graph).first);
-  std::vector<char> is_taken(n, 0);
-  const auto index_of = [&](const Vertex& v) {
-    const auto i = static_cast<std::size_t>(get(index_map, v));
-    if (i >= n)
-      fail("a vertex has the index " + std::to_string(i) + ", which is not below the " +
-           std::to_string(n) + " nodes");
-    return i;
-  };
-  for (auto [v, end] = vertices(graph); v != end; ++v) {
-    const std::size_t i = index_of(*v);
-    if (is_taken[i])
-      fail("two vertices have the index " + std::to_string(i));
-    is_taken[i] = 1;
-    vertices_by_index[i] = *v;
-    for (auto [e, last] = out_edges(*v, graph); e != last; ++e) {
-      const std::size_t c = index_of(target(*e, graph));
-      if (parents[c] != none)
-        fail("node " + std::to_string(c) + " has two parents, " + std::to_string(parents[c]) +
-             " and " + std::to_string(i));
-      parents[c] = i;
-    }
-  }
-  const auto root = std::find(parents.begin(), parents.end(), none);
-  if (root == parents.end())
-    fail("the graph has no root: every node has a parent");
-  if (std::count(parents.begin(), parents.end(), none) > 1)
-    fail("the graph has " + std::to_string(std::count(parents.begin(), parents.end(), none)) +
-         " nodes without parent; a tree has one root");
-
-  // breadth first along out-edges, so that parents come first
-  Rooted_tree all;
-  std::vector<std::size_t> new_node(n, none);
-  const auto add = [&](std::size_t i) {
-    const auto& p = get(point_map, vertices_by_index[i]);
-    const Vec3 position(CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z()));
-    const double radius = CGAL::to_double(get(radius_map, vertices_by_index[i]));
-    if (!position.allFinite())
-      fail("the coordinates of node " + std::to_string(i) + " are not finite");
-    if (!is_length(radius))
-      fail("the radius of node " + std::to_string(i) + " is not a number from 0 to 1e100");
-    new_node[i] = all.size();
-    all.points.push_back(position);
-    all.radii.push_back(radius);
-    all.parents.push_back(parents[i] == none ? none : new_node[parents[i]]);
-    all.sources.push_back(i);
-  };
-  add(static_cast<std::size_t>(root - parents.begin()));
-  for (std::size_t done = 0; done < all.size(); ++done)
-    for (auto [e, last] = out_edges(vertices_by_index[all.sources[done]], graph); e != last; ++e)
-      add(static_cast<std::size_t>(get(index_map, target(*e, graph))));
-  if (all.size() != n)
-    fail(std::to_string(n - all.size()) + " nodes are not reached from the root: there is a cycle");
-
-  Vec3 low = all.points[0], high = low;
-  for (const Vec3& p : all.points) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  all.origin = all.points[0];
-  all.extent = (high - low).norm();
-  if (!(all.extent > 0) || !is_length(all.extent))
-    fail("the nodes of the tree do not span a box of a size between 0 and 1e100");
-  for (Vec3& p : all.points)
-    p -= all.origin;
-  return internal::without_coincident_nodes(internal::with_nodes_at_bases(all), n);
+  const Rooted_tree all = internal::Graph_reader(graph, point_map, radius_map, index_map, caller)();
+  return internal::without_coincident_nodes(internal::with_nodes_at_bases(all), all.size());
 }
 
 } // namespace shape_space

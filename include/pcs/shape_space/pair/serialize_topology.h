@@ -23,9 +23,9 @@
 namespace pcs {
 namespace shape_space {
 
-/// What is needed to find the same topology again.
+/// Stores the numbers that `restore_topology()` needs.
 inline Orl_correspondences store_topology(const Common_topology& topology,
-                                          const Quaternion& turn,
+                                          const Quaternion& rotation,
                                           const std::array<const Tree_input*, 2>& inputs,
                                           const std::vector<Orl_correspondences::Pair>& pairs)
 {
@@ -34,7 +34,7 @@ inline Orl_correspondences store_topology(const Common_topology& topology,
     result.fingerprint[t] = inputs[t]->fingerprint;
     result.fingerprint_of_points[t] = inputs[t]->fingerprint_of_points;
   }
-  result.rotation = {turn.w(), turn.x(), turn.y(), turn.z()};
+  result.rotation = {rotation.w(), rotation.x(), rotation.y(), rotation.z()};
   for (const Common_branch& b : topology.branches) {
     Orl_correspondences::Branch branch;
     branch.parent = b.parent;
@@ -53,76 +53,131 @@ inline Orl_correspondences store_topology(const Common_topology& topology,
   return result;
 }
 
-/// Checks everything: correspondences may come from a file.
-inline Common_topology restore_topology(const Orl_correspondences& stored,
-                                        const std::array<const Tree_input*, 2>& inputs,
-                                        const std::string& caller)
+namespace internal {
+
+/// Restores a topology branch by branch. Checks everything: correspondences may come from a file.
+class Topology_restorer
 {
-  const auto check = [&](bool is_right, const char* what) {
+public:
+  Topology_restorer(const Orl_correspondences& stored,
+                    const std::array<const Tree_input*, 2>& inputs,
+                    const std::string& caller)
+    : m_stored(stored), m_inputs(inputs), m_caller(caller)
+  {
+  }
+
+  Common_topology operator()()
+  {
+    check_inputs();
+    for (std::size_t i = 0; i < m_stored.branches.size(); ++i)
+      add_branch(i);
+    return std::move(m_result);
+  }
+
+private:
+  void check(bool is_right, const char* what) const
+  {
     if (!is_right)
-      throw Invalid_input(caller + ": " + what);
-  };
-  for (std::size_t t = 0; t < 2; ++t)
-    check(stored.fingerprint[t] == inputs[t]->fingerprint,
-          "the correspondences were computed for other trees");
-  const bool has_points = !inputs[0]->points.empty() || !inputs[1]->points.empty();
-  for (std::size_t t = 0; t < 2; ++t)
-    check(!has_points || stored.fingerprint_of_points[t] == inputs[t]->fingerprint_of_points,
-          "the correspondences were computed for the same trees with other points, or without");
-  const auto& [w, x, y, z] = stored.rotation;
-  check(std::abs(w * w + x * x + y * y + z * z - 1) < 1e-6, "the turn is no rotation");
-  check(!stored.branches.empty(), "there are no branches");
-  Common_topology result;
-  for (std::size_t i = 0; i < stored.branches.size(); ++i) {
-    const Orl_correspondences::Branch& b = stored.branches[i];
+      throw Invalid_input(m_caller + ": " + what);
+  }
+
+  void check_inputs() const
+  {
+    for (std::size_t t = 0; t < 2; ++t)
+      check(m_stored.fingerprint[t] == m_inputs[t]->fingerprint,
+            "the correspondences were computed for other trees");
+    const bool has_points = !m_inputs[0]->points.empty() || !m_inputs[1]->points.empty();
+    for (std::size_t t = 0; t < 2; ++t)
+      check(!has_points || m_stored.fingerprint_of_points[t] == m_inputs[t]->fingerprint_of_points,
+            "the correspondences were computed for the same trees with other points, or without");
+    const auto& [w, x, y, z] = m_stored.rotation;
+    check(std::abs(w * w + x * x + y * y + z * z - 1) < 1e-6, "the turn is no rotation");
+    check(!m_stored.branches.empty(), "there are no branches");
+  }
+
+  void add_branch(std::size_t i)
+  {
+    const Orl_correspondences::Branch& b = m_stored.branches[i];
     Common_branch branch;
     check(i == 0 ? b.parent == none : b.parent < i, "a branch comes before its parent");
     branch.parent = b.parent;
     branch.node = b.nodes;
     branch.attachment = b.attachment;
-    for (std::size_t t = 0; t < 2; ++t) {
-      const Rooted_tree& tree = inputs[t]->tree;
-      check(b.tip[t] == none || i == 0 || result.branches[b.parent].path[t] != none,
-            "a tree has a branch without its parent");
-      if (b.tip[t] == none) {
-        check(b.nodes[t].empty() && i > 0, "a branch that a tree lacks has nodes there");
-        continue;
-      }
-      check(b.tip[t] < tree.size() && b.first[t] < tree.size(), "there is no such node");
-      std::vector<std::size_t> nodes{b.tip[t]};
-      while (nodes.back() != b.first[t] && tree.parents[nodes.back()] != none)
-        nodes.push_back(tree.parents[nodes.back()]);
-      check(nodes.back() == b.first[t], "a branch does not lead to its tip");
-      if (b.first[t] != 0)
-        nodes.push_back(tree.parents[b.first[t]]);
-      std::reverse(nodes.begin(), nodes.end());
-      check(nodes.size() > 1, "a branch has no edge");
-      check((b.first[t] == 0) == (i == 0), "a branch begins with the root");
-      branch.path[t] = result.paths[t].paths.size();
-      result.paths[t].paths.push_back(internal::make_path(tree, std::move(nodes), b.first[t] == 0));
-      if (b.is_continued[t]) {
-        Branch_path& path = result.paths[t].paths.back();
-        check(i > 0 && result.paths[t].paths[result.branches[b.parent].path[t]].tip() ==
-                           path.nodes.front(),
-              "a branch that continues its parent does not begin at its tip");
-        path.is_continued = true;
-      }
-      const std::vector<double>& s = b.nodes[t];
-      check(s.size() > 1 && s.front() == 0 && s.back() == 1, "a branch does not go from 0 to 1");
-      for (std::size_t k = 1; k < s.size(); ++k)
-        check(s[k] > s[k - 1], "the nodes of a branch do not increase");
-    }
+    for (std::size_t t = 0; t < 2; ++t)
+      add_path(i, t, branch);
     check(branch.path[0] != none || branch.path[1] != none, "a branch is in neither tree");
     check(b.nodes[0].empty() || b.nodes[1].empty() || b.nodes[0].size() == b.nodes[1].size(),
           "a branch has different numbers of nodes in the two trees");
     for (std::size_t t = 0; t < 2 && i > 0; ++t)
       check(b.attachment[t] >= 0 &&
                 b.attachment[t] <=
-                    static_cast<double>(result.branches[b.parent].number_of_nodes() - 1),
+                    static_cast<double>(m_result.branches[b.parent].number_of_nodes() - 1),
             "a branch is attached beyond its parent");
-    result.branches.push_back(std::move(branch));
+    m_result.branches.push_back(std::move(branch));
   }
-  return result;
+
+  /// Adds the path of branch `i` in tree `t`, if that has the branch.
+  void add_path(std::size_t i, std::size_t t, Common_branch& branch)
+  {
+    const Orl_correspondences::Branch& b = m_stored.branches[i];
+    Branch_paths& paths = m_result.paths[t];
+    check(b.tip[t] == none || i == 0 || m_result.branches[b.parent].path[t] != none,
+          "a tree has a branch without its parent");
+    if (b.tip[t] == none) {
+      check(b.nodes[t].empty() && i > 0, "a branch that a tree lacks has nodes there");
+      return;
+    }
+    std::vector<std::size_t> nodes = find_nodes(b, t);
+    check((b.first[t] == 0) == (i == 0), "a branch begins with the root");
+    branch.path[t] = paths.paths.size();
+    paths.paths.push_back(make_path(m_inputs[t]->tree, std::move(nodes), b.first[t] == 0));
+    if (b.is_continued[t]) {
+      Branch_path& path = paths.paths.back();
+      check(i > 0 && paths.paths[m_result.branches[b.parent].path[t]].tip() == path.nodes.front(),
+            "a branch that continues its parent does not begin at its tip");
+      path.is_continued = true;
+    }
+    check_positions(b.nodes[t]);
+  }
+
+  /// Returns the nodes of a branch of tree `t`, from the node on the parent to the tip.
+  std::vector<std::size_t> find_nodes(const Orl_correspondences::Branch& b, std::size_t t) const
+  {
+    const Rooted_tree& tree = m_inputs[t]->tree;
+    check(b.tip[t] < tree.size() && b.first[t] < tree.size(), "there is no such node");
+    std::vector<std::size_t> nodes{b.tip[t]};
+    while (nodes.back() != b.first[t] && tree.parents[nodes.back()] != none)
+      nodes.push_back(tree.parents[nodes.back()]);
+    check(nodes.back() == b.first[t], "a branch does not lead to its tip");
+    if (b.first[t] != 0)
+      nodes.push_back(tree.parents[b.first[t]]);
+    std::reverse(nodes.begin(), nodes.end());
+    check(nodes.size() > 1, "a branch has no edge");
+    return nodes;
+  }
+
+  void check_positions(const std::vector<double>& s) const
+  {
+    check(s.size() > 1 && s.front() == 0 && s.back() == 1, "a branch does not go from 0 to 1");
+    for (std::size_t k = 1; k < s.size(); ++k)
+      check(s[k] > s[k - 1], "the nodes of a branch do not increase");
+  }
+
+  const Orl_correspondences& m_stored;
+  const std::array<const Tree_input*, 2>& m_inputs;
+  const std::string& m_caller;
+  Common_topology m_result;
+};
+
+} // namespace internal
+
+/// Restores the topology of `store_topology()`. Throws `pcs::Invalid_input` with a message that
+/// begins with `caller` if it does not fit the trees.
+inline Common_topology restore_topology(const Orl_correspondences& stored,
+                                        const std::array<const Tree_input*, 2>& inputs,
+                                        const std::string& caller)
+{
+  return internal::Topology_restorer(stored, inputs, caller)();
 }
 
 inline void check_pairs(const Orl_correspondences& stored,

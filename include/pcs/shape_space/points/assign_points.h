@@ -6,6 +6,7 @@
 #define PCS_SHAPE_SPACE_POINTS_ASSIGN_POINTS_H
 
 #include <pcs/core/Orl_options.h>
+#include <pcs/internal/median.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/neighborhood/Nearest_neighbors.h>
@@ -186,11 +187,95 @@ inline std::size_t side_of_bend(const std::vector<Tube>& tubes, std::size_t tube
   return tube;
 }
 
+namespace internal {
+
+/// Returns the median distance of a sample of points from the nearest tube surface, but at least
+/// 1e-6 of the extent of the tree: noise that does not shrink with the radius. [L]
+inline double
+absolute_noise(const std::vector<Vec3>& points, const std::vector<Tube>& tubes, double extent)
+{
+  constexpr std::size_t sample_size = 2000;
+  const Tube_tree tree(tubes, 0, 1);
+  std::vector<double> distances;
+  const std::size_t step = std::max<std::size_t>(1, points.size() / sample_size);
+  for (std::size_t i = 0; i < points.size(); i += step) {
+    double least = std::numeric_limits<double>::infinity();
+    tree.search(points[i],
+                [&](std::size_t, double misfit) { return least = std::min(least, misfit); });
+    distances.push_back(std::sqrt(least));
+  }
+  return std::max(1e-6 * extent, pcs::internal::upper_median(distances));
+}
+
+/// A tube that a point may lie on.
+struct Tube_candidate
+{
+  std::size_t tube;
+  double misfit; ///< squared distance in units of the noise [-]
+};
+
+/// Finds the best tube of each branch that is about as near to `p` as the best branch, best first.
+inline void find_candidates(const std::vector<Tube>& tubes,
+                            const Tube_tree& tree,
+                            const Vec3& p,
+                            std::vector<Tube_candidate>& found)
+{
+  // misfit that the best branch must be ahead for normals not to matter: three times the noise
+  constexpr double margin = 9;
+  found.clear();
+  double least = std::numeric_limits<double>::infinity();
+  tree.search(p, [&](std::size_t tube, double misfit) {
+    if (misfit <= least + margin) {
+      found.push_back({tube, misfit});
+      least = std::min(least, misfit);
+    }
+    return least + margin;
+  });
+  std::sort(found.begin(), found.end(), [](const Tube_candidate& a, const Tube_candidate& b) {
+    return a.misfit != b.misfit ? a.misfit < b.misfit : a.tube < b.tube;
+  });
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < found.size() && found[k].misfit <= least + margin; ++k) {
+    bool is_new = true;
+    for (std::size_t j = 0; j < kept && is_new; ++j)
+      is_new = tubes[found[j].tube].branch != tubes[found[k].tube].branch;
+    if (is_new)
+      found[kept++] = found[k];
+  }
+  found.resize(kept);
+}
+
+/// Chooses the candidate with the least sum of its misfit and the squared angle between the normal
+/// and the direction from its axis, in units of `normal_angle` [rad].
+inline std::size_t choose_by_normal(const Tube_tree& tree,
+                                    const std::vector<Tube_candidate>& candidates,
+                                    const Vec3& p,
+                                    const Vec3& normal,
+                                    double normal_angle)
+{
+  std::size_t result = candidates.front().tube;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Tube_candidate& c : candidates) {
+    Vec3 radial;
+    tree.misfit(c.tube, p, &radial);
+    const double cosine = std::min(1.0, std::abs(radial.dot(normal)));
+    const double angle = std::acos(cosine) / normal_angle;
+    const double score = c.misfit + angle * angle;
+    if (score < least) {
+      least = score;
+      result = c.tube;
+    }
+  }
+  return result;
+}
+
+} // namespace internal
+
 /*!
-  The tube of each point. A point belongs to the branch whose surface it is nearest to, in units of
-  the noise; where several branches are about as near, at forks, the deviation of the point's normal
-  from the direction away from the axis decides as well. `normals` may be empty: then they are
-  estimated, at forks only.
+  Assigns each point to a tube, that of the branch with the nearest surface in units of the noise.
+  Where several branches are about as near, at forks, the angle between the normal of the point and
+  the direction away from the axis decides as well. `normals` may be empty: then they are estimated,
+  at forks only.
 */
 template <class ConcurrencyTag>
 std::vector<std::size_t> assign_points(const std::vector<Vec3>& points,
@@ -199,91 +284,29 @@ std::vector<std::size_t> assign_points(const std::vector<Vec3>& points,
                                        double extent,
                                        const Point_assignment_options& options)
 {
-  if (points.empty() || tubes.empty())
-    return std::vector<std::size_t>(points.size(), none);
-  // noise that does not shrink with the radius: how far points lie from the nearest surface
-  double absolute = 1e-6 * extent;
-  {
-    const Tube_tree tree(tubes, 0, 1);
-    std::vector<double> distances;
-    const std::size_t step = std::max<std::size_t>(1, points.size() / 2000);
-    for (std::size_t i = 0; i < points.size(); i += step) {
-      double least = std::numeric_limits<double>::infinity();
-      tree.search(points[i],
-                  [&](std::size_t, double misfit) { return least = std::min(least, misfit); });
-      distances.push_back(std::sqrt(least));
-    }
-    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-    std::nth_element(distances.begin(), middle, distances.end());
-    absolute = std::max(absolute, *middle);
-  }
-
-  // how far the best branch must be ahead for normals not to matter: three times the noise
-  constexpr double margin = 9;
-  const Tube_tree tree(tubes, options.noise, absolute);
-  struct Candidate
-  {
-    std::size_t tube;
-    double misfit;
-  };
-  const auto candidates = [&](std::size_t i, std::vector<Candidate>& found) {
-    found.clear();
-    double least = std::numeric_limits<double>::infinity();
-    tree.search(points[i], [&](std::size_t tube, double misfit) {
-      if (misfit <= least + margin) {
-        found.push_back({tube, misfit});
-        least = std::min(least, misfit);
-      }
-      return least + margin;
-    });
-    // the best tube of each branch
-    std::sort(found.begin(), found.end(), [&](const Candidate& a, const Candidate& b) {
-      return a.misfit != b.misfit ? a.misfit < b.misfit : a.tube < b.tube;
-    });
-    std::size_t kept = 0;
-    for (std::size_t k = 0; k < found.size() && found[k].misfit <= least + margin; ++k) {
-      bool is_new = true;
-      for (std::size_t j = 0; j < kept && is_new; ++j)
-        is_new = tubes[found[j].tube].branch != tubes[found[k].tube].branch;
-      if (is_new)
-        found[kept++] = found[k];
-    }
-    found.resize(kept);
-  };
-
   std::vector<std::size_t> result(points.size(), none);
+  if (points.empty() || tubes.empty())
+    return result;
+  const Tube_tree tree(tubes, options.noise, internal::absolute_noise(points, tubes, extent));
   std::vector<char> is_ambiguous(points.size(), 0);
   pcs::internal::for_each_index<ConcurrencyTag>(points.size(), [&](std::size_t i) {
-    thread_local std::vector<Candidate> found;
-    candidates(i, found);
+    thread_local std::vector<internal::Tube_candidate> found;
+    internal::find_candidates(tubes, tree, points[i], found);
     result[i] = found.front().tube;
     is_ambiguous[i] = found.size() > 1;
   });
   const neighborhood::Nearest_neighbors search(points);
-  const auto settle = [&](std::size_t i) { result[i] = side_of_bend(tubes, result[i], points[i]); };
   pcs::internal::for_each_index<ConcurrencyTag>(points.size(), [&](std::size_t i) {
-    if (!is_ambiguous[i]) {
-      settle(i);
-      return;
+    if (is_ambiguous[i]) {
+      thread_local std::vector<internal::Tube_candidate> found;
+      internal::find_candidates(tubes, tree, points[i], found);
+      const Vec3 normal =
+          normals.empty()
+              ? internal::estimate_normal(points, search, i, options.number_of_neighbors)
+              : normals[i];
+      result[i] = internal::choose_by_normal(tree, found, points[i], normal, options.normal_angle);
     }
-    thread_local std::vector<Candidate> found;
-    candidates(i, found);
-    const Vec3 normal =
-        normals.empty() ? internal::estimate_normal(points, search, i, options.number_of_neighbors)
-                        : normals[i];
-    double least = std::numeric_limits<double>::infinity();
-    for (const Candidate& c : found) {
-      Vec3 radial;
-      tree.misfit(c.tube, points[i], &radial);
-      const double cosine = std::min(1.0, std::abs(radial.dot(normal)));
-      const double angle = std::acos(cosine) / options.normal_angle;
-      const double score = c.misfit + angle * angle;
-      if (score < least) {
-        least = score;
-        result[i] = c.tube;
-      }
-    }
-    settle(i);
+    result[i] = side_of_bend(tubes, result[i], points[i]);
   });
   return result;
 }

@@ -20,9 +20,9 @@ namespace shape_space {
 
 namespace internal {
 
-/// The place with the least sum of weighted distances (Weiszfeld 1937; Vardi, Zhang 2000 at the
-/// data points).
-inline Vec3 l1_mean_place(const std::vector<Vec3>& p, const std::vector<double>& w)
+/// Returns the geometric median: the position with the least sum of weighted distances (Weiszfeld
+/// 1937; Vardi, Zhang 2000 at the data points).
+inline Vec3 l1_mean_position(const std::vector<Vec3>& p, const std::vector<double>& w)
 {
   Vec3 mean = Vec3::Zero();
   double total = 0, extent = 0;
@@ -58,12 +58,106 @@ inline Vec3 l1_mean_place(const std::vector<Vec3>& p, const std::vector<double>&
   return mean;
 }
 
+/// Means of numbers, radii, rotations and positions of trees with weights.
+class Weighted_mean
+{
+public:
+  Weighted_mean(const std::vector<double>& weights, Tree_mean kind)
+    : m_weights(weights),
+      m_is_median(kind == Tree_mean::median),
+      m_is_within(*std::min_element(weights.begin(), weights.end()) >= 0)
+  {
+    for (const double w : weights)
+      m_total += w;
+  }
+
+  double operator()(const std::vector<double>& values) const
+  {
+    if (m_is_median)
+      return weighted_median(values, m_weights);
+    double sum = 0;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      sum += m_weights[i] * values[i];
+    return sum / m_total;
+  }
+
+  /// Returns the mean radius. With negative weights, an edge or branch that exists keeps a fraction
+  /// of its least positive radius. [L]
+  double radius(const std::vector<double>& values, bool is_present) const
+  {
+    constexpr double least_fraction = 0.01;
+    double least = 0;
+    for (const double r : values)
+      if (!m_is_within && is_present && r > 0 && (!(least > 0) || least_fraction * r < least))
+        least = least_fraction * r;
+    return std::max(least, (*this)(values));
+  }
+
+  Quaternion rotation(const std::vector<Quaternion>& q) const
+  {
+    return m_is_median ? l1_mean_rotation(q, m_weights) : l2_mean_rotation(q, m_weights);
+  }
+
+  Vec3 position(const std::vector<Vec3>& p) const
+  {
+    if (m_is_median)
+      return l1_mean_position(p, m_weights);
+    Vec3 result = Vec3::Zero();
+    for (std::size_t i = 0; i < p.size(); ++i)
+      result += m_weights[i] / m_total * p[i];
+    return result;
+  }
+
+private:
+  const std::vector<double>& m_weights;
+  bool m_is_median, m_is_within;
+  double m_total = 0;
+};
+
+/// Computes the mean of edge `e` over the trees.
+inline void set_mean_edge(const std::vector<const Orl_coordinates*>& trees,
+                          const Weighted_mean& mean,
+                          std::size_t e,
+                          Orl_coordinates& x)
+{
+  std::vector<double> values(trees.size());
+  std::vector<Quaternion> q(trees.size());
+  for (std::size_t i = 0; i < trees.size(); ++i)
+    values[i] = trees[i]->length[e];
+  x.length[e] = std::max(0.0, mean(values));
+  for (std::size_t i = 0; i < trees.size(); ++i)
+    values[i] = trees[i]->radius[e];
+  x.radius[e] = mean.radius(values, x.length[e] > 0);
+  for (std::size_t i = 0; i < trees.size(); ++i)
+    q[i] = trees[i]->orientation[e];
+  x.orientation[e] = mean.rotation(q);
+}
+
+/// Computes the mean base radius and attachment of branch `b`; lengths are known.
+inline void set_mean_base(const Orl_layout& layout,
+                          const std::vector<const Orl_coordinates*>& trees,
+                          const Weighted_mean& mean,
+                          std::size_t b,
+                          Orl_coordinates& x)
+{
+  std::vector<double> values(trees.size());
+  for (std::size_t i = 0; i < trees.size(); ++i)
+    values[i] = trees[i]->base_radius[b];
+  const std::size_t first = layout.branches[b].first_edge;
+  x.base_radius[b] = mean.radius(values, x.length[first] > 0);
+  for (std::size_t i = 0; i < trees.size(); ++i)
+    values[i] = trees[i]->attachment[b];
+  const std::size_t p = layout.branches[b].parent;
+  const double last = p == none ? 0 : static_cast<double>(layout.branches[p].number_of_edges);
+  x.attachment[b] = std::min(last, std::max(0.0, mean(values)));
+}
+
 } // namespace internal
 
 /*!
-  The mean of trees with weights, coordinate by coordinate. `median` wants weights `>= 0`; of an
-  interval of medians it takes the middle. With `frechet` weights may be negative as long as their
-  sum is positive: lengths stay at least 0, radii a hundredth of the least one.
+  Computes the mean of trees with weights, coordinate by coordinate. `median` requires weights
+  `>= 0`; of an interval of medians it takes the middle. With `frechet` weights may be negative if
+  their sum is positive: lengths stay at least 0, radii a hundredth of the least one.
 */
 template <class ConcurrencyTag>
 Orl_coordinates mean_tree(const Orl_layout& layout,
@@ -72,29 +166,7 @@ Orl_coordinates mean_tree(const Orl_layout& layout,
                           Tree_mean kind)
 {
   const std::size_t n = layout.number_of_edges(), m = layout.branches.size();
-  const bool is_sum = kind == Tree_mean::median;
-  double total = 0;
-  for (const double w : weights)
-    total += w;
-  const auto mean_of = [&](const std::vector<double>& values) {
-    if (is_sum)
-      return weighted_median(values, weights);
-    double sum = 0;
-    for (std::size_t i = 0; i < values.size(); ++i)
-      sum += weights[i] * values[i];
-    return sum / total;
-  };
-  const bool is_within = *std::min_element(weights.begin(), weights.end()) >= 0;
-  // of an edge or branch that is there; beyond the trees it keeps a share of the least radius that
-  // it has in one
-  const auto mean_radius = [&](const std::vector<double>& values, bool is_there) {
-    constexpr double least_share = 0.01;
-    double least = 0;
-    for (const double r : values)
-      if (!is_within && is_there && r > 0 && (!(least > 0) || least_share * r < least))
-        least = least_share * r;
-    return std::max(least, mean_of(values));
-  };
+  const internal::Weighted_mean mean(weights, kind);
   Orl_coordinates x;
   x.orientation.resize(n);
   x.length.resize(n);
@@ -103,42 +175,14 @@ Orl_coordinates mean_tree(const Orl_layout& layout,
   x.attachment.resize(m);
   pcs::internal::for_each_index<ConcurrencyTag>(
       n,
-      [&](std::size_t e) {
-        std::vector<double> values(trees.size());
-        std::vector<Quaternion> q(trees.size());
-        for (std::size_t i = 0; i < trees.size(); ++i)
-          values[i] = trees[i]->length[e];
-        x.length[e] = std::max(0.0, mean_of(values));
-        for (std::size_t i = 0; i < trees.size(); ++i)
-          values[i] = trees[i]->radius[e];
-        x.radius[e] = mean_radius(values, x.length[e] > 0);
-        for (std::size_t i = 0; i < trees.size(); ++i)
-          q[i] = trees[i]->orientation[e];
-        x.orientation[e] = is_sum ? l1_mean_rotation(q, weights) : l2_mean_rotation(q, weights);
-      },
+      [&](std::size_t e) { internal::set_mean_edge(trees, mean, e, x); },
       64);
-  for (std::size_t b = 0; b < m; ++b) {
-    std::vector<double> values(trees.size());
-    for (std::size_t i = 0; i < trees.size(); ++i)
-      values[i] = trees[i]->base_radius[b];
-    const std::size_t first = layout.branches[b].first_edge;
-    x.base_radius[b] = mean_radius(values, x.length[first] > 0);
-    for (std::size_t i = 0; i < trees.size(); ++i)
-      values[i] = trees[i]->attachment[b];
-    const std::size_t p = layout.branches[b].parent;
-    const double last = p == none ? 0 : static_cast<double>(layout.branches[p].number_of_edges);
-    x.attachment[b] = std::min(last, std::max(0.0, mean_of(values)));
-  }
+  for (std::size_t b = 0; b < m; ++b)
+    internal::set_mean_base(layout, trees, mean, b, x);
   std::vector<Vec3> roots;
   for (const Orl_coordinates* tree : trees)
     roots.push_back(tree->root);
-  if (is_sum)
-    x.root = internal::l1_mean_place(roots, weights);
-  else {
-    x.root = Vec3::Zero();
-    for (std::size_t i = 0; i < roots.size(); ++i)
-      x.root += weights[i] / total * roots[i];
-  }
+  x.root = mean.position(roots);
   return x;
 }
 

@@ -18,6 +18,85 @@
 namespace pcs {
 namespace shape_space {
 
+namespace internal {
+
+/// Potentials of an entropic transport, and the plan that they define.
+class Sinkhorn_potentials
+{
+public:
+  Sinkhorn_potentials(const Transport_problem& problem, double epsilon)
+    : m_problem(problem),
+      m_epsilon(epsilon),
+      m_f(problem.supplies.size(), 0),
+      m_g(problem.demands.size(), 0)
+  {
+  }
+
+  double epsilon() const { return m_epsilon; }
+  void set_epsilon(double epsilon) { m_epsilon = epsilon; }
+
+  double mass(const Transport_problem::Arc& a) const { return std::exp(logarithm(a)); }
+
+  /// Makes the sums of all sources or of all targets exact:
+  /// potential += epsilon (log weight - log sum of the plan).
+  void project(bool is_source)
+  {
+    std::vector<double>& potential = is_source ? m_f : m_g;
+    const std::vector<double>& weight = is_source ? m_problem.supplies : m_problem.demands;
+    m_top.assign(potential.size(), -std::numeric_limits<double>::infinity());
+    m_sum.assign(potential.size(), 0);
+    for (const Transport_problem::Arc& a : m_problem.arcs) {
+      double& t = m_top[is_source ? a.source : a.target];
+      t = std::max(t, logarithm(a));
+    }
+    for (const Transport_problem::Arc& a : m_problem.arcs) {
+      const std::size_t i = is_source ? a.source : a.target;
+      m_sum[i] += std::exp(logarithm(a) - m_top[i]);
+    }
+    for (std::size_t i = 0; i < potential.size(); ++i)
+      if (m_sum[i] > 0)
+        potential[i] += m_epsilon * (std::log(weight[i]) - m_top[i] - std::log(m_sum[i]));
+  }
+
+  /// Returns the sum of the absolute differences of all sums from supplies and demands. [-]
+  double violation() const
+  {
+    const std::size_t n = m_problem.supplies.size();
+    std::vector<double> defect(m_problem.supplies);
+    defect.insert(defect.end(), m_problem.demands.begin(), m_problem.demands.end());
+    for (const Transport_problem::Arc& a : m_problem.arcs) {
+      const double m = mass(a);
+      defect[a.source] -= m;
+      defect[n + a.target] -= m;
+    }
+    double total = 0;
+    for (const double d : defect)
+      total += std::abs(d);
+    return total;
+  }
+
+private:
+  double logarithm(const Transport_problem::Arc& a) const
+  {
+    return (m_f[a.source] + m_g[a.target] - a.cost) / m_epsilon;
+  }
+
+  const Transport_problem& m_problem;
+  double m_epsilon;
+  std::vector<double> m_f, m_g, m_top, m_sum;
+};
+
+/// Returns the largest cost of an arc, or 1 if no arc costs anything.
+inline double unit_of_costs(const Transport_problem& problem)
+{
+  double largest = 0;
+  for (const Transport_problem::Arc& a : problem.arcs)
+    largest = std::max(largest, a.cost);
+  return largest > 0 ? largest : 1;
+}
+
+} // namespace internal
+
 /*!
   Entropic optimal transport by alternating projections (M. Cuturi, 2013), as in section 4.8 of
   \cite aiteanu2022. Minimises, over the masses `P_a >= 0` [-] of the arcs `a`,
@@ -38,71 +117,32 @@ namespace shape_space {
 */
 inline Transport_plan sinkhorn(const Transport_problem& problem, const Sinkhorn_options& options)
 {
-  const std::size_t n = problem.supplies.size(), m = problem.demands.size();
-  double largest = 0;
-  for (const Transport_problem::Arc& a : problem.arcs)
-    largest = std::max(largest, a.cost);
-  if (!(largest > 0))
-    largest = 1;
-  std::vector<double> f(n, 0), g(m, 0), top, sum;
-  double epsilon = largest;
-  const auto logarithm = [&](const Transport_problem::Arc& a) {
-    return (f[a.source] + g[a.target] - a.cost) / epsilon;
-  };
-  // potential += epsilon (log weight - log sum of the plan); a side at a time
-  const auto project = [&](bool is_source) {
-    std::vector<double>& potential = is_source ? f : g;
-    const std::vector<double>& weight = is_source ? problem.supplies : problem.demands;
-    top.assign(potential.size(), -std::numeric_limits<double>::infinity());
-    sum.assign(potential.size(), 0);
-    for (const Transport_problem::Arc& a : problem.arcs) {
-      double& t = top[is_source ? a.source : a.target];
-      t = std::max(t, logarithm(a));
-    }
-    for (const Transport_problem::Arc& a : problem.arcs) {
-      const std::size_t i = is_source ? a.source : a.target;
-      sum[i] += std::exp(logarithm(a) - top[i]);
-    }
-    for (std::size_t i = 0; i < potential.size(); ++i)
-      if (sum[i] > 0)
-        potential[i] += epsilon * (std::log(weight[i]) - top[i] - std::log(sum[i]));
-  };
-  const auto violation = [&] {
-    std::vector<double> defect(problem.supplies);
-    defect.insert(defect.end(), problem.demands.begin(), problem.demands.end());
-    for (const Transport_problem::Arc& a : problem.arcs) {
-      const double mass = std::exp(logarithm(a));
-      defect[a.source] -= mass;
-      defect[n + a.target] -= mass;
-    }
-    double total = 0;
-    for (const double d : defect)
-      total += std::abs(d);
-    return total;
-  };
+  constexpr std::size_t passes_per_step = 20;
+  const double largest = internal::unit_of_costs(problem);
   const double last = options.regularization * largest;
+  internal::Sinkhorn_potentials potentials(problem, largest);
   for (;;) {
-    const bool is_last = epsilon <= last;
-    const std::size_t passes = is_last ? options.iterations : 20;
+    const bool is_last = potentials.epsilon() <= last;
+    const std::size_t passes = is_last ? options.iterations : passes_per_step;
     for (std::size_t i = 0; i < passes; ++i) {
-      project(true);
-      project(false);
-      if (is_last && i % 20 == 19 && violation() < options.tolerance)
+      potentials.project(true);
+      potentials.project(false);
+      if (is_last && i % passes_per_step == passes_per_step - 1 &&
+          potentials.violation() < options.tolerance)
         break;
     }
     if (is_last)
       break;
-    epsilon = std::max(last, 0.5 * epsilon);
+    potentials.set_epsilon(std::max(last, 0.5 * potentials.epsilon()));
   }
 
   Transport_plan plan;
-  plan.violation = violation();
+  plan.violation = potentials.violation();
   plan.is_complete = plan.violation < options.tolerance;
-  plan.is_unmet.assign(n + m, 0);
+  plan.is_unmet.assign(problem.supplies.size() + problem.demands.size(), 0);
   for (std::size_t k = 0; k < problem.arcs.size(); ++k) {
-    const Transport_problem::Arc& a = problem.arcs[k];
-    const double mass = std::exp(logarithm(a));
-    plan.cost += mass * a.cost;
+    const double mass = potentials.mass(problem.arcs[k]);
+    plan.cost += mass * problem.arcs[k].cost;
     plan.flows.push_back({static_cast<std::uint32_t>(k), mass});
   }
   return plan;

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace pcs {
@@ -181,64 +182,97 @@ private:
     return false;
   }
 
+  /// The arc that leaves the tree, named by the node below it.
+  struct Leaving_arc
+  {
+    std::size_t node;
+    bool is_below_source; ///< below the source of the entering arc, and not below its target
+    Int flow;             ///< by which the flow around the cycle changes
+  };
+
   void exchange(std::size_t entering)
   {
     const Arc arc = m_arcs[entering];
-    const std::size_t i = arc.from, j = arc.to;
-    std::size_t u = i, v = j;
+    const std::size_t join = find_join(arc.from, arc.to);
+    const Leaving_arc leaving = find_leaving_arc(arc, join);
+    change_flow(arc, join, leaving.flow);
+    const Int shift = leaving.is_below_source
+                          ? m_nodes[arc.to].potential - arc.cost - m_nodes[arc.from].potential
+                          : m_nodes[arc.from].potential + arc.cost - m_nodes[arc.to].potential;
+    attach_subtree(entering, leaving);
+    update_subtree(leaving.is_below_source ? arc.from : arc.to, shift);
+  }
+
+  /// Returns the lowest common ancestor.
+  std::size_t find_join(std::size_t u, std::size_t v) const
+  {
     while (u != v)
       if (m_nodes[u].depth >= m_nodes[v].depth)
         u = m_nodes[u].parent;
       else
         v = m_nodes[v].parent;
-    const std::size_t join = u;
+    return u;
+  }
 
-    // the last blocking arc on the way from the join over i and j back to the join
-    Int delta = std::numeric_limits<Int>::max();
-    std::size_t leaving = none;
-    bool is_below_i = true;
-    for (std::size_t x = i; x != join; x = m_nodes[x].parent)
-      if (m_nodes[x].is_up && m_nodes[x].flow < delta) {
-        delta = m_nodes[x].flow;
-        leaving = x;
+  /// Finds the last blocking arc of the cycle from the join over the entering arc back to the join.
+  Leaving_arc find_leaving_arc(const Arc& entering, std::size_t join) const
+  {
+    Leaving_arc result{none, true, std::numeric_limits<Int>::max()};
+    for (std::size_t x = entering.from; x != join; x = m_nodes[x].parent)
+      if (m_nodes[x].is_up && m_nodes[x].flow < result.flow) {
+        result.flow = m_nodes[x].flow;
+        result.node = x;
       }
-    for (std::size_t x = j; x != join; x = m_nodes[x].parent)
-      if (!m_nodes[x].is_up && m_nodes[x].flow <= delta) {
-        delta = m_nodes[x].flow;
-        leaving = x;
-        is_below_i = false;
+    for (std::size_t x = entering.to; x != join; x = m_nodes[x].parent)
+      if (!m_nodes[x].is_up && m_nodes[x].flow <= result.flow) {
+        result.flow = m_nodes[x].flow;
+        result.node = x;
+        result.is_below_source = false;
       }
-    for (std::size_t x = i; x != join; x = m_nodes[x].parent)
+    return result;
+  }
+
+  void change_flow(const Arc& entering, std::size_t join, Int delta)
+  {
+    for (std::size_t x = entering.from; x != join; x = m_nodes[x].parent)
       m_nodes[x].flow += m_nodes[x].is_up ? -delta : delta;
-    for (std::size_t x = j; x != join; x = m_nodes[x].parent)
+    for (std::size_t x = entering.to; x != join; x = m_nodes[x].parent)
       m_nodes[x].flow += m_nodes[x].is_up ? delta : -delta;
+  }
 
-    // hang what the leaving arc cuts off onto the entering arc
-    const std::size_t top = is_below_i ? i : j, below = is_below_i ? j : i;
-    const Int shift = is_below_i ? m_nodes[j].potential - arc.cost - m_nodes[i].potential
-                                 : m_nodes[i].potential + arc.cost - m_nodes[j].potential;
-    std::size_t x = top, new_parent = below;
-    Node carried; // arc of x to its new parent
-    carried.arc = entering;
-    carried.is_up = is_below_i;
-    carried.flow = delta;
-    carried.cost = arc.cost;
+  /// Attaches the subtree that the leaving arc cuts off to the entering arc: arcs from there to the
+  /// leaving arc are reversed.
+  void attach_subtree(std::size_t entering, const Leaving_arc& leaving)
+  {
+    const Arc& arc = m_arcs[entering];
+    std::size_t x = leaving.is_below_source ? arc.from : arc.to;
+    std::size_t new_parent = leaving.is_below_source ? arc.to : arc.from;
+    Node to_parent; // arc of x to its new parent
+    to_parent.arc = entering;
+    to_parent.is_up = leaving.is_below_source;
+    to_parent.flow = leaving.flow;
+    to_parent.cost = arc.cost;
     for (;;) {
       const std::size_t old_parent = m_nodes[x].parent;
       const Node old = m_nodes[x];
       unlink(x);
       link(x, new_parent);
-      m_nodes[x].arc = carried.arc;
-      m_nodes[x].is_up = carried.is_up;
-      m_nodes[x].flow = carried.flow;
-      m_nodes[x].cost = carried.cost;
-      if (x == leaving)
-        break;
-      carried = old;
-      carried.is_up = !old.is_up; // it is now the arc of the old parent
+      m_nodes[x].arc = to_parent.arc;
+      m_nodes[x].is_up = to_parent.is_up;
+      m_nodes[x].flow = to_parent.flow;
+      m_nodes[x].cost = to_parent.cost;
+      if (x == leaving.node)
+        return;
+      to_parent = old;
+      to_parent.is_up = !old.is_up; // it becomes the arc of the old parent
       new_parent = x;
       x = old_parent;
     }
+  }
+
+  /// Updates potentials and depths of the subtree of `top`.
+  void update_subtree(std::size_t top, Int shift)
+  {
     m_stack.assign(1, top);
     while (!m_stack.empty()) {
       const std::size_t y = m_stack.back();
