@@ -78,6 +78,8 @@ inline std::vector<std::size_t> canonical_order(const std::vector<const Rooted_t
       first = i;
     }
   }
+  if (order.empty())
+    return order;
   std::rotate(order.begin(),
               order.begin() + static_cast<std::ptrdiff_t>(first),
               order.begin() + static_cast<std::ptrdiff_t>(first + 1));
