@@ -5,6 +5,7 @@
 #ifndef PCS_SHAPE_SPACE_EMBEDDING_REFINE_YAW_H
 #define PCS_SHAPE_SPACE_EMBEDDING_REFINE_YAW_H
 
+#include <pcs/internal/constants.h>
 #include <pcs/shape_space/embedding/embed_trees.h>
 #include <pcs/shape_space/model/Common_topology.h>
 
@@ -40,7 +41,7 @@ inline double refine_yaw(const std::array<const Rooted_tree*, 2>& trees,
     tree[i] =
         internal::embed(layout, topology.branches, *trees[i], topology.paths[i], t, Vec3::Zero());
   }
-  constexpr double pi = static_cast<double>(EIGEN_PI);
+  constexpr double pi = pcs::internal::pi;
   std::vector<std::pair<double, double>> differences; // and weights
   double total = 0;
   for (std::size_t e = 0; e < layout.number_of_edges(); ++e) {

@@ -6,6 +6,7 @@
 #define PCS_SHAPE_SPACE_FAMILY_FAMILY_POINTS_IMPL_H
 
 #include <pcs/core/Orl_space_data.h>
+#include <pcs/internal/constants.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/shape_space/family/Family_points.h>
 #include <pcs/shape_space/points/tube_coordinates.h>
@@ -124,7 +125,7 @@ inline void Family_points::set_edge(const Orl_layout& layout,
     for (std::size_t j = m_first_partner[k]; j < m_first_partner[k + 1]; ++j) {
       const Edge_cone& other = cone[partners[j].tree];
       const Tube_coordinates q = tube_coordinates(other, position_of(partners[j]), is_relative);
-      constexpr double whole = 2 * static_cast<double>(EIGEN_PI);
+      constexpr double whole = 2 * pcs::internal::pi;
       m_partner[j] = {partners[j].tree,
                       partners[j].index,
                       static_cast<float>(q.t - p.t),

@@ -6,6 +6,7 @@
 #define PCS_SHAPE_SPACE_FAMILY_SHARED_TOPOLOGY_H
 
 #include <pcs/core/Orl_options.h>
+#include <pcs/internal/median.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/shape_space/embedding/embed_trees.h>
 #include <pcs/shape_space/embedding/mean_rotation.h>
@@ -171,15 +172,6 @@ with_parent_edges(const Orl_layout& from, const Orl_coordinates& x, const Orl_la
   return std::move(result.x);
 }
 
-inline double median(std::vector<double> values)
-{
-  if (values.empty())
-    return 0;
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return 0.5 * (values[(n - 1) / 2] + values[n / 2]); // the middle of the interval of medians
-}
-
 /*!
   Values of a tree in the middle of those that have each branch: medians of lengths, radii and
   attachments, L1 means of orientations. Trees that lack a branch do not count there.
@@ -201,7 +193,7 @@ Orl_coordinates middle_of_members(const Orl_layout& layout,
         const auto of_members = [&](const auto& get) {
           for (std::size_t i = 0; i < members.size(); ++i)
             values[i] = get(trees[members[i]].x);
-          return median(values);
+          return pcs::internal::mean_median(values);
         };
         x.base_radius[b] = of_members([&](const Orl_coordinates& y) { return y.base_radius[b]; });
         x.attachment[b] = of_members([&](const Orl_coordinates& y) { return y.attachment[b]; });
@@ -220,7 +212,7 @@ Orl_coordinates middle_of_members(const Orl_layout& layout,
     std::vector<double> values;
     for (const Embedding& tree : trees)
       values.push_back(tree.x.root[i]);
-    x.root[i] = median(values);
+    x.root[i] = pcs::internal::mean_median(values);
   }
   return x;
 }

@@ -6,6 +6,7 @@
 #define PCS_SHAPE_SPACE_INPUT_EXTEND_AXES_H
 
 #include <pcs/core/Tree_skeleton.h>
+#include <pcs/internal/median.h>
 #include <pcs/neighborhood/Nearest_neighbors.h>
 #include <pcs/shape_space/model/Rooted_tree.h>
 
@@ -31,7 +32,7 @@ namespace internal {
 inline Vec3 extension(const Vec3& end, double radius, const std::vector<Vec3>& points)
 {
   constexpr std::size_t least_number = 8;
-  constexpr double share = 0.98, rounded_end = 2; // in units of the radius
+  constexpr double fraction = 0.98, rounded_end = 2; // in units of the radius
   if (points.size() < least_number)
     return Vec3::Zero();
   Vec3 direction = Vec3::Zero();
@@ -46,13 +47,13 @@ inline Vec3 extension(const Vec3& end, double radius, const std::vector<Vec3>& p
     reach.push_back((p - end).dot(direction));
     sideways += ((p - end) - reach.back() * direction).squaredNorm();
   }
-  const auto last =
-      reach.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(reach.size() - 1));
-  std::nth_element(reach.begin(), last, reach.end());
+  const double last = pcs::internal::value_of_rank(
+      reach,
+      static_cast<std::size_t>(fraction * static_cast<double>(reach.size() - 1)));
   const double width = std::max(radius, std::sqrt(sideways / static_cast<double>(reach.size())));
-  if (!(*last > rounded_end * width))
+  if (!(last > rounded_end * width))
     return Vec3::Zero();
-  return *last * direction;
+  return last * direction;
 }
 
 /// Positions along all axes of a tree, of which some are ends.

@@ -228,6 +228,52 @@ auto node_index_map(const TreeGraph& graph, const NamedParameters& np)
     return get(boost::vertex_index, graph);
 }
 
+/// Checks the property maps and copies the tree and its scan.
+template <class TreeGraph, class PointRange, class NamedParameters>
+void read_input(const TreeGraph& graph,
+                const PointRange& scan,
+                const NamedParameters& np,
+                const std::string& caller,
+                Tree_input& result)
+{
+  using Vertex = typename boost::graph_traits<TreeGraph>::vertex_descriptor;
+  const auto maps = node_maps(graph, np);
+  const auto index_map = node_index_map(graph, np);
+  using Element = Element_reference<const PointRange>;
+  const auto point_map =
+      pcs::internal::choose(np,
+                            CGAL::internal_np::point_map,
+                            CGAL::Identity_property_map<std::decay_t<Element>>());
+  constexpr bool are_node_points =
+      Is_point_valued<std::decay_t<decltype(maps.first)>, Vertex>::value;
+  static_assert(are_node_points,
+                "pcs: `node_point_map` must be a readable property map from vertices to points "
+                "with x(), y(), z()");
+  constexpr bool are_node_radii =
+      Is_number_valued<std::decay_t<decltype(maps.second)>, Vertex>::value;
+  static_assert(are_node_radii,
+                "pcs: `node_radius_map` must be a readable property map from vertices to numbers");
+  constexpr bool are_points = Is_point_valued<std::decay_t<decltype(point_map)>, Element>::value;
+  static_assert(are_points,
+                "pcs: `point_map` must be a readable property map from the elements of a scan to "
+                "points with x(), y(), z()");
+  constexpr bool are_indices = Is_index_valued<std::decay_t<decltype(index_map)>, Vertex>::value;
+  static_assert(are_indices,
+                "pcs: `node_index_map` must be a readable property map from vertices to integers");
+  using Normal_map =
+      std::decay_t<decltype(pcs::internal::choose(np, CGAL::internal_np::normal_map, point_map))>;
+  constexpr bool are_normals = Is_point_valued<Normal_map, Element>::value;
+  static_assert(are_normals,
+                "pcs: `normal_map` must be a readable property map from the elements of a scan to "
+                "vectors with x(), y(), z()");
+  if constexpr (are_node_points && are_node_radii && are_points && are_indices && are_normals) {
+    BOOST_CONCEPT_ASSERT((boost::VertexListGraphConcept<TreeGraph>));
+    BOOST_CONCEPT_ASSERT((boost::IncidenceGraphConcept<TreeGraph>));
+    read_tree(graph, maps.first, maps.second, index_map, caller, result);
+    read_scan(scan, point_map, np, caller, result);
+  }
+}
+
 } // namespace internal
 
 /// Copies and checks what the caller gives.
@@ -255,47 +301,7 @@ Tree_input make_tree_input(const TreeGraph& graph,
       "pcs: a tree that is no pcs::Tree_skeleton needs the named parameters `node_point_map` and "
       "`node_radius_map`");
   if constexpr (is_graph && is_range && has_maps) {
-    using Vertex = typename boost::graph_traits<TreeGraph>::vertex_descriptor;
-    const auto maps = internal::node_maps(graph, np);
-    const auto index_map = internal::node_index_map(graph, np);
-    using Element = Element_reference<const PointRange>;
-    const auto point_map =
-        pcs::internal::choose(np,
-                              CGAL::internal_np::point_map,
-                              CGAL::Identity_property_map<std::decay_t<Element>>());
-    constexpr bool are_node_points =
-        internal::Is_point_valued<std::decay_t<decltype(maps.first)>, Vertex>::value;
-    static_assert(are_node_points,
-                  "pcs: `node_point_map` must be a readable property map from vertices to points "
-                  "with x(), y(), z()");
-    constexpr bool are_node_radii =
-        internal::Is_number_valued<std::decay_t<decltype(maps.second)>, Vertex>::value;
-    static_assert(
-        are_node_radii,
-        "pcs: `node_radius_map` must be a readable property map from vertices to numbers");
-    constexpr bool are_points =
-        internal::Is_point_valued<std::decay_t<decltype(point_map)>, Element>::value;
-    static_assert(are_points,
-                  "pcs: `point_map` must be a readable property map from the elements of a scan to "
-                  "points with x(), y(), z()");
-    constexpr bool are_indices =
-        internal::Is_index_valued<std::decay_t<decltype(index_map)>, Vertex>::value;
-    static_assert(
-        are_indices,
-        "pcs: `node_index_map` must be a readable property map from vertices to integers");
-    using Normal_map =
-        std::decay_t<decltype(pcs::internal::choose(np, CGAL::internal_np::normal_map, point_map))>;
-    constexpr bool are_normals = internal::Is_point_valued<Normal_map, Element>::value;
-    static_assert(
-        are_normals,
-        "pcs: `normal_map` must be a readable property map from the elements of a scan to "
-        "vectors with x(), y(), z()");
-    if constexpr (are_node_points && are_node_radii && are_points && are_indices && are_normals) {
-      BOOST_CONCEPT_ASSERT((boost::VertexListGraphConcept<TreeGraph>));
-      BOOST_CONCEPT_ASSERT((boost::IncidenceGraphConcept<TreeGraph>));
-      internal::read_tree(graph, maps.first, maps.second, index_map, caller, result);
-      internal::read_scan(scan, point_map, np, caller, result);
-    }
+    internal::read_input(graph, scan, np, caller, result);
   }
   return result;
 }

@@ -5,6 +5,7 @@
 #ifndef PCS_SHAPE_SPACE_MATCHING_FIND_YAW_CANDIDATES_H
 #define PCS_SHAPE_SPACE_MATCHING_FIND_YAW_CANDIDATES_H
 
+#include <pcs/internal/constants.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
 #include <pcs/shape_space/matching/Matching_energy.h>
@@ -87,7 +88,7 @@ std::vector<double> find_yaw_candidates(const Matching_energy& energy,
 {
   using internal::Turned_trees;
   constexpr std::size_t number_of_starts = 24, batch = 4;
-  constexpr double pi = static_cast<double>(EIGEN_PI), step = 2 * pi / number_of_starts;
+  constexpr double pi = pcs::internal::pi, step = 2 * pi / number_of_starts;
   constexpr int first_passes = 3, last_passes = 20;
   const Vec3 axis = energy.frame().transpose() * up;
   std::vector<Turned_trees> turned(number_of_starts);

@@ -5,6 +5,7 @@
 #ifndef PCS_SHAPE_SPACE_MEASURES_TREE_DESCRIPTORS_H
 #define PCS_SHAPE_SPACE_MEASURES_TREE_DESCRIPTORS_H
 
+#include <pcs/internal/constants.h>
 #include <pcs/shape_space/model/Orl_coordinates.h>
 
 #include <algorithm>
@@ -61,7 +62,7 @@ inline Tree_descriptors measure(const Orl_layout& layout,
                                 const Orl_geometry& geometry,
                                 const Vec3& up)
 {
-  constexpr double pi = static_cast<double>(EIGEN_PI);
+  constexpr double pi = pcs::internal::pi;
   constexpr std::size_t number_of_sides = 18;
   Tree_descriptors result;
   std::vector<Vec3> sides;

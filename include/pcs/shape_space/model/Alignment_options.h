@@ -6,6 +6,7 @@
 #define PCS_SHAPE_SPACE_MODEL_ALIGNMENT_OPTIONS_H
 
 #include <pcs/core/Orl_options.h>
+#include <pcs/internal/constants.h>
 #include <pcs/shape_space/model/Rooted_tree.h>
 
 #include <Eigen/Geometry>
@@ -26,7 +27,7 @@ struct Alignment_options
 inline double angle_about(const Vec3& axis, const Eigen::Quaterniond& turn)
 {
   const double angle = 2 * std::atan2(turn.vec().dot(axis), turn.w());
-  return std::remainder(angle, 2 * static_cast<double>(EIGEN_PI));
+  return std::remainder(angle, 2 * pcs::internal::pi);
 }
 
 } // namespace shape_space

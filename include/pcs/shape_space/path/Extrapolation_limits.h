@@ -6,6 +6,7 @@
 #define PCS_SHAPE_SPACE_PATH_EXTRAPOLATION_LIMITS_H
 
 #include <pcs/core/Orl_options.h>
+#include <pcs/internal/constants.h>
 #include <pcs/shape_space/model/Orl_coordinates.h>
 
 #include <algorithm>
@@ -102,7 +103,7 @@ private:
   /// A frame that stands no further from where it is at the end than allowed.
   Quaternion limited(const Quaternion& frame, const Quaternion& at_end) const
   {
-    constexpr double pi = static_cast<double>(EIGEN_PI);
+    constexpr double pi = pcs::internal::pi;
     if (!(m_max_extrapolation_angle < pi))
       return frame;
     const Vec3 turn = rotation_log(frame * at_end.conjugate());

@@ -5,6 +5,7 @@
 #ifndef PCS_SHAPE_SPACE_POINTS_POINT_INSTANCES_IMPL_H
 #define PCS_SHAPE_SPACE_POINTS_POINT_INSTANCES_IMPL_H
 
+#include <pcs/internal/constants.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/shape_space/points/Point_instances.h>
 #include <pcs/shape_space/points/flat_sections.h>
@@ -97,7 +98,6 @@ inline void Point_instances::set_pair(std::size_t k,
                                       const std::array<std::vector<Vec3>, 2>& points,
                                       const std::array<std::vector<Vec3>, 2>& normals)
 {
-  constexpr double pi = static_cast<double>(EIGEN_PI);
   const Point_pair& pair = m_pairs[k];
   std::array<Tube_coordinates, 2> c{};
   std::array<Vec3, 2> normal{Vec3::Zero(), Vec3::Zero()};
@@ -119,7 +119,7 @@ inline void Point_instances::set_pair(std::size_t k,
       }
       normal[t] = normal[1 - t];
     }
-  double change = std::remainder(c[1].angle - c[0].angle, 2 * pi);
+  double change = std::remainder(c[1].angle - c[0].angle, 2 * pcs::internal::pi);
   if (m_is_flat[pair.edge]) {
     for (Tube_coordinates& place : c) {
       const double x = place.distance * std::cos(place.angle);

@@ -6,6 +6,7 @@
 #define PCS_SHAPE_SPACE_POINTS_MATCH_POINTS_H
 
 #include <pcs/core/Orl_options.h>
+#include <pcs/internal/median.h>
 #include <pcs/neighborhood/Nearest_neighbors.h>
 #include <pcs/shape_space/model/Rooted_tree.h>
 #include <pcs/shape_space/points/Distinct_positions.h>
@@ -25,14 +26,6 @@ namespace pcs {
 namespace shape_space {
 
 namespace internal {
-
-/// The upper one of two values in the middle.
-inline double upper_median(std::vector<double> values)
-{
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Squared distance to the fifth neighbour, within limits: the surface that a point stands for, up
 /// to a factor. What is alone beside a surface stands for next to nothing: it would draw all that
@@ -57,11 +50,11 @@ inline std::vector<double> area_weights(const std::vector<Vec3>& points,
     std::array<double, neighbor> others;
     for (std::size_t k = 0; k < neighbor; ++k)
       others[k] = alone[near[i][k]];
-    std::nth_element(others.begin(), others.begin() + neighbor / 2, others.end());
-    if (area[i] > most_of_neighbors * others[neighbor / 2])
+    if (area[i] > most_of_neighbors * pcs::internal::upper_median(others.begin(), others.end()))
       area[i] = 0;
   }
-  const double median = upper_median(area);
+  std::vector<double> sorted(area);
+  const double median = pcs::internal::upper_median(sorted);
   for (double& a : area) // points that nearly coincide stand for little, outliers not for all
     a = median > 0 ? std::min(16 * median, std::max(median / 64, a)) : 1;
   return area;
@@ -92,10 +85,11 @@ weights_of(const Distinct_positions& places, const std::vector<double>& areas, P
 /// How far the points of two trees are from each other: the median of the distances to nearest
 /// ones, but at least a quarter of the spacing, since most points may be the same. Distances are
 /// squared.
-inline double usual_distance(const std::vector<double>& squared, const std::vector<double>& areas)
+inline double usual_distance(std::vector<double> squared, std::vector<double> areas)
 {
   constexpr double least = 1. / 4;
-  return std::sqrt(std::max(upper_median(squared), least * least * upper_median(areas)));
+  return std::sqrt(std::max(pcs::internal::upper_median(squared),
+                            least * least * pcs::internal::upper_median(areas)));
 }
 
 /// No point of the one is farther than that from one of the other.

@@ -5,6 +5,7 @@
 #ifndef PCS_SHAPE_SPACE_STATISTICS_DIRECTION_CHART_H
 #define PCS_SHAPE_SPACE_STATISTICS_DIRECTION_CHART_H
 
+#include <pcs/internal/constants.h>
 #include <pcs/shape_space/model/Orl_coordinates.h>
 
 #include <Eigen/Geometry>
@@ -126,7 +127,7 @@ public:
   }
 
 private:
-  static constexpr double pi = static_cast<double>(EIGEN_PI);
+  static constexpr double pi = pcs::internal::pi;
 
   struct Polar
   {

@@ -6,6 +6,7 @@
 #define PCS_SHAPE_SPACE_STATISTICS_MODES_OF_VARIATION_H
 
 #include <pcs/core/Orl_options.h>
+#include <pcs/internal/median.h>
 #include <pcs/shape_space/model/Orl_coordinates.h>
 
 #include <Eigen/Core>
@@ -81,8 +82,7 @@ inline double outlier_score(const Modes_of_variation& modes, const Mode_coordina
   std::vector<double> usual;
   for (const auto& d : modes.left_out)
     usual.push_back(d[std::min(modes.size(), d.size() - 1)]);
-  std::sort(usual.begin(), usual.end());
-  const double scale = usual.empty() ? 1 : usual[usual.size() / 2];
+  const double scale = usual.empty() ? 1 : pcs::internal::upper_median(usual);
   const double outside = at.distance / scale; // infinite without spread
   return std::sqrt(0.5 * (inside + outside * outside));
 }

@@ -5,6 +5,7 @@
 #ifndef PCS_SHAPE_SPACE_STATISTICS_TANGENT_SPACE_H
 #define PCS_SHAPE_SPACE_STATISTICS_TANGENT_SPACE_H
 
+#include <pcs/internal/constants.h>
 #include <pcs/shape_space/model/Orl_coordinates.h>
 
 #include <Eigen/Core>
@@ -72,7 +73,7 @@ public:
     for (std::size_t e = 0; e < n; ++e, k += 5) {
       Vec3 u = m_weights->orientation[e] > 0 ? Vec3(z.segment<3>(k) / m_weights->orientation[e])
                                              : Vec3(Vec3::Zero());
-      constexpr double pi = static_cast<double>(EIGEN_PI);
+      constexpr double pi = pcs::internal::pi;
       if (u.norm() > pi)
         u *= pi / u.norm();
       x.orientation[e] = m_base.orientation[e] * rotation_exp(u);

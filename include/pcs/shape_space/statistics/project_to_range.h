@@ -6,6 +6,7 @@
 #define PCS_SHAPE_SPACE_STATISTICS_PROJECT_TO_RANGE_H
 
 #include <pcs/core/Orl_options.h>
+#include <pcs/internal/constants.h>
 #include <pcs/shape_space/measures/Tree_descriptors.h>
 
 #include <algorithm>
@@ -38,7 +39,7 @@ struct Figure_range
 inline void
 limit_moments(const Figure_range& mean, const Figure_range& deviation, std::vector<double>& angles)
 {
-  constexpr double pi = static_cast<double>(EIGEN_PI);
+  constexpr double pi = pcs::internal::pi;
   constexpr int number_of_passes = 50; // one, unless angles stop
   const auto n = static_cast<double>(angles.size());
   for (int pass = 0; pass < number_of_passes; ++pass) {
