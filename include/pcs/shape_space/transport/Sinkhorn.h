@@ -112,8 +112,9 @@ inline double unit_of_costs(const Transport_problem& problem)
 
   `epsilon` is halved every 20 passes, from the largest cost to `regularization` times that. There,
   at most `iterations` passes are made, until the sum of all violations of the constraints is below
-  `tolerance`. `cost` is without the entropy. All arcs have a flow. With arcs that do not admit the
-  marginals, the violation stays large: it is reported. O(arcs) for each pass.
+  `tolerance`. `cost` is without the entropy. All arcs have a flow, so `is_unmet` is 0 for all
+  points. With arcs that do not admit the marginals, the violation stays large: it is reported.
+  O(arcs) for each pass.
 */
 inline Transport_plan sinkhorn(const Transport_problem& problem, const Sinkhorn_options& options)
 {

@@ -17,7 +17,7 @@
 namespace pcs {
 namespace shape_space {
 
-/// Transport over `arcs` from sources to targets, with weights that both sum to one.
+/// A transport over `arcs` from sources to targets; supplies and demands both sum to one.
 struct Transport_problem
 {
   struct Arc
@@ -38,18 +38,17 @@ struct Transport_plan
   };
   std::vector<Flow> flows; ///< by arc
   double cost = 0;         ///< sum of mass times cost
-  double violation =
-      0; ///< sum over sources and targets of the mass that differs from what was asked for
-  double remaining = 0;       ///< mass that stays where it is, of 1: of a partial transport
-  std::vector<char> is_unmet; ///< per source, then per target: mass that no arc takes
-  bool is_complete = false;   ///< nothing unmet but what may stay, and the method came to its end
+  double violation = 0;    ///< sum over sources and targets of the difference from the given mass
+  double remaining = 0;    ///< of a partial transport: mass that is not moved, of 1
+  std::vector<char> is_unmet;       ///< per source, then per target: whether some mass is not moved
+  bool is_complete = false;         ///< all mass moved that must be, and the method has converged
   std::size_t number_of_pivots = 0; ///< of the network simplex
 };
 
 /*!
   Primal network simplex with block search, on strongly feasible trees, so that it ends. Weights and
   costs are rounded to integers (2^-50 of the mass, 2^-32 of the largest cost): pivots are exact,
-  and the same on every machine. Mass that the arcs cannot carry goes over an artificial node and is
+  and the same on every machine. Mass that the arcs cannot take goes over an artificial node and is
   reported. At most n + m - 1 flows.
 */
 class Transport_simplex

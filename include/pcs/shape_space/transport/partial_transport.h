@@ -17,7 +17,7 @@
 namespace pcs {
 namespace shape_space {
 
-/// By the method that `options` ask for.
+/// Solves a transport by the method that `options` select.
 inline Transport_plan solve_transport(const Transport_problem& problem,
                                       const Transport_options& options)
 {
@@ -26,9 +26,9 @@ inline Transport_plan solve_transport(const Transport_problem& problem,
 }
 
 /*!
-  Partial transport (L. Caffarelli and R. McCann, 2010): a unit of mass of either side may stay
-  where it is at the price `p > 0`, in the unit of the costs. Minimises, over the masses `P_a >= 0`
-  [-] of the arcs `a`,
+  Solves a partial transport (L. Caffarelli and R. McCann, 2010): mass of either side may stay
+  unmoved at the price `p > 0` per unit, in the unit of the costs. Minimises, over the masses `P_a
+  >= 0` [-] of the arcs `a`,
 
       sum_a P_a c_a + p (sum_i (s_i - sum_{a from i} P_a) + sum_j (t_j - sum_{a to j} P_a))
 
@@ -36,10 +36,12 @@ inline Transport_plan solve_transport(const Transport_problem& problem,
   `s_i` and demands `t_j` [-], which both sum to one. As the arc `a` gains only if `c_a < 2 p`, all
   others are left out.
 
-  One more source and one more target, each of mass 1, take what stays, over arcs of cost `p` from
-  all sources and to all targets; the arc between them costs nothing. All masses are halved, so that
-  those of this complete transport sum to one; `solve_transport()` finds it. `cost` is without the
-  price. `problem` needs no arcs; n + m + 1 are added to it.
+  One additional source and one additional target, each of mass 1, take the mass that stays, over
+  arcs of cost `p` from all sources and to all targets; the arc between them costs nothing. All
+  masses are halved, so that those of this complete transport sum to one; `solve_transport()` finds
+  it. `cost` is without the price. `problem` needs no arcs; n + m + 1 are added to it. With
+  `Point_transport::sinkhorn` every arc has a flow, so `is_unmet` marks all points; with `exact` it
+  marks those of which mass stays.
 */
 inline Transport_plan
 solve_partially(const Transport_problem& problem, double price, const Transport_options& options)

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Wood score of a point from its surroundings: a multilayer perceptron trained on virtual scans.
+// Log-odds of wood for a point from its surroundings: a multilayer perceptron trained on virtual
+// scans.
 
 #ifndef PCS_SKELETON_LEAVES_WOOD_PROBABILITY_H
 #define PCS_SKELETON_LEAVES_WOOD_PROBABILITY_H
