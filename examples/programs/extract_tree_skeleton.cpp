@@ -76,6 +76,7 @@ struct Labels
   std::vector<std::size_t> branch;
   std::vector<double> residual;
   std::vector<std::uint8_t> dense, leaf;
+  std::vector<Kernel::Vector_3> normal; ///< null for points without a branch
 };
 
 /// Extracts the skeleton; labels are computed only if they are written.
@@ -98,7 +99,8 @@ pcs::Skeleton_report extract_with_labels(const Range& indices,
                                     np.point_is_leaf_map(map(labels.leaf))
                                         .point_branch_map(map(labels.branch))
                                         .point_residual_map(map(labels.residual))
-                                        .point_is_dense_map(map(labels.dense)));
+                                        .point_is_dense_map(map(labels.dense))
+                                        .normal_map(map(labels.normal)));
 }
 
 pcs::Skeleton_report extract(const std::string& input,
@@ -143,6 +145,7 @@ pcs::Skeleton_report extract(const std::string& input,
                       .slice_options(slices)
                       .up_direction(up_direction<Kernel>(options.up))
                       .breast_height(options.breast_height)
+                      .number_of_resamples(options.number_of_resamples)
                       .do_register_stations(!options.do_keep_stations)
                       .station_map(station)
                       .do_remove_ground(!options.do_keep_ground)
@@ -206,6 +209,7 @@ void write_points_to(const std::string& path,
   table.add_property("residual",
                      std::vector<float>(labels.residual.begin(), labels.residual.end()));
   table.add_property("leaf", labels.leaf);
+  table.set_normals(labels.normal);
   if (do_commit)
     pcs::IO::write_points(path, table);
   else

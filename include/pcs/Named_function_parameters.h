@@ -38,6 +38,7 @@
   PCS_OWN(up_direction)                                                                            \
   PCS_OWN(root_position)                                                                           \
   PCS_OWN(breast_height)                                                                           \
+  PCS_OWN(number_of_resamples)                                                                     \
   PCS_OWN(do_register_stations)                                                                    \
   PCS_OWN(station_map)                                                                             \
   PCS_OWN(do_remove_ground)                                                                        \

@@ -120,10 +120,10 @@ public:
         \npdefault `Rotation_field::geodesic`
       \np{number_of_iterations} largest number of passes of one `deform()` [count]
         \nptype integer, `>= 0`
-        \npdefault `deformation::default_maximal_number_of_passes`
+        \npdefault `20`
       \np{tolerance} passes end when the energy falls by less than this fraction [-]
         \nptype floating point, `>= 0`
-        \npdefault `deformation::default_tolerance`
+        \npdefault `0.05`
       \np{stiffness} resistance against bending relative to stretching. It is the same for any
         number of points, and of samples from 2,000 on. [-]
         \nptype floating point, 0.001 to 1000

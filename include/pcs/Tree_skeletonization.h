@@ -9,10 +9,11 @@
 #include <pcs/concepts.h>
 #include <pcs/core/Skeleton_report.h>
 #include <pcs/core/Tree_skeleton.h>
-#include <pcs/core/parameters/check_value.h>
 #include <pcs/core/errors.h>
+#include <pcs/core/parameters/check_value.h>
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Session.h>
+#include <pcs/skeleton/estimate_spread.h>
 #include <pcs/skeleton/input/caller_types.h>
 #include <pcs/skeleton/input/check_input.h>
 #include <pcs/skeleton/input/read_options.h>
@@ -101,92 +102,80 @@ public:
       \np{point_map} where a position is read
         \nptype model of `ReadablePropertyMap`, key: element of `points`, value: a point type
         \npdefault `CGAL::Identity_property_map`
-      \np{up_direction} where the tree grows to; used to find the root, the ground and heights
+      \np{up_direction} the vertical, for the root, the ground and heights
         \nptype a vector with `x()`, `y()`, `z()`, not null
         \npdefault the z-axis
-      \np{root_position} a place near the foot of the trunk [L]
+      \np{root_position} a position near the foot of the trunk [L]
         \nptype a point with `x()`, `y()`, `z()`
-        \npdefault none: the lower end of the thickest part near the lower end of the cloud
-      \np{do_register_stations} whether stations of the scanner are moved, by millimetres, so that
-          all see the same branches: errors of registration make branches too thick or too thin by
-          as much. The stations are those of `station_map`, or those whose regular beams are found:
-          a scanner turns by equal steps, which its points show until they are thinned or rounded to
-          less than a tenth of their distance. Of one station, or where none are found, nothing is
-          moved. The result lies in the middle of the stations; `Skeleton_report::stations` has what
-          was moved
+        \npdefault none: the stem near the lower end of the cloud
+      \np{do_register_stations} whether scanner stations are registered: each is moved by
+          millimetres so that all see the same branches. Stations are those of `station_map`, or
+          those whose angular scan grids are detected
         \nptype `bool`
         \npdefault `true`
-      \np{station_map} which station has measured a point; negative: not known. If less than two are
-          told apart, or more than 100, stations are looked for
+      \np{station_map} the station that measured a point; negative: unknown. With fewer than two
+          stations, or more than 100, scan grids are searched instead
         \nptype model of `ReadablePropertyMap`, key: element of `points`, value: an integer type
         \npdefault none
-      \np{scanner_positions} where the scanners stood; with `beam_width` they tell how much a beam
-          widens thin branches
+      \np{scanner_positions} positions of the scanners [L]. With `beam_width` they correct radii of
+          thin branches for beam divergence
         \nptype range of points with `x()`, `y()`, `z()`
         \npdefault none
-      \np{beam_width} angle of the scanner's beam; 0: radii are left as they are. Read with
-          `scanner_positions` [rad]
+      \np{beam_width} divergence of the beam [rad]; 0: no correction. Used with `scanner_positions`
         \nptype floating point, `>= 0`
         \npdefault `default_beam_width`
-      \np{given_skeleton} a skeleton that is measured: its positions stay, radii, sections and the
-          branches of points come from the scan
+      \np{given_skeleton} a skeleton that is measured: its positions stay, and radii, sections and
+          the branches of points come from the scan
         \nptype model of `VertexListGraph` and `IncidenceGraph` of Boost, a tree with edges from
-            parent to child (`std::cref()` of one saves the copy)
+            parent to child (`std::cref()` avoids a copy)
         \npdefault none
       \np{given_point_map} the positions of its vertices
         \nptype model of `ReadablePropertyMap`, key: vertex descriptor, value: a point type
         \npdefault the bundled property of `Tree_skeleton`; needed for other graphs
       \np{skeleton_method} how branches are found
-        \nptype `Skeleton_method`: `chains`, or `sections` for the dissertation's own way
+        \nptype `Skeleton_method`: `chains`, or `sections`, the published method \cite aiteanu2022
         \npdefault `chains`
-      \np{slice_options} the steps of the method `sections`: how slices are cut, fitted, tilted, and
-          which points they spare
+      \np{slice_options} the steps of the method `sections`: how slices are cut, fitted and tilted
         \nptype `Slice_options`
-        \npdefault the dissertation's, with which nothing is replaced
-      \np{do_remove_ground} whether ground around the foot is looked for and left out, and flat
-          faces, such as walls and roofs, with what stands within one cell (a twelfth of the root
-          mean square radius of the scan) beside them
+        \npdefault those that were published
+      \np{do_remove_ground} whether ground around the foot and flat faces such as walls and roofs
+          are removed
         \nptype `bool`
         \npdefault `true`
       \np{breast_height} height of the diameter in the report, and unit of its size classes [L]
         \nptype floating point, `> 0`
         \npdefault `default_breast_height`, for scans in metres
-      \np{wood_map} whether a point may belong to a branch; others (leaves) are left out
+      \np{number_of_resamples} copies of the scan, with 90 % of the points and at most 40,000, from
+          which skeletons are extracted, too: `Skeleton_report::spread` has the standard deviations
+          of their figures. They need the time of as many scans of that size
+        \nptype integer, 0 to 1000
+        \npdefault 0: the spread is not estimated
+      \np{wood_map} whether a point may belong to a branch; others (leaves) are not used
         \nptype model of `ReadablePropertyMap`, key: element of `points`, value: `bool`
         \npdefault all points
-      \np{do_remove_leaves} whether points of leaves are looked for and left out. After the first
-          fit, points of hollow sections are wood, and such whose surroundings and paths to the root
-          are those of twigs; the rest is leaves. Wood is fitted again, twice, each time without the
-          axes that look like leaves and what no axis explains. `true`: always; `false`: never;
-          `Leaf_removal::where_found`: if 2.5 % of the points are not explained by the first fit, 5
-          % are thick wood, and of the others 3.5 % lie in flat patches, or 16 % of all points lie
-          deep among such that are neither thick wood nor lines, unless the points lie in rows
-          (`Skeleton_report::is_in_rows`). If only the third is missing, there are no leaves, and
-          one more fit goes without what strays from the wood: axes that do not look like it, and
-          points that no axis explains and that do not, either, away from the trunk; all are used
-          again after it. For the method `chains`
+      \np{do_remove_leaves} whether leaves are separated from wood and not used: always (`true`),
+          never (`false`), or where there is evidence of leaves. For the method `chains`
         \nptype `bool` or `Leaf_removal`
         \npdefault `Leaf_removal::where_found`; with `wood_map` `false`
-      \np{point_branch_map} written by `extract()`: the branch of a point, an index in the result,
-          or `npos`
+      \np{point_branch_map} written by `extract()`: index of the branch of a point in the result, or
+          `npos`
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: an integer type
         \npdefault none
-      \np{point_residual_map} written by `extract()`: distance from the surface of the branch,
-          negative inside, 0 for points without a branch; where stations are moved, of the moved
-          point [L]
+      \np{point_residual_map} written by `extract()`: signed distance from the surface of the
+          branch, negative inside, 0 for points without a branch [L]. Of the registered position, where
+          stations are moved
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: floating point
         \npdefault none
       \np{point_is_dense_map} written by `extract()`: whether the point lies where the section of
           its branch was measured
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: `bool`
         \npdefault none
-      \np{point_is_leaf_map} written by `extract()`: whether the point was left out as a leaf, by
+      \np{point_is_leaf_map} written by `extract()`: whether the point was not used as a leaf, by
           `wood_map` or `do_remove_leaves`
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: `bool`
         \npdefault none
-      \np{normal_map} written by `extract()`: the unit vector from the axis of its branch to the
-          point, which is the outward normal of the branch; the null vector for points without a
-          branch
+      \np{normal_map} written by `extract()`: outward unit normal of the branch at the point, the
+          null vector for points without a branch
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: a vector type
         \npdefault none
       \np{node_point_map} where the position of a vertex of the result is written
@@ -215,6 +204,13 @@ public:
       skeleton::check_input(input, options.hints, function);
       std::vector<std::uint8_t> is_wood = read_wood();
       options.hints.stations = read_stations();
+      if (options.number_of_resamples > 0) {
+        m_resamples = {skeleton::resample_scan(input,
+                                               is_wood,
+                                               options.hints.stations,
+                                               options.number_of_resamples),
+                       options.hints};
+      }
       m_session =
           std::make_unique<Session>(std::move(input), std::move(is_wood), std::move(options.hints));
     }
@@ -271,7 +267,7 @@ public:
                   "pcs::extract_tree_skeleton(): a graph that is no pcs::Tree_skeleton needs the "
                   "named parameters `node_point_map` and `node_radius_map`");
     if constexpr (is_graph_ok && is_ok && (is_ready_made || has_maps)) {
-      if (!join()) {
+      if (!join() || !estimate_spread()) {
         Skeleton_report report;
         report.status = Status::cancelled;
         report.number_of_points = m_session->report().number_of_points;
@@ -286,7 +282,9 @@ public:
       write_points();
       if (m_callback)
         m_callback(1);
-      return m_session->report();
+      Skeleton_report report = m_session->report();
+      report.spread = m_resamples.spread();
+      return report;
     } else
       return Skeleton_report();
   }
@@ -308,11 +306,27 @@ public:
 private:
   static constexpr const char* function = "pcs::extract_tree_skeleton()";
 
+  /// Fraction of the work without resampled copies, if there are any.
+  static constexpr double end_of_stages = 0.5;
+
   template <class Stage>
   bool run(const Stage& stage)
   {
-    internal::Progress progress(m_callback);
+    std::function<bool(double)> callback = m_callback;
+    if (callback && !m_resamples.is_done())
+      callback = [this](double f) { return m_callback(end_of_stages * f); };
+    internal::Progress progress(std::move(callback));
     return stage(progress);
+  }
+
+  /// Runs the resampled copies if there are any.
+  bool estimate_spread()
+  {
+    if (m_resamples.is_done() || m_session->report().status != Status::converged)
+      return true;
+    internal::Progress progress(m_callback);
+    progress.stage(end_of_stages, 1);
+    return m_resamples.run(progress);
   }
 
   std::vector<skeleton::Vec3> read_points() const
@@ -392,17 +406,29 @@ private:
                                              });
   }
 
-  /// Writes the maps over the points; nothing is there to write if there is no tree. Maps of the
-  /// caller are written one point after the other.
+  /// Calls `f(key, i, node)` for every input point in their order; `node` is `none` for points that
+  /// no branch explains.
+  template <class F>
+  void for_each_point(const F& f) const
+  {
+    const bool has_tree = !m_session->tree().nodes.empty();
+    std::size_t i = 0;
+    for (auto it = std::begin(*m_points); it != std::end(*m_points); ++it, ++i)
+      f(*it, i, has_tree ? m_session->node_of_input(i) : skeleton::none);
+  }
+
+  /// Writes the maps over the points. Maps of the caller are written one point after the other.
   void write_points() const
   {
-    const skeleton::Branch_tree& found = m_session->tree();
-    const bool has_tree = !found.nodes.empty();
-    const auto for_each_point = [&](const auto& f) {
-      std::size_t i = 0;
-      for (auto it = std::begin(*m_points); it != std::end(*m_points); ++it, ++i)
-        f(*it, i, has_tree ? m_session->node_of_input(i) : skeleton::none);
-    };
+    write_branches();
+    write_residuals();
+    write_leaves();
+    write_normals();
+    write_densities();
+  }
+
+  void write_branches() const
+  {
     if constexpr (internal::is_given_v<NamedParameters, internal_np::point_branch_map_t>) {
       const auto map = CGAL::parameters::get_parameter(m_np, internal_np::point_branch_map);
       using Map = std::decay_t<decltype(map)>;
@@ -413,10 +439,14 @@ private:
       if constexpr (is_map_ok)
         for_each_point([&](auto&& key, std::size_t, skeleton::Index v) {
           const std::size_t branch =
-              v == skeleton::none ? npos : std::size_t(found.nodes[v].branch);
+              v == skeleton::none ? npos : std::size_t(m_session->tree().nodes[v].branch);
           put(map, key, static_cast<pcs::Map_value<Map>>(branch));
         });
     }
+  }
+
+  void write_residuals() const
+  {
     if constexpr (internal::is_given_v<NamedParameters, internal_np::point_residual_map_t>) {
       const auto map = CGAL::parameters::get_parameter(m_np, internal_np::point_residual_map);
       using Map = std::decay_t<decltype(map)>;
@@ -433,6 +463,10 @@ private:
         });
       }
     }
+  }
+
+  void write_leaves() const
+  {
     if constexpr (internal::is_given_v<NamedParameters, internal_np::point_is_leaf_map_t>) {
       const auto map = CGAL::parameters::get_parameter(m_np, internal_np::point_is_leaf_map);
       constexpr bool is_map_ok =
@@ -445,6 +479,10 @@ private:
           put(map, key, m_session->is_leaf_of_input(i));
         });
     }
+  }
+
+  void write_normals() const
+  {
     if constexpr (internal::is_given_v<NamedParameters, CGAL::internal_np::normal_t>) {
       const auto map = CGAL::parameters::get_parameter(m_np, CGAL::internal_np::normal_map);
       using Map = std::decay_t<decltype(map)>;
@@ -465,6 +503,10 @@ private:
         });
       }
     }
+  }
+
+  void write_densities() const
+  {
     if constexpr (internal::is_given_v<NamedParameters, internal_np::point_is_dense_map_t>) {
       const auto map = CGAL::parameters::get_parameter(m_np, internal_np::point_is_dense_map);
       constexpr bool is_map_ok =
@@ -474,7 +516,7 @@ private:
                     "writable, accept an element of `points` as key, and store bool");
       if constexpr (is_map_ok)
         for_each_point([&](auto&& key, std::size_t, skeleton::Index v) {
-          put(map, key, v != skeleton::none && found.nodes[v].is_measured);
+          put(map, key, v != skeleton::none && m_session->tree().nodes[v].is_measured);
         });
     }
   }
@@ -483,6 +525,7 @@ private:
   NamedParameters m_np;
   std::function<bool(double)> m_callback;
   std::unique_ptr<Session> m_session;
+  skeleton::Spread_estimator<ConcurrencyTag> m_resamples;
 };
 
 } // namespace pcs

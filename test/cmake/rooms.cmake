@@ -41,6 +41,7 @@ set(deformation_model solver/rotation_field.h)
 
 # ---- skeleton: extract_tree_skeleton, segment_trees
 set(root_skeleton
+  estimate_spread.h
   Session.h
   forest/Stand.h
   input/Session_hints.h

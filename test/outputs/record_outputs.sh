@@ -34,7 +34,10 @@ run() {
 skeleton() { # NAME SCAN ARGUMENT...
   local name=$1 scan=$2
   shift 2
-  run "$name" extract_tree_skeleton --input "$scan" --swc "$name.swc" --report "$name.json" --quiet "$@"
+  local one=()
+  # resampled copies of the scan do not change the tree
+  if "$programs/extract_tree_skeleton" --help 2> /dev/null | grep -q -- --resamples; then one=(--resamples 0); fi
+  run "$name" extract_tree_skeleton --input "$scan" --swc "$name.swc" --report "$name.json" --quiet "${one[@]}" "$@"
 }
 
 # the option NEW if the program knows it, else OLD: options that were renamed

@@ -31,6 +31,7 @@ struct Skeleton_options
   double beam_milliradians = -1; // < 0: the default of the library
   double tolerance = -1;         // < 0: the default of the library
   double breast_height = 1.3;
+  int number_of_resamples = 4;
   bool do_keep_stations = false, do_keep_ground = false, do_remove_leaves = false,
        do_keep_leaves = false, do_separate = false, do_use_all = false, do_fit_all = false,
        is_quiet = false;
@@ -53,7 +54,8 @@ inline nlohmann::ordered_json to_json(const Skeleton_options& o)
                                   o.do_keep_leaves     ? "keep"
                                   : o.do_remove_leaves ? "remove"
                                                        : "automatic"},
-                                 {"breast_height", o.breast_height}};
+                                 {"breast_height", o.breast_height},
+                                 {"resamples", o.number_of_resamples}};
   if (o.method == "sections") {
     json["fit"] = o.fit;
     json["all_points"] = o.do_use_all;
@@ -100,7 +102,9 @@ inline void declare(CLI::App& app, Skeleton_options& options)
                  options.cylinders,
                  "table of cylinders, CSV; branches are numbered from 1");
   app.add_option("--edges", options.edges, "the skeleton as vertices and edges, PLY");
-  app.add_option("--points", options.points, "the scan with the branch of every point");
+  app.add_option("--points",
+                 options.points,
+                 "the scan with branch, residual and outward normal of every point");
   app.add_option("--report", options.report, "counts, sizes and seconds (JSON)");
   app.add_option("--folder", options.folder, "folder for the results of several scans");
   app.add_option("--also", options.also, "with --folder: mesh, cylinders, edges, points")
@@ -132,6 +136,12 @@ inline void declare(CLI::App& app, Skeleton_options& options)
                  options.given,
                  "SWC: measure radii along this skeleton, whose positions are kept")
       ->excludes("--root");
+  app.add_option("--resamples",
+                 options.number_of_resamples,
+                 "copies of the scan, with some of its points, whose skeletons show how much the "
+                 "figures of the report depend on chance; 0: none")
+      ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
   app.add_option("--breast-height", options.breast_height, "height of the diameter in the report")
       ->capture_default_str();
   app.add_option("--tolerance", options.tolerance, "maximal distance of the mesh from the sections")

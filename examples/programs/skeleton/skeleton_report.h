@@ -48,6 +48,18 @@ inline nlohmann::ordered_json to_json(const pcs::Scan_station& s)
   return json;
 }
 
+inline nlohmann::ordered_json to_json(const pcs::Skeleton_spread& s)
+{
+  return {{"copies", s.number_of_copies},
+          {"empty_copies", s.number_of_empty_copies},
+          {"height", s.height},
+          {"diameter_at_breast_height", s.diameter_at_breast_height},
+          {"trunk_length", s.trunk_length},
+          {"length", s.length},
+          {"volume", s.volume},
+          {"root", s.root}};
+}
+
 /// Returns all members of the report; lengths are in the unit of the input.
 inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skeleton_report& r)
 {
@@ -99,6 +111,8 @@ inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skele
       size["radius_to"] = r.size_bounds[k];
     json["by_size"].push_back(size);
   }
+  if (r.spread.number_of_copies + r.spread.number_of_empty_copies > 0)
+    json["spread"] = to_json(r.spread);
   json["seconds"] = {{"neighbors", r.seconds.neighbors},
                      {"paths", r.seconds.paths},
                      {"axes", r.seconds.axes},

@@ -45,6 +45,25 @@ struct Scan_station
   double azimuth_step = 0, elevation_step = 0;
 };
 
+/*!
+  \ingroup PkgPcsSkeletonRef
+  \brief standard deviations of a skeleton among resampled copies of its scan.
+
+  See `number_of_resamples` of `Tree_skeletonization`. Copies of large scans are thinned, so that the
+  deviations are rather too large for them.
+*/
+struct Skeleton_spread
+{
+  std::size_t number_of_copies = 0;       ///< copies with a tree; 0: not estimated [count]
+  std::size_t number_of_empty_copies = 0; ///< copies without a tree [count]
+  double height = 0;                      ///< [L]
+  double diameter_at_breast_height = 0;   ///< [L]
+  double trunk_length = 0;                ///< [L]
+  double length = 0;                      ///< of all branches [L]
+  double volume = 0;                      ///< of all branches [L^3]
+  double root = 0; ///< root mean square distance of the roots from their mean [L]
+};
+
 //! \ingroup PkgPcsSkeletonRef
 //! statistics of `extract_tree_skeleton()` or `Tree_skeletonization`
 struct Skeleton_report
@@ -106,6 +125,7 @@ struct Skeleton_report
   //! upper bounds of the radii of the classes in `by_size`; the last class has no upper bound
   std::vector<double> size_bounds;
   std::vector<Branch_totals> by_size; ///< thinnest class first
+  Skeleton_spread spread;             ///< how much these figures depend on chance
 
   //! wall-clock time of each stage [s]
   struct Seconds
@@ -227,6 +247,41 @@ inline void warn_of_stems(const Skeleton_report& r, std::vector<std::string>& se
   }
 }
 
+/// Adds a warning about figures that differ between resampled copies.
+inline void warn_of_spread(const Skeleton_report& r, std::vector<std::string>& sentences)
+{
+  // deviations relative to the figure: virtual scans have at most a third of these [-]
+  constexpr double max_height = 0.03, max_diameter = 0.1, max_trunk = 0.2, max_volume = 0.15;
+  constexpr double max_root = 0.1; // of the breast height [-]
+  const Skeleton_spread& s = r.spread;
+  std::string list;
+  const auto add = [&](const char* name, double deviation, double value, double limit) {
+    if (deviation > limit * value)
+      list += (list.empty() ? "" : ", ") + std::string(name) + " " + short_text(value) + " +- " +
+              short_text(deviation);
+  };
+  if (s.number_of_copies < 2)
+    return;
+  add("height", s.height, r.height, max_height);
+  add("diameter at breast height",
+      s.diameter_at_breast_height,
+      r.diameter_at_breast_height,
+      max_diameter);
+  if (!r.by_order.empty())
+    add("length of the trunk", s.trunk_length, r.by_order.front().length, max_trunk);
+  add("volume", s.volume, r.total.volume, max_volume);
+  if (s.root > max_root * r.breast_height)
+    list +=
+        (list.empty() ? "" : ", ") + std::string("position of the root +- ") + short_text(s.root);
+  if (!list.empty())
+    sentences.push_back("resampled copies of this scan give different trees (one standard "
+                        "deviation): " +
+                        list);
+  if (s.number_of_empty_copies > 0)
+    sentences.push_back(std::to_string(s.number_of_empty_copies) +
+                        " resampled copies of this scan show no tree");
+}
+
 } // namespace internal
 
 //! \ingroup PkgPcsSkeletonRef
@@ -240,6 +295,7 @@ inline std::vector<std::string> warnings(const Skeleton_report& r)
   if (!r.by_order.empty() && r.by_order.front().length > 0) {
     internal::warn_of_shape(r, sentences);
     internal::warn_of_stems(r, sentences);
+    internal::warn_of_spread(r, sentences);
   }
   return sentences;
 }

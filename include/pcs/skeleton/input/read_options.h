@@ -17,6 +17,7 @@
 #include <boost/graph/graph_traits.hpp>
 
 #include <cmath>
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <type_traits>
@@ -37,6 +38,7 @@ struct Input_options
 {
   Session_hints hints;
   std::function<bool(double)> callback;
+  std::size_t number_of_resamples = 0; ///< copies of the scan that show the spread of the result
 };
 
 namespace internal {
@@ -218,6 +220,15 @@ Input_options read_skeleton_options(const NamedParameters& np, const std::string
   hints.do_register_stations = true;
   internal::read_parameter(np, internal::tags::do_register_stations, hints.do_register_stations);
   internal::read_leaf_removal(np, hints);
+  const auto resamples =
+      pcs::internal::choose(np, internal::tags::number_of_resamples, options.number_of_resamples);
+  constexpr bool is_integer = std::is_integral_v<std::decay_t<decltype(resamples)>>;
+  static_assert(is_integer,
+                "pcs::extract_tree_skeleton(): named parameter `number_of_resamples` must be an "
+                "integer");
+  if constexpr (is_integer)
+    options.number_of_resamples =
+        pcs::internal::check_count(caller, "number_of_resamples", resamples, 0, 1000);
   return options;
 }
 

@@ -1,0 +1,160 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Spread of the figures of a skeleton among resampled copies of its scan.
+
+#ifndef PCS_SKELETON_ESTIMATE_SPREAD_H
+#define PCS_SKELETON_ESTIMATE_SPREAD_H
+
+#include <pcs/core/Skeleton_report.h>
+#include <pcs/internal/Random_stream.h>
+#include <pcs/internal/progress.h>
+#include <pcs/skeleton/Session.h>
+#include <pcs/skeleton/input/Session_hints.h>
+#include <pcs/skeleton/model/Branch_tree.h>
+#include <pcs/skeleton/model/Scan.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace pcs {
+namespace skeleton {
+
+/// Some of the points of a scan, with their attributes.
+struct Scan_copy
+{
+  std::vector<Vec3> points;
+  std::vector<std::uint8_t> is_wood; ///< empty: unknown
+  std::vector<long long> stations;   ///< empty: unknown
+};
+
+/*!
+  Copies of a scan: each keeps a point with probability `min(0.9, 40000 / n)`, independently, by the
+  number of the point. Fewer than 100 points give no copies. O(n) per copy.
+*/
+inline std::vector<Scan_copy> resample_scan(const std::vector<Vec3>& points,
+                                            const std::vector<std::uint8_t>& is_wood,
+                                            const std::vector<long long>& stations,
+                                            std::size_t number_of_copies)
+{
+  constexpr double max_fraction = 0.9;
+  constexpr double max_points = 40000; // enough for trunk and limbs, and fast
+  constexpr std::size_t min_points = 100;
+  std::vector<Scan_copy> copies(points.size() < min_points ? 0 : number_of_copies);
+  const double fraction = std::min(max_fraction, max_points / double(points.size()));
+  for (std::size_t k = 0; k < copies.size(); ++k)
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!(pcs::internal::Random_stream(k, i).uniform() < fraction))
+        continue;
+      copies[k].points.push_back(points[i]);
+      if (!is_wood.empty())
+        copies[k].is_wood.push_back(is_wood[i]);
+      if (!stations.empty())
+        copies[k].stations.push_back(stations[i]);
+    }
+  return copies;
+}
+
+namespace internal {
+
+/// Returns the sample standard deviation.
+inline double deviation(const std::vector<double>& values)
+{
+  const auto n = double(values.size());
+  double mean = 0, square = 0;
+  for (const double v : values)
+    mean += v / n;
+  for (const double v : values)
+    square += (v - mean) * (v - mean);
+  return n > 1 ? std::sqrt(square / (n - 1)) : 0;
+}
+
+/// The figures of the copies that have a tree.
+struct Copied_figures
+{
+  std::vector<double> height, diameter, trunk, length, volume;
+  std::vector<double> root[3];
+
+  void add(const Skeleton_report& r, const Vec3& root_position)
+  {
+    height.push_back(r.height);
+    diameter.push_back(r.diameter_at_breast_height);
+    trunk.push_back(r.by_order.empty() ? 0 : r.by_order.front().length);
+    length.push_back(r.total.length);
+    volume.push_back(r.total.volume);
+    for (int k = 0; k < 3; ++k)
+      root[k].push_back(root_position[k]);
+  }
+
+  Skeleton_spread spread() const
+  {
+    Skeleton_spread result;
+    result.number_of_copies = height.size();
+    result.height = deviation(height);
+    result.diameter_at_breast_height = deviation(diameter);
+    result.trunk_length = deviation(trunk);
+    result.length = deviation(length);
+    result.volume = deviation(volume);
+    result.root = std::hypot(deviation(root[0]), deviation(root[1]), deviation(root[2]));
+    return result;
+  }
+};
+
+} // namespace internal
+
+/// Skeletons of resampled copies of a scan. A cancelled call continues with the same copy.
+template <class ConcurrencyTag>
+class Spread_estimator
+{
+public:
+  Spread_estimator() = default;
+  Spread_estimator(std::vector<Scan_copy> copies, Session_hints hints)
+    : m_copies(std::move(copies)), m_hints(std::move(hints)), m_count(m_copies.size())
+  {
+  }
+
+  bool is_done() const { return m_copies.empty(); }
+
+  /// Extracts the skeletons that are left. Returns `false` when `progress` stops it.
+  bool run(pcs::internal::Progress& progress)
+  {
+    for (; !m_copies.empty(); m_copies.pop_back()) {
+      const double begin = double(m_count - m_copies.size());
+      pcs::internal::Progress part(
+          [&](double f) { return progress((begin + f) / double(m_count)); });
+      Session_hints hints = m_hints;
+      hints.stations = m_copies.back().stations;
+      Session<ConcurrencyTag> session(m_copies.back().points, m_copies.back().is_wood, hints);
+      if (!session.join(part))
+        return false;
+      const Branch_tree& tree = session.tree();
+      if (session.report().status == Status::converged)
+        m_figures.add(session.report(),
+                      session.scan().frame.to_input(
+                          tree.nodes[tree.branches.front().nodes.front()].point));
+    }
+    return true;
+  }
+
+  /// Deviations among the copies that are done.
+  Skeleton_spread spread() const
+  {
+    Skeleton_spread result = m_figures.spread();
+    result.number_of_empty_copies = m_count - m_copies.size() - result.number_of_copies;
+    return result;
+  }
+
+private:
+  std::vector<Scan_copy> m_copies;
+  Session_hints m_hints;
+  std::size_t m_count = 0;
+  internal::Copied_figures m_figures;
+};
+
+} // namespace skeleton
+} // namespace pcs
+
+#endif // PCS_SKELETON_ESTIMATE_SPREAD_H

@@ -1,0 +1,153 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// Spread of the figures of a skeleton among resampled copies of its scan.
+
+#include <pcs/extract_tree_skeleton.h>
+#include <support/exceptions.h>
+#include <support/tree_clouds.h>
+
+#include <CGAL/tags.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace test_skeleton_spread {
+
+using pcs_test::append;
+using pcs_test::cylinder;
+using pcs_test::Tree;
+using Point = pcs_test::Tree_point;
+using Vector = pcs_test::Tree_vector;
+using Cloud = std::vector<Point>;
+namespace np = pcs::parameters;
+
+// a stem with a branch, densely sampled
+Cloud clear_tree()
+{
+  Cloud points = cylinder(6000, 0.1, 3);
+  append(points, cylinder(1500, 0.03, 1, Point(0.1, 0, 1.8), Vector(1, 0, 0)));
+  return points;
+}
+
+BOOST_AUTO_TEST_SUITE(tree_skeleton_spread)
+
+BOOST_AUTO_TEST_CASE(there_is_no_spread_unless_it_is_wanted)
+{
+  Tree tree;
+  const pcs::Skeleton_report report = pcs::extract_tree_skeleton(clear_tree(), tree);
+  BOOST_TEST(report.spread.number_of_copies == 0u);
+  BOOST_TEST(report.spread.volume == 0);
+}
+
+BOOST_AUTO_TEST_CASE(copies_do_not_change_the_tree)
+{
+  Tree plain, tree;
+  const pcs::Skeleton_report a = pcs::extract_tree_skeleton(clear_tree(), plain);
+  const pcs::Skeleton_report b =
+      pcs::extract_tree_skeleton(clear_tree(), tree, np::number_of_resamples(2));
+  BOOST_TEST(b.spread.number_of_copies == 2u);
+  BOOST_TEST(a.total.volume == b.total.volume);
+  BOOST_TEST(num_vertices(plain) == num_vertices(tree));
+}
+
+BOOST_AUTO_TEST_CASE(a_clear_tree_has_a_small_spread_and_no_warning)
+{
+  Tree tree;
+  const pcs::Skeleton_report report =
+      pcs::extract_tree_skeleton(clear_tree(), tree, np::number_of_resamples(4));
+  BOOST_TEST(report.spread.number_of_copies == 4u);
+  BOOST_TEST(report.spread.number_of_empty_copies == 0u);
+  BOOST_TEST(report.spread.height > 0);
+  BOOST_TEST(report.spread.height < 0.02 * report.height);
+  BOOST_TEST(report.spread.diameter_at_breast_height < 0.01 * report.diameter_at_breast_height);
+  BOOST_TEST(report.spread.volume < 0.05 * report.total.volume);
+  BOOST_TEST(report.spread.root < 0.03);
+  for (const std::string& sentence : pcs::warnings(report))
+    BOOST_TEST(sentence.find("resampled") == std::string::npos, sentence);
+}
+
+BOOST_AUTO_TEST_CASE(figures_that_depend_on_chance_are_named)
+{
+  // two equal stems: which one is the tree depends on single points
+  Cloud points = cylinder(1500, 0.1, 3);
+  append(points, cylinder(1500, 0.1, 3, Point(3, 0, 0), Vector(0, 0, 1)));
+  Tree tree;
+  const pcs::Skeleton_report report =
+      pcs::extract_tree_skeleton(points, tree, np::number_of_resamples(8));
+  BOOST_TEST_REQUIRE(report.spread.root > 1);
+  std::string all;
+  for (const std::string& sentence : pcs::warnings(report))
+    all += sentence + '\n';
+  BOOST_TEST(all.find("position of the root +- ") != std::string::npos, all);
+}
+
+BOOST_AUTO_TEST_CASE(the_spread_does_not_depend_on_threads)
+{
+  const Cloud points = clear_tree();
+  Tree tree;
+  const pcs::Skeleton_spread a =
+      pcs::extract_tree_skeleton<CGAL::Sequential_tag>(points, tree, np::number_of_resamples(2))
+          .spread;
+  const pcs::Skeleton_spread b =
+      pcs::extract_tree_skeleton(points, tree, np::number_of_resamples(2)).spread;
+  BOOST_TEST(a.volume == b.volume);
+  BOOST_TEST(a.diameter_at_breast_height == b.diameter_at_breast_height);
+  BOOST_TEST(a.root == b.root);
+}
+
+BOOST_AUTO_TEST_CASE(a_cancelled_estimate_continues)
+{
+  const Cloud points = clear_tree();
+  Tree tree;
+  const pcs::Skeleton_spread expected =
+      pcs::extract_tree_skeleton(points, tree, np::number_of_resamples(3)).spread;
+  double limit = 0.8, last = 0;
+  const auto callback = [&](double f) {
+    BOOST_TEST(f >= last);
+    last = f;
+    return f < limit;
+  };
+  const auto parameters = np::number_of_resamples(3).callback(callback);
+  pcs::Tree_skeletonization<Cloud, std::decay_t<decltype(parameters)>> work(points, parameters);
+  BOOST_CHECK(work.extract(tree).status == pcs::Status::cancelled);
+  limit = 2;
+  last = 0;
+  const pcs::Skeleton_report report = work.extract(tree);
+  BOOST_TEST(report.spread.number_of_copies == 3u);
+  BOOST_TEST(report.spread.volume == expected.volume);
+}
+
+BOOST_AUTO_TEST_CASE(copies_keep_nine_tenths_of_small_scans_and_thin_large_ones)
+{
+  const std::vector<pcs::skeleton::Vec3> small(1000, pcs::skeleton::Vec3::Zero()),
+      large(400000, pcs::skeleton::Vec3::Zero()), tiny(99, pcs::skeleton::Vec3::Zero());
+  const std::vector<std::uint8_t> wood(1000, 1);
+  const auto copies = pcs::skeleton::resample_scan(small, wood, {}, 2);
+  BOOST_TEST_REQUIRE(copies.size() == 2u);
+  BOOST_TEST(copies[0].points.size() > 850u);
+  BOOST_TEST(copies[0].points.size() < 950u);
+  BOOST_TEST(copies[0].points.size() == copies[0].is_wood.size());
+  BOOST_TEST(copies[0].points.size() != copies[1].points.size());
+  BOOST_TEST(copies[0].stations.empty());
+  const auto thinned = pcs::skeleton::resample_scan(large, {}, {}, 1);
+  BOOST_TEST(thinned[0].points.size() > 39000u);
+  BOOST_TEST(thinned[0].points.size() < 41000u);
+  BOOST_TEST(pcs::skeleton::resample_scan(tiny, {}, {}, 5).empty());
+}
+
+BOOST_AUTO_TEST_CASE(a_negative_number_of_copies_is_refused)
+{
+  Tree tree;
+  BOOST_CHECK_EXCEPTION(pcs::extract_tree_skeleton(clear_tree(), tree, np::number_of_resamples(-1)),
+                        pcs::Invalid_input,
+                        pcs_test::message_has("number_of_resamples is -1"));
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_skeleton_spread
