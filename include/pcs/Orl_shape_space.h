@@ -47,32 +47,32 @@ namespace pcs {
   \ingroup PkgPcsShapeSpaceRef
   \brief A shape space of two trees or more, with the points of their scans.
 
-  Follows chapter 4 of \cite aiteanu2022: branches are matched by elastic curves, all trees get one
-  topology, points are matched by optimal transport along corresponding edges, and a tree is the
-  list of orientations, radii and lengths (ORL) of the edges of the topology. Distances are those of
-  (4.7), geodesics interpolate the coordinates; points follow their edges.
+  The model is that of chapter 4 of \cite aiteanu2022. Branches are matched by elastic curves, and
+  all trees get one topology. A tree is the list of orientations, radii and lengths (ORL) of the
+  edges of this topology. Distances are those of (4.7), and geodesics interpolate the coordinates.
+  Points are matched by optimal transport along corresponding edges, and follow their edges.
 
-  Trees of any Boost.Graph type are added, `build()` finds the correspondences, and trees of the
-  space are made by `geodesic()` and written as skeletons and points. Inputs are copied. Functions
-  for means, modes of variation, random trees, growth and comparison take a built space:
+  `add()` copies a tree of any Boost.Graph type and its scan, `build()` finds the correspondences,
+  and `geodesic()` computes trees of the space, which are written by `skeleton()` and `points()`.
+  Functions for means, modes of variation, random trees, growth and comparison take a built space:
   `mean_tree()`, `find_modes()`, `sample_tree()`, `fit_growth_path()`, `compare_trees.h`.
 
-  Two trees are represented exactly. More trees share the nodes of their branches: axes are
-  simplified by at most 1 % of the length of a branch. Each branch has the points of one scan, so
-  that points have the same order in all trees; each of them has a corresponding point in every
-  other scan of the branch, found by optimal transport. The order in which trees are added does not
-  matter then, save for rounding.
+  Two trees are represented exactly. In a space of more than two trees, corresponding branches have
+  the same number of nodes, and axes are simplified with a tolerance of 1 % of the branch length.
+  Each branch then has the points of one scan, so points have the same order in all trees; optimal
+  transport finds the corresponding point of each in every other scan of the branch. The order in
+  which the trees are added does not matter, except for rounding.
 
   \tparam Kernel a kernel of CGAL; computations are in double precision about a local origin
   \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or
       `CGAL::Parallel_if_available_tag`
   \par Errors
-  All functions but `add()`, `add_skeleton()`, `build()` and `restore()` need a space that was built
-  and throw `pcs::Invalid_input` otherwise.
+  All functions except `add()`, `add_skeleton()`, `build()`, `build_from()` and `restore()` require
+  a built space, and throw `pcs::Invalid_input` otherwise.
   \par Determinism
-  Same bits for every number of threads and for the sequential tag. The order of vertices and edges
-  in the graphs does not matter, save for exact copies of branches. `const` functions may run
-  concurrently.
+  Results are the same bits for every number of threads and for the sequential tag. The order of
+  vertices and edges in the graphs does not matter, except for exact copies of branches. `const`
+  functions may run concurrently.
 */
 template <class Kernel = CGAL::Simple_cartesian<double>,
           class ConcurrencyTag = CGAL::Parallel_if_available_tag>
@@ -99,14 +99,14 @@ public:
 
     \tparam TreeGraph a model of `boost::VertexListGraph` and `boost::IncidenceGraph`, edges from
         parent to child
-    \param tree with one root, at least 2 nodes, positions up to 1e100 from it, radii in [0, 1e100],
-        and at most 250 levels of branches; coincident nodes are joined
-    \param scan a model of `RandomAccessRange`; may be empty; it should lie about the tree
+    \param tree a tree with one root, at least 2 nodes, positions at most 1e100 from the root, radii
+        in [0, 1e100], and at most 250 levels of branches; coincident nodes are joined
+    \param scan a model of `RandomAccessRange`; may be empty; its points should surround the tree
     \npbegin
       \np{node_point_map} position of a vertex [L]
         \nptype readable, key: vertex, value with `x()`, `y()`, `z()`
         \npdefault `Tree_node::point`
-      \np{node_radius_map} radius of a vertex [L]; 0 where it is not known
+      \np{node_radius_map} radius of a vertex [L]; 0 if it is not known
         \nptype readable, key: vertex, value: a number
         \npdefault `Tree_node::radius`
       \np{node_index_map} number of a vertex, from 0
@@ -115,13 +115,13 @@ public:
       \np{point_map} position of an element of `scan` [L]
         \nptype readable, value with `x()`, `y()`, `z()`
         \npdefault `CGAL::Identity_property_map`
-      \np{normal_map} normal of an element; given for all trees, trees of the space have normals
+      \np{normal_map} normal of an element; trees of the space have normals if all scans have them
         \nptype readable, value with `x()`, `y()`, `z()`
         \npdefault none: normals are estimated at forks
     \npend
-    \throws pcs::Invalid_input when a rule is broken; the space is unchanged then
+    \throws pcs::Invalid_input when an argument violates these conditions; the space is unchanged
     \par Complexity
-    Linear in the size of tree and scan, but for the sorting of children.
+    Linear in the size of tree and scan, except for the sorting of children.
   */
   template <class TreeGraph,
             class PointRange,
@@ -153,14 +153,14 @@ public:
     \npbegin
       \np{matching_weights} weights of the energy of a matching of branches
         \nptype `Matching_weights`
-        \npdefault an extended energy; `is_published` selects that of the dissertation
-      \np{assignment_options} of points to branches
+        \npdefault an extended energy; `is_published` selects the published one
+      \np{assignment_options} options of the assignment of points to branches
         \nptype `Point_assignment_options`
-      \np{transport_options} of the correspondence of points by optimal transport
+      \np{transport_options} options of the optimal transport that matches points
         \nptype `Transport_options`
       \np{alignment} whether the second of two trees may be rotated about the vertical
         \nptype `Orl_alignment`
-        \npdefault `as_given`; with `rotate_about_up` the report has the angle
+        \npdefault `as_given`; with `rotate_about_up`, `yaw` of the report is the angle
       \np{up_direction} the vertical
         \nptype a vector with `x()`, `y()`, `z()`, finite and not null
         \npdefault `(0, 0, 1)`
@@ -174,22 +174,23 @@ public:
         \nptype `bool`
         \npdefault `false`: rotations are multiplied by the length of the edge, so that distances
             are lengths
-      \np{number_of_rounds} for more than two trees: how often all are matched to a tree in their
-          middle
+      \np{number_of_rounds} for more than two trees: number of times that all trees are matched to
+          the middle tree, which has median coordinates
         \nptype an integer, `>= 1`
         \npdefault `3`
-      \np{points_of} for more than two trees: the tree whose scan gives the points of the branches
-          that it has
+      \np{points_of} for more than two trees: tree whose scan provides the points of all branches
+          that this tree has
         \nptype `Handle`
-        \npdefault none: for each branch, the tree with most points there
+        \npdefault none: for each branch, the tree with the most points on it
       \np{callback} progress in [0, 1]; `false` cancels
         \nptype any `bool(double)`
     \npend
-    \return a report; with `Status::cancelled` the space is as before
-    \throws pcs::Invalid_input unless two trees were added at least
+    \return a report; with `Status::cancelled` the space is unchanged
+    \throws pcs::Invalid_input unless at least two trees were added
     \par Complexity
-    Branches: about the number of pairs of branches on the same level, for more than two trees once
-    per tree and round. Points: \f$O(n \log n)\f$ in practice.
+    The time for branches is about proportional to the number of pairs of branches on the same
+    level; for more than two trees, this holds per tree and round. The time for points is
+    \f$O(n \log n)\f$ in practice.
   */
   template <class NamedParameters = parameters::Default_named_parameters>
   Orl_report build(const NamedParameters& np = NamedParameters())
@@ -205,12 +206,12 @@ public:
   }
 
   /*!
-    \brief does the same for two trees with correspondences that were computed before.
+    \brief builds the space of two trees from correspondences that were computed before.
 
     Reads `orientation`, `virtual_direction` and `do_use_unit_weights`, `matching_weights` for trees
     that are embedded later, and `up_direction` for the sign of the yaw.
-    \return a report in which `matching_energy` and `unexplained_fraction` are not numbers and
-        `is_grown_at_tips` is `false`: correspondences do not include these
+    \return a report in which `matching_energy` and `unexplained_fraction` are NaN and
+        `is_grown_at_tips` is `false`, because correspondences do not include these values
     \throws pcs::Invalid_input when the correspondences do not fit the trees
   */
   template <class NamedParameters = parameters::Default_named_parameters>
@@ -225,9 +226,9 @@ public:
   }
 
   /*!
-    \brief makes the space that `data()` was taken from; all but `correspondences()`, `add()` and
-        `build()` works as before.
-    \throws pcs::Invalid_input when the numbers are inconsistent; the space is unchanged then
+    \brief restores the space from which `data()` was taken; all functions except `add()`,
+        `build()`, `build_from()` and `correspondences()` work as before.
+    \throws pcs::Invalid_input when the numbers are inconsistent; the space is unchanged
   */
   void restore(const Orl_space_data& stored)
   {
@@ -238,7 +239,7 @@ public:
   /// \name Added Trees
   //!@{
 
-  //! trees that were added when the space was built [count]
+  //! number of trees from which the space was built [count]
   std::size_t number_of_trees() const { return family().x.size(); }
 
   //! an added tree as a tree of the space
@@ -258,13 +259,14 @@ public:
     return b < family().has[h].size() && family().has[h][b] != 0;
   }
 
-  //! number of the vertex at the tip of branch `b` in the graph of tree `h`, `npos` if it lacks it
+  //! number of the vertex at the tip of branch `b` in the graph of tree `h`; `npos` if the tree
+  //! lacks this branch
   std::size_t tip_of_branch(Handle h, std::size_t b) const
   {
     return has_branch(h, b) ? family().tip[h][b] : npos;
   }
 
-  //! branches of two trees that correspond, parents first
+  //! pairs of corresponding branches of two trees, parents first
   std::vector<Branch_match> matches() const
   {
     check_two_trees("matches");
@@ -293,10 +295,11 @@ public:
   /*!
     \brief makes a tree of the space from a tree that was not added.
 
-    It is matched to a tree in the middle of the added ones; its branches without correspondence are
-    left out.
+    The tree is matched to the middle tree of the added ones. Its branches without correspondence
+    are left out.
     \param tree, np as for `add()`
-    \param represented if not null: fraction of its length that is represented [-]
+    \param represented if not null, receives the fraction of the length of `tree` that is
+        represented [-]
   */
   template <class TreeGraph, class NamedParameters = parameters::Default_named_parameters>
   Orl_tree embed(const TreeGraph& tree,
@@ -342,7 +345,7 @@ public:
                                  family().weights,
                                  shape_space::read_metric(np));
   }
-  //! the same between two added trees
+  //! returns the distance between two added trees [L]
   template <class NamedParameters = parameters::Default_named_parameters>
   double distance(Handle a, Handle b, const NamedParameters& np = NamedParameters()) const
   {
@@ -357,25 +360,25 @@ public:
   /*!
     \brief returns the tree at `lambda` on the geodesic from `a` (0) to `b` (1), or beyond its ends.
 
-    Beyond the ends lengths and radii stay positive, and edges rotate by at most
-    `max_extrapolation_angle`: relative to their parent edge, and in space. Nothing grows below the
-    base, against the direction of growth, unless it does at one of the ends: such branches are
-    extrapolated less.
+    Beyond the ends, lengths and radii remain positive, and edges rotate by at most
+    `max_extrapolation_angle`, both relative to their parent edge and in space. Branches that would
+    extend below the base (against the direction of growth) are extrapolated less, unless they
+    extend below it at one of the ends.
 
     \npbegin
-      \np{max_extrapolation_angle} how far an edge rotates beyond an end of the path [rad]
-        \nptype `double`, `>= 0`; from pi on there is no limit
+      \np{max_extrapolation_angle} largest rotation of an edge beyond an end of the path [rad]
+        \nptype `double`, `>= 0`; there is no limit if it is pi or more
         \npdefault `pi / 4`
       \np{do_limit_radii} whether no branch is thicker than its parent at its base
         \nptype `bool`
-        \npdefault `false`: real trees break that rule
+        \npdefault `false`, since real trees violate this rule
       \np{branch_emergence} how branches emerge that only one of the trees has
         \nptype `Branch_emergence`
         \npdefault `simultaneous`: coordinates are linear; `sequential` suits trees that grow at
             their tips
     \npend
-    \throws pcs::Invalid_input when `lambda` is not finite, or so large that coordinates are not, or
-        a handle is wrong
+    \throws pcs::Invalid_input when `lambda` is not finite or so large that coordinates would not be
+        finite, or when a handle is invalid
   */
   template <class NamedParameters = parameters::Default_named_parameters>
   Orl_tree
@@ -386,7 +389,7 @@ public:
     return result;
   }
 
-  //! the same into `result`, whose memory is used again
+  //! computes the same tree in `result`, whose memory is reused
   template <class NamedParameters = parameters::Default_named_parameters>
   void geodesic(Handle a,
                 Handle b,
@@ -404,7 +407,7 @@ public:
       state.scan_weights[a] += 1 - weight;
       state.scan_weights[b] += weight;
     }
-    // in one direction only, so that the path back is the same
+    // the path is computed in one direction only, so that it is the same in both
     const double t = a <= b ? lambda : 1 - lambda;
     interpolate(family().x[std::min(a, b)], family().x[std::max(a, b)], t, np, state);
     state.lambda = a != b ? t : a == 1 ? 1 : 0;
@@ -434,8 +437,8 @@ public:
   /*!
     \brief writes a tree of the space as a skeleton; branches of length 0 are left out.
 
-    Every branch begins with a node of its own on the axis of its parent.
-    \param result is replaced
+    Every branch begins with a separate node on the axis of its parent.
+    \param result receives the skeleton; its contents are replaced
   */
   template <class OutKernel>
   void skeleton(const Orl_tree& t, Tree_skeleton<OutKernel>& result) const
@@ -451,13 +454,14 @@ public:
   /*!
     \brief writes the points of a tree of the space.
 
-    They come by edge; points of branches that the tree lacks are left out. Of two trees, the points
-    at `lambda` 0 and 1 are those of the scans, as often as they have correspondences. Where a
-    branch of both trees has points in one scan only, these are there all along the path.
+    Points are sorted by edge; points of branches that the tree lacks are left out. In a space of
+    two trees, the points at `lambda` 0 and 1 are those of the scans, each repeated once per
+    correspondence. If a branch of both trees has points in one scan only, these are present along
+    the whole path.
 
-    \param result a random access range; a container with `resize()` gets the size
-           `t.number_of_points()`, which allocates nothing if its capacity suffices; another range
-           must have that size at least
+    \param result a random access range; a container with `resize()` is resized to
+           `t.number_of_points()`, without allocation if its capacity suffices; any other range must
+           have at least this size
     \npbegin
       \np{point_map} where a position is written
         \nptype model of `WritablePropertyMap`, key: element of `result`, value: `Kernel::Point_3`
@@ -465,7 +469,7 @@ public:
       \np{normal_map} where a normal is written, if all scans have normals
         \nptype model of `WritablePropertyMap`, value: `Kernel::Vector_3`
         \npdefault none
-      \np{point_path} how points of two trees are interpolated; refused for more trees
+      \np{point_path} how points of two trees are interpolated; not permitted for more trees
         \nptype `Point_path`
         \npdefault `cylindrical`; `virtual_edges` is the published one
     \npend
@@ -523,9 +527,9 @@ public:
   /*!
     \brief calls `f(i, a, b, w)` for every point of a tree of a space of two trees.
 
-    `a` and `b` are the numbers of the points of the two scans that point `i` comes from, `npos` if
-    there is none; `w` is the weight of the second in [0, 1]. Attributes are interpolated by
-    `result[i] = (1 - w) * one[a] + w * two[b]`. `f` may be called concurrently.
+    Point `i` is interpolated between point `a` of the first scan and point `b` of the second one;
+    `npos` denotes that there is none. `w` in [0, 1] is the weight of the second point. Attributes
+    are interpolated by `result[i] = (1 - w) * one[a] + w * two[b]`. `f` may be called concurrently.
   */
   template <class F>
   void for_each_point(const Orl_tree& t, const F& f) const
@@ -555,12 +559,12 @@ public:
   }
 
   /*!
-    \brief calls `f(i, h, k, w)` for every point of a tree of a space of more than two trees, and
-        every point of a scan that it comes from.
+    \brief calls `f(i, h, k, w)` for every point of a tree and each of its source points, in a space
+        of more than two trees.
 
-    `k` is the number of a point of the scan of tree `h`, `w` its weight in (0, 1]; the weights of a
-    point add up to 1. Attributes are interpolated by `result[i] += w * scan[h][k]`. `f` may be
-    called concurrently, but not for one `i`.
+    Source `k` is the number of a point of the scan of tree `h`, and `w` in (0, 1] is its weight;
+    the weights of a point `i` add up to 1. Attributes are interpolated by
+    `result[i] += w * scan[h][k]`. `f` may be called concurrently, but not for the same `i`.
   */
   template <class F>
   void for_each_source(const Orl_tree& t, const F& f) const
@@ -598,7 +602,7 @@ public:
   {
     return !family().first_point.empty() && family().first_point.back() > 0;
   }
-  //! whether these have normals
+  //! whether these points have normals
   bool has_normals() const { return m_state.has_normals(); }
   //!@}
 

@@ -31,9 +31,9 @@ namespace IO {
 
   \param path name of the file
   \return the points; an empty table for a file that declares zero points
-  \throws pcs::IO_error naming the file, the line or byte, and the expected content
+  \throws pcs::IO_error with the name of the file, the line or byte, and the expected content
   \par Determinism
-  The same file gives the same bits in every locale and on every machine.
+  The result for a file is the same, bit for bit, in every locale and on every machine.
 */
 inline Point_table read_points(const std::string& path)
 {
@@ -50,8 +50,8 @@ inline Point_table read_points(const std::string& path)
   \tparam PointRange a container with `insert(end, first, last)`; its value type is the `Point_3`
           of a CGAL kernel
   \param path name of the file
-  \param points unchanged when an exception is thrown
-  \throws pcs::IO_error as for the other overload, and when a coordinate is too large for the
+  \param points receives the positions; unchanged when an exception is thrown
+  \throws pcs::IO_error as from the other overload, and if a coordinate is too large for the
           number type of `points`
 */
 template <class PointRange>

@@ -26,11 +26,11 @@ namespace pcs {
 namespace deformation {
 
 /*!
-  The points, their neighbourhood graph and their samples. There are three numberings of points. An
-  *input* index is the caller's. A *site* is the group of all points with the same coordinates;
-  sites are in spatial order, and graphs and components are over sites. A *place* is an index in the
-  order in which points are upsampled: the spatial order of all points, or the caller's if that is
-  as coherent.
+  The points, their neighbourhood graph and their samples. Points are numbered in three orders. An
+  *input* index is an index in the caller's order. A *site* represents all points with the same
+  coordinates. Sites are in spatial order; they are the vertices of all graphs and components. A
+  *place* is an index in the order in which points are upsampled. This is the spatial order of all
+  points, or the caller's order if it is coherent enough.
 */
 template <class ConcurrencyTag>
 struct Sampled_body
@@ -40,7 +40,7 @@ struct Sampled_body
   std::vector<std::uint32_t> input_of_place;
   bool is_in_callers_order = false; ///< whether `input_of_place[i]` is `i`
   std::vector<std::uint32_t> site_of_place;
-  /// The first place of each site; empty if site and place have the same number.
+  /// The first place of each site; empty if sites and places have the same numbers.
   std::vector<std::uint32_t> place_of_site;
   std::vector<std::uint32_t> site_of_input;
   std::vector<std::uint32_t> component_of_site;
@@ -48,13 +48,13 @@ struct Sampled_body
   std::vector<std::uint32_t> site_of_sample;
   /// The nearest sample along the surface; `no_sample` if a component has none.
   std::vector<std::uint32_t> sample_of_site;
-  /// Kept for the borders of handles; empty if not sampled.
+  /// The graph of the sites, kept for the borders of handles; empty if all sites are samples.
   neighborhood::Proximity_graph site_graph;
-  Elastic_network network;                     ///< over the samples
+  Elastic_network network;                     ///< its nodes are the samples
   double weight_unit = 1;                      ///< see `sample_graph()`
   Point_blocks rest_points;                    ///< the points at rest, in the order of the places
-  Sample_links links_of_site;                  ///< only until the upsampling is built from them
-  std::size_t number_of_short_cuts = 0;        ///< links dropped between sheets
+  Sample_links links_of_site;                  ///< kept until the upsampling is built from them
+  std::size_t number_of_short_cuts = 0;        ///< links removed between sheets
   bool has_fragments = false;                  ///< whether there are sites without a sample
   std::vector<neighborhood::Outlier> outliers; ///< sites attached to one other site
   bool is_sampled = true;                      ///< whether there are fewer samples than sites
@@ -85,9 +85,10 @@ private:
                       std::vector<Vec3>& sites,
                       Graph& graph,
                       pcs::internal::Progress& progress);
-  /// The median of each coordinate: it lies near the cloud, and outliers do not move it.
+  /// Returns the median of each coordinate: a point near the cloud, robust against outliers.
   static Vec3 median_point(const std::vector<Vec3>& points);
-  /// Diameter of the bounding box. Throws `Invalid_input` if its squares are not representable. [L]
+  /// Returns the diameter of the bounding box [L]. Throws `Invalid_input` if all points coincide or
+  /// if squares of the diameter are not representable.
   static double checked_extent(const std::vector<Vec3>& points);
   void to_local(std::vector<Vec3>& points);
   /// Numbers sites and places.
@@ -97,7 +98,8 @@ private:
 
   // ---- samples
   bool sample(const std::vector<Vec3>& sites, Graph graph, pcs::internal::Progress& progress);
-  /// Chooses samples among the points that are no outliers: a sample there would move only itself.
+  /// Chooses samples among the sites that are not outliers. A sample at an outlier would move only
+  /// this site.
   void choose_samples(const std::vector<Vec3>& sites);
   std::vector<std::uint32_t> sites_without_outliers() const;
   void choose_samples_without_outliers(const std::vector<Vec3>& sites);
@@ -106,7 +108,7 @@ private:
                           const Sample_regions& regions) const;
   /// Builds the graph of the samples, and the links of the sites to them.
   bool link_samples(const std::vector<Vec3>& sites, Graph graph, pcs::internal::Progress& progress);
-  /// Every site is a sample.
+  /// Makes every site a sample.
   void take_all_sites(const std::vector<Vec3>& sites, Graph graph);
   void link_interior(const std::vector<std::uint32_t>& component);
 };

@@ -19,14 +19,14 @@ namespace deformation {
 using Vec2 = Eigen::Vector2d;
 
 /*!
-  The Voronoi cell of the origin. It starts as a square, and is cut by the bisectors to its
-  neighbours, near ones first for speed. Sides that are left of the square are *open*: no neighbour
-  lies there.
+  The Voronoi cell of the origin. It starts as a square and is cut by the bisectors between the
+  origin and its neighbours; cutting by the nearest ones first is faster. The remaining sides of the
+  square are *open*: there is no neighbour across them.
 */
 class Voronoi_cell
 {
 public:
-  /// Starts over with a square of this half side. [L]
+  /// Resets the cell to a square with this half side [L].
   void reset(double half_side)
   {
     m_corners = {{{half_side, -half_side}, open},
@@ -36,12 +36,12 @@ public:
     update_radius();
   }
 
-  /// Distance of the farthest corner. [L]
+  /// Returns the distance of the farthest corner from the origin [L].
   double radius() const { return m_radius; }
-  /// No point farther than this cuts the cell. [L]
+  /// Returns the distance beyond which no point cuts the cell [L].
   double reach() const { return 2 * m_radius; }
 
-  /// Cuts by the bisector to `p`, which is not the origin. O(corners).
+  /// Cuts the cell by the bisector between the origin and `p`, which must differ. O(corners).
   void cut(const Vec2& p, std::uint32_t neighbor)
   {
     const double half = 0.5 * p.squaredNorm();
@@ -62,8 +62,8 @@ public:
       if ((m_side[k] > 0) == (m_side[l] > 0))
         continue;
       const double t = m_side[k] / (m_side[k] - m_side[l]);
-      // The side that begins here is the bisector if the outline is left, otherwise the rest of
-      // the old side.
+      // Where the old outline is cut off, the new side is the bisector; where the outline
+      // continues, it is the rest of the old side.
       m_next.push_back({m_corners[k].point + t * (m_corners[l].point - m_corners[k].point),
                         m_side[k] > 0 ? m_corners[k].neighbor : neighbor});
     }
@@ -72,9 +72,9 @@ public:
   }
 
   /*!
-    Calls `use(neighbor, p, length)` for every side: the neighbour across it at `p =
-    position(neighbor)`, and its length [L]. Beside an open side, it ends where it meets the segment
-    to `p`, as at the border of a sheet.
+    Calls `use(neighbor, p, length)` for every side that is not open. `neighbor` is the neighbour
+    across the side, `p = position(neighbor)`, and `length` is the length of the side [L]. At the
+    border of a sheet, a side adjacent to an open one ends where it meets the segment to `p`.
   */
   template <class Position, class Use>
   void for_each_side(const Position& position, const Use& use) const
@@ -97,7 +97,7 @@ public:
 
 private:
   static constexpr std::uint32_t open = ~std::uint32_t(0);
-  static constexpr double touching = 1e-9; ///< fraction of the distance that rounding may change
+  static constexpr double touching = 1e-9; ///< relative tolerance for rounding [-]
   struct Corner
   {
     Vec2 point;

@@ -19,7 +19,8 @@
 namespace pcs {
 namespace deformation {
 
-/// On grids several points are equally near to a centroid; rounding must not choose among them.
+/// A point is nearer only if its squared distance is below this fraction of the other one's. On
+/// grids, several points are equally near to a centroid, and rounding must not choose among them.
 constexpr double by_far = 1 - 1e-6;
 
 namespace internal {
@@ -31,8 +32,8 @@ struct Octree_range
   std::size_t size() const { return end - begin; }
 };
 
-/// The non-empty children of a cell, read off the spatial order; halves where the order has no
-/// octants.
+/// Returns the non-empty octants of a cell, which are contiguous in the spatial order. If there are
+/// fewer than two, returns two halves of the cell.
 inline std::vector<Octree_range> split_range(const std::vector<Eigen::Vector3d>& points,
                                              const Octree_range& range)
 {
@@ -57,11 +58,11 @@ inline std::vector<Octree_range> split_range(const std::vector<Eigen::Vector3d>&
 } // namespace internal
 
 /*!
-  Indices of exactly `min(number_of_samples, n)` points, increasing. The fullest leaf is split until
-  there are enough leaves, so dense parts get more samples; each leaf gives the point nearest to its
-  centroid.
-  \param points distinct, in the order of `neighborhood::spatial_order()`
-  Deterministic; depends on the positions only. O(n log n).
+  Returns the indices of exactly `min(number_of_samples, n)` points, in increasing order. The leaf
+  with most points is split until there are enough leaves, so dense parts get more samples. The
+  sample of a leaf is the point nearest to its centroid. The result is deterministic and depends on
+  the positions only. O(n log n).
+  \param points distinct points, in the order of `neighborhood::spatial_order()`
 */
 inline std::vector<std::uint32_t> octree_samples(const std::vector<Eigen::Vector3d>& points,
                                                  std::size_t number_of_samples)
@@ -85,7 +86,7 @@ inline std::vector<std::uint32_t> octree_samples(const std::vector<Eigen::Vector
     const Octree_range fullest = leaves.top();
     leaves.pop();
     std::vector<Octree_range> children = internal::split_range(points, fullest);
-    // The last split may give too many: join neighbours, the smallest pair first.
+    // The last split may give too many leaves: join adjacent ones, the smallest pair first.
     while (leaves.size() + children.size() > number_of_samples) {
       std::size_t best = 0;
       for (std::size_t c = 1; c + 1 < children.size(); ++c)

@@ -21,21 +21,22 @@ namespace deformation {
 
 namespace internal {
 
-/// How far a handle reaches beyond one of its nodes, and in which direction.
+/// Distance and direction in which a handle extends beyond one of its nodes.
 struct Border_advance
 {
-  Vec3 direction = Vec3::Zero(); ///< unit vector out of the handle
+  Vec3 direction = Vec3::Zero(); ///< unit vector that points out of the handle
   double distance = 0;           ///< [L]
 };
 
-/// Handle nodes farther to the side than this do not affect the border at a node. [spacings]
+/// Handle nodes whose lateral distance exceeds this do not affect the border at a node. [spacings]
 constexpr double widest_border_patch = 2;
 /// The border leaves at least this fraction of an edge to the free node. [-]
 constexpr double least_free_share = 0.2;
 /// Borders nearer to their node than this are not moved. [fractions of the edge]
 constexpr double negligible_advance = 1e-6;
 
-/// The line through the outermost nodes of the handle around node `j`, seen from `j`.
+/// Returns the distance of the border from node `j`: the border is the line through the outermost
+/// nodes of the handle around `j`.
 inline Border_advance
 border_advance(const Elastic_network& network, const Node_constraints& constraints, std::size_t j)
 {
@@ -88,12 +89,12 @@ namespace internal {
 /// An edge from a free node to a handle that is cut at the border.
 struct Held_edge
 {
-  std::size_t free, held; ///< half-edges, by index
+  std::size_t free, held; ///< indices of the two half-edges
   std::uint32_t node, handle_node;
-  double fraction; ///< of the edge that lies inside the handle [-]
+  double fraction; ///< fraction of the edge that lies inside the handle [-]
 };
 
-/// The edges that lead over a border, by node of the handle.
+/// Finds the edges that cross a border, sorted by the node of the handle.
 inline std::vector<Held_edge> find_held_edges(const Elastic_network& network,
                                               const Node_constraints& constraints)
 {
@@ -122,8 +123,8 @@ inline std::vector<Held_edge> find_held_edges(const Elastic_network& network,
   return edges;
 }
 
-/// The network in which the rows of the free nodes lead to the new nodes, and the held halves of
-/// the edges are gone. `edges` are sorted by `free`.
+/// Returns the network in which the edges of the free nodes lead to new nodes on the border. The
+/// half-edges from the handles are removed. `edges` are sorted by `free`.
 inline Elastic_network cut_held_edges(const Elastic_network& network,
                                       const std::vector<Held_edge>& edges,
                                       Node_constraints& constraints)
@@ -179,14 +180,14 @@ inline Elastic_network cut_held_edges(const Elastic_network& network,
   Gives the edges between free nodes and exact handles their true length up to the border of the
   handle.
 
-  Points that are selected by a region of space end on average half a spacing before its border. If
-  only these points were held, the body would yield as if the handle were half a spacing shorter.
-  Here the border runs through the outermost points of the handle around each point (on a grid:
-  through all). Where it crosses an edge at a fraction `t` of its length, a node that is prescribed
-  like the handle is added to `result`, with the edge's weight over `1 - t`. Constraints are
-  extended to the new nodes.
+  If points are selected by a region of space, the outermost ones lie on average half a spacing
+  inside its border. If only these points were held, the body would deform as if the handle were
+  half a spacing shorter. Here the border leads through the outermost points of the handle around
+  each point (on a grid: through all of them). Where it crosses an edge at the fraction `t` of its
+  length, `result` gets an additional node that moves with the handle. The weight of the new edge is
+  that of the old one divided by `1 - t`. Constraints are extended to the new nodes.
 
-  Returns `false`, with `result` untouched, if no border leaves its nodes. O(n).
+  Returns `false`, with `result` unchanged, if no border extends beyond its nodes. O(n).
 */
 inline bool straighten_borders(const Elastic_network& network,
                                Node_constraints& constraints,

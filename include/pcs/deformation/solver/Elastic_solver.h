@@ -23,23 +23,23 @@ namespace pcs {
 namespace deformation {
 
 /*!
-  Reduces, over the positions `x` and rotations `R` of the free and soft nodes, the elastic energy
+  Reduces the elastic energy over the positions `x` and rotations `R` of the free and soft nodes:
 
       E(x, R) = sum_{edges ij} w_ij |(x_j - x_i) - (G_i + G_j)/2 (x0_j - x0_i)|^2  (+ links)  [L^2],
 
-  the residual of equation (2.2) of the dissertation. `x0` are the positions at rest, `w_ij` the
-  weights of the surface edges [-], `G_i` is `R_i` times growth and stretch (`Elastic_step`). Each
-  pass
+  which is the residual of equation (2.2) of [Aiteanu 2022]. `x0` are the positions at rest, `w_ij`
+  are the weights of the surface edges [-], and `G_i` is `R_i` times growth and stretch
+  (`Elastic_step`). Each pass
 
   1. fits the rotation of every node to its edges (`fit_rotations.h`), as a deviation `d_i` from the
      rotation field of the handles (`rotation_field.h`);
   2. smooths: minimises `sum_ij w_ij |d'_i - d'_j|^2 + sum_i mu_i D_i |d'_i - d_i|^2` over `d'`,
      which is zero at the handles, with `D_i = sum_j w_ij` and `mu_i` from stiffness and area
-     (`Elastic_factors::fit_weight()`); soft nodes add their spring towards zero;
+     (`Elastic_factors::fit_weight()`); for soft nodes, a spring towards zero is added;
   3. solves for the positions with `R_i = exp(d'_i) B_i` fixed.
 
-  Passes are accelerated by Anderson mixing. The smoothing is a regularisation that `E` does not
-  contain; the state with the lowest energy is kept, so more passes never increase `E`.
+  Passes are accelerated by Anderson mixing. The smoothing is a regularisation that is not part of
+  `E`. The state with the lowest energy is kept, so additional passes never increase `E`.
 */
 template <class ConcurrencyTag>
 class Elastic_solver
@@ -47,22 +47,22 @@ class Elastic_solver
 public:
   const Elastic_network& network() const { return m_shape.network(); }
   const Node_constraints& constraints() const { return m_shape.constraints(); }
-  /// The present shape, until the next call.
+  /// Returns a view of the current shape, which is valid until the next call.
   Elastic_state state() const { return m_shape.state(); }
-  /// Rotation of every node relative to the field of the handles. [rad]
+  /// Returns the rotation of every node relative to the rotation field of the handles [rad].
   const std::vector<Vec3>& deviations() const { return m_smooth; }
 
-  /// As `Elastic_step`.
+  /// This function and `constrain()` are those of `Elastic_step`.
   void link_offsets(std::vector<Vec3>& offsets) { m_shape.link_offsets(offsets); }
   bool constrain(const Elastic_network& network, Node_constraints constraints, double stiffness)
   {
     return m_shape.constrain(network, std::move(constraints), stiffness);
   }
 
-  /// Solves for one transformation per handle, from the rest shape. The guess is the first state if
-  /// it is known to be better, otherwise it is compared after the first pass. If it was found with
-  /// links that this network lacks, energies cannot be compared: it is accepted, and a single pass
-  /// follows.
+  /// Solves for one transformation per handle, starting from the rest shape. If the guess is known
+  /// to be better, it is the initial state; otherwise it is compared with the state after the first
+  /// pass. If the guess was computed with links that this network lacks, energies cannot be
+  /// compared. The guess is then accepted, and a single pass follows.
   Elastic_result solve(const std::vector<Similarity>& transforms,
                        const Elastic_options& options,
                        pcs::internal::Progress& progress,
@@ -87,10 +87,10 @@ public:
   }
 
   /*!
-    The same from where the last solve under these constraints ended, as seen from the field: for
-    handles that have moved little since. Returns `false` if that has more energy than
-    `highest_energy`; the state is of no use then. Not for networks that lack the links of coarser
-    ones.
+    Solves for handles that have moved little since the last solve under these constraints. The
+    initial rotations are those of the new rotation field, with the deviations of the last solution.
+    Returns `false` if the initial energy exceeds `highest_energy` [L^2]; the state is then not
+    usable. Must not be called for networks that lack the links of coarser ones.
   */
   bool solve_further(const std::vector<Similarity>& transforms,
                      const Elastic_options& options,
@@ -114,7 +114,7 @@ public:
 private:
   const Free_rows& rows() const { return m_shape.rows(); }
 
-  /// The guess, if there is one, may replace the state after the first pass.
+  /// Performs all passes. The guess, if there is one, may replace the state after the first pass.
   void make_passes(const Elastic_options& options,
                    pcs::internal::Progress& progress,
                    const Deviation_guess* guess,
@@ -124,7 +124,7 @@ private:
         options.maximal_number_of_passes == 0 ? Status::iteration_limit : Status::converged;
     if (rows().size() == 0)
       return;
-    bool is_checking = false; // that there is no more to gain than an accelerated pass did
+    bool is_checking = false; // whether the last, accelerated pass gained too little
     for (int pass = 0; pass < options.maximal_number_of_passes; ++pass) {
       if (!progress(static_cast<double>(pass) / options.maximal_number_of_passes)) {
         result.status = Status::cancelled;
@@ -157,8 +157,8 @@ private:
     }
   }
 
-  /// Makes one pass: accelerated if that lowers the energy, otherwise plain. Returns `false` if
-  /// neither does (rounding at the optimum).
+  /// Performs one pass: an accelerated pass if it lowers the energy, otherwise a plain one. Returns
+  /// `false` if neither lowers the energy, because only rounding errors remain at the optimum.
   bool improve(bool is_accelerated, bool is_last, Elastic_result& result)
   {
     m_shape.keep();
@@ -183,9 +183,9 @@ private:
     return true;
   }
 
-  /// Mixes the input and the output of a pass: the deviations and, with links, the positions that
-  /// direct them. Without the positions, the resistance of the links would be attributed to the
-  /// deviations.
+  /// Mixes the input and the output of a pass: the deviations and, if there are links, the
+  /// positions that define the directions of the links. Without the positions, the resistance of
+  /// the links would be attributed to the deviations.
   void mix(bool is_wanted)
   {
     if (!m_shape.has_links()) {
@@ -217,16 +217,17 @@ private:
       m_smooth[i] = i < guess.deviations.size() ? guess.deviations[i] : Vec3(Vec3::Zero());
   }
 
-  /// Replaces the present state by the guess if that is clearly better, and returns whether it did.
-  /// Where the field of the handles explains the motion, it is more exact than a coarse network; a
-  /// coarse network may also fold where this one does not.
+  /// Replaces the current state by the guess if the guess has clearly less energy. Returns whether
+  /// it did. The guess may be worse: where the rotation field of the handles explains the motion,
+  /// the field is more accurate than a coarse network, and a coarse network may fold where this one
+  /// does not.
   bool start_from(const Deviation_guess& guess, Elastic_result& result)
   {
     m_shape.keep_all();
     m_best_smooth.swap(m_smooth);
     take(guess);
     m_shape.turn(m_smooth);
-    m_shape.follow(true); // the present positions do not contain the guess
+    m_shape.follow(true); // the current positions do not depend on the guess
     if (m_shape.has_links())
       for (int i = 0; i < settling_solves; ++i)
         m_shape.solve_positions(false);
@@ -241,7 +242,7 @@ private:
     return false;
   }
 
-  /// The next shape; returns its energy.
+  /// Computes the next shape from the deviations. Returns its energy [L^2].
   double apply_deviations(bool has_next)
   {
     m_shape.turn(m_smooth);
@@ -251,8 +252,8 @@ private:
 
   Elastic_step<ConcurrencyTag> m_shape;
   Anderson_mixing<ConcurrencyTag> m_mixing;
-  std::vector<Vec3> m_smooth, m_best_smooth, m_plain; ///< deviations, smoothed
-  std::vector<Vec3> m_state, m_image;                 ///< of a pass, for the mixing
+  std::vector<Vec3> m_smooth, m_best_smooth, m_plain; ///< smoothed deviations
+  std::vector<Vec3> m_state, m_image;                 ///< input and output of a mixed pass
 };
 
 } // namespace deformation

@@ -31,15 +31,15 @@
 namespace pcs {
 namespace deformation {
 
-/// The samples that move the points of each block. Memory per point: about 2.5 bytes per sample of
-/// its block.
+/// Moves the points of each block by the maps of its samples. The memory per point is about 2.5
+/// bytes for each sample of its block.
 class Upsampling
 {
 public:
   Upsampling() = default;
 
-  /// \param n number of points; neighbours in their order should be near
-  /// \param row `row(i)` is the row of `links` that holds for point `i` in `[0, n)`
+  /// \param n number of points; points with consecutive indices should be near each other
+  /// \param row `row(i)` is the row of `links` that applies to point `i` in `[0, n)`
   template <class Row_at>
   Upsampling(std::size_t n, const Row_at& row, const Sample_links& links)
   {
@@ -62,38 +62,40 @@ public:
     const std::vector<Affine_map>& maps;
   };
 
-  /// Which handles draw the points of a block: those from `entry[first[block]]` to
-  /// `entry[first[block + 1]]`. None draws any if `first` is null.
+  /// The handles with whose motions the points of a block are blended: those from
+  /// `entry[first[block]]` up to, but not including, `entry[first[block + 1]]`. There are none if
+  /// `first` is null.
   struct Fades
   {
     const std::uint32_t* first = nullptr;
     const Block_fade* entry = nullptr;
   };
 
-  /// How the points of a block move: those with a bit in `is_blended[block]` by the samples, or all
-  /// by the handle `holder[block]`, if that is neither `mixed_block` nor `still_block`.
+  /// The motions of the points of a block. If `holder[block]` is neither `mixed_block` nor
+  /// `still_block`, all points move with this handle. Otherwise the samples move the points whose
+  /// bits in `is_blended[block]` are set.
   struct Block_motions
   {
     const std::uint8_t* is_blended = nullptr;
     const std::int32_t* holder = nullptr;
     const char* is_written =
-        nullptr; ///< of each handle: whether the points that it holds are to be written
+        nullptr; ///< for each handle: whether the points of its blocks are written
     const Handle_map* handles = nullptr;
     Fades fades;
   };
 
   /*!
-    Writes the points in blocks side by side, with a `Writer`:
+    Computes the points of all blocks concurrently, and passes them to a `Writer`:
 
     | call | meaning |
     |---|---|
-    | `write(i, position, normal, gradient)` | for all that the samples or the holder of a block
-      move; `normal` is zero without normals, `gradient` only set if `HasGradients` |
+    | `write(i, position, normal, gradient)` | writes a point that the samples or the holder of a
+      block move; `normal` is zero without normals, `gradient` is only set if `HasGradients` |
     | `does_stream()` | whether `stream()` may be called |
-    | `stream(i, block_output)` | the same as `write` for eight points from `i` on, past the caches;
-      `false` if it declines |
-    | `expect(i)` | if not `does_stream()`: called before `write`, to prefetch its output |
-    | `write_other(i)` | for the points of a mixed block that are not blended |
+    | `stream(i, block_output)` | writes eight points from `i` on, bypassing the caches; returns
+      `false` if it writes nothing, and `write` is called instead |
+    | `expect(i)` | prefetches the output of `write`; called unless `does_stream()` |
+    | `write_other(i)` | called for the points of a mixed block that are not blended |
   */
   template <class ConcurrencyTag, bool HasGradients, class Writer>
   void apply(const Input& in,
@@ -124,7 +126,7 @@ private:
     std::uint32_t base, sample;
   };
 
-  /// The samples that move any point of a block, each with its weight for every point.
+  /// Finds the samples that move any point of a block, and the weight of each for every point.
   template <class Row_at>
   static void find_members(std::size_t block,
                            std::size_t n,
@@ -149,7 +151,8 @@ private:
     }
   }
 
-  /// The sample with the largest total weight: the others are stored, it takes the rest.
+  /// Returns the index of the member with the largest total weight, the base of the block. Only the
+  /// weights of the other members are stored; the remainder is the weight of the base.
   static std::size_t find_base(const std::vector<Member>& members)
   {
     std::size_t base = 0;
@@ -189,8 +192,8 @@ private:
     m_first.push_back(static_cast<std::uint32_t>(m_entry.size()));
   }
 
-  /// Computes the maps of bases, and the differences from the base of a block to its other samples,
-  /// which all blocks of the base use.
+  /// Computes the maps of the samples as bases, and the map differences between bases and the other
+  /// samples of their blocks. Blocks with the same base and sample use the same difference.
   template <class ConcurrencyTag>
   void update_pairs(const std::vector<Vec3>& samples, const std::vector<Affine_map>& maps)
   {
@@ -205,7 +208,7 @@ private:
     });
   }
 
-  /// Which points of a block are computed.
+  /// Returns a mask of the points of a block that are computed.
   static std::uint8_t computed(const Block_motions& motions, std::size_t block)
   {
     const std::int32_t holder = motions.holder[block];
@@ -224,8 +227,8 @@ private:
         m_base.size(),
         256,
         [&](std::size_t begin, std::size_t end) {
-          // A block is written while the next one is computed: instructions that wait for a result
-          // would stop speculative execution.
+          // Each block is written while the next one is computed, since instructions that wait for
+          // a result would stall speculative execution.
           Block_output out[2]{};
           Block_input in{};
           in.differences = m_differences.data();
@@ -256,7 +259,8 @@ private:
         });
   }
 
-  /// Prefetches the input of a later block: the processor does so only up to the next page of 4 KB.
+  /// Prefetches the input of a later block. The processor itself prefetches only up to the next
+  /// page of 4 KB.
   template <class Writer>
   PCS_ALWAYS_INLINE void prefetch(const Point_blocks& points,
                                   std::size_t block,
@@ -269,7 +273,7 @@ private:
     pcs::internal::prefetch(&points.positions(block), sizeof(Lane_vectors));
     if (points.has_normals())
       pcs::internal::prefetch(&points.normals(block), sizeof(Lane_vectors));
-    // A fixed number of bytes: a branch on the true number would often be mispredicted.
+    // The number of bytes is fixed, since a branch on the true number would often be mispredicted.
     pcs::internal::prefetch(m_entry.data() + m_first[block], bytes_of_entries);
   }
 
@@ -287,7 +291,7 @@ private:
     if (Outputs != Blend_outputs::gradients && mask == whole_block && count == lanes) {
       if (does_stream && writer.stream(first, out))
         return;
-      // Most blocks: without a branch per point, which costs more than the writing.
+      // Most blocks are complete. A branch per point would cost more than the writing.
       pcs::internal::unroll<lanes>([&](auto l) PCS_LAMBDA_INLINE {
         writer.write(first + l, at(out.position, l), at(out.normal, l), gradient);
       });
@@ -327,7 +331,7 @@ private:
   }
 
   static constexpr std::size_t blocks_ahead = 12;
-  static constexpr std::size_t bytes_of_entries = 128; ///< of most blocks
+  static constexpr std::size_t bytes_of_entries = 128; ///< enough for most blocks
   static constexpr std::uint8_t whole_block = 0xff;
 
   std::vector<std::uint32_t> m_base, m_first;

@@ -32,7 +32,7 @@ struct Triangle
 
 constexpr std::uint32_t no_triangle = std::numeric_limits<std::uint32_t>::max();
 
-/// Rays from one point in almost the same direction; directions are unit vectors.
+/// Rays from one point in almost the same direction. Directions are unit vectors.
 struct Beam
 {
   Vector3f origin;
@@ -47,10 +47,11 @@ struct Beam_hits
 };
 
 /*
-  A bounding volume hierarchy, split at the cheapest of 16 positions per axis according to the
-  surface area heuristic (Wald 2007). The four rays of a beam traverse it together, because they
-  visit nearly the same boxes. Of two triangles at the same range the one with the lower number is
-  hit, so the result depends on neither the shape of the tree nor the threads that built it.
+  A bounding volume hierarchy. Boxes are split at the cheapest of 16 positions per axis, according
+  to the surface area heuristic (Wald 2007). The four rays of a beam traverse the hierarchy
+  together, because they visit nearly the same boxes. If two triangles have the same range, the one
+  with the lower number is hit, so the result depends neither on the shape of the hierarchy nor on
+  the threads that built it.
 */
 class Ray_tree
 {
@@ -118,8 +119,8 @@ private:
   {
     Vector3f low = Vector3f::Zero(), high = Vector3f::Zero();
     std::uint32_t link =
-        0; // leaf: first triangle; else axis and right child, the left child being the next node
-    std::uint32_t count = 0; // of triangles; 0: not a leaf
+        0; // leaf: first triangle; otherwise: axis and right child; the left child is the next node
+    std::uint32_t count = 0; // number of triangles; 0: not a leaf
   };
 
   struct Item
@@ -171,7 +172,7 @@ private:
       }
     }
 
-    /// Whether a ray enters the box before its nearest hit.
+    /// Returns whether any ray enters the box before its nearest hit so far.
     bool meet(const Vector3f& low, const Vector3f& high) const
     {
       Ray_lanes enter = Ray_lanes::of(0), leave = best;
@@ -185,8 +186,8 @@ private:
       return mask_of_at_most(enter, leave * Ray_lanes::of(1.000001f)) != 0;
     }
 
-    /// Intersection test of Möller and Trumbore 1997; triangles are slightly enlarged, so that no
-    /// ray passes between neighbours.
+    /// Intersects all rays with a triangle (Möller and Trumbore 1997). Triangles are slightly
+    /// enlarged, so that no ray passes between adjacent ones.
     void hit(const Triangle& triangle, std::uint32_t index, Beam_hits& hits)
     {
       constexpr float margin = 1e-5f;
@@ -199,7 +200,7 @@ private:
       const Ray_lanes py = direction[2] * lanes(e2.x()) - direction[0] * lanes(e2.z());
       const Ray_lanes pz = direction[0] * lanes(e2.y()) - direction[1] * lanes(e2.x());
       const Ray_lanes det = px * lanes(e1.x()) + py * lanes(e1.y()) + pz * lanes(e1.z());
-      const Ray_lanes scale = lanes(1) / det; // infinite for a ray in the plane, which fails below
+      const Ray_lanes scale = lanes(1) / det; // infinite if the ray is in the plane: no hit
       const Ray_lanes u = (px * lanes(s.x()) + py * lanes(s.y()) + pz * lanes(s.z())) * scale;
       const Ray_lanes v = (direction[0] * lanes(q.x()) + direction[1] * lanes(q.y()) +
                            direction[2] * lanes(q.z())) *
@@ -230,10 +231,11 @@ private:
   };
 
   static constexpr std::size_t leaf_size = 4, number_of_bins = 16, stack_size = 128;
-  static constexpr std::size_t deepest_search = 64; // below, halving bounds the depth
+  static constexpr std::size_t deepest_search = 64; // below, halving limits the depth
   static constexpr std::uint32_t index_bits = 30, index_mask = (std::uint32_t(1) << index_bits) - 1;
 
-  /// Fills node `index` and its descendants, in the 2 (end - begin) - 1 nodes from there on.
+  /// Fills node `index` and its descendants. They need at most 2 (end - begin) - 1 nodes, which
+  /// begin at `index`.
   template <class ConcurrencyTag>
   void split(std::vector<Item>& items,
              std::size_t begin,
@@ -280,7 +282,8 @@ private:
     }
   }
 
-  /// Finds the cheapest boundary between bins, and sorts the items to its two sides.
+  /// Finds the cheapest boundary between bins, and partitions the items at it. Returns `false` if
+  /// there is none.
   static bool partition(std::vector<Item>& items,
                         std::size_t begin,
                         std::size_t end,

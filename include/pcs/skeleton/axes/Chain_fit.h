@@ -47,7 +47,7 @@ public:
   {
     Candidate candidate;
     const bool is_first =
-        chain.parent_node == none; // the trunk begins at the root, even with a thin base
+        chain.parent_node == none; // the trunk begins at the root, even if its base is thin
     const Chain_start start = start_of(m_view, tree, chain);
     candidate.number_of_own_points = start.points.size();
     if (start.points.size() < m_rules.lowest_count)
@@ -172,11 +172,12 @@ inline void Chain_fit::start_at_circles(Axis_fit& fit) const
     }
   }
   for (std::size_t k = 0; k < n; ++k)
-    axis[k].point += shift[k]; // until here it passes through the means of the points
+    axis[k].point += shift[k]; // so far, the axis passed through the means of the points
   fit.project();
 }
 
-/// Iterates the fit. `length`: expected length of taper; 0: the axis is a piece [L].
+/// Iterates the fit. Returns whether it succeeded. `length` is the length over which the branch is
+/// expected to taper [L]; 0 if the axis is only a piece of a branch.
 inline bool Chain_fit::run(Axis_fit& fit, double widening, double length) const
 {
   const std::vector<double> visible = visible_shares(m_view, fit);
@@ -207,13 +208,13 @@ inline bool Chain_fit::run(Axis_fit& fit, double widening, double length) const
   return true;
 }
 
-/// Finds unassigned points near the axis, each with the middle node of a stretch that contains it,
-/// sorted by point.
+/// Finds the unassigned points near the axis, sorted by index. Each point is paired with the middle
+/// node of a stretch of the axis near it.
 inline std::vector<std::pair<Index, Index>> Chain_fit::find_points_near(const Axis& axis) const
 {
   const double u = m_scan.spacing;
-  // One query for each stretch as long as the axis is thick; queries at every node of a trunk would
-  // find each point about ten times.
+  // There is one query per stretch of the axis, which is at most as long as the search radius.
+  // Queries at every node of a trunk would find each point about ten times.
   std::vector<std::pair<Index, Index>> found; // point, middle node of a stretch
   std::vector<Index> near;
   std::vector<double> across(axis.size());
@@ -262,7 +263,7 @@ inline std::vector<Index> Chain_fit::gather(Axis_fit& fit) const
     while (e < found.size() && found[e].first == found[b].first)
       ++e;
     const Vec3& p = m_scan.points[found[b].first];
-    // nearest of the middle nodes of this point
+    // the nearest of the middle nodes with which this point is paired
     Index node = found[b].second;
     double best = (axis[node].point - p).squaredNorm();
     for (std::size_t k = b + 1; k < e; ++k) {
@@ -284,8 +285,8 @@ inline std::vector<Index> Chain_fit::gather(Axis_fit& fit) const
   return points;
 }
 
-/// Refits the last nodes of a thick axis with a piece beyond its tip; empty if the points do not
-/// support the extension.
+/// Refits the last nodes of a thick axis, with an additional piece beyond its tip. Returns an empty
+/// axis if the points do not support the extension.
 inline Axis Chain_fit::tail_with_piece(const Axis& axis, std::size_t first) const
 {
   Axis_fit fit(Axis(axis.begin() + static_cast<std::ptrdiff_t>(first), axis.end()),
@@ -305,8 +306,8 @@ inline Axis Chain_fit::tail_with_piece(const Axis& axis, std::size_t first) cons
   return is_good ? longer : Axis();
 }
 
-/// Fits a hollow piece of similar radius straight ahead of a thick axis, `skip` [L] beyond its tip;
-/// empty if there is none.
+/// Fits a hollow piece of similar radius straight ahead of a thick axis, `skip` [L] beyond its tip.
+/// Returns an empty axis if there is none.
 inline Axis Chain_fit::piece_ahead(const Axis& axis, std::size_t first, double skip) const
 {
   const double radius = axis.back().radius, length = 4 * radius + 8 * m_scan.spacing;
@@ -331,10 +332,11 @@ inline Axis Chain_fit::piece_ahead(const Axis& axis, std::size_t first, double s
 }
 
 /*!
-  Extends a thick branch beyond its tip, piece by piece, as long as points surround it. Shortest
-  paths over the surface end at occlusions or turn into a side branch; a collapsing tip is removed
-  first. Where points lie inside, as at a whorl, the branch is searched straight ahead. Returns
-  whether the axis was extended; otherwise it is unchanged.
+  Extends a thick branch beyond its tip, piece by piece, as long as points surround it. This is
+  needed because shortest paths over the surface end at occlusions or turn into a side branch. A tip
+  whose radius collapses is removed first. Where points lie inside the branch, as at a whorl, its
+  continuation is searched straight ahead. Returns whether the axis was extended; otherwise it is
+  unchanged.
 */
 inline bool Chain_fit::follow(Axis_fit& fit) const
 {
@@ -374,9 +376,9 @@ inline bool Chain_fit::follow(Axis_fit& fit) const
 }
 
 /*!
-  Estimates the oval of a thick axis with one-sided visibility, and refits the axis to the points
-  without the oval. Otherwise ovality biases centers and radii: the error of a circle through half
-  of an ellipse is as large as the difference of the semi-axes.
+  Estimates the ovality of a thick axis with one-sided visibility, removes it from the points, and
+  refits the axis. Otherwise ovality would bias centers and radii: the error of a circle fitted to
+  half of an ellipse is as large as the difference of the semi-axes.
 */
 inline void Chain_fit::round_ovals(Axis_fit& fit) const
 {
@@ -418,7 +420,7 @@ Chain_fit::judge(Axis_fit& fit, const std::vector<Index>& points, Candidate& can
   const Axis& axis = fit.axis();
   const double u = m_scan.spacing, s = m_set.noise;
   const Section_counts counts = section_counts(m_view, fit, visible_shares(m_view, fit));
-  // only hollow, well sampled sections are samples of the surface
+  // only hollow, well-sampled sections represent the surface
   const Filling filling(m_view, fit);
   std::vector<std::uint8_t> is_odd(axis.size(), 0);
   for (std::size_t k = 0; k < axis.size(); ++k)
@@ -432,7 +434,7 @@ Chain_fit::judge(Axis_fit& fit, const std::vector<Index>& points, Candidate& can
     candidate.points.push_back(points[k]);
     candidate.segments.push_back(p.segment);
     const bool is_inside = p.share > 0 && p.share < 1;
-    // where noise exceeds the roughness of the bark
+    // only where noise exceeds the roughness of the bark
     if (is_inside && !is_odd[p.segment] && r > 3 * s && 0.03 * r < s &&
         candidate.deviations.size() < 2000)
       candidate.deviations.push_back(std::abs(p.distance - r));

@@ -45,7 +45,7 @@ inline void prolong(const Chain_view& view, bool do_base, Axis& axis)
   axis.push_back(behind);
 }
 
-/// Numbers of points of each segment on the surface and inside of it.
+/// Numbers of points on the surface of each segment and inside it.
 struct Filling
 {
   std::vector<double> on, inside;
@@ -67,8 +67,8 @@ struct Filling
     }
   }
 
-  /// Returns the fraction of the points of segments [begin, end) that lies inside; 1 if there are
-  /// too few points [-].
+  /// Returns the fraction of the points of segments [begin, end) that lie inside [-]. Returns 1 if
+  /// there are too few points.
   double share(std::size_t begin, std::size_t end) const
   {
     double a = 0, b = 0;
@@ -80,7 +80,8 @@ struct Filling
     return a + b >= enough ? a / (a + b) : 1;
   }
 
-  /// Whether more than the fraction `share` of the points of segments [begin, end) lies inside.
+  /// Returns whether more than the fraction `share` of the points of segments [begin, end) lies
+  /// inside.
   bool is_filled(std::size_t begin, std::size_t end, double share) const
   {
     constexpr double fewest = 6;
@@ -94,11 +95,12 @@ struct Filling
 };
 
 /*!
-  Cuts a thick axis where it encloses a fork. A scan samples only the surface of wood: where a
-  hollow axis begins to contain points, it encloses a fork and ends. An axis that is hollow nowhere
-  is an irregular or poorly sampled stem, and is kept. An axis that is hollow again farther out,
-  with more points than before, passes buttresses or a whorl, and is kept too. The least radius is
-  lower for axes that widen beyond such a point, which wood does not.
+  Cuts a thick axis where it encloses a fork. A scan samples only the surface of wood, so a hollow
+  axis encloses a fork where it begins to contain points, and is cut there. An axis that is not
+  hollow anywhere is an irregular or poorly sampled stem, and is kept. An axis that is hollow again
+  farther out, with more points than before, passes buttresses or a whorl, and is kept, too. The
+  least radius of thick axes is lower for axes that widen beyond such a position, since wood does
+  not widen.
 */
 inline void cut_filled(const Chain_view& view, Axis_fit& fit)
 {
@@ -106,7 +108,7 @@ inline void cut_filled(const Chain_view& view, Axis_fit& fit)
   Axis& axis = fit.axis();
   const std::size_t n = axis.size();
   const Filling filling(view, fit);
-  // points up to each node; one deep inside cancels `1 / filled` on the surface
+  // number of points up to each node; a point deep inside cancels `1 / filled` points
   std::vector<double> balance(n + 1, 0);
   for (std::size_t k = 0; k < n; ++k)
     balance[k + 1] =
@@ -172,9 +174,9 @@ inline void project_after_cut(Index shift, Axis_fit& fit)
 } // namespace internal
 
 /*!
-  Removes a thin base. Wood tapers: an axis whose base is much thinner than a hollow stretch farther
-  out was reached by a path through another object, such as a twig in contact with it. The axis then
-  begins where it is thick, and the points before are left to other axes.
+  Removes a thin base. Wood tapers. If the base of an axis is much thinner than a hollow stretch
+  farther out, the path to the axis led through another object, such as a twig in contact with it.
+  The axis then begins where it is thick, and the points before remain for other axes.
 */
 inline void cut_thin_base(const Chain_view& view, Axis_fit& fit)
 {
@@ -202,8 +204,8 @@ inline void cut_thin_base(const Chain_view& view, Axis_fit& fit)
 }
 
 /// Returns the number of nodes before a tip whose radius collapses within a few radii, as where a
-/// trunk continues into one of its limbs; all nodes without such a collapse. At least 1 unless the
-/// axis is empty.
+/// trunk continues into one of its limbs. Returns the number of all nodes if there is no such
+/// collapse. The number is at least 1 unless the axis is empty.
 inline std::size_t size_without_collapse(const Chain_options& rules, const Axis& axis)
 {
   double widest = 0, length = 0; // of the last stretch
@@ -243,7 +245,7 @@ struct Segment_coverage
     }
   }
 
-  /// Whether segment `s` has enough of the expected points to extend the axis.
+  /// Returns whether segment `s` has enough of the expected points to extend the axis.
   bool is_supported(const Chain_view& view, const Axis& axis, std::size_t s) const
   {
     const double expected = 2 * pcs::internal::pi * axis[s].radius * view.set.density_at(axis, s) *
@@ -252,14 +254,14 @@ struct Segment_coverage
   }
 };
 
-/// Part of an axis: sums of a segment and a parameter in [0, 1].
+/// Part of an axis. Its ends are sums of the index of a segment and a parameter in [0, 1].
 struct Axis_range
 {
   double begin = 0, end = 0;
 };
 
 /// Returns the part of an axis from `base` to `tip` that has points, extended outwards over
-/// supported segments; an empty range if there are no points.
+/// supported segments. Returns an empty range if there are no points.
 inline Axis_range find_covered_range(const Chain_view& view,
                                      const Axis& axis,
                                      const Segment_coverage& coverage,
@@ -284,8 +286,8 @@ inline Axis_range find_covered_range(const Chain_view& view,
 
 } // namespace internal
 
-/// Trims both ends to the extent of the points: from the projections of `base` and `tip` outwards
-/// as far as segments have enough points.
+/// Trims both ends to the extent of the points. The axis extends outwards from the projections of
+/// `base` and `tip` as far as its segments have enough points.
 inline void trim(const Chain_view& view, const Vec3& base, const Vec3& tip, Axis_fit& fit)
 {
   Axis& axis = fit.axis();

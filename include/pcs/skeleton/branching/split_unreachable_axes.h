@@ -17,12 +17,12 @@ namespace pcs {
 namespace skeleton {
 
 /*!
-  Splits unreachable axes where the bases of two pieces met. Two adjacent bases may belong to one
-  branch that another one crosses, or to two branches on opposite sides of another one. The latter
-  holds if their common axis is unreachable but a reachable axis lies within `reach` of the position
-  where they met. Both pieces then become separate axes that begin there. `joints` are the joints of
-  the axes, `root` is the axis of the root. Returns the number of additional axes. O(axes log points
-  + points).
+  Splits unreachable axes at the position where two pieces were fused at their bases. Two pieces
+  whose bases are adjacent may belong to one branch that is crossed by another one, or to two
+  branches on opposite sides of a third one. The latter holds if their fused axis is unreachable
+  from the root, but a reachable axis lies within `reach` [L] of this position. Both pieces then
+  become separate axes that begin there. `joints` are the joints of the axes, and `root` is the axis
+  of the root. Returns the number of additional axes. O(axes log points + points).
 */
 inline std::size_t split_unreachable_axes(const Scan& scan,
                                           double reach,
@@ -62,7 +62,7 @@ inline std::size_t split_unreachable_axes(const Scan& scan,
       continue;
     Index& s = set.segment_of_point[i];
     const Index m = meeting[a];
-    const bool is_first = s + 1 < m; // the segment between both has no points
+    const bool is_first = s + 1 < m; // the removed segment is left out
     s = is_first ? m - 2 - s : s - std::min(s, m);
     a = is_first ? a : other[a];
     ++set.axes[a].number_of_points;

@@ -26,29 +26,34 @@
 namespace pcs {
 namespace skeleton {
 
-/// Options of the root search. The trunk is the stem with the most points near the lower end.
+/// Options of the root search. A stem is a connected set of points near the lower end of the scan.
+/// The trunk is the stem with the most points, unless another stem has a larger catchment.
 struct Root_options
 {
-  double slab = 0.03; ///< height of the searched slab, relative to the vertical extent [-]
-  double slab_spacings = 8; ///< ... and at least this many spacings [-]
-  double thin = 0.003;      ///< stems of less spread, in extents, may be hanging twigs [-];
-  //! ... then slabs of these relative heights are searched as well, and a stem is used if it is ...
+  double slab = 0.03;       ///< height of the searched slab, relative to the vertical extent [-]
+  double slab_spacings = 8; ///< least height of the slab, in spacings [-]
+  double thin = 0.003;      ///< spread below which a stem may be a hanging twig, in extents [-]
+  //! heights of two further slabs, searched if the first stem is thin, relative to the extent [-]
   double wide_slab = 0.1, widest_slab = 0.2;
   double thicker =
-      /// ... another one with this many times the spread (second slab: also with a round foot) [-]
+      /// a stem of a further slab replaces a thin stem if its spread is this many times as large
+      /// and, in the widest slab, its foot is round; also the least ratio of ring radii [-]
       3;
   double band = 0.4;   ///< height of the root points, in half widths of the stem [-]
-  double rival = 0.03; ///< least size of another stem, relative to the first one [-]
+  double rival = 0.03; ///< least number of points of another stem, relative to the first [-]
   double smallest_component =
       0.05; ///< least fraction of the points in a component with the root [-]
   double floating =
-      0.05; ///< highest lower end of such components, relative to the vertical extent [-]
-  double ring_deviation = 0.15; ///< largest deviation of the points of a ring, in radii [-],
-  double ring_spreads = 2;      ///< ... and largest radius, in spreads [-]
-  double lying_length = 6;      ///< a stem is lying if it is longer than this many slab heights [-]
-  double lying_ratio = 3;       ///< ... and longer than this many of its widths [-],
-  double lying_share = 0.3;     ///< or if the slab has this fraction of its component's points [-]
-  double lying_side = 2;        ///< ... and it is longer than this many slab heights [-]
+      0.05; ///< largest height of the lower end of such a component, relative to the extent [-]
+  double ring_deviation = 0.15; ///< largest deviation of points from a ring, in radii [-]
+  double ring_spreads = 2;      ///< largest radius of a ring, in spreads of its points [-]
+  //! A stem is lying if its length exceeds `lying_length` slab heights and `lying_ratio` widths, or
+  //! if its length exceeds `lying_side` slab heights and it has more than the fraction
+  //! `lying_share` of the points of its component [-].
+  double lying_length = 6;
+  double lying_ratio = 3;
+  double lying_share = 0.3;
+  double lying_side = 2;
 };
 
 namespace internal {
@@ -58,11 +63,12 @@ struct Stem
 {
   std::vector<Index> points;
   Slab_shape shape;
-  bool is_lying; ///< on its side
+  bool is_lying; ///< whether the stem lies on its side
 
   double spread() const { return std::hypot(shape.length, shape.width); }
 
-  /// Returns the radius of the circle on which all points lie in the projection along `up`, or 0.
+  /// Returns the radius of the circle on which the points lie when projected along `up` [L]; 0 if
+  /// they do not form a ring.
   double ring_radius(const Scan& scan, const Vec3& up, const Root_options& rules) const
   {
     const Vec3 e1 = up.unitOrthogonal(), e2 = up.cross(e1);
@@ -85,7 +91,7 @@ struct Stem
        const Root_options& rules)
     : points(low_parts.points_of(s)), shape(scan, points, up)
   {
-    const double length = std::sqrt(12.0) * shape.length; // of a line with this deviation
+    const double length = std::sqrt(12.0) * shape.length; // of a uniform line of this deviation
     const double share = double(points.size()) / double(parts.size[parts.part[s]]);
     is_lying =
         (length > rules.lying_length * slab && shape.length > rules.lying_ratio * shape.width) ||
@@ -93,17 +99,18 @@ struct Stem
   }
 };
 
-/// Returns the stem with the largest catchment: the one nearest along paths to most points in the
-/// upper half. Returns `first` unless another one has twice as many. `stem_of_point` contains the
-/// stems of the lowest points. O(points log points).
+/// Returns the stem with the largest catchment. The catchment of a stem comprises the points in the
+/// upper half to which it is the nearest stem along shortest paths. Returns `first` unless the
+/// catchment of another stem has more than twice as many points. `stem_of_point` contains the stems
+/// of the lowest points. O(points log points).
 inline Index stem_with_largest_catchment(const Scan& scan,
                                          const std::vector<double>& height,
                                          const Links& links,
                                          const std::vector<Index>& stem_of_point,
                                          Index first)
 {
-  constexpr double much = 2; // times as many points as the first
-  constexpr double up = 0.5; // of the height of all reachable points
+  constexpr double much = 2; // ratio to the number of points of the first
+  constexpr double up = 0.5; // fraction of the height range of all reachable points
   std::vector<Index> nearest = stem_of_point, sources, way;
   for (Index i = 0; i < nearest.size(); ++i)
     if (nearest[i] != none)
@@ -190,7 +197,7 @@ public:
 private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
-  /// `share` is a fraction of the vertical extent.
+  /// Returns the height of a slab [L]. `share` is this height as a fraction of the vertical extent.
   double height_of_slab(double share) const
   {
     return std::max(share * (m_high - m_low), m_rules.slab_spacings * m_scan.spacing);
@@ -243,13 +250,13 @@ private:
         std::count_if(low_parts.size.begin(), low_parts.size.end(), [&](Index size) {
           return double(size) > m_rules.rival * double(stem.points.size());
         });
-    if (stem.is_lying || rivals < 2) // the stem itself counts
+    if (stem.is_lying || rivals < 2) // `stem` is one of them
       return stem;
     const Index busiest =
         stem_with_largest_catchment(m_scan, m_height, m_links, low_parts.part, first);
     Stem other(m_scan, m_up, slab, m_parts, low_parts, busiest, m_rules);
-    // a trunk foot that is disconnected from the crown has no catchment there, whereas a hanging
-    // twig may have all of it
+    // a trunk foot that is not connected to the crown has no catchment, whereas a hanging twig may
+    // have the whole crown as its catchment
     const double ring = stem.ring_radius(m_scan, m_up, m_rules);
     const bool is_foot = ring > m_rules.thicker * other.ring_radius(m_scan, m_up, m_rules);
     return is_foot ? stem : other;
@@ -260,17 +267,18 @@ private:
   const Vec3& m_up;
   const Root_options& m_rules;
   const Point_parts& m_parts;
-  std::vector<double> m_height, m_low_of, m_high_of; ///< of points; of components
-  double m_low = infinity, m_high = -infinity;       ///< of large components
+  std::vector<double> m_height, m_low_of, m_high_of; ///< of points; bounds by component
+  double m_low = infinity, m_high = -infinity;       ///< bounds of all large components
 };
 
 } // namespace internal
 
 /*!
   Returns the lowest points of the stem at the lower end of a large connected component. Stems with
-  many points and tall components take precedence. For a lying stem or a flat cloud, returns the
-  points of one end. `links` are the edges between neighbours, without closed gaps; `parts` are the
-  connected components of this graph. The result is never empty if a point is used.
+  many points and stems of tall components take precedence. For a lying stem or a flat cloud,
+  returns the points of one end. `links` are the edges between neighbours, without the edges that
+  close gaps; `parts` are the connected components of this graph. If any point is used, the result
+  is not empty.
 */
 template <class ConcurrencyTag>
 std::vector<Index> find_root(const Scan& scan,
@@ -283,7 +291,7 @@ std::vector<Index> find_root(const Scan& scan,
   const internal::Stem_search<ConcurrencyTag> search(scan, is_used, links, parts, up, rules);
   internal::Stem stem = search();
   // the band includes the whole circumference of a thick stem, since level sets would be tilted
-  // otherwise; for a lying stem, it is one end
+  // otherwise; the band of a lying stem is one of its ends
   const double spread = stem.is_lying ? stem.shape.width : stem.spread();
   const double band = std::max(layer_thickness * scan.spacing, rules.band * spread);
   const auto place = [&](Index i) {

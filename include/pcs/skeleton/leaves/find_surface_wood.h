@@ -24,19 +24,20 @@ namespace skeleton {
 struct Surface_wood_options
 {
   double thinnest = 1.3;  ///< least radius, in spacings [-]
-  double depth = 0.3;     ///< points this many radii below the surface are inside ...
-  double depth_noise = 2; ///< ... if this depth exceeds this many times the noise
+  double depth = 0.3;     ///< least depth of inside points below the surface, in radii [-]
+  double depth_noise = 2; ///< least depth of inside points, in noise [-]
   double filled = 0.1;    ///< largest fraction of points inside a hollow section [-]
   double expected = 0.3;  ///< least number of surface points, relative to the expected number [-]
   double fewest = 12;     ///< least number of surface points [count]
   std::size_t reach = 3;  ///< nodes included on both sides [count]
   double share =
-      0.5; ///< least hollow fraction of the length up to a section, for all of it to be wood [-]
+      0.5; ///< least hollow fraction of a length from the base for all of it to be wood [-]
 };
 
 namespace internal {
 
-/// Returns which segments of an axis are thick wood, from the points on and inside each segment.
+/// Classifies the segments of an axis as thick wood or not by the numbers of points on and inside
+/// each segment.
 inline std::vector<std::uint8_t> hollow_segments(const Axis_set& set,
                                                  const Axis& axis,
                                                  const std::vector<double>& on,
@@ -71,7 +72,7 @@ inline std::vector<std::uint8_t> hollow_segments(const Axis_set& set,
   return is_wood;
 }
 
-/// Marks as wood the parent of each mostly hollow axis, from its base to the joint.
+/// Marks the parent of each mostly hollow axis as wood, from the base of the parent to the joint.
 inline void add_carriers(const Axis_set& set,
                          const Surface_wood_options& rules,
                          std::vector<std::vector<std::uint8_t>>& is_wood)
@@ -89,8 +90,8 @@ inline void add_carriers(const Axis_set& set,
 
 } // namespace internal
 
-/// Marks the points of hollow sections and of all sections between them and the root. Hollow
-/// sections must predominate there. O(points).
+/// Marks the points of hollow sections and of all sections between them and the root, provided that
+/// most of the length between them is hollow. O(points).
 template <class ConcurrencyTag>
 std::vector<std::uint8_t>
 points_on_hollow_sections(const Scan& scan, const Axis_set& set, const Surface_wood_options& rules)

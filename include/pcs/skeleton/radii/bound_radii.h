@@ -26,33 +26,34 @@ namespace skeleton {
 /// Criteria for the point support of radii, and bounds for unsupported radii.
 struct Support_options
 {
-  double depth = 0.3;          ///< points this many radii below the surface are inside ...
-  double depth_noise = 2;      ///< ... if this depth exceeds this many times the noise
-  double filled = 0.2;         ///< fraction of inside points above which a section is leaves [-]
-  double branch_filled = 0.15; ///< the same for all sections from the base [-]
+  double depth = 0.3;          ///< least depth of inside points below the surface, in radii [-]
+  double depth_noise = 2;      ///< least depth of inside points, in noise [-]
+  double filled = 0.2;         ///< fraction of inside points above which a section is filled [-]
+  double branch_filled = 0.15; ///< the same for all sections from the base of the branch [-]
   std::size_t reach = 2;       ///< nodes included on both sides [count]
   double fewest = 12;          ///< least number of points of a supported section [count]
-  double expected = 0.25;      ///< ... and their least fraction of the expected number [-]
-  double thicker = 1.5;        ///< largest ratio of the radius to that below, unless points prove a
-                               ///< larger one by ...
-  double proof_expected = 0.5; ///< ... this fraction of the expected points on the surface,
-  double proof_filled = 0.05;  ///< ... at most this fraction of points inside,
-  double proof_error = 0.1;    ///< ... and a standard error below this many radii [-]
-  //! an error below this with an equally thick section below requires only `expected` points, since
-  //! one side may be occluded [-]
+  double expected = 0.25;      ///< ... and relative to the expected number [-]
+  double thicker = 1.5;        ///< largest ratio of a radius to the narrowest one below it, unless
+                               ///< the points prove the radius [-]
+  double proof_expected = 0.5; ///< least number of surface points for a proof, relative to the
+                               ///< expected number [-]
+  double proof_filled = 0.05;  ///< largest fraction of inside points for a proof [-]
+  double proof_error = 0.1;    ///< largest standard error for a proof, in radii [-]
+  //! standard error, in radii, up to which `expected` points prove a section if one below it is as
+  //! thick, since one side may be occluded [-]
   double proof_precise = 0.03;
   double mostly = 0.7; ///< least proven fraction of the volume of a branch that is not leaves [-]
-  double slack = 3;    ///< bound of a section without evidence, in allometric radii [-]
+  double slack = 3;    ///< bound of a section without support, in allometric radii [-]
   double filled_slack = 1; ///< the same for a filled section [-]
   double foot = 8;         ///< length of the foot of a trunk, in radii [-]
   Pipe_model_options pipes;
   double thinnest = 0.16; ///< least bound, in spacings: a single row of points [-]
 };
 
-/// The points on and inside the section of each node.
+/// The numbers of points on and inside the section of each node.
 struct Section_support
 {
-  std::vector<double> on, inside; ///< numbers of points: near or outside the surface, inside
+  std::vector<double> on, inside; ///< points near or outside the surface; inside it [count]
 
   explicit Section_support(const Branch_tree& tree)
     : on(tree.nodes.size(), 0), inside(tree.nodes.size(), 0)
@@ -90,12 +91,12 @@ Section_support support_of_sections(const Scan& scan,
 
 namespace internal {
 
-/// The point support of the sections of one branch; each section is at least as long as thick.
+/// The point support of the sections of one branch. A section is at least as long as it is thick.
 struct Branch_support
 {
-  std::vector<double> on, inside, expected; ///< points around each node
+  std::vector<double> on, inside, expected; ///< points of each section [count]
   std::vector<std::uint8_t> is_proven, is_precise;
-  bool is_mostly_proven = false; ///< then filled sections are not leaves
+  bool is_mostly_proven = false; ///< if so, proven sections are not leaves
 
   Branch_support(const Section_support& support,
                  const Branch& branch,
@@ -151,7 +152,7 @@ private:
 struct Trunk_foot
 {
   std::size_t size = 0; ///< number of its nodes; 0: not a trunk
-  double radius = 0;    ///< median of its hollow sections, weighted by length [L]
+  double radius = 0;    ///< median radius of its hollow sections, weighted by length [L]
 
   Trunk_foot(const Branch_tree& tree,
              const Branch& branch,
@@ -237,18 +238,18 @@ public:
   }
 
 private:
-  /// The supported nodes from a node to the root.
+  /// Summary of the supported nodes between a node and the root.
   struct Reference
   {
-    double radius = 0, way = 0; ///< of the last supported node towards the root; 0: none
-    double narrowest = 0;       ///< least radius since the last proven one
-    double thickest = 0;        ///< largest of all supported radii
+    double radius = 0, way = 0; ///< of the nearest supported node [L]; 0: none
+    double narrowest = 0;       ///< least supported radius from the nearest proven one on [L]
+    double thickest = 0;        ///< largest of all supported radii [L]
   };
   /// The evidence for the radius of a node.
   struct Evidence
   {
-    bool is_proven = false;    ///< by points, also if thicker than below
-    bool is_supported = false; ///< by sufficient points
+    bool is_proven = false;    ///< the points prove it, even if it is thicker than below
+    bool is_supported = false; ///< sufficient points support it
     bool is_leafy = false;     ///< points lie inside the section, or inside those below
   };
 
@@ -284,8 +285,8 @@ private:
     }
   }
 
-  /// Judges the radius of the `k`-th node of a branch. `is_inside`: the sections from the base to
-  /// this one contain many inside points.
+  /// Judges the radius of the `k`-th node of a branch. `is_inside` indicates
+  /// whether the sections from the base to this one contain many inside points.
   Evidence judge(const Branch_support& sections,
                  std::size_t k,
                  const Branch_node& node,
@@ -320,7 +321,7 @@ private:
   std::size_t apply_bounds(const Branch& branch)
   {
     std::size_t count = 0;
-    double carried = 0; // the thickest supported section farther out
+    double carried = 0; // largest supported radius farther out
     for (std::size_t k = branch.nodes.size(); k-- > 0;) {
       Branch_node& node = m_tree.nodes[branch.nodes[k]];
       carried = std::max(carried, m_supported[k]);
@@ -351,29 +352,30 @@ private:
 /*!
   Bounds radii without sufficient point support. Scanners sample the surface of wood, not its
   interior: sections with many inside points are leaves, and sections with few points are
-  unreliable. Bounded nodes count as inferred. Returns their number.
+  unreliable. Bounded nodes count as inferred. Returns the number of changed radii.
 
   The section of a node of radius `r` [L] comprises adjacent edges of length `l` [L]. It has `n`
   points on its surface, `m` points inside [count], and, at the density `D` [1/L^2], the expected
   number `E = 2 pi D sum r l` of points on its surface. Factors are those of `Support_options`. A
   section is
 
-  - filled if `m > filled (n + m)`, or if the sections from the base of the branch to here are, by
-    `branch_filled`;
+  - filled if `m > filled (n + m)`, or if the fraction of inside points of all sections from the
+    base of the branch to this one exceeds `branch_filled`;
   - proven if `n >= proof_expected E`, `m <= proof_filled (n + m)`, and the standard error of `r` is
     at most `proof_error r`;
   - supported if it is measured and not filled, `n >= max(fewest, expected E)`, and it is proven or
-    `r <= thicker R`, with the least supported radius `R` [L] since the last proven one.
+    `r <= thicker R`. `R` [L] is the least supported radius between this section and the nearest
+    proven one towards the root.
 
-  (`proof_precise`, `mostly` and `foot` define exceptions.) A section without support is bounded by
-  the last supported one towards the root, of radius `r'` [L], if there is one, and by the supported
-  ones farther out on the branch, of radii `r''` [L]:
+  (`proof_precise`, `mostly` and `foot` define exceptions.) The bound of a section without support
+  depends on the nearest supported section towards the root, of radius `r'` [L], and is not smaller
+  than the radii `r''` [L] of the supported sections farther out on the branch:
 
       r <= max(r' min(1, c h / h'), thinnest u, max r''),
 
   with the lengths `h`, `h'` [L] of the longest paths from both nodes to a tip, the spacing `u` [L],
-  and `c = slack`, or `filled_slack` if the section is filled. `apply_pipe_model()` follows.
-  O(nodes), besides the pipe model.
+  and `c = slack`, or `filled_slack` if the section is filled. If no section towards the root is
+  supported, there is no bound. `apply_pipe_model()` follows. O(nodes) without the pipe model.
 */
 inline std::size_t bound_radii(const Scan& scan,
                                const Section_support& support,

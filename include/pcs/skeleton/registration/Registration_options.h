@@ -10,49 +10,49 @@
 namespace pcs {
 namespace skeleton {
 
-/// Options of the search for scan grids. Lengths are in units of the scan.
+/// Options of the search for scan grids. Lengths are in the local unit of the scan.
 struct Scan_grid_options
 {
   double nearest = 0.8,
          farthest = 30;  ///< horizontal distance of a station from the centre of the scan [L]
-  double spacing = 0.06; ///< of candidate positions, relative to their distance [-]
+  double spacing = 0.06; ///< spacing of candidate positions, relative to their distance [-]
   double shortest = 0.8, longest = 4; ///< distance between beams, in point spacings [-]
-  double hint = 3.2;            ///< least score of a candidate direction, in deviations [-]
-  double evidence = 5;          ///< least contrast of a detection, in standard deviations [-]
-  double significance = 3;      ///< the same where few hypotheses are tested [-]
-  double least_contrast = 0.01; ///< least mean cosine for the curvature [-]
-  double tilt = 0.02;           ///< of scanners, standard deviation [rad]
-  double far = 1.2;             ///< largest distance of pairs in the fit of a grid [L]
-  double least_share = 0.03;    ///< least fraction of the unassigned points [-]
-  std::size_t pairs = 6000;     ///< drawn for each step of the search [count]
-  std::size_t fewest_pairs = 500; ///< for a reliable estimate [count]
-  std::size_t samples = 10000;    ///< single points in the final fit [count]
-  std::size_t guesses = 6;        ///< most directions that are examined [count]
-  std::size_t fewest = 1000;      ///< points for a reliable search [count]
-  std::size_t most = 40;          ///< most stations [count]
-  double loosest = 0.2;           ///< largest misfit of points of a station [steps]
+  double hint = 3.2;                  ///< least score of a candidate direction, in deviations [-]
+  double evidence = 5;                ///< least contrast of a detection, in standard deviations [-]
+  double significance = 3;            ///< the same if only few hypotheses are tested [-]
+  double least_contrast = 0.01;       ///< least mean cosine for the curvature [-]
+  double tilt = 0.02;                 ///< standard deviation of the tilt of scanners [rad]
+  double far = 1.2;                   ///< largest distance of pairs in the fit of a grid [L]
+  double least_share = 0.03;          ///< least fraction of the unassigned points for a station [-]
+  std::size_t pairs = 6000;           ///< pairs drawn for each step of the search [count]
+  std::size_t fewest_pairs = 500;     ///< least number of pairs for a reliable estimate [count]
+  std::size_t samples = 10000;        ///< single points in the final fit [count]
+  std::size_t guesses = 6;            ///< largest number of directions that are examined [count]
+  std::size_t fewest = 1000;          ///< least number of points for a reliable search [count]
+  std::size_t most = 40;              ///< largest number of stations [count]
+  double loosest = 0.2;               ///< largest misfit of points of a station [steps]
 };
 
-/// Selects the points that register stations, and sets the expected sizes of the other causes of
-/// their residuals.
+/// Criteria for the points that are used to register stations, and standard deviations of the other
+/// causes of their residuals.
 struct Station_alignment_options
 {
   double thickness = 3; ///< smallest radius, in noise [-]
   std::size_t fewest =
-      10; ///< points of a branch piece; pieces are halved while both halves have them [count]
-  double longest = 32;          ///< half of the length of a piece, in radii [-]
-  double fit = 3;               ///< error of a fitted radius or position, in noise ... [-]
-  double relative_fit = 0.2;    ///< ... and in radii [-]
+      10; ///< least points of a piece; pieces are halved while both halves have as many [count]
+  double longest = 32;          ///< largest half length of a piece, in radii [-]
+  double fit = 3;               ///< error of a fitted radius or position, in noise [-] ...
+  double relative_fit = 0.2;    ///< ... combined with an error in radii [-]
   double oval = 0.04;           ///< half difference of the semi-axes of a section, in radii [-]
   double largest_error = 4.685; ///< residual of weight 0, in noise (Tukey's constant) [-]
-  double motion = 1;            ///< prior standard deviation, in noise [-]
-  //! error of the motions, relative to their size, above which more points are used ...
+  double motion = 1;            ///< prior standard deviation of the motions, in noise [-]
+  //! error of the motions, relative to their size, above which more points are used [-] ...
   double agreement = 0.4;
   double least = 0.25;           ///< ... unless the motions are smaller than this, in noise [-]
-  std::size_t fewest_pieces = 8; ///< of every second axis, to estimate the error [count]
-  //! size of motions above which another pass follows after they are applied, in noise [-]
+  std::size_t fewest_pieces = 8; ///< least pieces of every second axis for an error [count]
+  //! size of the applied motions above which another pass follows, in noise [-]
   double much = 1.5;
-  int passes = 3; ///< most passes [count]
+  int passes = 3; ///< largest number of passes [count]
   int rounds = 6; ///< Gauss-Newton steps of a pass [count]
 };
 

@@ -12,10 +12,10 @@
 namespace pcs {
 namespace skeleton {
 
-/// A small rigid motion about the origin.
+/// A rigid motion: a rotation about the origin, then a translation.
 struct Rigid_motion
 {
-  Vec3 shift = Vec3::Zero(); ///< [L]
+  Vec3 shift = Vec3::Zero(); ///< translation [L]
   Vec3 turn = Vec3::Zero();  ///< rotation vector [rad]
 
   Eigen::Matrix3d rotation() const

@@ -25,11 +25,11 @@
 namespace pcs {
 namespace skeleton {
 
-/// The estimated motions, in coordinates of the scan.
+/// The estimated motions, in the local coordinates of the scan.
 struct Aligned_stations
 {
   std::vector<Rigid_motion> motions;
-  double size = 0, error = 0; ///< root mean square; rotations act at a typical distance [L]
+  double size = 0, error = 0; ///< root mean squares of the motions and of their errors [L]
 };
 
 namespace internal {
@@ -39,14 +39,14 @@ namespace internal {
   straight piece of a branch depends on the motion of its station and on the shape of the piece: a
   bent axis, a radius that changes along it, an oval section. The ten shape parameters of every
   piece are eliminated. The remaining residuals determine the motions, since each station sees a
-  different side. Only the positions of the pieces are taken from the fitted axes: bends of these
-  axes follow the points, and thus also the unknown motions.
+  different side. Only the positions of the pieces are taken from the fitted axes. The bends of
+  these axes are not used, because they depend on the unknown motions of the points.
 */
 template <class ConcurrencyTag>
 class Station_alignment
 {
 public:
-  /// `station` has one entry for each point of the scan, `none` where it is unknown.
+  /// `station` has one entry for each point of the scan: `none` if its station is unknown.
   Station_alignment(const Scan& scan,
                     const Axis_set& axes,
                     const std::vector<Index>& station,
@@ -61,9 +61,10 @@ public:
   }
 
   /*!
-    Estimates the motions from all axes. Separate estimates from the even and the odd axes show by
-    which factor the points are less reliable than independent noise implies. The weight of the
-    points is reduced by this factor. The prior limits motions that the points do not determine.
+    Estimates the motions from all axes. The difference between separate estimates from the even and
+    the odd axes indicates by which factor their variance exceeds that of independent noise. The
+    weight of the points is divided by this factor. The prior limits motions that the points do not
+    determine.
   */
   Aligned_stations run()
   {
@@ -88,7 +89,7 @@ public:
       result.motions[s] = {all.motions.template segment<3>(at),
                            all.motions.template segment<3>(at + 3)};
     }
-    // rotations act at a typical distance
+    // rotations are multiplied by a typical distance, which is the unit of length
     const double mean = 1 / double(m_count.size());
     result.size = std::sqrt(mean * all.motions.squaredNorm());
     result.error = fewest < m_rules.fewest_pieces ? result.size // unknown
@@ -137,7 +138,7 @@ private:
           sorted.emplace_back(place.segment, i);
       }
       std::sort(sorted.begin(), sorted.end());
-      std::vector<std::size_t> first(axis.size(), 0); // of the points of each segment
+      std::vector<std::size_t> first(axis.size(), 0); // first point of each segment
       for (const auto& entry : sorted)
         ++first[entry.first + 1];
       for (std::size_t s = 1; s < first.size(); ++s)
@@ -146,15 +147,15 @@ private:
     }
   }
 
-  /// Halves the segments [`begin`, `end`) while both halves have enough points. A single additional
-  /// point then changes few pieces.
+  /// Halves the segments [`begin`, `end`) while both halves have enough points. With halving,
+  /// a single additional point changes few pieces.
   void cut(Index axis,
            const std::vector<std::pair<Index, Index>>& sorted,
            const std::vector<std::size_t>& first,
            std::size_t begin,
            std::size_t end)
   {
-    constexpr std::size_t shortest = 2; // segments
+    constexpr std::size_t shortest = 2; // number of segments
     std::size_t middle = 0, fewer = 0;  // points of the smaller half
     for (std::size_t k = begin + shortest; k + shortest <= end; ++k) {
       const std::size_t less = std::min(first[k] - first[begin], first[end] - first[k]);
@@ -223,7 +224,7 @@ private:
     return x * x < 1 ? (1 - x * x) * (1 - x * x) / (m_axes.noise * m_axes.noise) : 0;
   }
 
-  /// Returns the prior precision of the shape parameters of a piece: inverse variances.
+  /// Returns the prior precisions (inverse variances) of the shape parameters of a piece.
   Local precision(const Piece& piece) const
   {
     const double fit = std::hypot(m_rules.fit * m_axes.noise, m_rules.relative_fit * piece.radius);
@@ -356,7 +357,7 @@ private:
   std::vector<double> m_count; ///< points of each station
   std::vector<Rigid_motion> m_motions;
   std::vector<Piece> m_pieces;
-  std::vector<std::size_t> m_used; ///< of the pieces
+  std::vector<std::size_t> m_used; ///< indices of the used pieces
 };
 
 } // namespace internal

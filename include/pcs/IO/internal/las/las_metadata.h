@@ -71,14 +71,15 @@ inline unsigned extra_bytes_type(Scalar_type type)
   return static_cast<unsigned>(hit - extra_bytes_types.begin()) + 1;
 }
 
-//! inserts descriptors at the end of the extra bytes VLR, which is created if it is missing
+//! inserts descriptors at the end of the extra bytes VLR, which is created if it is missing;
+//! returns an error message, or an empty string
 inline std::string insert_descriptors(Las_metadata& las, const std::vector<unsigned char>& added)
 {
   std::size_t at = find_extra_bytes_vlr(las).value_or(las.vlrs.size());
   const bool is_new = at == las.vlrs.size();
   if (is_new) {
     const auto n = load_little<std::uint32_t>(las.header, las_header::number_of_vlrs);
-    at = 0; // before the others, which may be followed by padding
+    at = 0; // before the other VLRs, which may be followed by padding
     std::vector<unsigned char> vlr(vlr_header_size, 0);
     std::memcpy(vlr.data() + las_vlr::user_id, "LASF_Spec", 9);
     std::memcpy(vlr.data() + las_vlr::description, "Extra bytes", 11);
@@ -152,11 +153,12 @@ inline bool fits_grid(const std::array<double, 2>& range, double scale, double o
 }
 
 /*!
-  Sets scale and offset if the caller did not. Points from LAS keep their scale, and their offset if
-  their coordinates can be represented with it. Otherwise the scale is the finest power of ten that
-  gives at most 5e8 steps along the longest side of the bounding box (four times as many would
-  exhaust the integers). The offset is the lower corner of the box, rounded down to about one digit
-  of its size.
+  Sets scale and offset if the caller did not. Points from LAS keep their scale. They also keep
+  their offset if their coordinates can be represented with it. For other points, the scale is the
+  finest power of ten that gives at most 5e8 steps along the longest side of the bounding box (four
+  times as many would exhaust the integers). The offset is the lower corner of the box, rounded down
+  to a multiple of the largest power of ten within this side. If coordinates cannot be represented
+  with an offset, it is replaced by the rounded center of the box.
 */
 inline void
 choose_las_grid(const std::string& path, const Point_table& table, Write_options& options)
