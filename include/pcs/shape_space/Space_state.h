@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// State of a shape space: the added trees, and what construction or restoration made of them.
+// State of a shape space: the added trees, and the result of construction or restoration.
 
 #ifndef PCS_SHAPE_SPACE_SPACE_STATE_H
 #define PCS_SHAPE_SPACE_SPACE_STATE_H
@@ -17,7 +17,8 @@
 namespace pcs {
 namespace shape_space {
 
-/// A cancelled construction changes nothing of it; adding a tree discards all but `inputs`.
+/// State of a shape space. A cancelled construction does not change it; adding a tree discards all
+/// but `inputs`.
 struct Space_state
 {
   std::vector<Tree_input> inputs; ///< as added; of a restored pair: the scans without the trees

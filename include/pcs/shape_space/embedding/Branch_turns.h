@@ -20,7 +20,7 @@ namespace pcs {
 namespace shape_space {
 namespace internal {
 
-/// Directions that correspond, and how much they count. [L]
+/// A pair of corresponding directions, and its weight. [L]
 struct Direction_pair
 {
   Vec3 one, two;
@@ -28,18 +28,21 @@ struct Direction_pair
 };
 
 /*!
-  The rotation of least sum of weighted angles to pairs of directions and to `known`, which counts
-  as `share` of all pairs.
+  Returns the rotation with the least sum of weighted angles to pairs of directions and to `known`,
+  which has `fraction` times the weight of all pairs.
 
-  By means with weights of one over the angle, from blunt to sharp: what most of the pairs agree in
-  is met exactly, whatever the others do, and what they do not determine is as in `known`.
+  It is found by iteratively reweighted means with weights of one over the angle, whose lower limit
+  decreases. The majority of the pairs is met exactly, whatever the others do; degrees of freedom
+  that the pairs do not determine are as in `known`.
 */
-inline Quaternion
-turn_of_directions(const std::vector<Direction_pair>& pairs, const Quaternion& known, double share)
+inline Quaternion rotation_of_directions(const std::vector<Direction_pair>& pairs,
+                                         const Quaternion& known,
+                                         double fraction)
 {
   constexpr int most_passes = 80;
-  constexpr double first_angle = 0.3, last_angle = 1e-8, ratio = 0.5; // that count as none [rad]
-  constexpr double least_step = 1e-12;                                // [rad]
+  // lower limits of angles [rad], and their ratio from pass to pass [-]
+  constexpr double first_angle = 0.3, last_angle = 1e-8, ratio = 0.5;
+  constexpr double least_step = 1e-12; // [rad]
   double total = 0;
   for (const Direction_pair& p : pairs)
     total += p.weight;
@@ -48,7 +51,7 @@ turn_of_directions(const std::vector<Direction_pair>& pairs, const Quaternion& k
   for (int pass = 0; pass < most_passes; ++pass, least = std::max(last_angle, ratio * least)) {
     const Eigen::Matrix3d rotation = q.toRotationMatrix();
     Eigen::Matrix3d covariance =
-        share * total / std::max(least, angle_between(q, known)) * known.toRotationMatrix();
+        fraction * total / std::max(least, angle_between(q, known)) * known.toRotationMatrix();
     for (const Direction_pair& p : pairs) {
       const Vec3 turned = rotation * p.one;
       const double angle = std::atan2(turned.cross(p.two).norm(), turned.dot(p.two));
@@ -64,18 +67,18 @@ turn_of_directions(const std::vector<Direction_pair>& pairs, const Quaternion& k
 }
 
 /*!
-  The rotation of each branch that both trees have from tree 1 to tree 2, from its edges, the
-  branches on it, each as a whole, and the rotation of its parent; `root` is that of the whole tree.
-  What only one tree has turns with its parent.
+  Returns the rotation of each common branch from tree 1 to tree 2, from its edges, the branches on
+  it, each as a whole, and the rotation of its parent; `root` is that of the whole tree. A branch of
+  only one tree rotates with its parent.
 */
-inline std::vector<Quaternion> turns_of_branches(const Orl_layout& layout,
-                                                 const Embedding& one,
-                                                 const Embedding& two,
-                                                 const Quaternion& root)
+inline std::vector<Quaternion> rotations_of_branches(const Orl_layout& layout,
+                                                     const Embedding& one,
+                                                     const Embedding& two,
+                                                     const Quaternion& root)
 {
-  constexpr double share_of_parent = 0.05;
+  constexpr double fraction_of_parent = 0.05;
   const std::size_t m = layout.branches.size();
-  std::vector<Direction_pair> whole(m); // each branch from end to end, with what hangs on it
+  std::vector<Direction_pair> whole(m); // each branch from end to end, weighted by its subtree
   std::vector<char> is_common(m, 0);
   for (std::size_t b = 0; b < m; ++b) {
     const Orl_layout::Branch& branch = layout.branches[b];
@@ -108,29 +111,28 @@ inline std::vector<Quaternion> turns_of_branches(const Orl_layout& layout,
   for (std::size_t b = 0; b < m; ++b) {
     const std::size_t p = layout.branches[b].parent;
     const Quaternion known = p == none ? root : result[p];
-    result[b] = is_common[b] ? turn_of_directions(pairs[b], known, share_of_parent) : known;
+    result[b] = is_common[b] ? rotation_of_directions(pairs[b], known, fraction_of_parent) : known;
   }
   return result;
 }
 
 /*!
-  The twist of the frames of tree 2 about its edges is free. The frame of an edge is that of tree 1
-  turned as its branch, and then the shortest way to the direction that the edge has: a branch that
-  is turned as a whole costs what it was turned by, once, and what single edges do, noise of short
-  ones above all, twists nothing behind them. Edges that tree 1 does not have carry on the frame
-  before.
+  Chooses the frames of tree 2, whose twist about the edges is free. The frame of an edge is that of
+  tree 1, rotated with its branch and then by the shortest rotation to the direction of the edge. So
+  the rotation of a whole branch counts once, and rotations of single edges, mainly noise of short
+  ones, do not twist the edges behind them. Edges that tree 1 lacks continue the previous frame.
 */
 inline void
 turn_frames(const Orl_layout& layout, const Embedding& one, const Quaternion& root, Embedding& two)
 {
-  const std::vector<Quaternion> turn = turns_of_branches(layout, one, two, root);
+  const std::vector<Quaternion> rotation = rotations_of_branches(layout, one, two, root);
   for (std::size_t b = 0; b < layout.branches.size(); ++b) {
     const Orl_layout::Branch& branch = layout.branches[b];
     for (std::size_t e = branch.first_edge; e < branch.first_edge + branch.number_of_edges; ++e) {
       if (!(two.x.length[e] > 0))
         continue;
       const std::size_t p = layout.edge_before[e];
-      const Quaternion from = one.x.length[e] > 0 ? turn[b] * one.frame[e]
+      const Quaternion from = one.x.length[e] > 0 ? rotation[b] * one.frame[e]
                               : p == none         ? root
                                                   : two.frame[p];
       two.frame[e] = shortest_turn(from * Vec3::UnitZ(), two.direction[e]) * from;

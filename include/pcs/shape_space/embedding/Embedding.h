@@ -16,8 +16,7 @@ namespace pcs {
 namespace shape_space {
 namespace internal {
 
-/// Lengths, radii, attachments and directions of a tree; nothing for branches that it does not
-/// have.
+/// Lengths, radii, attachments and directions of a tree; empty for branches that it lacks.
 struct Embedding
 {
   std::vector<Vec3> direction;   ///< per edge; null for edges that do not exist
@@ -25,7 +24,7 @@ struct Embedding
   Orl_coordinates x;
 };
 
-/// A tree without branches.
+/// Returns a tree without branches.
 inline Embedding empty_embedding(const Orl_layout& layout, const Vec3& root)
 {
   const std::size_t n = layout.number_of_edges(), m = layout.branches.size();
@@ -42,18 +41,17 @@ inline Embedding empty_embedding(const Orl_layout& layout, const Vec3& root)
   return result;
 }
 
-/// Length and direction of an edge. A path that comes back to where it was, or a node of the other
-/// tree beside one of its own, still has an edge there, without a direction: see
-/// `lend_directions()`.
-inline void set_edge(const Vec3& way, double shortest, double& length, Vec3& direction)
+/// Computes length and direction of an edge. Where a path returns to a point, or a node of the
+/// other tree lies beside one of its own, the edge has no direction: see `lend_directions()`.
+inline void set_edge(const Vec3& difference, double shortest, double& length, Vec3& direction)
 {
-  const double norm = way.norm();
+  const double norm = difference.norm();
   length = std::max(norm, shortest);
-  direction = norm > shortest ? Vec3(way / norm) : Vec3(Vec3::Zero());
+  direction = norm > shortest ? Vec3(difference / norm) : Vec3(Vec3::Zero());
 }
 
-/// Edges without a direction point like the one before on their branch, or like the first that has
-/// one.
+/// Gives edges without a direction that of the previous edge of their branch, or of the first edge
+/// that has one.
 inline void lend_directions(const Orl_layout::Branch& branch, std::vector<Vec3>& direction)
 {
   const auto begin = direction.begin() + static_cast<std::ptrdiff_t>(branch.first_edge);
@@ -64,7 +62,7 @@ inline void lend_directions(const Orl_layout::Branch& branch, std::vector<Vec3>&
     last = *d = *d != Vec3::Zero() ? *d : last;
 }
 
-/// Carries frames along the edges that exist without twist, from `root` at the beginning of the
+/// Transports frames along the existing edges without twist, from `root` at the beginning of the
 /// trunk.
 inline void set_frames(const Orl_layout& layout, const Quaternion& root, Embedding& tree)
 {

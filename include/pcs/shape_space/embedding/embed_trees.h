@@ -21,8 +21,8 @@
 namespace pcs {
 namespace shape_space {
 
-/// Edges of the common topology. Orientations at a fork refer to the edge before the mean
-/// attachment.
+/// Lays out the edges of the common topology. Orientations at a fork refer to the edge before the
+/// mean attachment.
 inline Orl_layout make_layout(const std::vector<Common_branch>& branches)
 {
   Orl_layout layout;
@@ -48,7 +48,8 @@ inline Orl_layout make_layout(const std::vector<Common_branch>& branches)
 
 namespace internal {
 
-/// Radius of a path at its node `k`; a branch does not begin thicker than its first edge.
+/// Returns the radius of a path at its node `k`; a branch does not begin thicker than its first
+/// edge. [L]
 inline double path_radius(const Rooted_tree& tree, const Branch_path& path, std::size_t k)
 {
   const std::size_t v = path.nodes[k];
@@ -59,11 +60,11 @@ inline double path_radius(const Rooted_tree& tree, const Branch_path& path, std:
                                            : std::min(tree.radii[v], tree.radii[w]);
 }
 
-/// Position and radius at a share of the length of a path.
+/// Returns position and radius at a fraction of the length of a path. [L]
 inline std::pair<Vec3, double>
-node_at(const Rooted_tree& tree, const Branch_path& path, double share)
+node_at(const Rooted_tree& tree, const Branch_path& path, double fraction)
 {
-  const double s = share * path.length();
+  const double s = fraction * path.length();
   const auto it = std::lower_bound(path.arc.begin(), path.arc.end(), s);
   auto k = static_cast<std::size_t>(it - path.arc.begin());
   k = std::min(k, path.arc.size() - 1);
@@ -105,7 +106,7 @@ inline Embedding embed(const Orl_layout& layout,
   return result;
 }
 
-/// Orientations from frames; edges that a tree does not have take those of `other`.
+/// Computes orientations from frames; edges that a tree lacks take those of `other`.
 inline void set_orientations(const Orl_layout& layout,
                              const std::vector<Common_branch>& branches,
                              Orl_orientation kind,
@@ -134,22 +135,22 @@ inline void set_orientations(const Orl_layout& layout,
 
 } // namespace internal
 
-/// Coordinates of both trees. After `turn` tree 2 stands like tree 1.
+/// Computes the coordinates of both trees; `rotation` aligns tree 2 with tree 1.
 inline std::array<Orl_coordinates, 2> embed_trees(const Orl_layout& layout,
                                                   const std::vector<Common_branch>& branches,
                                                   const std::array<const Rooted_tree*, 2>& trees,
                                                   const std::array<Branch_paths, 2>& paths,
                                                   Orl_orientation kind,
                                                   Virtual_direction direction,
-                                                  const Quaternion& turn)
+                                                  const Quaternion& rotation)
 {
   using namespace internal;
   const Vec3 shift = trees[1]->origin - trees[0]->origin;
   Embedding one = embed(layout, branches, *trees[0], paths[0], 0, Vec3::Zero());
   Embedding two = embed(layout, branches, *trees[1], paths[1], 1, shift);
   if (kind == Orl_orientation::world_axes) {
-    // v_c = q v_p q^-1 with the shortest turn q in the axes of the input; the frame is the product
-    // of these
+    // v_c = q v_p q^-1 with the shortest rotation q in the axes of the input; the frame is the
+    // product of these
     for (Embedding* tree : {&one, &two})
       for (std::size_t e = 0; e < layout.number_of_edges(); ++e)
         if (tree->x.length[e] > 0) {
@@ -159,22 +160,23 @@ inline std::array<Orl_coordinates, 2> embed_trees(const Orl_layout& layout,
           tree->frame[e].normalize();
         }
   } else {
-    // the trunk of tree 2 refers to that of tree 1: how both stand in the axes of the input does
+    // the trunk of tree 2 refers to that of tree 1: the poses of both in the axes of the input do
     // not matter
     set_frames(layout, Quaternion::Identity(), one);
-    set_frames(layout, turn.conjugate() * one.frame[0], two);
+    set_frames(layout, rotation.conjugate() * one.frame[0], two);
     if (kind == Orl_orientation::gauge_fixed)
-      turn_frames(layout, one, turn.conjugate(), two);
+      turn_frames(layout, one, rotation.conjugate(), two);
   }
   set_orientations(layout, branches, kind, direction, 0, two, one);
   set_orientations(layout, branches, kind, direction, 1, one, two);
   return {std::move(one.x), std::move(two.x)};
 }
 
-/// Weights in units of length: turns count with the mean length of the edge, all others 1; or all
-/// 1, as in the text. `trees`: a range of `Orl_coordinates`.
+/// Returns weights in units of length: the mean length of an edge for its rotation, the mean length
+/// of the edges of the parent for an attachment, and 1 for all others; or 1 for all if
+/// `is_published` [Aiteanu 2022]. `trees`: a range of `Orl_coordinates`.
 template <class Trees>
-Orl_weights make_weights(const Orl_layout& layout, const Trees& trees, bool is_text)
+Orl_weights make_weights(const Orl_layout& layout, const Trees& trees, bool is_published)
 {
   Orl_weights w;
   const std::size_t n = layout.number_of_edges(), m = layout.branches.size();
@@ -183,7 +185,7 @@ Orl_weights make_weights(const Orl_layout& layout, const Trees& trees, bool is_t
   w.radius.assign(n, 1);
   w.base_radius.assign(m, 1);
   w.attachment.assign(m, 1);
-  if (is_text)
+  if (is_published)
     return w;
   for (std::size_t e = 0; e < n; ++e) {
     double sum = 0;

@@ -19,8 +19,8 @@ namespace pcs {
 namespace shape_space {
 namespace internal {
 
-/// Minimises the sum of squared chords: a start for both means, whatever the signs of the
-/// quaternions.
+/// Minimises the sum of squared chords, whatever the signs of the quaternions: a start for both
+/// means.
 inline Quaternion chordal_mean(const std::vector<Quaternion>& q, const std::vector<double>& w)
 {
   Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
@@ -44,8 +44,7 @@ sum_of_angles(const Quaternion& at, const std::vector<Quaternion>& q, const std:
   return sum;
 }
 
-/// One step towards the L1 mean from a place that is none of the data: Newton's, or else
-/// Weiszfeld's.
+/// A step towards the L1 mean from a rotation that is no data point: Newton's, or else Weiszfeld's.
 struct L1_step
 {
   Vec3 newton = Vec3::Zero(), weiszfeld = Vec3::Zero();
@@ -179,8 +178,8 @@ inline Quaternion l1_mean_rotation(const std::vector<Quaternion>& q, const std::
   return best.q;
 }
 
-/// The rotation with the least sum of weighted squared angles; weights may be negative if their sum
-/// is positive.
+/// Returns the rotation with the least sum of weighted squared angles; weights may be negative if
+/// their sum is positive.
 inline Quaternion l2_mean_rotation(const std::vector<Quaternion>& q, const std::vector<double>& w)
 {
   double total = 0;
@@ -207,7 +206,7 @@ inline Quaternion l2_mean_rotation(const std::vector<Quaternion>& q, const std::
   return mean;
 }
 
-/// The middle of the interval of weighted medians; 0 without weights.
+/// Returns the middle of the interval of weighted medians; 0 without weights.
 inline double weighted_median(const std::vector<double>& values, const std::vector<double>& w)
 {
   std::vector<std::size_t> order;

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Yaw between two trees from all edges that they have in common.
+// Yaw between two trees from all common edges.
 
 #ifndef PCS_SHAPE_SPACE_EMBEDDING_REFINE_YAW_H
 #define PCS_SHAPE_SPACE_EMBEDDING_REFINE_YAW_H
@@ -22,17 +22,17 @@ namespace pcs {
 namespace shape_space {
 
 /*!
-  The angle near `turn` by which tree 2 stands like tree 1: the median of what azimuths of common
-  edges differ by. [rad]
+  Returns the yaw near `yaw` that aligns tree 2 with tree 1: the weighted median of the azimuth
+  differences of common edges. [rad]
 
-  Edges count with their length and with how far they are from upright. Wood that stays where it is
-  agrees exactly; what bent, grew or was matched by chance does not move the median as long as it is
-  the smaller part.
+  Edges are weighted by their lengths and their horizontal components. Unchanged wood agrees
+  exactly; edges that bent, grew or were matched by chance do not change the median while they have
+  less than half of the weight.
 */
 inline double refine_yaw(const std::array<const Rooted_tree*, 2>& trees,
                          const Common_topology& topology,
                          const Vec3& up,
-                         double turn)
+                         double yaw)
 {
   const Orl_layout layout = make_layout(topology.branches);
   std::array<internal::Embedding, 2> tree;
@@ -51,15 +51,15 @@ inline double refine_yaw(const std::array<const Rooted_tree*, 2>& trees,
     if (!(weight > 0))
       continue;
     const double angle = std::atan2(up.dot(b.cross(a)), a.dot(b));
-    differences.emplace_back(std::remainder(angle - turn, 2 * pi), weight);
+    differences.emplace_back(std::remainder(angle - yaw, 2 * pi), weight);
     total += weight;
   }
   std::sort(differences.begin(), differences.end());
   double sum = 0;
   for (const auto& [difference, weight] : differences)
     if ((sum += weight) >= 0.5 * total)
-      return std::remainder(turn + difference, 2 * pi);
-  return turn;
+      return std::remainder(yaw + difference, 2 * pi);
+  return yaw;
 }
 
 } // namespace shape_space

@@ -14,15 +14,15 @@ namespace pcs {
 namespace shape_space {
 namespace internal {
 
-/// Marks the edges of a branch, from `first` to before `last`, that lie between two turns by more
-/// than a right angle, the second of which undoes the first: skeletons have them where two pieces
+/// Marks the edges of a branch, from `first` to before `last`, between two bends by more than a
+/// right angle, the second of which reverses the first: skeletons have them where two pieces
 /// overlap.
 inline void mark_folds(const std::vector<Vec3>& direction,
                        std::size_t first,
                        std::size_t last,
                        std::vector<char>& is_fold)
 {
-  std::size_t before = none; // the last edge ahead of an open fold
+  std::size_t before = none; // the last edge before an open fold
   for (std::size_t e = first + 1; e < last; ++e) {
     if (!(direction[e - 1].dot(direction[e]) < 0))
       continue;
@@ -38,12 +38,12 @@ inline void mark_folds(const std::vector<Vec3>& direction,
 } // namespace internal
 
 /*!
-  Lets the frames of edges and branches behind a fold of their branch be carried on from the last
-  edge before it. `directions`: of the edges, for each tree; null for those that it does not have.
+  Transports the frames of edges and branches behind a fold from the last edge before it.
+  `directions`: of the edges, for each tree; null for those that it lacks.
 
-  A fold that only one tree has is half a turn there and back. Which way is rounding, or noise, and
-  half of it, twice, may be anything: without this, what is behind a fold of a millimetre would
-  point anywhere on the path between the trees.
+  A fold of only one tree consists of two rotations by about pi, about axes that depend on noise or
+  rounding. On the path between the trees, their interpolated product may be any rotation, so
+  everything behind a fold of a millimetre would have an arbitrary direction.
 */
 inline void skip_fold_edges(const std::vector<std::vector<Vec3>>& directions, Orl_layout& layout)
 {
@@ -52,7 +52,7 @@ inline void skip_fold_edges(const std::vector<std::vector<Vec3>>& directions, Or
     for (const Orl_layout::Branch& b : layout.branches)
       internal::mark_folds(direction, b.first_edge, b.first_edge + b.number_of_edges, is_fold);
   for (Orl_layout::Branch& b : layout.branches) {
-    if (b.parent != none) // the first edge of a branch is none
+    if (b.parent != none) // the first edge of a branch is not a fold
       while (is_fold[b.reference_edge])
         --b.reference_edge;
     layout.edge_before[b.first_edge] = b.reference_edge;

@@ -20,16 +20,16 @@
 namespace pcs {
 namespace shape_space {
 
-/// A point of a scan, and the edge of the topology it lies on.
+/// A point of a scan, and its edge of the topology.
 struct Family_source
 {
   std::uint32_t tree, point, edge;
 };
 
 /*!
-  Points in the frames of their edges, each with partners in other scans. In a tree of the space a
-  point lies at the mean of the places of itself and its partners, weighted by the shares of their
-  scans: along, around and away from the edge. The order of points is the same for all trees.
+  Points in the frames of their edges, each with corresponding points in other scans. In a tree of
+  the space, a point has the mean tube coordinates of itself and its corresponding points, with the
+  weights of their scans. The order of points is the same for all trees.
 */
 class Family_points
 {
@@ -41,8 +41,8 @@ public:
   const std::vector<std::size_t>& first() const { return m_first; }
   bool has_normals() const { return m_has_normals; }
 
-  /// Points by edge and partners by point, in the coordinates of the space; `geometry[t]`: of the
-  /// tree with scan t.
+  /// Sets the points, sorted by edge, and their corresponding points, sorted by point, in the
+  /// coordinates of the space. `geometry[t]`: of the tree with scan t.
   template <class ConcurrencyTag>
   void set(const Orl_layout& layout,
            const std::vector<Orl_geometry>& geometry,
@@ -51,14 +51,14 @@ public:
            bool has_normals,
            ConcurrencyTag);
 
-  /// Calls `put(i, point, normal, k)` for all points of a tree: `i` counts those of branches that
-  /// it has, `k` all. `share`: of each scan, `>= 0`; empty: all alike.
+  /// Calls `put(i, point, normal, k)` for all points of a tree: `i` counts those of its branches,
+  /// `k` all. `scan_weights`: `>= 0`; empty: all equal.
   template <class ConcurrencyTag, class Put>
   void write(const Orl_layout& layout,
              const Orl_coordinates& x,
              const Orl_geometry& geometry,
              const std::vector<std::size_t>& offset,
-             const std::vector<double>& share,
+             const std::vector<double>& scan_weights,
              const Put& put,
              ConcurrencyTag) const
   {
@@ -70,9 +70,9 @@ public:
           const Edge_cone cone = edge_cone(layout, geometry, m_branch_of[e], e);
           std::size_t i = offset[e];
           for (std::size_t k = m_first[e]; k < m_first[e + 1]; ++k, ++i) {
-            Tube_coordinates p = m_place[k];
+            Tube_coordinates p = m_coordinates[k];
             Vec3 normal = m_has_normals ? m_normal[k] : Vec3(Vec3::Zero());
-            for_each_share(k, share, [&](std::size_t j, double w) {
+            for_each_weight(k, scan_weights, [&](std::size_t j, double w) {
               if (j == none)
                 return;
               const Difference& d = m_partner[j];
@@ -81,7 +81,7 @@ public:
               p.angle += w * d.angle;
               p.distance += w * d.distance;
               if (m_has_normals)
-                normal += w * m_turn[j].template cast<double>();
+                normal += w * m_normal_difference[j].template cast<double>();
             });
             const double t = std::min(1.0, std::max(0.0, p.t));
             const double unit = m_is_relative[e] ? cone.radius(t) : 1;
@@ -99,12 +99,12 @@ public:
         64);
   }
 
-  /// Calls `f(tree, point, weight)` for a point and its partners that have a share; weights add up
-  /// to 1.
+  /// Calls `f(tree, point, weight)` for a point and its corresponding points of positive weight;
+  /// weights sum to 1.
   template <class F>
-  void for_each_source(std::size_t k, const std::vector<double>& share, const F& f) const
+  void for_each_source(std::size_t k, const std::vector<double>& scan_weights, const F& f) const
   {
-    for_each_share(k, share, [&](std::size_t j, double w) {
+    for_each_weight(k, scan_weights, [&](std::size_t j, double w) {
       if (!(w > 0))
         return;
       if (j == none)
@@ -115,7 +115,7 @@ public:
   }
 
 private:
-  /// What leads from a point to its partner, and where the normal goes.
+  /// Difference of the tube coordinates of a corresponding point from those of the point.
   struct Difference
   {
     std::uint32_t tree, index;
@@ -127,13 +127,13 @@ private:
     return Vec3(cosine * v.x() - sine * v.y(), sine * v.x() + cosine * v.y(), v.z());
   }
 
-  /// Calls `f(none, w)` for the point and `f(j, w)` for partner j. If no scan of these has a share,
-  /// it is the point's.
+  /// Calls `f(none, w)` for the point and `f(j, w)` for corresponding point j. If all their scans
+  /// have weight 0, the point has weight 1.
   template <class F>
-  void for_each_share(std::size_t k, const std::vector<double>& share, const F& f) const
+  void for_each_weight(std::size_t k, const std::vector<double>& scan_weights, const F& f) const
   {
     const std::size_t begin = m_first_partner[k], end = m_first_partner[k + 1];
-    const auto of = [&](std::size_t tree) { return share.empty() ? 1 : share[tree]; };
+    const auto of = [&](std::size_t tree) { return scan_weights.empty() ? 1 : scan_weights[tree]; };
     const double own = of(m_source[k].tree);
     double sum = own;
     for (std::size_t j = begin; j < end; ++j)
@@ -159,20 +159,20 @@ private:
                 const std::vector<Partner>& partners,
                 std::size_t e);
 
-  /// Outwards, around and along.
+  /// Returns a normal with the components outwards, around and along.
   static Vec3 local_normal(const Edge_cone& cone, const std::array<double, 3>& v, double angle);
 
-  /// Whether the radius is known and the point is not so far off that a thicker branch must not
-  /// carry it further.
+  /// Returns whether the radius is known and the point is near the surface, so that its distance
+  /// may scale with the radius.
   static bool is_near(const Edge_cone& cone, const Vec3& position);
 
   std::vector<Family_source> m_source; // by edge
   std::vector<std::size_t> m_first, m_first_partner, m_branch_of;
   std::vector<char> m_is_relative;
-  std::vector<Tube_coordinates> m_place; // off the axis in radii, or in units of length
-  std::vector<Vec3> m_normal;            // outwards, around and along
+  std::vector<Tube_coordinates> m_coordinates; // off the axis in radii, or in units of length
+  std::vector<Vec3> m_normal;                  // outwards, around and along
   std::vector<Difference> m_partner;
-  std::vector<Eigen::Vector3f> m_turn; // of normals
+  std::vector<Eigen::Vector3f> m_normal_difference; // difference of normals
   bool m_has_normals = false;
 };
 

@@ -21,8 +21,9 @@
 namespace pcs {
 namespace shape_space {
 
-/// Of every branch the points of the scan that has most there, or of a preferred scan, by edge.
-/// `edge[t][i]`: of point i of scan t, `none`: left out. `preferred`: a scan, or `none`.
+/// Chooses, for every branch, the points of the scan with the most points there, or of a preferred
+/// scan, sorted by edge. `edge[t][i]`: of point i of scan t, `none`: left out. `preferred`: a scan,
+/// or `none`.
 inline std::vector<Family_source> choose_points(const Orl_layout& layout,
                                                 const std::vector<std::vector<std::size_t>>& edge,
                                                 std::size_t preferred)
@@ -32,7 +33,7 @@ inline std::vector<Family_source> choose_points(const Orl_layout& layout,
   for (std::size_t b = 0; b < m; ++b)
     for (std::size_t j = 0; j < layout.branches[b].number_of_edges; ++j)
       branch_of[layout.branches[b].first_edge + j] = b;
-  std::vector<std::size_t> carrier(m, none), most(m, 0);
+  std::vector<std::size_t> source(m, none), most(m, 0);
   std::vector<char> is_settled(m, 0);
   for (std::size_t t = 0; t < edge.size(); ++t) {
     std::vector<std::size_t> count(m, 0);
@@ -41,7 +42,7 @@ inline std::vector<Family_source> choose_points(const Orl_layout& layout,
         ++count[branch_of[e]];
     for (std::size_t b = 0; b < m; ++b)
       if (count[b] > 0 && (t == preferred || (count[b] > most[b] && !is_settled[b]))) {
-        carrier[b] = t;
+        source[b] = t;
         most[b] = count[b];
         is_settled[b] = t == preferred;
       }
@@ -49,7 +50,7 @@ inline std::vector<Family_source> choose_points(const Orl_layout& layout,
   std::vector<Family_source> result;
   for (std::size_t t = 0; t < edge.size(); ++t)
     for (std::size_t i = 0; i < edge[t].size(); ++i)
-      if (edge[t][i] != none && carrier[branch_of[edge[t][i]]] == t)
+      if (edge[t][i] != none && source[branch_of[edge[t][i]]] == t)
         result.push_back({static_cast<std::uint32_t>(t),
                           static_cast<std::uint32_t>(i),
                           static_cast<std::uint32_t>(edge[t][i])});
@@ -86,10 +87,10 @@ void Family_points::set(const Orl_layout& layout,
     for (std::size_t j = 0; j < layout.branches[b].number_of_edges; ++j)
       m_branch_of[layout.branches[b].first_edge + j] = b;
   m_has_normals = has_normals && !points.empty();
-  m_place.resize(points.size());
+  m_coordinates.resize(points.size());
   m_normal.resize(m_has_normals ? points.size() : 0);
   m_partner.resize(partners.size());
-  m_turn.resize(m_has_normals ? partners.size() : 0);
+  m_normal_difference.resize(m_has_normals ? partners.size() : 0);
   m_is_relative.assign(n, 0);
   pcs::internal::for_each_index<ConcurrencyTag>(
       n,
@@ -118,7 +119,7 @@ inline void Family_points::set_edge(const Orl_layout& layout,
   m_is_relative[e] = is_relative;
   for (std::size_t k = m_first[e]; k < m_first[e + 1]; ++k) {
     const Edge_cone& own = cone[points[k].tree];
-    const Tube_coordinates p = m_place[k] =
+    const Tube_coordinates p = m_coordinates[k] =
         tube_coordinates(own, position_of(points[k]), is_relative);
     if (m_has_normals)
       m_normal[k] = local_normal(own, points[k].normal, p.angle);
@@ -133,7 +134,8 @@ inline void Family_points::set_edge(const Orl_layout& layout,
                       static_cast<float>(std::remainder(q.angle - p.angle, whole)),
                       static_cast<float>(q.distance - p.distance)};
       if (m_has_normals)
-        m_turn[j] = (local_normal(other, partners[j].normal, q.angle) - m_normal[k]).cast<float>();
+        m_normal_difference[j] =
+            (local_normal(other, partners[j].normal, q.angle) - m_normal[k]).cast<float>();
     }
   }
 }

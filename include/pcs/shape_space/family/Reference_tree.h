@@ -19,12 +19,13 @@
 namespace pcs {
 namespace shape_space {
 
-/// `paths.paths[b]` is branch `b` of the topology, and the only way to continue it.
+/// A tree of the space as the target of a matching. `paths.paths[b]` is branch `b` of the topology,
+/// and its only candidate path.
 struct Reference_tree
 {
   Rooted_tree tree;
   Branch_paths paths;
-  std::vector<std::vector<double>> share; ///< of the length of each branch, at its own nodes
+  std::vector<std::vector<double>> share; ///< fraction of the length at each own node, by branch
 };
 
 namespace internal {
@@ -54,7 +55,7 @@ public:
       const Branch_path& path = m_result.paths.paths[b];
       m_result.paths.paths_of[path.nodes[path.is_trunk ? 0 : 1]] = {b};
       for (Branch_path::Child& c : m_result.paths.paths[b].children)
-        c.start = m_result.paths.paths[c.start].nodes[1]; // was the number of the branch
+        c.start = m_result.paths.paths[c.start].nodes[1]; // the number of the branch so far
     }
     Vec3 low = tree.points[0], high = low;
     for (const Vec3& p : tree.points) {
@@ -90,8 +91,8 @@ private:
     path.nodes.push_back(path.is_trunk ? add_node(b, 0, none) : m_base[b]);
     path.arc.push_back(0);
     const std::size_t n = m_layout.branches[b].number_of_edges;
-    // nodes of its own, and where its children begin
-    std::vector<std::pair<double, std::size_t>> stops; // place, child
+    // own nodes, and the positions where children begin
+    std::vector<std::pair<double, std::size_t>> stops; // position, child
     for (std::size_t k = 0; k <= n; ++k)
       stops.emplace_back(static_cast<double>(k), none);
     for (const std::size_t c : m_children[b])
@@ -105,7 +106,7 @@ private:
         const std::size_t v = add_node(b, t, path.nodes.back());
         if (path.nodes.size() == 1)
           m_result.tree.base_radii[v] = m_x.base_radius[b];
-        // lengths must increase, whatever the coordinates
+        // arc lengths must increase, whatever the coordinates
         const double step = m_result.tree.edge_length(v);
         path.arc.push_back(path.arc.back() + std::max(step, 1e-300));
         path.nodes.push_back(v);
@@ -127,7 +128,7 @@ private:
   const Orl_coordinates& m_x;
   Orl_geometry m_geometry;
   std::vector<std::vector<std::size_t>> m_children;
-  std::vector<std::size_t> m_base; // node that a branch begins at
+  std::vector<std::size_t> m_base; // node at which a branch begins
   Reference_tree m_result;
 };
 

@@ -23,16 +23,18 @@
 namespace pcs {
 namespace shape_space {
 
-/// A branch of the topology of many trees. Its nodes divide it in parts that are alike in all
-/// trees; between them branches are straight, so that a bend has one place, not one in each tree.
+/// A branch of the topology of many trees. Its nodes divide it into corresponding parts of all
+/// trees. Between nodes branches are straight, so that a bend has one position, not one in each
+/// tree.
 struct Shared_branch
 {
-  std::size_t parent = none; ///< index of a branch that comes before, or `none`
+  std::size_t parent = none; ///< index of an earlier branch, or `none`
   std::size_t number_of_edges = 1;
   std::size_t reference_edge = 0;        ///< edge of the parent, counted from its first
   std::vector<std::size_t> path;         ///< per tree, `none`: the tree does not have the branch
-  std::vector<std::vector<double>> node; ///< per tree: shares of its length; empty: none
-  std::vector<double> attachment; ///< per tree: number of a node of the parent, and share behind it
+  std::vector<std::vector<double>> node; ///< per tree: fractions of its length; empty: none
+  std::vector<double>
+      attachment; ///< per tree: number of a node of the parent, plus the fraction behind it
 
   bool has(std::size_t tree) const { return path[tree] != none; }
   std::size_t number_of_members() const
@@ -41,11 +43,11 @@ struct Shared_branch
   }
 };
 
-/// Largest distance of an axis from the straight edges between its nodes, as a share of the branch.
-/// [-]
+/// Largest distance of an axis from the straight edges between its nodes, as a fraction of the
+/// length of the branch. [-]
 constexpr double axis_tolerance = 0.01;
 
-/// Edges of a branch: as many as the most winding of its members needs, out of these.
+/// Numbers of edges of a branch, from which that for its most curved member is taken. [count]
 inline std::size_t number_of_straight_edges(const Rooted_tree& tree, const Branch_path& path)
 {
   constexpr std::size_t steps[] = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32};
@@ -88,15 +90,14 @@ inline Orl_layout make_layout(const std::vector<Shared_branch>& branches)
 
 namespace internal {
 
-/// Number of the edge before an attachment.
+/// Returns the number of the edge before an attachment.
 inline std::size_t edge_before(double attachment, std::size_t number_of_edges)
 {
   const double t = std::max(0.0, std::ceil(attachment) - 1);
   return std::min(number_of_edges - 1, static_cast<std::size_t>(t));
 }
 
-/// Lengths, radii, attachments and directions of tree `t`; nothing for branches that it does not
-/// have.
+/// Embeds tree `t`: lengths, radii, attachments and directions; empty for branches that it lacks.
 inline Embedding embed(const Orl_layout& layout,
                        const std::vector<Shared_branch>& branches,
                        const Rooted_tree& tree,
@@ -136,7 +137,7 @@ inline void set_world_frames(const Orl_layout& layout, Embedding& tree)
     }
 }
 
-/// Orientations of the edges that a tree has, from its frames.
+/// Computes the orientations of the edges of a tree from its frames.
 inline void set_own_orientations(const Orl_layout& layout, Orl_orientation kind, Embedding& tree)
 {
   for (std::size_t e = 0; e < layout.number_of_edges(); ++e)
@@ -147,7 +148,7 @@ inline void set_own_orientations(const Orl_layout& layout, Orl_orientation kind,
     }
 }
 
-/// The coordinates as they would be found in the tree that they stand for.
+/// Returns the coordinates of a tree with the frames and directions of its edges.
 inline Embedding as_embedding(const Orl_layout& layout, const Orl_coordinates& x)
 {
   Embedding result;
@@ -160,7 +161,7 @@ inline Embedding as_embedding(const Orl_layout& layout, const Orl_coordinates& x
   return result;
 }
 
-/// The same tree where orientations refer to other edges.
+/// Converts a tree to a layout in which orientations refer to other edges.
 inline Orl_coordinates
 with_parent_edges(const Orl_layout& from, const Orl_coordinates& x, const Orl_layout& to)
 {
@@ -173,8 +174,8 @@ with_parent_edges(const Orl_layout& from, const Orl_coordinates& x, const Orl_la
 }
 
 /*!
-  Values of a tree in the middle of those that have each branch: medians of lengths, radii and
-  attachments, L1 means of orientations. Trees that lack a branch do not count there.
+  Computes the median tree: for each branch, medians of lengths, radii and attachments, and L1 means
+  of orientations, of the trees that have it.
 */
 template <class ConcurrencyTag>
 Orl_coordinates middle_of_members(const Orl_layout& layout,
@@ -227,9 +228,9 @@ struct Embedded_trees
 };
 
 /*!
-  Coordinates of all trees. Twists of frames follow those of a tree in their middle, so that they do
-  not count as a difference; a branch that a tree lacks has the length 0 there, and the orientation
-  and attachment of the middle tree: a median is not moved by it.
+  Computes the coordinates of all trees. Twists of frames follow those of the median tree, so that
+  they are no differences. A branch that a tree lacks has the length 0, and the orientation and
+  attachment of the median tree, which leave the median unchanged.
 */
 template <class ConcurrencyTag>
 Embedded_trees embed_trees(const Orl_layout& layout,

@@ -21,10 +21,10 @@
 namespace pcs {
 namespace shape_space {
 /*!
-  The first round begins with the branches of the most ordinary tree. Each further tree is matched
-  to the middle of those before it and adds the branches that found no partner. In further rounds
-  all trees are matched anew to the middle tree of the last round. The order in which trees are
-  added plays no part: they are taken in an order of their own.
+  Builds the topology of any number of trees. The first round begins with the branches of the most
+  ordinary tree. Each further tree is matched to the mean of those before it and adds its unmatched
+  branches. In further rounds all trees are matched to the mean tree of the previous round. The
+  order of input has no influence: trees are taken in a canonical order.
 */
 template <class ConcurrencyTag>
 class Shared_topology_builder
@@ -39,7 +39,7 @@ public:
       m_paths.push_back(Branch_matching<ConcurrencyTag>::find_paths(*tree, weights));
   }
 
-  /// `false` when `progress` asks to stop.
+  /// Returns `false` when `progress` asks to stop.
   bool run(pcs::internal::Progress& progress)
   {
     const std::vector<std::size_t> order = internal::canonical_order(m_trees);
@@ -72,8 +72,8 @@ public:
     return !progress.is_cancelled();
   }
 
-  /// Matches one more tree to the middle tree; branches of it that find no partner are left out.
-  /// Returns the share of its length that is represented. [-]
+  /// Matches one more tree to a reference tree; its unmatched branches are left out. Returns the
+  /// fraction of its length that is represented. [-]
   double project(const Rooted_tree& tree,
                  const Reference_tree& reference,
                  std::vector<Shared_branch>& branches,
@@ -100,7 +100,8 @@ public:
   std::vector<Shared_branch>& branches() { return m_branches; }
   std::vector<Branch_paths>& paths() { return m_paths; }
   const Orl_coordinates& reference() const { return m_x; }
-  /// Share of the branches of the trees that had another partner in the round before the last. [-]
+  /// Returns the fraction of the branches of all trees whose match differs between the last two
+  /// rounds. [-]
   double fraction_of_changed_matches() const { return m_fraction_of_changed_matches; }
 
 private:
@@ -111,11 +112,12 @@ private:
     b.attachment.assign(m_trees.size(), 0);
   }
 
-  /// Branches get as many edges as their members need; the middle tree gets them, too.
+  /// Sets the number of edges of each branch to the largest that a member needs, and resamples the
+  /// mean tree.
   void begin_round()
   {
     const Reference_tree old = make_reference(make_layout(m_branches), m_x);
-    std::vector<Shared_branch> as_tree = m_branches; // the middle tree as the only member
+    std::vector<Shared_branch> as_tree = m_branches; // the mean tree as the only member
     for (std::size_t b = 0; b < m_branches.size(); ++b) {
       Shared_branch& branch = m_branches[b];
       branch.number_of_edges = 1;
@@ -167,14 +169,15 @@ private:
     return result;
   }
 
-  static constexpr std::size_t batch = 16;  // trees that are matched to the same middle tree ...
+  static constexpr std::size_t batch = 16;  // trees that are matched to the same mean tree ...
   static constexpr std::size_t at_once = 4; // ... between calls of the callback
 
-  /// Pairs of trunks that are looked into: with all that two trees are given, most of the time
-  /// would go there.
+  /// Number of pairs of trunks to match; with the number for two trees, they would take most of the
+  /// time. [count]
   static constexpr std::size_t number_of_trunk_trials = 4;
 
-  /// Never null: the trunks are always matched. `is_trunk_known`: it is that of the last round.
+  /// Matches tree `t`. The result is never null, as the trunks are always matched.
+  /// `is_trunk_known`: the trunk is that of the last round.
   std::shared_ptr<const Matched_branch> match(std::size_t t, bool is_trunk_known) const
   {
     pcs::internal::Progress none_wanted;
@@ -201,7 +204,7 @@ private:
       add_single(t, 0, none, 0);
     if (!is_first_round && m_branches.size() == before)
       return;
-    // the middle tree takes part of the new one: running means at first, new branches always
+    // the mean tree is updated: running means in the first round, new branches always
     const Orl_layout layout = make_layout(m_branches);
     internal::Embedding tree =
         internal::embed(layout, m_branches, *m_trees[t], m_paths[t], t, Vec3::Zero());
@@ -260,7 +263,7 @@ private:
   void end_round()
   {
     count_changes();
-    // branches that nobody has any more; what hangs on them has nobody either
+    // removes branches without members; their subtrees have none either
     std::vector<std::size_t> number(m_branches.size(), none);
     std::vector<Shared_branch> kept;
     const Orl_layout old = make_layout(m_branches);
@@ -310,7 +313,7 @@ private:
     m_fraction_of_changed_matches = changed / std::max(1.0, all);
   }
 
-  /// A branch of the middle tree and one of tree `t`, and what hangs on both.
+  /// Adds a branch of the mean tree and one of tree `t` as a pair, with their subtrees.
   void add_match(const Matched_branch& match, std::size_t t, double attachment)
   {
     const std::size_t b = match.path_1;
@@ -341,7 +344,7 @@ private:
       make_increasing(node);
       branch.node[t] = std::move(node);
     }
-    const std::vector<double> node = m_branches[b].node[t]; // branches may move
+    const std::vector<double> node = m_branches[b].node[t]; // a copy: branches may move
     const auto place = [&](std::size_t child) {
       return node_number(node, own.arc[own.children[child].position] / own.length());
     };
@@ -355,7 +358,7 @@ private:
         add_single(t, own.children[c].start, b, place(c));
   }
 
-  /// The places begin with 0 and end with 1; rounding must not fold the branch.
+  /// Makes the positions increase from 0 to 1: rounding must not fold the branch.
   static void make_increasing(std::vector<double>& node)
   {
     const std::size_t n = node.size() - 1;
@@ -368,7 +371,7 @@ private:
       node[k] = std::min(node[k], node[k + 1] - least);
   }
 
-  /// A branch without partner, with all that hangs on it.
+  /// Adds an unmatched branch with its subtree.
   void add_single(std::size_t t, std::size_t start, std::size_t parent, double attachment)
   {
     const std::size_t id = m_branches.size();
@@ -394,7 +397,7 @@ private:
   std::size_t m_number_of_rounds;
   std::vector<Branch_paths> m_paths;
   std::vector<Shared_branch> m_branches, m_last_members;
-  Orl_coordinates m_x; // of the middle tree
+  Orl_coordinates m_x; // of the mean tree
   Reference_tree m_reference;
   Elastic_matcher m_matcher{65, 6};
   bool m_do_extend = true;

@@ -18,7 +18,7 @@ namespace pcs {
 namespace shape_space {
 namespace internal {
 
-/// Nodes in an order that does not depend on how the caller numbered them.
+/// Returns the nodes in an order that does not depend on their numbers in the input.
 inline std::vector<std::size_t> canonical_nodes(const Rooted_tree& tree)
 {
   std::vector<std::size_t> order, stack{0};
@@ -32,7 +32,7 @@ inline std::vector<std::size_t> canonical_nodes(const Rooted_tree& tree)
   return order;
 }
 
-/// A total order of trees that does not depend on the order they were added in, save for equal
+/// Compares trees in a total order that does not depend on the order of input, except for equal
 /// trees.
 inline bool is_tree_before(const Rooted_tree& a, const Rooted_tree& b)
 {
@@ -53,8 +53,8 @@ inline bool is_tree_before(const Rooted_tree& a, const Rooted_tree& b)
   return false;
 }
 
-/// The tree that is least unlike all others in its length, its size and its number of nodes, then
-/// the others.
+/// Returns the trees in a canonical order: first the tree most similar to all others in length,
+/// size and number of nodes, then the others.
 inline std::vector<std::size_t> canonical_order(const std::vector<const Rooted_tree*>& trees)
 {
   std::vector<std::size_t> order(trees.size());
@@ -62,7 +62,7 @@ inline std::vector<std::size_t> canonical_order(const std::vector<const Rooted_t
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return is_tree_before(*trees[a], *trees[b]);
   });
-  const auto figures = [&](std::size_t t) {
+  const auto descriptors = [&](std::size_t t) {
     return Vec3(std::log(trees[t]->weights[0] / trees[t]->heights[0]),
                 std::log(trees[t]->heights[0]),
                 std::log(static_cast<double>(trees[t]->size())));
@@ -72,7 +72,7 @@ inline std::vector<std::size_t> canonical_order(const std::vector<const Rooted_t
   for (std::size_t i = 0; i < order.size(); ++i) {
     double sum = 0;
     for (const std::size_t u : order)
-      sum += (figures(order[i]) - figures(u)).lpNorm<1>();
+      sum += (descriptors(order[i]) - descriptors(u)).lpNorm<1>();
     if (sum < least * (1 - 1e-12)) {
       least = sum;
       first = i;

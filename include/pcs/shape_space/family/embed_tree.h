@@ -12,8 +12,8 @@
 namespace pcs {
 namespace shape_space {
 
-/// A further tree on the topology of a family. `represented`, if not null: fraction of its length
-/// that has a branch there [-].
+/// Embeds a further tree in the topology of a family. `represented`, if not null: fraction of its
+/// length on branches of the topology [-].
 template <class ConcurrencyTag>
 Orl_coordinates embed_tree(const Tree_family& family, const Rooted_tree& tree, double* represented);
 

@@ -47,7 +47,7 @@ Orl_coordinates embed_tree(const Tree_family& family, const Rooted_tree& tree, d
                           x);
   internal::set_own_orientations(family.layout, family.orientation, x);
   Orl_coordinates reference = family.reference;
-  if (family.orientation == Orl_orientation::world_axes) // it is measured in frames
+  if (family.orientation == Orl_orientation::world_axes) // the reference has orientations in frames
     internal::measure_as(Orl_orientation::world_axes, family.layout, reference);
   for (std::size_t b = 0; b < branches.size(); ++b)
     if (!branches[b].has(0)) {

@@ -36,8 +36,7 @@ inline void find_growth_direction(Tree_family& family)
   family.up = sum.norm() > 0 ? Vec3(sum.normalized()) : Vec3(Vec3::UnitZ());
 }
 
-/// The same tree, of which orientations were in frames or in world axes, in the other ones: those
-/// of `kind`.
+/// Converts the orientations of a tree between frames and world axes, to those of `kind`.
 inline void measure_as(Orl_orientation kind, const Orl_layout& layout, Orl_coordinates& x)
 {
   Orl_geometry geometry;
@@ -53,7 +52,7 @@ inline void measure_as(Orl_orientation kind, const Orl_layout& layout, Orl_coord
 
 } // namespace internal
 
-/// Two trees as a family; `first_point` is left to the caller.
+/// Makes a family of two trees; `first_point` is left to the caller.
 inline Tree_family make_family(const Embedded_pair& pair,
                                const std::array<const Tree_input*, 2>& inputs,
                                const Matching_weights& weights)
@@ -96,7 +95,7 @@ inline Tree_family make_family(const Embedded_pair& pair,
   return family;
 }
 
-/// Any number of trees on a topology that was found for them.
+/// Makes a family of any number of trees on their topology.
 template <class ConcurrencyTag>
 Tree_family make_family(Shared_topology_builder<ConcurrencyTag>& topology,
                         const std::vector<const Rooted_tree*>& trees,
@@ -119,7 +118,7 @@ Tree_family make_family(Shared_topology_builder<ConcurrencyTag>& topology,
                                                         orientation,
                                                         form.direction);
   family.x = std::move(embedded.x);
-  // others are matched to a tree in frames, whatever the orientations mean
+  // other trees are matched to a tree in frames, whatever the kind of orientation
   family.reference =
       orientation == Orl_orientation::gauge_fixed
           ? std::move(embedded.reference)
@@ -138,7 +137,7 @@ Tree_family make_family(Shared_topology_builder<ConcurrencyTag>& topology,
   return family;
 }
 
-/// First pair of each edge, and the number of all.
+/// Returns the first pair of each edge, and the number of pairs as last element.
 inline std::vector<std::size_t> first_of_edges(const std::vector<Point_pair>& pairs,
                                                std::size_t number_of_edges)
 {
@@ -150,7 +149,7 @@ inline std::vector<std::size_t> first_of_edges(const std::vector<Point_pair>& pa
   return first;
 }
 
-/// The edge of each point of tree `t`, `none` for no points.
+/// Finds the edge of each point of tree `t`.
 template <class ConcurrencyTag>
 std::vector<std::size_t> edges_of_points(const Tree_family& family,
                                          const Tree_input& input,

@@ -57,7 +57,7 @@ inline Orl_coordinates restore(const Orl_space_data::Tree& stored)
 
 } // namespace internal
 
-/// Everything but points.
+/// Stores everything but points.
 inline Orl_space_data store_family(const Tree_family& family)
 {
   Orl_space_data result;
@@ -97,7 +97,7 @@ inline Orl_space_data store_family(const Tree_family& family)
 
 namespace internal {
 
-/// Restores a family part by part, and checks every number.
+/// Restores a family part by part and checks every number.
 class Family_restorer
 {
 public:
@@ -271,7 +271,7 @@ inline std::vector<Vec3> points_of_stored(const std::vector<std::array<double, 3
   return result;
 }
 
-/// Points and pairs of a space of two trees; returns the scans, without trees.
+/// Restores points and pairs of a space of two trees; returns the scans, without trees.
 template <class ConcurrencyTag>
 std::vector<Tree_input> restore_pair(const Orl_space_data& stored,
                                      const Tree_family& family,

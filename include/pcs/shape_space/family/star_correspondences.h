@@ -37,7 +37,7 @@ inline std::vector<Vec3> points_in_family(const Tree_family& family, const Tree_
 
 namespace internal {
 
-/// Transports the sampling that all trees share to one scan after another.
+/// Transports the common sampling of all trees to one scan after another.
 template <class ConcurrencyTag>
 class Star_correspondences
 {
@@ -183,9 +183,9 @@ private:
 } // namespace internal
 
 /*!
-  Finds the corresponding points in other scans for each point of the sampling that all trees share,
-  by tree. For each branch, the sampling consists of the points of one scan; it is transported to
-  each other scan that has points there, branch by branch as between two trees. `edge[t][i]` as for
+  Finds the corresponding points in other scans for each point of the common sampling, by tree. For
+  each branch, the sampling consists of the points of one scan; it is transported to each other scan
+  that has points there, branch by branch as between two trees. `edge[t][i]` as for
   `choose_points()`. `is_stopped(done)` is asked now and then; the result has no meaning if it
   returns `true`.
 */

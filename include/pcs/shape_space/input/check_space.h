@@ -5,6 +5,7 @@
 #ifndef PCS_SHAPE_SPACE_INPUT_CHECK_SPACE_H
 #define PCS_SHAPE_SPACE_INPUT_CHECK_SPACE_H
 
+#include <pcs/core/errors.h>
 #include <pcs/core/parameters/check_value.h>
 #include <pcs/shape_space/model/Orl_coordinates.h>
 #include <pcs/shape_space/model/Tree_family.h>
@@ -13,45 +14,48 @@
 #include <string>
 #include <vector>
 
-// All of these throw `pcs::Invalid_input` with a message that begins with `caller`.
+// All of these throw `pcs::Invalid_input` with a message that begins with `caller`, and allocate
+// nothing otherwise.
 
 namespace pcs {
 namespace shape_space {
 
-inline void check_built(const Tree_family& family, const std::string& caller)
+inline void check_built(const Tree_family& family, const char* caller)
 {
   pcs::internal::check(!family.x.empty(), caller, "call build() first");
 }
 
-inline void check_handle(const Tree_family& family, std::size_t h, const std::string& caller)
+inline void check_handle(const Tree_family& family, std::size_t h, const char* caller)
 {
   check_built(family, caller);
-  pcs::internal::check(h < family.x.size(), caller, "there is no tree " + std::to_string(h));
+  if (h >= family.x.size())
+    throw Invalid_input(std::string(caller) + ": there is no tree " + std::to_string(h));
 }
 
-/// `what`: "the tree is", "the modes are".
+/// `message`: "the tree is of another space", or the like.
 inline void check_coordinates(const Tree_family& family,
                               const Orl_coordinates& x,
-                              const std::string& caller,
-                              const std::string& what)
+                              const char* caller,
+                              const char* message)
 {
   check_built(family, caller);
   pcs::internal::check(x.length.size() == family.layout.number_of_edges() &&
                            x.attachment.size() == family.layout.branches.size(),
                        caller,
-                       what + " of another space");
+                       message);
 }
 
 /// `scan_weights`: empty, or one per tree.
 inline void check_tree(const Tree_family& family,
                        const Orl_coordinates& x,
                        const std::vector<double>& scan_weights,
-                       const std::string& caller)
+                       const char* caller)
 {
-  check_coordinates(family, x, caller, "the tree is");
+  const char* const message = "the tree is of another space";
+  check_coordinates(family, x, caller, message);
   pcs::internal::check(scan_weights.empty() || scan_weights.size() == family.x.size(),
                        caller,
-                       "the tree is of another space");
+                       message);
 }
 
 } // namespace shape_space

@@ -27,8 +27,8 @@ namespace shape_space {
 
 namespace internal {
 
-/// How far from `end` the points behind it go, and where to; null if they do not go farther than
-/// sideways.
+/// Returns the vector from `end` to the end of the points beyond it; null if they extend no farther
+/// along than across. [L]
 inline Vec3 extension(const Vec3& end, double radius, const std::vector<Vec3>& points)
 {
   constexpr std::size_t least_number = 8;
@@ -125,10 +125,10 @@ std::vector<std::vector<Vec3>> points_beyond_ends(const PointRange& scan,
   Moves the tips of a tree, and its root if one branch begins there, to where the points of its scan
   end; returns how many.
 
-  The length of a branch is that of its axis. Where the axes of one scan go to the tips of its
-  leaves and those of another one do not, a leaf seems to shrink. The points that an end is nearest
-  to and that lie beyond it say how far the end moves, if there are eight of them and they go
-  farther than they are wide. \f$O(n \log m)\f$ for n points and m nodes.
+  The length of a branch is that of its axis. If the axes of one scan reach the tips of leaves and
+  those of another one do not, leaves seem to shrink. The extension is estimated from the points
+  that are nearest to an end and lie beyond it, if there are at least eight and they extend farther
+  along the axis than across. \f$O(n \log m)\f$ for n points and m nodes.
 */
 template <class Kernel, class PointRange>
 std::size_t extend_axes(Tree_skeleton<Kernel>& tree, const PointRange& scan)
@@ -153,10 +153,11 @@ std::size_t extend_axes(Tree_skeleton<Kernel>& tree, const PointRange& scan)
       internal::points_beyond_ends(scan, origin, nodes, samples);
   std::size_t number_moved = 0;
   for (std::size_t v = 0; v < n; ++v) {
-    const Vec3 step_out = internal::extension(nodes[v], CGAL::to_double(tree[v].radius), beyond[v]);
-    if (step_out.isZero(0))
+    const Vec3 extension =
+        internal::extension(nodes[v], CGAL::to_double(tree[v].radius), beyond[v]);
+    if (extension.isZero(0))
       continue;
-    const Vec3 to = origin + nodes[v] + step_out;
+    const Vec3 to = origin + nodes[v] + extension;
     tree[v].point = typename Kernel::Point_3(to.x(), to.y(), to.z());
     ++number_moved;
   }

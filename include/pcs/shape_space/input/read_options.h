@@ -128,7 +128,7 @@ Build_options read_build_options(const NamedParameters& np,
 }
 
 template <class NamedParameters>
-Path_options read_path_options(const NamedParameters& np, const std::string& caller)
+Path_options read_path_options(const NamedParameters& np, const char* caller)
 {
   namespace tags = pcs::internal_np;
   using pcs::internal::is_parameter_v;
@@ -144,17 +144,19 @@ Path_options read_path_options(const NamedParameters& np, const std::string& cal
   read_parameter(np, tags::max_extrapolation_angle, options.max_extrapolation_angle);
   read_parameter(np, tags::do_limit_radii, options.do_limit_radii);
   read_parameter(np, tags::branch_emergence, options.emergence);
-  pcs::internal::check_value(caller,
-                             "`max_extrapolation_angle`",
-                             options.max_extrapolation_angle,
-                             options.max_extrapolation_angle >= 0,
-                             "at least 0");
+  if (!(options.max_extrapolation_angle >= 0)) // paths allocate nothing
+    pcs::internal::check_value(caller,
+                               "`max_extrapolation_angle`",
+                               options.max_extrapolation_angle,
+                               false,
+                               "at least 0");
   return options;
 }
 
-/// For more than two trees there are no pairs of points to be joined.
+/// Reads the path of points. More than two trees have no pairs of points, so their path is
+/// cylindrical.
 template <class NamedParameters>
-Point_path read_point_path(const NamedParameters& np, bool is_pair, const std::string& caller)
+Point_path read_point_path(const NamedParameters& np, bool is_pair, const char* caller)
 {
   using Tag = pcs::internal_np::point_path_t;
   Point_path path = Point_path::cylindrical;

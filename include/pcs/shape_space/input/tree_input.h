@@ -30,7 +30,7 @@
 namespace pcs {
 namespace shape_space {
 
-/// Deeper trees are refused; those that grow have ten levels or so.
+/// Trees with more levels are refused; real trees have about ten. [count]
 constexpr std::size_t most_levels_of_branches = 250;
 
 /// A tree and its scan, both relative to the root of the tree.
@@ -66,7 +66,7 @@ struct Is_number_valued<
     Map,
     Key,
     std::void_t<decltype(CGAL::to_double(get(std::declval<const Map&>(), std::declval<Key>())))>>
-  // CGAL::to_double() takes everything and returns a tag for what is no number
+  // CGAL::to_double() accepts every type and returns a tag for types that are no numbers
   : std::is_convertible<decltype(CGAL::to_double(
                             get(std::declval<const Map&>(), std::declval<Key>()))),
                         double>
@@ -94,7 +94,7 @@ struct Is_listable_graph<
     Graph,
     std::void_t<decltype(num_vertices(std::declval<const Graph&>())),
                 decltype(vertices(std::declval<const Graph&>())),
-                // after these two: it is an error, not a "no", for what is no graph at all
+                // after these two: it is an error, instead of `false`, for types that are no graphs
                 typename boost::graph_traits<Graph>::vertex_descriptor,
                 decltype(out_edges(
                     std::declval<typename boost::graph_traits<Graph>::vertex_descriptor>(),
@@ -202,7 +202,7 @@ void read_scan(const PointRange& scan,
   }
 }
 
-/// The maps of positions and radii: those of the caller, or the bundled properties of a
+/// Returns the maps of positions and radii: those of the caller, or the bundled properties of a
 /// `Tree_skeleton`.
 template <class TreeGraph, class NamedParameters>
 auto node_maps(const TreeGraph& graph, const NamedParameters& np)
@@ -276,7 +276,7 @@ void read_input(const TreeGraph& graph,
 
 } // namespace internal
 
-/// Copies and checks what the caller gives.
+/// Copies and checks a tree and its scan.
 template <class Kernel, class TreeGraph, class PointRange, class NamedParameters>
 Tree_input make_tree_input(const TreeGraph& graph,
                            const PointRange& scan,

@@ -21,36 +21,38 @@ namespace shape_space {
 
 namespace internal {
 
-/// Where the children of a branch sit, in numbers of its nodes; those near a node sit at it.
-inline std::vector<std::vector<double>> seats_of_children(const Orl_layout& layout,
-                                                          const Orl_coordinates& x,
-                                                          const std::vector<std::size_t>& order,
-                                                          std::vector<double>& seat)
+/// Returns the attachments of the children of each branch, in numbers of its nodes, without
+/// duplicates. Those near a node are moved to it. `attachment`: of each branch.
+inline std::vector<std::vector<double>>
+attachments_of_children(const Orl_layout& layout,
+                        const Orl_coordinates& x,
+                        const std::vector<std::size_t>& order,
+                        std::vector<double>& attachment)
 {
   constexpr double at_node = 1e-9;
-  std::vector<std::vector<double>> seats(layout.branches.size());
-  seat.assign(layout.branches.size(), 0);
+  std::vector<std::vector<double>> attachments(layout.branches.size());
+  attachment.assign(layout.branches.size(), 0);
   for (std::size_t b = 0; b < layout.branches.size(); ++b) {
     const std::size_t parent = layout.branches[b].parent;
     if (parent == none || order[b] == none)
       continue;
     const auto last = static_cast<double>(layout.branches[parent].number_of_edges);
-    seat[b] = std::min(last, std::max(0.0, x.attachment[b]));
-    if (std::abs(seat[b] - std::round(seat[b])) < at_node)
-      seat[b] = std::round(seat[b]);
-    seats[parent].push_back(seat[b]);
+    attachment[b] = std::min(last, std::max(0.0, x.attachment[b]));
+    if (std::abs(attachment[b] - std::round(attachment[b])) < at_node)
+      attachment[b] = std::round(attachment[b]);
+    attachments[parent].push_back(attachment[b]);
   }
-  for (auto& of_parent : seats) {
+  for (auto& of_parent : attachments) {
     std::sort(of_parent.begin(), of_parent.end());
     of_parent.erase(std::unique(of_parent.begin(), of_parent.end()), of_parent.end());
   }
-  return seats;
+  return attachments;
 }
 
 } // namespace internal
 
-/// A tree of the space as a skeleton. An edge that carries a branch is divided there. Branches
-/// without length, and what hangs on them, are left out.
+/// Writes a tree of the space as a skeleton. An edge that supports a branch is divided there.
+/// Branches without length and their subtrees are left out.
 template <class Kernel>
 void write_skeleton(const Orl_layout& layout,
                     const Orl_coordinates& x,
@@ -63,10 +65,10 @@ void write_skeleton(const Orl_layout& layout,
   Tree_bundle& bundle = tree[boost::graph_bundle];
   std::vector<std::size_t> branch_of(layout.branches.size(), npos);
   const std::vector<std::size_t> order = orders_of_branches(layout, x);
-  std::vector<double> seat;
-  const std::vector<std::vector<double>> seats =
-      internal::seats_of_children(layout, x, order, seat);
-  std::vector<std::vector<std::size_t>> vertex_of_seat(layout.branches.size());
+  std::vector<double> attachment;
+  const std::vector<std::vector<double>> attachments =
+      internal::attachments_of_children(layout, x, order, attachment);
+  std::vector<std::vector<std::size_t>> vertex_at(layout.branches.size());
   for (std::size_t b = 0; b < layout.branches.size(); ++b) {
     const Orl_layout::Branch& branch = layout.branches[b];
     if (order[b] == none)
@@ -77,9 +79,9 @@ void write_skeleton(const Orl_layout& layout,
         {is_trunk ? npos : branch_of[branch.parent], static_cast<int>(order[b]), b});
     std::size_t previous = npos;
     if (!is_trunk) {
-      const auto& of_parent = seats[branch.parent];
-      const auto k = std::lower_bound(of_parent.begin(), of_parent.end(), seat[b]);
-      previous = vertex_of_seat[branch.parent][static_cast<std::size_t>(k - of_parent.begin())];
+      const auto& of_parent = attachments[branch.parent];
+      const auto k = std::lower_bound(of_parent.begin(), of_parent.end(), attachment[b]);
+      previous = vertex_at[branch.parent][static_cast<std::size_t>(k - of_parent.begin())];
     }
     const auto add = [&](const Vec3& local, double radius) {
       const Vec3 p = local + origin;
@@ -96,19 +98,20 @@ void write_skeleton(const Orl_layout& layout,
         bundle.root = v;
       previous = v;
     };
-    auto next = seats[b].begin();
+    auto next = attachments[b].begin();
     for (std::size_t j = 0; j <= branch.number_of_edges; ++j) {
       const std::size_t v = layout.first_node(b) + j;
-      const auto place = static_cast<double>(j);
-      for (; next != seats[b].end() && *next < place; ++next) { // between this node and the last
-        const double f = *next - (place - 1);
+      const auto position = static_cast<double>(j);
+      // between this node and the last
+      for (; next != attachments[b].end() && *next < position; ++next) {
+        const double f = *next - (position - 1);
         add((1 - f) * geometry.node[v - 1] + f * geometry.node[v],
             (1 - f) * geometry.radius[v - 1] + f * geometry.radius[v]);
-        vertex_of_seat[b].push_back(previous);
+        vertex_at[b].push_back(previous);
       }
       add(geometry.node[v], geometry.radius[v]);
-      for (; next != seats[b].end() && *next == place; ++next)
-        vertex_of_seat[b].push_back(previous);
+      for (; next != attachments[b].end() && *next == position; ++next)
+        vertex_at[b].push_back(previous);
     }
   }
   result = std::move(tree);

@@ -32,18 +32,18 @@ namespace pcs {
 namespace shape_space {
 
 /*!
-  The search for the matching of least energy.
+  Searches for the matching of least energy.
 
-  Two branches are tried with several ways to continue each; below each try, children are assigned
-  to each other at least cost, which asks the same question for every pair of children. All ways of
-  the trunks are looked at with one try for each pair below first, and the best of these again with
+  Two branches are tried with several candidate paths each. For each trial, children are assigned at
+  least cost, which requires the matching of every pair of children in the same manner. All pairs of
+  trunks are first matched with one trial per pair of children, and the best of these again with
   more.
 */
 template <class ConcurrencyTag>
 class Branch_matching
 {
 public:
-  /// `paths`: the ways in which the trees may be taken apart.
+  /// `paths`: the candidate paths of all branches of the trees.
   Branch_matching(const Rooted_tree& tree_1,
                   const Rooted_tree& tree_2,
                   const Matching_weights& weights,
@@ -68,44 +68,44 @@ public:
   const Branch_paths& paths(int t) const { return m_energy.paths(t); }
   const Matching_energy& energy() const { return m_energy; }
 
-  /// Pairs of trunks that are matched with all their children; less than the default saves most of
+  /// Sets the number of pairs of trunks that are matched with all their children. They take most of
   /// the time.
   void set_number_of_trunk_trials(std::size_t n) { m_most_trunk_trials = n; }
-  /// The trunk of tree 2 is known: a path of `paths(1)`.
+  /// Fixes the trunk of tree 2, a path of `paths(1)`.
   void set_second_trunk(std::size_t path) { m_energy.set_second_trunk(path); }
-  /// Whether there are `Branch_paths::other_trunks`.
+  /// Returns whether there are `Branch_paths::other_trunks`.
   bool has_other_trunks() const { return !paths(0).other_trunks.empty(); }
-  /// Whether they are matched from now on; what is known of branches stays known.
+  /// Selects whether these are matched. Memoised matchings of branches stay valid.
   void use_other_trunks(bool do_use)
   {
     if (do_use != m_uses_other_trunks)
       m_energy.swap_trunks();
     m_uses_other_trunks = do_use;
   }
-  /// Tree 2 is turned as a whole, about an axis of the caller; that costs nothing. [rad]
+  /// Rotates tree 2 as a whole about an axis in the coordinates of the caller, at no cost. [rad]
   void set_turn(double angle, const Vec3& axis)
   {
-    m_turn = Eigen::AngleAxisd(angle, m_energy.frame().transpose() * axis).toRotationMatrix();
+    m_rotation = Eigen::AngleAxisd(angle, m_energy.frame().transpose() * axis).toRotationMatrix();
     for (Matching_memo& answers : m_known)
       answers.forget();
   }
 
-  /// What the most promising trunks cost, with one try for each pair below.
+  /// Returns the cost of the most promising trunks, with one trial per pair of children. [-]
   double look()
   {
     m_effort = 1;
     constexpr double any = std::numeric_limits<double>::infinity();
-    return match_children(find_trials(0, 0, m_turn, any, 1).front(), m_turn, any)->cost;
+    return match_children(find_trials(0, 0, m_rotation, any, 1).front(), m_rotation, any)->cost;
   }
 
-  /// Null when `progress` asks to stop, and when the cost is not below `most_cost`; what is only
-  /// looked at with few ways may cost a little more.
+  /// Returns null when `progress` asks to stop, and when the cost is not below `most_cost`.
+  /// Matchings with few trials are admitted up to a slightly higher cost.
   std::shared_ptr<const Matched_branch>
   run(pcs::internal::Progress& progress,
       const double most_cost = std::numeric_limits<double>::infinity())
   {
-    const Eigen::Matrix3d rotation = m_turn;
-    // one look at trunks of very many children is dear enough
+    const Eigen::Matrix3d rotation = m_rotation;
+    // even one trial of trunks with very many children is expensive
     const auto children = [&](int t) {
       return m_energy.path(t, paths(t).paths_of[0].front()).children.size();
     };
@@ -154,19 +154,19 @@ private:
   using Children = Matching_energy::Children;
 
   static constexpr std::size_t most_at_once = 512; // children that are assigned at a time
-  static constexpr int number_of_passes = 3;       // of a turn by curve and children
-  static constexpr double rematch_turn = 0.4;      // Frobenius norm: a turn by about 0.3 rad
-  static constexpr double trunk_slack = 1.05;      // what a look at few ways may be wrong by
+  static constexpr int number_of_passes = 3;       // of the rotation by curve and children
+  static constexpr double rematch_threshold = 0.4; // Frobenius norm: a rotation by about 0.3 rad
+  static constexpr double trunk_slack = 1.05;      // relative error of the cost with one trial
 
   Result match(std::size_t start_1, std::size_t start_2, const Eigen::Matrix3d& rotation)
   {
-    const Matching_key question(start_1, start_2, rotation * m_turn.transpose());
+    const Matching_key question(start_1, start_2, rotation * m_rotation.transpose());
     Matching_memo& known = m_known[m_effort == 1 ? 0 : 1];
     if (const Result* const answer = known.find(question))
       return *answer;
     double limit = m_energy.single_term(m_energy.weight(0, start_1)) +
                    m_energy.single_term(m_energy.weight(1, start_2));
-    const Eigen::Matrix3d turned = question.rotation() * m_turn;
+    const Eigen::Matrix3d turned = question.rotation() * m_rotation;
     Result best;
     for (Trial& trial : find_trials(start_1, start_2, turned, limit, m_effort))
       if (Result result = match_children(std::move(trial), turned, limit)) {
@@ -177,7 +177,7 @@ private:
     return best;
   }
 
-  /// The nodes that follow what is compared of two paths, or their tips.
+  /// Returns the nodes behind the compared parts of two paths, or their tips.
   std::array<std::size_t, 2> compared_ends(std::size_t p1, std::size_t p2) const
   {
     const std::array<std::size_t, 2> last = m_energy.last_nodes(p1, p2);
@@ -187,8 +187,8 @@ private:
             nodes_2[std::min(last[1] + 1, nodes_2.size() - 1)]};
   }
 
-  /// Pairs of paths that may continue two branches, the most promising first, judged without
-  /// looking below their children; those that cost at least `limit` by themselves are left out.
+  /// Finds pairs of paths that may continue two branches, the most promising first by costs without
+  /// the subtrees of their children. Pairs that cost at least `limit` by themselves are left out.
   std::vector<Trial> find_trials(std::size_t start_1,
                                  std::size_t start_2,
                                  const Eigen::Matrix3d& rotation,
@@ -201,7 +201,7 @@ private:
     const bool is_turned = m_energy.is_turned(), is_alone = paths_1.size() * paths_2.size() == 1;
     std::vector<Trial> chosen;
     const auto take = [&](std::size_t p1, std::size_t p2) {
-      // without children of both, no place of a child hangs on how the curves correspond
+      // unless both have children, no attachment depends on the correspondence of the curves
       const bool is_leaf =
           m_energy.path(0, p1).children.empty() || m_energy.path(1, p2).children.empty();
       Trial trial = m_energy.match_curves(p1,
@@ -219,14 +219,14 @@ private:
     };
     using limits = std::numeric_limits<double>;
     std::vector<Candidate> order;
-    std::vector<double> lowest; // the costs that count, a heap
+    std::vector<double> lowest; // the lowest costs, a heap
     Matching_energy::Child_cost_cache prices;
     std::set<std::array<std::size_t, 2>> known;
     for (const std::size_t p1 : paths_1)
       for (const std::size_t p2 : paths_2) {
         if (curve_weight * m_energy.least_energy(p1, p2, rotation) + difference >= limit)
           continue;
-        // paths that part beyond where they are cut are the same
+        // paths that separate beyond their cut are the same
         if (!is_alone && !known.insert(compared_ends(p1, p2)).second)
           continue;
         double cost = 0;
@@ -252,7 +252,7 @@ private:
     return chosen;
   }
 
-  /// Everything that hangs on two curves. Null as soon as it is known that the cost is not below
+  /// Matches the subtrees on two curves. Returns null as soon as the cost is known not to be below
   /// `limit`.
   Result match_children(Trial trial, const Eigen::Matrix3d& rotation, double limit)
   {
@@ -262,16 +262,18 @@ private:
       return nullptr;
     const Children a = m_energy.children_of(0, path_1, trial.last[0], nullptr);
     Children b = m_energy.children_of(1, path_2, trial.last[1], &trial.gamma);
-    const auto find_turn = [&] { return m_energy.turn(trial, a, b, rotation, number_of_passes); };
-    Eigen::Matrix3d turned = find_turn();
+    const auto find_rotation = [&] {
+      return m_energy.turn(trial, a, b, rotation, number_of_passes);
+    };
+    Eigen::Matrix3d turned = find_rotation();
     auto result = std::make_shared<Matched_branch>();
     result->cost = trial.cost;
     if (m_energy.is_turned()) {
-      if ((turned - rotation).norm() > rematch_turn) {
-        // what runs along what is seen better now
+      if ((turned - rotation).norm() > rematch_threshold) {
+        // with the better rotation the curves correspond better
         trial = m_energy.match_curves(trial.path_1, trial.path_2, turned, trial.gamma.size());
         b = m_energy.children_of(1, path_2, trial.last[1], &trial.gamma);
-        turned = find_turn();
+        turned = find_rotation();
       }
       result->cost = m_energy.turned_energy(trial, rotation, turned);
     }
@@ -291,9 +293,9 @@ private:
     return result;
   }
 
-  /// Adds the pairs of children, and what they cost less than alone; false if the cost is not below
-  /// `limit`. Very many children are assigned in turn, the heaviest first: time and memory grow as
-  /// their number, not as its cube.
+  /// Adds the pairs of children and their gains; returns `false` if the cost is not below `limit`.
+  /// Very many children are assigned in batches, the heaviest first: time and memory grow linearly
+  /// with their number, not as its cube.
   bool assign_children(const Branch_path& path_1,
                        const Branch_path& path_2,
                        const Children& a,
@@ -311,7 +313,7 @@ private:
          done += most_at_once) {
       for (std::size_t t = 0; t < 2; ++t) {
         std::vector<std::size_t>&all = order[t], &now = open[t];
-        // the lightest of those that found no partner are tried once more
+        // the lightest of the unmatched ones are tried once more
         if (now.size() > most_at_once)
           now.erase(now.begin(), now.end() - most_at_once);
         for (std::size_t k = done; k < std::min(all.size(), done + most_at_once); ++k)
@@ -350,8 +352,8 @@ private:
     values.erase(std::find(values.begin(), values.end(), value));
   }
 
-  /// The same for some children of both. Bounds first; what the assignment asks for is made exact
-  /// until it asks for nothing more.
+  /// Assigns some children of both, first by lower bounds. The costs of assigned pairs are computed
+  /// exactly until all pairs of the assignment are exact.
   bool assign_some(const Branch_path& path_1,
                    const Branch_path& path_2,
                    const Children& a,
@@ -413,11 +415,11 @@ private:
   }
 
   Matching_energy m_energy;
-  Eigen::Matrix3d m_turn = Eigen::Matrix3d::Identity(); // of tree 2
+  Eigen::Matrix3d m_rotation = Eigen::Matrix3d::Identity(); // of tree 2
   bool m_uses_other_trunks = false;
   std::size_t m_number_of_trials, m_most_trunk_trials;
-  std::size_t m_effort = m_number_of_trials; // tries for each pair below the trunks
-  std::array<Matching_memo, 2> m_known;      // with one try for each pair, and with more
+  std::size_t m_effort = m_number_of_trials; // trials per pair below the trunks
+  std::array<Matching_memo, 2> m_known;      // with one trial per pair, and with more
 };
 
 } // namespace shape_space

@@ -67,19 +67,19 @@ namespace shape_space {
 class Matching_energy : public Path_curves
 {
 public:
-  static constexpr std::size_t most_children = 256; ///< looked at in quick costs: the heaviest ones
+  static constexpr std::size_t most_children = 256; ///< in quick costs: the heaviest ones
 
-  /// Two curves, matched.
+  /// Two matched curves.
   struct Trial
   {
     std::size_t path_1, path_2;
     std::array<std::size_t, 2>
-        last; ///< nodes that they end with: where growth is at tips, not always the tips
+        last; ///< nodes at which they end; with growth at tips not always their tips
     double cost;
     std::vector<double> gamma;
   };
 
-  /// Attachments of the children, as shares of the first curve.
+  /// Children of a branch; attachments `s` are fractions of the first curve. [-]
   struct Children
   {
     std::vector<double> s, weight;
@@ -87,7 +87,7 @@ public:
     std::vector<Vec3> direction;
     std::vector<std::size_t> start;
   };
-  /// What children of tree 2 were worth in similar questions, by the node that they begin with.
+  /// Dual prices of the children of tree 2 in similar assignments, by their first node. [-]
   using Child_cost_cache = std::unordered_map<std::size_t, double>;
 
   template <class ConcurrencyTag>
@@ -102,7 +102,7 @@ public:
   }
 
   const Matching_weights& weights() const { return m_weights; }
-  /// What grew on beyond the last nodes costs: no partner is looked for there.
+  /// Returns the cost of the remainders beyond the last nodes, which are unmatched. [-]
   double rest_cost(std::size_t p1, std::size_t p2, const std::array<std::size_t, 2>& last) const
   {
     double length = 0;
@@ -116,25 +116,26 @@ public:
     return single_term(length);
   }
 
-  /// A bound for the elastic energy: no pair of tangents is closer than the cones around the mean
-  /// directions allow.
+  /// Bounds the elastic energy from below: no pair of tangents is closer than the cones around the
+  /// mean directions.
   double least_energy(std::size_t p1, std::size_t p2, const Eigen::Matrix3d& rotation) const
   {
     const Sampled_curve &a = curves(0)[p1], &b = curves(1)[p2];
     double length_1 = a.length, length_2 = b.length;
-    if (is_cut(length_1, length_2)) // the beginning of a curve is in the same cone, or nearly so
+    if (is_cut(length_1, length_2)) // the beginning of a curve is in nearly the same cone
       length_1 = length_2 = std::min(length_1, length_2);
     const double cosine = std::min(1.0, std::max(-1.0, a.direction.dot(rotation * b.direction)));
     const double angle = std::max(0.0, std::acos(cosine) - a.spread - b.spread);
     if (m_weights.is_published || !m_weights.is_rotation_inherited)
       return elastic_energy(length_1, length_2, std::max(0.0, std::cos(angle)) * (1 + 1e-12));
-    // the branch may turn by a part of the angle
+    // the branch may be rotated by part of the angle
     const double t = m_weights.rotation;
     const double gain = std::sqrt(1 + t * t + 2 * t * std::cos(angle)) - t;
     return elastic_energy(length_1, length_2, gain * (1 + 1e-12));
   }
 
-  /// All that two subtrees cost at least: what one of them has more is stretched or single.
+  /// Bounds the cost of two subtrees from below: the excess length of one of them is stretched or
+  /// unmatched.
   double least_cost(std::size_t start_1, std::size_t start_2, const Eigen::Matrix3d& rotation) const
   {
     double least = std::numeric_limits<double>::infinity();
@@ -151,10 +152,10 @@ public:
                        : 0;
   }
 
-  /// The energy of two branches that turn with their parents by `carried`, and by themselves to
-  /// `rotation`.
+  /// Returns the energy of two branches, whose parents are rotated by `inherited` and they
+  /// themselves by `rotation`. [-]
   double turned_energy(const Trial& trial,
-                       const Eigen::Matrix3d& carried,
+                       const Eigen::Matrix3d& inherited,
                        const Eigen::Matrix3d& rotation) const
   {
     const std::size_t n = trial.gamma.size();
@@ -169,7 +170,7 @@ public:
       sum += std::sqrt(slope) *
              one.tangents.col(static_cast<Eigen::Index>(i)).dot(rotation * two.tangents.col(j));
     }
-    const double cosine = 0.5 * ((carried.transpose() * rotation).trace() - 1);
+    const double cosine = 0.5 * ((inherited.transpose() * rotation).trace() - 1);
     const double length = std::sqrt(one.length * two.length);
     return m_weights.curve * elastic_energy(one.length,
                                             two.length,
@@ -183,12 +184,12 @@ public:
     const double d = std::abs(s1 - s2);
     if (m_weights.is_published)
       return m_weights.position * parent_length * d * d;
-    // far is far: branches of other species are not single for their place alone
+    // the cost is bounded: branches of other species do not stay unmatched for their position alone
     const double w = grows_at_tips() ? std::min(w1, w2) : 0.5 * (w1 + w2);
     return m_weights.position * w * d / (1 + d / m_weights.half_cost_distance);
   }
 
-  /// Indices, the heaviest first.
+  /// Returns indices by decreasing weight.
   static std::vector<std::size_t> by_weight(const std::vector<double>& weight)
   {
     std::vector<std::size_t> order(weight.size());
@@ -206,7 +207,7 @@ public:
     return (m_weights.is_published ? 1 : m_weights.unmatched) * w;
   }
 
-  /// Up to the node `last`.
+  /// Collects the children up to the node `last`.
   Children children_of(int t,
                        const Branch_path& path,
                        std::size_t last,
@@ -226,7 +227,7 @@ public:
     return result;
   }
 
-  /// The assignment of children by quick costs.
+  /// Assigns children by quick costs.
   std::vector<std::size_t> quick_assignment(const Children& a,
                                             const Children& b,
                                             const Eigen::Matrix3d& rotation,
@@ -235,8 +236,8 @@ public:
     return assign_rows(a.s.size(), b.s.size(), quick_gains(a, b, rotation, parent_length));
   }
 
-  /// What two paths cost, judged without looking below their children; infinity where it is seen at
-  /// once that it is more than `most`.
+  /// Estimates the cost of two paths without the subtrees of their children; infinity as soon as it
+  /// is known to exceed `most`.
   double quick_cost_of_paths(std::size_t p1,
                              std::size_t p2,
                              const Eigen::Matrix3d& rotation,
@@ -252,7 +253,7 @@ public:
     return cost + quick_cost_of_children(a, b, turned, length(0, p1), most - cost, prices);
   }
 
-  /// The turn by which two paths and their children fit, likewise.
+  /// Estimates the rotation that aligns two paths and their children, likewise.
   Eigen::Matrix3d
   quick_turn(std::size_t p1, std::size_t p2, const Eigen::Matrix3d& rotation, int passes) const
   {
@@ -264,8 +265,9 @@ public:
                 passes);
   }
 
-  /// What it leaves; infinity where it is seen at once that it is more than `most`. Of very many
-  /// children, what the light ones have more in one tree than in the other counts as single.
+  /// Returns the least cost of an assignment of children by quick costs; infinity as soon as it is
+  /// known to exceed `most`. Of very many children, the difference in weight of the light ones
+  /// counts as unmatched.
   double quick_cost_of_children(const Children& all_1,
                                 const Children& all_2,
                                 const Eigen::Matrix3d& rotation,
@@ -300,16 +302,16 @@ public:
     return total;
   }
 
-  /// The turn that carries branch 2 to branch 1, from the curves, the children, and what the
-  /// parents say.
+  /// Returns the rotation that aligns branch 2 with branch 1, from the curves, the children, and
+  /// the rotation `inherited` from the parents.
   Eigen::Matrix3d turn(const Trial& trial,
                        const Children& all_1,
                        const Children& all_2,
-                       const Eigen::Matrix3d& carried,
+                       const Eigen::Matrix3d& inherited,
                        int passes) const
   {
     if (!m_weights.is_rotation_inherited || m_weights.is_published)
-      return carried;
+      return inherited;
     std::array<Children, 2> few;
     std::array<double, 2> light;
     const Children &a = heaviest(all_1, few[0], light[0]), &b = heaviest(all_2, few[1], light[1]);
@@ -327,8 +329,8 @@ public:
     }
     const double length = std::sqrt(one.length * two.length);
     covariance *= length / static_cast<double>(n);
-    covariance += m_weights.inherited_rotation * length * carried;
-    Quaternion q = align_vectors(covariance, Quaternion(carried));
+    covariance += m_weights.inherited_rotation * length * inherited;
+    Quaternion q = align_vectors(covariance, Quaternion(inherited));
     if (m_weights.children <= 0 || a.s.empty() || b.s.empty())
       return q.toRotationMatrix();
     for (int pass = 0; pass < passes; ++pass) {
@@ -344,7 +346,7 @@ public:
     return q.toRotationMatrix();
   }
 
-  /// Energy and reparametrisation of two paths.
+  /// Computes the elastic energy and the reparametrisation of two paths.
   Trial match_curves(std::size_t p1,
                      std::size_t p2,
                      const Eigen::Matrix3d& rotation,
@@ -361,9 +363,9 @@ public:
   }
 
 private:
-  /// Of curves whose tangents agree by `agreement`. Where lengths have a term of their own, it does
-  /// not count what they differ by: a branch that grew to four times its length would be single
-  /// even if nothing else had changed.
+  /// Returns the elastic energy of curves whose tangents agree by `agreement`. Where lengths have a
+  /// term of their own, it excludes their difference: otherwise a branch that grew to four times
+  /// its length would stay unmatched even if nothing else had changed.
   double elastic_energy(double a, double b, double agreement) const
   {
     const double mean = 2 * std::sqrt(a * b);
@@ -375,8 +377,8 @@ private:
     return m_weights.length * m_weights.unmatched * std::abs(a - b);
   }
 
-  /// All children if they are not too many, else the heaviest in the same order, kept in `few`;
-  /// `light` is the weight of the rest.
+  /// Returns all children if they are not too many, else the heaviest in the same order, stored in
+  /// `few`; `light` is the weight of the others.
   static const Children& heaviest(const Children& all, Children& few, double& light)
   {
     light = 0;
@@ -398,7 +400,7 @@ private:
     return few;
   }
 
-  /// What pairs of children cost more than both alone, by quick costs.
+  /// Returns the quick costs of pairs of children minus their costs when unmatched. [-]
   std::vector<double> quick_gains(const Children& a,
                                   const Children& b,
                                   const Eigen::Matrix3d& rotation,
@@ -418,8 +420,8 @@ private:
     return gain;
   }
 
-  /// Cost of two subtrees of given weights as if each were one straight branch, at an angle of
-  /// given cosine.
+  /// Returns the cost of two subtrees of given weights as if each were one straight branch, at an
+  /// angle of given cosine.
   double quick_cost(double weight_1, double weight_2, double dot) const
   {
     double cosine = std::max(0.0, dot);

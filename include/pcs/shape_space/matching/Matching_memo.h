@@ -20,9 +20,9 @@
 namespace pcs {
 namespace shape_space {
 
-/// Two branches below any parents: the same question comes up for each way to continue the parents.
-/// Turns are rounded before use, so that it is the same question, and so that it does not matter
-/// who asks first.
+/// Key of a pair of branches below any parents: the same pair is matched for each trial of the
+/// parents. Rotations are rounded before use, so that these trials share a key and their order does
+/// not matter.
 class Matching_key
 {
 public:
@@ -31,18 +31,19 @@ public:
   {
     const Eigen::Vector3d u = rotation_log(Quaternion(rotation));
     for (int i = 0; i < 3; ++i)
-      m_turn[static_cast<std::size_t>(i)] = static_cast<int>(std::lround(u[i] / turn_step));
+      m_rotation[static_cast<std::size_t>(i)] = static_cast<int>(std::lround(u[i] / rotation_step));
   }
 
   bool operator==(const Matching_key& q) const
   {
-    return m_start_1 == q.m_start_1 && m_start_2 == q.m_start_2 && m_turn == q.m_turn;
+    return m_start_1 == q.m_start_1 && m_start_2 == q.m_start_2 && m_rotation == q.m_rotation;
   }
 
-  /// The one that is meant.
+  /// Returns the rounded rotation.
   Eigen::Matrix3d rotation() const
   {
-    return rotation_exp(turn_step * Eigen::Vector3d(m_turn[0], m_turn[1], m_turn[2]))
+    return rotation_exp(rotation_step *
+                        Eigen::Vector3d(m_rotation[0], m_rotation[1], m_rotation[2]))
         .toRotationMatrix();
   }
 
@@ -51,39 +52,39 @@ public:
     std::size_t operator()(const Matching_key& q) const
     {
       std::size_t h = q.m_start_1 * 0x9e3779b97f4a7c15u + q.m_start_2;
-      for (const int t : q.m_turn)
+      for (const int t : q.m_rotation)
         h = (h ^ (h >> 29)) * 0xbf58476d1ce4e5b9u + static_cast<std::size_t>(t + 1000);
       return h ^ (h >> 32);
     }
   };
 
 private:
-  static constexpr double turn_step = 0.25; // [rad]
+  static constexpr double rotation_step = 0.25; // [rad]
 
   std::size_t m_start_1, m_start_2;
-  std::array<int, 3> m_turn;
+  std::array<int, 3> m_rotation;
 };
 
-/// Answers to questions, kept by any number of threads.
+/// Results of matchings by key, for any number of threads.
 class Matching_memo
 {
 public:
   using Result = std::shared_ptr<const Matched_branch>;
 
-  /// Null where there is none yet; a null result is an answer.
-  const Result* find(const Matching_key& question)
+  /// Returns null if there is no entry; a null result is an entry.
+  const Result* find(const Matching_key& key)
   {
-    Shard& shard = shard_of(question);
+    Shard& shard = shard_of(key);
     const std::lock_guard<std::mutex> lock(shard.mutex);
-    const auto it = shard.results.find(question);
-    return it == shard.results.end() ? nullptr : &it->second; // stays where it is
+    const auto it = shard.results.find(key);
+    return it == shard.results.end() ? nullptr : &it->second; // rehashing keeps its address
   }
 
-  void keep(const Matching_key& question, const Result& result)
+  void keep(const Matching_key& key, const Result& result)
   {
-    Shard& shard = shard_of(question);
+    Shard& shard = shard_of(key);
     const std::lock_guard<std::mutex> lock(shard.mutex);
-    shard.results.emplace(question, result);
+    shard.results.emplace(key, result);
   }
 
   void forget()
@@ -98,9 +99,9 @@ private:
     std::mutex mutex;
     std::unordered_map<Matching_key, Result, Matching_key::Hash> results;
   };
-  Shard& shard_of(const Matching_key& question)
+  Shard& shard_of(const Matching_key& key)
   {
-    return m_shards[Matching_key::Hash()(question) % m_shards.size()];
+    return m_shards[Matching_key::Hash()(key) % m_shards.size()];
   }
 
   std::array<Shard, 64> m_shards;

@@ -27,7 +27,7 @@ class Path_curves
 {
 public:
   static constexpr std::size_t number_of_samples = 25; ///< of a curve
-  static constexpr std::size_t few_samples = 13; ///< where many are only compared: every other one
+  static constexpr std::size_t few_samples = 13;       ///< for comparisons of many: every other one
 
   template <class ConcurrencyTag>
   Path_curves(const Rooted_tree& tree_1,
@@ -51,7 +51,7 @@ public:
             Sampled_curve& curve = m_curves[t][i];
             curve = sample_curve(*m_trees[t], m_paths[t].paths[i], number_of_samples);
             curve.length /= m_unit[t];
-            turn_curve(curve);
+            rotate_curve(curve);
             m_coarse[t][i] = curve;
             for (std::size_t k = 0; k < few_samples; ++k)
               m_coarse[t][i].tangents.col(static_cast<Eigen::Index>(k)) =
@@ -64,20 +64,20 @@ public:
 
   const Branch_paths& paths(int t) const { return m_paths[static_cast<std::size_t>(t)]; }
   const Branch_path& path(int t, std::size_t i) const { return paths(t).paths[i]; }
-  /// Of a path, in units of the longest one of the tree.
+  /// Returns the length of a path, in units of the longest one of the tree. [-]
   double length(int t, std::size_t path) const { return curves(t)[path].length; }
-  /// Tree 2 has no other trunk than this path of it.
+  /// Restricts the trunks of tree 2 to this path.
   void set_second_trunk(std::size_t path) { m_paths[1].paths_of[0] = {path}; }
-  /// The trunks change places with the other ones.
+  /// Swaps the trunks with the other trunks.
   void swap_trunks()
   {
     for (Branch_paths& paths : m_paths)
       paths.paths_of[0].swap(paths.other_trunks);
   }
-  /// The axes of tree 1 in those of the caller: rotations here are in these.
+  /// Returns the axes of tree 1 in those of the caller; all rotations refer to them.
   const Eigen::Matrix3d& frame() const { return m_frame; }
 
-  /// Total length of what begins with the edge to `start`.
+  /// Returns the total length of the subtree that begins with the edge to `start`. [-]
   double weight(int t, std::size_t start) const
   {
     const Rooted_tree& tree = *m_trees[static_cast<std::size_t>(t)];
@@ -85,8 +85,8 @@ public:
            m_unit[static_cast<std::size_t>(t)];
   }
 
-  /// Nodes that two branches end with, if they are matched: their tips, or where growth is at tips
-  /// the tip of the shorter one and the node of the longer one that is as far from the base.
+  /// Returns the nodes at which two matched branches end: their tips, or with growth at tips the
+  /// tip of the shorter one and the node of the longer one at the same distance from the base.
   std::array<std::size_t, 2> last_nodes(std::size_t p1, std::size_t p2) const
   {
     std::array<std::size_t, 2> last = {path(0, p1).nodes.size() - 1, path(1, p2).nodes.size() - 1};
@@ -105,7 +105,7 @@ public:
 
 protected:
   bool grows_at_tips() const { return m_grows_at_tips; }
-  /// Of a tree, in the unit of the caller.
+  /// Returns the unit of length of a tree. [L]
   double unit(int t) const { return m_unit[static_cast<std::size_t>(t)]; }
   bool is_cut(double length_1, double length_2) const
   {
@@ -117,7 +117,7 @@ protected:
   {
     return m_curves[static_cast<std::size_t>(t)];
   }
-  /// Up to the node `last`, kept in `cut` if that is not the tip.
+  /// Returns the curve up to the node `last`, stored in `cut` if that is not the tip.
   const Sampled_curve&
   curve(int t, std::size_t path, std::size_t samples, std::size_t last, Sampled_curve& cut) const
   {
@@ -126,7 +126,7 @@ protected:
     if (last + 1 < whole.nodes.size()) {
       cut = sample_curve(*m_trees[i], whole, samples, last);
       cut.length /= m_unit[i];
-      turn_curve(cut);
+      rotate_curve(cut);
       return cut;
     }
     return samples == number_of_samples ? m_curves[i][path] : m_coarse[i][path];
@@ -134,12 +134,13 @@ protected:
 
 private:
   // not round, as trees made of round numbers are
-  static constexpr double longest_cut = 0.950001; // branches whose lengths differ less end together
-  static constexpr double nearer = 0.999999; // of two nodes that are about as far, the one behind
+  static constexpr double longest_cut =
+      0.950001;                              // above this ratio of lengths, branches end together
+  static constexpr double nearer = 0.999999; // of two nodes about equally far, the one behind
 
-  /// To the axes of tree 1: turns are rounded in these, so that it does not matter how the trees
-  /// stand.
-  void turn_curve(Sampled_curve& curve) const
+  /// Transforms a curve to the axes of tree 1. Rotations are rounded in these, so that the poses of
+  /// the trees do not matter.
+  void rotate_curve(Sampled_curve& curve) const
   {
     curve.tangents = (m_frame.transpose() * curve.tangents).eval();
     curve.direction = (m_frame.transpose() * curve.direction).eval();

@@ -16,16 +16,16 @@ namespace pcs {
 namespace shape_space {
 
 /*!
-  The maximiser of `trace(R^T covariance)`, uphill from `q`; what the bundle does not determine
-  stays as in `q`.
+  Maximises `trace(R^T covariance)` from `q` upwards; degrees of freedom that the vectors do not
+  determine stay as in `q`.
 
-  Newton's method where the trace is concave: three or four steps do for what `improve_rotation()`
-  needs dozens, as its steps converge linearly when the bundle is narrow. Elsewhere its step is
+  Where the trace is concave, three or four Newton steps replace dozens of `improve_rotation()`,
+  which converges linearly when the vectors are nearly parallel. Elsewhere the step of the latter is
   taken.
 */
 inline Quaternion align_vectors(Eigen::Matrix3d covariance, Quaternion q)
 {
-  // cubes of numbers in any unit have a place; a power of 2 changes no bit
+  // third powers of numbers in any unit stay in range; a power of 2 changes no bit
   const double largest = covariance.cwiseAbs().maxCoeff();
   if (largest > 0 && std::isfinite(largest))
     covariance *= std::ldexp(1.0, std::min(1000, -std::ilogb(largest)));

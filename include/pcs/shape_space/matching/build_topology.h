@@ -18,25 +18,26 @@
 namespace pcs {
 namespace shape_space {
 
-/// Nodes of the two trees closer than this share of a branch become one.
-/// Here and below the numbers are not round, so that rounding does not decide where trees are made
-/// of round numbers.
+/// Nodes of the two trees closer than this fraction of a branch are merged. Here and below the
+/// numbers are not round, so that rounding does not decide where trees are made of round numbers.
+/// [-]
 constexpr double node_tolerance = 0.010001;
-/// Forks that correspond may bend the elastic correspondence of their parents by this share of the
-/// branch.
+/// Corresponding forks may shift the elastic correspondence of their parents by this fraction of
+/// the branch. [-]
 constexpr double fork_tolerance = 0.100001;
-/// Between two such forks the shares of the branch may differ by this factor.
+/// Largest ratio of the fractions of the two branches between two such forks. [-]
 constexpr double steepest_forks = 5.00001;
 
 namespace internal {
 
-/// Increasing pairs of places, from (0, 0) to (1, 1), that correspond.
+/// Corresponding positions on two branches, from (0, 0) to (1, 1). [-]
 struct Place_pair
 {
   double a, b;
 };
 
-/// The heaviest chain of pairs that increases in both places and is not steeper than allowed.
+/// Returns the heaviest chain of pairs that increases in both positions and is not steeper than
+/// allowed.
 inline std::vector<Place_pair> heaviest_chain(std::vector<std::pair<Place_pair, double>> pairs)
 {
   std::sort(pairs.begin(), pairs.end(), [](const auto& x, const auto& y) {
@@ -71,7 +72,7 @@ inline std::vector<Place_pair> heaviest_chain(std::vector<std::pair<Place_pair, 
   return chain;
 }
 
-/// The elastic correspondence, pulled through the anchors.
+/// The elastic correspondence, adjusted to pass through the anchors.
 class Warp
 {
 public:
@@ -110,8 +111,8 @@ private:
   std::vector<Place_pair> m_anchors;
 };
 
-/// All nodes of both branches and the anchors, with their counterparts; neighbours of different
-/// trees are joined.
+/// Collects all nodes of both branches and the anchors, with their corresponding positions; close
+/// nodes of different trees are merged.
 inline std::vector<Place_pair>
 common_nodes(const Branch_path& one, const Branch_path& two, const Warp& warp)
 {
@@ -161,7 +162,7 @@ common_nodes(const Branch_path& one, const Branch_path& two, const Warp& warp)
   return nodes;
 }
 
-/// Number of the node before `s`, and the share of the edge behind it.
+/// Returns the number of the node before `s`, plus the fraction of the edge behind it.
 inline double node_number(const std::vector<double>& node, double s)
 {
   const auto it = std::upper_bound(node.begin(), node.end(), s);
@@ -174,7 +175,7 @@ inline double node_number(const std::vector<double>& node, double s)
   return std::abs(t - rounded) < 1e-9 ? rounded : t;
 }
 
-/// Whether no other child of its parent leads further.
+/// Returns whether no sibling leads further.
 inline bool is_longest_child(const Rooted_tree& tree, std::size_t v)
 {
   return tree.children[tree.first_child[tree.parents[v]]] == v;
@@ -202,15 +203,15 @@ private:
     return m_paths[static_cast<std::size_t>(t)].paths[i];
   }
 
-  /// The beginning of a path up to its node `last` as a path of its own; the rest becomes a branch
-  /// that grows from its end.
+  /// Cuts a path at its node `last` and returns the first part; the rest becomes a branch that
+  /// begins at its end.
   std::size_t cut(std::size_t t, std::size_t p, std::size_t last)
   {
     Branch_path head = m_paths[t].paths[p];
     if (last + 1 >= head.nodes.size())
       return p;
     const std::size_t next = head.nodes[last + 1];
-    // the longest, whatever way the matching took: ways that part behind the end cost the same
+    // the longest, whatever path was matched: paths that separate behind the end cost the same
     std::vector<std::size_t> rest{head.nodes[last], next};
     follow_longest(*m_trees[t], rest);
     head.nodes.resize(last + 1);
@@ -230,7 +231,7 @@ private:
   {
     const std::array<std::size_t, 2> paths = {cut(0, match.path_1, match.last[0]),
                                               cut(1, match.path_2, match.last[1])};
-    const Branch_path one = path(0, paths[0]), two = path(1, paths[1]); // more may be added
+    const Branch_path one = path(0, paths[0]), two = path(1, paths[1]); // copies: paths grow
     const std::size_t n = m_matcher.number_of_samples();
     m_matcher(sample_curve(*m_trees[0], one, n), sample_curve(*m_trees[1], two, n), match.rotation);
     const std::vector<double> gamma = m_matcher.gamma();
@@ -272,7 +273,7 @@ private:
     }
   }
 
-  /// A branch without partner, with all that hangs on it.
+  /// Adds an unmatched branch with its subtree.
   void add_single(int t, std::size_t start, std::size_t parent, double attach)
   {
     const auto i = static_cast<std::size_t>(t);

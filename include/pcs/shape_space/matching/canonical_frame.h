@@ -16,8 +16,9 @@
 namespace pcs {
 namespace shape_space {
 
-/// Columns are the axes: z from the root to the tip of the longest path, x to the heavier side.
-/// Where the sides weigh the same, x leads to the node that is farthest off the z axis.
+/// Returns a frame with columns as axes: z from the root to the tip of the longest path, x to the
+/// heavier side. If the sides weigh the same, x points to the node that is farthest from the z
+/// axis.
 inline Eigen::Matrix3d canonical_frame(const Rooted_tree& tree)
 {
   constexpr double least = 1e-6; // of the extent: less is rounding
@@ -25,11 +26,11 @@ inline Eigen::Matrix3d canonical_frame(const Rooted_tree& tree)
   while (tree.first_child[tip] < tree.first_child[tip + 1])
     tip = tree.children[tree.first_child[tip]];
   Vec3 z = tree.points[tip] - tree.points[0], side = Vec3::Zero(), farthest = Vec3::Zero();
-  if (!(z.norm() > least * tree.extent)) // the trunk comes back to the root
+  if (!(z.norm() > least * tree.extent)) // the trunk returns to the root
     z = tree.points[tree.children[tree.first_child[0]]] - tree.points[0];
   z.normalize();
   double total = 0;
-  // squares of squares of lengths in any unit have a place; a power of 2 changes no bit
+  // fourth powers of lengths in any unit stay in range; a power of 2 changes no bit
   const int unit = tree.extent > 0 ? std::ilogb(tree.extent) : 0;
   for (std::size_t v = 1; v < tree.size(); ++v) {
     const double length = std::ldexp(tree.edge_length(v), -unit);

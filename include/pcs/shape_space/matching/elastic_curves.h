@@ -22,7 +22,7 @@
 namespace pcs {
 namespace shape_space {
 
-/// Unit tangents of a curve at N places of equal distance along it, column by column, and its
+/// Unit tangents of a curve at positions of equal distance along it, column by column, and its
 /// length. The square-root velocity is the tangent times the root of the length.
 struct Sampled_curve
 {
@@ -32,7 +32,7 @@ struct Sampled_curve
   double spread = 0;              ///< largest angle between `direction` and a tangent [rad]
 };
 
-/// The place at arc length `s` on a polyline.
+/// Returns the point at arc length `s` on a polyline. [L]
 inline Vec3 point_at(const Rooted_tree& tree, const Branch_path& path, double s)
 {
   const auto it = std::upper_bound(path.arc.begin(), path.arc.end(), s);
@@ -43,8 +43,8 @@ inline Vec3 point_at(const Rooted_tree& tree, const Branch_path& path, double s)
   return (1 - f) * tree.points[path.nodes[k - 1]] + f * tree.points[path.nodes[k]];
 }
 
-/// Tangents by differences over two steps: kinks shorter than the step are smoothed, as by the
-/// text's spline. The curve goes up to the node `last` of the path.
+/// Samples a path up to the node `last`. Tangents are differences over two steps, which smooth
+/// kinks shorter than the step, like the published spline [Aiteanu 2022].
 inline Sampled_curve
 sample_curve(const Rooted_tree& tree, const Branch_path& path, std::size_t n, std::size_t last)
 {
@@ -59,7 +59,7 @@ sample_curve(const Rooted_tree& tree, const Branch_path& path, std::size_t n, st
   Vec3 mean = Vec3::Zero();
   for (Eigen::Index i = 0; i < size; ++i) {
     Vec3 t = places.col(std::min(size - 1, i + 1)) - places.col(std::max<Eigen::Index>(0, i - 1));
-    if (t.squaredNorm() <= 0 || !(t.norm() > 0)) // turns back on itself
+    if (t.squaredNorm() <= 0 || !(t.norm() > 0)) // reverses its direction
       t = i > 0 ? Vec3(curve.tangents.col(i - 1)) : Vec3(places.col(size - 1) - places.col(0));
     curve.tangents.col(i) = t.norm() > 0 ? Vec3(t.normalized()) : Vec3(Vec3::UnitZ());
     mean += curve.tangents.col(i);
@@ -137,8 +137,8 @@ public:
 
   std::size_t number_of_samples() const { return m_size; }
 
-  /// A step that is better by less is not: rounding must not decide between equal ways along
-  /// straight pieces.
+  /// Least gain of a better step: rounding must not decide between equal steps along straight
+  /// pieces. [-]
   static constexpr double least_gain = 1e-9;
 
   /// Returns the largest `M`, at least 0, where `rotation` is applied to curve 2 first.
@@ -159,8 +159,8 @@ public:
     return std::max(0.0, m_best[(n - 1) * m_stride + margin + n - 1] / static_cast<double>(n - 1));
   }
 
-  /// After a match: where the places of curve 1 are on curve 2, both as shares of the length,
-  /// increasing from 0 to 1.
+  /// Returns, after a match, the positions on curve 2 of the samples of curve 1, as fractions of
+  /// the length, increasing from 0 to 1.
   const std::vector<double>& gamma()
   {
     const std::size_t n = m_size;
@@ -179,12 +179,12 @@ public:
   }
 
 private:
-  /// Offers the cells of row `i` the step `k`; inner loops run along rows of the tables. Cells that
-  /// no path from one corner to the other passes, for the steps are not steep enough, are left out.
+  /// Updates the cells of row `i` by the step `k`; inner loops run along rows of the tables. Cells
+  /// that no path from corner to corner can pass, as the steps are not steep enough, are left out.
   void take_step(std::size_t i, std::size_t k)
   {
     const std::size_t n = m_size, a = m_slopes[k].a, b = m_slopes[k].b, rest = n - 1 - i;
-    const std::size_t behind = m_steepest * rest; // cells that the steps left can pass
+    const std::size_t behind = m_steepest * rest; // cells that the remaining steps can pass
     const std::size_t first =
         std::max({b, (i + m_steepest - 1) / m_steepest, n - 1 > behind ? n - 1 - behind : 0});
     const std::size_t last = std::min(m_steepest * i, n - 1 - (rest + m_steepest - 1) / m_steepest);
@@ -209,7 +209,7 @@ private:
     std::size_t row, begin, end;
   };
 
-  /// Row `i` of the products of tangents.
+  /// Computes row `i` of the products of tangents.
   void find_dots(std::size_t i, const Vec3& tangent)
   {
     const auto size = static_cast<std::size_t>(m_turned.rows());
@@ -224,8 +224,8 @@ private:
     }
   }
 
-  /// The step passes at most `Most` rows, for up to 3 exactly so many: what it gains stays in
-  /// registers then.
+  /// Updates a span of cells by a step over at most `Most` rows, for up to 3 exactly this number,
+  /// so that gains stay in registers.
   template <std::size_t Most>
   void take_step(const Span& span, std::size_t k)
   {
@@ -241,7 +241,7 @@ private:
     double* const to = m_best.data() + span.row * m_stride + margin;
     for (std::size_t j = span.begin; j < span.end; j += lanes) {
       Lanes value, gain, next, best;
-      pcs::internal::load(row[0] + j, gain); // the first place of a step is a node of the grid
+      pcs::internal::load(row[0] + j, gain); // the first position of a step is a node of the grid
       gain = gain * w0[0];
       for (std::size_t x = 1; x < a; ++x) {
         pcs::internal::load(row[x] + j, value);
@@ -256,7 +256,7 @@ private:
     }
   }
 
-  /// The step that the value of a cell comes from, found as it was.
+  /// Returns the step that gave the value of a cell, found by the same comparison.
   Slope step_to(std::size_t i, std::size_t j) const
   {
     double best = -std::numeric_limits<double>::infinity();
@@ -294,7 +294,7 @@ private:
   std::vector<double> m_gamma;
 };
 
-/// The value at `t` in [0, 1] of a function given at places of equal distance.
+/// Returns the value at `t` in [0, 1] of a function given at positions of equal distance.
 inline double value_at(const std::vector<double>& gamma, double t)
 {
   const double x = std::min(1.0, std::max(0.0, t)) * static_cast<double>(gamma.size() - 1);
@@ -303,7 +303,7 @@ inline double value_at(const std::vector<double>& gamma, double t)
   return (1 - f) * gamma[i] + f * gamma[i + 1];
 }
 
-/// The inverse of such a function where it increases from 0 to 1.
+/// Returns the inverse of such a function where it increases from 0 to 1.
 inline double inverse_at(const std::vector<double>& gamma, double y)
 {
   const auto it = std::upper_bound(gamma.begin(), gamma.end(), y);

@@ -25,16 +25,17 @@ namespace shape_space {
 
 namespace internal {
 
-/// A turn of tree 2, and what the trunks and their children cost then, by quick costs.
-struct Turned_trees
+/// A yaw of tree 2, and the quick cost of the trunks with their children.
+struct Yaw_and_cost
 {
   double angle, cost;
   std::size_t path_1, path_2; ///< trunks
 };
 
-/// The turn about `axis` that is nearest to `rotation`; `angle` if all are as near.
+/// Returns the angle of the rotation about `axis` that is nearest to `rotation`, or `angle` if all
+/// are equally near. [rad]
 inline double
-nearest_turn(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& axis, double angle)
+nearest_yaw(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& axis, double angle)
 {
   const Eigen::Matrix3d skew = rotation - rotation.transpose();
   const double sine = axis.dot(Eigen::Vector3d(skew(2, 1), skew(0, 2), skew(1, 0)));
@@ -42,13 +43,13 @@ nearest_turn(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& axis, doubl
   return std::hypot(sine, cosine) > 1e-9 ? std::atan2(sine, cosine) : angle;
 }
 
-/// Looks at all pairs of trunks, then turns on to where the children of the best pair stand.
-inline Turned_trees
-settle_turn(const Matching_energy& energy, const Vec3& axis, double angle, int passes)
+/// Alternates between the best pair of trunks and the yaw that aligns its children. [rad]
+inline Yaw_and_cost
+refine_yaw_candidate(const Matching_energy& energy, const Vec3& axis, double angle, int passes)
 {
-  constexpr int passes_of_turn = 3;
+  constexpr int passes_of_rotation = 3;
   constexpr double least_step = 1e-12; // [rad]
-  Turned_trees best{angle, 0, 0, 0};
+  Yaw_and_cost best{angle, 0, 0, 0};
   for (int pass = 0;; ++pass) {
     const Eigen::Matrix3d rotation = Eigen::AngleAxisd(best.angle, axis).toRotationMatrix();
     Matching_energy::Child_cost_cache prices;
@@ -62,9 +63,9 @@ settle_turn(const Matching_energy& energy, const Vec3& axis, double angle, int p
     if (pass == passes)
       return best;
     const double next =
-        nearest_turn(energy.quick_turn(best.path_1, best.path_2, rotation, passes_of_turn),
-                     axis,
-                     best.angle);
+        nearest_yaw(energy.quick_turn(best.path_1, best.path_2, rotation, passes_of_rotation),
+                    axis,
+                    best.angle);
     if (std::abs(next - best.angle) < least_step)
       return best;
     best.angle = next;
@@ -74,11 +75,11 @@ settle_turn(const Matching_energy& energy, const Vec3& axis, double angle, int p
 } // namespace internal
 
 /*!
-  Angles about the vertical by which branches fit, the most promising first. [rad]
+  Finds angles about the vertical by which branches agree, the most promising first. [rad]
 
-  From 24 angles each turn goes on to where the branches at the trunks stand, seen without what
-  hangs on them. Turns of less than a step are none: what trees that stand alike differ by is left
-  to their branches. Nothing is found if `progress` asks to stop.
+  From 24 start angles, the yaw is refined by the branches on the trunks, without their subtrees.
+  Angles below one step are discarded: small differences between aligned trees are left to their
+  branches. The result is empty if `progress` asks to stop.
 */
 template <class ConcurrencyTag>
 std::vector<double> find_yaw_candidates(const Matching_energy& energy,
@@ -86,12 +87,12 @@ std::vector<double> find_yaw_candidates(const Matching_energy& energy,
                                         std::size_t most,
                                         pcs::internal::Progress& progress)
 {
-  using internal::Turned_trees;
+  using internal::Yaw_and_cost;
   constexpr std::size_t number_of_starts = 24, batch = 4;
   constexpr double pi = pcs::internal::pi, step = 2 * pi / number_of_starts;
   constexpr int first_passes = 3, last_passes = 20;
   const Vec3 axis = energy.frame().transpose() * up;
-  std::vector<Turned_trees> turned(number_of_starts);
+  std::vector<Yaw_and_cost> yaws(number_of_starts);
   static_assert(number_of_starts % batch == 0);
   for (std::size_t first = 0; first < number_of_starts; first += batch) {
     if (!progress(0))
@@ -100,16 +101,18 @@ std::vector<double> find_yaw_candidates(const Matching_energy& energy,
         batch,
         [&](std::size_t i) {
           const std::size_t k = first + i;
-          turned[k] =
-              internal::settle_turn(energy, axis, step * static_cast<double>(k), first_passes);
+          yaws[k] = internal::refine_yaw_candidate(energy,
+                                                   axis,
+                                                   step * static_cast<double>(k),
+                                                   first_passes);
         },
         1);
   }
-  std::stable_sort(turned.begin(), turned.end(), [](const Turned_trees& a, const Turned_trees& b) {
+  std::stable_sort(yaws.begin(), yaws.end(), [](const Yaw_and_cost& a, const Yaw_and_cost& b) {
     return a.cost < b.cost;
   });
   std::vector<double> result;
-  for (const Turned_trees& t : turned) {
+  for (const Yaw_and_cost& t : yaws) {
     const auto is_new = [&](double angle) {
       const auto distance = [&](double other) {
         return std::abs(std::remainder(angle - other, 2 * pi));
@@ -122,7 +125,7 @@ std::vector<double> find_yaw_candidates(const Matching_energy& energy,
       continue;
     if (!progress(0))
       return {};
-    const double angle = internal::settle_turn(energy, axis, t.angle, last_passes).angle;
+    const double angle = internal::refine_yaw_candidate(energy, axis, t.angle, last_passes).angle;
     if (is_new(angle))
       result.push_back(angle);
   }

@@ -17,18 +17,17 @@ namespace shape_space {
 
 /*!
   Minimises the sum of `gain[i * m + j]` over pairs, each row and column at most once; rows and
-  columns may stay single. Entries that are not negative are never used.
+  columns may stay single. Non-negative entries are never used.
 
-  Shortest augmenting paths (Jonker, Volgenant 1987); O(n^2 m) at first. When entries grow, only the
-  pairs that they belong to are solved again: what is known of all others stays true. Ties: the
-  lowest index first.
+  Shortest augmenting paths (Jonker, Volgenant 1987); O(n^2 m) at first. When entries grow, only
+  their pairs are solved again; the prices of all others stay valid. Ties are broken by the lowest
+  index.
 */
 class Assignment
 {
 public:
-  /// `gain` is kept by reference; it may change between calls, as `raise()` says. `prices` of
-  /// columns, not positive, are those of a similar problem, or empty: the nearer they are, the less
-  /// there is to do.
+  /// `gain` is kept by reference and may change between calls, see `raise()`. `prices` of columns,
+  /// not positive, are those of a similar problem, which saves time, or empty.
   Assignment(std::size_t n,
              std::size_t m,
              const std::vector<double>& gain,
@@ -55,11 +54,11 @@ public:
       }
   }
 
-  /// What all pairs together cost at least, as far as is known; after `solve()` what they cost.
+  /// Returns a lower bound for the cost of all pairs; after `solve()` their cost.
   double bound() const { return m_bound; }
 
-  /// Finds the pairs of least cost; false as soon as it is known that they cost more than `most`
-  /// together.
+  /// Finds the pairs of least cost; returns `false` as soon as their cost is known to exceed
+  /// `most`.
   bool solve(double most = std::numeric_limits<double>::infinity())
   {
     for (std::size_t r = 0; r < m_rows.partner.size() && m_bound <= most; ++r)
@@ -70,10 +69,10 @@ public:
   }
 
   const std::vector<double>& prices() const { return m_columns.price; }
-  /// The column of each row, or `none`.
+  /// Returns the column of each row, or `none`.
   const std::vector<std::size_t>& columns() const { return m_rows.partner; }
 
-  /// To be called after entries of rows with their columns grew, and no others changed.
+  /// Updates the pairs after entries of these rows with their columns grew, and no others changed.
   void raise(const std::vector<std::size_t>& rows)
   {
     std::vector<std::size_t> columns;
@@ -91,7 +90,7 @@ public:
 private:
   struct Reached
   {
-    std::size_t row, column; ///< the column it came by
+    std::size_t row, column; ///< column through which it was reached
     double distance;
   };
   struct Side
@@ -110,7 +109,7 @@ private:
     double distance; ///< reduced cost of the path
   };
 
-  /// Assigns row `r`, or leaves it or another row of its side single. What is single has no price.
+  /// Assigns row `r`, or leaves it or another row of its side single. Single rows have the price 0.
   void augment(Side& own, Side& other, std::size_t r)
   {
     if (own.partner[r] != none || !(own.price[r] < 0))
@@ -184,7 +183,7 @@ private:
   {
     std::size_t column = end.column;
     if (column == none) {
-      own.price[end.single_row] = 0; // but for rounding it is
+      own.price[end.single_row] = 0; // it is 0 up to rounding
       if (end.single_row == r)
         return;
       column = own.partner[end.single_row];
@@ -209,7 +208,7 @@ private:
   std::vector<Reached> m_tree;
 };
 
-/// The column of each row, or `none`.
+/// Returns the column of each row, or `none`.
 inline std::vector<std::size_t>
 assign_rows(std::size_t n, std::size_t m, const std::vector<double>& gain)
 {

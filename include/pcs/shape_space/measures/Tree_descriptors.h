@@ -21,10 +21,10 @@ struct Tree_descriptors
 {
   double length = 0;      ///< of all branches [L]
   double height = 0;      ///< extent along the direction of growth [L]
-  double crown_width = 0; ///< extent across it, mean over all sides [L]
-  double depth = 0;       ///< of what hangs below the root [L]
+  double crown_width = 0; ///< extent across it, mean over all directions [L]
+  double depth = 0;       ///< extent of the tree below the root [L]
   double lean =
-      0; ///< of the middle of all branches from the root, across the direction of growth [L]
+      0; ///< distance of the centroid of the branches from the root, across that direction [L]
   std::vector<std::size_t> number_of_branches; ///< by order, the trunk first [count]
   std::vector<double>
       mean_angle; ///< between branches and their parents at the base, by order [rad]
@@ -39,8 +39,8 @@ struct Tree_descriptors
   }
 };
 
-/// From the root to the middle of all branches: upwards, if trees grow that way. Not normalised.
-/// [L]
+/// Returns the vector from the root to the centroid of all branches, an estimate of the direction
+/// of growth; not normalised. [L]
 inline Vec3
 growth_direction(const Orl_layout& layout, const Orl_coordinates& x, const Orl_geometry& geometry)
 {
@@ -56,7 +56,8 @@ growth_direction(const Orl_layout& layout, const Orl_coordinates& x, const Orl_g
   return total > 0 ? Vec3(sum / total) : Vec3(Vec3::UnitZ());
 }
 
-/// `up` is of unit length. Branches without length, and what hangs on them, are not there.
+/// Computes the descriptors; `up` is of unit length. Branches without length and their subtrees are
+/// ignored.
 inline Tree_descriptors measure(const Orl_layout& layout,
                                 const Orl_coordinates& x,
                                 const Orl_geometry& geometry,
@@ -123,14 +124,14 @@ inline Tree_descriptors measure(const Orl_layout& layout,
   return result;
 }
 
-/// What is no difference between figures: trees may all be equally high. [-]
+/// Relative tolerance of descriptors, as trees may all be equally high. [-]
 constexpr double figure_tolerance = 1e-4;
-/// Trees may lean by this share of their width further than all others. [-]
+/// Tolerance of the lean, as a fraction of the crown width. [-]
 constexpr double upright_tolerance = 0.05;
 
-/// How far figures lie outside of what is between the least and the largest of others, as shares of
-/// these, added. By order, if wanted, those of orders that all of the others have. A tree may lean
-/// or hang down less than all others.
+/// Returns the sum of the relative distances of descriptors from the ranges of others; with
+/// `has_orders` also by order, for orders that all others have. A tree may lean or hang down less
+/// than all others. [-]
 inline double range_violation(const Tree_descriptors& x,
                               const std::vector<Tree_descriptors>& others,
                               bool has_orders = true)
@@ -159,7 +160,7 @@ inline double range_violation(const Tree_descriptors& x,
   for (const Tree_descriptors& other : others)
     orders = std::min(orders, other.mean_angle.size());
   for (std::size_t k = 1; has_orders && k < orders; ++k) {
-    // an order that is missing has no branches, and no angles either
+    // a missing order has no branches and no angles
     add([&](const Tree_descriptors& f) {
       return k < f.number_of_branches.size() ? static_cast<double>(f.number_of_branches[k]) : 0.0;
     });

@@ -21,18 +21,18 @@ namespace shape_space {
 struct Branch_change
 {
   std::size_t branch = none; ///< of the topology
-  std::size_t parent = none; ///< likewise, `none` for the trunk
+  std::size_t parent = none; ///< branch of the topology, `none` for the trunk
   std::size_t order = 0;     ///< 0 for the trunk
   bool is_new = false, is_lost = false;
   bool is_longer = false, is_shorter = false, is_thicker = false, is_thinner = false;
   bool is_turned = false;
   double length[2] = {0, 0}; ///< at either date [L]
   double radius[2] = {0, 0}; ///< mean along the branch [L]
-  double angle = 0; ///< by which it turned against its parent, at its base; 0 if new or lost [rad]
+  double angle = 0; ///< of its rotation relative to its parent, at its base; 0 if new or lost [rad]
 };
 
-/// Every branch that one of two trees has, parents first. The trunk turns against the axes of the
-/// input.
+/// Lists every branch that at least one of two trees has, parents first. The angle of the trunk
+/// refers to the axes of the input.
 inline std::vector<Branch_change> find_changes(const Orl_layout& layout,
                                                const Orl_coordinates& before,
                                                const Orl_coordinates& after,
@@ -73,7 +73,7 @@ inline std::vector<Branch_change> find_changes(const Orl_layout& layout,
       c.is_thicker = c.radius[1] - c.radius[0] > limits.radius * thicker;
       c.is_thinner = c.radius[0] - c.radius[1] > limits.radius * thicker;
       const std::size_t e = branch.first_edge;
-      const auto direction = [&](const Orl_geometry& g) { // seen from the parent
+      const auto direction = [&](const Orl_geometry& g) { // in the frame of the parent
         const Vec3 z = g.frame[e] * Vec3::UnitZ();
         const std::size_t p = branch.reference_edge;
         return p == none ? z : Vec3(g.frame[p].conjugate() * z);

@@ -16,17 +16,17 @@
 namespace pcs {
 namespace shape_space {
 
-/// How the two trees stand to each other.
+/// Alignment of the second of two trees with the first.
 struct Alignment_options
 {
   Orl_alignment alignment = Orl_alignment::as_given;
   Vec3 up = Vec3::UnitZ(); ///< the vertical, of unit length
 };
 
-/// Of a turn about `axis`, of unit length: in [-pi, pi]. [rad]
-inline double angle_about(const Vec3& axis, const Eigen::Quaterniond& turn)
+/// Returns the angle of a rotation about `axis`, of unit length, in [-pi, pi]. [rad]
+inline double angle_about(const Vec3& axis, const Eigen::Quaterniond& rotation)
 {
-  const double angle = 2 * std::atan2(turn.vec().dot(axis), turn.w());
+  const double angle = 2 * std::atan2(rotation.vec().dot(axis), rotation.w());
   return std::remainder(angle, 2 * pcs::internal::pi);
 }
 

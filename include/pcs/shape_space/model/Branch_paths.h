@@ -15,20 +15,22 @@
 namespace pcs {
 namespace shape_space {
 
-/// So may a child that shortens the branch by this share of its length at most: which twig is the
-/// tip is a matter of chance, and all twigs beyond the fork hang on that choice.
+/// A child may also continue a branch if it shortens it by at most this fraction of its length:
+/// which twig ends the branch is a matter of chance, but decides which twigs become its children.
+/// [-]
 constexpr double tip_share = 0.05;
 
-/// All else depends on the trunk: so many times more candidates are looked at.
+/// Factor of the number of candidates for the trunk, on which the matching of all branches depends.
+/// [-]
 constexpr std::size_t trunk_factor = 6;
 
-/// Below so many branches that hang on each other, there is one way to continue: what may continue
-/// one of them begins another, and the number of questions would grow as the square of their
-/// number.
+/// Branches of a higher level than this have a single candidate. Each candidate of a branch begins
+/// other branches, so the number of pairs to match would grow as the square of the number of
+/// levels. [count]
 constexpr std::size_t levels_of_choice = 24;
 
-/// A branch begins with an edge; the node at its end names the place. Several paths may begin
-/// there.
+/// A path of a branch. It begins with an edge, and the node at the end of that edge identifies its
+/// beginning; several paths may have the same one.
 struct Branch_path
 {
   std::vector<std::size_t> nodes; ///< from the node on the parent branch to the tip
@@ -39,9 +41,8 @@ struct Branch_path
     std::size_t position; ///< index in `nodes`
   };
   std::vector<Child> children; ///< by position, then longest first
-  bool is_continued =
-      false;             ///< whether it goes on where another branch was cut: it begins as thick
-  bool is_trunk = false; ///< whether it begins with the root itself, and not with an edge
+  bool is_continued = false;   ///< whether it continues a branch that was cut, with its radius
+  bool is_trunk = false;       ///< whether it begins with the root itself, without an edge before
   double length() const { return arc.back(); }
   std::size_t tip() const { return nodes.back(); }
 };
@@ -52,12 +53,12 @@ struct Branch_paths
 {
   std::vector<Branch_path> paths;
   std::vector<std::vector<std::size_t>> paths_of;
-  std::vector<std::size_t> other_trunks; ///< for a second look, much shorter ones among them
+  std::vector<std::size_t> other_trunks; ///< for a second search, including much shorter ones
 };
 
 namespace internal {
 
-/// Follows the longest continuation from `v`, which is already in `nodes`.
+/// Follows the longest continuation from the last of `nodes`.
 inline void follow_longest(const Rooted_tree& tree, std::vector<std::size_t>& nodes)
 {
   for (std::size_t v = nodes.back(); tree.first_child[v] < tree.first_child[v + 1];) {
@@ -83,7 +84,8 @@ inline Branch_path make_path(const Rooted_tree& tree, std::vector<std::size_t> n
   return path;
 }
 
-/// The longest path from `start`, and others that leave it at a fork of nearly equal continuations.
+/// Returns the longest path from `start`, and others that leave it at forks with nearly equal
+/// continuations.
 inline std::vector<std::vector<std::size_t>> candidate_paths(const Rooted_tree& tree,
                                                              std::size_t start,
                                                              double fork_ratio,
@@ -127,8 +129,9 @@ inline std::vector<std::vector<std::size_t>> candidate_paths(const Rooted_tree& 
 
 } // namespace internal
 
-/// `maximal_number` 1 gives the decomposition by longest paths alone. `trunk_ratio` is the fork
-/// ratio of the trunk, if it is less; `other_ratio`, if it is less than both, that of other trunks.
+/// Finds the candidate paths of all branches. `maximal_number` 1 gives the decomposition by longest
+/// paths alone. `trunk_ratio` is the fork ratio of the trunk, if it is less; `other_ratio`, if it
+/// is less than both, that of other trunks. [-]
 inline Branch_paths find_branch_paths(const Rooted_tree& tree,
                                       double fork_ratio,
                                       std::size_t maximal_number,

@@ -17,7 +17,7 @@
 namespace pcs {
 namespace shape_space {
 
-/// How trees are represented in coordinates.
+/// Representation of trees in coordinates.
 struct Representation_options
 {
   Orl_orientation orientation = Orl_orientation::gauge_fixed;
@@ -33,7 +33,7 @@ struct Build_options
   Point_assignment_options assignment;
   Transport_options transport;
   std::size_t number_of_rounds = 3;
-  std::size_t points_of = none; ///< scan that gives the points where it can
+  std::size_t points_of = none; ///< tree whose scan gives the points of the branches that it has
 };
 
 struct Built_family

@@ -15,17 +15,17 @@
 namespace pcs {
 namespace shape_space {
 
-/// A branch of the common topology. Its nodes stand at shares of the length of either branch,
+/// A branch of the common topology. Its nodes lie at fractions of the length of either branch,
 /// increasing from 0 to 1.
 struct Common_branch
 {
-  std::size_t parent = none; ///< index of a branch that comes before, or `none`
+  std::size_t parent = none;                      ///< index of an earlier branch, or `none`
   std::array<std::size_t, 2> path = {none, none}; ///< of each tree, `none`: virtual
   std::array<std::vector<double>, 2>
       node; ///< both of the same size, at least 2; empty for a virtual branch
   std::array<double, 2> attachment = {
       0,
-      0}; ///< on the parent: number of a node, and the share of the edge behind it
+      0}; ///< on the parent: number of a node, plus the fraction of the edge behind it
   std::size_t number_of_nodes() const { return std::max(node[0].size(), node[1].size()); }
   bool is_virtual(int tree) const { return path[static_cast<std::size_t>(tree)] == none; }
 };

@@ -17,14 +17,14 @@
 namespace pcs {
 namespace shape_space {
 
-/// Two branches that correspond, and what hangs on them.
+/// Two corresponding branches, and the pairs of their children.
 struct Matched_branch
 {
   std::size_t path_1 = none, path_2 = none;
-  std::array<std::size_t, 2> last = {none, none}; ///< node of each path that the pair ends with
-  double cost = 0;                                ///< with all that hangs on them [-]
+  std::array<std::size_t, 2> last = {none, none}; ///< node at which the pair ends, on each path
+  double cost = 0;                                ///< including their subtrees [-]
   Eigen::Matrix3d rotation =
-      Eigen::Matrix3d::Identity(); ///< carries the second branch to the first
+      Eigen::Matrix3d::Identity(); ///< aligns the second branch with the first
   struct Pair
   {
     std::size_t child_1, child_2; ///< positions in `Branch_path::children`

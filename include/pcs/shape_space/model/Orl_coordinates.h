@@ -30,9 +30,9 @@ struct Orl_layout
   };
   std::vector<Branch> branches;
   std::vector<std::size_t>
-      edge_before; ///< that frames are carried on from: on the branch, or the reference edge
+      edge_before; ///< from which frames are transported: on the branch, or the reference edge
   std::vector<std::size_t>
-      /// that the orientation refers to, see `set_parent_edges()`; `none`: the axes of the input
+      /// to which the orientation refers, see `set_parent_edges()`; `none`: the axes of the input
       parent_edge;
 
   std::size_t number_of_edges() const { return edge_before.size(); }
@@ -41,10 +41,11 @@ struct Orl_layout
 };
 
 /*!
-  What orientations refer to. An edge refers to the first one of its branch: where each refers to
-  the one before, as in the text, half of each of many small turns about all kinds of axes is not
-  half of what they make together, so that noise of an axis turns all that is behind it. A branch
-  that is turned as a whole differs by the turn of its first edge either way.
+  Sets the edges to which orientations refer. With `gauge_fixed`, an edge refers to the first edge
+  of its branch. If each edge refers to the previous one, as published [Aiteanu 2022], halving many
+  small rotations about different axes does not halve their product, so noise of an axis rotates
+  everything beyond it. In both cases, a branch that is rotated as a whole differs only by the
+  rotation of its first edge.
 */
 inline void set_parent_edges(Orl_layout& layout, Orl_orientation kind)
 {
@@ -63,10 +64,10 @@ struct Orl_coordinates
   std::vector<double> length, radius;  ///< per edge; the radius is that of its end [L]
   std::vector<double> base_radius;     ///< per branch [L]
   std::vector<double>
-      attachment; ///< per branch: number of a node of the parent, and the share of the edge behind
+      attachment; ///< per branch: number of a node of the parent, plus the fraction behind it
 };
 
-/// The same tree in space. Buffers are reused.
+/// The geometry of a tree in space. Buffers are reused.
 struct Orl_geometry
 {
   std::vector<Vec3> node;        ///< relative to the origin of the space [L]
@@ -79,8 +80,8 @@ inline Quaternion turn_about_z(double angle)
   return Quaternion(std::cos(0.5 * angle), 0, 0, std::sin(0.5 * angle));
 }
 
-/// The shortest turn from one unit vector to another; about an axis near x or y if they are
-/// opposite.
+/// Returns the shortest rotation from one unit vector to another; about an axis near x or y if they
+/// are opposite.
 inline Quaternion shortest_turn(const Vec3& from, const Vec3& to)
 {
   const double c = from.dot(to);
@@ -95,7 +96,8 @@ inline Quaternion shortest_turn(const Vec3& from, const Vec3& to)
   return q;
 }
 
-/// The place on branch `b` at `t`, the number of a node and the share of the edge behind it.
+/// Returns the position on branch `b` at `t`, the number of a node plus the fraction of the edge
+/// behind it. [L]
 inline Vec3
 place_on_branch(const Orl_layout& layout, const Orl_geometry& geometry, std::size_t b, double t)
 {
@@ -146,8 +148,8 @@ inline void build_geometry(const Orl_layout& layout,
   }
 }
 
-/// Orders of the branches of a tree, the trunk's is 0; `none` for branches without length, and for
-/// what hangs on them.
+/// Returns the orders of the branches of a tree, 0 for the trunk, and `none` for branches without
+/// length and their subtrees.
 inline std::vector<std::size_t> orders_of_branches(const Orl_layout& layout,
                                                    const Orl_coordinates& x)
 {
@@ -165,15 +167,15 @@ inline std::vector<std::size_t> orders_of_branches(const Orl_layout& layout,
   return order;
 }
 
-/// Angle of the rotation between two orientations: in [0, pi], whatever the signs of the
-/// quaternions. [rad]
+/// Returns the angle between two orientations, in [0, pi], whatever the signs of the quaternions.
+/// [rad]
 inline double angle_between(const Quaternion& a, const Quaternion& b)
 {
   const Quaternion d = a.conjugate() * b; // atan2 keeps small angles, acos would not
   return 2 * std::atan2(d.vec().norm(), std::abs(d.w()));
 }
 
-/// What the distances of trees are made of; constant over the data set, one weight per coordinate.
+/// Weights of the metric, one per coordinate; the same for all trees of a space.
 struct Orl_weights
 {
   std::vector<double> orientation, length, radius; ///< per edge
@@ -205,13 +207,13 @@ inline double distance(const Orl_coordinates& x,
   return metric == Orl_metric::square ? std::sqrt(total) : total;
 }
 
-/// What shrinks beyond an end of the path keeps this share of what it is there: where some edges of
-/// a branch all but vanish, everything that grows on these gathers in one place.
+/// A quantity that shrinks beyond an end of the path keeps this fraction of its value at the end.
+/// Otherwise edges nearly vanish, and all branches that grow on them gather at one position. [-]
 constexpr double least_beyond_end = 0.5;
 
-/// The value at `t` of a quantity that is not negative: linear between `x` and `y`, and beyond an
-/// end where it grows; where it shrinks beyond an end it decays with the same slope at that end,
-/// and nears its least share.
+/// Returns the value at `t` of a non-negative quantity: linear between `x` and `y`, and beyond an
+/// end if it grows there. If it shrinks beyond an end, it decays from there with the same slope
+/// towards its least fraction.
 inline double positive_value(double x, double y, double t)
 {
   if (t >= 0 && t <= 1)
@@ -223,9 +225,9 @@ inline double positive_value(double x, double y, double t)
   return end * (least_beyond_end + rest * std::exp(beyond * step / (rest * end)));
 }
 
-/// The same for a quantity in [0, `last`]; beyond an end it nears a place on the way to the bound
-/// that it moves to, and never reaches the bound: branches that move along their parent do not
-/// gather at its end.
+/// Returns the same for a quantity in [0, `last`]. Beyond an end it approaches a value before the
+/// bound and never reaches the bound, so branches that move along their parent do not gather at its
+/// end.
 inline double bounded_value(double x, double y, double t, double last)
 {
   if (t >= 0 && t <= 1)
@@ -235,7 +237,8 @@ inline double bounded_value(double x, double y, double t, double last)
                     : std::max(0.0, last - positive_value(last - x, last - y, t));
 }
 
-/// The orientation at `t`; beyond an end at most `max_extrapolation_angle` further. [rad]
+/// Returns the orientation at `t`; beyond an end it rotates by at most `max_extrapolation_angle`.
+/// [rad]
 inline Quaternion
 orientation_at(const Quaternion& x, const Quaternion& y, double t, double max_extrapolation_angle)
 {
@@ -254,7 +257,7 @@ orientation_at(const Quaternion& x, const Quaternion& y, double t, double max_ex
   return q;
 }
 
-/// The tree at `t` on the path from `x` (0) to `y` (1) and beyond.
+/// Computes the tree at `t` on the path from `x` (0) to `y` (1) and beyond.
 inline void coordinates_at(const Orl_layout& layout,
                            const Orl_coordinates& x,
                            const Orl_coordinates& y,
@@ -283,7 +286,7 @@ inline void coordinates_at(const Orl_layout& layout,
   }
 }
 
-/// Makes no edge thicker than the place it grows from.
+/// Limits the radius of each edge to that of the branch where it begins.
 inline void limit_radii(const Orl_layout& layout, Orl_coordinates& x)
 {
   for (std::size_t b = 0; b < layout.branches.size(); ++b) {

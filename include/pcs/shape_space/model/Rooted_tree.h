@@ -31,12 +31,12 @@ using Vec3 = Eigen::Vector3d;
 /// No node, no branch.
 constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
-/// Edges shorter than this share of the tree's extent join their ends: they have no direction.
+/// Edges shorter than this fraction of the extent of the tree are contracted: they have no
+/// direction. [-]
 constexpr double shortest_edge = 1e-9;
 
-/// Coordinates relative to the root, lengths and radii beyond this are refused, as if they were not
-/// finite: squares of them must be finite, and sums of these, far beyond the ends of a path, too.
-/// [L]
+/// Largest coordinate relative to the root, length or radius. Larger ones are refused like infinite
+/// ones, because sums of their squares must stay finite far beyond the ends of a path. [L]
 constexpr double most_length = 1e100;
 
 inline bool is_length(double value)
@@ -48,14 +48,14 @@ inline bool is_place(const Vec3& p)
   return is_length(p.cwiseAbs().maxCoeff()) && p.allFinite();
 }
 
-/// Nodes in an order in which parents come first; node 0 is the root.
+/// A tree as arrays. Parents come first; node 0 is the root.
 struct Rooted_tree
 {
   Vec3 origin = Vec3::Zero();       ///< of the local coordinates, in those of the caller [L]
   double extent = 0;                ///< diagonal of the bounding box [L]
   std::vector<Vec3> points;         ///< relative to `origin` [L]
   std::vector<double> radii;        ///< [L]
-  std::vector<double> base_radii;   ///< at the beginning of the edge to a node; NaN: not given [L]
+  std::vector<double> base_radii;   ///< at the beginning of the edge to a node; NaN: unknown [L]
   std::vector<std::size_t> parents; ///< `none` for the root
   std::vector<std::size_t>
       sources; ///< index of the vertex in the caller's graph; `none` for a node put on an axis
@@ -71,8 +71,8 @@ struct Rooted_tree
 
 namespace internal {
 
-/// A total order that does not depend on how the nodes are numbered, nor on rounding, nor on how
-/// the tree stands, save for copies of a branch that are turned against each other.
+/// Compares two siblings in a total order that depends neither on node numbers nor on rounding, and
+/// on the pose of the tree only where branches are rotated copies of each other.
 inline bool is_before(const Rooted_tree& tree, std::size_t v, std::size_t w)
 {
   const double step = 1e-9 * tree.extent; // lengths that differ by less are the same
@@ -94,7 +94,7 @@ inline bool is_before(const Rooted_tree& tree, std::size_t v, std::size_t w)
   return v < w;
 }
 
-/// Fills children, heights and weights from parents; children in the order of `is_before`.
+/// Computes children, heights and weights from parents; children are in the order of `is_before()`.
 inline void connect(Rooted_tree& tree)
 {
   const std::size_t n = tree.size();
@@ -122,8 +122,8 @@ inline void connect(Rooted_tree& tree)
   }
 }
 
-/// For each node, how many branches the one that carries it hangs on, where every branch goes on
-/// along the longest path.
+/// Returns the level of the branch of each node, 0 for the trunk, where every branch follows the
+/// longest path. [count]
 inline std::vector<std::size_t> levels_of_branches(const Rooted_tree& tree)
 {
   std::vector<std::size_t> level(tree.size(), 0);
@@ -133,14 +133,14 @@ inline std::vector<std::size_t> levels_of_branches(const Rooted_tree& tree)
   return level;
 }
 
-/// A node this close to the axis of an edge, as a share of the radius there, begins a branch on
-/// that axis.
+/// Largest distance of the first node of a branch from an axis on which the branch begins, as a
+/// fraction of the radius there. [-]
 constexpr double on_axis = 1e-3;
 
 /*!
-  For each child of `p`, that whose edge runs through it, the longest one first of equals, or
-  `none`. Children are looked at by the x coordinates of their directions: O(n log n) for `n` of
-  them in all directions.
+  Finds, for each child of `p`, the longest sibling whose edge passes through it, or `none`; the
+  first one of equal lengths. Siblings are searched by the x coordinates of their directions: O(n
+  log n) for `n` children in all directions.
 */
 inline std::vector<std::size_t>
 axes_through(const Rooted_tree& tree, std::size_t p, const std::vector<std::size_t>& children)
@@ -186,9 +186,9 @@ axes_through(const Rooted_tree& tree, std::size_t p, const std::vector<std::size
 }
 
 /*!
-  Where the first node of a branch lies on the axis of its parent, between two nodes of that, the
-  axis gets a node there. Without it the branch would seem to begin at the node before, and to run
-  along its parent.
+  Adds nodes to axes at the bases of branches: where the first node of a branch lies on the axis of
+  its parent, between two nodes. Otherwise the branch would begin at the node before and run along
+  its parent.
 */
 inline Rooted_tree with_nodes_at_bases(const Rooted_tree& all)
 {
@@ -244,7 +244,7 @@ inline Rooted_tree with_nodes_at_bases(const Rooted_tree& all)
   return tree;
 }
 
-/// The tree without edges that have no length.
+/// Returns the tree without edges of length 0.
 inline Rooted_tree without_coincident_nodes(const Rooted_tree& all, std::size_t number_of_sources)
 {
   const double threshold = shortest_edge * all.extent;
@@ -260,7 +260,7 @@ inline Rooted_tree without_coincident_nodes(const Rooted_tree& all, std::size_t 
         p != none && (all.points[v] - tree.points[new_node[p]]).norm() <= threshold;
     if (is_joined) {
       new_node[v] = new_node[p];
-      // a node that stands there twice says nothing of what begins there
+      // a duplicate node has no information on the radius at a base
       base[v] = all.radii[v] == all.radii[p] ? base[p] : all.radii[v];
     } else {
       new_node[v] = tree.size();

@@ -30,8 +30,8 @@ struct Tree_family
   Matching_weights matching;
   std::vector<std::size_t> first_point; ///< of each edge, and the number of all
 
-  /// First point of each edge that exists in `x`, in the output; the last element is the number of
-  /// points there.
+  /// Finds the index in the output of the first point of each edge that exists in `tree`; the last
+  /// element is the number of points.
   void find_offsets(const Orl_coordinates& tree, std::vector<std::size_t>& offset) const
   {
     offset.resize(layout.number_of_edges() + 1);

@@ -29,7 +29,8 @@
 namespace pcs {
 namespace shape_space {
 
-/// Returns `false` when `progress` asks to stop. Reads `built.form`, fills all but the instances.
+/// Matches branches and points of two trees. Returns `false` when `progress` asks to stop. Reads
+/// `built.form`, computes all but the instances.
 template <class ConcurrencyTag>
 bool find_correspondences(const std::array<const Tree_input*, 2>& inputs,
                           const Build_options& options,
@@ -84,7 +85,7 @@ bool find_correspondences(const std::array<const Tree_input*, 2>& inputs,
   return true;
 }
 
-/// Counts and the distance of a pair that has its instances.
+/// Reports counts and the distance of a pair with instances.
 inline void describe(const Embedded_pair& pair, Orl_report& report)
 {
   report.number_of_common_branches = pair.topology.branches.size();
@@ -100,7 +101,7 @@ inline void describe(const Embedded_pair& pair, Orl_report& report)
     report.number_of_unmatched_points += p.point[0] == no_point || p.point[1] == no_point ? 1 : 0;
 }
 
-/// Topology and coordinates from correspondences that were stored. Throws `Invalid_input`, with a
+/// Computes topology and coordinates from stored correspondences. Throws `Invalid_input`, with a
 /// message that begins with `caller`, if they do not fit.
 inline void embed_stored(const Orl_correspondences& stored,
                          const std::array<const Tree_input*, 2>& inputs,
@@ -118,7 +119,7 @@ inline void embed_stored(const Orl_correspondences& stored,
                 caller);
 }
 
-/// Points and normals of both scans, as `restore_pair()` reads them.
+/// Stores points and normals of both scans, as `restore_pair()` reads them.
 inline void store_points(const std::array<const Tree_input*, 2>& inputs, Orl_space_data& stored)
 {
   const std::array<std::vector<Vec3>, 2> points = {inputs[0]->points, points_of_second(inputs)};

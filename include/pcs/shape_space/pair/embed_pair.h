@@ -21,7 +21,7 @@
 namespace pcs {
 namespace shape_space {
 
-/// Fills everything but the instances from the topology.
+/// Computes everything but the instances from the topology.
 inline void embed(const std::array<const Tree_input*, 2>& inputs, Embedded_pair& pair)
 {
   pair.layout = make_layout(pair.topology.branches);
@@ -49,7 +49,7 @@ inline void embed(const std::array<const Tree_input*, 2>& inputs, Embedded_pair&
   pair.is_relative = edges_with_radius(pair.layout, pair.topology, pair.geometry);
 }
 
-/// Points of the second tree in the local coordinates of the first.
+/// Returns the points of the second tree in the local coordinates of the first. [L]
 inline std::vector<Vec3> points_of_second(const std::array<const Tree_input*, 2>& inputs)
 {
   const Vec3 shift = inputs[1]->tree.origin - inputs[0]->tree.origin;
@@ -59,7 +59,7 @@ inline std::vector<Vec3> points_of_second(const std::array<const Tree_input*, 2>
   return points;
 }
 
-/// The edge of each point of tree `t`.
+/// Finds the edge of each point of tree `t`.
 template <class ConcurrencyTag>
 std::vector<std::size_t> edges_of_points(const std::array<const Tree_input*, 2>& inputs,
                                          const Embedded_pair& pair,

@@ -26,25 +26,25 @@
 namespace pcs {
 namespace shape_space {
 
-/// Of a matching of two trees.
+/// Result of a matching of two trees in numbers.
 struct Matching_cost
 {
   double energy = 0; ///< in units of the kind of growth [-]
   double share =
-      /// of what it could cost: 0 if the smaller tree is all found in the other, 1 if nothing is
-      /// [-]
+      /// of the largest possible cost: 0 if the other tree contains all of the smaller one, 1 if
+      /// nothing is matched [-]
       0;
-  bool is_at_tips = false; ///< which kind of growth it is
+  bool is_at_tips = false; ///< whether it assumes growth at tips
   double yaw = 0;          ///< rotation about the vertical that aligns tree 2 with tree 1 [rad]
 };
 
 /*!
   Matches the branches of two trees; the result has no branches when `progress` asks to stop.
 
-  The energies of the two kinds of growth are in units of their own. What the greater tree has more
-  costs in any case, and what is above that is compared with what it would be if nothing were
-  matched; growth at tips must leave clearly less of it. So must other trunks than the longest
-  paths, or nearly as long ones, for trees that grow along their branches.
+  The two kinds of growth have different units of energy. They are compared by the fraction of the
+  possible cost: the cost above that of the excess length of the larger tree, divided by its value
+  if nothing is matched. Growth at tips is accepted only for a clearly smaller fraction. The same
+  holds for trunks other than the longest or nearly longest paths where growth is along branches.
 */
 template <class ConcurrencyTag>
 class Tree_matching
@@ -52,12 +52,12 @@ class Tree_matching
 public:
   Tree_matching(const std::array<const Rooted_tree*, 2>& trees,
                 const Matching_weights& weights,
-                const Alignment_options& standing,
+                const Alignment_options& alignment,
                 pcs::internal::Progress& progress,
                 Common_topology& result)
     : m_trees(trees),
       m_weights(weights),
-      m_standing(standing),
+      m_alignment(alignment),
       m_progress(progress),
       m_result(result)
   {
@@ -77,17 +77,16 @@ private:
   using Matching = Branch_matching<ConcurrencyTag>;
   using Result = std::shared_ptr<const Matched_branch>;
 
-  // virtual trees that grew at their tips leave less than 0.6 of it; of plants whose leaves stretch
-  // most leave 0.7 and more, and the days between others are predicted better by stretched branches
-  // then
+  // virtual trees that grew at their tips have ratios below 0.6; most plants with stretching leaves
+  // have 0.7 and more, and the days between are predicted better by stretched branches then
   static constexpr double clearly = 2. / 3;
-  // the longest path through a tomato is its stem and one of its leaves, on every day another one;
-  // but of all paths some other one matches at a little less cost by chance
+  // the longest path of a tomato plant is its stem and one of its leaves, which changes from day to
+  // day; but among all paths some other one has a slightly lower cost by chance
   static constexpr double wide_fork_ratio = 0.3;
 
   static constexpr double any_cost = std::numeric_limits<double>::infinity();
 
-  /// What two trees cost at least, and what they cost more if nothing is matched. [-]
+  /// Least cost of two trees, and the additional cost if nothing is matched. [-]
   struct Range
   {
     double least, more;
@@ -105,7 +104,7 @@ private:
     internal::Topology_builder builder(*m_trees[0], *m_trees[1], m_result.paths);
     m_result.branches = builder.run(*trunk);
     if (m_cost.yaw != 0)
-      m_cost.yaw = refine_yaw(m_trees, m_result, m_standing.up, m_cost.yaw);
+      m_cost.yaw = refine_yaw(m_trees, m_result, m_alignment.up, m_cost.yaw);
     m_cost.is_at_tips = is_at_tips;
     m_cost.energy = trunk->cost;
     m_cost.share =
@@ -118,16 +117,15 @@ private:
             Matching::find_paths(*m_trees[1], m_weights, other_ratio)};
   }
 
-  /// A matching with trunks that are the longest paths, or nearly so, unless others leave clearly
-  /// less. Nothing is looked for that costs `most` or more.
+  /// Matches the trees with trunks that are the longest paths, or nearly so, unless others have a
+  /// clearly lower cost. Matchings of cost `most` or more are ignored.
   Result match_trunks(Matching& matching, const Range& from, double most)
   {
-    const auto share_of = [&](double cost) { return std::max(0.0, cost - from.least); };
+    const auto excess = [&](double cost) { return std::max(0.0, cost - from.least); };
     matching.use_other_trunks(false);
-    // where it is known that others that cost less than `most` leave clearly less, it does not
-    // matter how much
-    const Result longest = matching.run(m_progress, from.least + share_of(most) / clearly);
-    const double least = longest ? from.least + clearly * share_of(longest->cost) : most;
+    // a cost at which any other matching below `most` is clearly better need not be exact
+    const Result longest = matching.run(m_progress, from.least + excess(most) / clearly);
+    const double least = longest ? from.least + clearly * excess(longest->cost) : most;
     if (m_progress.is_cancelled() || !matching.has_other_trunks())
       return longest;
     matching.use_other_trunks(true);
@@ -135,36 +133,37 @@ private:
     return other ? other : longest;
   }
 
-  /// Of the ways in which the trees may stand, that of least cost, if it is below `most`.
+  /// Matches the trees at the yaw of least cost; null if the cost is not below `most`.
   template <class Match>
-  Result match_standing(Matching& matching, const Range& from, double most, const Match& match)
+  Result match_yaws(Matching& matching, const Range& from, double most, const Match& match)
   {
     Result best = match(most);
     if (m_progress.is_cancelled())
       return nullptr;
-    double turn = 0;
-    if (m_standing.alignment == Orl_alignment::rotate_about_up) {
-      most = from.least + turned_share * std::max(0.0, (best ? best->cost : most) - from.least);
-      for (const double angle : promising_turns(matching)) {
-        matching.set_turn(angle, m_standing.up);
+    double yaw = 0;
+    if (m_alignment.alignment == Orl_alignment::rotate_about_up) {
+      most = from.least +
+             largest_ratio_with_yaw * std::max(0.0, (best ? best->cost : most) - from.least);
+      for (const double angle : promising_yaws(matching)) {
+        matching.set_turn(angle, m_alignment.up);
         if (Result found = match(most); found && found->cost < most) {
           best = std::move(found);
           most = best->cost;
-          turn = angle;
+          yaw = angle;
         }
       }
     }
     if (!best || m_progress.is_cancelled())
       return nullptr;
-    m_cost.yaw = turn;
+    m_cost.yaw = yaw;
     return best;
   }
 
-  /// Turns after which a look at the trees shows less cost than without, the best first.
-  std::vector<double> promising_turns(Matching& matching) const
+  /// Finds yaws with a lower quick cost than without a rotation, the best first. [rad]
+  std::vector<double> promising_yaws(Matching& matching) const
   {
     std::vector<double> angles = find_yaw_candidates<ConcurrencyTag>(matching.energy(),
-                                                                     m_standing.up,
+                                                                     m_alignment.up,
                                                                      number_of_looks,
                                                                      m_progress);
     angles.insert(angles.begin(), 0);
@@ -172,7 +171,7 @@ private:
     for (const double angle : angles) {
       if (!m_progress(0))
         return {};
-      matching.set_turn(angle, m_standing.up);
+      matching.set_turn(angle, m_alignment.up);
       cost.push_back(matching.look());
     }
     std::vector<std::size_t> order(angles.size());
@@ -182,7 +181,7 @@ private:
     });
     std::vector<double> result;
     for (const std::size_t k : order)
-      if (cost[k] < cost[0] && result.size() < number_of_turns)
+      if (cost[k] < cost[0] && result.size() < number_of_yaws)
         result.push_back(angles[k]);
     return result;
   }
@@ -191,7 +190,7 @@ private:
   {
     Matching matching(*m_trees[0], *m_trees[1], m_weights, paths(wide_fork_ratio));
     const Range from = range(m_trees[0]->heights[0], m_trees[1]->heights[0]);
-    const Result trunk = match_standing(matching, from, any_cost, [&](double most) {
+    const Result trunk = match_yaws(matching, from, any_cost, [&](double most) {
       return match_trunks(matching, from, most);
     });
     if (trunk)
@@ -205,11 +204,11 @@ private:
     const Range from = range(highest, highest);
     Matching matching(*m_trees[0], *m_trees[1], m_weights, paths(1), true);
     matching.set_number_of_trunk_trials(2 * m_weights.number_of_trials);
-    // where both kinds are looked at, `m_cost` is that of branches that stretch
+    // where both kinds are tried, `m_cost` is that of growth along branches
     const double most = m_weights.growth == Branch_growth::at_tips
                             ? any_cost
                             : from.least + clearly * m_cost.share * from.more;
-    const Result trunk = match_standing(matching, from, most, [&](double limit) {
+    const Result trunk = match_yaws(matching, from, most, [&](double limit) {
       Result found = matching.run(m_progress, limit);
       return found && found->cost < limit ? found : nullptr;
     });
@@ -217,14 +216,14 @@ private:
       build(matching, trunk, true, from);
   }
 
-  static constexpr std::size_t number_of_looks = 8, number_of_turns = 2;
-  // of what is left without a turn, that with a turn leaves: copies with noise that stand right
-  // seem to be turned by chance
-  static constexpr double turned_share = 0.95;
+  static constexpr std::size_t number_of_looks = 8, number_of_yaws = 2;
+  // largest ratio of the costs with and without a yaw: aligned copies with noise seem to be rotated
+  // by chance
+  static constexpr double largest_ratio_with_yaw = 0.95;
 
   std::array<const Rooted_tree*, 2> m_trees;
   const Matching_weights& m_weights;
-  const Alignment_options& m_standing;
+  const Alignment_options& m_alignment;
   pcs::internal::Progress& m_progress;
   Common_topology& m_result;
   Matching_cost m_cost;
@@ -232,7 +231,8 @@ private:
 
 namespace internal {
 
-/// How far the edges of a tree reach from its root: the same however it stands. [L^3]
+/// Returns the second moment of the edges of a tree about its root, which is independent of the
+/// pose. [L^3]
 inline double second_moment(const Rooted_tree& tree)
 {
   double sum = 0;
@@ -241,8 +241,8 @@ inline double second_moment(const Rooted_tree& tree)
   return sum;
 }
 
-/// Whether a tree comes first where two are matched: the shorter one, of equally long ones the more
-/// compact one, if that can be told in spite of rounding.
+/// Returns whether `one` is first in the matching of two trees: the shorter one, of equally long
+/// ones the more compact one, if the difference exceeds rounding.
 inline bool is_clearly_shorter(const Rooted_tree& one, const Rooted_tree& two)
 {
   constexpr double rounding = 1e-9;
@@ -257,14 +257,14 @@ inline bool is_clearly_shorter(const Rooted_tree& one, const Rooted_tree& two)
 } // namespace internal
 
 /*!
-  Matches the branches of two trees, in an order of their own: the way back has the same matching.
-  Where it cannot be told which tree comes first, both orders are tried, and the matching is that
-  which leaves less of what the trees differ by.
+  Matches the branches of two trees in a canonical order, so that swapped trees have the same
+  matching. If the order is undecided, both are tried, and the matching with the smaller fraction of
+  the possible cost is taken.
 */
 template <class ConcurrencyTag>
 Matching_cost match_trees(const std::array<const Rooted_tree*, 2>& trees,
                           const Matching_weights& weights,
-                          const Alignment_options& standing,
+                          const Alignment_options& alignment,
                           pcs::internal::Progress& progress,
                           Common_topology& result)
 {
@@ -273,13 +273,14 @@ Matching_cost match_trees(const std::array<const Rooted_tree*, 2>& trees,
   Matching_cost cost;
   cost.share = std::numeric_limits<double>::infinity();
   if (!internal::is_clearly_shorter(*trees[1], *trees[0])) {
-    cost = Matching(trees, weights, standing, progress, result).run();
+    cost = Matching(trees, weights, alignment, progress, result).run();
     if (cost.share <= rounding || progress.is_cancelled() ||
         internal::is_clearly_shorter(*trees[0], *trees[1]))
       return cost;
   }
   Common_topology back;
-  Matching_cost cost_back = Matching({trees[1], trees[0]}, weights, standing, progress, back).run();
+  Matching_cost cost_back =
+      Matching({trees[1], trees[0]}, weights, alignment, progress, back).run();
   if (progress.is_cancelled()) {
     result = Common_topology();
     return cost_back;

@@ -16,27 +16,27 @@
 namespace pcs {
 namespace shape_space {
 
-/// Memory of `Extrapolation_limits`, used again.
+/// Buffers of `Extrapolation_limits`.
 struct Extrapolation_buffers
 {
   Orl_geometry end, near;
-  std::vector<double> low; ///< per node: height of the lowest part of what hangs there
+  std::vector<double> low; ///< per node: height of the lowest part of the subtrees there
 };
 
 /*!
-  Changes a tree that lies beyond the end of a path.
+  Limits a tree that lies beyond the end of a path.
 
-  Every turn goes on at its own rate, and those of an edge and of all that it hangs on add up, about
-  whatever axes. So each edge is limited twice: alone, and by how far it stands, in space, from
-  where it stands at the end.
+  Every rotation continues at its own rate, and those of an edge and its ancestors accumulate about
+  different axes. So each edge is limited twice: its own rotation, and its rotation in space
+  relative to the end.
 
-  Branches that become longer or hang lower would also reach below the base. There is a floor: the
-  base, or the lowest part of the trees at both ends. A branch that would break through it, or take
-  there what hangs on it, stays closer to what it is at the end, as far as needed: a share between 0
-  and 1 of the way from its edges there to those wanted. Heights are linear in the share, so it
-  follows from one pass. What hangs on a place that came nearer to the floor hangs less steeply.
+  Branches that become longer or lower would also reach below the base. The floor is the height of
+  the base, or of the lowest part of the trees at both ends. The edges of a branch that would pass
+  below it, itself or with its subtree, are interpolated between those at the end and those wanted,
+  with the largest admissible weight in [0, 1]. Heights are linear in the weight, so one pass is
+  enough. A subtree whose base came nearer to the floor descends less steeply.
 
-  Everything is continuous in the place on the path. Linear in the number of edges.
+  Everything is continuous in the parameter of the path. Linear in the number of edges.
 */
 class Extrapolation_limits
 {
@@ -63,15 +63,15 @@ public:
     build_geometry(m_layout, end, m_kind, at_end);
     m_floor = std::min(m_floor, find_lowest(end, at_end));
     for (std::size_t b = 0; b < m_layout.branches.size(); ++b)
-      place(b, end, x);
+      locate(b, end, x);
   }
 
 private:
   double height(const Vec3& p, const Orl_coordinates& x) const { return m_up.dot(p - x.root); }
   Vec3 axis(const Quaternion& frame) const { return frame * Vec3::UnitZ(); }
 
-  /// Finds the lowest part of what hangs on each node, but for the branch itself, and returns the
-  /// lowest of all.
+  /// Finds the lowest part of the subtrees at each node, without the branch itself, and returns the
+  /// lowest of all. [L]
   double find_lowest(const Orl_coordinates& x, const Orl_geometry& geometry)
   {
     std::vector<double>& low = m_buffers.low;
@@ -100,14 +100,14 @@ private:
         begin + static_cast<std::ptrdiff_t>(m_layout.branches[b].number_of_edges + 1));
   }
 
-  /// A frame that stands no further from where it is at the end than allowed.
+  /// Returns a frame rotated relative to the end by at most the limit.
   Quaternion limited(const Quaternion& frame, const Quaternion& at_end) const
   {
     constexpr double pi = pcs::internal::pi;
     if (!(m_max_extrapolation_angle < pi))
       return frame;
     const Vec3 turn = rotation_log(frame * at_end.conjugate());
-    // near half a turn the axis flips: there the frame goes back to that of the end
+    // near half a rotation the axis flips: there the frame returns to that of the end
     const double angle = turn.norm(), most = std::min(m_max_extrapolation_angle, 4 * (pi - angle));
     if (!(angle > most))
       return frame;
@@ -116,7 +116,7 @@ private:
     return result;
   }
 
-  void place(std::size_t b, const Orl_coordinates& end, Orl_coordinates& x)
+  void locate(std::size_t b, const Orl_coordinates& end, Orl_coordinates& x)
   {
     Orl_geometry &near = m_buffers.near, &at_end = m_buffers.end;
     const Orl_layout::Branch& branch = m_layout.branches[b];

@@ -18,8 +18,8 @@ namespace pcs {
 namespace shape_space {
 namespace internal {
 
-/// The slopes of F. Fritsch and J. Butland (1984): the cubic pieces between values that rise do
-/// nowhere fall, and do not leave what is between the values.
+/// Returns the slopes of F. Fritsch and J. Butland (1984): cubic pieces are monotone where the
+/// values are, and stay between them.
 inline std::vector<double> monotone_slopes(const std::vector<double>& time,
                                            const std::vector<double>& value)
 {
@@ -54,7 +54,7 @@ inline double cubic(double a, double b, double slope_a, double slope_b, double s
          f * g * step * (g * slope_a - f * slope_b);
 }
 
-/// The closest values that do not fall (pool adjacent violators, least squares).
+/// Returns the closest non-decreasing values (pool adjacent violators, least squares).
 inline void make_rising(std::vector<double>& values)
 {
   struct Pool
@@ -83,10 +83,10 @@ inline void make_rising(std::vector<double>& values)
 
 /*!
   A path through trees at given times, with continuous speed. Lengths, radii and attachments are
-  cubic, without overshoot: what rises in all trees rises all the way, and nothing becomes negative.
-  Orientations are cubic Bezier curves on the rotations (K. Shoemake 1985), by repeated slerp. A
-  branch has the orientation of the nearest time when it is there, so that it grows in its own
-  direction.
+  cubic without overshoot: values that increase from tree to tree increase everywhere, and none
+  becomes negative. Orientations are cubic Bezier curves on the rotations (K. Shoemake 1985), by
+  repeated slerp. A branch has the orientation of the nearest time at which it exists, so that it
+  grows in its own direction.
 */
 class Growth_spline
 {
@@ -94,7 +94,7 @@ public:
   Growth_spline() = default;
 
   /// Increasing times, one tree for each, at least 2. `has[i][b]`: whether tree `i` has branch `b`.
-  /// If `is_monotone`, lengths and radii are changed as little as possible so that none falls.
+  /// If `is_monotone`, lengths and radii are changed as little as possible so that none decreases.
   /// `scans`: names of the trees, for the caller.
   Growth_spline(const Orl_layout& layout,
                 std::vector<double> times,
@@ -135,7 +135,8 @@ public:
   const std::vector<double>& times() const { return m_times; }
   const std::vector<std::size_t>& scans() const { return m_scans; }
 
-  /// The last tree not after a time, but not the last of all, and the share of the next one there.
+  /// Returns the interval of a time by its first tree, and the fraction of the interval before the
+  /// time.
   std::pair<std::size_t, double> place(double time) const
   {
     const double t = std::min(m_times.back(), std::max(m_times.front(), time));
@@ -145,7 +146,8 @@ public:
     return {k, (t - m_times[k]) / (m_times[k + 1] - m_times[k])};
   }
 
-  /// The tree at a time; before the first and after the last time that of the first and the last.
+  /// Computes the tree at a time; before the first and after the last time those of the first and
+  /// last.
   void at(double time, Orl_coordinates& x) const
   {
     const std::pair<std::size_t, double> where = place(time);
@@ -187,7 +189,7 @@ private:
     return q;
   }
 
-  /// De Casteljau's scheme with arcs for lines.
+  /// Evaluates a Bezier curve by De Casteljau's scheme with arcs in place of lines.
   static Quaternion bezier(const Quaternion& a,
                            const Quaternion& b,
                            const Quaternion& c,
@@ -220,7 +222,8 @@ private:
       }
   }
 
-  /// Control points a third of the way before and after each tree, along the mean speed there.
+  /// Computes the control points a third of an interval before and after each tree, along the mean
+  /// speed there.
   void find_controls(std::size_t e)
   {
     const std::size_t n = m_times.size();
@@ -232,8 +235,8 @@ private:
           rotation_log(m_trees[k].orientation[e].conjugate() * m_trees[k + 1].orientation[e]) /
           (m_times[k + 1] - m_times[k]);
     for (std::size_t k = 0; k < n; ++k) {
-      // turns in the frame of the edge itself; the turn between k and k + 1 is the same seen from
-      // both
+      // rotations in the frame of the edge itself; that between k and k + 1 is the same in both
+      // frames
       Vec3 speed = Vec3::Zero();
       if (k == 0)
         speed = rate[0];

@@ -14,18 +14,18 @@
 namespace pcs {
 namespace shape_space {
 
-/// Memory of `Sequential_births`, used again.
+/// Buffers of `Sequential_births`.
 struct Sequential_births_buffers
 {
   std::vector<double> life, length; ///< per branch
 };
 
 /*!
-  Changes the lengths of branches that only one end of a path has.
+  Changes the lengths of branches that exist at only one end of a path.
 
-  Tips move evenly from the birth of their branch to the end of the path. In total as much length is
-  born in any part of the path as if all were born together, so the path has constant speed in
-  `Orl_metric::sum`, where it is one of the shortest paths: no length ever turns back.
+  Tips move evenly from the birth of their branch to the end of the path. In any part of the path,
+  the same total length grows as if all branches were born together. So the path has constant speed
+  in `Orl_metric::sum`, where it is one of the shortest paths: no length ever decreases.
 */
 class Sequential_births
 {
@@ -35,12 +35,12 @@ public:
   {
   }
 
-  /// `x` is the tree at `t`, in [0, 1], of the path from `a` to `b`. Linear in the number of edges
-  /// and, per step of a search that ends after a few dozen, of branches.
+  /// Changes `x`, the tree at `t`, in [0, 1], of the path from `a` to `b`. Linear in the number of
+  /// edges and, for each of a few dozen search steps, of branches.
   void operator()(const Orl_coordinates& a, const Orl_coordinates& b, double t, Orl_coordinates& x)
   {
     grow(a, b, t, x);
-    grow(b, a, 1 - t, x); // what is lost is born on the way back
+    grow(b, a, 1 - t, x); // lost branches are born on the reverse path
   }
 
 private:
@@ -53,13 +53,13 @@ private:
     return sum;
   }
 
-  /// Distance from the base of branch `b` to a place on it.
-  double arc(const Orl_coordinates& x, std::size_t b, double place) const
+  /// Returns the distance from the base of branch `b` to a position on it. [L]
+  double arc(const Orl_coordinates& x, std::size_t b, double position) const
   {
     const Orl_layout::Branch& branch = m_layout.branches[b];
     double sum = 0;
     for (std::size_t j = 0; j < branch.number_of_edges; ++j)
-      sum += std::min(1.0, std::max(0.0, place - static_cast<double>(j))) *
+      sum += std::min(1.0, std::max(0.0, position - static_cast<double>(j))) *
              x.length[branch.first_edge + j];
     return sum;
   }
@@ -93,9 +93,9 @@ private:
     }
   }
 
-  /// The time before the end when as much is born as wanted. What is born falls with it, in pieces
-  /// that are linear and ever flatter, so that Newton's steps from 0 never go too far and end on
-  /// the right piece.
+  /// Returns the time before the end at which the wanted length has grown. The grown length is a
+  /// convex, piecewise linear, decreasing function of this time, so Newton steps from 0 never
+  /// overshoot and end on the right piece.
   double rest_of_time(double wanted, double total) const
   {
     const std::vector<double>&life = m_buffers.life, &length = m_buffers.length;

@@ -24,7 +24,7 @@ struct Tree_state
   /// Weight of each scan in the points of more than two trees; empty: all equal [-].
   std::vector<double> scan_weights;
 
-  // memory that is used again when another tree is written here
+  // buffers that are reused when another tree is written here
   Extrapolation_buffers extrapolation;
   Sequential_births_buffers births;
 };

@@ -15,8 +15,8 @@
 namespace pcs {
 namespace shape_space {
 
-/// Makes radii fit at forks: those of branches, to a power, do not add up to more than that of the
-/// parent below them.
+/// Limits radii at forks by the pipe model: the powers of the radii of parent and children above a
+/// fork sum to at most the power of the radius below it.
 inline void apply_pipe_model(const Orl_layout& layout, double exponent, Orl_coordinates& x)
 {
   std::vector<std::vector<std::size_t>> children(layout.branches.size());
@@ -29,7 +29,8 @@ inline void apply_pipe_model(const Orl_layout& layout, double exponent, Orl_coor
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t c) {
       return x.attachment[a] != x.attachment[c] ? x.attachment[a] < x.attachment[c] : a < c;
     });
-    // from the base to the tip: what is left of the pipe, and of that the share of each branch
+    // from the base to the tip: radii above each edge are scaled to the power that is available
+    // below it
     std::size_t next = 0;
     for (std::size_t k = 0; k < branch.number_of_edges; ++k) {
       const double before = k == 0 ? x.base_radius[b] : x.radius[branch.first_edge + k - 1];

@@ -19,8 +19,8 @@
 namespace pcs {
 namespace shape_space {
 
-/// Writes the tree at `t` on the geodesic from `a` (0) to `b` (1) to `result`, whose memory is used
-/// again. Throws `Invalid_input`, with a message that begins with `caller`, if its positions are
+/// Writes the tree at `t` on the geodesic from `a` (0) to `b` (1) to `result`, whose memory is
+/// reused. Throws `Invalid_input`, with a message that begins with `caller`, if its positions are
 /// not finite.
 inline void interpolate_trees(const Tree_family& family,
                               const Orl_coordinates& a,

@@ -19,11 +19,11 @@ namespace pcs {
 namespace shape_space {
 
 /*!
-  The different positions of points, in the order of the first points there, and who stands where.
+  Groups coincident points. Positions are in the order of their first points.
 
-  Points of one place have the same neighbours and the same costs. One by one they would make all
-  pivots of a transport degenerate, and their nearest neighbours, as many as are asked for, would be
-  any few of those in a place.
+  Coincident points have the same neighbours and the same costs. Individually, they would make all
+  pivots of a transport degenerate, and the nearest neighbours would be an arbitrary few of those at
+  one position.
 */
 class Distinct_positions
 {
@@ -37,19 +37,19 @@ public:
       return std::lexicographical_compare(p.data(), p.data() + 3, q.data(), q.data() + 3);
     };
     std::stable_sort(order.begin(), order.end(), is_before);
-    std::vector<std::uint32_t> first(points.size()); // point of the same place
+    std::vector<std::uint32_t> first(points.size()); // first point at the same position
     for (std::size_t k = 0; k < order.size(); ++k)
       first[order[k]] =
           k > 0 && !is_before(order[k - 1], order[k]) ? first[order[k - 1]] : order[k];
-    std::vector<std::uint32_t> place(points.size());
+    std::vector<std::uint32_t> position(points.size());
     for (std::uint32_t i = 0; i < points.size(); ++i) {
       if (first[i] == i) {
-        place[i] = static_cast<std::uint32_t>(m_positions.size());
+        position[i] = static_cast<std::uint32_t>(m_positions.size());
         m_positions.push_back(points[i]);
         m_begin.push_back(0);
       } else
-        place[i] = place[first[i]];
-      ++m_begin[place[i]];
+        position[i] = position[first[i]];
+      ++m_begin[position[i]];
     }
     std::size_t sum = 0;
     for (std::size_t& begin : m_begin)
@@ -57,27 +57,27 @@ public:
     m_begin.push_back(sum);
     m_members.resize(points.size());
     for (std::size_t i = points.size(); i-- > 0;)
-      m_members[--m_begin[place[i]]] = static_cast<std::uint32_t>(i);
+      m_members[--m_begin[position[i]]] = static_cast<std::uint32_t>(i);
   }
 
   const std::vector<Vec3>& positions() const { return m_positions; }
-  std::size_t size(std::size_t place) const { return m_begin[place + 1] - m_begin[place]; }
-  /// Point number `k` of those in a place.
-  std::uint32_t member(std::size_t place, std::size_t k) const
+  std::size_t size(std::size_t position) const { return m_begin[position + 1] - m_begin[position]; }
+  /// Returns point number `k` at a position.
+  std::uint32_t member(std::size_t position, std::size_t k) const
   {
-    return m_members[m_begin[place] + k];
+    return m_members[m_begin[position] + k];
   }
 
 private:
   std::vector<Vec3> m_positions;
   std::vector<std::uint32_t> m_members;
-  std::vector<std::size_t> m_begin; // of the members of each place, and the end
+  std::vector<std::size_t> m_begin; // of the members of each position, and the end
 };
 
 namespace internal {
 
-/// The points of a place, shared out between its partners by how many points these have: at least
-/// one for each.
+/// Distributes the points at a position among its corresponding positions, in proportion to their
+/// numbers of points: at least one for each.
 class Proportional_shares
 {
 public:
@@ -86,18 +86,20 @@ public:
   {
   }
 
-  void add_partner(std::size_t place, std::size_t number_of_points)
+  void add_partner(std::size_t position, std::size_t number_of_points)
   {
-    m_wanted[place] += number_of_points;
+    m_wanted[position] += number_of_points;
   }
 
-  /// The points for the next partner: the first and the one after the last. To be asked once for
-  /// each, after all were added.
-  std::array<std::size_t, 2> next(std::size_t place, std::size_t number_of_points)
+  /// Returns the points for the next corresponding position: the first and the one after the last.
+  /// Called once for each, after all were added.
+  std::array<std::size_t, 2> next(std::size_t position, std::size_t number_of_points)
   {
-    const auto bound = [&] { return m_places.size(place) * m_given[place] / m_wanted[place]; };
+    const auto bound = [&] {
+      return m_places.size(position) * m_given[position] / m_wanted[position];
+    };
     const std::size_t begin = bound();
-    m_given[place] += number_of_points;
+    m_given[position] += number_of_points;
     return {begin, std::max(begin + 1, bound())};
   }
 
@@ -108,8 +110,8 @@ private:
 
 } // namespace internal
 
-/// Pairs of places as pairs of points: all points of both have a partner, and those of one place
-/// share its partners.
+/// Converts pairs of positions to pairs of points. All points of both are paired; those at one
+/// position are distributed among the corresponding points.
 inline std::vector<std::pair<std::uint32_t, std::uint32_t>>
 pairs_of_points(const Distinct_positions& one,
                 const Distinct_positions& two,

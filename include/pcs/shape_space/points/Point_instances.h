@@ -21,8 +21,8 @@
 namespace pcs {
 namespace shape_space {
 
-/// Sine and cosine of |x| <= 2 pi and somewhat more, within 1e-15, without branches, so that loops
-/// are vectorised.
+/// Computes sine and cosine for |x| <= 2 pi and somewhat more, within 1e-15, without branches, so
+/// that loops are vectorised.
 inline void sine_cosine(double x, double& sine, double& cosine)
 {
   // quadrants, then Taylor sums that are exact to the last bit but one on [-pi/4, pi/4]
@@ -55,13 +55,13 @@ inline void sine_cosine(double x, double& sine, double& cosine)
   cosine = (q == 1 || q == 2) ? -b : b;
 }
 
-/// Everything that is known about the pairs before a place on the path is asked for.
+/// Precomputed pairs of points, for trees at any parameter of the path.
 class Point_instances
 {
 public:
-  /// A pair as a line in tube coordinates: value + t * change. On edges whose sections are flat,
-  /// `angle` and `distance` are places in the section: about an axis beside them, blades would be
-  /// mixed to something thick.
+  /// A pair as a line in tube coordinates: value + t * change. On edges with flat sections, `angle`
+  /// and `distance` are Cartesian coordinates in the section, because polar interpolation about an
+  /// axis beside them would thicken blades.
   struct Line
   {
     double t, dt, overshoot, d_overshoot, angle, d_angle, distance, d_distance;
@@ -82,8 +82,8 @@ public:
   bool has_normals() const { return m_has_normals; }
   bool is_relative(std::size_t edge) const { return m_is_relative[edge] != 0; }
 
-  /// First pair of each edge that exists in `x`, in the output; the last element is the number of
-  /// points there.
+  /// Finds the index in the output of the first pair of each edge that exists in `x`; the last
+  /// element is the number of points.
   void find_offsets(const Orl_coordinates& x, std::vector<std::size_t>& offset) const
   {
     offset.resize(m_first.size());
@@ -95,8 +95,7 @@ public:
     offset.back() = sum;
   }
 
-  /// Calls `put(i, point, normal, pair)` for all points of a tree, `i` being their place in the
-  /// output.
+  /// Calls `put(i, point, normal, pair)` for all points of a tree; `i` is the index in the output.
   template <class ConcurrencyTag, class Put>
   void write(const Orl_layout& layout,
              const Orl_coordinates& x,
@@ -135,8 +134,8 @@ public:
   }
 
 private:
-  /// Whether no point is so far off that a thicker branch must not carry it further: scans of thin
-  /// twigs are noise.
+  /// Returns whether all points are near the surface. Otherwise their distances must not grow with
+  /// the radius: scans of thin twigs are mostly noise.
   bool are_near(std::size_t e,
                 const std::array<Edge_cone, 2>& cone,
                 const std::array<std::vector<Vec3>, 2>& points) const;
@@ -196,7 +195,8 @@ private:
     }
   }
 
-  /// Null without normals. `sine`, `cosine`: of the angle of the point.
+  /// Returns the normal of a point, null without normals. `sine`, `cosine`: of the angle of the
+  /// point.
   Vec3 normal_at(const Edge_cone& edge, std::size_t k, double s, double sine, double cosine) const
   {
     if (!m_has_normals)
@@ -210,8 +210,8 @@ private:
                              local.z());
   }
 
-  /// The text's way: the edge from the beginning of the edge to the point is turned by slerp, its
-  /// length is linear.
+  /// Interpolates a point as published [Aiteanu 2022]: the virtual edge from the beginning of the
+  /// edge to the point is rotated by slerp, and its length is linear.
   static Vec3
   on_virtual_edge(const Edge_cone& edge, const Line& line, bool is_relative, bool is_flat, double s)
   {
@@ -238,7 +238,7 @@ private:
   std::vector<char> m_is_relative, m_is_flat;
   std::vector<Line> m_lines;
   std::vector<std::array<Vec3, 2>>
-      m_normals; // in the frame of the edge, turned by the angle of the point
+      m_normals; // in the frame of the edge, rotated by the angle of the point
   bool m_has_normals = false;
 };
 

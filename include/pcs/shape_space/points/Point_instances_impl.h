@@ -104,9 +104,10 @@ inline void Point_instances::set_pair(std::size_t k,
   for (std::size_t t = 0; t < 2; ++t)
     if (pair.point[t] != no_point) {
       c[t] = tube_coordinates(cone[t], points[t][pair.point[t]], is_relative(pair.edge));
-      const double turn = m_is_flat[pair.edge] ? 0 : c[t].angle;
+      const double rotation = m_is_flat[pair.edge] ? 0 : c[t].angle;
       if (m_has_normals)
-        normal[t] = turn_about_z(-turn) * (cone[t].frame.transpose() * normals[t][pair.point[t]]);
+        normal[t] =
+            turn_about_z(-rotation) * (cone[t].frame.transpose() * normals[t][pair.point[t]]);
     }
   for (std::size_t t = 0; t < 2; ++t)
     if (pair.point[t] == no_point) {
@@ -121,10 +122,10 @@ inline void Point_instances::set_pair(std::size_t k,
     }
   double change = std::remainder(c[1].angle - c[0].angle, 2 * pcs::internal::pi);
   if (m_is_flat[pair.edge]) {
-    for (Tube_coordinates& place : c) {
-      const double x = place.distance * std::cos(place.angle);
-      place.distance *= std::sin(place.angle);
-      place.angle = x;
+    for (Tube_coordinates& own : c) {
+      const double x = own.distance * std::cos(own.angle);
+      own.distance *= std::sin(own.angle);
+      own.angle = x;
     }
     change = c[1].angle - c[0].angle;
   }

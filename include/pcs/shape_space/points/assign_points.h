@@ -33,7 +33,7 @@ struct Tube
   std::size_t branch;
 };
 
-/// A tree of boxes around tubes; finds the tubes that a point may lie on.
+/// A tree of boxes around tubes. Finds the tubes to which a point may belong.
 class Tube_tree
 {
 public:
@@ -47,8 +47,8 @@ public:
       build(0, tubes.size());
   }
 
-  /// Squared distance from the surface of a tube in units of the noise, and the direction from its
-  /// axis.
+  /// Returns the squared distance from the surface of a tube in units of the noise [-], and the
+  /// direction from its axis.
   double misfit(std::size_t tube, const Vec3& p, Vec3* radial = nullptr) const
   {
     const Tube& t = m_tubes[tube];
@@ -85,7 +85,7 @@ public:
       }
       const double a = least_misfit(m_cells[cell.left], p);
       const double b = least_misfit(m_cells[cell.right], p);
-      // the nearer one last, so that it is looked at first; the depth is that of a balanced tree
+      // the nearer one last, so that it is visited first; the depth is that of a balanced tree
       stack[size++] = a < b ? std::make_pair(b, cell.right) : std::make_pair(a, cell.left);
       stack[size++] = a < b ? std::make_pair(a, cell.left) : std::make_pair(b, cell.right);
     }
@@ -147,7 +147,7 @@ private:
 
 namespace internal {
 
-/// Direction of least variance of the nearest points; its sign has no meaning.
+/// Returns the direction of least variance of the nearest points; its sign has no meaning.
 inline Vec3 estimate_normal(const std::vector<Vec3>& points,
                             const neighborhood::Nearest_neighbors& search,
                             std::size_t i,
@@ -168,9 +168,8 @@ inline Vec3 estimate_normal(const std::vector<Vec3>& points,
 
 } // namespace internal
 
-/// Beyond the end of a piece and before the next of its branch, on the outer side of a bend, both
-/// are as near: there the plane that halves the angle between them decides. `tube` is either of
-/// them.
+/// Chooses between two successive tubes on the outer side of a bend, where both are equally near,
+/// by the plane that halves the angle between them. `tube` is either of them.
 inline std::size_t side_of_bend(const std::vector<Tube>& tubes, std::size_t tube, const Vec3& p)
 {
   const auto is_next = [&](std::size_t k) {

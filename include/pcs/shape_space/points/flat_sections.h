@@ -17,17 +17,19 @@
 namespace pcs {
 namespace shape_space {
 
-/// The points of an edge, seen along it.
+/// The cross-section of the points of an edge.
 struct Section
 {
   Eigen::Vector2d center = Eigen::Vector2d::Zero(), axis = Eigen::Vector2d::UnitX();
   double wide = 0, thin = 0; ///< deviations along the axis and across it [L]
 
-  /// Half of a circle, which is what one station sees of a stem, is 2.3 times as wide as thin.
+  /// Returns whether the section is flat. A half circle, the part of a stem visible from one
+  /// station, is 2.3 times as wide as thin.
   bool is_flat() const { return wide > 2.5 * thin; }
 };
 
-/// A default section, which is not flat, unless there are enough points to tell.
+/// Computes the section across an edge; a default section, which is not flat, if there are too few
+/// points.
 inline Section section_across(const Edge_cone& edge, const std::vector<Vec3>& points)
 {
   constexpr std::size_t least_number = 20;
@@ -53,12 +55,12 @@ inline Section section_across(const Edge_cone& edge, const std::vector<Vec3>& po
   return result;
 }
 
-/// A place in one flat section, turned the shorter way, stretched along and across, and moved to
-/// another one.
+/// Maps a position in one flat section to another one: rotates it by the smaller angle, stretches
+/// it along and across, and moves it.
 inline Eigen::Vector2d
-carried_across(const Section& from, const Section& to, const Eigen::Vector2d& place)
+carried_across(const Section& from, const Section& to, const Eigen::Vector2d& position)
 {
-  const Eigen::Vector2d d = place - from.center;
+  const Eigen::Vector2d d = position - from.center;
   const Eigen::Vector2d axis = from.axis.dot(to.axis) < 0 ? Eigen::Vector2d(-to.axis) : to.axis;
   const double along = from.axis.dot(d) * to.wide / from.wide;
   const double across =

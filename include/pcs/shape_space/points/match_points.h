@@ -27,9 +27,9 @@ namespace shape_space {
 
 namespace internal {
 
-/// Squared distance to the fifth neighbour, within limits: the surface that a point stands for, up
-/// to a factor. What is alone beside a surface stands for next to nothing: it would draw all that
-/// are near to itself.
+/// Estimates the surface area of each point, up to a factor, by the squared distance to the fifth
+/// neighbour, within limits [L^2]. Isolated points beside a surface get the least weight, as they
+/// would attract all points near them.
 inline std::vector<double> area_weights(const std::vector<Vec3>& points,
                                         const neighborhood::Nearest_neighbors& search)
 {
@@ -55,7 +55,7 @@ inline std::vector<double> area_weights(const std::vector<Vec3>& points,
   }
   std::vector<double> sorted(area);
   const double median = pcs::internal::upper_median(sorted);
-  for (double& a : area) // points that nearly coincide stand for little, outliers not for all
+  for (double& a : area) // limits the weights of nearly coincident points and of outliers
     a = median > 0 ? std::min(16 * median, std::max(median / 64, a)) : 1;
   return area;
 }
@@ -70,7 +70,7 @@ inline std::vector<double> to_shares(std::vector<double> weights)
   return weights;
 }
 
-/// Shares of the whole: as an area, all points of a place stand for one.
+/// Returns the weights of positions, which sum to one. As areas, coincident points count once. [-]
 inline std::vector<double>
 weights_of(const Distinct_positions& places, const std::vector<double>& areas, Point_weights kind)
 {
@@ -82,8 +82,8 @@ weights_of(const Distinct_positions& places, const std::vector<double>& areas, P
   return to_shares(std::move(numbers));
 }
 
-/// How far the points of two trees are from each other: the median of the distances to nearest
-/// ones, but at least a quarter of the spacing, since most points may be the same. Distances are
+/// Returns the usual distance of the points of two trees: the median of the distances to nearest
+/// ones, but at least a quarter of the spacing, as most points may be the same [L]. Arguments are
 /// squared.
 inline double usual_distance(std::vector<double> squared, std::vector<double> areas)
 {
@@ -92,7 +92,7 @@ inline double usual_distance(std::vector<double> squared, std::vector<double> ar
                             least * least * pcs::internal::upper_median(areas)));
 }
 
-/// No point of the one is farther than that from one of the other.
+/// Returns an upper bound for the distance of any two points: the diagonal of the bounding box. [L]
 inline double extent(const std::vector<Vec3>& one, const std::vector<Vec3>& two)
 {
   Vec3 low = one[0], high = one[0];
@@ -104,8 +104,8 @@ inline double extent(const std::vector<Vec3>& one, const std::vector<Vec3>& two)
   return (high - low).norm();
 }
 
-/// Sources that keep mass although a target within `reach` does, too. Had there been an arc between
-/// these, it would have carried.
+/// Finds the sources that keep mass although a target within `reach` does, too: an arc between
+/// these would have taken mass.
 inline std::vector<std::size_t> sources_that_lack_arcs(const std::vector<Vec3>& one,
                                                        const std::vector<Vec3>& two,
                                                        const Transport_plan& plan,
@@ -133,9 +133,9 @@ inline std::vector<std::size_t> sources_that_lack_arcs(const std::vector<Vec3>& 
 
 } // namespace internal
 
-/// The arcs that carry most of what leaves a source or reaches a target, and where nothing does the
-/// cheapest: every point keeps a partner, and few have two. By sources; of each, the one that
-/// carries most comes first.
+/// Returns, for each source and each target, the arc with the most mass, or the cheapest arc if
+/// none has mass: every point has a corresponding point, and few have two. Arcs are sorted by
+/// source; the one with the most mass comes first.
 inline std::vector<std::uint32_t> main_arcs(const Transport_problem& problem,
                                             const Transport_plan& plan)
 {
@@ -171,9 +171,9 @@ inline std::vector<std::uint32_t> main_arcs(const Transport_problem& problem,
   return arcs;
 }
 
-/// Transport between two sets of places where points are. What goes no farther than the reach is
-/// carried, and the rest stays. Candidates are nearest neighbours both ways; for sources that keep
-/// mass although they could reach more, more are taken.
+/// Finds the transport between two sets of distinct positions. Mass is moved no farther than the
+/// reach, and the rest stays. Candidates are nearest neighbours in both directions; sources that
+/// keep mass although further targets are within reach get more candidates.
 inline Transport_plan match_places(const Distinct_positions& places_1,
                                    const Distinct_positions& places_2,
                                    const Transport_options& options,
@@ -231,7 +231,7 @@ inline Transport_plan match_places(const Distinct_positions& places_1,
   }
 }
 
-/// Pairs of points of two sets in the same place, and how well they were found.
+/// Pairs of corresponding points of two sets, and the accuracy of the transport.
 struct Point_matches
 {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
@@ -240,7 +240,7 @@ struct Point_matches
   bool is_complete = false;
 };
 
-/// Every point gets a partner.
+/// Matches two sets of points; every point gets a corresponding point.
 inline Point_matches match_points(const std::vector<Vec3>& one,
                                   const std::vector<Vec3>& two,
                                   const Transport_options& options)

@@ -25,7 +25,7 @@
 namespace pcs {
 namespace shape_space {
 
-/// Points of both trees on the edges of the common topology, and their partners.
+/// Matches the points of both trees on the edges of the common topology.
 template <class ConcurrencyTag>
 class Point_matching
 {
@@ -50,8 +50,8 @@ public:
         m_branch_of[layout.branches[b].first_edge + j] = b;
   }
 
-  /// Pairs by edge. `is_stopped(done)` is asked between batches of windows; the result is empty if
-  /// it says so.
+  /// Finds pairs, sorted by edge. `is_stopped(done)` is asked between batches of windows; the
+  /// result is empty if it returns `true`.
   template <class IsStopped>
   std::vector<Point_pair>
   run(const Transport_options& options, Transport_summary& summary, const IsStopped& is_stopped)
@@ -59,7 +59,7 @@ public:
     find_sections();
     const std::vector<Window> windows = make_windows(options);
     std::vector<std::vector<Point_pair>> pairs(windows.size());
-    std::vector<Figures> figures(windows.size());
+    std::vector<Window_statistics> statistics(windows.size());
     constexpr std::size_t batch = 256;
     for (std::size_t begin = 0; begin < windows.size(); begin += batch) {
       if (is_stopped(static_cast<double>(begin) / static_cast<double>(windows.size())))
@@ -68,7 +68,7 @@ public:
           std::min(batch, windows.size() - begin),
           [&](std::size_t k) {
             const std::size_t w = begin + k;
-            figures[w] = match_window(windows[w], options, pairs[w]);
+            statistics[w] = match_window(windows[w], options, pairs[w]);
           },
           1);
     }
@@ -78,10 +78,10 @@ public:
       if (windows[w].point[0].empty() || windows[w].point[1].empty())
         continue;
       ++summary.number_of_windows;
-      summary.number_of_failures += figures[w].is_complete ? 0 : 1;
-      summary.worst_violation = std::max(summary.worst_violation, figures[w].violation);
-      summary.mean_violation += figures[w].violation;
-      summary.mean_remaining += figures[w].remaining;
+      summary.number_of_failures += statistics[w].is_complete ? 0 : 1;
+      summary.worst_violation = std::max(summary.worst_violation, statistics[w].violation);
+      summary.mean_violation += statistics[w].violation;
+      summary.mean_remaining += statistics[w].remaining;
     }
     if (summary.number_of_windows > 0) {
       summary.mean_violation /= static_cast<double>(summary.number_of_windows);
@@ -102,13 +102,13 @@ private:
   {
     std::array<std::vector<Placed>, 2> point;
   };
-  struct Figures
+  struct Window_statistics
   {
     double violation = 0, remaining = 0;
     bool is_complete = true;
   };
 
-  /// Of all edges where radii are not known, or say nothing.
+  /// Computes the sections of all edges without known radii.
   void find_sections()
   {
     m_section.assign(m_branch_of.size(), {});
@@ -130,7 +130,7 @@ private:
     Window open;
     for (std::size_t b = 0; b < m_layout.branches.size(); ++b) {
       const Orl_layout::Branch& branch = m_layout.branches[b];
-      std::size_t last = none; // window of this branch that was closed last
+      std::size_t last = none; // last closed window of this branch
       const auto close = [&] {
         const std::size_t n = open.point[0].size(), m = open.point[1].size();
         if (n + m == 0)
@@ -151,9 +151,9 @@ private:
       };
       for (std::size_t e = branch.first_edge; e < branch.first_edge + branch.number_of_edges; ++e) {
         const std::size_t n = m_of_edge[0][e].size(), m = m_of_edge[1][e].size();
-        const bool is_too_much =
+        const bool is_too_large =
             std::max(open.point[0].size() + n, open.point[1].size() + m) > options.largest_window;
-        if (is_too_much)
+        if (is_too_large)
           close();
         if (std::max(n, m) > options.largest_window && std::min(n, m) > 0) {
           for (Window& w : cut(e, options))
@@ -172,44 +172,44 @@ private:
     return windows;
   }
 
-  /// Cuts a long edge across, at places that leave about as many points of both trees between them;
-  /// points of one place stay together.
+  /// Cuts a long edge across, so that each window has about the same fraction of the points of both
+  /// trees. Points at equal heights stay together.
   std::vector<Window> cut(std::size_t e, const Transport_options& options) const
   {
-    struct Place
+    struct Height
     {
       double t;
       std::uint32_t tree, point;
     };
-    std::vector<Place> places;
+    std::vector<Height> heights;
     for (std::uint32_t t = 0; t < 2; ++t) {
       const Edge_cone edge = edge_cone(m_layout, m_geometry[t], m_branch_of[e], e);
       for (const std::uint32_t i : m_of_edge[t][e]) {
         const Vec3 q = edge.frame.transpose() * (m_points[t][i] - edge.from);
-        places.push_back({q.z() / edge.length, t, i});
+        heights.push_back({q.z() / edge.length, t, i});
       }
     }
-    std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+    std::sort(heights.begin(), heights.end(), [](const Height& a, const Height& b) {
       return a.t != b.t ? a.t < b.t : a.tree != b.tree ? a.tree < b.tree : a.point < b.point;
     });
     std::vector<Window> windows(1);
-    const double share[2] = {1 / static_cast<double>(m_of_edge[0][e].size()),
-                             1 / static_cast<double>(m_of_edge[1][e].size())};
+    const double fraction[2] = {1 / static_cast<double>(m_of_edge[0][e].size()),
+                                1 / static_cast<double>(m_of_edge[1][e].size())};
     const std::size_t most = std::max(m_of_edge[0][e].size(), m_of_edge[1][e].size());
     const double parts =
         std::ceil(static_cast<double>(most) / static_cast<double>(options.largest_window));
     double mass = 0, last_t = 0;
-    for (const Place& p : places) {
+    for (const Height& p : heights) {
       const Window& open = windows.back();
       const std::size_t n = open.point[0].size(), m = open.point[1].size();
-      // where one tree has no points, those of the other get no partners far away
+      // where one tree has no points, those of the other must not be matched far away
       const bool is_full = std::max(n, m) >= 2 * options.largest_window;
-      const bool is_share =
+      const bool has_fraction =
           mass >= 2 * static_cast<double>(windows.size()) / parts && std::min(n, m) > 0;
-      if (p.t != last_t && (is_full || is_share))
+      if (p.t != last_t && (is_full || has_fraction))
         windows.emplace_back();
       windows.back().point[p.tree].push_back({p.point, static_cast<std::uint32_t>(e)});
-      mass += share[p.tree];
+      mass += fraction[p.tree];
       last_t = p.t;
     }
     Window& last = windows.back();
@@ -227,9 +227,9 @@ private:
     return windows;
   }
 
-  Figures match_window(const Window& window,
-                       const Transport_options& options,
-                       std::vector<Point_pair>& pairs) const
+  Window_statistics match_window(const Window& window,
+                                 const Transport_options& options,
+                                 std::vector<Point_pair>& pairs) const
   {
     for (std::size_t t = 0; t < 2; ++t)
       if (window.point[1 - t].empty()) {
@@ -240,8 +240,8 @@ private:
         }
         return {};
       }
-    // tree 1 is laid on tree 2: turned, stretched along and across, and moved, edge by edge; blades
-    // also within their sections
+    // tree 1 is mapped to tree 2 edge by edge: rotated, stretched along and across, and moved;
+    // blades also within their sections
     std::vector<Vec3> one, two;
     for (const Placed& p : window.point[0]) {
       const std::size_t b = m_branch_of[p.edge];
@@ -251,12 +251,12 @@ private:
                                             is_relative);
       const auto& [from, to] = m_section[p.edge];
       if (from.is_flat() && to.is_flat()) {
-        const Eigen::Vector2d place =
+        const Eigen::Vector2d position =
             carried_across(from,
                            to,
                            c.distance * Eigen::Vector2d(std::cos(c.angle), std::sin(c.angle)));
-        c.angle = std::atan2(place.y(), place.x());
-        c.distance = place.norm();
+        c.angle = std::atan2(position.y(), position.x());
+        c.distance = position.norm();
       }
       one.push_back(point_of(edge_cone(m_layout, m_geometry[1], b, p.edge), c, is_relative));
     }

@@ -15,10 +15,10 @@ namespace pcs {
 namespace shape_space {
 
 /*!
-  An edge as a cone around the z axis of a frame. It ends where it meets the edges before and behind
-  it on the branch: at planes that halve the angle between them. So a surface that runs past a bend
-  does not tear when the bend grows, and sections across the axis keep their size. On the inner side
-  of a bend tubes overlap; there the planes end before the middle of the edge.
+  An edge as a cone around the z axis of a frame. It ends at the planes that halve the angles to the
+  edges before and behind it on the branch. So a surface along a bend does not tear when the bend
+  grows, and sections across the axis keep their size. On the inner side of a bend tubes overlap;
+  there the planes are limited before the middle of the edge.
 */
 struct Edge_cone
 {
@@ -27,22 +27,23 @@ struct Edge_cone
   double length, from_radius, to_radius;
   Eigen::Vector2d begin_slope = Eigen::Vector2d::Zero(), end_slope = Eigen::Vector2d::Zero();
 
-  static constexpr double inner_share = 0.4; ///< of the edge, that a plane may take off it
-  static constexpr double steepest = 2;      ///< of a plane: bends by more than 127 degrees gape
+  static constexpr double inner_fraction = 0.4; ///< of the edge, at most cut off by a plane
+  static constexpr double steepest = 2; ///< slope: bends by more than 127 degrees leave gaps
 
   double radius(double t) const { return (1 - t) * from_radius + t * to_radius; }
-  /// Height over the beginning of the edge at share `t` of the way between the planes.
+  /// Returns the height over the beginning of the edge at the fraction `t` between the planes. [L]
   double height(double x, double y, double t) const
   {
-    const double begin = std::min(begin_slope.x() * x + begin_slope.y() * y, inner_share * length);
+    const double begin =
+        std::min(begin_slope.x() * x + begin_slope.y() * y, inner_fraction * length);
     const double end =
-        length + std::max(end_slope.x() * x + end_slope.y() * y, -inner_share * length);
+        length + std::max(end_slope.x() * x + end_slope.y() * y, -inner_fraction * length);
     return begin + t * (end - begin);
   }
 };
 
-/// The slope, in the frame of an edge, of the plane that halves the angle between it and a
-/// neighbour along `other`.
+/// Returns the slope, in the frame of an edge, of the plane that halves the angle between it and a
+/// neighbour along `other`. [-]
 inline Eigen::Vector2d joint_slope(const Eigen::Matrix3d& frame, const Vec3& other)
 {
   const Vec3 local = frame.transpose() * other; // of unit length, as the edge's own direction
@@ -72,9 +73,9 @@ inline Edge_cone edge_cone(const Orl_layout& layout,
   return result;
 }
 
-/// A point relative to an edge: the share of the way between its ends, how far it lies before or
-/// behind it, angle and distance from the axis. Lengths off the axis are shares of the radius if
-/// `is_relative`, so that detail grows with the branch.
+/// A point relative to an edge: the parameter along it in [0, 1], the overshoot before or behind
+/// it, and angle and distance from the axis. Overshoot and distance are in units of the radius if
+/// `is_relative`, so that detail scales with the branch.
 struct Tube_coordinates
 {
   double t, overshoot, angle, distance;

@@ -19,17 +19,17 @@ namespace pcs {
 namespace shape_space {
 
 /*!
-  Two numbers per edge. Usually the angle to the direction of growth, and the azimuth about it
-  against that of the parent: a branch that is turned about the trunk carries what hangs on it, one
-  that hangs lower need not, as branches find their way upwards by themselves. How far they follow
-  the slant of their parent is learned from the trees, for each order. Upright edges have no
-  azimuth; for them, how far they lean to two sides. Where branches of an order clearly stand about
-  their parents as if they were rigid, how far they lean against these. All numbers are 0 in the
-  middle of the trees.
+  Represents the direction of each edge by two numbers, which are 0 in the mean of the trees.
+  Usually they are the slant, the angle to the direction of growth, and the azimuth about it
+  relative to the parent. So a branch that rotates about the trunk moves its children, and one that
+  is lowered need not, as branches grow upwards by themselves; how far they follow the slant of
+  their parent is estimated from the trees for each order. Upright edges have no azimuth; their
+  numbers are inclinations to two sides. In orders whose branches clearly move rigidly with their
+  parents, the numbers are inclinations relative to these.
 
-  Turns against the parent alone, one after the other, would add up: trees whose every branch is
-  turned as much as in the inputs would not grow upwards. Frames are not twisted against the
-  direction of growth: what hangs down goes on to.
+  Rotations relative to the parent alone would accumulate: trees with rotations of branches as large
+  as in the inputs would not grow upwards. Frames are not twisted about the direction of growth, so
+  branches that hang down continue to do so.
 */
 class Direction_chart
 {
@@ -60,12 +60,12 @@ public:
         direction[t].push_back(q * Vec3::UnitZ());
         polar[t].push_back(polar_of(direction[t].back()));
       }
-      // a guess of how the tree is turned against the others
+      // an initial estimate of the yaw of the tree relative to the others
       const Quaternion against = frame[t][0] * middle[0].conjugate();
-      m_turn.push_back(2 * std::atan2(against.vec().dot(up), against.w()));
+      m_yaw.push_back(2 * std::atan2(against.vec().dot(up), against.w()));
     }
     find_kinds(polar, has);
-    find_yaw_candidates(polar, has, weight);
+    align_azimuths(polar, has, weight);
     find_middle(polar, has);
     find_following(polar, has, weight);
     m_is_rigid.assign(m_following.size(), 0);
@@ -74,11 +74,11 @@ public:
     place_middle();
   }
 
-  /// The numbers of tree `t` of the constructor; 0 for branches that it does not have.
+  /// Returns the numbers of tree `t` of the constructor; 0 for branches that it lacks.
   std::vector<Pair>
   log(const std::vector<Vec3>& direction, const std::vector<char>& has, std::size_t t) const
   {
-    const Quaternion back(Eigen::AngleAxisd(-m_turn[t], m_up));
+    const Quaternion back(Eigen::AngleAxisd(-m_yaw[t], m_up));
     std::vector<Polar> polar;
     for (const Vec3& d : direction)
       polar.push_back(polar_of(back * d));
@@ -100,7 +100,7 @@ public:
     return z;
   }
 
-  /// Frames of the edges, whose z axes are their directions.
+  /// Returns frames of the edges with their directions as z axes.
   std::vector<Quaternion> exp(const std::vector<Pair>& z) const
   {
     std::vector<Polar> polar(z.size());
@@ -118,9 +118,8 @@ public:
     return frame;
   }
 
-  /// How far branches of an order follow the slant of what they grow from, in [0, 1].
-  /// Whether branches of an order stand about their parents as if they were rigid.
-  /// What the second number of an edge is worth: the first is an angle of the edge itself. [-]
+  /// Returns the factor that makes the second number of an edge an angle of the edge, as the first
+  /// one is. [-]
   double reach(std::size_t b, std::size_t e) const
   {
     return m_is_upright[e] || m_is_rigid[m_order[b]] ? 1 : std::sin(m_middle[e][0]);
@@ -140,9 +139,10 @@ private:
     return {std::atan2(std::hypot(x, y), d.dot(m_up)), std::atan2(y, x)};
   }
   static double wrap(double angle) { return std::remainder(angle, 2 * pi); }
-  static Pair lean(const Polar& p, double carried)
+  static Pair lean(const Polar& p, double azimuth_of_parent)
   {
-    return p.slant * Pair(std::cos(p.azimuth - carried), std::sin(p.azimuth - carried));
+    return p.slant *
+           Pair(std::cos(p.azimuth - azimuth_of_parent), std::sin(p.azimuth - azimuth_of_parent));
   }
 
   Vec3 direction_of(const Polar& p) const
@@ -151,7 +151,7 @@ private:
            std::sin(p.slant) * (std::cos(p.azimuth) * m_side + std::sin(p.azimuth) * m_other);
   }
 
-  /// The frame of an edge if it stands on its parent as in the middle tree.
+  /// Returns the frame of an edge if it is rotated relative to its parent as in the middle tree.
   Quaternion start_of(const std::vector<Quaternion>& frame, std::size_t e) const
   {
     const std::size_t p = m_layout.parent_edge[e];
@@ -169,7 +169,8 @@ private:
     return across > 0 ? Pair(d.head<2>() * (std::atan2(across, d.z()) / across))
                       : Pair(d.z() < 0 ? pi : 0, 0);
   }
-  /// That of the middle tree, turned about the direction of growth, and up or down.
+  /// Returns the direction of the middle tree, rotated about the direction of growth and up or
+  /// down.
   Quaternion free_frame(std::size_t e, const Polar& p) const
   {
     const Polar& middle = m_polar[e];
@@ -184,13 +185,13 @@ private:
   Pair
   chart(const std::vector<Polar>& polar, std::size_t b, std::size_t e, std::size_t anchor) const
   {
-    const double carried = anchor == none ? 0 : polar[anchor].azimuth;
+    const double azimuth_of_parent = anchor == none ? 0 : polar[anchor].azimuth;
     if (m_is_upright[e])
-      return lean(polar[e], carried) - m_middle[e];
+      return lean(polar[e], azimuth_of_parent) - m_middle[e];
     double slant = polar[e].slant - m_middle[e][0];
     if (anchor != none)
       slant -= m_following[m_order[b]] * (polar[anchor].slant - m_middle[anchor][0]);
-    return Pair(slant, wrap(polar[e].azimuth - carried - m_middle[e][1]));
+    return Pair(slant, wrap(polar[e].azimuth - azimuth_of_parent - m_middle[e][1]));
   }
   Polar unchart(const Pair& z,
                 const std::vector<Polar>& polar,
@@ -198,14 +199,14 @@ private:
                 std::size_t e,
                 std::size_t anchor) const
   {
-    const double carried = anchor == none ? 0 : polar[anchor].azimuth;
+    const double azimuth_of_parent = anchor == none ? 0 : polar[anchor].azimuth;
     const Pair v = m_middle[e] + z;
     if (m_is_upright[e])
-      return {std::min(pi, v.norm()), std::atan2(v[1], v[0]) + carried};
+      return {std::min(pi, v.norm()), std::atan2(v[1], v[0]) + azimuth_of_parent};
     double slant = v[0];
     if (anchor != none)
       slant += m_following[m_order[b]] * (polar[anchor].slant - m_middle[anchor][0]);
-    return {std::min(pi, std::max(0.0, slant)), carried + v[1]};
+    return {std::min(pi, std::max(0.0, slant)), azimuth_of_parent + v[1]};
   }
 
   /// Calls `f(branch, edge, anchor)`, parents first.
@@ -219,7 +220,7 @@ private:
     }
   }
 
-  /// Which edges are upright, and the edge whose azimuth carries each branch.
+  /// Finds the upright edges, and for each branch the edge whose azimuth its own refers to.
   void find_kinds(const std::vector<std::vector<Polar>>& polar,
                   const std::vector<std::vector<char>>& has)
   {
@@ -242,10 +243,10 @@ private:
     }
   }
 
-  /// Turns the trees about the direction of growth so that branches of the trunk agree.
-  void find_yaw_candidates(std::vector<std::vector<Polar>>& polar,
-                           const std::vector<std::vector<char>>& has,
-                           const std::vector<double>& weight)
+  /// Finds the yaw of each tree for which the branches on the trunk agree, and subtracts it.
+  void align_azimuths(std::vector<std::vector<Polar>>& polar,
+                      const std::vector<std::vector<char>>& has,
+                      const std::vector<double>& weight)
   {
     constexpr int number_of_passes = 10;
     std::vector<double> middle(m_layout.number_of_edges(), 0);
@@ -258,7 +259,7 @@ private:
         Pair sum = Pair::Zero();
         for (std::size_t t = 0; t < polar.size(); ++t)
           if (anchor == none && has[t][b])
-            add(t, e, polar[t][e].azimuth - m_turn[t], sum);
+            add(t, e, polar[t][e].azimuth - m_yaw[t], sum);
         middle[e] = std::atan2(sum[1], sum[0]);
       });
       for (std::size_t t = 0; t < polar.size(); ++t) {
@@ -268,12 +269,12 @@ private:
             add(t, e, polar[t][e].azimuth - middle[e], sum);
         });
         if (sum.norm() > 0)
-          m_turn[t] = std::atan2(sum[1], sum[0]);
+          m_yaw[t] = std::atan2(sum[1], sum[0]);
       }
     }
     for (std::size_t t = 0; t < polar.size(); ++t)
       for (Polar& p : polar[t])
-        p.azimuth -= m_turn[t];
+        p.azimuth -= m_yaw[t];
   }
 
   void find_middle(const std::vector<std::vector<Polar>>& polar,
@@ -285,10 +286,10 @@ private:
       double slant = 0, count = 0;
       for (std::size_t t = 0; t < polar.size(); ++t)
         if (has[t][b]) {
-          const double carried = anchor == none ? 0 : polar[t][anchor].azimuth;
-          const double azimuth = polar[t][e].azimuth - carried;
+          const double azimuth_of_parent = anchor == none ? 0 : polar[t][anchor].azimuth;
+          const double azimuth = polar[t][e].azimuth - azimuth_of_parent;
           sum += std::sin(polar[t][e].slant) * Pair(std::cos(azimuth), std::sin(azimuth));
-          lean_sum += lean(polar[t][e], carried);
+          lean_sum += lean(polar[t][e], azimuth_of_parent);
           slant += polar[t][e].slant;
           ++count;
         }
@@ -297,7 +298,7 @@ private:
     });
   }
 
-  /// Frames of the middle tree, twisted as those of the constructor.
+  /// Computes frames of the middle tree with the twist of those of the constructor.
   void place_middle()
   {
     m_frame.resize(m_middle.size());
@@ -316,7 +317,7 @@ private:
     });
   }
 
-  /// Makes the middle of the leanings of an order that is rigid 0.
+  /// Centers the inclinations of a rigid order.
   void center_order(const std::vector<std::vector<Vec3>>& direction,
                     const std::vector<std::vector<char>>& has,
                     std::size_t order)
@@ -340,7 +341,8 @@ private:
     }
   }
 
-  /// Least squares over all branches of an order, at their first edges.
+  /// Estimates by least squares, over the first edges of all branches of an order, how far they
+  /// follow the slant of their parents.
   void find_following(const std::vector<std::vector<Polar>>& polar,
                       const std::vector<std::vector<char>>& has,
                       const std::vector<double>& weight)
@@ -362,8 +364,9 @@ private:
                                           : 0);
   }
 
-  /// Orders whose branches are much better told from where they stand on their parents than from
-  /// the slant and azimuth of these. Not those of the trunk, which is upright itself.
+  /// Finds the orders whose directions are predicted much better by rigid rotation with their
+  /// parents than by the slant and azimuth of these. The branches on the trunk, which is upright,
+  /// are excluded.
   void find_rigid_orders(const std::vector<std::vector<Vec3>>& direction,
                          const std::vector<std::vector<char>>& has,
                          const std::vector<double>& weight)
@@ -378,15 +381,15 @@ private:
         const std::vector<Pair> z = log(direction[t], has[t], t);
         std::vector<Polar> polar;
         for (const Vec3& d : direction[t])
-          polar.push_back(polar_of(Eigen::AngleAxisd(-m_turn[t], m_up) * d));
+          polar.push_back(polar_of(Eigen::AngleAxisd(-m_yaw[t], m_up) * d));
         visit([&](std::size_t b, std::size_t e, std::size_t anchor) {
           if (!has[t][b] || m_order[b] != k)
             return;
           rigid += weight[e] * z[e].squaredNorm();
-          const Vec3 told = direction_of(unchart(Pair::Zero(), polar, b, e, anchor));
-          free += weight[e] *
-                  lean_of(shortest_turn(Vec3::UnitZ(), told.normalized()), direction_of(polar[e]))
-                      .squaredNorm();
+          const Vec3 expected = direction_of(unchart(Pair::Zero(), polar, b, e, anchor));
+          free += weight[e] * lean_of(shortest_turn(Vec3::UnitZ(), expected.normalized()),
+                                      direction_of(polar[e]))
+                                  .squaredNorm();
         });
       }
       m_is_rigid[k] = rigid < clearly_less * free;
@@ -399,7 +402,7 @@ private:
   std::vector<Polar> m_polar;                 // likewise
   std::vector<char> m_is_upright;             // per edge
   std::vector<std::size_t> m_order, m_anchor; // per branch
-  std::vector<double> m_turn;                 // per tree
+  std::vector<double> m_yaw;                  // per tree
   std::vector<Pair> m_middle;                 // per edge
   std::vector<double> m_following;            // per order
   std::vector<char> m_is_rigid;               // per order

@@ -19,7 +19,7 @@
 namespace pcs {
 namespace shape_space {
 
-/// The space of modes as seen in features of trees.
+/// The space of modes in features of trees.
 struct Mode_features
 {
   Mode_inner_product measure = Mode_inner_product::branches;
@@ -29,12 +29,12 @@ struct Mode_features
   double least_deviation = 0;           ///< smaller ones are rounding [L]
 };
 
-/// Where a tree lies in the space of the modes.
+/// Coordinates of a tree in the space of the modes.
 struct Mode_coordinates
 {
   Eigen::VectorXd scores; ///< in standard deviations [-]
-  /// From the space of the modes: root of the mean square over the branches of the tree, each in
-  /// units of how much it varies; the inputs are 1 from their mean. [-]
+  /// Distance from the space of the modes: root of the mean square over the branches of the tree,
+  /// each in units of its standard deviation; the inputs have the distance 1 from their mean. [-]
   double distance = 0;
 };
 
@@ -44,20 +44,20 @@ struct Modes_of_variation
   Orl_coordinates mean;       ///< least squares
   Eigen::MatrixXd directions; ///< tangent vectors at the mean, one column per mode, of unit length
   Eigen::VectorXd deviations; ///< change of a tree by one standard deviation of each mode [L]
-  Eigen::VectorXd shares;     ///< of the variance, largest first [-]
+  Eigen::VectorXd shares;     ///< fractions of the variance, largest first [-]
   Eigen::MatrixXd scores;     ///< of each tree (row) for each mode, in standard deviations [-]
-  Eigen::VectorXd center;     ///< mean of the tangent vectors; rounding if the mean is exact
+  Eigen::VectorXd center; ///< mean of the tangent vectors; 0 up to rounding if the mean is exact
   Mode_features features;
   std::vector<std::vector<double>>
       left_out; ///< distance of each tree from the space of k modes of all others [-]
 
   std::size_t size() const { return static_cast<std::size_t>(deviations.size()); }
-  /// Share of the variance that the first `k` modes have. [-]
+  /// Returns the fraction of the variance that the first `k` modes explain. [-]
   double share(std::size_t k) const
   {
     return size() > 0 ? shares.head(static_cast<Eigen::Index>(std::min(k, size()))).sum() : 1;
   }
-  /// Root of the mean square of the left-out distances for `k` modes of the others. [-]
+  /// Returns the root of the mean square of the left-out distances for `k` modes of the others. [-]
   double left_out_error(std::size_t k) const
   {
     double sum = 0;
@@ -68,10 +68,10 @@ struct Modes_of_variation
 };
 
 /*!
-  Dissimilarity of a tree from the trees of the modes: the root of the mean of two squares. One is
-  of its scores, the other of its distance from the space of the modes, in units of the median
-  left-out distance. About 1 for a tree of the same kind. Without modes or spread, 0 for the mean
-  and infinite for all others. [-]
+  Returns the dissimilarity of a tree from the trees of the modes: the root of the mean of two
+  squares, that of its scores and that of its distance from the space of the modes in units of the
+  median left-out distance. It is about 1 for a tree of the same kind; without modes or spread, 0
+  for the mean and infinite for all others. [-]
 */
 inline double outlier_score(const Modes_of_variation& modes, const Mode_coordinates& at)
 {

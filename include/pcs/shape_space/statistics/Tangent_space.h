@@ -18,10 +18,10 @@ namespace pcs {
 namespace shape_space {
 
 /*!
-  The tangent space at a tree. A vector has three coordinates per edge for its turn, one for its
+  The tangent space at a tree. A vector has three coordinates per edge for its rotation, one for its
   length and one for its radius, then per branch the radius at the base and the attachment, each
-  times its weight in the metric: its length is the distance `Orl_metric::square` from the base, but
-  for the root, which has no part: where a tree stands is not its shape.
+  multiplied by its weight in the metric. Its norm is the distance `Orl_metric::square` from the
+  base, without the root: the position of a tree is not part of its shape.
 */
 class Tangent_space
 {
@@ -58,9 +58,9 @@ public:
   }
 
   /*!
-    The tree at the end of a tangent vector. Turns end at pi, attachments on the parent, and lengths
-    at 0; what is left of a length by rounding is 0. What cannot vanish ends at a share of what it
-    is at the base: lengths of the trunk, and radii where there is length.
+    Returns the tree at the end of a tangent vector. Rotations are limited to pi, attachments to the
+    parent, and lengths to values of at least 0; remainders of rounding become 0. Lengths of the
+    trunk, and radii of edges that have length, keep a fraction of their values at the base.
   */
   Orl_coordinates exp(const Eigen::VectorXd& z) const
   {
@@ -80,7 +80,7 @@ public:
       x.orientation[e].normalize();
       const double length = x.length[e] + over(z[k + 3], m_weights->length[e]);
       x.length[e] = length > rounding * x.length[e] ? length
-                    : e < trunk_end                 ? least_share * x.length[e]
+                    : e < trunk_end                 ? least_fraction * x.length[e]
                                                     : 0;
       x.radius[e] = radius_at(x.radius[e], over(z[k + 4], m_weights->radius[e]), x.length[e] > 0);
     }
@@ -102,14 +102,14 @@ public:
   }
 
 private:
-  static constexpr double rounding = 1e-9, least_share = 0.01; // of what it is at the base
+  static constexpr double rounding = 1e-9, least_fraction = 0.01; // of the value at the base
 
   static double radius_at(double base, double step, bool is_there)
   {
     const double radius = base + step;
     if (radius >= -rounding * base) // 0 where it is 0 in an input
       return std::max(0.0, radius);
-    return is_there ? least_share * base : 0;
+    return is_there ? least_fraction * base : 0;
   }
 
   const Orl_layout* m_layout = nullptr;

@@ -20,7 +20,7 @@ namespace shape_space {
 
 namespace internal {
 
-/// Inverse of a symmetric positive definite matrix, by Gauss and Jordan; pivots need no search.
+/// Inverts a symmetric positive definite matrix by Gauss-Jordan elimination; pivots need no search.
 inline Eigen::MatrixXd inverse_of_symmetric(Eigen::MatrixXd a)
 {
   const Eigen::Index n = a.rows();
@@ -99,25 +99,26 @@ public:
     find_deviations();
   }
 
-  /// n x n; the trace is n, or 0 if no block varies.
+  /// Returns the covariance of the trees, n x n; the trace is n, or 0 if no block varies.
   const Eigen::MatrixXd& covariance() const { return m_covariance; }
-  /// Of all trees, as far as known. [L]
+  /// Returns the mean of all trees, as far as known. [L]
   const Eigen::VectorXd& mean() const { return m_mean; }
-  /// Sum of the variances of the numbers of a block; 0: it does not vary, or less than two trees
-  /// have it. [L^2]
+  /// Returns the sum of the variances of the numbers of a block; 0: it does not vary, or less than
+  /// two trees have it. [L^2]
   double variance(std::size_t block) const { return m_variance[block]; }
-  /// What squares of deviations of a block count. [1/L^2]
+  /// Returns the weight of squared deviations of a block. [1/L^2]
   double weight(std::size_t block) const { return m_weight[block]; }
 
-  /// From the mean, unknown ones as expected from the covariance; one column per tree. [L]
+  /// Returns the deviations from the mean, one column per tree; unknown ones are their
+  /// expectations. [L]
   const Eigen::MatrixXd& deviations() const { return m_deviations; }
 
 private:
   static constexpr int number_of_steps = 60;
   static constexpr double tolerance = 1e-4, rounding = 1e-6;
-  /// What no block shares with others, at least; else a block that follows the others to rounding
-  /// would have all votes.
-  static constexpr double own_share = 0.02;
+  /// Least fraction of variance that no block shares with others. Without it, a block that equals a
+  /// combination of others up to rounding would get all the weight. [-]
+  static constexpr double own_fraction = 0.02;
 
   struct Completed_block
   {
@@ -144,11 +145,11 @@ private:
     return z;
   }
 
-  Eigen::MatrixXd with_floor(double share) const
+  Eigen::MatrixXd with_floor(double fraction) const
   {
     const Eigen::Index n = m_covariance.rows();
-    return m_covariance +
-           share * m_covariance.trace() / static_cast<double>(n) * Eigen::MatrixXd::Identity(n, n);
+    return m_covariance + fraction * m_covariance.trace() / static_cast<double>(n) *
+                              Eigen::MatrixXd::Identity(n, n);
   }
 
   static Eigen::MatrixXd part(const Eigen::MatrixXd& a,
@@ -164,7 +165,8 @@ private:
     return result;
   }
 
-  /// `covariance` is empty in the first step: unknown deviations are 0 then.
+  /// Completes the deviations of a block. `covariance` is empty in the first step: unknown
+  /// deviations are 0 then.
   Completed_block complete(std::size_t b, const Eigen::MatrixXd& covariance) const
   {
     const auto n = static_cast<Eigen::Index>(m_has.size());
@@ -179,8 +181,8 @@ private:
       result.mean = z.rowwise().mean();
     else {
       inverse = internal::inverse_of_symmetric(part(covariance, known, known));
-      const Eigen::VectorXd share = inverse.rowwise().sum();
-      result.mean = z * share / share.sum(); // generalised least squares
+      const Eigen::VectorXd weight = inverse.rowwise().sum();
+      result.mean = z * weight / weight.sum(); // generalised least squares
     }
     z.colwise() -= result.mean;
     for (std::size_t i = 0; i < known.size(); ++i)
@@ -215,7 +217,7 @@ private:
     Eigen::MatrixXd covariance, inverse = Eigen::MatrixXd::Identity(n, n);
     if (!is_first) {
       covariance = with_floor(rounding);
-      inverse = internal::inverse_of_symmetric(with_floor(own_share));
+      inverse = internal::inverse_of_symmetric(with_floor(own_fraction));
     }
     std::vector<Eigen::MatrixXd> sums(number_of_parts, Eigen::MatrixXd::Zero(n, n));
     pcs::internal::for_each_index<ConcurrencyTag>(

@@ -77,7 +77,7 @@ public:
         m_order[b] = m_order[layout.branches[b].parent] + 1;
     }
     find_counts();
-    find_seats(trees);
+    find_attachments(trees);
     find_middle<ConcurrencyTag>(trees);
     find_deviations(trees, up);
     pool_variances();
@@ -85,7 +85,8 @@ public:
       estimate_shrinkage();
   }
 
-  /// The tree number `index` of a family: the same for the same seed, whatever else is drawn.
+  /// Draws the tree number `index` of a sequence; it depends on nothing but the seed, the index and
+  /// the options.
   Orl_coordinates
   draw(std::uint64_t seed, std::uint64_t index, const Tree_sampling_options& o) const
   {
@@ -117,8 +118,8 @@ public:
       x.base_radius[b] = total > 0 ? m_middle.base_radius[b] * std::exp(o.spread * z[k]) : 0;
       if (parent != none) {
         const double last = static_cast<double>(m_layout.branches[parent].number_of_edges);
-        const double low = o.do_keep_in_range ? m_lowest_seat[parent] : 0,
-                     high = o.do_keep_in_range ? m_highest_seat[parent] : last;
+        const double low = o.do_keep_in_range ? m_lowest_attachment[parent] : 0,
+                     high = o.do_keep_in_range ? m_highest_attachment[parent] : last;
         x.attachment[b] =
             std::min(high, std::max(low, m_middle.attachment[b] + o.spread * z[k + 1]));
       }
@@ -131,11 +132,12 @@ public:
     return x;
   }
 
-  /// Weight of the covariance where branches vary by themselves. [-]
+  /// Returns the weight of the covariance in which branches vary independently. [-]
   double shrinkage() const { return m_shrinkage; }
 
 private:
-  /// Four coordinates per edge, then two per branch: one block for each branch.
+  /// Returns the first row of a branch: each branch has four coordinates per edge, then two of its
+  /// own.
   Eigen::Index first(std::size_t b) const
   {
     return static_cast<Eigen::Index>(4 * m_layout.branches[b].first_edge + 2 * b);
@@ -145,15 +147,15 @@ private:
     return static_cast<Eigen::Index>(4 * m_layout.branches[b].number_of_edges + 2);
   }
 
-  /// Which branches are there, order by order. Where there are more or fewer than in all inputs,
-  /// the branches change that were drawn with the least odds.
+  /// Draws which branches exist, order by order. If there are more or fewer than in all inputs, the
+  /// branches with the least odds change.
   template <class Uniform>
   std::vector<char> draw_presence(const Tree_sampling_options& o, const Uniform& uniform) const
   {
     const std::size_t m = m_layout.branches.size();
     std::vector<char> result(m, 1);
     std::vector<double> odds(m,
-                             0); // how much the chance is greater than what was drawn, as logarithm
+                             0); // log-odds of the probability minus those of the drawn number
     for (std::size_t b = 0; b < m; ++b)
       if (const std::size_t parent = m_layout.branches[b].parent; parent != none) {
         const double chance = m_count[b] / m_count[parent], drawn = uniform();
@@ -194,10 +196,10 @@ private:
       z += normal() / divisor * m_deviations.col(t);
     for (std::size_t b = 0; b < m_layout.branches.size(); ++b) {
       const double members = m_count[b] - 1;
-      // all branches together: unknown values are 0, and vary too little
+      // all branches together: unknown values are 0 and reduce the variance
       z.segment(first(b), size(b)) *=
           std::sqrt((1 - shrinkage)) * divisor / std::sqrt(std::max(1.0, members));
-      // the branch by itself
+      // the branch alone
       const double own = std::sqrt(shrinkage / (members + prior));
       for (std::size_t t = 0; t < n; ++t)
         if (m_has[t][b] && members > 0)
@@ -214,14 +216,14 @@ private:
     return z;
   }
 
-  /// Radii that are not known are 0, and stay so.
+  /// Returns the logarithm of a ratio, limited below. Unknown radii are 0 and stay 0. [-]
   static double log_ratio(double value, double middle)
   {
     constexpr double least = 1e-6;
     return middle > 0 ? std::log(std::max(value, least * middle) / middle) : 0;
   }
 
-  /// Least and largest number of branches of each order in the inputs.
+  /// Finds the least and largest number of branches of each order in the inputs.
   void find_counts()
   {
     const std::size_t orders = 1 + *std::max_element(m_order.begin(), m_order.end());
@@ -238,20 +240,23 @@ private:
     }
   }
 
-  /// The part of each branch that carries branches in an input.
-  void find_seats(const std::vector<const Orl_coordinates*>& trees)
+  /// Finds the interval of each branch that supports branches in an input.
+  void find_attachments(const std::vector<const Orl_coordinates*>& trees)
   {
-    m_lowest_seat.assign(m_order.size(), std::numeric_limits<double>::infinity());
-    m_highest_seat.assign(m_order.size(), 0);
+    m_lowest_attachment.assign(m_order.size(), std::numeric_limits<double>::infinity());
+    m_highest_attachment.assign(m_order.size(), 0);
     for (std::size_t b = 0; b < m_order.size(); ++b)
       for (std::size_t t = 0; t < trees.size(); ++t)
         if (const std::size_t parent = m_layout.branches[b].parent; parent != none && m_has[t][b]) {
-          m_lowest_seat[parent] = std::min(m_lowest_seat[parent], trees[t]->attachment[b]);
-          m_highest_seat[parent] = std::max(m_highest_seat[parent], trees[t]->attachment[b]);
+          m_lowest_attachment[parent] =
+              std::min(m_lowest_attachment[parent], trees[t]->attachment[b]);
+          m_highest_attachment[parent] =
+              std::max(m_highest_attachment[parent], trees[t]->attachment[b]);
         }
   }
 
-  /// Middle of the trees that have each branch: geometric means, Frechet means of orientations.
+  /// Computes the mean of the trees that have each branch: geometric means, and Frechet means of
+  /// orientations.
   template <class ConcurrencyTag>
   void find_middle(const std::vector<const Orl_coordinates*>& trees)
   {
@@ -292,7 +297,7 @@ private:
         8);
   }
 
-  /// Column t: tree t against the middle; 0 for branches that it does not have.
+  /// Computes the deviations of tree t from the middle in column t; 0 for branches that it lacks.
   void find_deviations(const std::vector<const Orl_coordinates*>& trees, const Vec3& up)
   {
     const std::size_t n = trees.size();
@@ -331,7 +336,7 @@ private:
     }
   }
 
-  /// Standard deviations of branches as a whole, by order: means over their edges vary so.
+  /// Estimates the standard deviations of whole branches by order, from means over their edges.
   void pool_variances()
   {
     const std::size_t orders = 1 + *std::max_element(m_order.begin(), m_order.end());
@@ -352,11 +357,12 @@ private:
       m_pool[k] = (m_pool[k] / std::max(1.0, weight[k])).cwiseSqrt();
   }
 
-  /// The share that makes the expected error of the covariance least, from products of the data
-  /// only.
+  /// Estimates the shrinkage that minimises the expected error of the covariance, from products of
+  /// the data only.
   void estimate_shrinkage()
   {
-    // units: a turn counts with the length it carries, a logarithm with the length or radius itself
+    // units: a rotation is multiplied by the length it moves, a logarithm by the length or radius
+    // itself
     const Eigen::Index trees = m_deviations.cols();
     const auto n = static_cast<double>(trees);
     double typical = 0;
@@ -387,7 +393,7 @@ private:
     m_shrinkage = squares > 0 ? std::min(1.0, std::max(0.0, noise / squares)) : 0;
   }
 
-  static constexpr double prior = 2; // further members of each branch that vary like its order
+  static constexpr double prior = 2; // additional members of each branch that vary like its order
   // two numbers of direction, logarithms of length and radius, of the radius at the base,
   // attachment
   using Pool = Eigen::Matrix<double, 6, 1>;
@@ -397,13 +403,13 @@ private:
   Orl_orientation m_orientation;
   std::vector<double> m_count; // trees that have each branch
   std::vector<std::size_t> m_order;
-  std::vector<std::size_t> m_fewest, m_most;         // branches of each order in an input
-  std::vector<double> m_lowest_seat, m_highest_seat; // on each branch
+  std::vector<std::size_t> m_fewest, m_most; // branches of each order in an input
+  std::vector<double> m_lowest_attachment, m_highest_attachment; // on each branch
   Orl_coordinates m_middle;
   Direction_chart m_chart;
   Eigen::MatrixXd m_deviations;
   std::vector<Pool> m_pool; // by order
-  double m_shrinkage = 0.5; // two trees do not tell
+  double m_shrinkage = 0.5; // cannot be estimated from two trees
 };
 
 } // namespace shape_space

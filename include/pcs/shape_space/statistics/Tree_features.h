@@ -19,13 +19,13 @@ namespace pcs {
 namespace shape_space {
 
 /*!
-  Numbers of a tree in blocks; a tree either has all numbers of a block, or none.
+  Computes the features of trees in blocks; a tree either has all features of a block, or none.
 
-  `Mode_inner_product::branches`: one block per branch. Directions of its edges in the frame of the
-  edge of its parent that it grows from, ways from its base to its nodes, radii, and its place on
-  the parent, all in units of length. Sums of squares over edges are integrals along the branch,
-  whatever number of edges it has: directions weigh as the length that they carry. Directions of the
-  trunk are seen in the axes of the input, turned about the trunk as the tree is.
+  `Mode_inner_product::branches`: one block per branch. Its features are the directions of its edges
+  in the frame of the parent edge, path lengths from its base to its nodes, radii, and its
+  attachment, all in units of length. Sums of squares over edges approximate integrals along the
+  branch, whatever its number of edges; directions are weighted by length. Directions of the trunk
+  refer to the axes of the input, rotated about the trunk with the tree.
 
   `Mode_inner_product::metric`: one block, the tangent vector at the mean.
 */
@@ -57,7 +57,7 @@ public:
   Eigen::Index size(std::size_t block) const { return m_first[block + 1] - m_first[block]; }
   Eigen::Index dimension() const { return m_first.back(); }
 
-  /// `has`: per block; numbers of blocks that the tree does not have are 0. [L]
+  /// Returns the features; those of blocks that the tree lacks are 0. `has`: per block. [L]
   Eigen::VectorXd operator()(const Orl_coordinates& x, std::vector<char>& has) const
   {
     has.assign(number_of_blocks(), 1);
@@ -72,19 +72,19 @@ public:
       if (!has[b])
         continue;
       const Orl_layout::Branch& branch = m_layout->branches[b];
-      const Quaternion seat = seat_of(branch, geometry).conjugate();
-      const double share = 1 / std::sqrt(static_cast<double>(branch.number_of_edges));
-      double usual = 0, way = 0;
+      const Quaternion to_base = base_frame(branch, geometry).conjugate();
+      const double scale = 1 / std::sqrt(static_cast<double>(branch.number_of_edges));
+      double usual = 0, path_length = 0;
       for (std::size_t j = 0; j < branch.number_of_edges; ++j)
         usual += m_mean->length[branch.first_edge + j];
       Eigen::Index k = m_first[b];
       for (std::size_t e = branch.first_edge; e < branch.first_edge + branch.number_of_edges;
            ++e, k += 5) {
-        way += x.length[e];
+        path_length += x.length[e];
         z.segment<3>(k) =
-            std::sqrt(m_mean->length[e] * usual) * (seat * (geometry.frame[e] * Vec3::UnitZ()));
-        z[k + 3] = share * way;
-        z[k + 4] = share * x.radius[e];
+            std::sqrt(m_mean->length[e] * usual) * (to_base * (geometry.frame[e] * Vec3::UnitZ()));
+        z[k + 3] = scale * path_length;
+        z[k + 4] = scale * x.radius[e];
       }
       z[k] = x.base_radius[b];
       z[k + 1] = m_weights->attachment[b] * x.attachment[b];
@@ -93,7 +93,7 @@ public:
   }
 
 private:
-  Quaternion seat_of(const Orl_layout::Branch& branch, const Orl_geometry& geometry) const
+  Quaternion base_frame(const Orl_layout::Branch& branch, const Orl_geometry& geometry) const
   {
     if (branch.parent != none)
       return geometry.frame[branch.reference_edge];

@@ -51,15 +51,15 @@ inline Principal_scores principal_scores(const Eigen::MatrixXd& covariance)
   return result;
 }
 
-/// `distance[k]`: of a tree from the space of the first k modes.
+/// Scores of a tree, and its distances `distance[k]` from the space of the first k modes. [-]
 struct Mode_fit
 {
   Eigen::VectorXd scores;
   std::vector<double> distance;
 };
 
-/// Weighted least squares over the blocks that the tree has, by modified Gram-Schmidt, so that k
-/// modes come before k + 1.
+/// Fits modes by weighted least squares over the blocks that the tree has. Modified Gram-Schmidt
+/// gives the distances for all numbers of modes.
 inline Mode_fit fit_modes(const Tree_features& features,
                           const Mode_features& modes,
                           const Eigen::VectorXd& values,
@@ -96,7 +96,7 @@ inline Mode_fit fit_modes(const Tree_features& features,
         r(i, j) += d;
       }
     r(j, j) = q.col(j).norm();
-    if (r(j, j) > 1e-8 * whole) { // else the tree does not tell it from the modes before
+    if (r(j, j) > 1e-8 * whole) { // else it depends on the previous modes for this tree
       q.col(j) /= r(j, j);
       for (int pass = 0; pass < 2; ++pass) {
         const double d = q.col(j).dot(rest);
@@ -119,7 +119,7 @@ inline Mode_fit fit_modes(const Tree_features& features,
   return result;
 }
 
-/// The part of `modes` that is seen in features, from deviations of trees and their scores.
+/// Computes the modes in features from deviations of trees and their scores.
 inline void set_features(const Tree_features& features,
                          const Tree_covariance& covariance,
                          const Eigen::MatrixXd& scores,
@@ -138,7 +138,7 @@ inline void set_features(const Tree_features& features,
   }
 }
 
-/// Trees as columns of tangent vectors and of features.
+/// Tangent vectors and features of trees, as columns.
 struct Mode_inputs
 {
   Eigen::MatrixXd tangents; ///< centered
@@ -169,9 +169,9 @@ Mode_inputs mode_inputs(const std::vector<const Orl_coordinates*>& trees,
   return in;
 }
 
-/// Fills in directions, deviations, scores and shares of at most `most` modes: the changes of
-/// tangent vectors with the principal scores, by least squares. Modes with a deviation of at most
-/// `least` are left out.
+/// Computes directions, deviations, scores and fractions of the variance of at most `most` modes by
+/// regression of tangent vectors on the principal scores. Modes with a deviation of at most `least`
+/// are left out.
 inline void set_directions(const Eigen::MatrixXd& tangents,
                            const Principal_scores& principal,
                            std::size_t most,
@@ -211,7 +211,7 @@ inline void set_directions(const Eigen::MatrixXd& tangents,
       Eigen::Map<Eigen::VectorXd>(shares.data(), static_cast<Eigen::Index>(shares.size()));
 }
 
-/// Distances of tree `t` from the modes of all other trees, by number of modes.
+/// Returns the distances of tree `t` from the modes of all other trees, by number of modes. [-]
 inline std::vector<double> left_out_distances(const Tree_features& features,
                                               const Tree_covariance& covariance,
                                               const Mode_inputs& in,
@@ -250,15 +250,15 @@ inline std::vector<double> left_out_distances(const Tree_features& features,
 } // namespace internal
 
 /*!
-  Principal modes of variation: at most `most`, fewer if the trees differ in fewer directions. The
-  sign of a mode is such that its largest coordinate is positive.
+  Finds the principal modes of variation: at most `most`, fewer if the trees differ in fewer
+  directions. The sign of a mode is such that its largest coordinate is positive.
 
   Scores are the principal components of the `Tree_covariance` of `Tree_features`, which compare
   trees by the branches that they have. With the centered tangent vectors `z_t` and the scores
   `s_tk` of `n` trees, a mode is the regression `u_k = sum_t s_tk z_t / (n - 1)` of tangent vectors
-  on scores, so lengths of branches that come and go change with it, too. All modes together
-  reproduce all trees. If no branch differs between the trees that have it, trees differ only by
-  which branches they have; the modes are then those of `Mode_inner_product::metric`, as
+  on scores, so lengths of branches that only some trees have change with it, too. All modes
+  together reproduce all trees. If no branch differs between the trees that have it, trees differ
+  only by which branches they have; the modes are then those of `Mode_inner_product::metric`, as
   `features.measure` says.
 */
 template <class ConcurrencyTag>
@@ -311,7 +311,7 @@ Modes_of_variation find_modes(const Orl_layout& layout,
   return result;
 }
 
-/// Scores that explain the branches of a tree best, by the first `most` modes.
+/// Returns the scores of the first `most` modes that fit the branches of a tree best.
 inline Mode_coordinates project_on_modes(const Orl_layout& layout,
                                          const Orl_weights& weights,
                                          Orl_orientation orientation,

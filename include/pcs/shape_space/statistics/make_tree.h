@@ -22,7 +22,8 @@
 namespace pcs {
 namespace shape_space {
 
-/// The parameter of the nearest tree on the geodesic of a family of two trees, in [0, 1] [-].
+/// Returns the parameter of the nearest tree on the geodesic of a family of two trees, in [0, 1].
+/// [-]
 inline double project_on_geodesic(const Tree_family& family, const Orl_coordinates& x)
 {
   const Tangent_space tangent(family.layout, family.x[0], family.weights);
@@ -31,8 +32,8 @@ inline double project_on_geodesic(const Tree_family& family, const Orl_coordinat
   return length > 0 ? std::min(1.0, std::max(0.0, tangent.log(x).dot(path) / length)) : 0;
 }
 
-/// `t`, moved by `step` times the tangent vector from `a` to `b`: rotations are transported in the
-/// frames of the edges themselves.
+/// Returns `t` moved by `step` times the tangent vector from `a` to `b`; rotations are transported
+/// in the frames of the edges themselves.
 inline Orl_coordinates parallel_displacement(const Tree_family& family,
                                              const Orl_coordinates& t,
                                              const Orl_coordinates& a,
@@ -45,7 +46,7 @@ inline Orl_coordinates parallel_displacement(const Tree_family& family,
   return x;
 }
 
-/// The tree with given scores; missing ones are 0.
+/// Returns the tree with given scores; missing ones are 0.
 inline Orl_coordinates tree_of_modes(const Orl_layout& layout,
                                      const Orl_weights& weights,
                                      const Modes_of_variation& modes,
@@ -60,8 +61,8 @@ inline Orl_coordinates tree_of_modes(const Orl_layout& layout,
   return tangent.exp(z);
 }
 
-/// The tree with coordinates `x`. `lambda` below 0: the projection on the geodesic of two trees.
-/// `scan_weights` below 0 count as 0: beyond the inputs there is no detail.
+/// Makes the tree with coordinates `x`. `lambda` below 0: the projection on the geodesic of two
+/// trees. Negative `scan_weights` become 0: details of points are not extrapolated.
 inline Tree_state make_tree(const Tree_family& family,
                             Orl_coordinates x,
                             double lambda = -1,

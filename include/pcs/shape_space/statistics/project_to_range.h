@@ -33,14 +33,14 @@ struct Figure_range
 };
 
 /*!
-  Changes angles in [0, pi] so that their mean and standard deviation are in ranges: a shift and a
-  factor, which change the sum of squares least; what would leave [0, pi] stops there.
+  Changes angles in [0, pi] so that their mean and standard deviation are in ranges, by the shift
+  and factor with the least sum of squared changes; angles are limited to [0, pi].
 */
 inline void
 limit_moments(const Figure_range& mean, const Figure_range& deviation, std::vector<double>& angles)
 {
   constexpr double pi = pcs::internal::pi;
-  constexpr int number_of_passes = 50; // one, unless angles stop
+  constexpr int number_of_passes = 50; // one, unless angles reach a limit
   const auto n = static_cast<double>(angles.size());
   for (int pass = 0; pass < number_of_passes; ++pass) {
     double m = 0, square = 0;
@@ -59,7 +59,7 @@ limit_moments(const Figure_range& mean, const Figure_range& deviation, std::vect
 } // namespace internal
 
 /// Brings mean and standard deviation of the angles of branches, by order, into the range of
-/// others: turns each branch, with all that hangs on it, towards its parent or away from it.
+/// others: rotates each branch with its subtree towards its parent or away from it.
 inline void limit_angles(const Orl_layout& layout,
                          Orl_orientation kind,
                          const std::vector<Tree_descriptors>& others,
@@ -96,7 +96,7 @@ inline void limit_angles(const Orl_layout& layout,
       const std::size_t e = layout.branches[of_order[i]].first_edge,
                         p = layout.branches[of_order[i]].reference_edge;
       const Vec3 across = axis(p).cross(axis(e));
-      constexpr double straight = 1e-9; // then to any side, the same every time
+      constexpr double straight = 1e-9; // then in any direction, always the same
       const Vec3 about = across.norm() > straight ? Vec3(across.normalized())
                                                   : Vec3(geometry.frame[p] * Vec3::UnitX());
       const Quaternion turned =
@@ -107,9 +107,9 @@ inline void limit_angles(const Orl_layout& layout,
   }
 }
 
-/// Brings height, width of the crown and total length into the range of others, as far as they can
-/// be had together: stretches the trunk to the height, the branches on it to the width of the
-/// crown, and all others to the total length.
+/// Brings height, crown width and total length into the range of others as far as possible:
+/// stretches the trunk to the height, the branches on it to the width of the crown, and all others
+/// to the total length.
 inline void limit_lengths(const Orl_layout& layout,
                           Orl_orientation kind,
                           const Vec3& up,
@@ -140,7 +140,7 @@ inline void limit_lengths(const Orl_layout& layout,
     double factor[3] = {ratio(height.nearest(f.height), f.height),
                         ratio(width.nearest(f.crown_width), f.crown_width),
                         1};
-    // what is left for the others; by as much as is likely at most
+    // the rest for the others, by a plausible factor at most
     const double rest =
         length.nearest(f.length) - factor[0] * of_order[0] - factor[1] * of_order[1];
     factor[2] = std::min(1.5, std::max(0.67, ratio(rest, of_order[2])));

@@ -39,8 +39,8 @@ Mode_coordinates project_on_modes(const Tree_family& family,
 template <class ConcurrencyTag>
 std::shared_ptr<const Tree_distribution> distribution_of_family(const Tree_family& family);
 
-/// A random tree whose descriptors are brought into the range of `descriptors` as far as `options`
-/// ask for it. `do_limit_lengths`: lengths, too.
+/// Draws a random tree and brings its descriptors into the range of `descriptors` as far as
+/// `options` require it. `do_limit_lengths`: whether lengths are changed, too.
 template <class ConcurrencyTag>
 Orl_coordinates draw_tree(const Tree_family& family,
                           const Tree_distribution& distribution,

@@ -98,8 +98,8 @@ inline double unit_of_costs(const Transport_problem& problem)
 } // namespace internal
 
 /*!
-  Entropic optimal transport by alternating projections (M. Cuturi, 2013), as in section 4.8 of
-  \cite aiteanu2022. Minimises, over the masses `P_a >= 0` [-] of the arcs `a`,
+  Solves an entropic optimal transport by alternating projections (M. Cuturi, 2013), as in section
+  4.8 of \cite aiteanu2022. Minimises, over the masses `P_a >= 0` [-] of the arcs `a`,
 
       sum_a P_a c_a + epsilon sum_a P_a (ln P_a - 1)
 
