@@ -14,58 +14,77 @@ endfunction()
 
 # pcs_add_compile_fail_test(<rule> <sentence>)
 #
-# With PCS_BREAK_THE_RULE defined, compile_fail/<rule>.cpp must make the compiler print <sentence> (a
-# regular expression) as its first error. That it compiles as it is, pcs_add_compile_accepted_test() sees to.
+# With PCS_BREAK_THE_RULE defined, compile_fail/<rule>.cpp must make the compiler print <sentence> (a regular expression)
+# as its first error. That it compiles as it is, pcs_add_compile_accepted_test() checks. Parsing the headers takes longest,
+# so the sources of one algorithm are compiled as one, a namespace each, below all their headers; a source that sets
+# macros is compiled alone. The test compile_fail.errors.<algorithm> finds the first error of each rule.
+set(pcs_rules_dir ${CMAKE_CURRENT_SOURCE_DIR}/compile_fail)
+set(pcs_rule_errors_dir ${CMAKE_CURRENT_BINARY_DIR}/compile_fail)
 function(pcs_add_compile_fail_test rule sentence)
-  set_property(GLOBAL APPEND PROPERTY pcs_compile_fail_sources
-    ${CMAKE_CURRENT_SOURCE_DIR}/compile_fail/${rule}.cpp)
-  add_library(${rule}_rejected OBJECT EXCLUDE_FROM_ALL compile_fail/${rule}.cpp)
-  set_target_properties(${rule}_rejected PROPERTIES EXPORT_COMPILE_COMMANDS ON UNITY_BUILD OFF)
-  target_link_libraries(${rule}_rejected PRIVATE ${PCS_LIBRARY} pcs_syntax_flags)
-  target_compile_options(${rule}_rejected PRIVATE
-    $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-Wfatal-errors>)
-  target_compile_definitions(${rule}_rejected PRIVATE PCS_BREAK_THE_RULE)
+  set(source ${pcs_rules_dir}/${rule}.cpp)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${source})
+  file(STRINGS ${source} macros REGEX "^#(define|undef)")
+  file(STRINGS ${source} includes REGEX "^#include <")
+  set(doors ${includes})
+  list(FILTER doors INCLUDE REGEX "<pcs/")
+  if(macros OR NOT doors)
+    set(group ${rule})
+    set_property(GLOBAL PROPERTY pcs_rule_source_of_${group} ${source})
+  else()
+    list(GET doors 0 door)
+    set(group skeleton)
+    if(door MATCHES "deform")
+      set(group deformation)
+    elseif(door MATCHES "[Oo]rl")
+      set(group shape_space)
+    endif()
+    set_property(GLOBAL PROPERTY pcs_rule_source_of_${group}
+      ${CMAKE_CURRENT_BINARY_DIR}/compile_fail_${group}.cpp)
+    set_property(GLOBAL APPEND PROPERTY pcs_rule_headers_of_${group} ${includes})
+    set_property(GLOBAL APPEND_STRING PROPERTY pcs_rule_text_of_${group}
+      "namespace ${rule} {\n#include \"${source}\"\n}\n")
+  endif()
+  set_property(GLOBAL APPEND PROPERTY pcs_rule_groups ${group})
+
   add_test(NAME compile_fail.${rule} COMMAND ${CMAKE_COMMAND}
-    -D COMMANDS=${CMAKE_BINARY_DIR}/compile_commands.json -D TARGET=${rule}_rejected
+    -D RULE=${rule} -D ERRORS=${pcs_rule_errors_dir}/${group}
     -P ${CMAKE_CURRENT_SOURCE_DIR}/cmake/check_rejected.cmake)
   set_tests_properties(compile_fail.${rule} PROPERTIES
-    PASS_REGULAR_EXPRESSION "${sentence}" LABELS "static;compile_fail")
+    PASS_REGULAR_EXPRESSION "${sentence}" LABELS "static;compile_fail"
+    FIXTURES_REQUIRED compile_fail_errors_${group})
 endfunction()
 
-# One test that builds all sources of the rules as they are: those with the same first header of pcs side by side in
-# one source, a namespace each, below all their headers. A source that sets macros stands alone.
+# One test for each algorithm that compiles the broken sources of its rules, and one test that builds all sources of
+# the rules as they are.
 function(pcs_add_compile_accepted_test)
-  get_property(sources GLOBAL PROPERTY pcs_compile_fail_sources)
-  set(alone "")
-  set(doors "")
-  foreach(source IN LISTS sources)
-    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${source})
-    get_filename_component(rule ${source} NAME_WE)
-    file(STRINGS ${source} macros REGEX "^#(define|undef)")
-    file(STRINGS ${source} includes REGEX "^#include <")
-    list(FILTER includes INCLUDE REGEX "<pcs/")
-    if(macros OR NOT includes)
-      list(APPEND alone ${source})
-      continue()
+  get_property(groups GLOBAL PROPERTY pcs_rule_groups)
+  list(REMOVE_DUPLICATES groups)
+  set(sources "")
+  foreach(group IN LISTS groups)
+    get_property(source GLOBAL PROPERTY pcs_rule_source_of_${group})
+    get_property(headers GLOBAL PROPERTY pcs_rule_headers_of_${group})
+    get_property(text GLOBAL PROPERTY pcs_rule_text_of_${group})
+    list(APPEND sources ${source})
+    if(text)
+      list(REMOVE_DUPLICATES headers)
+      list(JOIN headers "\n" headers)
+      file(GENERATE OUTPUT ${source} CONTENT "${headers}\n${text}")
     endif()
-    list(GET includes 0 door)
-    string(MAKE_C_IDENTIFIER "${door}" door)
-    list(APPEND doors ${door})
-    file(STRINGS ${source} includes REGEX "^#include <")
-    list(APPEND headers_of_${door} ${includes})
-    string(APPEND text_of_${door} "namespace ${rule} {\n#include \"${source}\"\n}\n")
+    set(errors ${pcs_rule_errors_dir}/${group})
+    add_test(NAME compile_fail.errors.${group} COMMAND ${CMAKE_COMMAND}
+      -D COMMANDS=${CMAKE_BINARY_DIR}/compile_commands.json -D TARGET=compile_fail_rejected
+      -D SOURCE=${source} -D RULES=${pcs_rules_dir} -D ERRORS=${errors}
+      -D COMPILER=${CMAKE_CXX_COMPILER_ID}
+      -P ${CMAKE_CURRENT_SOURCE_DIR}/cmake/check_rejected.cmake)
+    set_tests_properties(compile_fail.errors.${group} PROPERTIES
+      LABELS "static;compile_fail" FIXTURES_SETUP compile_fail_errors_${group})
   endforeach()
-  list(REMOVE_DUPLICATES doors)
-  set(generated "")
-  foreach(door IN LISTS doors)
-    list(REMOVE_DUPLICATES headers_of_${door})
-    list(JOIN headers_of_${door} "\n" headers)
-    set(file ${CMAKE_CURRENT_BINARY_DIR}/compile_accepted/${door}.cpp)
-    file(GENERATE OUTPUT ${file} CONTENT "${headers}\n${text_of_${door}}")
-    list(APPEND generated ${file})
+
+  foreach(library compile_fail_accepted compile_fail_rejected)
+    add_library(${library} OBJECT EXCLUDE_FROM_ALL ${sources})
+    target_link_libraries(${library} PRIVATE ${PCS_LIBRARY} pcs_syntax_flags)
+    set_target_properties(${library} PROPERTIES EXPORT_COMPILE_COMMANDS ON UNITY_BUILD OFF)
   endforeach()
-  add_library(compile_fail_accepted OBJECT EXCLUDE_FROM_ALL ${alone} ${generated})
-  target_link_libraries(compile_fail_accepted PRIVATE ${PCS_LIBRARY} pcs_syntax_flags)
-  set_target_properties(compile_fail_accepted PROPERTIES UNITY_BUILD OFF)
+  target_compile_definitions(compile_fail_rejected PRIVATE PCS_BREAK_THE_RULE)
   pcs_add_build_test(compile_fail.all_accepted compile_fail_accepted compile_fail)
 endfunction()
