@@ -7,17 +7,18 @@
 #define PCS_ORL_SHAPE_SPACE_H
 
 #include <pcs/Named_function_parameters.h>
-#include <pcs/shape_space/Orl_tree.h>
 #include <pcs/concepts.h>
 #include <pcs/core/Orl_correspondences.h>
 #include <pcs/core/Orl_options.h>
 #include <pcs/core/Orl_report.h>
 #include <pcs/core/Orl_space_data.h>
 #include <pcs/core/Tree_skeleton.h>
+#include <pcs/core/errors.h>
 #include <pcs/core/parameters/check_value.h>
 #include <pcs/core/parameters/read_parameter.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
+#include <pcs/shape_space/Orl_tree.h>
 #include <pcs/shape_space/Space_state.h>
 #include <pcs/shape_space/build_space.h>
 #include <pcs/shape_space/family/embed_tree.h>
@@ -245,7 +246,7 @@ public:
   //! an added tree as a tree of the space
   Orl_tree tree(Handle h) const
   {
-    check_handle(h, "tree");
+    check_handle(h, "pcs::Orl_shape_space::tree()");
     std::vector<double> scan_weights(number_of_trees(), 0);
     scan_weights[h] = 1;
     return Orl_tree(
@@ -255,7 +256,7 @@ public:
   //! whether tree `h` has branch `b` of the topology
   bool has_branch(Handle h, std::size_t b) const
   {
-    check_handle(h, "has_branch");
+    check_handle(h, "pcs::Orl_shape_space::has_branch()");
     return b < family().has[h].size() && family().has[h][b] != 0;
   }
 
@@ -269,7 +270,7 @@ public:
   //! pairs of corresponding branches of two trees, parents first
   std::vector<Branch_match> matches() const
   {
-    check_two_trees("matches");
+    check_two_trees("pcs::Orl_shape_space::matches()");
     std::vector<Branch_match> result;
     for (std::size_t b = 0; b < family().layout.branches.size(); ++b)
       result.push_back(
@@ -280,7 +281,7 @@ public:
   //! correspondences of two trees, for `build_from()`
   Orl_correspondences correspondences() const
   {
-    check_built("correspondences");
+    check_built("pcs::Orl_shape_space::correspondences()");
     check_two_inputs("pcs::Orl_shape_space::correspondences()");
     return shape_space::store_correspondences<ConcurrencyTag>(m_state);
   }
@@ -288,7 +289,7 @@ public:
   //! the whole space as numbers, for `IO::write_shape_space()`
   Orl_space_data data() const
   {
-    check_built("data");
+    check_built("pcs::Orl_shape_space::data()");
     return shape_space::store_space<ConcurrencyTag>(m_state);
   }
 
@@ -306,7 +307,7 @@ public:
                  const NamedParameters& np = parameters::default_values(),
                  double* represented = nullptr) const
   {
-    check_built("embed");
+    check_built("pcs::Orl_shape_space::embed()");
     const shape_space::Tree_input input =
         shape_space::make_tree_input<Kernel>(tree,
                                              std::vector<Point_3>(),
@@ -338,8 +339,8 @@ public:
                   const Orl_tree& b,
                   const NamedParameters& np = NamedParameters()) const
   {
-    check_tree(a, "distance");
-    check_tree(b, "distance");
+    check_tree(a, "pcs::Orl_shape_space::distance()");
+    check_tree(b, "pcs::Orl_shape_space::distance()");
     return shape_space::distance(a.coordinates(),
                                  b.coordinates(),
                                  family().weights,
@@ -349,8 +350,8 @@ public:
   template <class NamedParameters = parameters::Default_named_parameters>
   double distance(Handle a, Handle b, const NamedParameters& np = NamedParameters()) const
   {
-    check_handle(a, "distance");
-    check_handle(b, "distance");
+    check_handle(a, "pcs::Orl_shape_space::distance()");
+    check_handle(b, "pcs::Orl_shape_space::distance()");
     return shape_space::distance(family().x[a],
                                  family().x[b],
                                  family().weights,
@@ -397,7 +398,7 @@ public:
                 Orl_tree& result,
                 const NamedParameters& np = NamedParameters()) const
   {
-    check_handle(std::max(a, b), "geodesic");
+    check_handle(std::max(a, b), "pcs::Orl_shape_space::geodesic()");
     if (a == b && std::isfinite(lambda))
       lambda = 0;
     shape_space::Tree_state& state = result.state();
@@ -420,8 +421,8 @@ public:
                     double lambda,
                     const NamedParameters& np = NamedParameters()) const
   {
-    check_tree(a, "geodesic");
-    check_tree(b, "geodesic");
+    check_tree(a, "pcs::Orl_shape_space::geodesic()");
+    check_tree(b, "pcs::Orl_shape_space::geodesic()");
     const double weight = std::min(1.0, std::max(0.0, lambda));
     shape_space::Tree_state result;
     shape_space::mix_scan_weights(family(), {&a.state(), &b.state()}, {1 - weight, weight}, result);
@@ -443,7 +444,7 @@ public:
   template <class OutKernel>
   void skeleton(const Orl_tree& t, Tree_skeleton<OutKernel>& result) const
   {
-    check_tree(t, "skeleton");
+    check_tree(t, "pcs::Orl_shape_space::skeleton()");
     shape_space::write_skeleton(family().layout,
                                 t.coordinates(),
                                 t.state().geometry,
@@ -482,7 +483,7 @@ public:
   points(const Orl_tree& t, PointRange& result, const NamedParameters& np = NamedParameters()) const
   {
     const char* const caller = "pcs::Orl_shape_space::points()";
-    check_tree(t, "points");
+    check_tree(t, "pcs::Orl_shape_space::points()");
     const Point_path path = shape_space::read_point_path(np, m_state.is_pair(), caller);
     constexpr bool is_range = is_random_access_range_v<PointRange>;
     static_assert(is_range,
@@ -540,8 +541,8 @@ public:
         is_callable,
         "pcs::Orl_shape_space::for_each_point(): `f` must take the numbers of a point and "
         "of its two sources, and a weight");
-    check_two_trees("for_each_point");
-    check_tree(t, "for_each_point");
+    check_two_trees("pcs::Orl_shape_space::for_each_point()");
+    check_tree(t, "pcs::Orl_shape_space::for_each_point()");
     const double weight = std::min(1.0, std::max(0.0, t.lambda()));
     if constexpr (is_callable)
       m_state.pair.instances.for_each_pair(
@@ -575,7 +576,7 @@ public:
         is_callable,
         "pcs::Orl_shape_space::for_each_source(): `f` must take the numbers of a point, a "
         "tree and a point of its scan, and a weight");
-    check_tree(t, "for_each_source");
+    check_tree(t, "pcs::Orl_shape_space::for_each_source()");
     pcs::internal::check(!m_state.is_pair(),
                          "pcs::Orl_shape_space::for_each_source()",
                          "points of two trees come from both; use for_each_point()");
@@ -607,28 +608,21 @@ public:
   //!@}
 
 private:
-  static std::string name_of(const char* function)
-  {
-    return std::string("pcs::Orl_shape_space::") + function + "()";
-  }
-  void check_built(const char* caller) const
-  {
-    shape_space::check_built(family(), name_of(caller));
-  }
+  void check_built(const char* caller) const { shape_space::check_built(family(), caller); }
   void check_handle(Handle h, const char* caller) const
   {
-    shape_space::check_handle(family(), h, name_of(caller));
+    shape_space::check_handle(family(), h, caller);
   }
   void check_tree(const Orl_tree& t, const char* caller) const
   {
-    shape_space::check_tree(family(), t.coordinates(), t.state().scan_weights, name_of(caller));
+    shape_space::check_tree(family(), t.coordinates(), t.state().scan_weights, caller);
   }
   void check_two_trees(const char* caller) const
   {
     check_built(caller);
-    pcs::internal::check(m_state.is_pair(),
-                         name_of(caller),
-                         "for two trees only, there are " + std::to_string(number_of_trees()));
+    if (!m_state.is_pair())
+      throw Invalid_input(std::string(caller) + ": for two trees only, there are " +
+                          std::to_string(number_of_trees()));
   }
   void check_two_inputs(const char* caller) const
   {

@@ -7,9 +7,9 @@
 
 #include <pcs/Named_function_parameters.h>
 #include <pcs/Orl_shape_space.h>
-#include <pcs/shape_space/Orl_tree.h>
 #include <pcs/core/Orl_options.h>
 #include <pcs/core/parameters/check_value.h>
+#include <pcs/shape_space/Orl_tree.h>
 #include <pcs/shape_space/input/check_space.h>
 #include <pcs/shape_space/input/read_options.h>
 #include <pcs/shape_space/statistics/Modes_of_variation.h>
@@ -82,7 +82,10 @@ Orl_tree tree_of_modes(const Orl_shape_space<Kernel, ConcurrencyTag>& space,
                        const std::vector<double>& scores)
 {
   const char* const caller = "pcs::tree_of_modes()";
-  shape_space::check_coordinates(space.family(), modes.mean, caller, "the modes are");
+  shape_space::check_coordinates(space.family(),
+                                 modes.mean,
+                                 caller,
+                                 "the modes are of another space");
   pcs::internal::check(scores.size() <= modes.size(),
                        caller,
                        std::to_string(scores.size()) + " scores for " +
@@ -103,7 +106,10 @@ Mode_coordinates project_on_modes(const Orl_shape_space<Kernel, ConcurrencyTag>&
                                   std::size_t most = npos)
 {
   const char* const caller = "pcs::project_on_modes()";
-  shape_space::check_coordinates(space.family(), modes.mean, caller, "the modes are");
+  shape_space::check_coordinates(space.family(),
+                                 modes.mean,
+                                 caller,
+                                 "the modes are of another space");
   shape_space::check_tree(space.family(), t.coordinates(), t.state().scan_weights, caller);
   return shape_space::project_on_modes<ConcurrencyTag>(space.family(),
                                                        modes,

@@ -7,8 +7,8 @@
 
 #include <pcs/Named_function_parameters.h>
 #include <pcs/Orl_shape_space.h>
-#include <pcs/shape_space/Orl_tree.h>
 #include <pcs/core/parameters/check_value.h>
+#include <pcs/shape_space/Orl_tree.h>
 #include <pcs/shape_space/input/check_space.h>
 #include <pcs/shape_space/input/read_options.h>
 #include <pcs/shape_space/model/Orl_coordinates.h>
@@ -89,7 +89,7 @@ Orl_tree tree_at_time(const Orl_shape_space<Kernel, ConcurrencyTag>& space,
                        "the path is empty or `time` not finite");
   shape_space::Orl_coordinates x;
   path.at(time, x);
-  shape_space::check_coordinates(family, x, caller, "the path is");
+  shape_space::check_coordinates(family, x, caller, "the path is of another space");
   for (const std::size_t h : path.scans())
     pcs::internal::check(h < space.number_of_trees(), caller, "the path is of another space");
   // points come from the scans before and after the time
