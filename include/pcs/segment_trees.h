@@ -101,6 +101,38 @@ inline std::vector<std::string> warnings(const Segmentation_report& r)
   return sentences;
 }
 
+namespace internal {
+
+/// Writes the tree of each point, and counts points and heights of the trees.
+template <class PointRange, class PointTreeMap>
+void write_trees(const std::vector<skeleton::Vec3>& input,
+                 const skeleton::Stand& stand,
+                 const skeleton::Vec3& up,
+                 PointRange& points,
+                 PointTreeMap point_tree_map,
+                 Segmentation_report& report)
+{
+  for (const skeleton::Detected_tree& tree : stand.trees)
+    report.trees.push_back({{tree.foot.x(), tree.foot.y(), tree.foot.z()}, tree.radius});
+  std::size_t i = 0;
+  for (auto it = std::begin(points); it != std::end(points); ++it, ++i) {
+    const skeleton::Index tree = stand.tree_of_input[i];
+    if (tree == skeleton::none)
+      ++report.number_of_unassigned_points;
+    else {
+      Segmented_tree& found = report.trees[tree];
+      ++found.number_of_points;
+      found.height = std::max(found.height, up.dot(input[i] - stand.trees[tree].foot));
+    }
+    put(point_tree_map,
+        *it,
+        static_cast<pcs::Map_value<PointTreeMap>>(tree == skeleton::none ? npos
+                                                                         : std::size_t(tree)));
+  }
+}
+
+} // namespace internal
+
 /*!
   \ingroup PkgPcsSkeletonRef
   \brief segments the scan of a stand into individual trees.
@@ -200,22 +232,7 @@ Segmentation_report segment_trees(PointRange& points,
       report.status = Status::cancelled;
       return report;
     }
-    for (const skeleton::Detected_tree& tree : forest.trees)
-      report.trees.push_back({{tree.foot.x(), tree.foot.y(), tree.foot.z()}, tree.radius});
-    std::size_t i = 0;
-    for (auto it = std::begin(points); it != std::end(points); ++it, ++i) {
-      const skeleton::Index tree = forest.tree_of_input[i];
-      if (tree == skeleton::none)
-        ++report.number_of_unassigned_points;
-      else {
-        Segmented_tree& found = report.trees[tree];
-        ++found.number_of_points;
-        found.height = std::max(found.height, hints.up.dot(input[i] - forest.trees[tree].foot));
-      }
-      put(point_tree_map,
-          *it,
-          static_cast<Map_value<PointTreeMap>>(tree == skeleton::none ? npos : std::size_t(tree)));
-    }
+    internal::write_trees(input, forest, hints.up, points, point_tree_map, report);
     report.status = report.trees.empty() ? Status::nothing_to_do : Status::converged;
     report.seconds = watch.lap();
   }
