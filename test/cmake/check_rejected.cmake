@@ -48,8 +48,8 @@ set(ENV{LC_ALL} C)
 execute_process(COMMAND ${command} OUTPUT_VARIABLE output ERROR_VARIABLE output)
 
 # ---- the first error of each rule
-# GCC prints the chain of instantiations above an error, and omits it if it is that of the error before; Clang prints
-# it below. One of its lines names the source of the rule.
+# GCC prints the chain of instantiations above an error, Clang below; both omit it if it is that of the error before.
+# One of its lines names the source of the rule.
 string(REGEX REPLACE "[][;\\]" "/" output "${output}") # which would join or split the items of a list
 string(REPLACE "\n" ";" output "${output}")
 string(REGEX REPLACE "([][+.*()^$?|\\])" "\\\\\\1" rule_regex "${RULES}")
@@ -65,17 +65,25 @@ function(pcs_record_error error rule)
 endfunction()
 
 set(rule "${only_rule}") # of the chain that is being read
+set(rule_before "")      # of the last chain of Clang
 set(pending "")          # an error of Clang whose chain is being read
+macro(pcs_record_pending)
+  if(pending AND NOT rule)
+    set(rule "${rule_before}")
+  endif()
+  if(pending)
+    pcs_record_error("${pending}" "${rule}")
+  endif()
+  set(pending "")
+endmacro()
 foreach(line IN LISTS output)
   if(line MATCHES "^[^ ]*: ([a-z]+ )*error: ")
-    if(pending)
-      pcs_record_error("${pending}" "${rule}")
-      set(pending "")
-    endif()
+    pcs_record_pending()
     if(only_rule)
       set(rule ${only_rule})
     elseif(line MATCHES "^${rule_regex}")
       set(rule ${CMAKE_MATCH_1})
+      set(rule_before "")
     elseif(NOT COMPILER STREQUAL "GNU")
       set(rule "")
     endif()
@@ -94,11 +102,10 @@ foreach(line IN LISTS output)
     endif()
   elseif(pending AND NOT rule AND line MATCHES "^${rule_regex}:[0-9]+: note: .* requested here")
     set(rule ${CMAKE_MATCH_1})
+    set(rule_before ${rule})
   endif()
 endforeach()
-if(pending)
-  pcs_record_error("${pending}" "${rule}")
-endif()
+pcs_record_pending()
 if(unknown)
   message(FATAL_ERROR "errors that arise from no source of ${RULES}:\n${unknown}")
 endif()
