@@ -162,8 +162,8 @@ public:
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: an integer type
         \npdefault none
       \np{point_residual_map} written by `extract()`: signed distance from the surface of the
-          branch, negative inside, 0 for points without a branch [L]. Of the registered position, where
-          stations are moved
+          branch, negative inside, 0 for points without a branch [L]. Where stations are moved, it
+          is that of the registered position
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: floating point
         \npdefault none
       \np{point_is_dense_map} written by `extract()`: whether the point lies where the section of

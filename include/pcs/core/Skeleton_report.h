@@ -49,8 +49,8 @@ struct Scan_station
   \ingroup PkgPcsSkeletonRef
   \brief standard deviations of a skeleton among resampled copies of its scan.
 
-  See `number_of_resamples` of `Tree_skeletonization`. Copies of large scans are thinned, so that the
-  deviations are rather too large for them.
+  See `number_of_resamples` of `Tree_skeletonization`. Copies of large scans are thinned, so that
+  the deviations are rather too large for them.
 */
 struct Skeleton_spread
 {
