@@ -7,9 +7,9 @@
 
 #include <pcs/Named_function_parameters.h>
 #include <pcs/Orl_shape_space.h>
-#include <pcs/shape_space/Orl_tree.h>
 #include <pcs/core/Orl_options.h>
 #include <pcs/core/parameters/check_value.h>
+#include <pcs/shape_space/Orl_tree.h>
 #include <pcs/shape_space/input/check_sampling.h>
 #include <pcs/shape_space/input/check_space.h>
 #include <pcs/shape_space/input/read_options.h>

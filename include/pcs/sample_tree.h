@@ -7,11 +7,11 @@
 
 #include <pcs/Named_function_parameters.h>
 #include <pcs/Orl_shape_space.h>
-#include <pcs/shape_space/Orl_tree.h>
 #include <pcs/compare_trees.h>
 #include <pcs/core/Orl_options.h>
 #include <pcs/core/parameters/check_value.h>
 #include <pcs/internal/Random_stream.h>
+#include <pcs/shape_space/Orl_tree.h>
 #include <pcs/shape_space/input/check_space.h>
 #include <pcs/shape_space/input/read_options.h>
 #include <pcs/shape_space/measures/Tree_descriptors.h>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSL-1.0
 // Medians by selection are those of the sorted values.
 
-#include <pcs/internal/median.h>
 #include <pcs/internal/Random_stream.h>
+#include <pcs/internal/median.h>
 
 #include <boost/test/unit_test.hpp>
 

@@ -132,9 +132,9 @@ public:
         return false;
       const Branch_tree& tree = session.tree();
       if (session.report().status == Status::converged)
-        m_figures.add(session.report(),
-                      session.scan().frame.to_input(
-                          tree.nodes[tree.branches.front().nodes.front()].point));
+        m_figures.add(
+            session.report(),
+            session.scan().frame.to_input(tree.nodes[tree.branches.front().nodes.front()].point));
     }
     return true;
   }

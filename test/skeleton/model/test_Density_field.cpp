@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSL-1.0
 // Densities and sides by place and direction; which axes of two points are believed.
 
-#include <pcs/internal/median.h>
 #include <pcs/internal/Random_stream.h>
+#include <pcs/internal/median.h>
 #include <pcs/skeleton/axes/drop_two_point_axes.h>
 #include <pcs/skeleton/axes/fit_fields.h>
 #include <pcs/skeleton/model/Axis_set.h>

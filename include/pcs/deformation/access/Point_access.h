@@ -8,8 +8,8 @@
 #include <pcs/Named_function_parameters.h>
 #include <pcs/concepts.h>
 #include <pcs/core/Similarity.h>
-#include <pcs/core/parameters/check_value.h>
 #include <pcs/core/errors.h>
+#include <pcs/core/parameters/check_value.h>
 #include <pcs/deformation/access/stream_block.h>
 #include <pcs/deformation/model/Affine_map.h>
 #include <pcs/internal/lanes.h>

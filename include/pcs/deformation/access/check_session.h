@@ -5,8 +5,8 @@
 #ifndef PCS_DEFORMATION_ACCESS_CHECK_SESSION_H
 #define PCS_DEFORMATION_ACCESS_CHECK_SESSION_H
 
-#include <pcs/core/parameters/check_value.h>
 #include <pcs/core/errors.h>
+#include <pcs/core/parameters/check_value.h>
 
 #include <cstddef>
 #include <string>

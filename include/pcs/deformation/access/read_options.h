@@ -8,8 +8,8 @@
 #include <pcs/Named_function_parameters.h>
 #include <pcs/concepts.h>
 #include <pcs/core/Deformation_options.h>
-#include <pcs/core/parameters/check_value.h>
 #include <pcs/core/errors.h>
+#include <pcs/core/parameters/check_value.h>
 #include <pcs/core/parameters/read_parameter.h>
 #include <pcs/deformation/model/Elastic_options.h>
 #include <pcs/deformation/model/Sampling_options.h>

@@ -8,7 +8,6 @@
 #include <pcs/core/Deformation_options.h>
 #include <pcs/core/Deformation_report.h>
 #include <pcs/core/errors.h>
-#include <pcs/internal/median.h>
 #include <pcs/deformation/body/Sample_links.h>
 #include <pcs/deformation/body/Sample_regions.h>
 #include <pcs/deformation/body/Sampled_body.h>
@@ -17,6 +16,7 @@
 #include <pcs/deformation/body/octree_samples.h>
 #include <pcs/deformation/body/voronoi_graph.h>
 #include <pcs/internal/Stage_timer.h>
+#include <pcs/internal/median.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
 #include <pcs/internal/text.h>

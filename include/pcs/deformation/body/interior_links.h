@@ -5,8 +5,8 @@
 #ifndef PCS_DEFORMATION_BODY_INTERIOR_LINKS_H
 #define PCS_DEFORMATION_BODY_INTERIOR_LINKS_H
 
-#include <pcs/internal/median.h>
 #include <pcs/deformation/model/Elastic_network.h>
+#include <pcs/internal/median.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/neighborhood/Nearest_neighbors.h>
 

@@ -17,7 +17,6 @@ struct Path_options
   Branch_emergence emergence = Branch_emergence::simultaneous;
 };
 
-
 } // namespace shape_space
 } // namespace pcs
 

@@ -5,8 +5,8 @@
 #ifndef PCS_SKELETON_AXES_CHAIN_FIT_H
 #define PCS_SKELETON_AXES_CHAIN_FIT_H
 
-#include <pcs/internal/median.h>
 #include <pcs/internal/constants.h>
+#include <pcs/internal/median.h>
 #include <pcs/skeleton/axes/Axis_fit.h>
 #include <pcs/skeleton/axes/Axis_oval.h>
 #include <pcs/skeleton/axes/Chain_options.h>

@@ -42,9 +42,8 @@ struct Joint_options
   double tie = 0.05;  ///< cost of the whole distance, which decides between equal joints
   double angle = 3.2; ///< cost of 1 - cosine of the angle to the parent ...
   double lowest_cosine =
-      -0.2; ///< ... with this least cosine, since the parent itself may be reversed
-  double radius =
-      0.6; ///< cost of a thick base, per log ratio to the parent's radius ...
+      -0.2;                 ///< ... with this least cosine, since the parent itself may be reversed
+  double radius = 0.6;      ///< cost of a thick base, per log ratio to the parent's radius ...
   double free_share = 0.37; ///< ... above this ratio
   double taper = 0.85;      ///< gain of a base thicker than the tip, per log ratio
   double reversal = 1.1;    ///< cost of the tip as the base

@@ -5,8 +5,8 @@
 #ifndef PCS_SKELETON_CLUTTER_IS_SINGLE_SHEET_H
 #define PCS_SKELETON_CLUTTER_IS_SINGLE_SHEET_H
 
-#include <pcs/internal/median.h>
 #include <pcs/internal/constants.h>
+#include <pcs/internal/median.h>
 #include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/model/Scan.h>
 #include <pcs/skeleton/model/Slab_shape.h>

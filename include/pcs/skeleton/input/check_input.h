@@ -5,8 +5,8 @@
 #ifndef PCS_SKELETON_INPUT_CHECK_INPUT_H
 #define PCS_SKELETON_INPUT_CHECK_INPUT_H
 
-#include <pcs/core/parameters/check_value.h>
 #include <pcs/core/errors.h>
+#include <pcs/core/parameters/check_value.h>
 #include <pcs/internal/text.h>
 #include <pcs/skeleton/input/Session_hints.h>
 #include <pcs/skeleton/input/caller_types.h>

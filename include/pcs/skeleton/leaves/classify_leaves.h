@@ -32,7 +32,7 @@ struct Leaf_options
   double thick = 0.05; ///< least fraction of thick wood in a tree [-]
   //! least sampling dimension of thick wood; lower values indicate rows, which resemble twigs [-]
   double dimension = 1.9;
-  double leafy = 0.16; ///< least fraction of points deep in leaves; fewer are chance [-]
+  double leafy = 0.16;        ///< least fraction of points deep in leaves; fewer are chance [-]
   std::size_t neighbors = 10; ///< neighbours in leaves of a point deep in leaves [count]
   //! alternatively: least fraction, of the points outside thick wood, in planar patches [-]
   double patchy = 0.035;

@@ -22,8 +22,7 @@ struct Beam_divergence_options
   double edge_share =
       0.5; ///< fraction of beams that hit only with their border and still yield a point [-]
   double shift =
-      1.0 /
-      6; ///< mean distance of such points outside, weighted as in the fit, in beam widths [-]
+      1.0 / 6; ///< mean distance of such points outside, weighted as in the fit, in beam widths [-]
   double least = 0.25; ///< least corrected radius, as a fraction of the fitted one [-]
 };
 

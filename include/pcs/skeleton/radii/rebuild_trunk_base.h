@@ -5,8 +5,8 @@
 #ifndef PCS_SKELETON_RADII_REBUILD_TRUNK_BASE_H
 #define PCS_SKELETON_RADII_REBUILD_TRUNK_BASE_H
 
-#include <pcs/internal/median.h>
 #include <pcs/internal/constants.h>
+#include <pcs/internal/median.h>
 #include <pcs/skeleton/model/Branch_tree.h>
 #include <pcs/skeleton/model/Scan.h>
 #include <pcs/skeleton/radii/bound_radii.h>

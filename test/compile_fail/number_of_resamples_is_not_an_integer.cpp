@@ -1,0 +1,24 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// A scan is resampled a whole number of times.
+
+#include <pcs/extract_tree_skeleton.h>
+
+#include <CGAL/Simple_cartesian.h>
+
+#include <vector>
+
+using Kernel = CGAL::Simple_cartesian<double>;
+
+#ifdef PCS_BREAK_THE_RULE
+using Count = double;
+#else
+using Count = int;
+#endif
+
+void compile(const std::vector<Kernel::Point_3>& points,
+             pcs::Tree_skeleton<Kernel>& tree,
+             Count count)
+{
+  pcs::extract_tree_skeleton(points, tree, pcs::parameters::number_of_resamples(count));
+}
