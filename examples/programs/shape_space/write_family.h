@@ -9,6 +9,11 @@
 #include "common/Progress_line.h"
 #include "common/Report_file.h"
 #include "write_tree.h"
+#include <pcs/compare_trees.h>
+#include <pcs/find_modes.h>
+#include <pcs/fit_growth_path.h>
+#include <pcs/mean_tree.h>
+#include <pcs/sample_tree.h>
 
 #include <nlohmann/json.hpp>
 
@@ -25,7 +30,7 @@ namespace orl_program {
 inline void write_modes(const Space& space, const std::vector<Tree_file>& files, const Options& o)
 {
   program::Report_file report((std::filesystem::path(o.output) / "modes.json").string());
-  const pcs::shape_space::Modes_of_variation modes = pcs::find_modes(
+  const pcs::Modes_of_variation modes = pcs::find_modes(
       space,
       o.number_of_modes,
       np::mode_inner_product(o.mode_inner_product == "metric" ? pcs::Mode_inner_product::metric
@@ -107,7 +112,7 @@ inline std::string changes_text(const Space& space, const std::vector<Tree_file>
 {
   std::ostringstream text;
   text << "tip_a,tip_b,order,change,length_a,length_b,radius_a,radius_b,angle_degrees\n";
-  for (const pcs::shape_space::Branch_change& c : pcs::find_branch_changes(space, 0, 1)) {
+  for (const pcs::Branch_change& c : pcs::find_branch_changes(space, 0, 1)) {
     const auto id = [&](std::size_t h) {
       const std::size_t v = space.tip_of_branch(h, c.branch);
       return v == pcs::npos  ? std::int64_t(-1)
