@@ -31,18 +31,25 @@ run() {
   rm -f "$name.log"
 }
 
+# whether the help of a program has a word (not by a pipe, which ends with an error when grep is content early)
+knows() { # PROGRAM WORD
+  local text
+  text=$("$programs/$1" --help 2> /dev/null)
+  [[ $text == *"$2"* ]]
+}
+
 skeleton() { # NAME SCAN ARGUMENT...
   local name=$1 scan=$2
   shift 2
   local one=()
   # resampled copies of the scan do not change the tree
-  if "$programs/extract_tree_skeleton" --help 2> /dev/null | grep -q -- --resamples; then one=(--resamples 0); fi
+  knows extract_tree_skeleton --resamples && one=(--resamples 0)
   run "$name" extract_tree_skeleton --input "$scan" --swc "$name.swc" --report "$name.json" --quiet "${one[@]}" "$@"
 }
 
 # the option NEW if the program knows it, else OLD: options that were renamed
 option() { # PROGRAM NEW OLD
-  if "$programs/$1" --help 2> /dev/null | grep -q -- "$2"; then echo "$2"; else echo "$3"; fi
+  if knows "$1" "$2"; then echo "$2"; else echo "$3"; fi
 }
 
 # ---- virtual trees: the two scans of ./run, one with leaves and ground, one coarse from one side
