@@ -1063,7 +1063,7 @@ BOOST_AUTO_TEST_CASE(broken_trees_are_refused_with_a_reason)
   weights.half_cost_distance = std::numeric_limits<double>::infinity(); // could not be saved
   BOOST_CHECK_EXCEPTION(space.build(np::matching_weights(weights)),
                         pcs::Invalid_input,
-                        message_has("far"));
+                        message_has("half_cost_distance"));
   for (const double reach : {0., -1., std::numeric_limits<double>::quiet_NaN()}) {
     Transport_options transport;
     transport.reach = reach;
