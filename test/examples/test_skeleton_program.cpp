@@ -86,6 +86,13 @@ struct Skeleton_run : Program_run
 {
   Skeleton_run() { write("tree.xyz", fork_text()); }
 
+  /// Without resampled copies, which take several times as long, unless the arguments ask for them.
+  int run(const std::string& arguments)
+  {
+    const bool has_copies = arguments.find("--resamples") != std::string::npos;
+    return Program_run::run(has_copies ? arguments : "--resamples 0 " + arguments);
+  }
+
   std::vector<Json> log() const
   {
     std::vector<Json> lines;
@@ -112,6 +119,18 @@ struct Skeleton_run : Program_run
 } // namespace
 
 BOOST_FIXTURE_TEST_SUITE(skeleton_program, Skeleton_run)
+
+BOOST_AUTO_TEST_CASE(the_report_has_the_spread_of_resampled_copies)
+{
+  BOOST_TEST_REQUIRE(run("--input tree.xyz --swc a.swc --report a.json") == 0);
+  BOOST_TEST_REQUIRE(run("--input tree.xyz --swc b.swc --report b.json --resamples 2") == 0);
+  BOOST_TEST(content("a.swc") == content("b.swc"));
+  const Json without = Json::parse(content("a.json")), with = Json::parse(content("b.json"));
+  BOOST_TEST(without.count("spread") == 0u);
+  BOOST_TEST(with["spread"]["copies"] == 2);
+  BOOST_TEST(with["spread"]["volume"].get<double>() > 0);
+  BOOST_TEST(with["spread"]["volume"].get<double>() < 0.05 * with["total"]["volume"].get<double>());
+}
 
 BOOST_AUTO_TEST_CASE(all_results_agree)
 {
