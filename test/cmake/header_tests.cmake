@@ -51,8 +51,8 @@ list(SORT by_reach ORDER DESCENDING)
 list(TRANSFORM by_reach REPLACE "^[0-9]*:" "")
 
 # Every header compiles alone, and a second time. What precedes a header in a source is included by it in any case, so
-# that a source tests a chain of headers, each of which includes the one before. What users include is tested with all
-# the rest; the headers of the stages, which take three times as long, by `./run headers`.
+# that a source tests a chain of headers, each of which includes the one before. That takes minutes: `./run headers`
+# compiles all of them, and the test, of what users include, has the label `long`.
 set(rest ${by_reach})
 function(pcs_add_header_chains name regex)
   set(chains "")
@@ -84,7 +84,7 @@ function(pcs_add_header_chains name regex)
 endfunction()
 pcs_add_header_chains(headers_of_users "^pcs/((IO|core|generators)/)?[^/]*$")
 pcs_add_header_chains(headers_of_stages ".")
-pcs_add_build_test(headers.self_contained headers_of_users)
+pcs_add_build_test(headers.self_contained headers_of_users long)
 
 # The headers outside IO/ reach no CGAL package under the GPL. CGAL's GPL headers include
 # <CGAL/license/...>, which stops the compiler under CGAL_LICENSE_ERROR, unless the macro of
@@ -95,6 +95,8 @@ foreach(name no_gpl gpl)
   add_library(license_${name} OBJECT EXCLUDE_FROM_ALL ${generated}/${name}.cpp)
   target_link_libraries(license_${name} PRIVATE pcs::pcs pcs_header_flags)
   target_compile_definitions(license_${name} PRIVATE CGAL_LICENSE_ERROR)
+  # the preprocessor meets the #error
+  target_compile_options(license_${name} PRIVATE $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-E>)
 endforeach()
 pcs_add_build_test(license.no_gpl license_no_gpl)
 pcs_add_build_test(license.gpl_is_detected license_gpl)
@@ -102,21 +104,23 @@ set_tests_properties(license.gpl_is_detected PROPERTIES
   PASS_REGULAR_EXPRESSION "CGAL_SPATIAL_SEARCHING_COMMERCIAL_LICENSE is not defined")
 
 # Two sources with all headers would link together: no function or variable lacks its `inline`, so the objects hold weak
-# symbols only. The last source proves that the check can fail.
+# symbols only. The last source proves that the check can fail. The headers outside IO/ take minutes, hence `long`.
 pcs_generate(IO.cpp "${include_IO}")
 pcs_generate(not_inline.cpp "int not_inline() { return 0; }\n")
-foreach(name IO not_inline)
+pcs_generate(all_but_IO.cpp "${include_all_but_IO}")
+foreach(name IO all_but_IO not_inline)
   add_library(headers_${name} OBJECT EXCLUDE_FROM_ALL ${generated}/${name}.cpp)
   target_link_libraries(headers_${name} PRIVATE pcs::pcs pcs_header_flags)
 endforeach()
 if(CMAKE_NM)
-  foreach(name license_no_gpl headers_IO headers_not_inline)
+  foreach(name headers_all_but_IO headers_IO headers_not_inline)
     add_custom_target(${name}_symbols
       COMMAND ${CMAKE_COMMAND} -D NM=${CMAKE_NM} -D OBJECT=$<TARGET_OBJECTS:${name}>
               -P ${CMAKE_CURRENT_SOURCE_DIR}/cmake/check_symbols.cmake)
     add_dependencies(${name}_symbols ${name})
     pcs_add_build_test(headers.inline.${name} ${name}_symbols)
   endforeach()
+  set_property(TEST headers.inline.headers_all_but_IO APPEND PROPERTY LABELS long)
   set_tests_properties(headers.inline.headers_not_inline PROPERTIES
     PASS_REGULAR_EXPRESSION "defined once only.*not_inline")
 endif()
