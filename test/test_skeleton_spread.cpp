@@ -86,6 +86,19 @@ BOOST_AUTO_TEST_CASE(figures_that_depend_on_chance_are_named)
   BOOST_TEST(all.find("position of the root +- ") != std::string::npos, all);
 }
 
+BOOST_AUTO_TEST_CASE(copies_without_a_tree_are_named)
+{
+  pcs::Skeleton_report report;
+  report.status = pcs::Status::converged;
+  report.by_order.push_back({1, 3, 0.03});
+  report.height = 3;
+  report.spread.number_of_empty_copies = 4;
+  std::string all;
+  for (const std::string& sentence : pcs::warnings(report))
+    all += sentence + '\n';
+  BOOST_TEST(all.find("4 resampled copies of this scan show no tree") != std::string::npos, all);
+}
+
 BOOST_AUTO_TEST_CASE(the_spread_does_not_depend_on_threads)
 {
   const Cloud points = clear_tree();

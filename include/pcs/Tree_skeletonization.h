@@ -148,7 +148,7 @@ public:
       \np{number_of_resamples} copies of the scan, with 90 % of the points and at most 40,000, from
           which skeletons are extracted, too: `Skeleton_report::spread` has the standard deviations
           of their figures. They need the time of as many scans of that size
-        \nptype integer, 0 to 1000
+        \nptype integer, 0 to 100
         \npdefault 0: the spread is not estimated
       \np{wood_map} whether a point may belong to a branch; others (leaves) are not used
         \nptype model of `ReadablePropertyMap`, key: element of `points`, value: `bool`

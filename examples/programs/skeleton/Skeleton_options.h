@@ -140,7 +140,7 @@ inline void declare(CLI::App& app, Skeleton_options& options)
                  options.number_of_resamples,
                  "copies of the scan, with some of its points, whose skeletons show how much the "
                  "figures of the report depend on chance; 0: none")
-      ->check(CLI::Range(0, 1000))
+      ->check(CLI::Range(0, 100))
       ->capture_default_str();
   app.add_option("--breast-height", options.breast_height, "height of the diameter in the report")
       ->capture_default_str();

@@ -260,6 +260,9 @@ inline void warn_of_spread(const Skeleton_report& r, std::vector<std::string>& s
       list += (list.empty() ? "" : ", ") + std::string(name) + " " + short_text(value) + " +- " +
               short_text(deviation);
   };
+  if (s.number_of_empty_copies > 0)
+    sentences.push_back(std::to_string(s.number_of_empty_copies) +
+                        " resampled copies of this scan show no tree");
   if (s.number_of_copies < 2)
     return;
   add("height", s.height, r.height, max_height);
@@ -277,9 +280,6 @@ inline void warn_of_spread(const Skeleton_report& r, std::vector<std::string>& s
     sentences.push_back("resampled copies of this scan give different trees (one standard "
                         "deviation): " +
                         list);
-  if (s.number_of_empty_copies > 0)
-    sentences.push_back(std::to_string(s.number_of_empty_copies) +
-                        " resampled copies of this scan show no tree");
 }
 
 } // namespace internal

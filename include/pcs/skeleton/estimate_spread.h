@@ -114,6 +114,7 @@ public:
   Spread_estimator(std::vector<Scan_copy> copies, Session_hints hints)
     : m_copies(std::move(copies)), m_hints(std::move(hints)), m_count(m_copies.size())
   {
+    m_hints.stations.clear(); // each copy has its own
   }
 
   bool is_done() const { return m_copies.empty(); }

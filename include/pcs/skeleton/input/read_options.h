@@ -228,7 +228,7 @@ Input_options read_skeleton_options(const NamedParameters& np, const std::string
                 "integer");
   if constexpr (is_integer)
     options.number_of_resamples =
-        pcs::internal::check_count(caller, "number_of_resamples", resamples, 0, 1000);
+        pcs::internal::check_count(caller, "number_of_resamples", resamples, 0, 100);
   return options;
 }
 
