@@ -31,7 +31,7 @@ struct Skeleton_options
   double beam_milliradians = -1; // < 0: the default of the library
   double tolerance = -1;         // < 0: the default of the library
   double breast_height = 1.3;
-  int number_of_resamples = 4;
+  int number_of_resamples = -1; ///< negative: 4 where copies are not thinned, otherwise 0
   bool do_keep_stations = false, do_keep_ground = false, do_remove_leaves = false,
        do_keep_leaves = false, do_separate = false, do_use_all = false, do_fit_all = false,
        is_quiet = false;
@@ -141,7 +141,7 @@ inline void declare(CLI::App& app, Skeleton_options& options)
                  "copies of the scan, with some of its points, whose skeletons show how much the "
                  "figures of the report depend on chance; 0: none")
       ->check(CLI::Range(0, 100))
-      ->capture_default_str();
+      ->default_str("4 up to 44,000 points, otherwise 0");
   app.add_option("--breast-height", options.breast_height, "height of the diameter in the report")
       ->capture_default_str();
   app.add_option("--tolerance", options.tolerance, "maximal distance of the mesh from the sections")
