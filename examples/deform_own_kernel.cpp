@@ -26,7 +26,7 @@ int main()
   }
   const Kernel::Point_3 top = points.back();
 
-  // a quarter turn about the z-axis and a step upwards; shear would be refused
+  // a rotation by 90 degrees about the z-axis and a translation upwards; shear is rejected
   const CGAL::Aff_transformation_3<Kernel> motion(0,
                                                   -1,
                                                   0,

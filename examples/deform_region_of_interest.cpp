@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Region of interest: points outside keep their positions, bit for bit.
+// Region of interest: points outside are bitwise unchanged.
 
 #include "pillar.h"
 #include <pcs/deform_point_set.h>

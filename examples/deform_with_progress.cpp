@@ -29,7 +29,7 @@ int main()
   //! [progress]
   const auto show = [](double fraction) {
     std::cout << int(100 * fraction) << " % " << std::flush;
-    return true; // go on
+    return true; // continue
   };
   auto report = pcs::deform_point_set(points, feet, head, pull, pcs::parameters::callback(show));
   std::cout << '\n' << report.status << '\n';

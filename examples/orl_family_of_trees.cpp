@@ -52,7 +52,7 @@ int main()
 
   //! [samples]
   const auto distribution = pcs::learn_distribution(space);
-  std::vector<Kernel::Point_3> points; // its memory is used again
+  std::vector<Kernel::Point_3> points; // its memory is reused
   double shortest = pcs::measure_shape(space, extreme).height;
   for (std::uint64_t i = 0; i < 3; ++i) {
     const pcs::Orl_tree tree = pcs::sample_tree(space, distribution, 42, i);

@@ -23,7 +23,7 @@ struct My_tree
   std::vector<float> thickness;
 };
 
-/// Makes a trunk with one branch that leaves it half way up, to the side `x`.
+/// Makes a trunk with one branch that begins at half height and points to the side `x`.
 My_tree make_tree(double x)
 {
   My_tree tree;

@@ -40,7 +40,7 @@ int main()
 
   pcs::Tree_skeleton<Kernel> skeleton;
   std::vector<Kernel::Point_3> points;
-  pcs::Orl_tree tree; // its memory, and that of the points, is used again
+  pcs::Orl_tree tree; // its memory, and that of the points, is reused
   for (const double lambda : {0.25, 0.5, 0.75, 1.25}) {
     space.geodesic(a, b, lambda, tree);
     space.skeleton(tree, skeleton);

@@ -16,7 +16,7 @@
 #include <vector>
 
 using Kernel = CGAL::Simple_cartesian<double>;
-using Labelled_point = std::pair<Kernel::Point_3, std::size_t>; // and its tree
+using Labelled_point = std::pair<Kernel::Point_3, std::size_t>; // point and index of its tree
 using Point_map = CGAL::First_of_pair_property_map<Labelled_point>;
 using Tree_map = CGAL::Second_of_pair_property_map<Labelled_point>;
 

@@ -4,6 +4,9 @@
 
   A graph of Boost.Graph to which a skeleton is written: vertices and edges are added.
 
+  \par Used by
+  `pcs::extract_tree_skeleton()` and `pcs::Tree_skeletonization::extract()`, for the result
+
   \par Refines
   `boost::MutableGraph`, as far as the expressions below
 
@@ -12,7 +15,7 @@
 
   \par Required expressions
   \code
-  auto v = add_vertex(graph);
+  auto v = add_vertex(graph), w = add_vertex(graph);
   add_edge(v, w, graph);      // from parent to child
   \endcode
 

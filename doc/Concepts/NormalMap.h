@@ -2,8 +2,8 @@
   \ingroup PkgPcsConcepts
   \cgalConcept
 
-  A property map from the elements of a range to their normals, which are turned along with the
-  points.
+  A property map from the elements of a range to their normals, which are rotated along with
+  the points.
 
   \par Refines
   `boost::ReadWritePropertyMap`

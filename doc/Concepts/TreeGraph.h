@@ -31,7 +31,7 @@
   `Tree_archetype` with `Vertex_map_archetype` in `test/support/graph_archetypes.h`
 
   \par Models
-  `pcs::Tree_skeleton<Kernel>`, whose maps are found without being named; any
+  `pcs::Tree_skeleton<Kernel>`, whose maps are used by default; any
   `boost::adjacency_list` with these maps
 */
 class TreeGraph
