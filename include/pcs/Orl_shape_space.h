@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A space in which trees are points: distance, geodesic and extrapolation between trees, with their
-// scans.
+// Shape space of trees and their scans: distances, geodesics and extrapolation.
 
 #ifndef PCS_ORL_SHAPE_SPACE_H
 #define PCS_ORL_SHAPE_SPACE_H
@@ -49,9 +48,10 @@ namespace pcs {
   \brief A shape space of two trees or more, with the points of their scans.
 
   The model is that of chapter 4 of \cite aiteanu2022. Branches are matched by elastic curves, and
-  all trees get one topology. A tree is the list of orientations, radii and lengths (ORL) of the
-  edges of this topology. Distances are those of (4.7), and geodesics interpolate the coordinates.
-  Points are matched by optimal transport along corresponding edges, and follow their edges.
+  all trees are given a common topology. The coordinates of a tree are the orientations, radii and
+  lengths (ORL) of the edges of this topology. Distances are those of (4.7), and geodesics
+  interpolate the coordinates. Points are matched by optimal transport along corresponding edges,
+  and move with their edges.
 
   `add()` copies a tree of any Boost.Graph type and its scan, `build()` finds the correspondences,
   and `geodesic()` computes trees of the space, which are written by `skeleton()` and `points()`.
@@ -60,9 +60,9 @@ namespace pcs {
 
   Two trees are represented exactly. In a space of more than two trees, corresponding branches have
   the same number of nodes, and axes are simplified with a tolerance of 1 % of the branch length.
-  Each branch then has the points of one scan, so points have the same order in all trees; optimal
-  transport finds the corresponding point of each in every other scan of the branch. The order in
-  which the trees are added does not matter, except for rounding.
+  The points of each branch are taken from one scan, so that points have the same order in all
+  trees. Optimal transport finds the point that corresponds to each of them in every other scan of
+  the branch. The order in which the trees are added does not matter, except for rounding.
 
   \tparam Kernel a kernel of CGAL; computations are in double precision about a local origin
   \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or
@@ -71,7 +71,7 @@ namespace pcs {
   All functions except `add()`, `add_skeleton()`, `build()`, `build_from()` and `restore()` require
   a built space, and throw `pcs::Invalid_input` otherwise.
   \par Determinism
-  Results are the same bits for every number of threads and for the sequential tag. The order of
+  Results are bitwise identical for every number of threads and for the sequential tag. The order of
   vertices and edges in the graphs does not matter, except for exact copies of branches. `const`
   functions may run concurrently.
 */
@@ -102,7 +102,7 @@ public:
         parent to child
     \param tree a tree with one root, at least 2 nodes, positions at most 1e100 from the root, radii
         in [0, 1e100], and at most 250 levels of branches; coincident nodes are joined
-    \param scan a model of `RandomAccessRange`; may be empty; its points should surround the tree
+    \param scan a model of `RandomAccessRange`, in the coordinates of the tree; may be empty
     \npbegin
       \np{node_point_map} position of a vertex [L]
         \nptype readable, key: vertex, value with `x()`, `y()`, `z()`
@@ -175,8 +175,8 @@ public:
         \nptype `bool`
         \npdefault `false`: rotations are multiplied by the length of the edge, so that distances
             are lengths
-      \np{number_of_rounds} for more than two trees: number of times that all trees are matched to
-          the middle tree, which has median coordinates
+      \np{number_of_rounds} for more than two trees: number of rounds, in each of which all trees
+          are matched to the reference tree, which has median coordinates
         \nptype an integer, `>= 1`
         \npdefault `3`
       \np{points_of} for more than two trees: tree whose scan provides the points of all branches
@@ -209,8 +209,9 @@ public:
   /*!
     \brief builds the space of two trees from correspondences that were computed before.
 
-    Reads `orientation`, `virtual_direction` and `do_use_unit_weights`, `matching_weights` for trees
-    that are embedded later, and `up_direction` for the sign of the yaw.
+    The named parameters are `orientation`, `virtual_direction`, `do_use_unit_weights`,
+    `matching_weights` (for trees that are embedded later) and `up_direction` (for the sign of the
+    yaw), as in `build()`.
     \return a report in which `matching_energy` and `unexplained_fraction` are NaN and
         `is_grown_at_tips` is `false`, because correspondences do not include these values
     \throws pcs::Invalid_input when the correspondences do not fit the trees
@@ -260,7 +261,7 @@ public:
     return b < family().has[h].size() && family().has[h][b] != 0;
   }
 
-  //! number of the vertex at the tip of branch `b` in the graph of tree `h`; `npos` if the tree
+  //! index of the vertex at the tip of branch `b` in the graph of tree `h`; `npos` if the tree
   //! lacks this branch
   std::size_t tip_of_branch(Handle h, std::size_t b) const
   {
@@ -286,7 +287,7 @@ public:
     return shape_space::store_correspondences<ConcurrencyTag>(m_state);
   }
 
-  //! the whole space as numbers, for `IO::write_shape_space()`
+  //! the whole space as plain data, for `IO::write_shape_space()`
   Orl_space_data data() const
   {
     check_built("pcs::Orl_shape_space::data()");
@@ -294,10 +295,10 @@ public:
   }
 
   /*!
-    \brief makes a tree of the space from a tree that was not added.
+    \brief represents a tree that was not added by a tree of the space.
 
-    The tree is matched to the middle tree of the added ones. Its branches without correspondence
-    are left out.
+    The tree is matched to the reference tree of the space. Its branches without correspondence are
+    left out.
     \param tree, np as for `add()`
     \param represented if not null, receives the fraction of the length of `tree` that is
         represented [-]
@@ -329,7 +330,7 @@ public:
     \brief returns the distance between two trees of the space [L].
 
     \npbegin
-      \np{metric} sum of differences (4.7), root of the sum of their squares, or edges as vectors
+      \np{metric} how differences of coordinates are combined
         \nptype `Orl_metric`
         \npdefault `sum`
     \npend
@@ -361,10 +362,10 @@ public:
   /*!
     \brief returns the tree at `lambda` on the geodesic from `a` (0) to `b` (1), or beyond its ends.
 
-    Beyond the ends, lengths and radii remain positive, and edges rotate by at most
+    Beyond the ends, lengths and radii remain positive. Edges rotate by at most
     `max_extrapolation_angle`, both relative to their parent edge and in space. Branches that would
-    extend below the base (against the direction of growth) are extrapolated less, unless they
-    extend below it at one of the ends.
+    extend below the base of the tree (against the direction of growth) are extrapolated less,
+    unless they already do so at one of the ends.
 
     \npbegin
       \np{max_extrapolation_angle} largest rotation of an edge beyond an end of the path [rad]
@@ -390,7 +391,7 @@ public:
     return result;
   }
 
-  //! computes the same tree in `result`, whose memory is reused
+  //! writes the same tree to `result`, whose memory is reused
   template <class NamedParameters = parameters::Default_named_parameters>
   void geodesic(Handle a,
                 Handle b,
@@ -408,7 +409,7 @@ public:
       state.scan_weights[a] += 1 - weight;
       state.scan_weights[b] += weight;
     }
-    // the path is computed in one direction only, so that it is the same in both
+    // from the lower to the higher handle, so that the path is identical in both directions
     const double t = a <= b ? lambda : 1 - lambda;
     interpolate(family().x[std::min(a, b)], family().x[std::max(a, b)], t, np, state);
     state.lambda = a != b ? t : a == 1 ? 1 : 0;
@@ -457,8 +458,8 @@ public:
 
     Points are sorted by edge; points of branches that the tree lacks are left out. In a space of
     two trees, the points at `lambda` 0 and 1 are those of the scans, each repeated once per
-    correspondence. If a branch of both trees has points in one scan only, these are present along
-    the whole path.
+    correspondence. If both trees have a branch but only one scan has points on it, these points
+    are present along the whole path.
 
     \param result a random access range; a container with `resize()` is resized to
            `t.number_of_points()`, without allocation if its capacity suffices; any other range must
@@ -563,7 +564,7 @@ public:
     \brief calls `f(i, h, k, w)` for every point of a tree and each of its source points, in a space
         of more than two trees.
 
-    Source `k` is the number of a point of the scan of tree `h`, and `w` in (0, 1] is its weight;
+    Source `k` is the index of a point of the scan of tree `h`, and `w` in (0, 1] is its weight;
     the weights of a point `i` add up to 1. Attributes are interpolated by
     `result[i] += w * scan[h][k]`. `f` may be called concurrently, but not for the same `i`.
   */

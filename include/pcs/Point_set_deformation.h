@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A session of non-linear deformation of a point cloud: handles come and go, the sampling and the
-// factors stay.
+// Interactive non-linear deformation of a point cloud by handles.
 
 #ifndef PCS_POINT_SET_DEFORMATION_H
 #define PCS_POINT_SET_DEFORMATION_H
@@ -32,31 +31,31 @@ namespace pcs {
 
 /*!
   \ingroup PkgPcsDeformationRef
-  \brief deforms a point cloud again and again while handles are dragged.
+  \brief Interactive deformation of a point cloud by handles.
 
-  Implements chapter 2 of \cite aiteanu2022 (\cite adk2010): local rotations and positions are
-  solved on samples of the cloud with matrices that are factorised once per set of handles, and
-  carried to all points by blended affine maps. No mesh is needed.
+  The class implements chapter 2 of \cite aiteanu2022 (\cite adk2010). Local rotations and positions
+  are computed for samples of the cloud, with matrices that are factorised once per set of handles.
+  Every point is then moved by a blend of the affine maps of nearby samples. No mesh is needed.
 
-  Work is done as late as possible and never twice. The constructor finds neighbours and samples.
-  After a handle was added or removed, the next `deform()` (or `preprocess()`) factorises again,
-  which takes milliseconds. Setting transformations costs nothing until `deform()`.
+  Results are computed on demand and reused. The constructor finds neighbours and samples. After a
+  handle was added or removed, the next `deform()` (or `preprocess()`) factorises again, which takes
+  milliseconds. Setting transformations costs nothing until `deform()`.
 
-  \tparam PointRange a model of `RandomAccessRange`. The points stay the caller's: the class keeps a
-          reference, writes through the point map in `deform()`, `restore()` and `reset()`, and
-          reads it again only in `accept()`
+  \tparam PointRange a model of `RandomAccessRange`, to which the object keeps a reference. Points
+          are read by the constructor and `accept()`, and written by `deform()`, `restore()` and
+          `reset()`, all through the point map
   \tparam NamedParameters the type of the chain given to the constructor (deduced)
   \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or
           `CGAL::Parallel_if_available_tag`. With a parallel tag, `put()` of the maps is called from
           several threads, for different elements
 
   \par Memory
-  About 150 bytes per point with normals, and some 300 at the peak of the construction. After the
-  first frames, `deform()` allocates nothing.
+  The object needs about 150 bytes per point with normals, and about 300 at the peak of the
+  construction. After the first frames, `deform()` allocates nothing.
 
   \par Thread safety and determinism
-  Different objects may be used at the same time, one object by one thread at a time. Results have
-  the same bits for every number of threads and for the sequential tag.
+  Different objects may be used concurrently, but each object only by one thread at a time. Results
+  are bitwise identical for every number of threads and for the sequential tag.
 */
 template <class PointRange,
           class NamedParameters = parameters::Default_named_parameters,
@@ -94,19 +93,20 @@ public:
       \np{normal_map} where a normal is read and written; normals keep their length
         \nptype model of `ReadWritePropertyMap`, key: element of `points`, value: a vector type
         \npdefault none: normals are not deformed
-      \np{vector_map} vectors that are carried by the local deformation `G`: `G v`, like tangents
+      \np{vector_map} vectors `v`, such as tangents, that the deformation gradient `G` maps to `G v`
         \nptype model of `ReadWritePropertyMap`, key: element of `points`, value: a vector type
         \npdefault none
-      \np{tensor_map} tensors that are carried by it: `G T G^T`, like the covariances of splats
+      \np{tensor_map} tensors `T`, such as covariances of splats, that are mapped to `G T G^T`
         \nptype the same, value: `Eigen::Matrix<FT, 3, 3>`
         \npdefault none
-      \np{number_of_samples} nodes of the non-linear problem, at most all points [count]
+      \np{number_of_samples} samples for which the non-linear problem is solved; limited to the
+        number of points [count]
         \nptype integer, `> 0`
         \npdefault `default_number_of_samples`
       \np{number_of_neighbors} nearest neighbours that a point is linked to [count]
         \nptype integer, 2 to 60
         \npdefault `default_number_of_neighbors`
-      \np{number_of_sample_neighbors} nearest samples that move a point [count]
+      \np{number_of_sample_neighbors} nearest samples whose maps are blended at a point [count]
         \nptype integer, 1 to 32
         \npdefault `default_number_of_sample_neighbors`
       \np{sample_search} how the nearest samples are found
@@ -118,25 +118,26 @@ public:
       \np{rotation_field} how rotations are blended between handles
         \nptype `Rotation_field`
         \npdefault `Rotation_field::geodesic`
-      \np{number_of_iterations} largest number of passes of one `deform()` [count]
+      \np{number_of_iterations} largest number of iterations of one `deform()` [count]
         \nptype integer, `>= 0`
         \npdefault `20`
-      \np{tolerance} passes end when the energy falls by less than this fraction [-]
+      \np{tolerance} iterations end when the energy decreases by less than this fraction [-]
         \nptype floating point, `>= 0`
         \npdefault `0.05`
-      \np{stiffness} resistance against bending relative to stretching. It is the same for any
-        number of points, and of samples from 2,000 on. [-]
+      \np{stiffness} bending stiffness relative to stretching stiffness. Its effect is independent
+        of the number of points, and of the number of samples from 2,000 on. [-]
         \nptype floating point, 0.001 to 1000
         \npdefault 1
       \np{poisson_ratio} transverse contraction under stretch; 0.5 like rubber, 0 like cork [-]
         \nptype floating point, -1 to 0.5
         \npdefault 0
-      \np{do_preserve_volume} whether closed surfaces get springs through their inside. With more
-        than 20,000 samples only coarser levels get them, and finer levels make a single pass.
+      \np{do_preserve_volume} whether springs through the interior of closed surfaces preserve their
+        volume. With more than 20,000 samples, only coarser levels have such springs, and finer
+        levels are limited to one iteration.
         \nptype `bool`
         \npdefault `true`
-      \np{region_of_interest} numbers of the points that may move. All others stay bit for bit, and
-        so do points at the same position as one of these.
+      \np{region_of_interest} indices of the points that may move. All other points, and points that
+        coincide with one of them, remain bitwise unchanged.
         \nptype range of integers (copied; use `std::cref` for large ones)
         \npdefault all points
       \np{callback} called on this thread with a value that grows from 0 to 1; `false` stops
@@ -167,22 +168,22 @@ public:
     }
   }
 
-  /// Of an object that was moved from, only assignment, destruction and `number_of_samples()` are
-  /// allowed; all other calls throw `Invalid_input`.
+  /// A moved-from object permits only assignment, destruction and `number_of_samples()`; all other
+  /// calls throw `Invalid_input`.
   Point_set_deformation(Point_set_deformation&&) = default;
   Point_set_deformation& operator=(Point_set_deformation&&) = default;
 
   /// \name Handles
-  /// Handles are numbered from 0 in the order in which they were added; numbers are not used again.
+  /// Handles are numbered from 0 in the order in which they were added; numbers are not reused.
   /// @{
 
   /*!
-    Adds a handle, which stays at rest until a motion is set.
-    \param indices the numbers of its points, in any order, not necessarily connected
-    \param softness 0: its points reach their targets exactly. Otherwise springs draw them there,
-           with a stiffness inverse to the value; at 1 it is that of the edges of a point. [-]
-    \throws Invalid_input if there is no index, one is out of range, belongs to another handle, or
-            lies outside the region of interest; nothing is changed then
+    Adds a handle, which remains at rest until a motion is set.
+    \param indices the indices of its points, in any order, not necessarily connected
+    \param softness 0: its points reach their targets exactly. Otherwise springs pull them to their
+           targets, with the stiffness of the edges of a point divided by this value. [-]
+    \throws Invalid_input if `indices` is empty, or if an index is out of range, belongs to another
+            handle, or lies outside the region of interest; nothing is changed then
   */
   template <class IndexRange>
   Handle add_handle(const IndexRange& indices, double softness = 0)
@@ -231,8 +232,8 @@ public:
   }
 
   /// Sets the scale `factor` > 0 about the centroid of the handle at rest; it precedes the
-  /// rotation. Between handles of different scale the thickness changes, and the length as far as
-  /// the handles leave room.
+  /// rotation. Between handles of different scale, the thickness is interpolated, and lengths
+  /// change as far as the positions of the handles permit.
   void set_scale(Handle handle, double factor)
   {
     change_motion(handle, "pcs::Point_set_deformation::set_scale()", [&](Motion& m) {
@@ -240,9 +241,9 @@ public:
     });
   }
 
-  /// Sets the whole motion from rest: a `Similarity`, or a `CGAL::Aff_transformation_3` that is
-  /// one. It counts as the rotation: `set_rotation()` replaces it, a translation follows it, a
-  /// scale precedes it.
+  /// Sets the whole motion from rest to a `Similarity`, or to a `CGAL::Aff_transformation_3` that
+  /// is a similarity. It is stored in place of the rotation: `set_rotation()` replaces it, a
+  /// translation that is set later follows it, and a scale precedes it.
   template <class Transformation>
   void set_transformation(Handle handle, const Transformation& transformation)
   {
@@ -281,17 +282,19 @@ public:
   }
 
   /*!
-    Solves for the present motions of the handles, from rest, and writes points and normals. Points
-    that no handle reaches, those outside the region of interest, and those of handles that have not
-    moved are not written. Nothing is written if the report says `cancelled` or `numerical_failure`.
+    Solves for the current motions of the handles, from rest, and writes points and normals. Points
+    that are not connected to a handle, points outside the region of interest, and points of handles
+    that have not moved are not written. Nothing is written if the status of the report is
+    `cancelled` or `numerical_failure`.
 
     \param start `Solver_start::cold`: the result depends on the rest shape and the motions only.
-           `Solver_start::warm`, for the frames of a drag: passes continue from the last result, and
-           one to three suffice.
+           `Solver_start::warm`, for the frames of a drag: one to three iterations that continue
+           from the last result suffice.
 
-    The energy of warm starts was at most a tenth above that of cold ones, and a quarter of it where
-    these end early. A large step, new handles, a restored snapshot, and full resolution of more
-    than 20,000 points with interior springs begin cold in any case.
+    In tests, the energy after a warm start was at most a tenth above that after a cold start, and a
+    quarter of it where cold starts ended early. The start is always cold after a large step, after
+    a change of handles or a restored snapshot, and for more than 20,000 samples with interior
+    springs.
   */
   Deformation_report deform(Solver_start start = Solver_start::cold)
   {
@@ -311,17 +314,18 @@ public:
   }
 
   /*!
-    Moves other points, and their normals, as the last `deform()` moved the points around them: a
-    cloud that does not fit into memory is deformed through a sample of it, then chunk by chunk.
-    Each point follows its nearest point of this object: rigidly if that is in a handle, not at all
-    if that stays. Otherwise it is blended from the samples like a point of this object; for such a
-    point the result is the same to rounding, with `Sample_search::regions`, unless a shape was
-    accepted. O(n log n) once per rest shape, then O(log n) per point.
+    Moves other points and their normals as the last `deform()` moved the points around them. This
+    deforms clouds that do not fit into memory: a subset is deformed first, then all points, chunk
+    by chunk. A point moves rigidly if its nearest point of this object belongs to a handle, and
+    remains unchanged if that point did not move. Otherwise the maps of nearby samples are blended
+    as for points of this object. Points of this object obtain the same result up to rounding with
+    `Sample_search::regions`, unless a shape was accepted. O(n log n) once per rest shape, then
+    O(log n) per point.
 
     \param points a model of `RandomAccessRange` at rest, modified in place
     \param np `point_map` and `normal_map` as in the constructor, for `points`
-    \throws Invalid_input if a point or normal is not finite, or constraints were made for other
-            handles since the last `deform()`; nothing is changed then
+    \throws Invalid_input if a point or normal is not finite, or if the matrices were factorised for
+            other handles since the last `deform()`; nothing is changed then
   */
   template <class OtherRange, class OtherParameters = parameters::Default_named_parameters>
   void apply(OtherRange& points, const OtherParameters& np = OtherParameters())
@@ -331,7 +335,7 @@ public:
     deformation::carry_points<ConcurrencyTag>(*m_session, points, np, function);
   }
 
-  /// Returns the present points and the motions that gave them, at the cost of the samples only.
+  /// Returns the current shape and its motions; only data of the samples are stored.
   /// \throws Invalid_input if handles were added or removed since the last `deform()`
   Snapshot snapshot() const
   {
@@ -346,8 +350,8 @@ public:
     return result;
   }
 
-  /// Brings back the points of a snapshot, and the motions. \throws Invalid_input if it was not
-  /// taken of this object, with the same handles and the same rest shape; nothing is changed then
+  /// Restores the points and motions of a snapshot. \throws Invalid_input unless it was taken from
+  /// this object with the same handles and the same rest shape; nothing is changed then
   void restore(const Snapshot& snapshot)
   {
     const char* function = "pcs::Point_set_deformation::restore()";
@@ -359,12 +363,12 @@ public:
     m_session->restore(snapshot.session);
     const std::size_t count = m_motion.size();
     m_motion = snapshot.motions;
-    m_motion.resize(count); // handles that were added at rest
+    m_motion.resize(count); // handles that were added since are at rest
     m_shape_motions = m_motion;
     write_points();
   }
 
-  /// Back to the rest shape; handles stay, their motions end.
+  /// Restores the rest shape; handles remain, and their motions are reset.
   void reset()
   {
     check_points("pcs::Point_set_deformation::reset()");
@@ -373,9 +377,9 @@ public:
     write_points();
   }
 
-  /// The present shape, as the point map gives it, becomes the rest shape; motions end, handles and
-  /// samples stay; the next `deform()` factorises again. \throws Invalid_input if a point, normal,
-  /// vector or tensor is not finite; nothing is changed then
+  /// Makes the current shape, as read through the point map, the rest shape. Motions are reset,
+  /// handles and samples remain, and the next `deform()` factorises again. \throws Invalid_input if
+  /// a point, normal, vector or tensor is not finite; nothing is changed then
   void accept()
   {
     const char* function = "pcs::Point_set_deformation::accept()";
@@ -416,7 +420,7 @@ private:
     m_shape_motions = m_motion;
   }
 
-  /// Takes the normals, vectors and tensors of the rest shape.
+  /// Stores the normals, vectors and tensors of the rest shape.
   void keep_attributes()
   {
     if constexpr (Access::has_normals)
@@ -434,7 +438,7 @@ private:
   deformation::Elastic_options m_elastic;
   std::function<bool(double)> m_callback;
   std::unique_ptr<Session> m_session;
-  std::vector<Motion> m_motion, m_shape_motions; ///< of now, and of the present shape
+  std::vector<Motion> m_motion, m_shape_motions; ///< as set, and of the current shape
 };
 
 template <class PointRange>

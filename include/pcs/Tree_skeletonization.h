@@ -36,30 +36,31 @@ namespace pcs {
 
 /*!
   \ingroup PkgPcsSkeletonRef
-  \brief finds branches, radii and their connection in the scan of a tree, one stage at a time.
+  \brief Extraction of a tree skeleton from a scan, one stage at a time.
 
-  After chapter 3 of \cite aiteanu2022 (\cite ak2014), with the sections of a branch fitted
-  together: paths from the root over the neighbour graph are cut into layers, the layers form
-  chains, and every chain becomes one axis whose positions and radii are a robust least-squares fit
-  to all of its points; where the points do not decide a radius, their number does.
+  The class implements chapter 3 of \cite aiteanu2022 (\cite ak2014), except that all cross-sections
+  of a branch are fitted together. Shortest paths from the root over the neighbour graph are cut
+  into geodesic level sets, whose connected components form chains. Every chain becomes one branch
+  axis, whose positions and radii are a robust least-squares fit to all of its points. Radii that
+  the positions of the points do not determine are estimated from the number of points.
 
-  Each stage runs those before it, once; `extract()` runs them all. What a stage found can be
-  inspected in between.
+  Each stage first runs the earlier stages that have not run yet; `extract()` runs all stages. The
+  result of each stage can be inspected.
 
-  \tparam PointRange a model of `RandomAccessRange`; points are read by the constructor only, and
-          `extract()` passes their elements to the maps of points
+  \tparam PointRange a model of `RandomAccessRange`; positions are read by the constructor only,
+          and the elements are keys of the property maps that `extract()` writes
   \tparam NamedParameters the type of the chain given to the constructor (deduced)
   \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or
       `CGAL::Parallel_if_available_tag`
 
   \par Memory
-  About 350 bytes per point at the peak.
+  The object needs about 350 bytes per point at the peak.
 
   \par Thread safety
-  Different objects may be used at the same time. One object may be used by one thread at a time.
+  Different objects may be used concurrently, but each object only by one thread at a time.
 
   \par Determinism
-  Same bits for every number of threads and for the sequential tag.
+  Results are bitwise identical for every number of threads and for the sequential tag.
 */
 template <class PointRange,
           class NamedParameters = parameters::Default_named_parameters,
@@ -96,7 +97,7 @@ public:
   /*!
     Reads the points and the hints; no stage runs yet. O(n).
 
-    \param points at least `lowest_number_of_scan_points` different ones
+    \param points at least `lowest_number_of_scan_points` distinct points
     \param np
     \npbegin
       \np{point_map} where a position is read
@@ -107,25 +108,25 @@ public:
         \npdefault the z-axis
       \np{root_position} a position near the foot of the trunk [L]
         \nptype a point with `x()`, `y()`, `z()`
-        \npdefault none: the stem near the lower end of the cloud
-      \np{do_register_stations} whether scanner stations are registered: each is moved by
-          millimetres so that all see the same branches. Stations are those of `station_map`, or
-          those whose angular scan grids are detected
+        \npdefault none: a stem near the lower end of the cloud is detected
+      \np{do_register_stations} whether the points of each scanner station are moved by millimetres
+          so that the branches in all stations coincide. Stations are given by `station_map`, or
+          detected by their angular scan grids
         \nptype `bool`
         \npdefault `true`
-      \np{station_map} the station that measured a point; negative: unknown. With fewer than two
-          stations, or more than 100, scan grids are searched instead
+      \np{station_map} the station that measured a point; negative: unknown. If there are fewer than
+          two stations or more than 100, scan grids are detected instead
         \nptype model of `ReadablePropertyMap`, key: element of `points`, value: an integer type
         \npdefault none
-      \np{scanner_positions} positions of the scanners [L]. With `beam_width` they correct radii of
-          thin branches for beam divergence
+      \np{scanner_positions} positions of the scanners [L], from which the radii of thin branches
+          are corrected for beam divergence
         \nptype range of points with `x()`, `y()`, `z()`
         \npdefault none
-      \np{beam_width} divergence of the beam [rad]; 0: no correction. Used with `scanner_positions`
+      \np{beam_width} beam divergence [rad]; 0: no correction. Used with `scanner_positions`
         \nptype floating point, `>= 0`
         \npdefault `default_beam_width`
-      \np{given_skeleton} a skeleton that is measured: its positions stay, and radii, sections and
-          the branches of points come from the scan
+      \np{given_skeleton} a skeleton whose node positions are kept; radii, cross-sections and the
+          branch of each point are estimated from the scan
         \nptype model of `VertexListGraph` and `IncidenceGraph` of Boost, a tree with edges from
             parent to child (`std::cref()` avoids a copy)
         \npdefault none
@@ -135,42 +136,43 @@ public:
       \np{skeleton_method} how branches are found
         \nptype `Skeleton_method`: `chains`, or `sections`, the published method \cite aiteanu2022
         \npdefault `chains`
-      \np{slice_options} the steps of the method `sections`: how slices are cut, fitted and tilted
+      \np{slice_options} options of the method `sections`: how slices are cut, fitted and tilted
         \nptype `Slice_options`
-        \npdefault those that were published
+        \npdefault the published options
       \np{do_remove_ground} whether ground around the foot and flat faces such as walls and roofs
           are removed
         \nptype `bool`
         \npdefault `true`
-      \np{breast_height} height of the diameter in the report, and unit of its size classes [L]
+      \np{breast_height} height at which the diameter in the report is measured, and unit of the
+          size classes [L]
         \nptype floating point, `> 0`
         \npdefault `default_breast_height`, for scans in metres
-      \np{number_of_resamples} copies of the scan, with 90 % of the points and at most 40,000, from
-          which skeletons are extracted, too: `Skeleton_report::spread` has the standard deviations
-          of their figures. They need the time of as many scans of that size
+      \np{number_of_resamples} random subsets of the scan, with 90 % of the points but at most
+          40,000, whose skeletons give the standard deviations in `Skeleton_report::spread`. Each
+          subset takes as long as a scan of its size
         \nptype integer, 0 to 100
         \npdefault 0: the spread is not estimated
       \np{wood_map} whether a point may belong to a branch; others (leaves) are not used
         \nptype model of `ReadablePropertyMap`, key: element of `points`, value: `bool`
         \npdefault all points
-      \np{do_remove_leaves} whether leaves are separated from wood and not used: always (`true`),
-          never (`false`), or where there is evidence of leaves. For the method `chains`
+      \np{do_remove_leaves} whether leaf points are removed: always (`true`), never (`false`), or
+          where leaves are detected. Used by the method `chains` only
         \nptype `bool` or `Leaf_removal`
-        \npdefault `Leaf_removal::where_found`; with `wood_map` `false`
+        \npdefault `Leaf_removal::where_found`; `Leaf_removal::never` if `wood_map` is given
       \np{point_branch_map} written by `extract()`: index of the branch of a point in the result, or
           `npos`
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: an integer type
         \npdefault none
       \np{point_residual_map} written by `extract()`: signed distance from the surface of the
-          branch, negative inside, 0 for points without a branch [L]. Where stations are moved, it
-          is that of the registered position
+          branch, negative inside, 0 for points without a branch [L]. Points of registered stations
+          are at their registered positions
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: floating point
         \npdefault none
-      \np{point_is_dense_map} written by `extract()`: whether the point lies where the section of
-          its branch was measured
+      \np{point_is_dense_map} written by `extract()`: whether the cross-section of the branch at the
+          point was fitted to points
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: `bool`
         \npdefault none
-      \np{point_is_leaf_map} written by `extract()`: whether the point was not used as a leaf, by
+      \np{point_is_leaf_map} written by `extract()`: whether the point was removed as a leaf, by
           `wood_map` or `do_remove_leaves`
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: `bool`
         \npdefault none
@@ -190,8 +192,8 @@ public:
     \npend
 
     \throws Invalid_input if there are too few points, a coordinate is not finite or beyond 1e100, a
-            parameter is out of range, or the root or the given skeleton is farther from the points
-            than these are from each other
+            parameter is out of range, or the distance of the root or the given skeleton from the
+            bounding box of the points exceeds the diagonal of this box
   */
   explicit Tree_skeletonization(const PointRange& points,
                                 const NamedParameters& np = NamedParameters())
@@ -220,25 +222,25 @@ public:
   Tree_skeletonization& operator=(Tree_skeletonization&&) = default;
 
   /// \name Stages
-  /// Each returns `false` if the callback stopped it; it may be called again then.
+  /// Each stage returns `false` if the callback stopped it; it may then be called again.
   /// @{
 
-  //! neighbours, spacing, duplicates and outliers. O(n log n)
+  //! finds neighbours, spacing, duplicates and outliers. O(n log n)
   bool find_neighbors()
   {
     return run([&](auto& p) { return m_session->find_neighbors(p); });
   }
-  //! ground, root, shortest paths, and the tree of their layers. O(n log n)
+  //! finds ground, root, shortest paths and the tree of level-set components. O(n log n)
   bool find_paths()
   {
     return run([&](auto& p) { return m_session->find_paths(p); });
   }
-  //! the axes of all branches with their radii. O(n log n)
+  //! fits the axes and radii of all branches. O(n log n)
   bool fit_axes()
   {
     return run([&](auto& p) { return m_session->fit_axes(p); });
   }
-  //! one rooted tree of branches, and its sections. O(axes log axes)
+  //! joins the axes to one rooted tree and fits cross-sections. O(axes log axes)
   bool join()
   {
     return run([&](auto& p) { return m_session->join(p); });
@@ -250,7 +252,8 @@ public:
     \tparam Graph `Tree_skeleton<Kernel>`, or any model of `MutableGraph` of Boost with
             `node_point_map` and `node_radius_map` given. It becomes a tree with edges from parent
             to child; the first vertex is the root
-    \param tree replaced by the result; untouched if there is none or the callback stopped the work
+    \param tree replaced by the result; unchanged if no tree was found or the callback stopped the
+           work
   */
   template <class Graph>
   Skeleton_report extract(Graph& tree)
@@ -291,9 +294,9 @@ public:
 
   /// @}
 
-  /// \name What was found
-  /// Coordinates and lengths of the stages are those of `scan().frame`; the report is in the unit
-  /// of the input.
+  /// \name Results of the Stages
+  /// Coordinates and lengths are those of `scan().frame`, except for the report, which is in the
+  /// unit of the input.
   /// @{
   const skeleton::Scan& scan() const { return m_session->scan(); }
   const skeleton::Layer_tree& layers() const { return m_session->layers(); }
@@ -306,7 +309,7 @@ public:
 private:
   static constexpr const char* function = "pcs::extract_tree_skeleton()";
 
-  /// Fraction of the work without resampled copies, if there are any.
+  /// Fraction of the progress assigned to the stages if resampled copies follow.
   static constexpr double end_of_stages = 0.5;
 
   template <class Stage>
@@ -319,7 +322,7 @@ private:
     return stage(progress);
   }
 
-  /// Runs the resampled copies if there are any.
+  /// Extracts the skeletons of resampled copies, if there are any.
   bool estimate_spread()
   {
     if (m_resamples.is_done() || m_session->report().status != Status::converged)
@@ -364,7 +367,7 @@ private:
     return is_wood;
   }
 
-  /// Empty if nothing is known.
+  /// Returns the station of each point, or an empty list if no station is known.
   std::vector<long long> read_stations() const
   {
     std::vector<long long> stations;
@@ -392,8 +395,8 @@ private:
     return stations;
   }
 
-  /// Calls `f(i)` for every input point that a branch explains, side by side where the tag allows
-  /// it.
+  /// Calls `f(i)` for every input point that is assigned to a branch, concurrently if the tag is
+  /// parallel.
   template <class F>
   void for_each_explained(const F& f) const
   {
@@ -406,8 +409,8 @@ private:
                                              });
   }
 
-  /// Calls `f(key, i, node)` for every input point in their order; `node` is `none` for points that
-  /// no branch explains.
+  /// Calls `f(key, i, node)` for every input point in order; `node` is `none` for points that are
+  /// not assigned to a branch.
   template <class F>
   void for_each_point(const F& f) const
   {
@@ -417,7 +420,7 @@ private:
       f(*it, i, has_tree ? m_session->node_of_input(i) : skeleton::none);
   }
 
-  /// Writes the maps over the points. Maps of the caller are written one point after the other.
+  /// Writes the property maps of the points. The caller's maps are written sequentially.
   void write_points() const
   {
     write_branches();

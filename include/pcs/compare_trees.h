@@ -33,11 +33,11 @@ using Branch_change = shape_space::Branch_change;
   \ingroup PkgPcsShapeSpaceRef
   \brief returns the distances of all pairs of added trees, row by row [L].
 
-  That of `a` and `b` is at `a * number_of_trees() + b`.
+  The distance of `a` and `b` has the index `a * number_of_trees() + b`.
   \param space a space that was built
   \param np
   \npbegin
-    \np{metric} sum of differences (4.7), root of the sum of their squares, or edges as vectors
+    \np{metric} how differences of coordinates are combined
       \nptype `Orl_metric`
       \npdefault `sum`
   \npend
@@ -71,17 +71,17 @@ std::vector<double> distance_matrix(const Orl_shape_space<Kernel, ConcurrencyTag
 
 /*!
   \ingroup PkgPcsShapeSpaceRef
-  \brief finds what became of each branch from tree `a` to tree `b`: new, lost, longer, thicker,
+  \brief classifies the change of each branch from tree `a` to tree `b`: new, lost, longer, thicker,
       rotated.
 
   \param space a space that was built
   \param a, b handles of added trees
   \param np
   \npbegin
-    \np{change_limits} when a difference counts
+    \np{change_limits} smallest differences that count as changes
       \nptype `Change_limits`
   \npend
-  \return every branch that one of the trees has, parents first
+  \return the changes of all branches that at least one of the trees has, parents first
   \throws pcs::Invalid_input for a wrong handle, or a limit below 0
 */
 template <class Kernel,

@@ -117,13 +117,13 @@ struct Is_writable_map<Map,
 
 } // namespace internal
 
-//! whether `T` has iterators of random access
+//! whether `T` is a range with random access iterators
 template <class T>
 constexpr bool is_random_access_range_v =
     internal::Has_category<typename internal::Iterator_of<T>::type,
                            std::random_access_iterator_tag>::value;
 
-//! what `*begin(range)` gives: the key of property maps over the range
+//! the type of `*begin(range)`, which is the key of property maps of the elements
 template <class Range>
 using Element_reference = decltype(*std::begin(std::declval<Range&>()));
 
@@ -132,7 +132,7 @@ using Element_reference = decltype(*std::begin(std::declval<Range&>()));
 template <class T>
 constexpr bool is_point_or_vector_v = internal::Is_point<T>::value;
 
-//! whether `T` has `x()`, `y()`, `z()`: what is only read needs no constructor
+//! whether `T` has `x()`, `y()`, `z()`; a constructor is not required of types that are only read
 template <class T>
 constexpr bool is_coordinate_triple_v = internal::Is_coordinate_triple<T>::value;
 
@@ -140,7 +140,7 @@ constexpr bool is_coordinate_triple_v = internal::Is_coordinate_triple<T>::value
 template <class T>
 constexpr bool is_matrix_3_v = internal::Is_matrix_3<T>::value;
 
-//! the value type of a property map, `void` if it is none
+//! the value type of a property map; `void` if `Map` is not a property map
 template <class Map>
 using Map_value = typename internal::Map_value<Map>::type;
 
@@ -148,7 +148,7 @@ using Map_value = typename internal::Map_value<Map>::type;
 template <class Map, class Key, class Value>
 constexpr bool is_readable_map_v = internal::Is_readable_map<Map, Key, Value>::value;
 
-//! whether `put(map, key, value)` takes what converts from `Value`
+//! whether `put(map, key, value)` accepts values that are converted from `Value`
 template <class Map, class Key, class Value>
 constexpr bool is_map_for_v = internal::Is_writable_map<Map, Key, Map_value<Map>>::value&&
     std::is_convertible<Value, Map_value<Map>>::value;
@@ -180,7 +180,7 @@ struct Is_rooted_tree_graph<
     std::void_t<
         decltype(num_vertices(std::declval<const Graph&>())),
         decltype(vertices(std::declval<const Graph&>())),
-        // behind these two: graph_traits of a type that is no graph is a hard error
+        // after the checks above, because graph_traits of other types is a hard error
         typename boost::graph_traits<Graph>::vertex_descriptor,
         decltype(out_edges(std::declval<typename boost::graph_traits<Graph>::vertex_descriptor>(),
                            std::declval<const Graph&>())),
@@ -206,7 +206,7 @@ template <class Map, class Key>
 constexpr bool is_readable_point_map_v =
     is_point_or_vector_v<Map_value<Map>>&& is_readable_map_v<Map, Key, Map_value<Map>>;
 
-//! whether `Map` is writable and its values are made of three coordinates
+//! whether `Map` is writable and its values can be constructed from three coordinates
 template <class Map, class Key>
 constexpr bool is_writable_point_map_v = is_point_or_vector_v<Map_value<Map>>&&
     internal::Is_writable_map<Map, Key, Map_value<Map>>::value;

@@ -25,7 +25,7 @@ namespace pcs {
 struct Deformation_handle
 {
   std::vector<std::size_t> indices; //!< numbers of the points
-  Similarity transformation;        //!< from rest; the identity holds the points where they are
+  Similarity transformation;        //!< motion from rest; the identity fixes the points
   double softness = 0;              //!< see `Point_set_deformation::add_handle()` [-]
 };
 
@@ -45,12 +45,12 @@ struct Is_handle_range<T, std::enable_if_t<!std::is_void_v<typename Iterator_of<
 template <class T>
 constexpr bool is_handle_range_v = Is_handle_range<T>::value;
 
-/// Fraction of the work after which neighbours and samples are found; the deformation follows.
+/// Fraction of the progress assigned to neighbours and samples; the rest is for the deformation.
 constexpr double end_of_construction = 0.6;
 
 /*!
-  Runs one session for one edit: `edit(session)` adds and moves the handles. The callback sees
-  construction and deformation as one task.
+  Runs one session for one edit: `edit(session)` adds and moves the handles. The progress covers
+  construction and deformation.
 */
 template <class ConcurrencyTag, class PointRange, class NamedParameters, class Edit>
 Deformation_report deform_once(PointRange& points, const NamedParameters& np, const Edit& edit)
@@ -82,8 +82,8 @@ Deformation_report deform_once(PointRange& points, const NamedParameters& np, co
   \brief moves `points` so that the handles reach their targets while neighbourhoods keep their
       shape.
 
-  Same as one `Point_set_deformation` with one `deform()`: see there for the model, the named
-  parameters, errors, cost and determinism.
+  This is equivalent to one call of `deform()` of a `Point_set_deformation`; see there for the
+  model, the named parameters, errors, cost and determinism.
 
   \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or
       `CGAL::Parallel_if_available_tag`
@@ -116,7 +116,7 @@ Deformation_report deform_point_set(PointRange& points,
 
 /*!
   \ingroup PkgPcsDeformationRef
-  \brief the same for the commonest edit: `fixed` points stay, `moved` points are transformed.
+  \brief overload for the most common edit: `fixed` points stay, `moved` points are transformed.
 
   \param fixed range of integers; may be empty
   \param moved range of integers

@@ -14,20 +14,21 @@ namespace pcs {
   \brief finds the skeleton of a tree in a scan: nodes with radii, connected from the root to the
       tips.
 
-  Same as one `Tree_skeletonization` with one `extract()`: see there for the model, the named
-  parameters, errors, cost and determinism. The result is always one tree: connected, rooted,
-  without cycles. What cannot be connected is counted in the report and left out.
+  This is equivalent to one call of `extract()` of a `Tree_skeletonization`; see there for the
+  model, the named parameters, errors, cost and determinism. The result is always one tree:
+  connected, rooted, without cycles. Branches that cannot be connected are left out and counted in
+  the report.
 
   | scan | result |
   |---|---|
-  | fewer than `lowest_number_of_scan_points` different points, or one that is not finite |
+  | fewer than `lowest_number_of_scan_points` distinct points, or a point that is not finite |
     `Invalid_input` |
   | a thin filled sheet (ground alone, a wall), unless `do_remove_ground(false)` |
-    `Status::nothing_to_do`, `tree` untouched |
+    `Status::nothing_to_do`, `tree` unchanged |
   | a lamp post, a stick | the post is the trunk |
   | a bush | its thickest stem is the root; other stems within reach are branches of it |
-  | two trees in one cloud | the one with more points at its foot, for its height; the other is
-    counted as out of reach |
+  | two trees in one cloud | the tree with more points at its foot, relative to its height; the
+    other is counted as unreached |
   | a body that is no tree, such as a sphere | some tree within it |
 
   \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or

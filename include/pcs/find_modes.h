@@ -37,23 +37,23 @@ using Mode_coordinates = shape_space::Mode_coordinates;
   \ingroup PkgPcsShapeSpaceRef
   \brief finds the directions in which the added trees differ most from their Frechet mean.
 
-  A principal geodesic analysis in the tangent space at the mean; the position of the root is left
-  out. With all `number_of_trees() - 1` modes the inputs are reproduced. The default inner product
-  gives each branch one vote among the trees that have it (Tyler's estimator, expectation
-  maximisation for absent branches). `Mode_inner_product::square` is the metric
-  `Orl_metric::square`, in which absent branches and long edges prevail.
+  This is a principal geodesic analysis in the tangent space at the mean, without the position of
+  the root. All `number_of_trees() - 1` modes together reproduce the inputs. The default inner
+  product gives all branches the same weight, and compares each branch among the trees that have it
+  (Tyler's estimator, expectation maximisation for absent branches). `Mode_inner_product::metric` is
+  the metric `Orl_metric::square`, in which absent branches and long edges dominate.
 
   \param space a space that was built
-  \param most maximal number of modes; there are fewer if the trees do not differ in so many ways
+  \param most maximal number of modes; there are fewer if the trees vary in fewer dimensions
   \param np
   \npbegin
-    \np{mode_inner_product} in which variance is measured
+    \np{mode_inner_product} inner product in which variance is measured
       \nptype `Mode_inner_product`
       \npdefault `branches`
   \npend
   \par Complexity
-  \f$O(n^4 b + n^2 e)\f$ for `n` trees, `b` branches and `e` edges, most of it for the errors of
-  trees that are left out; memory \f$O(n e)\f$ per thread.
+  \f$O(n^4 b + n^2 e)\f$ for `n` trees, `b` branches and `e` edges, mostly for leave-one-out errors;
+  memory \f$O(n e)\f$ per thread.
 */
 template <class Kernel,
           class ConcurrencyTag,
@@ -71,9 +71,9 @@ Modes_of_variation find_modes(const Orl_shape_space<Kernel, ConcurrencyTag>& spa
   \ingroup PkgPcsShapeSpaceRef
   \brief returns the tree with given scores, in standard deviations of the modes.
 
-  However large the scores, the trunk keeps a hundredth of its lengths in the mean, and so do radii
-  of edges that have length.
-  \param space, modes a space and what `find_modes()` returned for it
+  For any scores, edge lengths of the trunk, and radii of edges of positive length, remain at least
+  a hundredth of their values in the mean.
+  \param space, modes a space and the result of `find_modes()` for it
   \param scores at most one per mode, finite; missing ones are 0
 */
 template <class Kernel, class ConcurrencyTag>
@@ -98,7 +98,7 @@ Orl_tree tree_of_modes(const Orl_shape_space<Kernel, ConcurrencyTag>& space,
 }
 
 //! \ingroup PkgPcsShapeSpaceRef
-//! projects a tree on the space of the first `most` modes; branches that it lacks do not count
+//! projects a tree on the space of the first `most` modes; branches that it lacks are ignored
 template <class Kernel, class ConcurrencyTag>
 Mode_coordinates project_on_modes(const Orl_shape_space<Kernel, ConcurrencyTag>& space,
                                   const Modes_of_variation& modes,
@@ -137,10 +137,11 @@ Orl_tree reconstruct_tree(const Orl_shape_space<Kernel, ConcurrencyTag>& space,
 
 /*!
   \ingroup PkgPcsShapeSpaceRef
-  \brief returns how unlike the added trees a tree is [-].
+  \brief returns the dissimilarity of a tree from the added trees [-].
 
-  The root of the mean of two squares: of its scores, and of its distance from the space of the
-  modes in units of the median left-out distance. About 1 for a tree of the same kind.
+  It is the root mean square of two terms: the root mean square score of the tree, and its distance
+  from the space of the modes in units of the median leave-one-out distance. It is about 1 for a
+  tree of the same kind.
 */
 template <class Kernel, class ConcurrencyTag>
 double outlier_score(const Orl_shape_space<Kernel, ConcurrencyTag>& space,

@@ -37,10 +37,10 @@ using Growth_spline = shape_space::Growth_spline;
   \param times finite and increasing, one per tree
   \param np
   \npbegin
-    \np{is_monotone} whether lengths and radii never decrease; they are changed as little as
-        possible for it
+    \np{is_monotone} whether lengths and radii never decrease; values that decrease are replaced by
+        the closest non-decreasing ones
       \nptype `bool`
-      \npdefault `false`: they do not decrease where they increase in the data
+      \npdefault `false`: they decrease only where they do so from tree to tree
   \npend
   \throws pcs::Invalid_input for a wrong handle, or times that do not increase
 */
@@ -75,7 +75,7 @@ fit_growth_path(const Orl_shape_space<Kernel, ConcurrencyTag>& space,
 }
 
 //! \ingroup PkgPcsShapeSpaceRef
-//! returns the tree of a path at a time; before its begin and after its end those trees
+//! returns the tree of a path at a time, which is clamped to the interval of the path
 template <class Kernel, class ConcurrencyTag>
 Orl_tree tree_at_time(const Orl_shape_space<Kernel, ConcurrencyTag>& space,
                       const Growth_spline& path,

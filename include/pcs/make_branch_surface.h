@@ -27,23 +27,23 @@
 namespace pcs {
 
 //! \ingroup PkgPcsSkeletonRef
-//! default distance of the mesh from the sections, in largest radii of the tree [-]
+//! default tolerance of the mesh, as a fraction of the largest radius of the tree [-]
 constexpr double default_surface_tolerance = 0.01;
 
 //! \ingroup PkgPcsSkeletonRef
-//! what `make_branch_surface()` made
+//! statistics of `make_branch_surface()`
 struct Branch_surface_report
 {
   std::size_t number_of_points = 0;    ///< [count]
   std::size_t number_of_triangles = 0; ///< [count]
   std::size_t number_of_joined = 0;    ///< branches sewn into a hole of their parent [count]
   std::size_t number_of_separate =
-      0; ///< branches for which there was no room: closed tubes of their own [count]
+      0; ///< branches left as closed tubes because their parent has no room for a hole [count]
 };
 
 namespace internal {
 
-/// The sections of all branches relative to the root, parents first.
+/// The cross-sections of all branches relative to the root, parents first.
 struct Surface_input
 {
   skeleton::Vec3 origin = skeleton::Vec3::Zero();
@@ -142,24 +142,24 @@ Branch_surface_options read_branch_surface_options(const NamedParameters& np,
   \brief makes the surface of a tree: generalized cylinders along the branches, joined to one closed
       mesh.
 
-  Every branch is a tube through its sections, whose frames do not twist; the polygon of a ring has
-  the area of its section, and tubes end in a lid at the tip. Where the axis of a branch leaves the
-  wood of its parent, its tube is prolonged backwards to a loop on the parent's surface and sewn
-  into a hole there, so that there are no walls inside. Every edge has two triangles, which run
-  through it in opposite directions. Branches that stay in the wood of their parent have no surface.
-  Where siblings leave no room for a hole, a branch is a closed tube that begins inside of its
-  parent. Thin tubes that touch or bend sharply may run through themselves or each other.
+  Every branch becomes a tube through its cross-sections, with twist-free frames and a lid at the
+  tip. The polygon of each ring has the area of its cross-section. Where the axis of a branch leaves
+  its parent, the tube is extended backwards to a loop on the parent's surface and sewn into a hole
+  there, so that the mesh has no internal walls. Every edge is shared by two triangles, which
+  traverse it in opposite directions. Branches that remain inside their parent have no surface. If
+  siblings leave no room for a hole, a branch is a closed tube that begins inside its parent. Thin
+  tubes that touch or bend sharply may intersect themselves or each other.
 
   \param tree a tree; positions and radii are finite
   \param points replaced by the vertices
   \param triangles replaced by triples of indices into `points`, counter-clockwise seen from outside
   \param np
   \npbegin
-    \np{tolerance} largest distance of the mesh from the sections [L]; larger values give fewer
-        triangles
+    \np{tolerance} largest distance of the mesh from the cross-sections [L]; larger values give
+        fewer triangles
       \nptype floating point, `>= 0`
       \npdefault `default_surface_tolerance` times the largest radius
-    \np{do_join} whether branches are joined to their parents; else each is a closed tube that
+    \np{do_join} whether branches are joined to their parents; otherwise each is a closed tube that
         begins inside its parent
       \nptype `bool`
       \npdefault `true`

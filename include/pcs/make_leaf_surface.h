@@ -31,12 +31,12 @@
 namespace pcs {
 
 //! \ingroup PkgPcsSkeletonRef
-//! default length of a leaf, in distances from the root to the farthest node [-]
+//! default length of a leaf, as a fraction of the distance from the root to the farthest node [-]
 constexpr double default_leaf_share = 0.008;
 
 namespace internal {
 
-/// The nodes of a tree as `make_leaf_surface()` needs them.
+/// The properties of the nodes of a tree that `make_leaf_surface()` uses.
 struct Leaf_nodes
 {
   std::vector<Eigen::Vector3d> position;
@@ -109,12 +109,11 @@ Leaf_surface_options read_leaf_surface_options(const NamedParameters& np, const 
 
 /*!
   \ingroup PkgPcsSkeletonRef
-  \brief makes leaves, which the scan does not show one by one, with random orientations on the fine
-      branches.
+  \brief makes leaves with random positions and orientations on the fine branches.
 
-  The last step of chapter 3 of \cite aiteanu2022: for the eye only. A leaf is a rhombus of two
-  triangles, half as wide as long, that begins on the bark. Nothing else of pcs makes leaves, so a
-  tree has none unless this function is called.
+  This is the last step of chapter 3 of \cite aiteanu2022. It is meant for visualisation only, since
+  scans do not resolve individual leaves. A leaf is a rhombus of two triangles, half as wide as
+  long, that begins on the bark.
 
   \param tree a tree; positions and radii are finite
   \param points replaced by the vertices, four for each leaf
@@ -124,13 +123,13 @@ Leaf_surface_options read_leaf_surface_options(const NamedParameters& np, const 
     \np{leaf_length} length of a leaf [L]
       \nptype floating point, `> 0`
       \npdefault `default_leaf_share` times the distance of the farthest node from the root
-    \np{leaves_per_length} along fine branches [1/L]
+    \np{leaves_per_length} number of leaves per length of fine branches [1/L]
       \nptype floating point, `>= 0`
       \npdefault two for each `leaf_length`
     \np{leaf_branch_radius} branches up to this radius have leaves [L]
       \nptype floating point, `>= 0`
       \npdefault twice the median radius of the tips
-    \np{random_seed} every seed gives other leaves
+    \np{random_seed} seed of the random positions and orientations
       \nptype integer
       \npdefault 0
   \npend
@@ -139,7 +138,7 @@ Leaf_surface_options read_leaf_surface_options(const NamedParameters& np, const 
   \par Complexity
   O(nodes + leaves).
   \par Determinism
-  Same bits for the same seed.
+  Results are bitwise identical for the same seed.
 */
 template <class Kernel, class NamedParameters = parameters::Default_named_parameters>
 std::size_t make_leaf_surface(const Tree_skeleton<Kernel>& tree,

@@ -25,10 +25,10 @@ namespace pcs {
   \ingroup PkgPcsShapeSpaceRef
   \brief returns the mean of the added trees of a space, (4.16) and (4.17) of \cite aiteanu2022.
 
-  `Tree_mean::median` minimises the sum of distances `Orl_metric::sum`: medians of lengths, radii
-  and attachments, L1 means of orientations (Weiszfeld's algorithm). A branch that less than half of
-  the trees have gets the length 0. `Tree_mean::frechet` minimises the sum of squares: every branch
-  is there, with its average length.
+  `Tree_mean::median` minimises the sum of distances `Orl_metric::sum`. It consists of the medians
+  of lengths, radii and attachments, and the L1 means of orientations (Weiszfeld's algorithm). A
+  branch that fewer than half of the trees have obtains the length 0. `Tree_mean::frechet` minimises
+  the sum of squared distances. Every branch is present, with its mean length.
 
   \param space a space that was built
   \param np
@@ -36,13 +36,14 @@ namespace pcs {
     \np{tree_mean} what is minimised
       \nptype `Tree_mean`
       \npdefault `median`
-    \np{tree_weights} of the trees, `>= 0`, not all 0
+    \np{tree_weights} weights of the trees, `>= 0`, not all 0
       \nptype `std::vector<double>` of `number_of_trees()` elements
       \npdefault all 1
   \npend
   \throws pcs::Invalid_input for wrong weights, or a space that was not built
   \par Complexity
-  \f$O(n e)\f$ for `n` trees and `e` edges, and \f$O(n^2 e)\f$ angles for `median` up to 128 trees.
+  \f$O(n e)\f$ for `n` trees and `e` edges; `median` of up to 128 trees also computes
+  \f$O(n^2 e)\f$ angles.
 */
 template <class Kernel,
           class ConcurrencyTag,
@@ -65,9 +66,9 @@ Orl_tree mean_tree(const Orl_shape_space<Kernel, ConcurrencyTag>& space,
   \ingroup PkgPcsShapeSpaceRef
   \brief returns the weighted Frechet mean of the added trees.
 
-  For two trees it is the tree on their geodesic, for weights `>= 0` a tree between the inputs.
-  Negative weights extrapolate: lengths stop at 0, radii at a hundredth of the least one among the
-  inputs.
+  The mean of two trees lies on their geodesic. If all weights are `>= 0`, the mean lies between the
+  inputs. Negative weights extrapolate; in this case, lengths are bounded from below by 0, and
+  radii by a hundredth of the least positive radius among the inputs.
   \param space a space that was built
   \param weights one per tree; they are divided by their sum, which must be positive
   \throws pcs::Invalid_input for wrong weights, or a space that was not built
@@ -91,9 +92,10 @@ Orl_tree weighted_mean(const Orl_shape_space<Kernel, ConcurrencyTag>& space,
 
 /*!
   \ingroup PkgPcsShapeSpaceRef
-  \brief returns `t`, moved by `step` times the tangent vector from `a` to `b`.
+  \brief returns `t` displaced by `step` times the tangent vector from `a` to `b`.
 
-  Lengths stop at 0, lengths of the trunk and radii at a hundredth of what they are in `t`.
+  Lengths are bounded from below by 0, and radii and lengths of the trunk by a hundredth of their
+  values in `t`.
   \param space a space that was built
   \param t, a, b trees of the space
   \param step finite [-]

@@ -19,15 +19,15 @@ namespace pcs {
   \brief computes the tree at `lambda` on the geodesic from tree `a` (0) to tree `b` (1), or beyond,
       with its points.
 
-  Same as one `Orl_shape_space` with two `add()`, `build()`, `geodesic()`, `skeleton()` and
-  `points()`: see there for the model, errors, cost and determinism. For more than one `lambda` use
-  the class: nearly all time goes into `build()`.
+  This is equivalent to `add()` for both trees, `build()`, `geodesic()`, `skeleton()` and `points()`
+  of an `Orl_shape_space`; see there for the model, errors, cost and determinism. For more than one
+  `lambda`, use the class, because nearly all of the time is spent in `build()`.
 
   \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or
       `CGAL::Parallel_if_available_tag`
   \param tree_a, tree_b graphs, see `Orl_shape_space::add()`
   \param scan_a, scan_b points of the trees; may be empty
-  \param lambda place on the path, finite [-]
+  \param lambda position on the path, finite [-]
   \param out_tree a `pcs::Tree_skeleton`, replaced
   \param out_points a container with `resize()`, replaced
   \param np named parameters of `build()`, `geodesic()` and `points()`

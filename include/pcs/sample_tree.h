@@ -29,11 +29,11 @@
 namespace pcs {
 
 //! \ingroup PkgPcsShapeSpaceRef
-//! a distribution of trees, with the descriptors of the trees it was estimated from
+//! a distribution of trees, with the descriptors of the trees from which it was estimated
 struct Orl_distribution
 {
-  std::shared_ptr<const shape_space::Tree_distribution> distribution; ///< null: of no space
-  std::vector<Tree_descriptors> descriptors;                          ///< of the inputs
+  std::shared_ptr<const shape_space::Tree_distribution> distribution; ///< null: not estimated
+  std::vector<Tree_descriptors> descriptors;                          ///< of the added trees
 };
 
 //! \ingroup PkgPcsShapeSpaceRef
@@ -41,13 +41,14 @@ struct Orl_distribution
 struct Sample_report
 {
   std::size_t number_of_trials = 0; ///< [count]
-  /// How far its descriptors are outside the range of the inputs, 0 if they are within [-].
+  /// Relative distance of its descriptors from the range of the inputs; 0 if they are within [-].
   double range_violation = 0;
 };
 
 namespace internal {
 
-/// Uniform on all weights of scans that add up to 1, by exponential variates.
+/// Draws weights of the scans by exponential variates. After division by their sum, they are
+/// uniformly distributed over all non-negative weights that add up to 1.
 inline std::vector<double>
 draw_scan_weights(std::size_t number_of_trees, std::uint64_t seed, std::uint64_t index)
 {
@@ -61,7 +62,7 @@ draw_scan_weights(std::size_t number_of_trees, std::uint64_t seed, std::uint64_t
 } // namespace internal
 
 //! \ingroup PkgPcsShapeSpaceRef
-//! estimates the distribution of the added trees; once for any number of `sample_tree()`
+//! estimates the distribution of the added trees; the result can be used for many `sample_tree()`
 template <class Kernel, class ConcurrencyTag>
 Orl_distribution learn_distribution(const Orl_shape_space<Kernel, ConcurrencyTag>& space)
 {
@@ -74,18 +75,18 @@ Orl_distribution learn_distribution(const Orl_shape_space<Kernel, ConcurrencyTag
 
 /*!
   \ingroup PkgPcsShapeSpaceRef
-  \brief draws a random tree like the added ones, the outlook of section 5.2 of \cite aiteanu2022.
+  \brief draws a random tree from the distribution of the added trees.
 
-  `Tree_sampling_options` says what can be asked of the trees. Lengths and radii are positive. All
-  trees have the same topology and the same order of points.
+  Section 5.2 of \cite aiteanu2022 proposes such a function as future work. Lengths and radii are
+  positive. All trees have the same topology and the same order of points.
 
   \param space a space that was built
-  \param from what `learn_distribution()` returned for it
-  \param seed of a series of trees
-  \param index of the tree in its series: a tree does not depend on which others are drawn
+  \param from result of `learn_distribution()` for `space`
+  \param seed seed of a sequence of trees
+  \param index index of the tree in its sequence; trees do not depend on which others are drawn
   \param np
   \npbegin
-    \np{sampling_options} limits and weights
+    \np{sampling_options} limits and constraints of the random trees
       \nptype `Tree_sampling_options`
   \npend
   \param report if not null, how the tree was found
@@ -115,10 +116,10 @@ Orl_tree sample_tree(const Orl_shape_space<Kernel, ConcurrencyTag>& space,
   const std::size_t trials = options.do_keep_in_range ? options.number_of_trials : 1;
   Orl_tree best;
   Sample_report found;
-  double least = 0; // violation by the descriptors of the tree as a whole
+  double least = 0; // violation by the descriptors of the whole tree, without those by order
   Tree_sampling_options nearer = options;
   for (std::size_t k = 0; k < trials; ++k) {
-    // the second half of the trials approaches the median tree, with lengths in range
+    // the second half of the trials approaches the median tree, and lengths are kept in range
     nearer.spread =
         options.spread * std::min(1.0, 1.5 - static_cast<double>(k) / static_cast<double>(trials));
     Orl_tree candidate(shape_space::make_tree(
@@ -126,7 +127,7 @@ Orl_tree sample_tree(const Orl_shape_space<Kernel, ConcurrencyTag>& space,
         shape_space::draw_tree<ConcurrencyTag>(family,
                                                *from.distribution,
                                                from.descriptors,
-                                               // each trial is a stream of its own
+                                               // each trial has a separate random stream
                                                pcs::internal::mix_bits(seed) + k,
                                                index,
                                                nearer,
@@ -155,7 +156,7 @@ Orl_tree sample_tree(const Orl_shape_space<Kernel, ConcurrencyTag>& space,
 }
 
 //! \ingroup PkgPcsShapeSpaceRef
-//! the same once; for more than one tree keep what `learn_distribution()` returns
+//! draws one tree; for more trees, reuse the result of `learn_distribution()`
 template <class Kernel,
           class ConcurrencyTag,
           class NamedParameters = parameters::Default_named_parameters>

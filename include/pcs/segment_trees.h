@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The single trees in the scan of a stand.
+// Segmentation of the scan of a stand into individual trees.
 
 #ifndef PCS_SEGMENT_TREES_H
 #define PCS_SEGMENT_TREES_H
@@ -35,7 +35,7 @@
 namespace pcs {
 
 //! \ingroup PkgPcsSkeletonRef
-//! a tree of `segment_trees()`
+//! a tree found by `segment_trees()`
 struct Segmented_tree
 {
   //! base of the axis of its thickest stem, in coordinates of the input [L]
@@ -46,7 +46,7 @@ struct Segmented_tree
 };
 
 //! \ingroup PkgPcsSkeletonRef
-//! the result of `segment_trees()` in numbers
+//! statistics of `segment_trees()`
 struct Segmentation_report
 {
   //! `converged`; `nothing_to_do` if there is no stem; `cancelled`
@@ -61,7 +61,7 @@ struct Segmentation_report
 
 namespace internal {
 
-/// A sentence about the trees that `is_doubtful(tree)` holds for, with the first few numbers.
+/// Adds a sentence about the trees for which `is_doubtful(tree)` holds, with the first few indices.
 template <class IsDoubtful>
 void warn_of_trees(const Segmentation_report& r,
                    const IsDoubtful& is_doubtful,
@@ -82,10 +82,10 @@ void warn_of_trees(const Segmentation_report& r,
 } // namespace internal
 
 //! \ingroup PkgPcsSkeletonRef
-//! what makes a segmentation implausible, one sentence each; empty for most stands
+//! returns one sentence for each reason to doubt the segmentation; empty for most stands
 inline std::vector<std::string> warnings(const Segmentation_report& r)
 {
-  constexpr double max_diameter = 0.1; // of a stem, by the height; trees have 0.01 to 0.05 [-]
+  constexpr double max_diameter = 0.1; // of a stem, relative to height; trees: 0.01 to 0.05 [-]
   double height = 0;
   for (const Segmented_tree& tree : r.trees)
     height = std::max(height, tree.height);
@@ -103,7 +103,7 @@ inline std::vector<std::string> warnings(const Segmentation_report& r)
 
 namespace internal {
 
-/// Writes the tree of each point, and counts points and heights of the trees.
+/// Writes the tree of each point, and the number of points and the height of each tree.
 template <class PointRange, class PointTreeMap>
 void write_trees(const std::vector<skeleton::Vec3>& input,
                  const skeleton::Stand& stand,
@@ -137,25 +137,28 @@ void write_trees(const std::vector<skeleton::Vec3>& input,
   \ingroup PkgPcsSkeletonRef
   \brief segments the scan of a stand into individual trees.
 
-  A stem is an axis that begins near the ground, keeps its thickness there, and rises steeply by at
-  least half the breast height. Stems belong to one tree if their feet are closer than three radii,
-  plus a tenth of the breast height, plus the height of the higher foot above the ground. An axis of
-  touching crowns belongs to the tree that it most likely continues, by the odds of distance,
-  direction and radius that `extract_tree_skeleton()` joins axes by. A point without an axis belongs
-  to the tree with the nearest foot along the points. Ground, walls and outliers belong to no tree,
-  except for the ground part of stems. The scan is thinned to cubes of a 65th of the breast height;
-  the point of a cube decides for all others in it. Trees with sparse points are searched again in
-  cubes three times as large.
+  A stem is an axis that begins near the ground, hardly tapers there, and rises steeply by at least
+  half the breast height. Two stems belong to the same tree if the horizontal distance of their feet
+  is less than the sum of three radii of the thicker stem, a tenth of the breast height, and the
+  height of the higher foot above the ground. Where crowns touch, an axis is assigned to the tree
+  that it most likely continues, by the same odds of distance, direction and radius by which
+  `extract_tree_skeleton()` joins axes. A point without an axis is assigned to the tree whose foot
+  has the smallest geodesic distance. Ground, walls and outliers remain unassigned, except for
+  ground points at the foot of a stem.
+
+  The scan is thinned to one point per voxel, with a voxel size of a 65th of the breast height. All
+  points of a voxel are assigned to the tree of that point. Sparsely sampled trees are segmented
+  again with voxels three times as large.
 
   The points of one tree are a scan for `extract_tree_skeleton()`.
 
   \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or
       `CGAL::Parallel_if_available_tag`
   \param points a model of `RandomAccessRange` with at least `lowest_number_of_scan_points`
-         different points
+         distinct points
   \param point_tree_map a model of `WritablePropertyMap`, key: element of `points`, value: a type
-         that `std::size_t` converts to. Takes the index of the tree in the report, or `npos`;
-         untouched if the callback stopped the work
+         that `std::size_t` converts to. Receives the index of the tree in the report, or `npos`;
+         unchanged if the callback stopped the work
   \param np
   \npbegin
     \np{point_map} where a position is read
@@ -164,7 +167,7 @@ void write_trees(const std::vector<skeleton::Vec3>& input,
     \np{up_direction} the direction in which trees grow
       \nptype a vector with `x()`, `y()`, `z()`, not null
       \npdefault the z-axis
-    \np{breast_height} height of the diameter of stems; all size limits are relative to it [L]
+    \np{breast_height} breast height, to which all size limits are relative [L]
       \nptype floating point, `> 0`
       \npdefault `default_breast_height`, for scans in metres
     \np{do_remove_ground} whether ground and flat faces are removed
@@ -179,10 +182,10 @@ void write_trees(const std::vector<skeleton::Vec3>& input,
   \throws Invalid_input if there are too few points, a coordinate is not finite or beyond 1e100, or
       a parameter is out of range
   \par Complexity
-  \f$O(n \log n)\f$ in time, 350 bytes per point that is looked at, and some 70 bytes per other
-      point.
+  The time is \f$O(n \log n)\f$. The memory is 350 bytes per point that remains after thinning, and
+  about 70 bytes per other point.
   \par Determinism
-  Same result for every number of threads and for the sequential tag.
+  Results are identical for every number of threads and for the sequential tag.
 */
 template <class ConcurrencyTag = CGAL::Parallel_if_available_tag,
           class PointRange,
@@ -193,7 +196,7 @@ Segmentation_report segment_trees(PointRange& points,
                                   const NamedParameters& np = NamedParameters())
 {
   using Types = skeleton::internal::Skeleton_types<PointRange, NamedParameters>;
-  using Element = Element_reference<PointRange>; // which may hold its tree itself
+  using Element = Element_reference<PointRange>; // an element may store the index of its tree
   constexpr bool is_range_ok = is_random_access_range_v<const PointRange>;
   static_assert(is_range_ok,
                 "pcs::segment_trees(): the points must be a random access range, for example a "
