@@ -66,7 +66,7 @@ private:
       s.references.push_back({edge, m_file.count("the number of an edge")});
     }
   }
-  /// Reads all trees, and the tree of reference last.
+  /// Reads all trees, then the reference tree.
   void read_trees(Orl_space_data& s)
   {
     m_file.expect("trees");
@@ -143,7 +143,7 @@ private:
   {
     return m_file.skip("-") ? Orl_space_data::none : m_file.count("the number of an element");
   }
-  // the end of the file reveals a wrong count before the memory is exhausted
+  // grows with the data: a wrong count fails at the end of the file, before memory is exhausted
   std::vector<double> read_numbers()
   {
     std::vector<double> values;

@@ -23,8 +23,8 @@ namespace IO {
 
 namespace internal {
 
-//! returns the child of each node that has its type, or `npos`; empty unless types are 5 plus the
-//! order of a branch
+//! returns for each node the child of the same type, or `npos`; the result is empty unless all
+//! types are 5 plus the order of a branch
 inline std::vector<std::size_t> same_type_behind(const std::vector<std::int64_t>& types,
                                                  const std::vector<std::size_t>& parents)
 {

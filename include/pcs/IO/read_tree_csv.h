@@ -159,7 +159,7 @@ Node_rows<Kernel> read_node_rows(const std::string& path)
   return result;
 }
 
-//! Assigns branches to rows: numbered in the order of the rows, each one a chain of nodes.
+//! Assigns branches to rows, in the order of the rows, and checks that each is a chain of nodes.
 template <class Kernel>
 class Branch_rows
 {
@@ -212,7 +212,7 @@ private:
   std::vector<std::uint64_t> m_lines;
 };
 
-/// Makes a tree of rows: checks that they form one tree, and their branches chains.
+/// Makes a tree from rows; checks that they form a single tree and that its branches are chains.
 template <class Kernel>
 Tree_skeleton<Kernel> link_rows(const std::string& path, const Node_rows<Kernel>& from)
 {
@@ -239,7 +239,7 @@ Tree_skeleton<Kernel> link_rows(const std::string& path, const Node_rows<Kernel>
 
   The first line names the columns, in any order; `hits` is optional. Each row is one node: its id,
   the id of its parent (-1: the root), the id and order of its branch, position, radius, the half
-  axes of its section, and the number of points that a scan has on it. Nodes are numbered in the
+  axes of its cross-section, and the number of scan points assigned to it. Nodes are numbered in the
   order of the file, branches in the order of their first rows.
 
   \tparam Kernel a kernel of CGAL

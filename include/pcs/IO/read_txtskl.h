@@ -127,8 +127,8 @@ private:
   The first line is the number of layers. A layer is a line `Layer <index>`, the number of its
   branches, and for each of these a line `<father branch> <father point>` (counted from 0 in the
   layer above; `-1 -1` for the trunk), the number of points, and one line `x y z radius` per point.
-  Every branch keeps its own first node: the edge that leads to it has the length 0 where the file
-  repeats the father's point.
+  Every branch has a separate first node; the edge that leads to it has the length 0 if the file
+  repeats the father point.
 
   \tparam Kernel a kernel of CGAL
   \param path name of the file

@@ -27,9 +27,9 @@ namespace IO {
   \brief writes one cylinder per edge inside a branch, with the cylinder columns of TreeQSM.
 
   Columns: `sx, sy, sz` (start), `ax, ay, az` (axis), `length, radius, parent, branch, order,
-  radius_error, is_measured`. The axis is a unit vector; `parent` is a row number from 1, 0 for the
-  first; `branch` counts from 1. Edges of length zero have no cylinder. The file is complete or
-  absent.
+  radius_error, is_measured`. The axis is a unit vector; `parent` is a row number from 1, or 0 if
+  there is none; `branch` counts from 1. Edges of length zero have no cylinder. The file is complete
+  or absent.
 
   \throws pcs::IO_error when the file cannot be written
   \throws pcs::Invalid_input when the graph is not a tree below its root, or a number is not finite

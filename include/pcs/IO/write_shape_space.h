@@ -64,7 +64,7 @@ private:
       end();
     }
   }
-  /// Writes all trees, and the tree of reference last.
+  /// Writes all trees, then the reference tree.
   void write_trees(const Orl_space_data& s)
   {
     begin("trees", s.trees.size());

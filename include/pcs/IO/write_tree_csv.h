@@ -21,9 +21,9 @@ namespace IO {
   \ingroup PkgPcsIORef
   \brief writes a tree skeleton with the columns `id,parent,branch,order,x,y,z,r,a,b,hits`.
 
-  Ids are the numbers of the nodes, so labels of points remain valid; `branch` is the `id` of the
-  branch, or its number if it has none. Numbers have as many digits as required to read them back
-  unchanged. The file is complete or absent.
+  Ids are node indices, so node labels of points remain valid; `branch` is the `id` of the branch,
+  or its index if it has none. Numbers have as many digits as required to read them back unchanged.
+  The file is complete or absent.
 
   \tparam Kernel a kernel of CGAL
   \param hits the number of points on each node; empty: the column is omitted

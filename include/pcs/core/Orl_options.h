@@ -39,13 +39,13 @@ struct Matching_weights
   double curve = 1;                          ///< of the elastic energy of two branches [-]
   double position = 1;                       ///< of the distance of attachments, in units of the
                                              ///< branches' lengths [-]
-  double half_cost_distance = 1;   ///< attachments this far apart, of the parent's length, cost
-                                   ///< half of that [-]
+  double half_cost_distance = 1;   ///< distance of attachments, as a fraction of the parent's
+                                   ///< length, at which saturation halves their cost [-]
   double unmatched = 0.5;          ///< of the length of an unmatched subtree [-]
   double length = 1;               ///< of a difference of lengths, in units of `unmatched` [-]
-  double rotation = 0.2;           ///< of the rotation of a branch relative to its parents [-]
-  double children = 1;             ///< of the children's part in the rotation that is passed on [-]
-  double inherited_rotation = 0.1; ///< of the parents' rotation in that of their children [-]
+  double rotation = 0.2;           ///< of the rotation of a branch relative to its parent [-]
+  double children = 1;             ///< of child directions in the estimate of this rotation [-]
+  double inherited_rotation = 0.1; ///< of the parent's rotation in the same estimate [-]
   bool is_rotation_inherited =
       true; ///< whether rotations of parents are passed on to their children
   //! the published energy: no rotations, `unmatched` is 1, positions in units of
@@ -62,17 +62,17 @@ struct Matching_weights
 //! \ingroup PkgPcsShapeSpaceRef
 //! whether the second of two trees may be rotated as a whole
 enum class Orl_alignment {
-  as_given,       ///< both trees are in the same axes
-  rotate_about_up ///< by any yaw about the up direction, for pots that were
-                  ///< moved
+  as_given,       ///< both trees have the same coordinate axes
+  rotate_about_up ///< the second may be rotated by any yaw about the up direction,
+                  ///< for potted plants
 };
 
 //! \ingroup PkgPcsShapeSpaceRef
 //! direction of a branch in the tree that does not have it
 enum class Virtual_direction {
-  of_partner,  ///< as in the other tree: it grows in its direction
-  along_parent ///< along its parent: it grows upwards, then bends, as published
-               ///< (figure 4.11)
+  of_partner,  ///< as in the other tree, so that the direction is constant
+  along_parent ///< along the parent, so that the branch first grows upwards and
+               ///< then bends, as published (figure 4.11)
 };
 
 //! \ingroup PkgPcsShapeSpaceRef
@@ -84,8 +84,8 @@ enum class Orl_orientation {
   gauge_fixed,
   transported, ///< relative to the previous edge, in frames transported from
                ///< the root without twist
-  world_axes   ///< in the axes of the input, as published: rotating a parent
-               ///< leaves its children
+  world_axes   ///< in the axes of the input, as published: children do not
+               ///< rotate with their parent
 };
 
 //! \ingroup PkgPcsShapeSpaceRef
@@ -93,15 +93,15 @@ enum class Orl_orientation {
 enum class Orl_metric {
   sum,    ///< sum of absolute differences: (4.7)
   square, ///< root of the sum of squares: geodesics are unique
-  cone    ///< an edge is a vector: rotating it costs in proportion to its length
+  cone    ///< edges are compared as vectors: the cost of a rotation is proportional to their length
 };
 
 //! \ingroup PkgPcsShapeSpaceRef
 //! how the points of a scan are assigned to the edges of its tree
 struct Point_assignment_options
 {
-  //! deviation of points from the surface, as a fraction of the radius; 1.1 as
-  //! published allows that much [-]
+  //! deviation of points from the surface, as a fraction of the radius; 0.1
+  //! corresponds to the published factor 1.1 [-]
   double noise = 0.1;
   double normal_angle = 0.5; ///< deviation of normals that counts as much as the noise [rad]
   std::size_t number_of_neighbors = 12; ///< for normals, if none are given [count]
@@ -112,7 +112,7 @@ struct Point_assignment_options
 struct Sinkhorn_options
 {
   double regularization = 0.02;  ///< final epsilon, as a fraction of the largest cost [-]
-  std::size_t iterations = 1000; ///< at the final epsilon, at most [count]
+  std::size_t iterations = 1000; ///< largest number at the final epsilon [count]
   double tolerance = 1e-6;       ///< violation of the marginals at which iterations stop [-]
 };
 
@@ -139,16 +139,16 @@ struct Transport_options
   //! whether the cost is the squared distance (2-Wasserstein); as published it
   //! is the distance
   bool is_squared = true;
-  //! largest distance of transport, in median distances between nearest points
-  //! of the two trees. Points without room within it, opposite to a gap of the
-  //! other scan, take their nearest neighbour. Infinite: all mass is
-  //! transported, as published [-]
+  //! largest transport distance, in units of the median distance between nearest
+  //! points of the two trees. Points whose mass cannot be transported within it,
+  //! such as those opposite to a gap in the other scan, are matched to their
+  //! nearest neighbour. Infinite: all mass is transported, as published [-]
   double reach = 2;
   std::size_t number_of_neighbors = 16; ///< candidates of each point in the other tree [count]
-  //! points of a tree that are transported together; at most twice as many
-  //! [count]
+  //! intended number of points of a tree in one transport problem; the limit is
+  //! twice this number [count]
   std::size_t largest_window = 1000;
-  //! edges are merged until both trees have as many points [count]
+  //! edges are merged until both trees have at least this many points [count]
   std::size_t least_window = 24;
   Sinkhorn_options sinkhorn;
 };
@@ -156,18 +156,18 @@ struct Transport_options
 //! \ingroup PkgPcsShapeSpaceRef
 //! how corresponding points are interpolated
 enum class Point_path {
-  cylindrical,  ///< along, around and away from the edge: sections keep their
-                ///< size
-  virtual_edges ///< as edges from the beginning of the edge, by slerp, as
-                ///< published: sections shrink
+  cylindrical,  ///< in cylindrical coordinates of the edge: cross-sections keep
+                ///< their size
+  virtual_edges ///< as virtual edges from the start of the edge, by slerp, as
+                ///< published: cross-sections shrink
 };
 
 //! \ingroup PkgPcsShapeSpaceRef
 //! how branches emerge that only one end of a geodesic has
 enum class Branch_emergence {
   simultaneous, ///< all at once, as small copies: all coordinates are linear
-  //! tips move on and old wood stays; each branch emerges when the tip of its
-  //! parent passes its base
+  //! branches grow at their tips, and old wood remains in place; each branch
+  //! emerges when the tip of its parent passes its base
   sequential
 };
 
@@ -179,10 +179,10 @@ enum class Tree_mean {
 };
 
 //! \ingroup PkgPcsShapeSpaceRef
-//! inner product by which modes of variation are found
+//! inner product in which modes of variation are computed
 enum class Mode_inner_product {
-  branches, ///< how branches differ between the trees that have them; each
-            ///< branch has one vote
+  branches, ///< each branch is compared among the trees that have it; all
+            ///< branches have the same weight
   metric    ///< the distance `Orl_metric::square`: a missing branch has length 0
 };
 
@@ -191,7 +191,7 @@ enum class Mode_inner_product {
 struct Tree_sampling_options
 {
   double truncation = 2.5; ///< largest score, in standard deviations [-]
-  double spread = 1;       ///< factor of all standard deviations; 0 gives middle trees only [-]
+  double spread = 1;       ///< factor of all standard deviations; 0: median trees only [-]
   //! fraction of the variance, in [0, 1], that is drawn for each branch
   //! independently instead of for all branches together; negative: as estimated
   //! from the inputs [-]
@@ -199,15 +199,17 @@ struct Tree_sampling_options
   //! whether branches are present at random; otherwise trees have the branches
   //! of most inputs
   bool do_draw_presence = true;
-  //! whether trees stay in the range of the inputs: attachments, numbers and
-  //! angles of branches of an order change as little as possible, and trees
-  //! with other descriptors out of range are drawn again
+  //! whether the descriptors of trees stay in the range of the inputs.
+  //! Attachments, and the numbers and angles of branches by order, are changed
+  //! as little as necessary; trees with other descriptors out of range are
+  //! drawn again.
   bool do_keep_in_range = true;
-  //! for that; the later half moves towards the middle tree [count]
+  //! largest number of draws for `do_keep_in_range`; the later half approaches
+  //! the median tree [count]
   std::size_t number_of_trials = 100;
   bool do_limit_radii = false; ///< whether no branch is thicker than its parent at the attachment
-  //! exponent of the pipe model: radii to this power add up to at most that of
-  //! the parent; 2 to 2.5 in nature, 0: no such limit [-]
+  //! exponent of the pipe model: the sum of the children's radii to this power
+  //! is at most that of the parent; 2 to 2.5 in nature, 0: no limit [-]
   double pipe_exponent = 0;
 };
 
@@ -215,8 +217,8 @@ struct Tree_sampling_options
 //! differences that count as changes between two dates
 struct Change_limits
 {
-  double length = 0.05; ///< of the longer one [-]
-  double radius = 0.05; ///< of the thicker one [-]
+  double length = 0.05; ///< as a fraction of the longer branch [-]
+  double radius = 0.05; ///< as a fraction of the thicker branch [-]
   double angle = 0.1;   ///< [rad]
 };
 

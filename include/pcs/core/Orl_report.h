@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What the construction of a shape space of trees did: counts, distances, seconds per stage.
+// Statistics of the construction of a shape space: counts, distances, seconds per stage.
 
 #ifndef PCS_CORE_ORL_REPORT_H
 #define PCS_CORE_ORL_REPORT_H
@@ -14,14 +14,14 @@
 namespace pcs {
 
 //! \ingroup PkgPcsShapeSpaceRef
-//! what `orl_geodesic()` or `Orl_shape_space::build()` did
+//! statistics of `orl_geodesic()` or `Orl_shape_space::build()`
 struct Orl_report
 {
   Status status = Status::nothing_to_do;
 
   std::size_t number_of_trees = 2; ///< [count]; values of single trees are those of the first two
   std::size_t number_of_common_branches = 0; ///< of the topology [count]
-  //! more than two trees: branches whose correspondence changed in the last round [-]
+  //! more than two trees: fraction of branches whose correspondence changed in the last round [-]
   double fraction_of_changed_matches = 0;
 
   std::array<std::size_t, 2> number_of_nodes = {0, 0};    ///< of the trees [count]
@@ -29,9 +29,9 @@ struct Orl_report
   std::size_t number_of_matched_branches = 0;             ///< pairs of branches [count]
   std::size_t number_of_edges = 0;                        ///< of the common topology [count]
   double matching_energy = 0; ///< of the branches, in units of the longest paths [-]
-  //! two trees: 0 if the smaller one is found in the other as a whole, 1 if nothing of it is [-]
+  //! two trees: 0 if the whole smaller tree has a counterpart in the other, 1 if no part has [-]
   double unexplained_fraction = 0;
-  //! two trees: whether branches of one are the beginnings of those of the other, not scaled copies
+  //! two trees: whether branches were matched as growing at their tips instead of stretching
   bool is_grown_at_tips = false;
   //! two trees: rotation about the vertical that aligns the second with the first [rad]
   double yaw = 0;
@@ -42,9 +42,9 @@ struct Orl_report
   std::size_t number_of_unmatched_points = 0; ///< of these: points of one scan only [count]
   std::size_t number_of_windows = 0;          ///< optimal transports that were solved [count]
   std::size_t number_of_failed_windows = 0;   ///< transports that did not converge [count]
-  double worst_marginal_violation = 0;        ///< mass of a window, of 1, at a wrong point [-]
+  double worst_marginal_violation = 0;        ///< largest fraction of misplaced mass, by window [-]
   double mean_marginal_violation = 0;         ///< the same, mean over windows [-]
-  //! mass of a window, of 1, without counterpart within reach, mean over windows [-]
+  //! fraction of the mass of a window without counterpart within reach, mean over windows [-]
   double untransported_mass_share = 0;
 
   //! wall-clock time of each stage [s]
@@ -55,7 +55,7 @@ struct Orl_report
   } seconds;
 };
 
-/// A line; figures of pairs for two trees alone.
+/// Writes one line; values of pairs are written for two trees only.
 inline std::ostream& operator<<(std::ostream& out, const Orl_report& r)
 {
   out << "status " << r.status << ", ";

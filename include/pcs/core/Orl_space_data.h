@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A whole shape space of trees as plain numbers: what is worth keeping in a file.
+// A shape space of trees as plain data, for storage in a file.
 
 #ifndef PCS_CORE_ORL_SPACE_DATA_H
 #define PCS_CORE_ORL_SPACE_DATA_H
@@ -16,8 +16,8 @@ namespace pcs {
 
 /*!
   \ingroup PkgPcsShapeSpaceRef
-  \brief What an `Orl_shape_space` has built; `Orl_shape_space::restore()` makes the space again,
-      without the inputs.
+  \brief The data of a built `Orl_shape_space`, from which `Orl_shape_space::restore()` reconstructs
+      the space without the inputs.
 */
 struct Orl_space_data
 {
@@ -38,16 +38,16 @@ struct Orl_space_data
     std::vector<char> has;        ///< whether the tree has each branch
     std::vector<std::array<double, 3>> point, normal; ///< of the scan, for spaces of two trees
   };
-  //! a point of the family, for spaces of more trees
+  //! a point of the family, for spaces of more than two trees
   struct Point
   {
     std::uint32_t tree = 0, index = 0, edge = 0;
     std::array<double, 3> position = {0, 0, 0}, normal = {0, 0, 0};
   };
-  //! what a point of the family is in another scan
+  //! the point of another scan that corresponds to a point of the family
   struct Partner
   {
-    std::uint32_t point = 0, tree = 0, index = 0; ///< number in `points`, and place in the scan
+    std::uint32_t point = 0, tree = 0, index = 0; ///< index in `points`; tree, index in its scan
     std::array<double, 3> position = {0, 0, 0}, normal = {0, 0, 0};
   };
   //! weights of the metric
@@ -60,8 +60,8 @@ struct Orl_space_data
   int orientation = 0; ///< as in `Orl_orientation`
   std::array<double, 3> origin = {0, 0, 0};
   std::vector<Branch> branches;
-  //! edges whose frame is not carried on from the one before on their branch, but from an earlier
-  //! one: behind folds
+  //! edges after folds, each with the earlier edge of its branch from which its frame is
+  //! transported, instead of from the previous edge
   std::vector<std::array<std::size_t, 2>> references;
   std::vector<Tree> trees;
   Tree reference;

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Rotation, uniform scale and translation that remembers how many turns it took.
+// Similarity transformation (rotation, uniform scale, translation) that keeps full turns.
 
 #ifndef PCS_CORE_SIMILARITY_H
 #define PCS_CORE_SIMILARITY_H
@@ -38,7 +38,7 @@ class Similarity
 public:
   using Vec3 = Eigen::Vector3d;
 
-  /// One rotation about an axis through the origin: `axis * angle` [rad], of any angle.
+  /// One rotation about an axis through the origin: `axis * angle` [rad], for any angle.
   using Turn = Vec3;
   /// Up to four rotations need no heap memory.
   using Turns = boost::container::small_vector<Turn, 4>;

@@ -25,7 +25,7 @@ namespace pcs {
 //! sums over a part of a tree
 struct Branch_totals
 {
-  std::size_t number_of_branches = 0; ///< [count]; 0 in size classes, which divide branches
+  std::size_t number_of_branches = 0; ///< [count]; 0 in size classes, which may split branches
   double length = 0;                  ///< along the axes [L]
   double volume = 0;                  ///< of the frusta between the nodes [L^3]
 };
@@ -49,8 +49,8 @@ struct Scan_station
   \ingroup PkgPcsSkeletonRef
   \brief standard deviations of a skeleton among resampled copies of its scan.
 
-  See `number_of_resamples` of `Tree_skeletonization`. Copies of large scans are thinned, so that
-  the deviations are rather too large for them.
+  See `number_of_resamples` of `Tree_skeletonization`. Copies of large scans are thinned, so the
+  deviations tend to be overestimated for them.
 */
 struct Skeleton_spread
 {
@@ -125,7 +125,7 @@ struct Skeleton_report
   //! upper bounds of the radii of the classes in `by_size`; the last class has no upper bound
   std::vector<double> size_bounds;
   std::vector<Branch_totals> by_size; ///< thinnest class first
-  Skeleton_spread spread;             ///< how much these figures depend on chance
+  Skeleton_spread spread;             ///< standard deviations among resampled copies
 
   //! wall-clock time of each stage [s]
   struct Seconds
@@ -196,21 +196,21 @@ inline void warn_of_precision(const Skeleton_report& r, std::vector<std::string>
 /// Adds warnings about an implausible tree.
 inline void warn_of_shape(const Skeleton_report& r, std::vector<std::string>& sentences)
 {
-  // residual by noise: Gaussian noise 0.67, scans of trees 0.5 to 0.9, spheres, cubes and dust more
-  // than 2 [-]
+  // residual / noise: 0.67 for Gaussian noise, 0.5 to 0.9 for scans of trees, more than 2 for
+  // spheres, cubes and dust [-]
   constexpr double max_residual = 1.5;
-  // residual by spacing: smaller residuals are accepted for any noise [-]
+  // residual / spacing: smaller residuals are accepted for any noise [-]
   constexpr double exact = 0.1;
-  // residual by trunk diameter: out-of-round sections and bark alone cause residuals up to this [-]
+  // residual / trunk diameter: out-of-round sections and bark cause residuals up to this ratio [-]
   constexpr double oval = 0.02;
-  // trunk diameter by trunk length: trees 0.01 to 0.1, spheres more than 0.2 [-]
+  // trunk diameter / trunk length: 0.01 to 0.1 for trees, more than 0.2 for spheres [-]
   constexpr double max_trunk_ratio = 0.2;
-  constexpr double min_trunk_ratio = 0.002; // trunk diameter by height [-]
-  // volume by cube of the largest root distance: trees up to 0.003, a post of ten diameters 0.008,
-  // spheres interpreted as many thin branches at least 0.03 [-]
+  constexpr double min_trunk_ratio = 0.002; // trunk diameter / height [-]
+  // volume / cube of the largest root distance: up to 0.003 for trees, 0.008 for a post of ten
+  // diameters, at least 0.03 for spheres interpreted as many thin branches [-]
   constexpr double max_wood = 0.015;
-  // spacing by trunk diameter: above it, volumes are up to several times too large; real scans have
-  // at most 0.2 [-]
+  // spacing / trunk diameter: above this ratio, volumes may be several times too large; it is at
+  // most 0.2 for real scans [-]
   constexpr double max_spacing = 1.0 / 3;
   const auto& trunk = r.by_order.front();
   const double diameter = 2 * std::sqrt(trunk.volume / (pcs::internal::pi * trunk.length));
@@ -232,7 +232,7 @@ inline void warn_of_shape(const Skeleton_report& r, std::vector<std::string>& se
 /// Adds warnings about the foot and the stems.
 inline void warn_of_stems(const Skeleton_report& r, std::vector<std::string>& sentences)
 {
-  constexpr double max_elevation = 0.1; // root elevation by the height above the lowest points [-]
+  constexpr double max_elevation = 0.1; // root elevation / height above the lowest points [-]
   if (r.root_elevation > max_elevation * (r.root_elevation + r.height))
     sentences.push_back("the root is " + short_text(r.root_elevation) +
                         " above the lowest points: the foot of the tree may be missing from the "
@@ -247,10 +247,10 @@ inline void warn_of_stems(const Skeleton_report& r, std::vector<std::string>& se
   }
 }
 
-/// Adds a warning about figures that differ between resampled copies.
+/// Adds a warning about values that differ between resampled copies.
 inline void warn_of_spread(const Skeleton_report& r, std::vector<std::string>& sentences)
 {
-  // deviations relative to the figure: virtual scans have at most a third of these [-]
+  // relative deviations; those of virtual scans are at most a third of these limits [-]
   constexpr double max_height = 0.03, max_diameter = 0.1, max_trunk = 0.2, max_volume = 0.15;
   constexpr double max_root = 0.1; // of the breast height [-]
   const Skeleton_spread& s = r.spread;

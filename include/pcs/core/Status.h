@@ -10,13 +10,13 @@
 namespace pcs {
 
 //! \ingroup PkgPcsCoreRef
-//! how an algorithm ended; no status leaves a partial result
+//! how an algorithm ended; outputs are never partial
 enum class Status {
   converged,        //!< the result meets the tolerance
   iteration_limit,  //!< the result is valid; more iterations might improve it
   nothing_to_do,    //!< no handle, or no point connected to a handle; the output equals the input
-  cancelled,        //!< the callback returned `false`; the output is untouched
-  numerical_failure //!< a matrix could not be factorised; the output is untouched
+  cancelled,        //!< the callback returned `false`; the output is unchanged
+  numerical_failure //!< a matrix could not be factorised; the output is unchanged
 };
 
 inline const char* to_string(Status status)

@@ -80,8 +80,8 @@ private:
     return false;
   }
 
-  /// Adds the edge to node `v` of the branch with the first node `base`. `is_outside`: whether the
-  /// branch has left its parent.
+  /// Adds the edge that ends at node `v`; `base` is the first node of its branch. `is_outside`:
+  /// whether the branch has left its parent.
   void add_edge(std::size_t v, std::size_t base, bool& is_outside)
   {
     constexpr int number_of_pieces = 16; // of an edge that crosses the surface of the parent

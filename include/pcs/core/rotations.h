@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Rotation vectors, unit quaternions and the best rotation between two bundles of vectors.
+// Rotation vectors, unit quaternions and the optimal rotation between two sets of vectors.
 
 #ifndef PCS_CORE_ROTATIONS_H
 #define PCS_CORE_ROTATIONS_H
@@ -44,11 +44,12 @@ inline Eigen::Vector3d rotation_log(const Quaternion& q)
 }
 
 /*!
-  Four times the modified Rodrigues parameters of the rotation \p q (of any length but zero), of the
-  smaller of its two angles: `4 tan(angle / 4)` times its axis, the stereographic projection of the
-  unit quaternion. Differs from the rotation vector by about `angle^3 / 48`, has a length of at most
-  4 instead of pi, and needs a root and a division instead of an arc tangent (M. D. Shuster, "A
-  survey of attitude representations", J. Astronautical Sciences 41, 1993).
+  Returns four times the modified Rodrigues parameters of the rotation \p q, which may have any
+  length but zero: `4 tan(angle / 4)` times its axis, with the smaller of its two angles. This is
+  the stereographic projection of the unit quaternion (M. D. Shuster, "A survey of attitude
+  representations", J. Astronautical Sciences 41, 1993). It differs from the rotation vector by
+  about `angle^3 / 48`, has a length of at most 4 instead of pi, and requires a root and a division
+  instead of an arc tangent.
 */
 inline Eigen::Vector3d rodrigues_from_rotation(const Quaternion& q)
 {
@@ -95,8 +96,8 @@ improve_rotation(const Eigen::Matrix3d& covariance, Quaternion q, int number_of_
 /*!
   One step of Newton's method towards the maximiser of `trace(R^T covariance)`, as a rotation
   vector. \p m is `covariance R^T` with the current `R`; `damping` is added to the Hessian, relative
-  to the trace. The trace at `exp(u) R` is `trace(m) + torque u - u^T hessian u / 2 + ...`; if it is
-  not concave, the step equals that of `improve_rotation()`.
+  to the trace. The trace at `exp(u) R` is `trace(m) + torque u - u^T hessian u / 2 + ...`. If it is
+  not concave or the step is 1 rad or more, the step of `improve_rotation()` is returned.
 */
 inline Eigen::Vector3d newton_turn(const Eigen::Matrix3d& m, double damping)
 {

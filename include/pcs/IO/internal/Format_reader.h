@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What every format must do to be read in chunks.
+// Interface of the readers of all formats, which read in chunks.
 
 #ifndef PCS_IO_INTERNAL_FORMAT_READER_H
 #define PCS_IO_INTERNAL_FORMAT_READER_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What every format must do to be written in chunks, and how rows become text.
+// Interface of the writers of all formats, which write in chunks; conversion of rows to text.
 
 #ifndef PCS_IO_INTERNAL_FORMAT_WRITER_H
 #define PCS_IO_INTERNAL_FORMAT_WRITER_H

@@ -27,10 +27,10 @@ namespace IO {
 namespace internal {
 
 /*
-  Writes to a temporary file in the directory of the target, which `commit()` renames. If the system
-  supports it, that file has no name before, so that no file remains when the program is killed. An
-  existing target that is not a regular file (a device, a pipe) is written directly, because
-  renaming would replace the device itself.
+  Writes to a temporary file in the directory of the target, which `commit()` renames. On systems
+  that support it, the temporary file has no name until then, so that no file remains when the
+  program is killed. An existing target that is not a regular file (a device, a pipe) is written
+  directly, because renaming would replace the device itself.
 */
 class Output_file
 {

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Packed rows of values, the step between a file and the columns of a Point_table.
+// Packed rows of values, the intermediate form between a file and the columns of a Point_table.
 
 #ifndef PCS_IO_INTERNAL_ROW_BLOCK_H
 #define PCS_IO_INTERNAL_ROW_BLOCK_H

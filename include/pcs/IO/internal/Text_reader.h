@@ -22,11 +22,11 @@ namespace internal {
 
 /*
   The first line that is neither blank nor a comment determines the separator and the number of
-  columns. It may be a header line with names, which include x, y and z, and of which the first may
-  be empty, as in tables of pandas. The comment before it may be the header line instead, as in
-  files of CloudCompare. Without header line, the first three columns are x, y and z and the others
-  are named column_4, column_5, ..., because it is unknown whether six columns contain normals or
-  colours. A single integer on the first line is the number of points of a PTS file.
+  columns. This line or the comment before it (as in files of CloudCompare) may be a header with the
+  names of the columns. The names must include x, y and z; the first name may be empty, as in tables
+  of pandas. Without a header, the first three columns are x, y and z, and the others are named
+  column_4, column_5, ..., because six columns may contain normals or colours. A single integer on
+  the first line is the number of points of a PTS file.
 */
 class Text_reader : public Format_reader
 {

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Nodes of a tree as rows of a file that name their parents, linked and checked.
+// Conversion between the rows of a file, each a node with the id of its parent, and a tree.
 
 #ifndef PCS_IO_INTERNAL_TREE_ROWS_H
 #define PCS_IO_INTERNAL_TREE_ROWS_H
@@ -162,7 +162,7 @@ std::vector<std::size_t> writing_order(const Graph& graph, std::size_t root, con
   return order;
 }
 
-//! formats `value`; errors name the node
+//! converts `value` to double; throws an error that names the node unless it is finite
 template <class FT>
 double finite_value(const FT& value, const char* what, std::size_t node, const char* caller)
 {

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Numbers to and from text without a locale, words of a line, numbers to and from bytes.
+// Locale-independent conversion of numbers to and from text and bytes; words of a line.
 
 #ifndef PCS_IO_INTERNAL_NUMBERS_H
 #define PCS_IO_INTERNAL_NUMBERS_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What a point file stores per point, and what else is needed to write it back.
+// Properties of the points of a file, and the metadata required to write the file again.
 
 #ifndef PCS_IO_POINTS_POINT_SCHEMA_H
 #define PCS_IO_POINTS_POINT_SCHEMA_H

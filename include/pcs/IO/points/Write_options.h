@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// How a point file is written.
+// Options for writing a point file.
 
 #ifndef PCS_IO_POINTS_WRITE_OPTIONS_H
 #define PCS_IO_POINTS_WRITE_OPTIONS_H
@@ -39,7 +39,8 @@ struct Write_options
   //! 7 digits, too few for millimetres in most map projections.
   bool keep_coordinate_types = false;
 
-  //! checked by `Point_writer::commit()`; permits headers without padding, and pipes
+  //! the total number, checked by `Point_writer::commit()`; permits pipes, and headers without
+  //! padding
   std::optional<std::uint64_t> number_of_points;
 
   //! text: one of blank, tab, comma, semicolon; by default a comma in csv files, otherwise a blank

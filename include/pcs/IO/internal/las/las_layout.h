@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Where LAS keeps what: positions in the header, the dimensions of a point record, extra bytes.
+// Layout of LAS files: positions in the header, dimensions of a point record, extra bytes.
 
 #ifndef PCS_IO_INTERNAL_LAS_LAS_LAYOUT_H
 #define PCS_IO_INTERNAL_LAS_LAS_LAYOUT_H
@@ -63,7 +63,7 @@ inline bool has_waveform(unsigned format)
   return format == 4 || format == 5 || format == 9 || format == 10;
 }
 
-//! adds values that are packed into one byte, as name and number of bits, lowest bits first
+//! adds values that share one byte, given by name and number of bits, lowest bits first
 inline void add_bits(Row_layout& layout,
                      std::initializer_list<std::pair<const char*, unsigned>> bits)
 {

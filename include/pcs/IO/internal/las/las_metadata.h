@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Header, extra bytes descriptors and the integer grid of a LAS file about to be written.
+// Header, extra bytes descriptors and integer grid of a LAS file to be written.
 
 #ifndef PCS_IO_INTERNAL_LAS_LAS_METADATA_H
 #define PCS_IO_INTERNAL_LAS_LAS_METADATA_H
