@@ -295,7 +295,7 @@ public:
   }
 
   /*!
-    \brief represents a tree that was not added by a tree of the space.
+    \brief represents a further tree, which was not added, in the space.
 
     The tree is matched to the reference tree of the space. Its branches without correspondence are
     left out.

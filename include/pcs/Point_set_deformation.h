@@ -291,10 +291,10 @@ public:
            `Solver_start::warm`, for the frames of a drag: one to three iterations that continue
            from the last result suffice.
 
-    In tests, the energy after a warm start was at most a tenth above that after a cold start, and a
-    quarter of it where cold starts ended early. The start is always cold after a large step, after
-    a change of handles or a restored snapshot, and for more than 20,000 samples with interior
-    springs.
+    In tests, the energy after a warm start was at most a tenth above that after a cold start. If
+    the cold start had ended early, it was only a quarter of that energy. The start is always cold
+    after a large step, after a change of handles or a restored snapshot, and for more than 20,000
+    samples with interior springs.
   */
   Deformation_report deform(Solver_start start = Solver_start::cold)
   {

@@ -70,7 +70,7 @@ enum class Orl_alignment {
 //! \ingroup PkgPcsShapeSpaceRef
 //! direction of a branch in the tree that does not have it
 enum class Virtual_direction {
-  of_partner,  ///< as in the other tree, so that the direction is constant
+  of_partner,  ///< as in the other tree, so that the branch grows in its own direction
   along_parent ///< along the parent, so that the branch first grows upwards and
                ///< then bends, as published (figure 4.11)
 };

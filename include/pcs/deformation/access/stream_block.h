@@ -57,8 +57,8 @@ constexpr bool is_memory_map()
           sizeof(std::decay_t<ElementReference>) < sizeof(Value));
 }
 
-/// Where `value(0)` lies, if `value(l)` lies `l * stride` doubles behind it for all points of a
-/// block; otherwise null.
+/// Returns the address of `value(0)` if the addresses of `value(l)` are `l * stride` doubles after
+/// it for all points of a block; otherwise null.
 template <class Value>
 PCS_ALWAYS_INLINE double* find_run(const Value& value, std::size_t stride)
 {
@@ -78,7 +78,7 @@ PCS_ALWAYS_INLINE bool is_streamable(const double* to)
   return to && reinterpret_cast<std::uintptr_t>(to) % pcs::internal::stream_alignment == 0;
 }
 
-/// Eight vectors.
+/// Streams eight vectors to `to`.
 PCS_ALWAYS_INLINE void stream_block(double* to, const Lane_vectors& v)
 {
   pcs::internal::unroll<lanes / 2>([&](auto pair) PCS_LAMBDA_INLINE {
@@ -94,7 +94,7 @@ PCS_ALWAYS_INLINE void stream_block(double* to, const Lane_vectors& v)
   });
 }
 
-/// Eight pairs of vectors.
+/// Streams eight pairs of vectors to `to`.
 PCS_ALWAYS_INLINE void stream_block(double* to, const Lane_vectors& u, const Lane_vectors& v)
 {
   pcs::internal::unroll<lanes / 2>([&](auto pair) PCS_LAMBDA_INLINE {

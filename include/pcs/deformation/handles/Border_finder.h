@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Edges that leave the handles, found without a pass over the whole graph.
+// Search for the edges that leave the handles, without reading the whole graph.
 
 #ifndef PCS_DEFORMATION_HANDLES_BORDER_FINDER_H
 #define PCS_DEFORMATION_HANDLES_BORDER_FINDER_H
@@ -16,28 +16,28 @@
 namespace pcs {
 namespace deformation {
 
-/// An edge between a site of a handle and one of none.
+/// An edge between a site of a handle and a site outside all handles.
 struct Border_edge
 {
   std::uint32_t inside, outside;
 };
 
 /*!
-  Remembers which blocks of consecutive sites have edges between them. Where sites are numbered in
-  spatial order, most blocks lie, with all blocks around them, either in handles or outside, and
-  their edges need not be read.
+  Stores which blocks of consecutive sites are connected by edges. If sites are numbered in spatial
+  order, most blocks and all blocks connected to them lie entirely inside or entirely outside the
+  handles. The edges of these blocks need not be read.
 */
 class Border_finder
 {
 public:
   Border_finder() = default;
 
-  /// O(n + m), and a few bytes per block of 256 sites.
+  /// Takes O(n + m) time, and a few bytes per block of 256 sites.
   explicit Border_finder(const neighborhood::Proximity_graph& graph)
   {
     const std::size_t n = graph.size();
     std::vector<std::uint32_t> last_seen((n + block_size - 1) / block_size,
-                                         0); // by which block, plus one
+                                         0); // by which block each block was last seen, plus one
     for (std::size_t begin = 0; begin < n; begin += block_size) {
       const auto block = static_cast<std::uint32_t>(begin / block_size);
       last_seen[block] = block + 1;
@@ -50,8 +50,9 @@ public:
     }
   }
 
-  /// The edges of `graph`, the one given before, from sites where `is_inside` to sites where it is
-  /// not; in the order of the graph's rows. O(n) calls of `is_inside`, and the blocks at borders.
+  /// Returns the edges from sites with `is_inside` to sites without, in the order of the rows of
+  /// `graph`, which must be that of the constructor. O(n) calls of `is_inside`, and O(edges) in
+  /// blocks at borders.
   template <class ConcurrencyTag, class IsInside>
   std::vector<Border_edge> find(const neighborhood::Proximity_graph& graph,
                                 const IsInside& is_inside) const
@@ -88,7 +89,7 @@ public:
 
 private:
   static constexpr std::size_t block_size = 256;
-  std::vector<std::uint32_t> m_first{0}, m_neighbor; ///< of each block, the others it has edges to
+  std::vector<std::uint32_t> m_first{0}, m_neighbor; ///< other blocks to which each block has edges
 };
 
 } // namespace deformation

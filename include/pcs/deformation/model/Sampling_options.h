@@ -15,10 +15,10 @@ namespace pcs {
 //! default number of samples on which the non-linear problem is solved [count]
 constexpr std::size_t default_number_of_samples = 2000;
 //! \ingroup PkgPcsDeformationRef
-//! nearest neighbours that a point is linked to; 5 to 6 in \cite aiteanu2022 [count]
+//! default number of nearest neighbours linked to a point; 5 to 6 in \cite aiteanu2022 [count]
 constexpr std::size_t default_number_of_neighbors = 6;
 //! \ingroup PkgPcsDeformationRef
-//! nearest samples that move a point [count]
+//! default number of nearest samples whose maps are blended at a point [count]
 constexpr std::size_t default_number_of_sample_neighbors = 6;
 
 namespace deformation {

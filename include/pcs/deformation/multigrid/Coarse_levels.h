@@ -22,7 +22,7 @@ namespace deformation {
 
 /*!
   Networks above a certain size have no interior links. If coarser networks have links, the finest
-  of these makes passes until it converges; the levels between it and the session's network only
+  of these is solved to convergence; the levels between it and the session's network only
   interpolate its solution.
 */
 template <class ConcurrencyTag>
@@ -33,7 +33,7 @@ public:
 
   /// \param finest its nodes in spatial order
   /// \param component the component of each of its nodes
-  /// \param has_links whether closed surfaces get springs through their inside
+  /// \param has_links whether closed surfaces have springs through their interior
   Coarse_levels(const Elastic_network& finest, std::vector<std::uint32_t> component, bool has_links)
     : m_size_of_passes(finest.size())
   {
@@ -52,8 +52,8 @@ public:
     }
   }
 
-  /// Takes over the constraints of the session's network and factorises. Returns `false` if a
-  /// matrix is singular.
+  /// Transfers the constraints of the session's network to all levels and factorises. Returns
+  /// `false` if a matrix is singular.
   bool constrain(const Elastic_network& finest, const Node_constraints& of_finest, double stiffness)
   {
     bool is_regular = true;
@@ -69,7 +69,8 @@ public:
     return is_regular;
   }
 
-  /// Runs the passes of all levels, fewer if `progress` cancels.
+  /// Solves from the coarsest to the finest level, unless `progress` cancels. Returns the guess for
+  /// the session's network.
   const Deviation_guess& solve(const std::vector<Similarity>& transforms,
                                const Elastic_options& options,
                                pcs::internal::Progress& progress)
@@ -91,10 +92,10 @@ public:
     return guess;
   }
 
-  /// Whether they have links that the session's network lacks.
+  /// Whether a coarse level has links that the session's network lacks.
   bool has_link_offsets() const { return m_has_offsets; }
 
-  /// Takes over the new rest shape of the session's network.
+  /// Transfers the new rest shape of the session's network to all levels.
   void accept(const Elastic_network& finest)
   {
     const Elastic_network* finer = &finest;
@@ -108,9 +109,9 @@ private:
   std::deque<Coarse_level<ConcurrencyTag>>
       m_level; ///< the finest first; a deque does not move them
   Deviation_guess m_guess;
-  std::size_t m_first = 0;          ///< finer levels only interpolate
-  bool m_has_offsets = false;       ///< whether the first has links that finer networks lack
-  std::size_t m_size_of_passes = 0; ///< of the finest network that makes passes until it converges
+  std::size_t m_first = 0;          ///< finest level that is solved; finer ones only interpolate
+  bool m_has_offsets = false;       ///< whether this level has links that finer networks lack
+  std::size_t m_size_of_passes = 0; ///< size of the finest network that is solved to convergence
 };
 
 } // namespace deformation

@@ -37,7 +37,7 @@ public:
     m_has_last = false;
   }
 
-  /// Replaces `g`, which is `g(x)`, by the proposal; only remembers both if not `is_wanted`.
+  /// Replaces `g`, which is `g(x)`, by the proposal if `is_wanted`; in any case, stores both.
   void mix(const std::vector<Vec3>& x, std::vector<Vec3>& g, bool is_wanted = true)
   {
     const std::size_t n = x.size(), slot = m_count % depth;
@@ -70,7 +70,7 @@ public:
   }
 
 private:
-  /// Dot products of the differences of residuals with the newest one and the present residual.
+  /// Dot products of the differences of residuals with the newest difference and the last residual.
   struct Products
   {
     std::array<double, depth> with_new{}, with_residual{};
@@ -128,7 +128,7 @@ private:
 
   std::vector<Vec3> m_last_residual, m_last_image;
   std::vector<Vec3> m_difference_of_residuals[depth], m_difference_of_images[depth];
-  std::vector<Products> m_products; ///< of blocks of numbers
+  std::vector<Products> m_products; ///< partial sums by block
   std::array<std::array<double, depth>, depth> m_normal{};
   std::size_t m_count = 0;
   bool m_has_last = false;

@@ -25,7 +25,7 @@ struct Reference_tree
 {
   Rooted_tree tree;
   Branch_paths paths;
-  std::vector<std::vector<double>> share; ///< fraction of the length at each own node, by branch
+  std::vector<std::vector<double>> share; ///< by branch: parameter in [0, 1] of each layout node
 };
 
 namespace internal {
@@ -55,7 +55,7 @@ public:
       const Branch_path& path = m_result.paths.paths[b];
       m_result.paths.paths_of[path.nodes[path.is_trunk ? 0 : 1]] = {b};
       for (Branch_path::Child& c : m_result.paths.paths[b].children)
-        c.start = m_result.paths.paths[c.start].nodes[1]; // the number of the branch so far
+        c.start = m_result.paths.paths[c.start].nodes[1]; // was the index of the branch
     }
     Vec3 low = tree.points[0], high = low;
     for (const Vec3& p : tree.points) {
@@ -91,7 +91,7 @@ private:
     path.nodes.push_back(path.is_trunk ? add_node(b, 0, none) : m_base[b]);
     path.arc.push_back(0);
     const std::size_t n = m_layout.branches[b].number_of_edges;
-    // own nodes, and the positions where children begin
+    // nodes of the branch in the layout, and positions where children begin
     std::vector<std::pair<double, std::size_t>> stops; // position, child
     for (std::size_t k = 0; k <= n; ++k)
       stops.emplace_back(static_cast<double>(k), none);

@@ -124,14 +124,14 @@ inline Tree_descriptors measure(const Orl_layout& layout,
   return result;
 }
 
-/// Relative tolerance of descriptors, as trees may all be equally high. [-]
+/// Relative tolerance of descriptors, required if all trees have the same height. [-]
 constexpr double figure_tolerance = 1e-4;
 /// Tolerance of the lean, as a fraction of the crown width. [-]
 constexpr double upright_tolerance = 0.05;
 
-/// Returns the sum of the relative distances of descriptors from the ranges of others; with
-/// `has_orders` also by order, for orders that all others have. A tree may lean or hang down less
-/// than all others. [-]
+/// Returns the sum of the relative distances of the descriptors from their ranges among `others`
+/// [-]. Descriptors by order are included if `has_orders`, for orders that all others have. The
+/// lean, and the depth below the root, may be smaller than those of all others.
 inline double range_violation(const Tree_descriptors& x,
                               const std::vector<Tree_descriptors>& others,
                               bool has_orders = true)

@@ -15,13 +15,13 @@
 namespace pcs {
 namespace shape_space {
 
-/// A child may also continue a branch if it shortens it by at most this fraction of its length:
-/// which twig ends the branch is a matter of chance, but decides which twigs become its children.
-/// [-]
+/// A child may also continue a branch if this shortens the branch by at most this fraction of its
+/// length [-]. The choice of the twig at the end of a branch is arbitrary, but determines which
+/// other twigs are children of the branch.
 constexpr double tip_share = 0.05;
 
-/// Factor of the number of candidates for the trunk, on which the matching of all branches depends.
-/// [-]
+/// Factor by which the number of candidates is larger for the trunk, since the matching of all
+/// branches depends on it. [-]
 constexpr std::size_t trunk_factor = 6;
 
 /// Branches of a higher level than this have a single candidate. Each candidate of a branch begins
@@ -29,8 +29,8 @@ constexpr std::size_t trunk_factor = 6;
 /// levels. [count]
 constexpr std::size_t levels_of_choice = 24;
 
-/// A path of a branch. It begins with an edge, and the node at the end of that edge identifies its
-/// beginning; several paths may have the same one.
+/// A path of a branch. The node at the end of its first edge identifies its beginning; several
+/// paths may have the same beginning.
 struct Branch_path
 {
   std::vector<std::size_t> nodes; ///< from the node on the parent branch to the tip
@@ -47,13 +47,13 @@ struct Branch_path
   std::size_t tip() const { return nodes.back(); }
 };
 
-/// All paths that a matching may choose from. `paths_of[v]`: those that begin with the edge to `v`,
-/// longest first; for the root, the trunks.
+/// All candidate paths of a matching. `paths_of[v]`: those that begin with the edge to `v`, longest
+/// first; for the root, the trunks.
 struct Branch_paths
 {
   std::vector<Branch_path> paths;
   std::vector<std::vector<std::size_t>> paths_of;
-  std::vector<std::size_t> other_trunks; ///< for a second search, including much shorter ones
+  std::vector<std::size_t> other_trunks; ///< for a second search, including much shorter trunks
 };
 
 namespace internal {
@@ -129,9 +129,10 @@ inline std::vector<std::vector<std::size_t>> candidate_paths(const Rooted_tree& 
 
 } // namespace internal
 
-/// Finds the candidate paths of all branches. `maximal_number` 1 gives the decomposition by longest
-/// paths alone. `trunk_ratio` is the fork ratio of the trunk, if it is less; `other_ratio`, if it
-/// is less than both, that of other trunks. [-]
+/// Finds at most `maximal_number` candidate paths per branch (`trunk_factor` times as many for the
+/// trunk); 1 gives the longest paths only. The fork ratio of the trunk is `fork_ratio` or
+/// `trunk_ratio`, whichever is smaller [-]. If `other_ratio` is smaller than both [-],
+/// `other_trunks` are the trunks with this fork ratio.
 inline Branch_paths find_branch_paths(const Rooted_tree& tree,
                                       double fork_ratio,
                                       std::size_t maximal_number,

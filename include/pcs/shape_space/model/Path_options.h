@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Options of trees on geodesics.
+// Options for interpolation and extrapolation along geodesics.
 
 #ifndef PCS_SHAPE_SPACE_MODEL_PATH_OPTIONS_H
 #define PCS_SHAPE_SPACE_MODEL_PATH_OPTIONS_H
@@ -12,7 +12,7 @@ namespace shape_space {
 
 struct Path_options
 {
-  double max_extrapolation_angle = 0; ///< rotation of an edge beyond the ends of the path [rad]
+  double max_extrapolation_angle = 0; ///< largest rotation of an edge beyond the ends [rad]
   bool do_limit_radii = false;
   Branch_emergence emergence = Branch_emergence::simultaneous;
 };

@@ -18,8 +18,8 @@ namespace pcs {
 namespace shape_space {
 namespace internal {
 
-/// Returns the slopes of F. Fritsch and J. Butland (1984): cubic pieces are monotone where the
-/// values are, and stay between them.
+/// Returns the slopes of F. Fritsch and J. Butland (1984), for which every cubic piece is monotone
+/// and stays between its two values.
 inline std::vector<double> monotone_slopes(const std::vector<double>& time,
                                            const std::vector<double>& value)
 {
@@ -85,17 +85,17 @@ inline void make_rising(std::vector<double>& values)
   A path through trees at given times, with continuous speed. Lengths, radii and attachments are
   cubic without overshoot: values that increase from tree to tree increase everywhere, and none
   becomes negative. Orientations are cubic Bezier curves on the rotations (K. Shoemake 1985), by
-  repeated slerp. A branch has the orientation of the nearest time at which it exists, so that it
-  grows in its own direction.
+  repeated slerp. A tree that lacks a branch takes the orientation and attachment of the branch from
+  the nearest time at which it exists, so that the branch grows in its own direction.
 */
 class Growth_spline
 {
 public:
   Growth_spline() = default;
 
-  /// Increasing times, one tree for each, at least 2. `has[i][b]`: whether tree `i` has branch `b`.
-  /// If `is_monotone`, lengths and radii are changed as little as possible so that none decreases.
-  /// `scans`: names of the trees, for the caller.
+  /// Times must increase, with one tree for each, and at least 2. `has[i][b]`: whether tree `i` has
+  /// branch `b`. If `is_monotone`, lengths and radii are changed as little as possible so that none
+  /// decreases. `scans`: handles of the trees, for the caller.
   Growth_spline(const Orl_layout& layout,
                 std::vector<double> times,
                 std::vector<Orl_coordinates> trees,
@@ -135,8 +135,8 @@ public:
   const std::vector<double>& times() const { return m_times; }
   const std::vector<std::size_t>& scans() const { return m_scans; }
 
-  /// Returns the interval of a time by its first tree, and the fraction of the interval before the
-  /// time.
+  /// Returns the index of the tree at the beginning of the interval that contains `time`, and the
+  /// parameter in [0, 1] within this interval.
   std::pair<std::size_t, double> place(double time) const
   {
     const double t = std::min(m_times.back(), std::max(m_times.front(), time));
@@ -146,8 +146,7 @@ public:
     return {k, (t - m_times[k]) / (m_times[k + 1] - m_times[k])};
   }
 
-  /// Computes the tree at a time; before the first and after the last time those of the first and
-  /// last.
+  /// Computes the tree at a time, which is clamped to the interval of all times.
   void at(double time, Orl_coordinates& x) const
   {
     const std::pair<std::size_t, double> where = place(time);
@@ -235,8 +234,8 @@ private:
           rotation_log(m_trees[k].orientation[e].conjugate() * m_trees[k + 1].orientation[e]) /
           (m_times[k + 1] - m_times[k]);
     for (std::size_t k = 0; k < n; ++k) {
-      // rotations in the frame of the edge itself; that between k and k + 1 is the same in both
-      // frames
+      // in the frame of the edge itself; the rotation vector between trees k and k + 1 has the same
+      // coordinates in the frames of both
       Vec3 speed = Vec3::Zero();
       if (k == 0)
         speed = rate[0];

@@ -21,9 +21,9 @@ namespace shape_space {
 /*!
   Groups coincident points. Positions are in the order of their first points.
 
-  Coincident points have the same neighbours and the same costs. Individually, they would make all
-  pivots of a transport degenerate, and the nearest neighbours would be an arbitrary few of those at
-  one position.
+  Coincident points have the same neighbours and the same costs. Without grouping, all pivots of a
+  transport would be degenerate, and nearest-neighbour queries would return an arbitrary subset of
+  the points at one position.
 */
 class Distinct_positions
 {
@@ -77,7 +77,7 @@ private:
 namespace internal {
 
 /// Distributes the points at a position among its corresponding positions, in proportion to their
-/// numbers of points: at least one for each.
+/// numbers of points, but at least one to each.
 class Proportional_shares
 {
 public:
@@ -91,8 +91,8 @@ public:
     m_wanted[position] += number_of_points;
   }
 
-  /// Returns the points for the next corresponding position: the first and the one after the last.
-  /// Called once for each, after all were added.
+  /// Returns the range of points for the next corresponding position: the first index, and the one
+  /// after the last. Must be called once per `add_partner()`, after all of these calls.
   std::array<std::size_t, 2> next(std::size_t position, std::size_t number_of_points)
   {
     const auto bound = [&] {
@@ -110,8 +110,8 @@ private:
 
 } // namespace internal
 
-/// Converts pairs of positions to pairs of points. All points of both are paired; those at one
-/// position are distributed among the corresponding points.
+/// Converts pairs of positions to pairs of points. All points of both positions are paired; points
+/// at one position are distributed among the corresponding positions.
 inline std::vector<std::pair<std::uint32_t, std::uint32_t>>
 pairs_of_points(const Distinct_positions& one,
                 const Distinct_positions& two,

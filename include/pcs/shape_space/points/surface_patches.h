@@ -17,7 +17,7 @@
 namespace pcs {
 namespace shape_space {
 
-/// Makes tubes of the edges of a tree. `has(b)`: whether it has branch `b`.
+/// Converts the edges of a tree to tubes. `has(b)`: whether the tree has branch `b`.
 template <class Has>
 std::vector<Tube> make_tubes(const Orl_layout& layout,
                              const Orl_geometry& geometry,
@@ -54,8 +54,8 @@ inline std::vector<Tube> make_tubes(const Orl_layout& layout,
       edge_of_tube);
 }
 
-/// Marks the edges whose radius is known at both ends in each tree that has them: there, detail is
-/// stored in units of the radius. `has(t, b)`: whether tree `t` has branch `b`.
+/// Marks the edges whose radius is known at both ends in each tree that has them. For these edges,
+/// detail is stored in units of the radius. `has(t, b)`: whether tree `t` has branch `b`.
 template <class Geometries, class Has>
 std::vector<char>
 edges_with_radius(const Orl_layout& layout, const Geometries& geometry, const Has& has)

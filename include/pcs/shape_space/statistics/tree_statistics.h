@@ -25,7 +25,7 @@ template <class ConcurrencyTag>
 Orl_coordinates
 mean_of_family(const Tree_family& family, const std::vector<double>& weights, Tree_mean kind);
 
-/// Modes about the Frechet mean.
+/// Computes the modes of variation about the Frechet mean.
 template <class ConcurrencyTag>
 Modes_of_variation
 modes_of_family(const Tree_family& family, std::size_t most, Mode_inner_product inner_product);

@@ -28,8 +28,8 @@ struct Planar_patch_options
 };
 
 /*!
-  Counts the open points in planar patches: connected groups that are flat and wide. Groups
-  connected to thick wood do not count, since its surface is also flat. O(points).
+  Counts the points of `is_open` in planar patches: connected components that are flat and wide.
+  Components connected to thick wood are ignored, since its surface is also flat. O(points).
 */
 inline std::size_t count_patch_points(const Scan& scan,
                                       const std::vector<std::uint8_t>& is_open,

@@ -16,13 +16,13 @@
 namespace pcs {
 namespace skeleton {
 
-/// Options for the widening of radii by the beam width.
+/// Options for the correction of radii for the beam width.
 struct Beam_divergence_options
 {
   double edge_share =
-      0.5; ///< fraction of beams that hit only with their border and still yield a point [-]
+      0.5; ///< fraction of the beams with the centre outside the branch that yield a point [-]
   double shift =
-      1.0 / 6; ///< mean distance of such points outside, weighted as in the fit, in beam widths [-]
+      1.0 / 6; ///< mean distance of these points from the surface in the fit, in beam widths [-]
   double least = 0.25; ///< least corrected radius, as a fraction of the fitted one [-]
 };
 

@@ -101,8 +101,8 @@ private:
     return nodes;
   }
 
-  /// Replaces the radii of branch nodes inside the parent by that of the first node outside: points
-  /// of the parent do not determine them.
+  /// Replaces the radii of branch nodes inside the parent by that of the first node outside, since
+  /// the points there belong to the parent.
   void leave_parents(Branch_tree& tree) const
   {
     for (const Branch& branch : tree.branches) {
@@ -305,7 +305,7 @@ private:
     return way;
   }
 
-  /// Returns the largest radius among the next measured sections farther out, or 0.
+  /// Returns the largest radius among the next measured cross-sections towards the tips, or 0.
   std::vector<double> circles_farther_out() const
   {
     std::vector<double> radius(m_nodes.size(), 0);
@@ -318,10 +318,10 @@ private:
   }
 
   /*!
-  Computes the radii at the nodes from those of the edges. Where there is neither a detected branch
-  nor a circle, the radius decreases with the length to the tip from that of the last section below,
-  but not below a section farther out. A few points, perhaps of other branches, change it by at most
-  a factor of `slack`.
+  Computes the radii at the nodes from those of the edges. If there is neither a detected branch nor
+  a circle, the last measured radius towards the root is reduced in proportion to the remaining
+  length to the tip, but not below the next measured radius towards the tip. The few points there,
+  which may belong to other branches, change it by at most a factor of `slack`.
   */
   void fill_gaps(std::vector<Branch_node>& nodes) const
   {
@@ -375,7 +375,7 @@ private:
 } // namespace internal
 
 /// Computes branches and radii along a given skeleton without moving its nodes. `found` is the
-/// skeleton detected from the same points, or empty. O(n log n) for edges about as long as thick.
+/// skeleton detected from the same points, or empty. O(n log n) if edges are about as long as wide.
 inline Branch_tree measure_given(const Scan& scan,
                                  const std::vector<std::uint8_t>& is_used,
                                  const Given_skeleton& given,

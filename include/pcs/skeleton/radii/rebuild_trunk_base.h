@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Trunk base with buttresses and root flare: sections from their outlines.
+// Trunk base with buttresses and root flare: cross-sections from their outlines.
 
 #ifndef PCS_SKELETON_RADII_REBUILD_TRUNK_BASE_H
 #define PCS_SKELETON_RADII_REBUILD_TRUNK_BASE_H
@@ -25,7 +25,7 @@ namespace skeleton {
 struct Trunk_base_options
 {
   double sound = 8;         ///< trunk length that defines the direction below it, in radii [-] ...
-  double proven = 0.8;      ///< ... with this least fraction of its length proven by points [-]
+  double proven = 0.8;      ///< ... and least fraction of it that points support [-]
   double shortest = 2;      ///< height below which a foot remains unchanged, in radii [-]
   double highest = 0.25;    ///< largest height of a foot, as a fraction of the tree height [-]
   double steep = 0.7;       ///< least rise per length of the trunk above [-]
@@ -82,8 +82,8 @@ private:
   std::array<std::vector<double>, number_of_sectors> m_distances;
 };
 
-/// Returns the first node of the trunk above which points prove the sections, or the number of
-/// nodes if there is none.
+/// Returns the first node of the trunk above which points support the cross-sections, or the number
+/// of nodes if there is none.
 inline std::size_t first_sound_node(const Branch_tree& tree,
                                     const Section_support& support,
                                     double density,
@@ -111,10 +111,10 @@ inline std::size_t first_sound_node(const Branch_tree& tree,
 } // namespace internal
 
 /*!
-  Rebuilds the trunk below the lowest part that points prove to be round, since fits below it follow
-  single buttresses. The axis continues straight downwards, and the radii are those of circles with
-  the area of the outline around it. z points upwards. Returns the number of moved nodes. O(points +
-  nodes).
+  Rebuilds the trunk below the lowest part in which points support round cross-sections, since fits
+  below it follow single buttresses. The axis is extended straight downwards. The radii are those of
+  circles with the area of the outline around the axis. z points upwards. Returns the number of
+  moved nodes. O(points + nodes).
 */
 inline std::size_t rebuild_trunk_base(const Scan& scan,
                                       const std::vector<std::uint8_t>& is_used,

@@ -20,8 +20,8 @@
 namespace pcs {
 namespace skeleton {
 
-/// Upper bounds of the radius in the classes of the report, in breast heights: 5, 10, 20 and 50 mm
-/// in metres.
+/// Upper bounds of the radius in the size classes of the report, in breast heights: 5, 10, 20 and
+/// 50 mm for a breast height of 1.3 m [-].
 constexpr double size_bounds_by_breast_height[] = {0.005 / 1.3, 0.01 / 1.3, 0.02 / 1.3, 0.05 / 1.3};
 
 /// Half the length of the section from which the diameter at breast height is estimated, in breast
@@ -38,7 +38,7 @@ inline double diameter_of_section(const Branch_tree& tree, Index v, double share
   const std::vector<Index>& nodes = tree.branches[tree.nodes[v].branch].nodes;
   const std::size_t place =
       static_cast<std::size_t>(std::find(nodes.begin(), nodes.end(), v) - nodes.begin());
-  // integrals over the section of 1, s, s^2, r and s r, where s is the signed length from there
+  // integrals of 1, s, s^2, r and s r, where s is the signed arc length from this position
   double n = 0, s1 = 0, s2 = 0, r1 = 0, sr = 0;
   double least = std::numeric_limits<double>::infinity(), most = 0;
   const auto length_before = [&](std::size_t k) {

@@ -167,7 +167,7 @@ private:
     }
   }
 
-  /// Keeps forks, tips, and nodes at a distance of a diameter.
+  /// Keeps forks, tips, and other nodes at least a diameter apart.
   void thin()
   {
     const std::size_t n = m_sections.size();
@@ -237,14 +237,14 @@ private:
     }
   }
 
-  /// Spanning trees over sparse points: level sets, and the dense nodes that they begin at.
+  /// Spanning trees over sparse points: level sets, and the dense nodes at which they begin.
   struct Sparse_trees
   {
     Layer_tree layers;
     std::vector<double> importance; ///< length of all edges beyond each node [L]
     std::vector<Vec3> center;       ///< smoothed centers
     std::vector<Index> top;         ///< the first node of the tree of each node
-    std::vector<Index> joint;       ///< by that node: the dense node there, or `none`
+    std::vector<Index> joint;       ///< for each node in `top`: the dense node there, or `none`
   };
 
   /// Adds spanning trees over the remaining points, contracted to level sets. Radii follow from

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The position where a branch leaves the wood of its parent.
+// The position where a branch leaves its parent.
 
 #ifndef PCS_SKELETON_SURFACE_FIND_BRANCH_EXIT_H
 #define PCS_SKELETON_SURFACE_FIND_BRANCH_EXIT_H
@@ -20,14 +20,14 @@ namespace skeleton {
 struct Branch_exit
 {
   bool is_there = false;
-  double at = 0, half = 0; ///< arc length on the parent, half length of the branch along it
+  double at = 0, half = 0; ///< arc length on the parent, half length of the footprint along it
   double start = 0;        ///< arc length of the first ring of the branch; < 0: no surface
   double radius = 0;       ///< of the branch
   Vec3 point = Vec3::Zero(), direction = Vec3::Zero(), normal = Vec3::Zero();
 };
 
-/// Follows the axis of a branch to the surface of its parent, the line `below`, which is null for a
-/// separate branch.
+/// Follows the axis of a branch to the surface of its parent. `below` is the line of the parent, or
+/// null for a separate branch.
 inline Branch_exit
 find_branch_exit(const Section_line& line, const Section_line* below, const Surface_options& rules)
 {
