@@ -58,7 +58,7 @@ void write_mesh(const std::string& path,
                std::to_string(triangles.size()) +
                "\nproperty list uchar int vertex_indices\nend_header\n");
     for (const auto& row : rows)
-      file.write(row.data(), sizeof(row)); // requires a little endian machine, like all writers
+      file.write(row.data(), sizeof(row)); // requires a little endian machine
     for (const auto& t : triangles) {
       unsigned char bytes[13] = {3};
       for (std::size_t k = 0; k < 3; ++k) {
