@@ -93,7 +93,7 @@ BOOST_AUTO_TEST_CASE(one_place_is_refused)
   for (const std::size_t n : {1u, 2u, 100u})
     BOOST_CHECK_EXCEPTION(deform(Points(n, Vec3(1, 2, 3)), {{{0}, {}, 0}}),
                           Invalid_input,
-                          message_has("one place"));
+                          message_has("coincide"));
 }
 
 BOOST_AUTO_TEST_CASE(tiny_clouds_are_deformed)

@@ -271,7 +271,7 @@ BOOST_AUTO_TEST_CASE(hints_that_make_no_sense_are_refused)
     spoil(rules);
     BOOST_CHECK_EXCEPTION(pcs::extract_tree_skeleton(points, tree, slice_options(rules)),
                           pcs::Invalid_input,
-                          pcs_test::message_has("slice_rules"));
+                          pcs_test::message_has("slice_options"));
   }
   BOOST_TEST(num_vertices(tree) == 0u);
   // a little below the lowest points is no mistake

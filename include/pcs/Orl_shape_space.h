@@ -622,14 +622,15 @@ private:
   {
     check_built(caller);
     if (!m_state.is_pair())
-      throw Invalid_input(std::string(caller) + ": for two trees only, there are " +
-                          std::to_string(number_of_trees()));
+      throw Invalid_input(std::string(caller) + ": the space has " +
+                          std::to_string(number_of_trees()) +
+                          " trees; this function requires a space of two trees");
   }
   void check_two_inputs(const char* caller) const
   {
     pcs::internal::check(!m_state.is_restored,
                          caller,
-                         "the space was restored, the trees themselves are not there");
+                         "the space was restored without its trees; add them to a new space");
     pcs::internal::check(m_state.inputs.size() == 2,
                          caller,
                          std::to_string(m_state.inputs.size()) + " trees were added, expected 2");

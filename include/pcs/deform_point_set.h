@@ -102,7 +102,7 @@ Deformation_report deform_point_set(PointRange& points,
   constexpr bool is_ok = internal::is_handle_range_v<HandleRange>;
   static_assert(is_ok,
                 "pcs::deform_point_set(): `handles` must be a range of pcs::Deformation_handle; "
-                "ranges of fixed and moved points need a transformation behind them");
+                "ranges of fixed and moved points must be followed by a transformation");
   if constexpr (is_ok) {
     if (std::begin(handles) == std::end(handles))
       throw Invalid_input("pcs::deform_point_set(): there is no handle");

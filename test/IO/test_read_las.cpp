@@ -162,7 +162,7 @@ BOOST_AUTO_TEST_CASE(long_counts_and_records_are_checked)
   refuses("a.las", bytes, "longer than the file");
   bytes = las.bytes();
   patch<std::uint64_t>(bytes, 235, 1);
-  refuses("a.las", bytes, "behind the points");
+  refuses("a.las", bytes, "after the points");
 }
 
 BOOST_AUTO_TEST_SUITE_END()

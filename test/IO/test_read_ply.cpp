@@ -162,7 +162,7 @@ BOOST_AUTO_TEST_CASE(counts_beyond_the_size_of_the_file_are_refused)
     for (const char* count : {"4000000000", "18446744073709551615"})
       refuses("a.ply",
               header(std::string("element vertex ") + count + "\n" + xyz, storage),
-              "line 7: element 'vertex' promises " + std::string(count) + " rows");
+              "line 7: element 'vertex' declares " + std::string(count) + " rows");
   refuses("a.ply",
           header("element vertex -5\n" + xyz),
           "line 3: expected 'element <name> <count>'");

@@ -118,8 +118,8 @@ BOOST_AUTO_TEST_CASE(the_count_of_a_pts_file_is_checked)
 {
   BOOST_TEST(read("a.pts", "2\n1 2 3 9\n4 5 6 8\n").number_of_points() == 2u);
   BOOST_TEST(read("a.pts", "0\n").number_of_points() == 0u);
-  refuses("a.pts", "3\n1 2 3 90\n4 5 6 8.25\n", "promises 3 points, the file has 2");
-  refuses("a.pts", "1\n1 2 3 9\n4 5 6 8\n", "promises 1 points, the file has 2");
+  refuses("a.pts", "3\n1 2 3 90\n4 5 6 8.25\n", "declares 3 points, the file has 2");
+  refuses("a.pts", "1\n1 2 3 9\n4 5 6 8\n", "declares 1 points, the file has 2");
   refuses("a.pts", "4000000000\n1 2 3\n", "line 1: the file is too small");
   refuses("a.pts", "-5\n1 2 3\n", "line 1");
 }

@@ -411,7 +411,7 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
   refuses("--input tree.xyz --swc old.swc --stations place", "no property 'place'");
   refuses("--input tree.xyz --swc old.swc --stations x --keep-stations", "--stations");
   refuses("--input tree.xyz --swc old.swc --skeleton forest.swc", "forest.swc");
-  refuses("--input tree.xyz --swc old.swc --skeleton dot.swc", "lie at one place");
+  refuses("--input tree.xyz --swc old.swc --skeleton dot.swc", "coincide");
   refuses("--input tree.xyz --swc old.swc --skeleton far.swc", "away from the points");
   refuses("--input tree.xyz --swc old.swc --skeleton dot.swc --root 0 0 0", "--root");
   refuses("--input tree.xyz --swc old.swc --method magic", "--method");

@@ -21,7 +21,7 @@ inline std::string in_options(std::string sentence)
   for (const auto& [parameter, option] :
        {std::make_pair("do_remove_leaves(true)", "--remove-leaves"),
         std::make_pair("do_remove_leaves(false)", "--keep-leaves"),
-        std::make_pair("which a root position chooses", "which --root chooses"),
+        std::make_pair("root_position", "--root"),
         std::make_pair("breast height, which", "--breast-height, which")}) {
     const std::size_t at = sentence.find(parameter);
     if (at != std::string::npos)

@@ -33,7 +33,7 @@ public:
     for (std::size_t l = 0; l < number_of_layers; ++l)
       read_layer(l);
     if (!m_file.is_at_end())
-      m_file.fail("expected the end of the file behind " + std::to_string(number_of_layers) +
+      m_file.fail("expected the end of the file after " + std::to_string(number_of_layers) +
                   " layers");
     return std::move(m_tree);
   }

@@ -152,8 +152,8 @@ inline void warn_of_points(const Skeleton_report& r, std::vector<std::string>& s
   constexpr double max_leaves = 0.5;     // fraction of the points without ground and walls [-]
   if (r.number_of_other_stems > 0)
     sentences.push_back("more than one tree: " + std::to_string(r.number_of_other_stems) +
-                        " other stem(s) at the height of the foot; the tree of one foot is kept, "
-                        "which a root position chooses");
+                        " other stem(s) at the height of the foot; only one tree is kept "
+                        "(root_position selects it)");
   if (double(r.number_of_unreached_points) > max_unreached * double(r.number_of_points))
     sentences.push_back(std::to_string(r.number_of_unreached_points) + " of " +
                         std::to_string(r.number_of_points) +
@@ -170,8 +170,9 @@ inline void warn_of_points(const Skeleton_report& r, std::vector<std::string>& s
   if (r.rejected_station_shift > 0)
     sentences.push_back("the stations would have to move by up to " +
                         short_text(r.rejected_station_shift) +
-                        ", which is no error of registration, or have few points: nothing was "
-                        "moved; are they flight lines or other numbers?");
+                        ", too far for an error of registration, or have too few points, so no "
+                        "points were moved; check that the labels denote scanner stations, not "
+                        "flight lines");
   if (r.is_in_rows)
     sentences.push_back("the points lie in sparse rows, in which leaves cannot be separated from "
                         "wood; all points are kept (do_remove_leaves(true) removes leaves)");
@@ -236,7 +237,7 @@ inline void warn_of_stems(const Skeleton_report& r, std::vector<std::string>& se
   if (r.root_elevation > max_elevation * (r.root_elevation + r.height))
     sentences.push_back("the root is " + short_text(r.root_elevation) +
                         " above the lowest points: the foot of the tree may be missing from the "
-                        "result; a root position chooses it");
+                        "result (root_position selects the foot)");
   if (r.stem_diameters.size() > 1) {
     std::string list;
     for (const double d : r.stem_diameters)

@@ -61,7 +61,7 @@ public:
       next_row();
     }
     if (!m_has_row && m_number_of_points && *m_number_of_points != m_number_of_rows)
-      m_file.fail_at_line("the first line promises " + std::to_string(*m_number_of_points) +
+      m_file.fail_at_line("the first line declares " + std::to_string(*m_number_of_points) +
                           " points, the file has " + std::to_string(m_number_of_rows));
   }
 

@@ -105,7 +105,7 @@ double Sampled_body<ConcurrencyTag>::checked_extent(const std::vector<Vec3>& poi
   const double extent = (0.5 * high - 0.5 * low).norm() * 2;
   if (!(extent > 0))
     throw Invalid_input("pcs deformation: all " + std::to_string(points.size()) +
-                        " points lie at one place; there is nothing to deform");
+                        " points coincide; at least two must differ");
   // Squares and their products must stay representable.
   if (!(extent > 1e-100 && extent < 1e100))
     throw Invalid_input("pcs deformation: the points extend over " +

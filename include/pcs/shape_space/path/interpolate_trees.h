@@ -45,7 +45,7 @@ inline void interpolate_trees(const Tree_family& family,
   for (const Vec3& p : result.geometry.node)
     if (!p.allFinite())
       throw Invalid_input(std::string(caller) + ": `lambda` is " + pcs::internal::to_text(t) +
-                          ", lengths there are no finite numbers");
+                          ", where lengths are not finite; choose a value nearer to [0, 1]");
   family.find_offsets(result.x, result.first_point);
 }
 

@@ -83,7 +83,7 @@ inline void check_given(const Given_skeleton& given, const std::string& function
                        "given_skeleton has a position beyond 1e100");
   pcs::internal::check(!std::all_of(given.points.begin(), given.points.end(), at_root),
                        function,
-                       "all nodes of given_skeleton lie at one place");
+                       "all nodes of given_skeleton coincide; at least two must differ");
 }
 
 } // namespace internal

@@ -129,20 +129,20 @@ inline void check_slices(const Slice_options& rules, const std::string& caller)
   const auto is_positive = [](double x) { return x > 0 && std::isfinite(x); };
   pcs::internal::check(is_positive(rules.height) && is_positive(rules.largest_radius),
                        caller,
-                       "slice_rules: `height` and `largest_radius` must be positive and finite");
+                       "slice_options: `height` and `largest_radius` must be positive and finite");
   pcs::internal::check(
       rules.lowest_count >= fewest_points_of_section &&
           (rules.highest_count == 0 || rules.highest_count >= fewest_points_of_section),
       caller,
-      "slice_rules: `lowest_count`, and `highest_count` if not 0, must be at least 6: the points "
-      "that a section is fitted to");
+      "slice_options: `lowest_count`, and `highest_count` if not 0, must be at least 6, because a "
+      "section cannot be fitted to fewer points");
   pcs::internal::check(rules.upright >= 0 && rules.upright <= 1 && rules.tilts >= 0,
                        caller,
-                       "slice_rules: `upright` must be in [0, 1], `tilts` not negative");
+                       "slice_options: `upright` must be in [0, 1], `tilts` not negative");
   pcs::internal::check(
       rules.support_radius >= 0 && rules.support_cosine >= 0 && rules.support_cosine <= 1,
       caller,
-      "slice_rules: `support_radius` must not be negative, `support_cosine` in [0, 1]");
+      "slice_options: `support_radius` must not be negative, `support_cosine` in [0, 1]");
 }
 
 template <class NamedParameters>

@@ -122,10 +122,9 @@ private:
   {
     m_first_point = header<std::uint32_t>(las_header::offset_to_points);
     if (m_first_point < m_las->header.size() || m_first_point > m_file.size())
-      m_file.fail_at_byte(
-          las_header::offset_to_points,
-          "expected the points behind the header and inside the file, not at byte " +
-              std::to_string(m_first_point));
+      m_file.fail_at_byte(las_header::offset_to_points,
+                          "expected the points after the header and inside the file, not at byte " +
+                              std::to_string(m_first_point));
     m_las->vlrs.resize(static_cast<std::size_t>(m_first_point) - m_las->header.size());
     m_file.read(m_las->vlrs.data(), m_las->vlrs.size());
     const auto n = header<std::uint32_t>(las_header::number_of_vlrs);
@@ -171,7 +170,7 @@ private:
     const std::uint64_t tail_size = m_file.size() - m_las->tail_position;
     if (waveforms != 0 && (waveforms < m_las->tail_position || waveforms > m_file.size()))
       m_file.fail_at_byte(las_header::waveforms,
-                          "expected the waveforms behind the points and inside the file");
+                          "expected the waveforms after the points and inside the file");
     if (n == 0 && waveforms == 0) {
       if (tail_size > 0)
         m_file.fail_at_byte(m_las->tail_position,
@@ -191,7 +190,7 @@ private:
     std::uint64_t at = header<std::uint64_t>(las_header::first_evlr);
     if (at < m_las->tail_position)
       m_file.fail_at_byte(las_header::first_evlr,
-                          "expected the extended variable length records behind the points");
+                          "expected the extended variable length records after the points");
     for (std::uint32_t i = 0; i < n; ++i) {
       std::array<unsigned char, evlr_header_size> record{};
       if (at > m_file.size() || m_file.size() - at < record.size())

@@ -98,7 +98,7 @@ private:
       if (row == 0)
         continue;
       if (element.count > left / row)
-        m_file.fail_at_line("element " + in_quotes(element.name) + " promises " +
+        m_file.fail_at_line("element " + in_quotes(element.name) + " declares " +
                             std::to_string(element.count) + " rows, more than the " +
                             std::to_string(m_file.remaining()) +
                             " bytes after the header can hold");
