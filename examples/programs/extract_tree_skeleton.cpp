@@ -133,7 +133,7 @@ pcs::Skeleton_report extract(const std::string& input,
     line.show("skeleton", f);
     return true;
   };
-  constexpr std::size_t max_unthinned = 44000; // their copies keep 90 %, so that time stays short
+  constexpr std::size_t max_unthinned = 44000; // copies are not thinned up to this size
   const int resamples = options.number_of_resamples >= 0 ? options.number_of_resamples
                         : n <= max_unthinned             ? 4
                                                          : 0;

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Program: trees between scanned trees, beyond them, and like them.
+// Program: computes trees between and beyond scanned trees, their mean, and new trees like them.
 
 #include "common/run_program.h"
 #include "common/up_direction.h"
@@ -223,7 +223,7 @@ void complete_trees(const Options& o, std::vector<Tree_file>& files)
     complete_tree(files[i], o.trees.empty() ? "" : o.trees[i], o.do_extend_axes, o.up);
 }
 
-/// A file with a separate path, which is checked to be writable before the work.
+/// A file with a separate path. Whether it can be written is checked before the computation.
 class Extra_file
 {
 public:
