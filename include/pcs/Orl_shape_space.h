@@ -47,9 +47,9 @@ namespace pcs {
   \ingroup PkgPcsShapeSpaceRef
   \brief A shape space of two trees or more, with the points of their scans.
 
-  The model is that of chapter 4 of \cite aiteanu2022. Branches are matched by elastic curves, and
+  The class implements chapter 4 of \cite aiteanu2022. Branches are matched by elastic curves, and
   all trees are given a common topology. The coordinates of a tree are the orientations, radii and
-  lengths (ORL) of the edges of this topology. Distances are those of (4.7), and geodesics
+  lengths (ORL) of the edges of this topology. Distances are defined by (4.7), and geodesics
   interpolate the coordinates. Points are matched by optimal transport along corresponding edges,
   and move with their edges.
 
@@ -61,8 +61,8 @@ namespace pcs {
   Two trees are represented exactly. In a space of more than two trees, corresponding branches have
   the same number of nodes, and axes are simplified with a tolerance of 1 % of the branch length.
   The points of each branch are taken from one scan, so that points have the same order in all
-  trees. Optimal transport finds the point that corresponds to each of them in every other scan of
-  the branch. The order in which the trees are added does not matter, except for rounding.
+  trees. Optimal transport finds the corresponding point in every other scan of the branch. The
+  order in which the trees are added does not matter, except for rounding.
 
   \tparam Kernel a kernel of CGAL; computations are in double precision about a local origin
   \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or
@@ -391,7 +391,7 @@ public:
     return result;
   }
 
-  //! writes the same tree to `result`, whose memory is reused
+  //! writes the tree of the function above to `result`, whose memory is reused
   template <class NamedParameters = parameters::Default_named_parameters>
   void geodesic(Handle a,
                 Handle b,
@@ -415,7 +415,7 @@ public:
     state.lambda = a != b ? t : a == 1 ? 1 : 0;
   }
 
-  //! the same between trees of the space
+  //! returns the tree at `lambda` on the geodesic from tree `a` of the space to tree `b`
   template <class NamedParameters = parameters::Default_named_parameters>
   Orl_tree geodesic(const Orl_tree& a,
                     const Orl_tree& b,
@@ -457,7 +457,7 @@ public:
     \brief writes the points of a tree of the space.
 
     Points are sorted by edge; points of branches that the tree lacks are left out. In a space of
-    two trees, the points at `lambda` 0 and 1 are those of the scans, each repeated once per
+    two trees, the points at `lambda` 0 and 1 are the points of the scans, each repeated once per
     correspondence. If both trees have a branch but only one scan has points on it, these points
     are present along the whole path.
 
@@ -530,8 +530,9 @@ public:
     \brief calls `f(i, a, b, w)` for every point of a tree of a space of two trees.
 
     Point `i` is interpolated between point `a` of the first scan and point `b` of the second one;
-    `npos` denotes that there is none. `w` in [0, 1] is the weight of the second point. Attributes
-    are interpolated by `result[i] = (1 - w) * one[a] + w * two[b]`. `f` may be called concurrently.
+    an index is `npos` if there is no such point. `w` in [0, 1] is the weight of the second point.
+    Attributes are interpolated by `result[i] = (1 - w) * one[a] + w * two[b]`. `f` may be called
+    concurrently.
   */
   template <class F>
   void for_each_point(const Orl_tree& t, const F& f) const
@@ -604,7 +605,7 @@ public:
   {
     return !family().first_point.empty() && family().first_point.back() > 0;
   }
-  //! whether these points have normals
+  //! whether points of trees of the space have normals
   bool has_normals() const { return m_state.has_normals(); }
   //!@}
 

@@ -215,14 +215,14 @@ public:
     });
   }
 
-  /// The same about the centroid of the handle at rest.
+  /// Sets the rotation from rest by `angle` [rad] about the centroid of the handle at rest.
   template <class Vector_3>
   void set_rotation(Handle handle, const Vector_3& axis, double angle)
   {
     set_rotation(handle, axis, angle, centroid(handle));
   }
 
-  /// Sets the translation by `offset` [L], from rest; it follows the rotation.
+  /// Sets the translation by `offset` [L] from rest; it is applied after the rotation.
   template <class Vector_3>
   void set_translation(Handle handle, const Vector_3& offset)
   {
@@ -231,7 +231,7 @@ public:
     });
   }
 
-  /// Sets the scale `factor` > 0 about the centroid of the handle at rest; it precedes the
+  /// Sets the scale `factor` > 0 about the centroid of the handle at rest; it is applied before the
   /// rotation. Between handles of different scale, the thickness is interpolated, and lengths
   /// change as far as the positions of the handles permit.
   void set_scale(Handle handle, double factor)
@@ -242,8 +242,8 @@ public:
   }
 
   /// Sets the whole motion from rest to a `Similarity`, or to a `CGAL::Aff_transformation_3` that
-  /// is a similarity. It is stored in place of the rotation: `set_rotation()` replaces it, a
-  /// translation that is set later follows it, and a scale precedes it.
+  /// is a similarity. It replaces the rotation, and `set_rotation()` replaces it. A translation
+  /// that is set later is applied after it, a scale before it.
   template <class Transformation>
   void set_transformation(Handle handle, const Transformation& transformation)
   {
@@ -291,10 +291,10 @@ public:
            `Solver_start::warm`, for the frames of a drag: one to three iterations that continue
            from the last result suffice.
 
-    In tests, the energy after a warm start was at most a tenth above that after a cold start. If
-    the cold start had ended early, it was only a quarter of that energy. The start is always cold
-    after a large step, after a change of handles or a restored snapshot, and for more than 20,000
-    samples with interior springs.
+    In tests, a warm start gave at most 10 % more energy than a cold start, and only a quarter of
+    the energy of cold starts that had ended early. The start is always cold after a large step,
+    after a change of handles or a restored snapshot, and for more than 20,000 samples with interior
+    springs.
   */
   Deformation_report deform(Solver_start start = Solver_start::cold)
   {
@@ -363,7 +363,7 @@ public:
     m_session->restore(snapshot.session);
     const std::size_t count = m_motion.size();
     m_motion = snapshot.motions;
-    m_motion.resize(count); // handles that were added since are at rest
+    m_motion.resize(count); // handles that were added after the snapshot are at rest
     m_shape_motions = m_motion;
     write_points();
   }

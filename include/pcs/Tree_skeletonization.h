@@ -309,7 +309,7 @@ public:
 private:
   static constexpr const char* function = "pcs::extract_tree_skeleton()";
 
-  /// Fraction of the progress assigned to the stages if resampled copies follow.
+  /// The fraction of the progress at which the stages end if resampled copies follow.
   static constexpr double end_of_stages = 0.5;
 
   template <class Stage>

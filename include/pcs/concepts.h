@@ -127,7 +127,7 @@ constexpr bool is_random_access_range_v =
 template <class Range>
 using Element_reference = decltype(*std::begin(std::declval<Range&>()));
 
-//! whether `T` has `x()`, `y()`, `z()` and a constructor from three of these: any `Point_3` or
+//! whether `T` has `x()`, `y()`, `z()` and a constructor from three such values: any `Point_3` or
 //! `Vector_3` of CGAL, `Eigen::Vector3d`, or a user-defined type
 template <class T>
 constexpr bool is_point_or_vector_v = internal::Is_point<T>::value;
@@ -180,7 +180,7 @@ struct Is_rooted_tree_graph<
     std::void_t<
         decltype(num_vertices(std::declval<const Graph&>())),
         decltype(vertices(std::declval<const Graph&>())),
-        // after the checks above, because graph_traits of other types is a hard error
+        // instantiated after the checks above, because graph_traits of other types is a hard error
         typename boost::graph_traits<Graph>::vertex_descriptor,
         decltype(out_edges(std::declval<typename boost::graph_traits<Graph>::vertex_descriptor>(),
                            std::declval<const Graph&>())),

@@ -45,7 +45,7 @@ struct Is_handle_range<T, std::enable_if_t<!std::is_void_v<typename Iterator_of<
 template <class T>
 constexpr bool is_handle_range_v = Is_handle_range<T>::value;
 
-/// Fraction of the progress assigned to neighbours and samples; the rest is for the deformation.
+/// The fraction of the progress at which the construction ends and the deformation begins.
 constexpr double end_of_construction = 0.6;
 
 /*!
@@ -58,7 +58,7 @@ Deformation_report deform_once(PointRange& points, const NamedParameters& np, co
   const auto run = [&](const auto& parameters) {
     using Parameters = std::decay_t<decltype(parameters)>;
     Point_set_deformation<PointRange, Parameters, ConcurrencyTag> session(points, parameters);
-    if (session.number_of_samples() > 0) // else it was cancelled
+    if (session.number_of_samples() > 0) // otherwise the construction was cancelled
       edit(session);
     return session;
   };
@@ -116,7 +116,7 @@ Deformation_report deform_point_set(PointRange& points,
 
 /*!
   \ingroup PkgPcsDeformationRef
-  \brief overload for the most common edit: `fixed` points stay, `moved` points are transformed.
+  \brief deforms `points` with the `fixed` points at rest and the `moved` points transformed.
 
   \param fixed range of integers; may be empty
   \param moved range of integers

@@ -30,7 +30,7 @@ enum class Sample_search {
 enum class Sample_weights {
   compact,       ///< (1 - (d / d_{K+1})^2)^2: continuous, because a sample that leaves the K
                  ///< nearest has the weight 0
-  inverse_square ///< 1 / d^2, as published (2.6): discontinuous at that distance
+  inverse_square ///< 1 / d^2, as published (2.6): discontinuous where the nearest samples change
 };
 
 //! \ingroup PkgPcsDeformationRef

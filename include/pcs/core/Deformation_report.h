@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What a deformation did: counts, energies, seconds per stage.
+// Statistics of a deformation: counts, energies, seconds per stage.
 
 #ifndef PCS_CORE_DEFORMATION_REPORT_H
 #define PCS_CORE_DEFORMATION_REPORT_H

@@ -13,11 +13,11 @@ namespace pcs {
 //! \ingroup PkgPcsShapeSpaceRef
 //! how branches of a tree become longer
 enum class Branch_growth {
-  any,            ///< along branches, unless growth at tips explains the trees clearly
+  any,            ///< `along_branches`, unless growth at tips explains the trees clearly
                   ///< better
   along_branches, ///< everywhere: a branch is stretched, and its children move
                   ///< along
-  //! old wood stays where it is: both trees are measured in the same unit, and
+  //! at their tips, while old wood does not move: both trees have the same unit, and
   //! the shorter of two branches is the beginning of the longer one
   at_tips
 };
@@ -40,7 +40,7 @@ struct Matching_weights
   double position = 1;                       ///< of the distance of attachments, in units of the
                                              ///< branches' lengths [-]
   double half_cost_distance = 1;   ///< distance of attachments, as a fraction of the parent's
-                                   ///< length, at which saturation halves their cost [-]
+                                   ///< length, whose cost is halved by saturation [-]
   double unmatched = 0.5;          ///< of the length of an unmatched subtree [-]
   double length = 1;               ///< of a difference of lengths, in units of `unmatched` [-]
   double rotation = 0.2;           ///< of the rotation of a branch relative to its parent [-]
@@ -52,7 +52,7 @@ struct Matching_weights
   //! the parent's length
   bool is_published = false;
   double fork_ratio = default_fork_ratio;       ///< see `default_fork_ratio` [-]
-  double trunk_fork_ratio = default_fork_ratio; ///< the same for the trunk, if it is smaller [-]
+  double trunk_fork_ratio = default_fork_ratio; ///< for the trunk, if smaller [-]
   //! candidates for the main path of a branch; 1: the longest path only [count]
   std::size_t number_of_paths = 6;
   //! pairs of candidates that are matched with all their children [count]
@@ -92,7 +92,7 @@ enum class Orl_orientation {
 //! how the differences of all coordinates are combined to a distance
 enum class Orl_metric {
   sum,    ///< sum of absolute differences: (4.7)
-  square, ///< root of the sum of squares: geodesics are unique
+  square, ///< root of the sum of squared differences: geodesics are unique
   cone    ///< edges are compared as vectors: the cost of a rotation is proportional to their length
 };
 
@@ -112,7 +112,7 @@ struct Point_assignment_options
 struct Sinkhorn_options
 {
   double regularization = 0.02;  ///< final epsilon, as a fraction of the largest cost [-]
-  std::size_t iterations = 1000; ///< largest number at the final epsilon [count]
+  std::size_t iterations = 1000; ///< maximal iterations at the final epsilon [count]
   double tolerance = 1e-6;       ///< violation of the marginals at which iterations stop [-]
 };
 
@@ -166,7 +166,7 @@ enum class Point_path {
 //! how branches emerge that only one end of a geodesic has
 enum class Branch_emergence {
   simultaneous, ///< all at once, as small copies: all coordinates are linear
-  //! branches grow at their tips, and old wood remains in place; each branch
+  //! branches grow at their tips, and old wood does not move; each branch
   //! emerges when the tip of its parent passes its base
   sequential
 };

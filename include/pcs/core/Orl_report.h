@@ -19,7 +19,7 @@ struct Orl_report
 {
   Status status = Status::nothing_to_do;
 
-  std::size_t number_of_trees = 2; ///< [count]; values of single trees are those of the first two
+  std::size_t number_of_trees = 2; ///< [count]; values of single trees refer to the first two
   std::size_t number_of_common_branches = 0; ///< of the topology [count]
   //! more than two trees: fraction of branches whose correspondence changed in the last round [-]
   double fraction_of_changed_matches = 0;

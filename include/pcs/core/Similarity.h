@@ -81,7 +81,7 @@ public:
 
   /// Converts a row-major 3 x 4 or 4 x 4 matrix. Throws `Invalid_input` unless it is composed of a
   /// rotation (no reflection), a uniform scale and a translation, to 1e-6. The rotation is
-  /// interpreted as one of at most 180 degrees.
+  /// interpreted as a rotation by at most 180 degrees.
   static Similarity from_matrix(const Eigen::Matrix<double, 3, 4>& m)
   {
     if (!m.allFinite())

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What a skeletonization found: counts, sizes of the tree, seconds per stage.
+// Statistics of a skeletonization: counts, sizes of the tree, seconds per stage.
 
 #ifndef PCS_CORE_SKELETON_REPORT_H
 #define PCS_CORE_SKELETON_REPORT_H
@@ -38,7 +38,7 @@ struct Scan_station
   long long label = 0;              ///< label in `station_map`, or the index of the station
   std::size_t number_of_points = 0; ///< points of the station [count]
   Eigen::Vector3d shift = Eigen::Vector3d::Zero(); ///< translation of the mean of its points [L]
-  double turn = 0;                                 ///< rotation about that mean [rad]
+  double turn = 0;                                 ///< rotation about this mean [rad]
   //! position of the scanner; only set if its scan grid was found [L]
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   //! angles between columns and between rows of beams; 0: no search for scan grids [rad]
@@ -82,7 +82,7 @@ struct Skeleton_report
   std::size_t number_of_unexplained_points = 0; ///< other points not assigned to a branch [count]
   //! points of branches too far from the tree, which are not part of the result [count]
   std::size_t number_of_unreached_points = 0;
-  std::size_t number_of_unreached_branches = 0; ///< such branches [count]
+  std::size_t number_of_unreached_branches = 0; ///< branches too far from the tree [count]
   //! further stems at the height of the root, unconnected or connected by a branch, which are
   //! interpreted as other trees [count]
   std::size_t number_of_other_stems = 0;
@@ -101,7 +101,8 @@ struct Skeleton_report
   double voxel_size = 0;
   //! step to which the input coordinates are rounded, the largest of the three axes; 0: none [L]
   double coordinate_step = 0;
-  //! whether that step is the resolution of 32-bit floating-point numbers far from the origin
+  //! whether `coordinate_step` is the resolution of 32-bit floating-point numbers far from the
+  //! origin
   bool is_single_precision = false;
   double noise = 0; ///< standard deviation of the points from the surface [L]
   //! median distance of the points from the fitted surfaces; several times `noise` indicates a
@@ -119,7 +120,7 @@ struct Skeleton_report
   double diameter_at_breast_height = 0;
   //! diameters of all stems at breast height, thickest first; several if the trunk forks below [L]
   std::vector<double> stem_diameters;
-  double breast_height = 0; ///< height of that diameter above the root [L]
+  double breast_height = 0; ///< height of the measured diameters above the root [L]
   Branch_totals total;
   std::vector<Branch_totals> by_order; ///< trunk first
   //! upper bounds of the radii of the classes in `by_size`; the last class has no upper bound
@@ -200,7 +201,7 @@ inline void warn_of_shape(const Skeleton_report& r, std::vector<std::string>& se
   // residual / noise: 0.67 for Gaussian noise, 0.5 to 0.9 for scans of trees, more than 2 for
   // spheres, cubes and dust [-]
   constexpr double max_residual = 1.5;
-  // residual / spacing: smaller residuals are accepted for any noise [-]
+  // residual / spacing: residuals below this ratio are accepted for any noise [-]
   constexpr double exact = 0.1;
   // residual / trunk diameter: out-of-round sections and bark cause residuals up to this ratio [-]
   constexpr double oval = 0.02;
@@ -210,8 +211,8 @@ inline void warn_of_shape(const Skeleton_report& r, std::vector<std::string>& se
   // volume / cube of the largest root distance: up to 0.003 for trees, 0.008 for a post of ten
   // diameters, at least 0.03 for spheres interpreted as many thin branches [-]
   constexpr double max_wood = 0.015;
-  // spacing / trunk diameter: above this ratio, volumes may be several times too large; it is at
-  // most 0.2 for real scans [-]
+  // spacing / trunk diameter: above this ratio, volumes may be several times too large; real scans
+  // have at most 0.2 [-]
   constexpr double max_spacing = 1.0 / 3;
   const auto& trunk = r.by_order.front();
   const double diameter = 2 * std::sqrt(trunk.volume / (pcs::internal::pi * trunk.length));

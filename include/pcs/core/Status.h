@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// How an algorithm ended.
+// Status of a finished algorithm.
 
 #ifndef PCS_CORE_STATUS_H
 #define PCS_CORE_STATUS_H

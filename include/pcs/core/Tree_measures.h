@@ -24,7 +24,7 @@ struct Tree_measures
   double length = 0; //!< sum over all axes, measured from the axes of their parents [L]
   //! sum of the frusta between nodes; the bases of branches inside their parents count twice [L^3]
   double volume = 0;
-  //! sum of the frusta without those bases [L^3]
+  //! sum of the frusta without the bases inside the parents [L^3]
   double union_volume = 0;
 };
 

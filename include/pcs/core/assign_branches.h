@@ -55,8 +55,8 @@ std::vector<double> lengths_to_tips(const Tree_skeleton<Kernel>& tree)
   return length;
 }
 
-//! assigns branches like the function below; `child(v)` is the node that continues the branch of
-//! node `v`, or `npos`
+//! assigns branches like the public `assign_branches()`; `child(v)` is the node that continues the
+//! branch of node `v`, or `npos`
 template <class Kernel, class Child>
 void assign_branches(Tree_skeleton<Kernel>& tree, const Child& child)
 {

@@ -14,8 +14,8 @@ namespace pcs {
   \ingroup PkgPcsCoreRef
   \brief An argument violates a precondition of the called function.
 
-  The message names the function, the argument, the offending value or index, and the rule. The
-  function has no effect when it throws. Release builds throw it as well.
+  The message names the function, the argument, the offending value or index, and the rule. A
+  function that throws it has no other effect. Release builds throw it as well.
 */
 class Invalid_input : public std::invalid_argument
 {

@@ -25,9 +25,9 @@ namespace pcs {
   of the time of a skeleton on virtual machines, and less on physical ones.
 
   Meant for programs, not for libraries, because it affects the whole process. Call it once, before
-  the first large allocation. It reserves nothing and does not change results, but the process keeps
-  its peak memory. It has no effect if the C library is not glibc or another allocator is in use.
-  Returns whether it had an effect. O(1).
+  the first large allocation. It reserves no memory and does not change results, but the process
+  keeps its peak memory. It has no effect if the C library is not glibc or another allocator is in
+  use. Returns whether it had an effect. O(1).
 */
 inline bool keep_memory()
 {

@@ -37,7 +37,7 @@ inline Eigen::Vector3d lifted_rotation_log(const Quaternion& q)
   return f * q.vec();
 }
 
-/// Rotation vector of the rotation `q`, of the smaller of its two angles: length in [0, pi]. [rad]
+/// Rotation vector of the rotation `q` with the smaller of its two angles: length in [0, pi]. [rad]
 inline Eigen::Vector3d rotation_log(const Quaternion& q)
 {
   return lifted_rotation_log(q.w() >= 0 ? q : Quaternion(-q.w(), -q.x(), -q.y(), -q.z()));
@@ -45,7 +45,7 @@ inline Eigen::Vector3d rotation_log(const Quaternion& q)
 
 /*!
   Returns four times the modified Rodrigues parameters of the rotation \p q, which may have any
-  length but zero: `4 tan(angle / 4)` times its axis, with the smaller of its two angles. This is
+  nonzero length: `4 tan(angle / 4)` times its axis, with the smaller of its two angles. This is
   the stereographic projection of the unit quaternion (M. D. Shuster, "A survey of attitude
   representations", J. Astronautical Sciences 41, 1993). It differs from the rotation vector by
   about `angle^3 / 48`, has a length of at most 4 instead of pi, and requires a root and a division
@@ -53,7 +53,7 @@ inline Eigen::Vector3d rotation_log(const Quaternion& q)
 */
 inline Eigen::Vector3d rodrigues_from_rotation(const Quaternion& q)
 {
-  // Computed on scalars, as in `newton_turn()`.
+  // Scalars are faster, see `newton_turn()`.
   const double w = q.w(), x = q.x(), y = q.y(), z = q.z();
   const double length = std::sqrt(w * w + x * x + y * y + z * z);
   const double f = 4 / (w >= 0 ? w + length : w - length);
@@ -76,7 +76,7 @@ inline Quaternion rotation_from_rodrigues(const Eigen::Vector3d& u)
 inline Quaternion
 improve_rotation(const Eigen::Matrix3d& covariance, Quaternion q, int number_of_iterations)
 {
-  // 1e-9 of the size of the covariance: below it, the axis is determined by rounding
+  // below 1e-9 of the norm of the covariance, rounding determines the axis
   const double epsilon = 1e-9 * covariance.norm() + 1e-300;
   for (int i = 0; i < number_of_iterations; ++i) {
     const Eigen::Matrix3d r = q.toRotationMatrix();
@@ -94,10 +94,11 @@ improve_rotation(const Eigen::Matrix3d& covariance, Quaternion q, int number_of_
 }
 
 /*!
-  One step of Newton's method towards the maximiser of `trace(R^T covariance)`, as a rotation
-  vector. \p m is `covariance R^T` with the current `R`; `damping` is added to the Hessian, relative
-  to the trace. The trace at `exp(u) R` is `trace(m) + torque u - u^T hessian u / 2 + ...`. If it is
-  not concave or the step is 1 rad or more, the step of `improve_rotation()` is returned.
+  Returns one step of Newton's method towards the maximiser of `trace(R^T covariance)`, as a
+  rotation vector. \p m is `covariance R^T` with the current `R`; `damping`, relative to the trace,
+  is added to the Hessian. The trace at `exp(u) R` is `trace(m) + torque u - u^T hessian u / 2 +
+  ...`. If this model is not concave or its step is 1 rad or more, the step of `improve_rotation()`
+  is returned.
 */
 inline Eigen::Vector3d newton_turn(const Eigen::Matrix3d& m, double damping)
 {

@@ -24,12 +24,12 @@
 namespace pcs {
 namespace deformation {
 
-/// The samples' state at one moment: enough to bring every point back.
+/// State of the samples and handles, from which the positions of all points can be restored.
 struct Session_snapshot
 {
   std::vector<Similarity> transforms; ///< of the handles
   std::vector<Affine_map> maps;       ///< of the samples
-  std::uint64_t setting = 0;          ///< the session, its rest shape and its handles
+  std::uint64_t setting = 0;          ///< identifies session, rest shape and handles
   bool is_at_rest = true;
 };
 
@@ -37,8 +37,9 @@ template <class ConcurrencyTag>
 struct Session_state;
 
 /*!
-  The algorithm of `Point_set_deformation`, independent of point types. Indices are the caller's;
-  transformations are in the caller's coordinates; errors are thrown before anything changes.
+  The algorithm of `Point_set_deformation`, independent of point types. Indices refer to the
+  caller's points. Transformations are in the caller's coordinates. Errors are thrown before
+  anything changes.
 */
 template <class ConcurrencyTag>
 class Session
@@ -51,13 +52,14 @@ public:
           pcs::internal::Progress& progress);
   ~Session();
 
-  /// `false` if the callback cancelled the construction: nothing else may be called then.
+  /// Whether the construction was completed. If the callback cancelled it, no other function may be
+  /// called.
   bool is_ready() const;
   std::size_t number_of_points() const;
   const Similarity& transform(std::size_t handle) const;
   std::size_t number_of_samples() const;
 
-  /// Adds a handle that stays where it is. \param weight 0: exact; positive: soft, see
+  /// Adds a handle at rest. \param weight 0: exact; positive: soft, see
   /// `Node_constraints`
   std::size_t
   add_handle(const std::vector<std::uint32_t>& indices, double weight, const char* function);
@@ -70,38 +72,39 @@ public:
   /// Centroid of the handle's points at rest, in the caller's coordinates.
   const Vec3& centroid(std::size_t handle) const;
 
-  /// Throws `Invalid_input` if the motion cannot be represented beside the cloud.
+  /// Throws `Invalid_input` if double precision cannot represent the motion and the cloud together.
   void set_transform(std::size_t handle, const Similarity& transform);
 
-  /// Factorises if handles changed since the last time. Returns `false` if a matrix is singular.
+  /// Factorises if handles changed since the last factorisation. Returns `false` if a matrix is
+  /// singular.
   bool constrain(double stiffness);
 
-  /// Solves for the present transformations. The points are not written: see `write()`. The last
+  /// Solves for the current transformations. The points are not written, see `write()`. The last
   /// shape is kept if the status is `cancelled` or `numerical_failure`.
   Status
   solve(const Elastic_options& options, Solver_start start, pcs::internal::Progress& progress);
 
-  /// Whether the present shape was solved with the present handles, or is the rest shape.
+  /// Whether the current shape was solved with the current handles, or is the rest shape.
   bool has_shape_of_handles() const;
-  /// Whether constraints were made for other handles than those that the present shape was solved
-  /// with.
+  /// Whether the matrices were factorised for other handles than those of the current shape.
   bool is_ahead_of_shape() const;
-  /// Whether a snapshot is of this session, its rest shape and its present handles.
+  /// Whether a snapshot was taken from this session with its current rest shape and handles.
   bool is_of_setting(const Session_snapshot& s) const;
 
-  /// The last shape that was solved or restored, with the motions that belong to it.
+  /// Returns the last shape that was solved or restored, with its motions.
   Session_snapshot snapshot() const;
 
   void restore(const Session_snapshot& s);
 
-  /// Rest shape, handles at rest.
+  /// Restores the rest shape and sets all handles to rest.
   void reset();
 
   /*!
     Writes every point that the deformation may move to `output`, an `Output` of
-    `Moved_point_writer`, side by side: not points outside the region of interest, nor those that no
-    handle reaches, nor those of handles that have not moved. Positions are in the caller's
-    coordinates; the gradient is set if `HasGradients`: the linear part of the map of the point.
+    `Moved_point_writer`, concurrently. Points outside the region of interest, points that are not
+    connected to a handle, and points of handles that have not moved are not written. Positions are
+    in the caller's coordinates. If `HasGradients`, the gradient is the linear part of the map of
+    the point.
   */
   template <bool HasGradients, class Output>
   void write(Output& output)
@@ -110,21 +113,21 @@ public:
   }
 
   /*!
-    Moves a point that need not belong to the session, and its normal, like the points around it. It
-    stays bit for bit if its nearest point stays. `prepare_carrying()` must be called before.
+    Moves any point and its normal like the points around it. The point remains bitwise unchanged if
+    its nearest point does not move. `prepare_carrying()` must be called before.
   */
   void carry(Vec3& point, Vec3& normal) const;
 
-  /// Builds the search trees of `carry()` when they are missing. O(n log n).
+  /// Builds the search trees of `carry()` unless they exist. O(n log n).
   void prepare_carrying();
 
   const Deformation_report& report() const;
 
-  /// `normal(input index)` gives the normals at rest. [-]
+  /// Sets the normals at rest from `normal(input index)`. [-]
   void set_normals(const std::function<Vec3(std::size_t)>& normal);
 
-  /// The present shape becomes the rest shape. `position(input index)` reads it in the caller's
-  /// coordinates.
+  /// Makes the current shape the rest shape. `position(input index)` returns its positions in the
+  /// caller's coordinates.
   void accept(const std::function<Vec3(std::size_t)>& position);
 
 private:

@@ -40,42 +40,42 @@ namespace pcs {
 namespace deformation {
 
 /*!
-  Everything that the calls of a session share. Settings are numbers that no two sessions share:
-  there is a new one whenever handles or the rest shape change.
+  The data of a session. A *setting* is a number that identifies the session, its handles and its
+  rest shape; it changes whenever handles or the rest shape change.
 */
 template <class ConcurrencyTag>
 struct Session_state
 {
-  // ---- from the points; incomplete, and of no use, if the construction was cancelled
+  // ---- derived from the points; unusable if the construction was cancelled
   Sampled_body<ConcurrencyTag> body;
-  Border_finder border_finder; ///< of the body's graph of sites, if it is sampled
+  Border_finder border_finder; ///< for the body's site graph, if the body is sampled
   Upsampling upsampling;       ///< if the body is sampled
   Coarse_levels<ConcurrencyTag> coarse;
   bool is_ready = false;
 
   // ---- the handles as the caller set them; no other call changes them
   Handle_set handles;
-  std::uint64_t setting = 0; ///< of the present handles and rest shape
+  std::uint64_t setting = 0; ///< of the current handles and rest shape
 
-  // ---- constraints of these handles; a cancelled solve leaves them
+  // ---- constraints of these handles; a cancelled solve does not change them
   Site_constraints sites;
   Elastic_network
       network; ///< the samples and the nodes on the borders of handles, if there are any
   Elastic_solver<ConcurrencyTag> solver;
   Handle_fades fades;
   double stiffness = 1;
-  bool is_constrained = false;        ///< by the present handles
-  std::uint64_t setting_of_sites = 0; ///< when `sites` were found
+  bool is_constrained = false;        ///< by the current handles
+  std::uint64_t setting_of_sites = 0; ///< setting for which `sites` were found
 
-  // ---- the state of the solver; a cancelled solve destroys it, and the next one begins cold
-  bool has_solution = false; ///< under the present constraints
+  // ---- the state of the solver; a cancelled solve invalidates it, and the next solve starts cold
+  bool has_solution = false; ///< under the current constraints
   double last_energy = 0;    ///< of the solution
 
-  // ---- the present shape; a cancelled solve leaves it
+  // ---- the current shape; a cancelled solve does not change it
   std::vector<Affine_map> maps;             ///< of the samples
-  std::vector<Similarity> local_transforms; ///< of the handles, that the maps belong to
-  std::vector<Similarity> shape_transforms; ///< the same in the caller's coordinates
-  std::uint64_t setting_of_shape = 0;       ///< when the shape was solved
+  std::vector<Similarity> local_transforms; ///< of the handles, for these maps
+  std::vector<Similarity> shape_transforms; ///< of the handles, in the caller's coordinates
+  std::uint64_t setting_of_shape = 0;       ///< setting for which the shape was solved
   bool is_at_rest = true;
 
   // ---- memory of the next shape, kept so that frames allocate nothing
@@ -83,21 +83,21 @@ struct Session_state
   std::vector<Affine_map> next_maps;
   std::vector<int> are_finite;
 
-  // ---- output, which follows from the present shape
-  Dirty_handles dirty_handles; ///< since the last time that points were written
+  // ---- output, computed from the current shape
+  Dirty_handles dirty_handles; ///< handles with points displaced by earlier writes
   Outlier_maps outlier_maps;
   std::vector<Handle_map> handle_maps;
-  std::unique_ptr<Point_carrier> carrier; ///< of the present rest shape; null until it is needed
+  std::unique_ptr<Point_carrier> carrier; ///< for the current rest shape; null until it is needed
 
   Deformation_report report;
-  bool was_reported = false; ///< the first solve reports the seconds of the construction too
+  bool was_reported = false; ///< the first report includes the seconds of the construction
 };
 
 namespace internal {
 
 // ---- settings and shapes
 
-/// The shape is the rest shape, whatever the handles.
+/// Marks the shape as the rest shape, which is valid for all handles.
 template <class Tag>
 void keep_rest(Session_state<Tag>& s)
 {
@@ -106,7 +106,8 @@ void keep_rest(Session_state<Tag>& s)
   s.is_at_rest = true;
 }
 
-/// Handles or the rest shape have changed: earlier snapshots cannot be restored.
+/// Begins a new setting after handles or the rest shape changed. Earlier snapshots cannot be
+/// restored.
 template <class Tag>
 void begin_setting(Session_state<Tag>& s)
 {
@@ -123,15 +124,15 @@ void put_samples_at_rest(Session_state<Tag>& s)
   keep_rest(s);
 }
 
-/// The local transformations of handles follow those that were set.
+/// Converts the transformations set by the caller to local coordinates.
 template <class Tag>
 void localize_transforms(Session_state<Tag>& s)
 {
   s.handles.local_transforms(s.body.frame, s.local_transforms);
 }
 
-/// Handles that were added since the last solve have moved nothing yet. The outside of the region
-/// stays the last.
+/// Adds identities for handles that were added since the last solve. The outside of the region of
+/// interest remains the last handle.
 template <class Tag>
 void complete_transforms(Session_state<Tag>& s)
 {
@@ -205,7 +206,7 @@ bool constrain_finest(Session_state<Tag>& s, Body_constraints found)
 
 // ---- solving
 
-/// Starts the report of a solve. The first one keeps the seconds of the construction.
+/// Starts the report of a solve. The first report keeps the seconds of the construction.
 template <class Tag>
 void start_report(Session_state<Tag>& s)
 {
@@ -216,7 +217,7 @@ void start_report(Session_state<Tag>& s)
   s.report.initial_energy = s.report.energy = 0;
 }
 
-/// Without handles the shape is the rest shape.
+/// Without handles, sets the shape to the rest shape.
 template <class Tag>
 Status solve_nothing(Session_state<Tag>& s)
 {
@@ -239,7 +240,8 @@ Elastic_result solve_levels(Session_state<Tag>& s,
   return s.solver.solve(s.next_transforms, options, progress, *guess);
 }
 
-/// Solves from the last solution if `start` is warm and it is near, otherwise from the rest shape.
+/// Solves from the last solution if `start` is warm and this solution is near, otherwise from the
+/// rest shape.
 template <class Tag>
 Elastic_result solve_samples(Session_state<Tag>& s,
                              const Elastic_options& options,
@@ -268,8 +270,8 @@ void describe_result(Session_state<Tag>& s, const Elastic_result& result)
   s.report.energy = result.energy * unit * unit;
 }
 
-/// Makes the solution the present shape. Returns `false`, and changes nothing, if it is not
-/// finite.
+/// Makes the solution the current shape. Returns `false`, and changes nothing, if the solution is
+/// not finite.
 template <class Tag>
 bool take_shape(Session_state<Tag>& s)
 {
@@ -327,7 +329,7 @@ void carry_with_handle(const Session_state<Tag>& s,
   normal = t.rotation() * normal;
 }
 
-/// The map of a point near `site`, which is free or an outlier.
+/// Returns the map of a point whose nearest site is `site`, which is free or an outlier.
 template <class Tag>
 Affine_map map_near_site(const Session_state<Tag>& s, std::size_t site, const Vec3& local)
 {
@@ -368,7 +370,7 @@ void build_carrier(Session_state<Tag>& s)
 
 // ---- a new rest shape
 
-/// Moves points and samples of the rest shape. `position(input index)` is in the caller's
+/// Sets the rest positions of points and samples. `position(input index)` is in the caller's
 /// coordinates.
 template <class Tag>
 void move_rest(Session_state<Tag>& s, const std::function<Vec3(std::size_t)>& position)

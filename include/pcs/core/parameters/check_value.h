@@ -23,7 +23,7 @@ inline void check(bool is_valid, const std::string& caller, const std::string& r
     throw Invalid_input(caller + ": " + rule);
 }
 
-/// The same without memory unless it throws.
+/// The same check, which allocates no memory unless it throws.
 inline void check(bool is_valid, const char* caller, const char* rule)
 {
   if (!is_valid)
@@ -49,7 +49,7 @@ Value check_value(const std::string& caller,
   throw Invalid_input(caller + ": " + name + " is " + text + "; it must be " + rule);
 }
 
-/// A finite number that is at least `lowest`.
+/// Returns `value`, or throws like `check_value()` unless it is finite and at least `lowest`.
 inline double
 check_at_least(const std::string& caller, const std::string& name, double value, double lowest)
 {
@@ -61,13 +61,13 @@ check_at_least(const std::string& caller, const std::string& name, double value,
                                  : "finite and at least " + to_text(lowest));
 }
 
-/// A finite number greater than 0.
+/// Returns `value`, or throws unless it is finite and greater than 0.
 inline double check_positive(const std::string& caller, const std::string& name, double value)
 {
   return check_value(caller, name, value, std::isfinite(value) && value > 0, "finite and positive");
 }
 
-/// A number in `[lowest, highest]`.
+/// Returns `value`, or throws unless it is in `[lowest, highest]`.
 inline double check_in_range(const std::string& caller,
                              const std::string& name,
                              double value,
@@ -81,7 +81,8 @@ inline double check_in_range(const std::string& caller,
                      "between " + to_text(lowest) + " and " + to_text(highest));
 }
 
-/// An integer of any type in `[lowest, highest]`; a negative one does not wrap around.
+/// Returns an integer of any type, or throws unless it is in `[lowest, highest]`. Negative values
+/// do not wrap around.
 template <class Integer>
 std::size_t check_count(const std::string& caller,
                         const std::string& name,

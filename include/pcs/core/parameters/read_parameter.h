@@ -23,7 +23,8 @@
 namespace pcs {
 namespace internal {
 
-/// Whether a `Given` may stand for an `Option`. A `bool` is not made of a pointer or a fraction.
+/// Whether a `Given` is accepted as an `Option`. Pointers and floating-point numbers are not
+/// accepted as `bool`.
 template <class Given, class Option>
 constexpr bool is_option_value_v = std::is_convertible_v<Given, Option> &&
                                    !(std::is_same_v<Option, bool> &&
@@ -42,8 +43,8 @@ template <class NamedParameters, class Tag>
 constexpr bool is_integer_parameter_v = std::is_integral_v<
     std::decay_t<decltype(choose(std::declval<const NamedParameters&>(), std::declval<Tag>(), 0))>>;
 
-/// Replaces `value` by the value given for `tag`, if there is one. A value of a wrong type is
-/// ignored: the caller rejects it with a `static_assert` that names the parameter.
+/// Replaces `value` by the value given for `tag`, if there is one. Values of a wrong type are
+/// ignored, because the caller rejects them with a `static_assert` that names the parameter.
 template <class Option, class NamedParameters, class Tag>
 void read_parameter(const NamedParameters& np, Tag tag, Option& value)
 {
@@ -51,8 +52,8 @@ void read_parameter(const NamedParameters& np, Tag tag, Option& value)
     value = static_cast<Option>(choose(np, tag, value));
 }
 
-/// The given `random_seed`, or 0 if there is none or one that is no integer, which the caller
-/// rejects with a `static_assert`.
+/// Returns the given `random_seed`, or 0 if there is none. It is also 0 if the seed is not an
+/// integer, which the caller rejects with a `static_assert`.
 template <class NamedParameters>
 std::uint64_t read_random_seed([[maybe_unused]] const NamedParameters& np)
 {
@@ -62,7 +63,7 @@ std::uint64_t read_random_seed([[maybe_unused]] const NamedParameters& np)
     return 0;
 }
 
-/// Sets `callback` to the one given in `np`, if there is one.
+/// Sets `callback` to the callback given in `np`, if there is one.
 template <class NamedParameters>
 void read_callback([[maybe_unused]] const NamedParameters& np,
                    [[maybe_unused]] std::function<bool(double)>& callback)
@@ -78,8 +79,8 @@ void read_callback([[maybe_unused]] const NamedParameters& np,
   }
 }
 
-/// The vertical as a unit vector, `(0, 0, 1)` if none is given. Throws `Invalid_input` with a
-/// message that begins with `caller` if it is null or not finite.
+/// Returns the vertical as a unit vector, `(0, 0, 1)` if none is given. Throws `Invalid_input` with
+/// a message that begins with `caller` if the given vector is null or not finite.
 template <class NamedParameters>
 std::array<double, 3> read_up_direction([[maybe_unused]] const NamedParameters& np,
                                         [[maybe_unused]] const std::string& caller)
@@ -98,7 +99,7 @@ std::array<double, 3> read_up_direction([[maybe_unused]] const NamedParameters& 
             caller,
             "`up_direction` must be finite and not the null vector");
       for (double& x : up)
-        x /= largest; // squares may overflow
+        x /= largest; // otherwise squares may overflow
       const double length = std::sqrt(up[0] * up[0] + up[1] * up[1] + up[2] * up[2]);
       for (double& x : up)
         x /= length;

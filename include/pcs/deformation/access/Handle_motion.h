@@ -10,7 +10,7 @@
 namespace pcs {
 namespace deformation {
 
-/// Scale, then rotation, then translation; each can be replaced by itself.
+/// Scale, then rotation, then translation; each can be replaced separately.
 struct Handle_motion
 {
   Similarity scale, rotation, translation;

@@ -43,9 +43,9 @@ struct No_map
 } // namespace internal
 
 /*!
-  Reads and writes the points of a range by the maps of a chain of named parameters. Checks the
-  concepts of both. Where `is_ok` is false, a message was given, and nothing else should be
-  instantiated.
+  Reads and writes the points of a range through the property maps of a chain of named parameters.
+  Checks the concepts of range and maps. If `is_ok` is false, a `static_assert` has failed, and no
+  member should be instantiated.
 */
 template <class PointRange, class NamedParameters>
 class Point_access
@@ -113,7 +113,7 @@ public:
   static constexpr bool is_ok = is_vector_map_ok && is_tensor_map_ok && is_range_ok &&
                                 is_point_ok && is_point_map_ok && is_normal_map_ok;
 
-  /// Whether all that is written are coordinates in memory.
+  /// Whether only coordinates in memory are written.
   static constexpr bool is_memory = [] {
     if constexpr (!is_ok || has_gradients || !pcs::internal::has_streaming_stores)
       return false;
@@ -156,7 +156,7 @@ public:
     });
   }
 
-  /// Null without normals.
+  /// Returns the normal of point `i`, or the null vector without normals.
   Vec3 normal(std::size_t i) const
   {
     if constexpr (has_normals)
@@ -167,7 +167,8 @@ public:
       return Vec3::Zero();
   }
 
-  /// All points. Throws `Invalid_input`, whose text begins with `function`, if one is not finite.
+  /// Returns all points. Throws `Invalid_input`, with a message that begins with `function`, if a
+  /// point is not finite.
   template <class ConcurrencyTag>
   std::vector<Vec3> points(const char* function) const
   {
@@ -181,8 +182,8 @@ public:
     return points;
   }
 
-  /// All points of a session. Throws like `points()`, and if there are none or too many, or a
-  /// normal, vector or tensor is not finite.
+  /// Returns all points of a session. Throws like `points()`. It also throws if there are no points
+  /// or too many, or a normal, vector or tensor is not finite.
   template <class ConcurrencyTag>
   std::vector<Vec3> points_of_session(const char* function) const
   {
@@ -217,7 +218,7 @@ public:
                               std::to_string(i) + " is not finite");
   }
 
-  /// The present vectors and tensors become those of the rest shape.
+  /// Makes the current vectors and tensors those of the rest shape.
   void keep_rest_attributes()
   {
     m_rest_vectors.resize(has_vectors ? size() : 0);
@@ -240,7 +241,7 @@ public:
     });
   }
 
-  /// Vectors and tensors are those of rest under the deformation gradient.
+  /// Writes point `i`. Its vectors and tensors at rest are mapped by the deformation gradient.
   PCS_ALWAYS_INLINE void write(std::size_t i,
                                const Vec3& p,
                                [[maybe_unused]] const Vec3& normal,
@@ -260,7 +261,7 @@ public:
     });
   }
 
-  /// Whether `stream()` is worth a try.
+  /// Whether `stream()` may succeed and pays for the size of the output.
   bool can_stream() const
   {
     if constexpr (is_memory)
@@ -270,8 +271,8 @@ public:
       return false;
   }
 
-  /// The same as `write()` for the elements of a block from `first` on, past the caches, if their
-  /// coordinates lie one after the other in memory; otherwise writes nothing and returns `false`.
+  /// Writes the elements of a block from `first` on like `write()`, but bypasses the caches. If
+  /// their coordinates are not consecutive in memory, writes nothing and returns `false`.
   PCS_ALWAYS_INLINE bool stream([[maybe_unused]] std::size_t first,
                                 [[maybe_unused]] const Lane_vectors& positions,
                                 [[maybe_unused]] const Lane_vectors& normals) const
@@ -292,7 +293,7 @@ public:
     }
   }
 
-  /// A point or vector of the caller's type.
+  /// Converts to a point or vector of the caller's type.
   template <class Triple>
   static PCS_ALWAYS_INLINE Triple make(const Vec3& v)
   {
@@ -308,7 +309,7 @@ private:
            static_cast<typename std::iterator_traits<Iterator>::difference_type>(i);
   }
 
-  /// Calls `f` with element `i`, which may live in its iterator.
+  /// Calls `f` with element `i`, which may be stored in its iterator.
   template <class F>
   PCS_ALWAYS_INLINE decltype(auto) with_element(std::size_t i, const F& f) const
   {
@@ -322,11 +323,11 @@ private:
     return with_element(i, [&](auto&& key) -> Map_value<Map> { return get(map, key); });
   }
 
-  /// Addresses of the coordinates of a block if they are consecutive in memory, otherwise null.
+  /// Addresses of the coordinates of a block if these are consecutive in memory, otherwise null.
   struct Rows
   {
     double *point = nullptr, *normal = nullptr;
-    bool are_pairs = false; ///< of a point and its normal
+    bool are_pairs = false; ///< whether each point is followed by its normal
   };
 
   PCS_ALWAYS_INLINE Rows find_rows(std::size_t first) const
@@ -348,8 +349,8 @@ private:
     return {};
   }
 
-  /// Address of the values of the block that begins at `first`, if they are `stride` doubles apart;
-  /// otherwise null.
+  /// Returns the address of the values of the block that begins at `first` if their addresses are
+  /// `stride` doubles apart, otherwise null.
   template <class Map, class Iterator>
   static PCS_ALWAYS_INLINE double* run(const Map& map, const Iterator& first, std::size_t stride)
   {
@@ -369,7 +370,7 @@ private:
   }
 
   PointRange* m_points;
-  // maps need be neither assignable nor default constructible
+  // pointers, because maps may be neither assignable nor default constructible
   std::unique_ptr<Point_map> m_point_map;
   std::unique_ptr<Normal_map> m_normal_map;
   std::unique_ptr<Vector_map> m_vector_map;

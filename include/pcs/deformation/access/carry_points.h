@@ -33,7 +33,7 @@ void carry_points(Session& session, Access& access, const char* function)
     const Vec3 rest_normal = access.normal(i);
     Vec3 p = rest[i], normal = rest_normal;
     session.carry(p, normal);
-    if (p != rest[i] || normal != rest_normal) // a point may turn without moving
+    if (p != rest[i] || normal != rest_normal) // a normal may rotate at a fixed point
       access.write(i, p, normal, Eigen::Matrix3d::Identity());
   };
   pcs::internal::for_each_index<ConcurrencyTag>(rest.size(), carry, 256);
@@ -41,7 +41,7 @@ void carry_points(Session& session, Access& access, const char* function)
 
 } // namespace internal
 
-/// Moves `points` as the present shape of the session moves the points around them. Throws
+/// Moves `points` as the current shape of the session moves the points around them. Throws
 /// `Invalid_input` before anything changes.
 template <class ConcurrencyTag, class Session, class PointRange, class NamedParameters>
 void carry_points(Session& session,

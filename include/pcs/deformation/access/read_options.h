@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Named parameters of a deformation as options of its session.
+// Converts the named parameters of a deformation to the options of its session.
 
 #ifndef PCS_DEFORMATION_ACCESS_READ_OPTIONS_H
 #define PCS_DEFORMATION_ACCESS_READ_OPTIONS_H
@@ -85,7 +85,7 @@ read_indices(const IndexRange& indices, std::size_t n, const std::string& caller
   return result;
 }
 
-/// The indices of the region of interest of `n` points, if one is given. Throws like
+/// Returns the indices of the region of interest, if one is given, among `n` points. Throws like
 /// `read_indices()`.
 template <class NamedParameters>
 std::optional<std::vector<std::uint32_t>> read_region([[maybe_unused]] const NamedParameters& np,
@@ -109,8 +109,8 @@ inline void check_softness(double softness, const std::string& caller)
                              "0, or between 1e-9 and 1e9");
 }
 
-/// Reads how a cloud is sampled. Throws `Invalid_input`, whose text begins with `caller`, if a
-/// parameter is out of range.
+/// Reads the sampling options. Throws `Invalid_input`, with a message that begins with `caller`, if
+/// a parameter is out of range.
 template <class NamedParameters>
 Sampling_options read_sampling_options(const NamedParameters& np, const std::string& caller)
 {
@@ -147,7 +147,7 @@ Sampling_options read_sampling_options(const NamedParameters& np, const std::str
   return options;
 }
 
-/// Reads how the samples resist deformation. Throws like `read_sampling_options()`.
+/// Reads the elastic options. Throws like `read_sampling_options()`.
 template <class NamedParameters>
 Elastic_options read_elastic_options(const NamedParameters& np, const std::string& caller)
 {

@@ -22,7 +22,8 @@
 namespace pcs {
 namespace deformation {
 
-/// Smallest output that is written past the caches, in bytes: less fits into a last-level cache.
+/// Smallest output for which the caches are bypassed; smaller outputs fit into the last-level
+/// cache. [byte]
 constexpr std::size_t smallest_stream = std::size_t(32) << 20;
 
 /// Whether a `Triple` has the size of three doubles; `is_triple()` checks that these are its
@@ -57,8 +58,8 @@ constexpr bool is_memory_map()
           sizeof(std::decay_t<ElementReference>) < sizeof(Value));
 }
 
-/// Returns the address of `value(0)` if the addresses of `value(l)` are `l * stride` doubles after
-/// it for all points of a block; otherwise null.
+/// Returns the address of `value(0)` if, for all points `l` of a block, the address of `value(l)`
+/// is `l * stride` doubles after it; otherwise null.
 template <class Value>
 PCS_ALWAYS_INLINE double* find_run(const Value& value, std::size_t stride)
 {

@@ -43,7 +43,7 @@ struct Sample_candidate
   }
 };
 
-/// Weights of the first `k` candidates, summing to one; empty without candidates.
+/// Returns the weights of the first `k` candidates, which sum to one; empty without candidates.
 inline void sample_weights(const std::vector<Sample_candidate>& nearest,
                            Sample_weights kind,
                            std::size_t k,
@@ -52,7 +52,7 @@ inline void sample_weights(const std::vector<Sample_candidate>& nearest,
   weight.assign(std::min(k, nearest.size()), 1);
   if (nearest.empty())
     return;
-  // With fewer samples than K + 1 in reach there is none to fade out for: fade beyond the last.
+  // With fewer than K + 1 samples in reach, the support ends beyond the last sample.
   const double support = nearest.size() > k ? nearest[k].distance : 1.5 * nearest.back().distance;
   double sum = 0;
   for (std::size_t b = 0; b < weight.size(); ++b) {
@@ -89,8 +89,8 @@ inline void write_links(const std::vector<Sample_candidate>& nearest,
   }
 }
 
-/// For every sample: itself, the samples whose regions touch its own, and those that touch these.
-/// Increasing.
+/// Returns for every sample, in increasing order, the sample itself and the samples in the two
+/// rings of regions that touch its region.
 template <class ConcurrencyTag>
 std::vector<std::vector<std::uint32_t>> sample_rings(const Weighted_graph& graph)
 {
@@ -111,7 +111,7 @@ std::vector<std::vector<std::uint32_t>> sample_rings(const Weighted_graph& graph
   return rings;
 }
 
-/// The `k + 1` nearest samples of the ring, nearest first, or all if there are fewer.
+/// Finds the `k + 1` nearest samples of the ring, nearest first, or all if there are fewer.
 inline void nearest_samples(const Vec3& point,
                             const std::vector<Vec3>& sample_points,
                             const std::vector<std::uint32_t>& ring,
@@ -178,8 +178,9 @@ Sample_links link_by_regions(const std::vector<Vec3>& points,
 }
 
 /*!
-  The first `k` samples to arrive when all samples spread over the graph at once, one hop per round.
-  Equal to a breadth-first search from every point up to ties, at O(n k degree) instead of O(n r).
+  Finds for each point the `k` samples with the fewest hops: all samples propagate over the graph
+  simultaneously, one hop per round. The result equals a breadth-first search from every point up to
+  ties, in O(n k degree) instead of O(n r).
 */
 template <class ConcurrencyTag>
 Sample_links link_by_hops(const std::vector<Vec3>& points,
@@ -202,7 +203,7 @@ Sample_links link_by_hops(const std::vector<Vec3>& points,
     return true;
   };
   while (!front.empty()) {
-    // Sorted: the order of arrival, and with it every tie, is the same on every machine.
+    // Sorting makes the order of arrival, and thus every tie, the same on every machine.
     std::sort(front.begin(), front.end());
     front.erase(std::unique(front.begin(), front.end()), front.end());
     next.clear();

@@ -28,9 +28,9 @@ namespace deformation {
 /*!
   The points, their neighbourhood graph and their samples. Points are numbered in three orders. An
   *input* index is an index in the caller's order. A *site* represents all points with the same
-  coordinates. Sites are in spatial order; they are the vertices of all graphs and components. A
-  *place* is an index in the order in which points are upsampled. This is the spatial order of all
-  points, or the caller's order if it is coherent enough.
+  coordinates. Sites are in spatial order; they are the vertices of all graphs and components. An
+  *upsampling index* (`place`) is an index in the order in which points are upsampled: the spatial
+  order of all points, or the caller's order if it is coherent enough.
 */
 template <class ConcurrencyTag>
 struct Sampled_body
@@ -40,7 +40,7 @@ struct Sampled_body
   std::vector<std::uint32_t> input_of_place;
   bool is_in_callers_order = false; ///< whether `input_of_place[i]` is `i`
   std::vector<std::uint32_t> site_of_place;
-  /// The first place of each site; empty if sites and places have the same numbers.
+  /// The first upsampling index of each site; empty if both numberings are equal.
   std::vector<std::uint32_t> place_of_site;
   std::vector<std::uint32_t> site_of_input;
   std::vector<std::uint32_t> component_of_site;
@@ -52,7 +52,7 @@ struct Sampled_body
   neighborhood::Proximity_graph site_graph;
   Elastic_network network;                     ///< its nodes are the samples
   double weight_unit = 1;                      ///< see `sample_graph()`
-  Point_blocks rest_points;                    ///< the points at rest, in the order of the places
+  Point_blocks rest_points;                    ///< the points at rest, by upsampling index
   Sample_links links_of_site;                  ///< kept until the upsampling is built from them
   std::size_t number_of_short_cuts = 0;        ///< links removed between sheets
   bool has_fragments = false;                  ///< whether there are sites without a sample
@@ -91,7 +91,7 @@ private:
   /// if squares of the diameter are not representable.
   static double checked_extent(const std::vector<Vec3>& points);
   void to_local(std::vector<Vec3>& points);
-  /// Numbers sites and places.
+  /// Numbers the sites and the upsampling order.
   void order_points(const std::vector<Vec3>& points, std::vector<Vec3>& sites);
   void number_places(const std::vector<Vec3>& points, std::size_t number_of_sites);
   void find_components(const Graph& graph);
@@ -99,7 +99,7 @@ private:
   // ---- samples
   bool sample(const std::vector<Vec3>& sites, Graph graph, pcs::internal::Progress& progress);
   /// Chooses samples among the sites that are not outliers. A sample at an outlier would move only
-  /// this site.
+  /// the outlier.
   void choose_samples(const std::vector<Vec3>& sites);
   std::vector<std::uint32_t> sites_without_outliers() const;
   void choose_samples_without_outliers(const std::vector<Vec3>& sites);

@@ -198,7 +198,7 @@ void Sampled_body<ConcurrencyTag>::choose_samples_without_outliers(const std::ve
   std::vector<Vec3> others;
   for (const auto site : kept)
     others.push_back(sites[site]);
-  // their octree needs their own spatial order
+  // the octree requires its points in spatial order
   const auto order = neighborhood::spatial_order<ConcurrencyTag>(others);
   std::vector<Vec3> ordered(others.size());
   for (std::size_t i = 0; i < order.size(); ++i)

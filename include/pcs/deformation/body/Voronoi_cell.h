@@ -62,8 +62,8 @@ public:
       if ((m_side[k] > 0) == (m_side[l] > 0))
         continue;
       const double t = m_side[k] / (m_side[k] - m_side[l]);
-      // Where the old outline is cut off, the new side is the bisector; where the outline
-      // continues, it is the rest of the old side.
+      // Where the old outline is cut off, the next side is the bisector; where the outline
+      // resumes, the next side is the rest of the old side.
       m_next.push_back({m_corners[k].point + t * (m_corners[l].point - m_corners[k].point),
                         m_side[k] > 0 ? m_corners[k].neighbor : neighbor});
     }

@@ -23,11 +23,11 @@ constexpr double largest_coherent_ratio = 4;
 constexpr double largest_incoherent_share = 0.1;
 
 /*!
-  Results are written to the caller's memory. In the caller's own order that is one stream, which
-  costs a sixth of the upsampling less than spots all over; grids and scan lines allow it, shuffled
-  points do not: their blocks would need too many samples.
+  Whether upsampling can follow the caller's order. Results are then written to consecutive memory,
+  which saves a sixth of the time of the upsampling. Grids and scan lines are coherent. Blocks of
+  shuffled points would need too many samples.
   \param points in the caller's order
-  \param spatial_order places of neighbours are near in it
+  \param spatial_order indices of the points in an order that keeps neighbours close together
 */
 inline bool is_coherent_order(const std::vector<Vec3>& points,
                               const std::vector<std::uint32_t>& spatial_order)
@@ -41,7 +41,7 @@ inline bool is_coherent_order(const std::vector<Vec3>& points,
     }
     return (high - low).squaredNorm();
   };
-  // The extent of the spatial block that the first point of a block lies in.
+  // The extent of the block of the spatial order that contains the first point of each block.
   std::vector<float> spatial(number_of_blocks, -1);
   for (std::size_t block = 0; block < number_of_blocks; ++block) {
     const double extent = squared_extent(block, [&](std::size_t place) -> const Vec3& {

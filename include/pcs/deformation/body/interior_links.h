@@ -27,33 +27,34 @@ namespace pcs {
 namespace deformation {
 
 /*!
-  The links of `interior_links()`. Lengths are relative to the spacing `h`, see `typical_edge()`.
+  Options of `interior_links()`. Lengths are relative to the spacing `h`, see `typical_edge()`.
 
-  A link from a node along its inward normal to the opposite side, of length `d`, gets the weight
-  `strength (h / d)^2`: then the energy of a relative compression does not depend on the sampling,
-  like that of the surface edges.
+  A link leads from a node along its inward normal to the opposite side. A link of length `d` has
+  the weight `strength (h / d)^2`. As for surface edges, the energy of a relative compression then
+  does not depend on the sampling.
 */
 struct Interior_link_options
 {
   double strength = 28;     ///< [-], measured on twisted bars: 8 loses volume, 64 stiffens bends
-  double reach = 0.75;      ///< a ray hits nodes within this distance of it [h]
-  double shortest = 2;      ///< shorter links add nothing to the edges of the surface [h]
-  double longest = 2;       ///< relative to the median length [-]
+  double reach = 0.75;      ///< largest distance of a hit node from the ray [h]
+  double shortest = 2;      ///< shortest links; shorter ones would duplicate surface edges [h]
+  double longest = 2;       ///< longest links, relative to the median length [-]
   double opposition = -0.3; ///< upper bound of the cosine between the normals of the two ends
-  double smallest_hit_share = 0.1; ///< fewer rays than this that hit: the surface has no inside
-  double smallest_enclosed_share = 0.5; ///< of tested links, see `is_enclosed()`
+  double smallest_hit_share = 0.1;      ///< least fraction of rays that hit in a closed surface [-]
+  double smallest_enclosed_share = 0.5; ///< fraction of tested links, see `is_enclosed()`
   std::size_t number_of_tested_links = 96;
   int largest_number_of_steps = 128; ///< of one ray
 };
 
-/// Larger networks get no links; their coarser levels do. Links turn the factor of a surface into
-/// that of a volume: at 40,000 nodes factorising takes fifty times as long as at 5,000. [count]
+/// Largest network with links; for larger networks, only coarser levels have links. With links, the
+/// factor has the fill-in of a volume instead of a surface: factorising 40,000 nodes takes fifty
+/// times as long as 5,000. [count]
 constexpr std::size_t largest_linked_network = 20000;
 
 namespace internal {
 
-/// Normals by principal components of the edges, oriented consistently along a spanning tree per
-/// component.
+/// Estimates normals by principal components of the edges, and orients them consistently along a
+/// spanning tree per component.
 template <class ConcurrencyTag>
 std::vector<Vec3> oriented_normals(const Elastic_network& network)
 {
@@ -75,7 +76,7 @@ std::vector<Vec3> oriented_normals(const Elastic_network& network)
     if (candidate.allFinite() && candidate.squaredNorm() > 0.5)
       normal[i] = candidate.normalized();
   });
-  // Prim's tree on 1 - |cos|: orientation crosses flat regions first and sharp edges last.
+  // Prim's algorithm with the costs 1 - |cos|: flat regions come first, sharp edges last.
   using Entry = std::tuple<double, std::uint32_t, std::uint32_t>; // cost, node, parent
   std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
   std::vector<char> is_done(n, 0);
@@ -99,7 +100,7 @@ std::vector<Vec3> oriented_normals(const Elastic_network& network)
   return normal;
 }
 
-/// Traces rays through the nodes (sphere tracing): a ray hits nodes within `reach * h` of it.
+/// Traces rays through the nodes (sphere tracing): a ray hits nodes closer to it than `reach * h`.
 class Ray_caster
 {
 public:
@@ -114,7 +115,8 @@ public:
     m_box.max().array() += h;
   }
 
-  /// The first node within reach of the ray, at least `shortest * h` from its origin, or `miss`.
+  /// Returns the first node within reach of the ray, at least `shortest * h` from its origin, or
+  /// `miss`.
   std::uint32_t first_hit(const Vec3& origin, const Vec3& direction) const
   {
     thread_local std::vector<neighborhood::Nearest_neighbors::Neighbor> found;
@@ -135,9 +137,9 @@ public:
   }
 
   /*!
-    Whether the surface closes around the link: of rays from its middle at right angles to it, some
-    two opposite ones both hit. That holds inside a box or an open tube, and fails between two
-    sheets joined along one edge, which must stay independent.
+    Whether the surface encloses the link: of the rays from its midpoint perpendicular to it, at
+    least one opposite pair hits nodes. This holds inside a box or an open tube. It does not hold
+    between two sheets joined along one edge, which must remain independent.
   */
   bool is_enclosed(std::uint32_t i, std::uint32_t j) const
   {
@@ -155,8 +157,8 @@ public:
   }
 
 private:
-  /// On grids a ray may pass between nodes at equal distance; the choice must not depend on
-  /// rounding.
+  /// Number of nearest nodes compared, because several nodes of a grid may be equally near to a ray
+  /// and the choice must not depend on rounding.
   static constexpr std::size_t number_of_equals = 4;
 
   static std::uint32_t
@@ -178,7 +180,7 @@ private:
 
 using Link = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Counts per component.
+/// Numbers of nodes, hits, links and enclosed links of a component.
 struct Link_votes
 {
   std::size_t size = 0, hits[2] = {0, 0}, links = 0, seen = 0, tested = 0, enclosed = 0;
@@ -210,7 +212,7 @@ inline void drop_open_components(const Ray_caster& rays,
               links.end());
 }
 
-/// Removes links longer than `factor` times the median: they run along a limb, not across it.
+/// Removes links longer than `factor` times the median, because they lead along a limb, not across.
 inline void drop_long_links(const Elastic_network& network, double factor, std::vector<Link>& links)
 {
   if (links.empty())
@@ -228,8 +230,8 @@ inline void drop_long_links(const Elastic_network& network, double factor, std::
               links.end());
 }
 
-/// Casts a ray from every node against its normal, and one along it. The nodes that they hit on the
-/// opposite side of the same component, or `miss`.
+/// Casts a ray from every node against its normal and another one along it. Returns the nodes that
+/// they hit on the opposite side of the same component, or `miss`.
 template <class ConcurrencyTag>
 std::array<std::vector<std::uint32_t>, 2>
 find_opposite_nodes(const Elastic_network& network,
@@ -257,7 +259,7 @@ find_opposite_nodes(const Elastic_network& network,
   return hit;
 }
 
-/// Counts the rays of each component, and those of each side that hit.
+/// Counts the nodes of each component, and the rays of each direction that hit.
 inline std::vector<Link_votes> count_hits(const std::array<std::vector<std::uint32_t>, 2>& hit,
                                           const std::vector<std::uint32_t>& component)
 {
@@ -273,7 +275,8 @@ inline std::vector<Link_votes> count_hits(const std::array<std::vector<std::uint
   return votes;
 }
 
-/// The links through the inside of each component: the side from which more rays hit.
+/// Returns the links through the interior of each component. The interior is on the side to which
+/// more rays hit.
 inline std::vector<Link> link_through_inside(const std::array<std::vector<std::uint32_t>, 2>& hit,
                                              const std::vector<std::uint32_t>& component,
                                              double smallest_hit_share,
@@ -292,7 +295,7 @@ inline std::vector<Link> link_through_inside(const std::array<std::vector<std::u
   return links;
 }
 
-/// The graph of the links; one of length `d` has the weight `numerator / d^2`.
+/// Returns the graph of the links; a link of length `d` has the weight `numerator / d^2`.
 inline Weighted_graph
 weighted_links(const Elastic_network& network, std::vector<Link> links, double numerator)
 {
@@ -310,8 +313,8 @@ weighted_links(const Elastic_network& network, std::vector<Link> links, double n
 } // namespace internal
 
 /*!
-  Links nodes of closed (or nearly closed) surfaces to the opposite side. Open surfaces, and parts
-  whose inward rays do not hit, get none: the result is then empty. O(n log n).
+  Links nodes of closed or nearly closed surfaces to the opposite side. Open surfaces, and parts
+  whose inward rays hit no node, have no links. O(n log n).
   \param component the component of every node; links never join two components
 */
 template <class ConcurrencyTag>

@@ -19,8 +19,9 @@
 namespace pcs {
 namespace deformation {
 
-/// A point is nearer only if its squared distance is below this fraction of the other one's. On
-/// grids, several points are equally near to a centroid, and rounding must not choose among them.
+/// A point counts as nearer than another only if the ratio of the squared distances is below this
+/// value. On grids, several points are equally near to a centroid, and rounding must not select
+/// one.
 constexpr double by_far = 1 - 1e-6;
 
 namespace internal {
@@ -86,7 +87,7 @@ inline std::vector<std::uint32_t> octree_samples(const std::vector<Eigen::Vector
     const Octree_range fullest = leaves.top();
     leaves.pop();
     std::vector<Octree_range> children = internal::split_range(points, fullest);
-    // The last split may give too many leaves: join adjacent ones, the smallest pair first.
+    // The last split may give too many leaves. Adjacent leaves are joined, smallest pair first.
     while (leaves.size() + children.size() > number_of_samples) {
       std::size_t best = 0;
       for (std::size_t c = 1; c + 1 < children.size(); ++c)

@@ -37,7 +37,7 @@ public:
   {
     const std::size_t n = graph.size();
     std::vector<std::uint32_t> last_seen((n + block_size - 1) / block_size,
-                                         0); // by which block each block was last seen, plus one
+                                         0); // last block connected to each block, plus one
     for (std::size_t begin = 0; begin < n; begin += block_size) {
       const auto block = static_cast<std::uint32_t>(begin / block_size);
       last_seen[block] = block + 1;
@@ -50,15 +50,15 @@ public:
     }
   }
 
-  /// Returns the edges from sites with `is_inside` to sites without, in the order of the rows of
-  /// `graph`, which must be that of the constructor. O(n) calls of `is_inside`, and O(edges) in
-  /// blocks at borders.
+  /// Returns the edges from sites inside (`is_inside(site)`) to sites outside, in the order of the
+  /// rows of `graph`, which must be the graph given to the constructor. O(n) calls of `is_inside`,
+  /// and O(edges) in blocks at borders.
   template <class ConcurrencyTag, class IsInside>
   std::vector<Border_edge> find(const neighborhood::Proximity_graph& graph,
                                 const IsInside& is_inside) const
   {
     const std::size_t n = graph.size(), number_of_blocks = m_first.size() - 1;
-    std::vector<std::uint32_t> count(number_of_blocks); // of sites inside
+    std::vector<std::uint32_t> count(number_of_blocks); // sites inside, by block
     pcs::internal::for_each_index<ConcurrencyTag>(
         number_of_blocks,
         [&](std::size_t block) {

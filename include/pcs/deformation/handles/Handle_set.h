@@ -28,12 +28,12 @@ namespace deformation {
 constexpr Node_constraint outside_region = -3;
 
 /// The handles of a session: points, softness and motion. Transformations are in the caller's
-/// coordinates; the number of a removed handle is not used again.
+/// coordinates; the number of a removed handle is not reused.
 class Handle_set
 {
 public:
-  /// \param region indices of the region of interest, or null for all points. A site is in it only
-  /// with all of its points
+  /// \param region indices of the region of interest, or null for all points. A site belongs
+  /// to the region only if all of its points do
   template <class ConcurrencyTag>
   void start(const Sampled_body<ConcurrencyTag>& body, const std::vector<std::uint32_t>* region)
   {
@@ -49,27 +49,27 @@ public:
         m_handle_of_site[body.site_of_input[i]] = outside_region;
   }
 
-  /// Number of handles, removed ones included.
+  /// Returns the number of handles, including removed ones.
   std::size_t size() const { return m_transforms.size(); }
   bool contains(std::size_t handle) const { return handle < m_is_used.size() && m_is_used[handle]; }
   bool empty() const { return std::find(m_is_used.begin(), m_is_used.end(), 1) == m_is_used.end(); }
 
-  /// Whether there are points outside the region of interest, which a handle after all others
-  /// holds.
+  /// Whether there are points outside the region of interest. An additional last handle holds them.
   bool has_outside() const { return m_has_outside; }
   Node_constraint outside_handle() const { return static_cast<Node_constraint>(size()); }
 
   const std::vector<Similarity>& transforms() const { return m_transforms; }
-  /// Centroid of the handle's points at rest.
+  /// Returns the centroid of the handle's points at rest.
   const Vec3& centroid(std::size_t handle) const { return m_centroid[handle]; }
 
-  /// As set by the caller: a handle, `free_node` or `outside_region`.
+  /// Returns the handle of a site as set by the caller, `free_node` or `outside_region`.
   Node_constraint of_site(std::size_t site) const { return m_handle_of_site[site]; }
   bool is_soft(Node_constraint h) const
   {
     return h >= 0 && m_weight[static_cast<std::size_t>(h)] > 0;
   }
-  /// The exact handle that holds a site; the outside of the region counts as one.
+  /// Returns the exact handle that holds a site; the outside of the region counts as an exact
+  /// handle.
   Node_constraint exact_handle(std::size_t site) const
   {
     const Node_constraint h = m_handle_of_site[site];
@@ -85,7 +85,7 @@ public:
     return false;
   }
 
-  /// Of every handle, the outside included.
+  /// Returns the softness weights of all handles, including the outside of the region.
   std::vector<double> softness_weights() const
   {
     std::vector<double> weights = m_weight;
@@ -94,7 +94,7 @@ public:
     return weights;
   }
 
-  /// Whether a handle holds points of a component.
+  /// Returns for each component whether a handle holds points of it.
   std::vector<char> reached_components(std::size_t number_of_components) const
   {
     std::vector<char> is_reached(number_of_components, 0);
@@ -105,7 +105,7 @@ public:
     return is_reached;
   }
 
-  /// Adds a handle that stays where it is. \param weight 0: exact; positive: soft, see
+  /// Adds a handle at rest. \param weight 0: exact; positive: soft, see
   /// `Node_constraints`
   template <class ConcurrencyTag>
   std::size_t add(const Sampled_body<ConcurrencyTag>& body,
@@ -128,7 +128,7 @@ public:
     }
     const std::size_t handle = size();
     std::vector<char> is_reached(body.number_of_components(), 0);
-    Vec3 sum = Vec3::Zero(); // every site once
+    Vec3 sum = Vec3::Zero(); // of the sites, each counted once
     std::size_t number = 0;
     for (const auto i : indices) {
       const std::size_t site = body.site_of_input[i];
@@ -160,7 +160,7 @@ public:
     m_transforms[handle] = Similarity();
   }
 
-  /// Throws `Invalid_input` if the motion cannot be represented beside the cloud.
+  /// Throws `Invalid_input` if double precision cannot represent the motion and the cloud together.
   void set_transform(const Local_frame& frame, std::size_t handle, const Similarity& transform)
   {
     const double distance = (transform(frame.origin) - frame.origin).norm() / frame.unit;
@@ -174,7 +174,7 @@ public:
     m_transforms[handle] = transform;
   }
 
-  /// Restores earlier transformations; handles that were added since are at rest.
+  /// Restores earlier transformations; handles that were added afterwards are at rest.
   void restore(const std::vector<Similarity>& transforms)
   {
     m_transforms = transforms;
@@ -183,8 +183,8 @@ public:
 
   void put_at_rest() { m_transforms.assign(size(), Similarity()); }
 
-  /// In local coordinates: `x -> sR x + (sR c + t - c) / unit`; the outside of the region comes
-  /// last.
+  /// Converts the transformations to local coordinates: `x -> sR x + (sR c + t - c) / unit`, with
+  /// the origin `c`. The outside of the region is last.
   void local_transforms(const Local_frame& frame, std::vector<Similarity>& local) const
   {
     local.clear();
@@ -200,7 +200,7 @@ public:
       local.emplace_back();
   }
 
-  /// Recomputes the centroids of a new rest shape.
+  /// Recomputes the centroids for a new rest shape.
   template <class ConcurrencyTag>
   void update_centroids(const Sampled_body<ConcurrencyTag>& body)
   {
@@ -219,7 +219,7 @@ public:
   }
 
 private:
-  /// Scale and distance [extents] beyond which double precision keeps nothing of the shape.
+  /// Scale and distance [extents] beyond which double precision cannot represent the shape.
   static constexpr double largest_motion = 1e12;
 
   std::vector<Node_constraint> m_handle_of_site;

@@ -23,25 +23,25 @@ namespace deformation {
 
 /// A site that follows its host as one rigid body.
 constexpr Node_constraint outlier_site = -4;
-/// A site that lost its last handle: it returns to its position at rest.
+/// A site of a component that lost its last handle: it returns to its position at rest.
 constexpr Node_constraint returning_site = -5;
 
-/// How every site is written: with a handle, blended from samples, or not at all.
+/// Classification of the sites: moved by a handle, blended from samples, or not written.
 class Site_constraints
 {
 public:
-  /// Before the first `find()`.
+  /// Whether `find()` has not been called yet.
   bool empty() const { return m_of_site.empty(); }
-  /// How a site is written: with a handle, `free_node`, `unreached_node`, `outlier_site` or
+  /// Returns the class of a site: a handle, `free_node`, `unreached_node`, `outlier_site` or
   /// `returning_site`.
   Node_constraint operator[](std::size_t site) const { return m_of_site[site]; }
-  /// One bit per place, `lanes` of them in a byte: whether it is blended from samples.
+  /// Returns one bit per upsampling index, `lanes` bits per byte: whether the point is blended.
   const std::vector<std::uint8_t>& is_blended() const { return m_is_blended; }
-  /// For each block of places: the handle that holds all of them, `still_block` if nothing moves
-  /// any of them, otherwise `mixed_block`.
+  /// Returns for each block of points the handle that holds all of them, `still_block` if none of
+  /// them moves, otherwise `mixed_block`.
   const std::vector<std::int32_t>& holder() const { return m_holder; }
 
-  /// Classifies and counts all sites; returns which samples are held by which handle.
+  /// Classifies and counts all sites. Returns the handle that holds each sample.
   template <class ConcurrencyTag>
   Node_constraints find(const Sampled_body<ConcurrencyTag>& body,
                         const Handle_set& handles,
@@ -58,7 +58,7 @@ public:
   /// Their points may be displaced.
   std::vector<Node_constraint> take_followed_handles() { return std::exchange(m_followed, {}); }
 
-  /// Makes the present shape the rest shape: nothing has to return.
+  /// Makes the current shape the rest shape, so that no site has to return.
   void accept() { m_was_reached.clear(); }
 
 private:
@@ -97,8 +97,8 @@ private:
         has_sample.emplace(h, body.component_of_site[site]);
       }
     }
-    // A soft handle without samples draws the samples of the regions of its points; an exact handle
-    // has nodes on its border.
+    // A soft handle without samples holds the samples in whose regions its points lie. Exact
+    // handles have nodes on their borders instead.
     const bool has_soft_handles = handles.has_soft_handles();
     for (std::size_t site = 0; has_soft_handles && site < body.number_of_sites(); ++site) {
       const Node_constraint h = handles.of_site(site);
@@ -149,7 +149,7 @@ private:
       m_was_reached[c] = m_was_reached[c] || is_reached[c] ? 1 : 0;
   }
 
-  /// Finds the blended places and the holder of every block; eight places make one byte.
+  /// Finds the blended points and the holder of every block of eight points.
   template <class ConcurrencyTag>
   void mark_places(const Sampled_body<ConcurrencyTag>& body)
   {
