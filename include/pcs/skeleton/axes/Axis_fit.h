@@ -82,7 +82,7 @@ constexpr double tukey_constant = 4.7, first_widening = 2.5;
 
   Centers and radii are linear between adjacent nodes. A point `p_i` that projects onto a segment
   has the residual `e_i = |p_i - c(i)| - r(i)` [L], with center and radius at its projection. Points
-  before the base or beyond the tip do not count. Each iteration updates the weights and takes one
+  before the base or beyond the tip are ignored. Each iteration updates the weights and takes one
   Gauss-Newton step for the negative log-posterior
 
       E(c, r) = 1/2 sum_i w_i e_i^2                                                          [-]
@@ -99,7 +99,7 @@ constexpr double tukey_constant = 4.7, first_widening = 2.5;
   - `q_k`, `d_k` [L]: radius and deviation of the `Radius_prior`;
   - `m_k` [L], `f_k` [-], `g_k` [L]: middle, facing and deviation of the `Center_prior`.
 
-  For points outside, the matrix contains the curvature of `|p_i - c|`, too. Steps are damped by
+  For points outside, the matrix includes the curvature of `|p_i - c|`. Steps are damped by
   100 / noise^2 along the axis and 0.005 / noise^2 in all directions, and are at most
   `r_k / 2 + noise`. Radii are at least `lowest_radius`; the end segments keep their lengths. An
   iteration costs O(points + nodes), by Cholesky factorization of a band of 8 subdiagonals.
@@ -121,7 +121,7 @@ public:
     m_stride = 1;
   }
   /// Restricts the next iterations to every `stride`-th point, weighted by `stride`. Projects the
-  /// points that were left out before.
+  /// points that the previous iterations left out.
   void use_every(std::size_t stride)
   {
     const bool are_known = m_stride == 1 || stride == m_stride;
@@ -167,7 +167,8 @@ public:
   void estimate_errors();
 
 private:
-  //! second differences couple one unknown over two nodes, points all unknowns of adjacent nodes
+  //! Second differences couple an unknown (of 4 per node) to the same one two nodes away; points
+  //! couple all unknowns of adjacent nodes.
   static constexpr std::size_t bandwidth = 8;
   using Matrix = linear_algebra::Banded_cholesky<bandwidth>;
 
@@ -202,7 +203,7 @@ private:
   Matrix m_matrix; // contains its Cholesky factor after an iteration
   std::vector<double> m_gradient, m_step;
   std::vector<Segment_sums> m_sums;
-  std::vector<double> m_information; // of the points about each radius alone
+  std::vector<double> m_information; // weights of the points at each radius
 };
 
 inline void Axis_fit::assemble(double widening)
@@ -221,7 +222,7 @@ inline void Axis_fit::assemble(double widening)
 /// steps but not the result.
 inline void Axis_fit::hold_along_axis()
 {
-  constexpr double everywhere = 0.005, along_axis = 100; // in weights of a point on the axis
+  constexpr double everywhere = 0.005, along_axis = 100; // in units of 1 / noise^2
   const double across = everywhere / (m_model.noise * m_model.noise);
   const double along = along_axis / (m_model.noise * m_model.noise);
   const std::size_t n = m_axis.size();
@@ -255,10 +256,10 @@ inline void Axis_fit::add_points(double widening)
     const double inverse = 1 / place.distance;
     const Vec3 n = inverse * (m_points[i] - point_at(m_axis, place));
     // Second-order term: the surface is curved, so that a point outside also constrains the axis
-    // perpendicular to n. Without it, thin axes oscillate between two sides of their points.
+    // perpendicular to n. Without this term, thin axes oscillate between two sides of their points.
     const double hold = std::max(0.0, e * inverse), pull = 1 - hold;
-    // e(c, r) = |p - c| - r with c, r linear between the nodes, so its derivatives are -(1 - t) d
-    // and -t d, d = (n, 1)
+    // The derivatives of e(c, r) = |p - c| - r by the two nodes are -(1 - t) d and -t d with
+    // d = (n, 1), since c and r are linear between the nodes.
     const double products[10] = {pull * n.x() * n.x() + hold,
                                  pull * n.y() * n.x(),
                                  pull * n.y() * n.y() + hold,
@@ -373,8 +374,8 @@ inline void Axis_fit::add_center_priors()
   }
 }
 
-/// Applies the step and keeps the lengths of the end segments: across a short segment of a thick
-/// axis steps overshoot, and each oscillation would move the end farther outwards.
+/// Applies the step and keeps the lengths of the end segments. Steps overshoot at short segments of
+/// thick axes, so that each oscillation would move the end farther outwards.
 inline void Axis_fit::apply_step()
 {
   m_largest_change = 0;

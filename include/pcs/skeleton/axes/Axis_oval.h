@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Common oval cross-section of an axis that is seen from one side.
+// Oval cross-section of an axis with one-sided visibility.
 
 #ifndef PCS_SKELETON_AXES_AXIS_OVAL_H
 #define PCS_SKELETON_AXES_AXIS_OVAL_H
@@ -23,15 +23,15 @@ namespace skeleton {
 struct Oval_options
 {
   double one_sided =
-      0.4; ///< least length of the mean normal of the points: full rings give unbiased radii [-]
+      0.4; ///< least length of the mean normal of the points: full rings need no correction [-]
   double thickness = 6;     ///< least radius, in standard deviations of the noise [-] ...
   double spacings = 2;      ///< ... and in spacings [-]
   double usual = 0.04;      ///< prior standard deviation of each coefficient [-]
   double largest = 0.2;     ///< upper bound on the norm of the coefficients [-]
-  double roughness = 0.015; ///< of the surface, in radii [-]
-  double stretch = 2;       ///< length of stretches of common center and radius, in radii ...
-  std::size_t count = 30;   ///< ... and the least number of points that ends a stretch [count]
-  std::size_t fewest = 6;   ///< points that a stretch needs to be used [count]
+  double roughness = 0.015; ///< roughness of the surface, in radii [-]
+  double stretch = 2;       ///< least length of a stretch with one center and radius, in radii ...
+  std::size_t count = 30;   ///< ... and the least number of its points [count]
+  std::size_t fewest = 6;   ///< number of points below which the last stretch is ignored [count]
   int rounds = 3;           ///< most estimates of the oval, each followed by a fit [count]
   double settled = 0.002;   ///< change of the coefficients that ends the estimation [-]
 };
@@ -61,14 +61,14 @@ public:
 
   /*!
     Updates the coefficients from the residuals of a fit by weighted least squares. The center and
-    radius of every stretch are further unknowns, which are eliminated. On a single arc they explain
-    nearly the same residuals as the oval, so that many sections are needed to determine it.
+    radius of every stretch are further unknowns, which are eliminated. On a single arc, a shift of
+    the center causes nearly the same residuals as ovality, so that many sections are needed.
     `noise`: standard deviation of the points [L]. O(points).
   */
   void improve(const Axis_fit& fit, double noise, const Oval_options& rules);
 
-  /// Moves the points to where they would lie if all sections were round, given their projections
-  /// in a fit. O(points).
+  /// Moves the points by the deviation of the oval from a circle, at their projections in `fit`.
+  /// O(points).
   std::vector<Vec3> rounded(std::vector<Vec3> points, const Axis_fit& fit) const
   {
     for (std::size_t i = 0; i < points.size(); ++i) {

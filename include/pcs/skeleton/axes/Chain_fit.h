@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Fit of one chain of layers: start, fit, gather points, fit again, accept or reject.
+// Fit of the axis of one chain: initialization, fit, gathering of points, further fits, evaluation.
 
 #ifndef PCS_SKELETON_AXES_CHAIN_FIT_H
 #define PCS_SKELETON_AXES_CHAIN_FIT_H
@@ -163,7 +163,7 @@ inline void Chain_fit::start_at_circles(Axis_fit& fit) const
       axis[k].radius = circles[k].radius;
     } else if (m_set.density > 0 && counts.visible_length[k] > 0) {
       const double r = counts.radius(k, m_set.density_at(fit.axis(), k));
-      // the first radius is the deviation of the points from their mean
+      // so far, the radius is the deviation of the points from their mean
       const bool is_thin = std::min(axis[k].radius, r) < m_rules.thick * u;
       const Vec3 facing = is_thin ? m_set.visibility_at(fit.axis(), k) : Vec3(Vec3::Zero());
       const double spread = axis[k].radius / std::sqrt(1 - facing.squaredNorm());

@@ -35,60 +35,60 @@ namespace skeleton {
 */
 struct Chain_options
 {
-  Node_spacing node_spacing{0.6, 2, 8}; ///< the factor is of the radius
-  double gather_factor = 1.25;          ///< points are gathered within this many radii ...
-  double gather_offset = 1.7;           ///< ... plus this many spacings of the axis
+  Node_spacing node_spacing{0.6, 2, 8}; ///< distance of nodes in radii; bounds in spacings
+  double gather_factor = 1.25;          ///< distance within which points are gathered, in radii ...
+  double gather_offset = 1.7;           ///< ... plus this many spacings
   double cover_factor = 0.15;           ///< points up to this many radii outside are explained ...
   double cover_offset = 1.1;            ///< ... or up to this many spacings
   double explained = 0.4;         ///< least fraction of its own points that a chain explains [-]
   double protrusion = 3;          ///< least protrusion of an axis from existing ones ...
-  double protrusion_radius = 0.3; ///< ... plus this many radii of those
-  int sectors = 5;                ///< least number, of 12, covered at an initial circle [count]
-  double circle_deviation = 0.25; ///< largest deviation of such a circle, in radii
+  double protrusion_radius = 0.3; ///< ... plus this many radii of the existing axis
+  int sectors = 5;                ///< least number of sectors, of 12, with points on a circle
+  double circle_deviation = 0.25; ///< largest deviation of points from such a circle, in radii
   double circle_noise = 2.5;      ///< least radius of such a circle, in noise
   double expected_share =
       0.25; ///< circles with a smaller fraction of the expected points straddle several twigs [-]
   //! standard deviation of a counted radius, in fitted radii and in spacings
   double prior_share = 0.5, prior_offset = 0.2;
   double prior_ratio = 2.5; ///< largest credible ratio of fitted to counted radii [-]
-  double blurred = 4; ///< noise hides the curvature of sections of smaller radius, in noise [-]
+  double blurred = 4; ///< radius, in noise, below which noise hides the curvature of a section [-]
   //! largest factor by which occlusion reduces the counts of such sections along an axis [-]
   double most_hidden = 2;
   double hidden_nodes = 20; ///< number of nodes that halves the logarithm of this factor
-  //! taper while no density is known: the radius within the first fraction of the length decreases
-  //! to the second fraction of itself at the tip [-]
+  //! taper while no density is known: the median radius within the first fraction of the length
+  //! decreases linearly to the second fraction of this radius at the tip [-]
   double taper_from = 1.0 / 3, taper_to = 0.5;
   double taper_share = 0.25; ///< standard deviation of that radius, in radii near the base [-]
   double taper_count = 24;   ///< number of points above which this deviation increases [count]
   //! standard deviation of the mean of the points of a thin branch from its expected position:
-  //! multiple of the usual one [-] ...
+  //! multiple of the deviation of the visibility field, in radii [-] ...
   double facing_share = 5;
   double facing_noise = 0.5; ///< ... plus this multiple of the noise [-]
   //! least length of the mean normal [-] and number of points [count] for radii by width
   double width_one_sided = 0.6, width_count = 6;
-  double width_radius = 8;                  ///< upper bound on the radius of such axes, in spacings
-  double width_factor = 1.7320508075688772; ///< radius by standard deviation of the points [-]
+  double width_radius = 8;                  ///< largest radius to which this applies, in spacings
+  double width_factor = 1.7320508075688772; ///< radius / standard deviation of the points [-]
   //! standard deviation of a radius by width, in radii and in noise [-]
   double width_share = 0.15, width_noise = 0.5;
   double visible = 0.5;       ///< least visible fraction of a section for counting its points [-]
-  double counted_share = 0.7; ///< fraction of expected points below which others may hide it [-]
+  double counted_share = 0.7; ///< fraction of expected points below which an axis may hide it [-]
   double hiding_radius = 4;   ///< search radius for such an axis, in radii ...
   double hiding_offset = 6;   ///< ... plus spacings
   double noise_share = 0.2;   ///< r^2 is reduced by this many noise^2: noise inflates thin branches
   double thick = 4;           ///< least radius of branches that are extended beyond their tips
   double filled = 0.08; ///< thick axes end where a larger fraction of the points lies inside [-]
-  //! least radius for this of axes that widen farther out by the second factor [-]
+  //! least radius of thick axes that widen farther out, and least ratio of this widening [-]
   double thick_widening = 2, widening = 1.1;
   double bush = 0.2;         ///< largest fraction of interior points in sampled sections [-]
-  double typical = 0.5;      ///< least density of such sections, relative to the usual one [-]
+  double typical = 0.5;      ///< least density of such sections, relative to the median [-]
   double filled_depth = 0.1; ///< points lie inside if they are deeper than this many radii ...
   double filled_noise = 4;   ///< ... and than this multiple of the noise
   double deep = 0.3;         ///< upper bound on the depth of flutes of a stem, in radii
-  double steady = 4;         ///< length of the stretches that show the thickness, in radii
+  double steady = 4;         ///< length of the stretches that define the thickness, in radii
   double thin_base = 0.4,
          thick_base =
-             0.75; ///< axes thinner at the base than the first fraction begin at the second [-]
-  int most_skipped = 3; ///< extensions over which a thick axis may be lost, as at a whorl [count]
+             0.75; ///< axes thinner than the first fraction at the base begin at the second [-]
+  int most_skipped = 3; ///< largest gap in a thick axis (whorls), in trial extensions [count]
   double extension = 3; ///< trial extension at both ends, in radii ...
   double extension_offset = 4;          ///< ... plus spacings
   double extension_share = 0.3;         ///< least fraction of the expected points on an extension
@@ -96,9 +96,9 @@ struct Chain_options
   int narrowing = 5;                    ///< iterations in which wide weights narrow [count]
   int fewest = 3, most_iterations = 40; ///< bounds on the iterations of a fit [count]
   double settled = 0.3;                 ///< largest change at which a fit ends, in noise [-]
-  int full_iterations = 2; ///< final iterations with more points, none after wide weights [count]
+  int full_iterations = 2; ///< final iterations with more points; none with wide weights [count]
   std::size_t enough = 16,
-              full_enough = 256; ///< points per node in other and final iterations [count]
+              full_enough = 256; ///< points per node in first and in final iterations [count]
   Oval_options ovals;
 };
 
@@ -112,7 +112,7 @@ struct Candidate
   std::vector<Density_sample> densities;
 };
 
-/// Input of the fit of a chain; all of it outlives the fit.
+/// Input of the fit of a chain. The referenced objects outlive the fit.
 struct Chain_view
 {
   const Scan& scan;

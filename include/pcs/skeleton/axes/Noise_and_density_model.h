@@ -88,11 +88,11 @@ private:
                                enough_thick = 600, enough_facing = 100;
   static constexpr double field_growth = 1.5; ///< growth of samples that triggers a refit [-]
   static constexpr double thick_radius =
-      6; ///< in noise: above it, the radius and hence the density is unbiased [-]
+      6; ///< radius, in noise, above which the fitted radius and the density are unbiased [-]
   double m_least_noise;
   std::vector<double> m_deviations;
   std::vector<Density_sample> m_densities;
-  // state of the samples at the last update
+  // numbers of samples and noise at the last update
   std::size_t m_learned_deviations = 0, m_learned_densities = 0;
   double m_learned_noise = 0;
   std::size_t m_samples_of_field = 0;

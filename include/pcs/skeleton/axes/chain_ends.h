@@ -98,9 +98,9 @@ struct Filling
   Cuts a thick axis where it encloses a fork. A scan samples only the surface of wood, so a hollow
   axis encloses a fork where it begins to contain points, and is cut there. An axis that is not
   hollow anywhere is an irregular or poorly sampled stem, and is kept. An axis that is hollow again
-  farther out, with more points than before, passes buttresses or a whorl, and is kept, too. The
-  least radius of thick axes is lower for axes that widen beyond such a position, since wood does
-  not widen.
+  farther out, with more points than before, passes buttresses or a whorl, and is kept, too. Wood
+  does not widen towards the tip, so an axis that widens beyond such a position counts as thick from
+  a lower radius on.
 */
 inline void cut_filled(const Chain_view& view, Axis_fit& fit)
 {
@@ -119,7 +119,7 @@ inline void cut_filled(const Chain_view& view, Axis_fit& fit)
   std::vector<double> thickest(n); // of this and all later nodes
   for (std::size_t k = n; k-- > 0;)
     thickest[k] = std::max(axis[k].radius, k + 1 < n ? thickest[k + 1] : 0);
-  double least = 1; // fraction inside of the most hollow stretch so far
+  double least = 1; // least fraction of inside points of a stretch so far
   for (std::size_t k = window; k + window < n; ++k) {
     least = std::min(least, filling.share(k - window, k));
     const bool is_mostly_beyond = highest[k] - balance[k] > std::max(0.0, balance[k]);
@@ -176,7 +176,7 @@ inline void project_after_cut(Index shift, Axis_fit& fit)
 /*!
   Removes a thin base. Wood tapers. If the base of an axis is much thinner than a hollow stretch
   farther out, the path to the axis led through another object, such as a twig in contact with it.
-  The axis then begins where it is thick, and the points before remain for other axes.
+  The axis then begins where it is thick, and the points before that remain for other axes.
 */
 inline void cut_thin_base(const Chain_view& view, Axis_fit& fit)
 {

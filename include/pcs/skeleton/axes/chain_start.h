@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Initial guess of an axis from the centers of the layers of a chain.
+// Initial axis of a chain from the centers of its level-set components.
 
 #ifndef PCS_SKELETON_AXES_CHAIN_START_H
 #define PCS_SKELETON_AXES_CHAIN_START_H
@@ -20,7 +20,7 @@
 namespace pcs {
 namespace skeleton {
 
-/// Initial axis of a chain, and its points that no axis explains yet.
+/// Initial axis of a chain, and the points of the chain that no axis explains yet.
 struct Chain_start
 {
   Axis axis;
@@ -30,8 +30,8 @@ struct Chain_start
 
 namespace internal {
 
-/// Replaces the only node of a chain by the ends of the principal line of its points, as long as a
-/// level set is thick.
+/// Replaces the single node of a chain by a segment along the principal direction of its points.
+/// The length of the segment is the thickness of a level set.
 inline void
 make_line(const Chain_view& view, const Layer_tree& tree, const Chain& chain, Chain_start& start)
 {
@@ -76,7 +76,7 @@ inline void smooth_centers(double spacing, Axis& axis)
   extend(axis.back(), last);
 }
 
-/// Initializes the radii: root mean square distance of the points from the axis.
+/// Initializes the radii by the root mean square distance of the points from the axis.
 inline void guess_radii(const Scan& scan, Chain_start& start)
 {
   Axis& axis = start.axis;

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Path decomposition of a layer tree: one child continues the chain at every fork.
+// Path decomposition of a tree of level-set components: one child continues the chain at each fork.
 
 #ifndef PCS_SKELETON_AXES_DECOMPOSE_CHAINS_H
 #define PCS_SKELETON_AXES_DECOMPOSE_CHAINS_H
@@ -24,7 +24,7 @@ namespace skeleton {
 struct Chain
 {
   std::vector<Index> nodes;
-  Index parent_node = none; ///< node of another chain that it branches from
+  Index parent_node = none; ///< node of the chain from which this one branches
   double length = 0;        ///< along the centers [L]
 };
 
@@ -33,8 +33,8 @@ struct Chain
 constexpr int direction_reach = 6, ahead_reach = 3;
 /// Offset of the spread of a node, in spacings: reduces the effect of noise on thin nodes [-].
 constexpr double spread_offset = 0.4;
-/// Distance in level sets beyond which a child lies behind a gap, and least cosine between the gap
-/// and the chain before and behind it [-].
+/// Distance to a child, in thicknesses of a level set, beyond which there is a gap, and least
+/// cosine of the angles between the gap and the chain on both sides [-].
 constexpr double gap_layers = 1.5, gap_cosine = 0.8;
 /// Weight of the cosine between both directions against the logarithms of height and spread:
 /// branches are straight [-].
@@ -42,7 +42,7 @@ constexpr double chain_straightness = 5;
 
 namespace internal {
 
-/// Returns the longest path from each node to a tip among its descendants [L].
+/// Returns the length of the longest path from each node to a tip among its descendants [L].
 inline std::vector<double> heights(const Layer_tree& tree)
 {
   std::vector<double> height(tree.size(), 0);
@@ -153,9 +153,9 @@ inline void sort_chains(const Layer_tree& tree, std::vector<Chain>& chains)
 
 } // namespace internal
 
-/// Decomposes the tree of level-set components into chains: the longest that begins at a source,
-/// then the others by decreasing length. A chain begins with a node that does not continue the
-/// chain of its parent. O(n log n).
+/// Decomposes the tree of level-set components into chains. The first is the longest of those that
+/// begin at a source; the others follow by decreasing length. A chain begins with a node that does
+/// not continue the chain of its parent. O(n log n).
 inline std::vector<Chain> decompose_chains(const Scan& scan, const Layer_tree& tree)
 {
   const internal::Main_child main_child(scan, tree);

@@ -17,9 +17,9 @@ namespace skeleton {
 /// Criteria for keeping axes of two points.
 struct Two_point_axis_options
 {
-  double ratio = 1.7;     ///< largest number relative to that of axes of three points [-]
+  double ratio = 1.7;     ///< largest number of pairs per axis of three points [-]
   std::size_t fewest = 6; ///< least number of axes of three points [count]
-  double share = 0.05;    ///< least fraction of all axes [-]
+  double share = 0.05;    ///< least fraction of pairs among all axes [-]
 };
 
 /*!

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Fit of all axes of a scan: chains by decreasing length, in passes over unexplained points.
+// Fit of all axes of a scan: chains by decreasing length, in rounds over unexplained points.
 
 #ifndef PCS_SKELETON_AXES_FIT_AXES_H
 #define PCS_SKELETON_AXES_FIT_AXES_H
@@ -31,18 +31,18 @@ struct Axis_options
   Link_rule links;
   Chain_options chains;
   int passes = 3;
-  double later_links = 0.7; ///< factor on the lengths of links in later passes [-]
-  //! replaces `Chain_options::protrusion` in later passes, in spacings [-]
+  double later_links = 0.7; ///< factor on the lengths of links after the first round [-]
+  //! replaces `Chain_options::protrusion` after the first round, in spacings [-]
   double later_protrusion = 3;
   double first_noise = 0.3; ///< initial noise, in spacings [-]
   double first_guess =
       0.7; ///< ratio of measured to initial noise below which the first chain is refitted [-]
   double least_noise = 0.08;     ///< lower bound on the noise, in spacings [-]
-  int most_cuts = 4;             ///< most repetitions of the fit of what remains of a chain [count]
+  int most_cuts = 4;             ///< most successive fits of the remainder of a chain [count]
   std::size_t shortest_rest = 4; ///< least number of level sets of such a remainder [count]
   Two_point_axis_options pairs;
-  std::size_t largest_wave = 64; ///< chains that are fitted concurrently [count]
-  double most_lost = 0.05;       ///< largest fraction of points that a chain loses in its wave [-]
+  std::size_t largest_wave = 64; ///< most chains that are fitted concurrently [count]
+  double most_lost = 0.05;       ///< largest fraction of points lost to chains of the same wave [-]
 };
 
 namespace internal {
@@ -111,8 +111,8 @@ inline bool accept(const Scan& scan,
   return true;
 }
 
-/// Returns the stretches of a chain, of at least `fewest` level sets, in which most points are not
-/// explained.
+/// Returns the stretches of a chain whose components have mostly unexplained points. Each stretch
+/// has at least `fewest` components.
 inline std::vector<Chain>
 open_stretches(const Layer_tree& tree, const Axis_set& set, const Chain& chain, std::size_t fewest)
 {
@@ -155,7 +155,7 @@ public:
   /// Returns the number of chains, including those that were fitted.
   std::size_t size() const { return m_order.size(); }
   const Chain& operator[](std::size_t place) const { return m_chains[m_order[place]]; }
-  /// Returns the number of preceding fits of which a chain is the remainder [count].
+  /// Returns the number of successive fits that left this chain as a remainder [count].
   int cuts(std::size_t place) const { return m_cuts[m_order[place]]; }
 
   /// Appends chains, or pieces of existing ones.
@@ -213,8 +213,8 @@ private:
   loses too many of its points to others of its wave is refitted later. Where a chain passes through
   components that are explained already, as a second arc of a trunk does, the stretches between them
   are fitted separately: points left beside an existing axis do not form one branch. `does_learn`:
-  whether fits update noise and density; points left by the first pass are not typical. Returns
-  `false` as soon as `progress` does, which is called with the completed fraction of the work.
+  whether fits update noise and density; points left by the first round are not typical. Calls
+  `progress` with the completed fraction of the work, and returns `false` as soon as it does.
 */
 template <class ConcurrencyTag, class Progress>
 bool fit_chains(const Scan& scan,
@@ -292,8 +292,8 @@ std::vector<Index> nearest_to_axes(const Scan& scan,
 {
   const std::size_t n = scan.size();
   Point_sets sets = united_points<ConcurrencyTag>(n, links, [](const Link&) { return true; });
-  // Separate search tree of covered points: a search among all points would visit many others, as
-  // in leaves.
+  // Separate search tree of covered points: among leaves, a search over all points would visit many
+  // uncovered ones.
   std::vector<Vec3> covered;
   for (Index i = 0; i < n; ++i)
     if (set.is_covered(i))
@@ -332,7 +332,7 @@ std::vector<Index> nearest_to_axes(const Scan& scan,
 } // namespace internal
 
 /*!
-  Fits all axes: first the chains of `first_tree`, then the unexplained points in further passes.
+  Fits all axes: first the chains of `first_tree`, then the unexplained points in further rounds.
   Returns the axes found so far if `progress` returns `false`.
 */
 template <class ConcurrencyTag, class Progress>

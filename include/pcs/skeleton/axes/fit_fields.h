@@ -38,7 +38,7 @@ inline Sample_frame::Sample_frame(const std::vector<Density_sample>& samples)
   }
   const auto eigen = linear_algebra::symmetric_eigen<3>(covariance);
   m_sides = eigen.vectors;
-  m_reach = std::sqrt(3.0) * eigen.values.cwiseMax(0).cwiseSqrt(); // of uniform samples
+  m_reach = std::sqrt(3.0) * eigen.values.cwiseMax(0).cwiseSqrt(); // if uniform
 }
 
 /// Returns at most 3000 samples at a constant stride.

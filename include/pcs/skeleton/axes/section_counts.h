@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Point counts of the sections of an axis, and how much of each section can have points.
+// Point counts and visible fractions of the sections of an axis.
 
 #ifndef PCS_SKELETON_AXES_SECTION_COUNTS_H
 #define PCS_SKELETON_AXES_SECTION_COUNTS_H
@@ -75,9 +75,9 @@ section_counts(const Chain_view& view, const Axis_fit& fit, const std::vector<do
 }
 
 /*!
-  Returns the visible fraction of the section at each node, which lies outside of other axes. Where
-  a branch leaves its parent, surface points are assigned to the parent, and its interior has none.
-  Nodes with enough points are taken as visible. O(nodes log points).
+  Returns the visible fraction of the section at each node: the fraction outside of other axes. At
+  the base of a branch, the interior of the parent has no points, and points on its surface are
+  assigned to the parent. Sections with enough points count as visible. O(nodes log points).
 */
 inline std::vector<double> visible_shares(const Chain_view& view, const Axis_fit& fit)
 {

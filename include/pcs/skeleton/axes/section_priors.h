@@ -29,9 +29,9 @@ inline bool is_blurred(const Chain_view& view, double radius)
 
 /*!
   Returns the prior of a radius `counted` [L] given the fitted radius `found` [L]. Errors of counts
-  are multiplicative, so that the deviation scales with the fitted radius. The deviation decreases
-  where points are much fewer than expected, which is not due to chance: the radius of an axis
-  between several twigs must not count as measured.
+  are multiplicative, so that the deviation scales with the fitted radius. If the count is far below
+  its expected value, the axis probably lies between several twigs. The deviation is then smaller,
+  so that the radius does not count as measured.
 */
 inline Radius_prior counted_prior(const Chain_view& view, double counted, double found)
 {
@@ -42,9 +42,9 @@ inline Radius_prior counted_prior(const Chain_view& view, double counted, double
 }
 
 /*!
-  Estimates the factor by which occlusion reduces the counts along an axis from its blurred
-  sections; at least 1 [-]. The factor is shrunk towards 1 for few nodes. `counted`: radii by
-  counting, negative where sections are hidden [L].
+  Estimates the factor by which occlusion reduces the counts along an axis; at least 1 [-]. It is
+  the median ratio of fitted to counted radii over the sections with `is_blurred()`, shrunk towards
+  1 for few sections. `counted`: radii by counting, negative where sections are hidden [L].
 */
 inline double
 hidden_factor(const Chain_view& view, const std::vector<double>& counted, const Axis& axis)
@@ -61,8 +61,8 @@ hidden_factor(const Chain_view& view, const std::vector<double>& counted, const 
   return std::min(view.rules.most_hidden, std::max(1.0, std::exp(level)));
 }
 
-/// Returns the priors of all nodes by counting; without weight where sections are hidden or the
-/// density is not known. O(nodes + points).
+/// Returns the priors of all radii from point counts. Nodes with hidden sections have no prior; if
+/// the density is not known, no node has one. O(nodes + points).
 inline std::vector<Radius_prior>
 counted_priors(const Chain_view& view, const std::vector<double>& visible, const Axis_fit& fit)
 {
@@ -86,10 +86,10 @@ counted_priors(const Chain_view& view, const std::vector<double>& visible, const
 
 /*!
   Returns priors by taper for scans without a known density. They apply where the radius exceeds a
-  linear taper from the base to a fraction of the base radius at the tip, and become weak with many
-  points: with few points, an axis around several twigs has a plausible curvature. Thick axes have
-  enough points and get no priors. `length`: length of the whole chain, of which the axis may be a
-  portion [L]. O(nodes + points).
+  linear taper from the base to a fraction of the base radius at the tip. With few points, an axis
+  around several twigs has a plausible curvature; with many points, the priors become weak. Thick
+  axes have enough points and get no priors. `length`: length of the whole chain, of which the axis
+  may be a portion [L]. O(nodes + points).
 */
 inline std::vector<Radius_prior> taper_priors(const Chain_view& view,
                                               const std::vector<double>& visible,
@@ -139,9 +139,9 @@ inline std::vector<Radius_prior> taper_priors(const Chain_view& view,
     `z > taper_from L` and `r > q`. `B < thick u` is the median radius near the base, `L` the length
     [L].
   - Width, for one-sided sections with `r < width_radius u`: `q = sqrt(3) W` and
-    `d = width_share q + width_noise s`, with the standard deviation `W` [L] of the points across.
-    It is combined with one of the radii above: `1 / d^2 = sum_j 1 / d_j^2` and
-    `q = d^2 sum_j q_j / d_j^2`.
+    `d = width_share q + width_noise s`, with the standard deviation `W` [L] of the points
+    perpendicular to the axis and to their mean normal. This prior is combined with one of the
+    above: `1 / d^2 = sum_j 1 / d_j^2` and `q = d^2 sum_j q_j / d_j^2`.
   - Center, for `r < thick u`: the mean of the points is expected at `r f`, with the mean normal `f`
     [-] of the visibility field of deviation `v` [-], and `g = facing_share v r + facing_noise s`.
 

@@ -107,8 +107,8 @@ private:
 
 /*!
   Returns priors of the centers of thin sections from the side on which their points lie. The points
-  of a thin branch with one-sided visibility fit axes before, in and behind them nearly equally
-  well. The visible side is known from thick branches.
+  of a thin branch with one-sided visibility fit axes in front of, within and behind them nearly
+  equally well. The visible side is known from thick branches.
 */
 inline std::vector<Center_prior>
 center_priors(const Chain_view& view, const Axis& axis, const Section_visibility& sides)

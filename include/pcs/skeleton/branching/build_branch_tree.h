@@ -39,7 +39,7 @@ struct Joined_axes
   Branch_tree tree;
 };
 
-/// Joins the axes without changes into one tree, from the axis at `root`.
+/// Joins the unchanged axes into one tree, which begins with the axis at the points `root`.
 template <class ConcurrencyTag>
 void join_axes(const Scan& scan,
                const Axis_set& axes,
@@ -57,8 +57,8 @@ void join_axes(const Scan& scan,
 }
 
 /*!
-  Joins the axes into a tree of branches. Regroups and fuses the axes by the resulting branches for
-  some rounds, splits unreachable axes, and prunes stubs. `progress(f)` receives the fraction of
+  Joins the axes into a tree of branches. In several rounds, regroups and fuses the axes by the
+  resulting branches. Splits unreachable axes, and prunes stubs. `progress(f)` gets the fraction of
   completed rounds. Returns `false` if it stopped the work.
 */
 template <class ConcurrencyTag, class Progress>

@@ -29,14 +29,14 @@ struct Fusion_options
   double length_share = 1;    ///< ... and in lengths of the longer piece [-]
   double end_length = 10;     ///< length from which the direction of an end is computed
   double end_radii = 4;       ///< ... and in radii [-]
-  double offset = 0.7;        ///< standard deviation of an end from its line
+  double offset = 0.7;        ///< standard deviation of an end from its fitted line
   double direction = 0.12;    ///< standard deviation of the direction of a long piece [rad]
-  double raggedness = 1;      ///< the same for a short piece, times its length
-  double bend = 0.25;         ///< standard deviation of the angle between both [rad]
+  double raggedness = 1;      ///< product of this deviation and the length, for a short piece
+  double bend = 0.25;         ///< standard deviation of the angle between two ends [rad]
   double radius = 0.35;       ///< standard deviation of the radius, in radii [-] ...
   double radius_offset = 0.2; ///< ... and in spacings
   double gap = 10;            ///< standard deviation of the gap
-  double against = 3;         ///< cost of two bases or two tips [-]
+  double against = 3;         ///< cost of joining two bases or two tips [-]
   double inside = 0.5;        ///< least distance of a gap from a third axis, in its radii [-]
 };
 
@@ -233,9 +233,9 @@ struct Fused_piece
   bool is_reversed = false; ///< whether its direction is reversed there
 };
 
-/// Returns the first ends of the pieces in the chain of axis `a`, in the direction of most of its
-/// length. `forward` is the length of pieces whose direction matches that of the walk from a free
-/// end; `total` is the length of all pieces.
+/// Returns the pieces that are fused with axis `a`, each given by its first end. Their order is the
+/// direction of most of their length. `forward` is the length of the pieces that are traversed from
+/// base to tip when starting at a free end; `total` is the length of all pieces.
 inline std::vector<Index> row_of_pieces(const Axis_set& set,
                                         const std::vector<Index>& partner,
                                         Index a,
@@ -269,7 +269,7 @@ inline Fitted_axis fuse_pieces(const std::vector<Index>& entries,
 {
   Fitted_axis row;
   row.parent = set.axes[entries.front() / 2].parent;
-  bool is_reversed = false; // the previous piece
+  bool is_reversed = false; // whether the previous piece is
   for (const Index e : entries) {
     Fitted_axis& piece = set.axes[e / 2];
     pieces[e / 2] = {number, static_cast<Index>(row.axis.size()), e % 2 == 1};
@@ -335,7 +335,7 @@ std::size_t fuse_axes(double spacing, const Fusion_options& options, Axis_set& s
   for (Index k = 0; k < fused.size(); ++k)
     if (fused[k].parent != none) {
       const Index parent = pieces[fused[k].parent].axis;
-      fused[k].parent = parent != k ? parent : none; // detected on another piece of the same axis
+      fused[k].parent = parent != k ? parent : none; // the parent was a piece of the same axis
     }
   const std::size_t fewer = n - fused.size();
   set.axes = std::move(fused);

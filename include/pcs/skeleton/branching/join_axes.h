@@ -30,7 +30,7 @@ namespace skeleton {
 /// Costs of a joint: log-odds, estimated from scans of virtual trees. Lengths are in spacings [-].
 struct Joint_options
 {
-  int rounds = 2;    ///< selections of joints; later ones join branches [count]
+  int rounds = 2;    ///< selections of joints; all but the first join branches [count]
   double reach = 30; ///< widest gap between the base of a branch and the surface of its parent
   double long_reach = 0.2; ///< ... or this fraction of the length of the branch [-]
   double base_length = 8;  ///< length from which the direction of a base is computed
@@ -42,12 +42,12 @@ struct Joint_options
   double tie = 0.05;  ///< cost of the whole distance, which decides between equal joints
   double angle = 3.2; ///< cost of 1 - cosine of the angle to the parent ...
   double lowest_cosine =
-      -0.2;                 ///< ... with this least cosine, since the parent itself may be reversed
-  double radius = 0.6;      ///< cost of a thick base, per log ratio to the parent's radius ...
+      -0.2;            ///< ... for at least this cosine, since the parent itself may be reversed
+  double radius = 0.6; ///< cost of a thick base, per log ratio to the parent's radius ...
   double free_share = 0.37; ///< ... above this ratio
   double taper = 0.85;      ///< gain of a base thicker than the tip, per log ratio
   double reversal = 1.1;    ///< cost of the tip as the base
-  double thinnest = 0.1;    ///< lower bound of radii in ratios
+  double thinnest = 0.1;    ///< lower bound on radii when ratios are computed
 };
 
 namespace internal {
@@ -106,7 +106,7 @@ inline Vec3 tangent(const Axis& axis, std::size_t segment)
 
   subject to `g <= max(reach u, long_reach length)`. Radii in ratios are at least `thinnest u`;
   `direction` [-] is the certainty of the base of the branch. Every pair of an end and an axis has
-  one option, the least cost over seven positions on each segment in reach.
+  one option: the joint of least cost among seven positions on each segment in reach.
 
   Every axis takes its option of least cost. Cycles are then resolved one axis at a time by the
   least additional cost (`choose()`), which need not minimise the sum of all costs. At most

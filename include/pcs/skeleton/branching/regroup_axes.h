@@ -17,10 +17,10 @@ namespace pcs {
 namespace skeleton {
 
 /*!
-  Replaces the axes from which `tree` was joined by its branches, without the nodes on the axes of
-  their parents. Where a fitted axis changes from one branch to another, the tree continues
-  straight, so its branches are more reliable than the axes. Unreachable axes remain. Every point
-  keeps an axis. O(nodes + points).
+  Replaces the axes that were joined to `tree` by the branches of `tree`. Omits the first node of a
+  branch, which lies on the axis of the parent. A fitted axis may change from one branch to another,
+  whereas the tree continues straight, so that its branches are more reliable. Unreachable axes
+  remain. Every point keeps an axis. O(nodes + points).
 */
 inline void regroup_axes(const Branch_tree& tree, Axis_set& set)
 {
@@ -47,7 +47,7 @@ inline void regroup_axes(const Branch_tree& tree, Axis_set& set)
     axis_of_branch[b] = static_cast<Index>(axes.size());
     axes.push_back(std::move(axis));
   }
-  std::vector<Index> out_of_reach(set.axes.size(), none); // their new indices
+  std::vector<Index> out_of_reach(set.axes.size(), none); // new indices of unreachable axes
   for (std::size_t i = 0; i < set.axis_of_point.size(); ++i) {
     Index& axis = set.axis_of_point[i];
     if (axis == none)

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The axis at the root, and its end there.
+// Selection of the axis at the root, and of the end of this axis at the root.
 
 #ifndef PCS_SKELETON_BRANCHING_ROOT_AXIS_H
 #define PCS_SKELETON_BRANCHING_ROOT_AXIS_H
@@ -41,9 +41,9 @@ inline Index nearest_axis(const Axis_set& set, const Vec3& p)
 /*!
   Selects the axis of the root: the one with the most root points, weighted by its number of points,
   since the buttresses of a trunk may have more root points. If no axis has root points, selects the
-  nearest axis. A small axis is replaced by a much larger one close to the root, since chance pieces
-  of a foot may have all root points. A given root (`is_given`) skips this step. `root` and `set`
-  are not empty. O(axes + root).
+  nearest axis. A small axis is replaced by a much larger one close to the root, since a small piece
+  of the foot may have all root points by chance. This step is omitted for a given root
+  (`is_given`). `root` and `set` are not empty. O(axes + root).
 */
 inline Index
 root_axis(const Scan& scan, const Axis_set& set, const std::vector<Index>& root, bool is_given)

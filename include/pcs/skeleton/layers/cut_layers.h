@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Geodesic level sets: shortest paths cut into layers, whose connected components form a tree.
+// Geodesic level sets of the path length, and the tree of their connected components.
 
 #ifndef PCS_SKELETON_LAYERS_CUT_LAYERS_H
 #define PCS_SKELETON_LAYERS_CUT_LAYERS_H

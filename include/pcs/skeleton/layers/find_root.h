@@ -250,7 +250,7 @@ private:
         std::count_if(low_parts.size.begin(), low_parts.size.end(), [&](Index size) {
           return double(size) > m_rules.rival * double(stem.points.size());
         });
-    if (stem.is_lying || rivals < 2) // `stem` is one of them
+    if (stem.is_lying || rivals < 2) // one rival is `stem` itself
       return stem;
     const Index busiest =
         stem_with_largest_catchment(m_scan, m_height, m_links, low_parts.part, first);

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Coarser layers for stems whose points are farther apart than layers are thick.
+// Thicker level sets for stems with a point spacing larger than the thickness of a level set.
 
 #ifndef PCS_SKELETON_LAYERS_JOIN_SPARSE_LAYERS_H
 #define PCS_SKELETON_LAYERS_JOIN_SPARSE_LAYERS_H
@@ -32,10 +32,10 @@ struct Sparse_layer_options
 {
   double thinnest = 1.3;  ///< least thickness of a connected level set, in local spacings [-]
   int doublings = 4;      ///< the thickness grows at most by two to this power [count]
-  std::size_t fewest = 8; ///< points of a joined level set [count]
-  double radius = 2.5;    ///< its least radius, in local spacings: thinner ones are connected [-]
+  std::size_t fewest = 8; ///< least number of points of a joined level set [count]
+  double radius = 2.5;    ///< its least radius, in local spacings: thinner sets are connected [-]
   double band = 0.2;      ///< largest deviation from a circle, in radii [-]
-  int sectors = 6;        ///< of 12 that must have points [count]
+  int sectors = 6;        ///< least number of sectors, of 12, with points [count]
 };
 
 namespace internal {
@@ -52,7 +52,7 @@ std::vector<std::uint8_t> doublings_of_layers(const Scan& scan,
     if (layer[i] == none || rules.thinnest * scan.local_spacing[i] <= thickness)
       return;
     std::array<double, neighbors_per_point> others;
-    std::size_t count = 0; // isolated points may lie far from the others
+    std::size_t count = 0;
     for (const Index j : scan.neighbors[i])
       if (j != none)
         others[count++] = scan.local_spacing[j];
@@ -61,7 +61,7 @@ std::vector<std::uint8_t> doublings_of_layers(const Scan& scan,
     const double middle =
         pcs::internal::upper_median(others.begin(),
                                     others.begin() + static_cast<std::ptrdiff_t>(count));
-    // the cost of long steps exceeds their length
+    // long steps have a cost larger than their length
     const double wanted =
         rules.thinnest * middle * std::max(1.0, middle / (cheap_step * scan.spacing));
     while (level[i] < rules.doublings && std::ldexp(thickness, level[i]) < wanted)
@@ -87,7 +87,7 @@ public:
 
   void run(const Links& links, Point_sets& sets) const
   {
-    Links sparse; // most scans have few
+    Links sparse; // few in most scans
     std::copy_if(links.begin(), links.end(), std::back_inserter(sparse), [&](const Link& l) {
       return m_level[l.first] > 0 && m_level[l.second] > 0;
     });

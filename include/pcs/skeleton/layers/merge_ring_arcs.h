@@ -28,12 +28,12 @@ struct Ring_arc_options
   double band_offset = 1.5; ///< ... and spacings
   double share = 0.75;      ///< least fraction of the points of an arc in the band [-]
   double main_share =
-      0.4;            ///< the same for the arc with the most points, where a branch may begin [-]
-  double lasting = 2; ///< beyond this many smallest radii, a ring without successor ends there [-],
+      0.4;              ///< the same for the arc with the most points, where a branch may begin [-]
+  double lasting = 2;   ///< radius, in `smallest`, from which a ring without successor ends [-],
   double growth = 1.1;  ///< largest growth of a radius between level sets [-]
   int age = 8;          ///< least number of level sets with such a ring [count]
   double inertia = 0.7; ///< weight of the previous radius and centre [-]
-  int sectors = 6;      ///< of 12 that must have points to correct the centre [count]
+  int sectors = 6;      ///< least number of sectors, of 12, with points to correct the centre
 };
 
 namespace internal {

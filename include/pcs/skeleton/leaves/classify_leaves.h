@@ -32,13 +32,13 @@ struct Leaf_options
   double thick = 0.05; ///< least fraction of thick wood in a tree [-]
   //! least sampling dimension of thick wood; lower values indicate rows, which resemble twigs [-]
   double dimension = 1.9;
-  double leafy = 0.16;        ///< least fraction of points deep in leaves; fewer are chance [-]
+  double leafy = 0.16;        ///< least fraction of points deep in leaves; fewer may be chance [-]
   std::size_t neighbors = 10; ///< neighbours in leaves of a point deep in leaves [count]
-  //! alternatively: least fraction, of the points outside thick wood, in planar patches [-]
+  //! alternatively: least fraction of the points outside thick wood that lie in planar patches [-]
   double patchy = 0.035;
   double wood_score = -0.8;    ///< least log-odds of wood for a point [-]
   double axis_likeness = -0.4; ///< the same for an axis [-]
-  //! the same in leafless trees: for an axis, and for a point without an axis [-]
+  //! least log-odds in leafless trees: for an axis, and for a point without an axis [-]
   double bare_axis_likeness = -2, bare_point_likeness = 1;
   double bare_reach = 2.5; ///< distance from the trunk axis that is always wood, in radii [-]
   int rounds = 3;          ///< rounds of removal: points first, then axes twice [count]
@@ -49,7 +49,7 @@ struct Leaf_options
   Planar_patch_options patches;
 };
 
-/// Returns whether enough points lie on no axis to require a leaf-wood separation.
+/// Returns whether there are enough points without an axis to require a leaf-wood separation.
 inline bool may_have_leaves(const Axis_set& set,
                             const std::vector<std::uint8_t>& is_used,
                             const Leaf_options& rules)
@@ -114,8 +114,8 @@ struct Found_wood
 };
 
 /*!
-  Classifies the points of wood. Thick wood has hollow sections; thin wood is recognized by its
-  surroundings and by the shortest paths through it. `paths` connect all used points. `is_sure`
+  Classifies points as wood or leaves. Thick wood has hollow sections; thin wood is recognized by
+  its surroundings and by the shortest paths through it. `paths` connect all used points. `is_sure`
   indicates that the tree has leaves. Otherwise, all points are wood if the points outside thick
   wood and lines do not resemble leaves. The same applies if the points of thick wood lie in rows:
   each row is a line, and its surroundings match neither those of a twig nor those of a leaf.

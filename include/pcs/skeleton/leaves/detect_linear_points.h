@@ -24,8 +24,8 @@ namespace skeleton {
 struct Linear_point_options
 {
   double radius = 1.3; ///< radius of the tube, in spacings
-  float around = 2.2F; ///< outer radius of the ring around it
-  float reach = 8;     ///< half of its length
+  float around = 2.2F; ///< outer radius of the ring around the tube
+  float reach = 8;     ///< half length of the tube
   float crowd = 0.35F; ///< penalty of a point in the ring, in points of the tube
   float least = 5.5F;  ///< least score: number of pieces with points only in the tube
   int directions = 12; ///< tested at a point [count]
@@ -72,8 +72,8 @@ public:
     return best;
   }
 
-  /// Returns the surroundings of the last point, which had `score`. Lengths are in radii of the
-  /// tube.
+  /// Returns the surroundings of the last tested point. `score` is the score of this point. Lengths
+  /// are in radii of the tube.
   Surroundings surroundings(float score) const
   {
     Surroundings result;

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Points on the surface of thick wood, whose sections are empty inside.
+// Detection of the points on thick wood, which has hollow sections.
 
 #ifndef PCS_SKELETON_LEAVES_FIND_SURFACE_WOOD_H
 #define PCS_SKELETON_LEAVES_FIND_SURFACE_WOOD_H
@@ -30,8 +30,7 @@ struct Surface_wood_options
   double expected = 0.3;  ///< least number of surface points, relative to the expected number [-]
   double fewest = 12;     ///< least number of surface points [count]
   std::size_t reach = 3;  ///< nodes included on both sides [count]
-  double share =
-      0.5; ///< least hollow fraction of a length from the base for all of it to be wood [-]
+  double share = 0.5; ///< least hollow fraction of a length from the base that is entirely wood [-]
 };
 
 namespace internal {

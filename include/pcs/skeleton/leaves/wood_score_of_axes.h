@@ -38,11 +38,11 @@ struct Axis_evidence
   double high_likeness = 0;    ///< upper quintile of its points
   double residual = 0;         ///< mean distance of its points from its surface
   double local_spacing = 0;    ///< mean over its points
-  double width = 0, depth = 0; ///< deviations of its points, relative to the largest [-]
+  double width = 0, depth = 0; ///< minor standard deviations of its points, by the largest [-]
   double leaves = 0;           ///< fraction of unused neighbours of its points [-]
   double parent_length = 0;    ///< 0: none
   double carried = 1; ///< largest number of paths to the root through one of its points [count]
-  double seen = 0;    ///< fraction of its pieces with points [-]
+  double seen = 0;    ///< fraction of its segments with points [-]
 
   std::array<double, number_of_features> features() const
   {

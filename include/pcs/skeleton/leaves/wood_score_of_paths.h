@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Wood score of a point from its path to the root: twigs carry the paths of their leaves.
+// Wood score of a point from its path to the root: paths from leaves lead through their twigs.
 
 #ifndef PCS_SKELETON_LEAVES_WOOD_SCORE_OF_PATHS_H
 #define PCS_SKELETON_LEAVES_WOOD_SCORE_OF_PATHS_H
@@ -227,7 +227,7 @@ inline std::vector<float> scores_of_surroundings(const std::vector<std::uint8_t>
 }
 
 /*!
-  Computes the log-odds of wood for all used points outside thick wood, which is certain.
+  Computes the log-odds of wood for all used points that are not in thick wood.
   `wood_score` has the log-odds from their surroundings (`wood_probability(Surroundings)`); `paths`
   connect all used points. O(points * neighbours).
 */

@@ -21,7 +21,7 @@ struct Axis_node
   Vec3 point = Vec3::Zero();
   double radius = 0;        ///< [L]
   double radius_error = 0;  ///< standard error [L]
-  bool is_measured = false; ///< the points determine the radius rather than the prior
+  bool is_measured = false; ///< the points, rather than the prior, determine the radius
 };
 
 /// Nodes from the base to the tip; at least one.
@@ -68,8 +68,8 @@ inline std::vector<Axis_segment> segments_of(const Axis& axis)
 
 namespace internal {
 
-/// Search for the segment that is nearest to a point. `segment_at(s)` returns segment `s`, `last`
-/// is the index of the last one.
+/// Search for the segment that is nearest to a point. `segment_at(s)` returns segment `s`; `last`
+/// is the index of the last segment.
 template <class SegmentAt>
 class Place_search
 {
@@ -93,8 +93,8 @@ public:
     return true;
   }
 
-  /// Visits the segments beyond `s` in one direction until several in a row are not nearer, or one
-  /// of these leads away from the point.
+  /// Visits the segments beyond `s` in one direction. Ends after several segments in a row that are
+  /// not nearer, or after one of these that leads away from the point.
   template <bool IsForward>
   void walk(std::size_t s)
   {
@@ -122,7 +122,7 @@ private:
   const SegmentAt& m_segment_at;
   const Vec3& m_p;
   double m_squared_distance = std::numeric_limits<double>::infinity(), m_share = 0;
-  double m_last_share = 0; ///< of the last segment visited
+  double m_last_share = 0; ///< parameter on the segment visited last
 };
 
 } // namespace internal
@@ -140,7 +140,7 @@ nearest_place(const std::vector<Axis_segment>& segments, std::size_t guess, cons
   return search.place();
 }
 
-/// Does the same without prepared segments, for few points. The axis has at least two nodes.
+/// Projects a point without prepared segments, for few points. The axis has at least two nodes.
 inline Axis_place nearest_place(const Axis& axis, std::size_t guess, const Vec3& p)
 {
   const auto segment_at = [&](std::size_t s) { return Axis_segment(axis[s], axis[s + 1]); };
@@ -210,7 +210,7 @@ struct Node_spacing
   }
 };
 
-/// Resamples an axis to nodes at the wanted distances; both ends are kept.
+/// Resamples an axis to the given distances between nodes. Keeps both ends.
 inline Axis resample(const Axis& axis, const Node_spacing& spacing)
 {
   if (axis.size() < 2)

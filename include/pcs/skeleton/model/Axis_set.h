@@ -23,7 +23,7 @@ struct Fitted_axis
   Axis axis;
   Index parent = none; ///< next axis on the paths to the root
   std::size_t number_of_points = 0;
-  double direction = 1; ///< certainty of the base: 0 if its pieces point equally to both ends [-]
+  double direction = 1;    ///< certainty of the base: 0 if its pieces disagree evenly [-]
   std::size_t meeting = 0; ///< node between two pieces of opposite directions; 0: none
 };
 

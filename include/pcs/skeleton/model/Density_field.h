@@ -61,22 +61,22 @@ private:
 
       ln D(x, t) = m + w . phi(q, t),   q = (x - center) scale                               [-]
 
-  with the 16 monomials `phi`: 1, those of `q` and `q q^T`, and those of `t t^T`. Mixed ones have
+  with the 16 monomials `phi`: 1 and the entries of `q`, `q q^T` and `t t^T`. Mixed products have
   the factor sqrt(2), so that the ridge is invariant to rotations. The mean of `|q|^2` is 3. Robust
   ridge regression over `w` [-] minimises
 
       |w|^2 + sum_i (ln D_i - m - w . phi_i)^2 / (5 s^2 (1 + (e_i / (2 s))^2))               [-]
 
-  over the samples, at most 3000, with the median `m` of `ln D_i`. The absolute residuals `e_i` of
-  the previous of four rounds yield Cauchy weights, and `s = max(0.05, 1.4826 median e_i)`; the
-  factor 5 is `shared`. Predictions are at positions clamped to the box of the samples, and within
-  the 5 % and 95 % quantiles of their densities. O(samples).
+  over the samples, at most 3000, with the median `m` of `ln D_i`. In each of four rounds, the
+  absolute residuals `e_i` of the previous round yield Cauchy weights, and
+  `s = max(0.05, 1.4826 median e_i)`; the factor 5 is `shared`. Positions are clamped to the box of
+  the samples, and predictions to the 5 % and 95 % quantiles of their densities. O(samples).
 */
 class Density_field
 {
 public:
   static constexpr std::size_t fewest_samples = 60;
-  static constexpr double shared = 5; ///< adjacent sections that have points in common [count]
+  static constexpr double shared = 5; ///< number of adjacent sections with points in common [count]
 
   /// Whether there were enough samples.
   bool is_known() const { return m_is_known; }

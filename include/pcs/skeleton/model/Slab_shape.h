@@ -23,8 +23,7 @@ namespace internal {
 struct Slab_shape
 {
   Vec3 mean = Vec3::Zero();
-  Vec3 along =
-      Vec3::UnitX(); ///< direction of the largest spread, oriented to where the points rise
+  Vec3 along = Vec3::UnitX();   ///< direction of the largest spread, towards the higher points
   double length = 0, width = 0; ///< standard deviations along and across it [L]
 
   Slab_shape(const Scan& scan, const std::vector<Index>& points, const Vec3& up)

@@ -21,10 +21,10 @@ namespace skeleton {
 /// Options of the pipe model, which is an upper bound.
 struct Pipe_model_options
 {
-  double slack = 3;     ///< most total area per area below; one to two is typical of wood [-]
-  double thicker = 1.2; ///< beyond this ratio to the parent, proven branches are independent
+  double slack = 3;     ///< largest ratio of all areas beyond to the area; wood: 1 to 2 [-]
+  double thicker = 1.2; ///< ratio to the parent above which confirmed branches are independent
   double proven =
-      0.7; ///< least proven fraction of the area of a branch; below it, no section is proven [-]
+      0.7; ///< least confirmed fraction of the area of a branch for any section to be confirmed [-]
   std::size_t bins = 128; ///< of the longest path from the root [count]
   int rounds = 6;
 };
@@ -70,8 +70,8 @@ public:
 private:
   Index seat_of(Index b) const { return m_tree.nodes[m_tree.branches[b].nodes.front()].parent; }
 
-  /// Keeps proven sections only in branches that are mostly proven: in leaves, single sections may
-  /// be proven by chance.
+  /// Keeps confirmed sections only in mostly confirmed branches: in leaves, single sections may be
+  /// confirmed by chance.
   void keep_proven()
   {
     m_is_kept.assign(m_tree.nodes.size(), 0);
@@ -88,7 +88,7 @@ private:
     }
   }
 
-  /// Finds branches that are proven to be thicker than their parent: their joints are wrong.
+  /// Finds branches that are confirmed to be thicker than their parent: their joints are wrong.
   void find_independent()
   {
     const std::size_t n = m_tree.branches.size();
@@ -164,8 +164,8 @@ private:
     return did_change;
   }
 
-  /// Returns the limits by the nodes of a branch, from its tip; fills in its element of
-  /// `of_branch`, which has those of its children.
+  /// Returns the limits by the nodes of a branch, from its tip. Sets the element of `of_branch` for
+  /// this branch; those of its children are set already.
   Node_limits find_limits(Index b, std::vector<Passings>& of_branch) const
   {
     const std::vector<Index>& nodes = m_tree.branches[b].nodes;
@@ -188,7 +188,7 @@ private:
     return limits;
   }
 
-  /// Returns the thickest proven radius of some nodes in each bin; 0: none.
+  /// Returns the thickest confirmed radius of some nodes in each bin; 0: none.
   std::vector<double> thickest_proven(const std::vector<Index>& nodes) const
   {
     std::vector<double> thickest(m_rules.bins, 0);
@@ -270,22 +270,22 @@ private:
 
 /*!
   Bounds the radii by the pipe model. Where leaves were classified as wood, the total area of all
-  branches at one distance from the root is many times that of the trunk, which wood does not reach.
+  branches at one distance from the root is many times the area of the trunk; in wood, it is not.
   Scaled nodes count as inferred. Returns their number.
 
-  Bins divide the path length from the root [L]. With the largest proven radius `R` [L] of a branch
-  in the bin of its node `v` and both adjacent ones, the constraint is, for every bin `i` farther
-  out,
+  Bins divide the path length from the root [L]. With the largest confirmed radius `R` [L] of a
+  branch in the bin of its node `v` and both adjacent bins, the constraint for every bin `i` farther
+  out is
 
       A_i(v) = sum_j r_j^2 <= slack R^2                                                    [L^2]
 
   over the edges that pass the beginning of the bin, of the `n_i` branches that `v` supports. If it
   is violated, the squares of the radii in that bin become `max(f r^2, slack R^2 / n_i)`, with
   `f = slack R^2 / A_i(v)` [-]: a branch keeps at least the area of each of `n_i` equal branches.
-  The least `f` of all `v` towards the root applies. Proven sections of mostly proven branches keep
-  their radii. Branches that are proven to be more than `thicker` times as thick as their parent do
-  not count among those of the parent and are not scaled by it. Rounds are repeated until nothing
-  changes, at most `rounds` times. Each round costs O((nodes + branches) * bins).
+  The least `f` of all `v` towards the root applies. Confirmed sections of mostly confirmed branches
+  keep their radii. Branches that are confirmed to be more than `thicker` times as thick as their
+  parent are excluded from `A_i` of the parent and not scaled by it. Rounds are repeated until
+  nothing changes, at most `rounds` times. Each round costs O((nodes + branches) * bins).
 */
 inline std::size_t apply_pipe_model(const std::vector<std::uint8_t>& is_proven,
                                     const Pipe_model_options& rules,

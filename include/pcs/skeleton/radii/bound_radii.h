@@ -34,15 +34,15 @@ struct Support_options
   double fewest = 12;          ///< least number of points of a supported section [count]
   double expected = 0.25;      ///< ... and relative to the expected number [-]
   double thicker = 1.5;        ///< largest ratio of a radius to the narrowest one below it, unless
-                               ///< the points prove the radius [-]
-  double proof_expected = 0.5; ///< least number of surface points for a proof, relative to the
-                               ///< expected number [-]
-  double proof_filled = 0.05;  ///< largest fraction of inside points for a proof [-]
-  double proof_error = 0.1;    ///< largest standard error for a proof, in radii [-]
-  //! standard error, in radii, up to which `expected` points prove a section if one below it is as
-  //! thick, since one side may be occluded [-]
+                               ///< the points confirm the radius [-]
+  double proof_expected = 0.5; ///< least number of surface points of a confirmed section, relative
+                               ///< to the expected number [-]
+  double proof_filled = 0.05;  ///< largest fraction of inside points of a confirmed section [-]
+  double proof_error = 0.1;    ///< largest standard error of a confirmed radius, in radii [-]
+  //! standard error, in radii, up to which `expected` points confirm a section if one below it is
+  //! as thick, since one side may be occluded [-]
   double proof_precise = 0.03;
-  double mostly = 0.7; ///< least proven fraction of the volume of a branch that is not leaves [-]
+  double mostly = 0.7; ///< least confirmed fraction of the volume of a branch without leaves [-]
   double slack = 3;    ///< bound of a section without support, in allometric radii [-]
   double filled_slack = 1; ///< the same for a filled section [-]
   double foot = 8;         ///< length of the foot of a trunk, in radii [-]
@@ -96,7 +96,7 @@ struct Branch_support
 {
   std::vector<double> on, inside, expected; ///< points of each section [count]
   std::vector<std::uint8_t> is_proven, is_precise;
-  bool is_mostly_proven = false; ///< if so, proven sections are not leaves
+  bool is_mostly_proven = false; ///< if so, confirmed sections are not leaves
 
   Branch_support(const Section_support& support,
                  const Branch& branch,
@@ -242,15 +242,15 @@ private:
   struct Reference
   {
     double radius = 0, way = 0; ///< of the nearest supported node [L]; 0: none
-    double narrowest = 0;       ///< least supported radius from the nearest proven one on [L]
+    double narrowest = 0;       ///< least supported radius from the nearest confirmed one on [L]
     double thickest = 0;        ///< largest of all supported radii [L]
   };
   /// The evidence for the radius of a node.
   struct Evidence
   {
-    bool is_proven = false;    ///< the points prove it, even if it is thicker than below
+    bool is_proven = false;    ///< the points confirm it, even if it is thicker than below
     bool is_supported = false; ///< sufficient points support it
-    bool is_leafy = false;     ///< points lie inside the section, or inside those below
+    bool is_leafy = false;     ///< points lie inside this section or inside sections below
   };
 
   /// Finds the bounds of a branch, the supported radii, and the references of its nodes.
@@ -295,7 +295,7 @@ private:
   {
     const double on = sections.on[k], inside = sections.inside[k];
     Evidence evidence;
-    // a proven section thicker than its parent indicates a wrong joint or parent
+    // a confirmed section thicker than its parent indicates a wrong joint or parent
     evidence.is_proven = sections.is_proven[k] != 0 ||
                          (sections.is_precise[k] != 0 && node.radius <= below.thickest);
     const bool is_bush = is_inside && !(evidence.is_proven && sections.is_mostly_proven);
@@ -361,11 +361,11 @@ private:
 
   - filled if `m > filled (n + m)`, or if the fraction of inside points of all sections from the
     base of the branch to this one exceeds `branch_filled`;
-  - proven if `n >= proof_expected E`, `m <= proof_filled (n + m)`, and the standard error of `r` is
-    at most `proof_error r`;
-  - supported if it is measured and not filled, `n >= max(fewest, expected E)`, and it is proven or
-    `r <= thicker R`. `R` [L] is the least supported radius between this section and the nearest
-    proven one towards the root.
+  - confirmed if `n >= proof_expected E`, `m <= proof_filled (n + m)`, and the standard error of `r`
+    is at most `proof_error r`;
+  - supported if it is measured and not filled, `n >= max(fewest, expected E)`, and it is confirmed
+    or `r <= thicker R`. `R` [L] is the least supported radius between this section and the nearest
+    confirmed one towards the root.
 
   (`proof_precise`, `mostly` and `foot` define exceptions.) The bound of a section without support
   depends on the nearest supported section towards the root, of radius `r'` [L], and is not smaller

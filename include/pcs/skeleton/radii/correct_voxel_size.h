@@ -19,8 +19,8 @@ namespace skeleton {
 /// Criteria for points on a voxel grid, and the widening of radii by the voxels.
 struct Voxel_size_options
 {
-  double share = 0.8;         ///< least fraction of points with the nearest one a step away [-]
-  double tolerance = 0.01;    ///< of the lengths [-] and directions [rad] of these steps
+  double share = 0.8;         ///< least fraction of points with their nearest one a step away [-]
+  double tolerance = 0.01;    ///< tolerance of the lengths [-] and directions [rad] of these steps
   std::size_t fewest = 100;   ///< least number of points for a detection [count]
   std::size_t enough = 20000; ///< points of an even sample [count]
   double widening = 0.3;      ///< increase of a squared radius, in squared steps [-]

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Ellipse fit of cross-sections that are seen from nearly all sides.
+// Ellipse fit of cross-sections that are visible from nearly all sides.
 
 #ifndef PCS_SKELETON_RADII_FIT_SECTION_ELLIPSES_H
 #define PCS_SKELETON_RADII_FIT_SECTION_ELLIPSES_H
@@ -26,15 +26,15 @@ namespace skeleton {
 struct Section_ellipse_options
 {
   std::size_t lowest_count = 20; ///< least number of points [count]
-  int sectors = 10;              ///< of 12 that must have points [count]
+  int sectors = 10;              ///< least number of sectors, of 12, with points [count]
   double significance = 4;       ///< difference of the semi-axes, in standard deviations [-]
   double thickness = 3;          ///< smallest radius in noise [-]
 };
 
 /*!
   Fits the second harmonic of the distance from the axis: `r (1 + c cos 2a + s sin 2a)`. Open arcs
-  do not determine the five parameters of an ellipse; their sections remain circles. The area
-  remains that of the node's radius.
+  do not determine the five parameters of an ellipse; their sections remain circles. The ellipse has
+  the area of the circle with the radius of the node.
 */
 template <class ConcurrencyTag>
 void fit_section_ellipses(const Scan& scan,

@@ -31,7 +31,7 @@ struct Given_skeleton_options
 {
   double reach = 2,
          reach_offset = 4; ///< largest distance of points from the edge, in radii plus spacings [-]
-  int sectors = 5;         ///< of 12 that must have points [count]
+  int sectors = 5;         ///< least number of sectors, of 12, with points [count]
   double deviation = 0.25; ///< largest deviation of a circle, in radii
   double widening =
       /// largest radius of a circle or of a detected branch, in median distances from the edge [-]
@@ -101,8 +101,8 @@ private:
     return nodes;
   }
 
-  /// Replaces the radii of branch nodes inside the parent by that of the first node outside, since
-  /// the points there belong to the parent.
+  /// Replaces the radii of branch nodes inside the parent by the radius of the first node outside,
+  /// since points inside belong to the parent.
   void leave_parents(Branch_tree& tree) const
   {
     for (const Branch& branch : tree.branches) {
@@ -234,8 +234,8 @@ private:
     }
   }
 
-  /// Computes the radius of each edge: that of a detected branch, that of a circle through its
-  /// points, or the median of their distances.
+  /// Computes the radius of each edge from a detected branch, from a circle through its points, or
+  /// as the median of their distances.
   void measure()
   {
     const std::size_t n = m_nodes.size();
@@ -320,8 +320,8 @@ private:
   /*!
   Computes the radii at the nodes from those of the edges. If there is neither a detected branch nor
   a circle, the last measured radius towards the root is reduced in proportion to the remaining
-  length to the tip, but not below the next measured radius towards the tip. The few points there,
-  which may belong to other branches, change it by at most a factor of `slack`.
+  length to the tip, but not below the next measured radius towards the tip. The few points at such
+  an edge may belong to other branches; they change the radius by at most a factor of `slack`.
   */
   void fill_gaps(std::vector<Branch_node>& nodes) const
   {

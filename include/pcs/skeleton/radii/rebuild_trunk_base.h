@@ -24,15 +24,15 @@ namespace skeleton {
 /// Options for the reconstruction of the trunk base.
 struct Trunk_base_options
 {
-  double sound = 8;         ///< trunk length that defines the direction below it, in radii [-] ...
-  double proven = 0.8;      ///< ... and least fraction of it that points support [-]
-  double shortest = 2;      ///< height below which a foot remains unchanged, in radii [-]
-  double highest = 0.25;    ///< largest height of a foot, as a fraction of the tree height [-]
-  double steep = 0.7;       ///< least rise per length of the trunk above [-]
-  double reach = 2.5;       ///< largest distance of points of the foot, in radii [-]
-  double slab = 0.25;       ///< half thickness of a section, in radii ...
+  double sound = 8;      ///< trunk length that defines the direction of the foot, in radii [-] ...
+  double proven = 0.8;   ///< ... and least fraction of this length with point support [-]
+  double shortest = 2;   ///< height below which a foot remains unchanged, in radii [-]
+  double highest = 0.25; ///< largest height of a foot, as a fraction of the tree height [-]
+  double steep = 0.7;    ///< least rise per length of the trunk above [-]
+  double reach = 2.5;    ///< largest distance of points of the foot, in radii [-]
+  double slab = 0.25;    ///< half thickness of a section, in radii ...
   double slab_spacings = 2; ///< ... and in spacings, whichever is larger [-]
-  int sectors = 8;          ///< of 24 that must have points [count]
+  int sectors = 8;          ///< least number of sectors, of 24, with points [count]
 };
 
 namespace internal {
@@ -111,8 +111,8 @@ inline std::size_t first_sound_node(const Branch_tree& tree,
 } // namespace internal
 
 /*!
-  Rebuilds the trunk below the lowest part in which points support round cross-sections, since fits
-  below it follow single buttresses. The axis is extended straight downwards. The radii are those of
+  Rebuilds the trunk below the lowest part with supported round cross-sections, since fits farther
+  below follow single buttresses. The axis is extended straight downwards. The radii are those of
   circles with the area of the outline around the axis. z points upwards. Returns the number of
   moved nodes. O(points + nodes).
 */

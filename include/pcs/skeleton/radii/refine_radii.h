@@ -40,8 +40,8 @@ struct Radius_options
 
   1. `bound_radii()`: `r <= b` for every radius `r` [L], with the bound `b` [L] from the supported
      sections and the pipe model;
-  2. `rebuild_trunk_base()`: below the lowest proven part of the trunk, `r^2` is the mean over equal
-     sectors of the squared median distance [L^2] of the points of a sector from the center;
+  2. `rebuild_trunk_base()`: below the lowest confirmed part of the trunk, `r^2` is the mean over
+     equal sectors of the squared median distance [L^2] of their points from the center;
   3. `recenter_bounded_nodes()`: in each of a few rounds, a node whose radius was reduced from `r_0`
      to `r` [L], and whose points lie far outside on one side, moves by the vector `y` [L].
 
