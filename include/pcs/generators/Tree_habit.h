@@ -37,7 +37,7 @@ struct Value_range
   \brief Growth parameters of a virtual tree; the defaults describe a broadleaf in metres.
 
   Arrays contain the values of the trunk, of branches on it, and of all others. Bends and tropisms
-  refer to `bend_length` of growth. Lengths are in any one unit; `scaled()` changes it.
+  are changes per `bend_length` of growth. Lengths are in one unit; `scaled()` changes it.
 */
 struct Tree_habit
 {
@@ -47,8 +47,8 @@ struct Tree_habit
   double flare_height = 0.35;  //!< height over which the flare decays by 1/e [L]
   double lean = 0.02;          //!< standard deviation of the initial direction of the trunk [rad]
   int number_of_orders = 4;    //!< the trunk, branches, twigs, ... [count]
-  double largest_step = 0.1;   //!< largest distance of nodes, and their distance on the trunk [L]
-  double smallest_step = 0.03; //!< smallest distance; otherwise it is twice the radius [L]
+  double largest_step = 0.1;   //!< largest distance of nodes; also the distance on the trunk [L]
+  double smallest_step = 0.03; //!< smallest distance; between these limits, twice the radius [L]
 
   double bend_length = 0.1;                           //!< unit of the next three values [L]
   std::array<double, 3> bend = {0.012, 0.05, 0.05};   //!< standard deviation [rad]
@@ -65,7 +65,7 @@ struct Tree_habit
   std::size_t whorl = 1; //!< number of branches per whorl on the trunk [count]
   std::array<Value_range, 2> insertion = {
       {{0.7, 1.3}, {0.7, 1.3}}}; //!< insertion angle: trunk, branches [rad]
-  std::array<Value_range, 2> child_radius = {{{0.25, 0.52}, {0.25, 0.52}}}; //!< by the parent's [-]
+  std::array<Value_range, 2> child_radius = {{{0.25, 0.52}, {0.25, 0.52}}}; //!< ratio to parent [-]
   double largest_branch = 0.065;         //!< largest radius of branches on the trunk [L]
   double smallest_branch = 0.003;        //!< smallest radius at the base of a branch [L]
   Value_range slenderness = {55, 80};    //!< ratio of length and radius of a branch [-]

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What a virtual scanner delivers: labelled points, and a report.
+// Output of a virtual scanner: labelled points, and a report.
 
 #ifndef PCS_GENERATORS_VIRTUAL_SCAN_H
 #define PCS_GENERATORS_VIRTUAL_SCAN_H
@@ -14,7 +14,7 @@
 namespace pcs {
 
 //! \ingroup PkgPcsGeneratorsRef
-//! labels of points of a virtual scan that do not lie on a node of the tree
+//! labels of points of a virtual scan that belong to no node of the tree
 enum Scan_label : int {
   scan_label_ghost = -1,  //!< on no surface: between two surfaces, or an outlier
   scan_label_ground = -2, //!< on the ground

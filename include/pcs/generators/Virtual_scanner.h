@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A virtual laser scanner: where it stands, how it measures, and what stands around the tree.
+// A virtual laser scanner: its stations, its beams and errors, and the surroundings of the tree.
 
 #ifndef PCS_GENERATORS_VIRTUAL_SCANNER_H
 #define PCS_GENERATORS_VIRTUAL_SCANNER_H
@@ -48,15 +48,15 @@ struct Virtual_scanner
   double beam_width = 0.0004; //!< diameter of a beam: its divergence [rad]
   double ghost_gap = 0.03;    //!< range difference in a beam above which a ghost may occur [L]
   double ghost_share = 0.25;  //!< fraction of such beams that give a ghost [-]
-  double edge_share = 0.5;    //!< fraction of beams hit only off-center that give a point [-]
+  double edge_share = 0.5;    //!< fraction of beams with only off-center hits that give a point [-]
   double range_noise = 0.002; //!< standard deviation of ranges, extrapolated to the station [L]
   double noise_distance = 50; //!< distance at which the noise is doubled [L]
-  double registration_error = 0.0015; //!< standard deviation of a station's shift, per axis [L]
-  double outlier_share = 0.001;       //!< number of outliers by the number of other points [-]
+  double registration_error = 0.0015; //!< standard deviation of shifts of stations, per axis [L]
+  double outlier_share = 0.001;       //!< ratio of outliers and other points [-]
   double largest_range = std::numeric_limits<double>::infinity(); //!< [L]
   double voxel_size = 0; //!< thinning to one point per cube of this size; 0: none [L]
 
-  double bark_depth = 0.004; //!< of the bark relief, at most `bark_share` of the radius [L]
+  double bark_depth = 0.004; //!< depth of the bark relief, at most `bark_share` of the radius [L]
   double bark_share = 0.03;  //!< largest ratio of bark depth and radius [-]
   double wind = 0;           //!< largest displacement of twigs (order 2 and more) per station [L]
   double leaves_per_length = 0; //!< on twigs thinner than `leaf_twig_radius` [1/L]

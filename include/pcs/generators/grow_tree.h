@@ -36,10 +36,11 @@ Growth_options read_growth_options(const NamedParameters& np)
   \ingroup PkgPcsGeneratorsRef
   \brief grows a virtual tree upwards from the origin.
 
-  Axes are random walks of direction with a tropism; radii taper from base to tip. Branches leave
-  their parent at the golden angle, with a random fraction of its radius, and end at a crown of
-  given shape. Cross-sections are ellipses with a random phase for each branch. A branch begins on
-  the axis of its parent, with a separate node that coincides with a node of the parent.
+  Axes are random walks of direction with a tropism; radii taper from base to tip. Successive
+  branches are rotated about their parent by the golden angle. A branch begins with a random
+  fraction of the radius of its parent; branches end at a crown of given shape. Cross-sections are
+  ellipses with a random phase for each branch. The first node of a branch is separate, but
+  coincides with a node of the parent.
 
   Every branch uses a separate random stream, so the number of its twigs does not affect the next
   branch. `Tree_branch::id` is the number of the branch; `tree_at_age()`, `prune_branch()`,

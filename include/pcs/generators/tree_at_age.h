@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The younger shapes of a tree.
+// Shapes of a tree at younger ages.
 
 #ifndef PCS_GENERATORS_TREE_AT_AGE_H
 #define PCS_GENERATORS_TREE_AT_AGE_H
@@ -21,7 +21,8 @@ namespace pcs {
 namespace generators {
 namespace internal {
 
-//! Grows the branches of a tree up to an age; each begins when its parent's tip passes its base.
+//! Grows the branches of a tree up to an age. A branch begins when the tip of its parent passes the
+//! base of the branch.
 template <class Kernel>
 class Younger_tree
 {
@@ -128,7 +129,7 @@ private:
   std::size_t add(Tree_node<Kernel> node, double birth, std::size_t b, std::size_t parent)
   {
     using FT = typename Kernel::FT;
-    // radii grow from the passage of the tip on, from the radius of the tip of the old tree
+    // a radius grows after the passage of the tip, from the radius of the tip in the old tree
     const double grown = birth < 1 ? (m_age - birth) / (1 - birth) : 1;
     const double tip = CGAL::to_double(m_tips[b]);
     const double radius = CGAL::to_double(node.radius);
@@ -162,10 +163,11 @@ private:
   \ingroup PkgPcsGeneratorsRef
   \brief returns the shape of a tree when it was younger.
 
-  The given tree has the age 1. The trunk grows with decreasing speed until then. A branch begins
-  when the tip of its parent passes its base and also grows with decreasing speed until the age 1.
-  Radii grow linearly from the radius of the branch's tip. The wood does not move, so an axis of the
-  young tree is the beginning of the old axis: this is the ground truth for correspondences.
+  The given tree has the age 1. The trunk grows with decreasing speed until this age. A
+  branch begins when the tip of its parent passes the base of the branch; it also grows with
+  decreasing speed until the age 1. Radii grow linearly from the radius of the tip of the branch.
+  The wood does not move, so an axis of the young tree is the beginning of the old axis: this is the
+  ground truth for correspondences.
 
   \tparam Kernel a class with `FT`, `Point_3` and `Vector_3`, such as a kernel of CGAL
   \param tree a tree with branches, of any origin

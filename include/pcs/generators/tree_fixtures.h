@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Simple trees with analytic answers: cylinder, cone, arc of a torus, oblique ellipse, fork, twigs.
+// Simple trees of known geometry: cylinder, cone, arc of a torus, oblique ellipse, fork, twigs.
 
 #ifndef PCS_GENERATORS_TREE_FIXTURES_H
 #define PCS_GENERATORS_TREE_FIXTURES_H
@@ -143,7 +143,7 @@ Tree_skeleton<Kernel> make_torus_arc_tree(double bend_radius, double radius, dou
   \brief a leaning cylinder with an elliptic section; the longer half axis is along y.
 
   \param tilt of the axis from the z-axis towards +x, in [0, pi / 2) [rad]
-  \param flatness the shorter half axis by the longer one, in (0, 1]
+  \param flatness ratio of the shorter and the longer half axis, in (0, 1]
 */
 template <class Kernel>
 Tree_skeleton<Kernel>

@@ -74,8 +74,8 @@ public:
   }
 
   /*!
-    The diagonal of the inverse, after `factorize()`. O(size Bandwidth^2): only the band of the
-    inverse is computed, from the last row upwards (Takahashi's recurrence).
+    Returns the diagonal of the inverse, after `factorize()`. O(size Bandwidth^2): only the band of
+    the inverse is computed, from the last row upwards (Takahashi's recurrence).
   */
   std::vector<double> inverse_diagonal() const
   {

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Where a sparse Cholesky factor has entries: elimination order and tree, supernodes, rows of each.
+// Pattern of a sparse Cholesky factor: elimination order and tree, supernodes and their rows.
 
 #ifndef PCS_LINEAR_ALGEBRA_CHOLESKY_PATTERN_H
 #define PCS_LINEAR_ALGEBRA_CHOLESKY_PATTERN_H
@@ -272,8 +272,8 @@ private:
     return result;
   }
 
-  /// Whether a supernode of `width` columns may contain `zeros` among its `values`: wider ones
-  /// justify some.
+  /// Returns whether a supernode of `width` columns may contain `zeros` zeros among its `values`
+  /// values: at most a fraction, which is smaller for wider supernodes.
   static bool is_worth(std::size_t width, std::size_t zeros, std::size_t values)
   {
     const double share = static_cast<double>(zeros) / static_cast<double>(values);
@@ -296,7 +296,7 @@ private:
     for (std::uint32_t j = 0; j < n; ++j) {
       groups.push_back({j, 0});
       // The previous group ends with column j - 1. It may be merged into this one if j is the
-      // parent of that column.
+      // parent of column j - 1.
       while (groups.size() > 1) {
         const Group own = groups.back(), before = groups[groups.size() - 2];
         if (own.first == 0 || tree[own.first - 1] == none || tree[own.first - 1] > j)
@@ -371,8 +371,8 @@ private:
           in_parent[r] = static_cast<std::uint32_t>(width(p) + at - first_row[p]);
         }
     }
-    // In postorder, the pending updates form a stack: those of the children of a supernode are on
-    // top.
+    // In postorder, the pending updates form a stack, with the updates of the children of the
+    // current supernode on top.
     std::size_t waiting = 0;
     std::vector<std::size_t> of_children(m, 0);
     for (std::size_t s = 0; s < m; ++s) {

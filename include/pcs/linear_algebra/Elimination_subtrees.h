@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Parts of an elimination tree that can be worked through side by side, and what stands above them.
+// Subtrees of an elimination tree that can be processed in parallel, and the supernodes above them.
 
 #ifndef PCS_LINEAR_ALGEBRA_ELIMINATION_SUBTREES_H
 #define PCS_LINEAR_ALGEBRA_ELIMINATION_SUBTREES_H
@@ -15,12 +15,12 @@ namespace linear_algebra {
 
 /*!
   Disjoint subtrees of the supernodes of a `Cholesky_pattern`, each with at most a small fraction of
-  the values. They, and thus sums over them, do not depend on the number of threads.
+  the values. The subtrees, and thus sums over them, do not depend on the number of threads.
 
-  The contributions of a subtree to rows above it are accumulated separately. Each subtree has its
-  own entries, behind those of the unknowns, in the work array of a solve. They represent the rows
-  below its root, which include the rows below all its supernodes.
-  those below all its supernodes are part.
+  The contributions of a subtree to rows above it are accumulated separately. For this purpose, each
+  subtree has entries of its own in the work array of a solve, after the entries of the unknowns.
+  They represent the rows below the root of the subtree, which are all rows above the subtree to
+  which its supernodes contribute.
 */
 class Elimination_subtrees
 {
@@ -72,7 +72,7 @@ public:
 private:
   /// Half the range of `row`; the other half is reserved for the entries of the subtrees.
   static constexpr std::size_t largest_divided_size = std::size_t(1) << 31;
-  /// Each subtree contains at most the total number of values divided by this.
+  /// Each subtree contains at most the total number of values divided by this number.
   static constexpr std::size_t smallest_number_of_shares = 16;
 
   /// Descends from the roots until the remaining subtrees are small enough.

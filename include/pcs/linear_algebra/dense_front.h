@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The dense half of a sparse Cholesky factorisation: one panel at a time.
+// The dense part of a sparse Cholesky factorisation: one panel at a time.
 
 #ifndef PCS_LINEAR_ALGEBRA_DENSE_FRONT_H
 #define PCS_LINEAR_ALGEBRA_DENSE_FRONT_H
@@ -59,8 +59,8 @@ struct Plain_arithmetic
   }
 };
 
-/// Two matrices with the same number of columns; rows of the left are multiplied by rows of the
-/// right one.
+/// Two matrices with the same number of columns; rows of the left matrix are multiplied by rows
+/// of the right matrix.
 struct Dense_product
 {
   Dense_columns left, right;

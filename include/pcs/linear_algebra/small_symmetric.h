@@ -1,8 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Eigenvectors and solutions of small dense symmetric systems, in loops over numbers: Eigen's
-// decompositions work by blocks, and to instantiate them took half the time of compiling these
-// headers.
+// Eigenvectors and solutions of small dense symmetric systems, in scalar loops. The blocked
+// decompositions of Eigen would take half of the compile time of these headers.
 
 #ifndef PCS_LINEAR_ALGEBRA_SMALL_SYMMETRIC_H
 #define PCS_LINEAR_ALGEBRA_SMALL_SYMMETRIC_H
@@ -97,9 +96,9 @@ void sort_eigenvalues(Symmetric_eigen<N>& eigen)
 } // namespace internal
 
 /*!
-  Computes the eigenvalues and eigenvectors of a symmetric matrix by cyclic Jacobi rotations, with
-  an error of rounding relative to the largest eigenvalue, also for equal eigenvalues. Both halves
-  of `a` must be set. A matrix that is not finite has eigenvalues that are not finite. `N` may be
+  Computes the eigenvalues and eigenvectors of a symmetric matrix by cyclic Jacobi rotations. Also
+  for equal eigenvalues, the error is rounding relative to the largest eigenvalue. Both halves of
+  `a` must be set. A matrix that is not finite has eigenvalues that are not finite. `N` may be
   `Eigen::Dynamic`. O(n^3) with about eight sweeps: meant for n up to a few hundred.
 */
 template <int N>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A tree of a shape space, as a value, and branches that correspond.
+// A tree of a shape space, and pairs of corresponding branches.
 
 #ifndef PCS_SHAPE_SPACE_ORL_TREE_H
 #define PCS_SHAPE_SPACE_ORL_TREE_H
@@ -18,9 +18,9 @@ namespace pcs {
 /*!
   \ingroup PkgPcsShapeSpaceRef
   \brief A tree of an `Orl_shape_space`: orientations, radii and lengths of the edges of its
-      topology, a value.
+      topology. It has value semantics.
 
-  Functions that write to a tree use its memory again.
+  Functions that write to a tree reuse its memory.
 */
 class Orl_tree
 {
@@ -49,7 +49,7 @@ private:
 };
 
 //! \ingroup PkgPcsShapeSpaceRef
-//! two branches that correspond, named by the vertices at their tips
+//! two corresponding branches, identified by the vertices at their tips
 struct Branch_match
 {
   std::size_t parent = npos; ///< index of the match of the parents, `npos` for the trunks

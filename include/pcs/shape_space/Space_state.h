@@ -21,16 +21,16 @@ namespace shape_space {
 /// but `inputs`.
 struct Space_state
 {
-  std::vector<Tree_input> inputs; ///< as added; of a restored pair: the scans without the trees
+  std::vector<Tree_input> inputs; ///< as added; of a restored pair, only the scans
 
   // valid if `is_built`
   Tree_family family;
   Embedded_pair pair;                               ///< of two trees: topology and pairs of points
   Family_points family_points;                      ///< of more than two trees
-  std::vector<Orl_space_data::Point> stored_points; ///< those of `family_points` as numbers
+  std::vector<Orl_space_data::Point> stored_points; ///< points of `family_points` as numbers
   std::vector<Orl_space_data::Partner> stored_partners;
   bool is_built = false;
-  bool is_restored = false; ///< from a file: nothing can be added
+  bool is_restored = false; ///< from a file: no tree can be added
 
   bool is_pair() const { return family.x.size() == 2; }
   bool has_normals() const

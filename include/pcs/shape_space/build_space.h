@@ -23,23 +23,23 @@ template <class ConcurrencyTag>
 Orl_report
 build_space(const Build_options& options, pcs::internal::Progress& progress, Space_state& state);
 
-/// The same for two trees from correspondences that were found before. Throws `Invalid_input`, with
-/// a message that begins with `caller`, if they do not fit the trees.
+/// Builds a space of two trees from stored correspondences of their branches and points. Throws
+/// `Invalid_input`, with a message that begins with `caller`, if these do not fit the trees.
 template <class ConcurrencyTag>
 Orl_report build_space_from(const Orl_correspondences& stored,
                             const Build_options& options,
                             const std::string& caller,
                             Space_state& state);
 
-/// The correspondences of a space of two trees. \pre it was built, not restored
+/// Returns the correspondences of a space of two trees. \pre the space was built, not restored
 template <class ConcurrencyTag>
 Orl_correspondences store_correspondences(const Space_state& state);
 
-/// A built space as numbers.
+/// Returns a built space as numbers.
 template <class ConcurrencyTag>
 Orl_space_data store_space(const Space_state& state);
 
-/// The space that these numbers are of. Throws like `build_space_from()`.
+/// Restores the space of `store_space()`. Throws like `build_space_from()`.
 template <class ConcurrencyTag>
 Space_state restore_space(const Orl_space_data& stored, const std::string& caller);
 

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Four floats at once, for the rays of a beam: SSE2 where there is any, else plain loops with the
-// same bits.
+// Vectors of four floats for the rays of a beam: SSE2 if available, otherwise plain loops with
+// bitwise identical results.
 
 #ifndef PCS_GENERATORS_INTERNAL_RAY_LANES_H
 #define PCS_GENERATORS_INTERNAL_RAY_LANES_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Triangles in a tree of boxes, and the first ones that the rays of a beam hit.
+// A bounding volume hierarchy of triangles, and the first hits of the rays of a beam.
 
 #ifndef PCS_GENERATORS_INTERNAL_RAY_TREE_H
 #define PCS_GENERATORS_INTERNAL_RAY_TREE_H
@@ -127,7 +127,7 @@ private:
   {
     Vector3f low, high;
     std::uint32_t index;
-    float center(int axis) const { return low[axis] + high[axis]; } // doubled
+    float center(int axis) const { return low[axis] + high[axis]; } // twice the center
   };
 
   struct Box
@@ -231,11 +231,10 @@ private:
   };
 
   static constexpr std::size_t leaf_size = 4, number_of_bins = 16, stack_size = 128;
-  static constexpr std::size_t deepest_search = 64; // below, halving limits the depth
+  static constexpr std::size_t deepest_search = 64; // below this depth, nodes are halved
   static constexpr std::uint32_t index_bits = 30, index_mask = (std::uint32_t(1) << index_bits) - 1;
 
-  /// Fills node `index` and its descendants. They need at most 2 (end - begin) - 1 nodes, which
-  /// begin at `index`.
+  /// Fills node `index` and its descendants: at most 2 (end - begin) - 1 consecutive nodes.
   template <class ConcurrencyTag>
   void split(std::vector<Item>& items,
              std::size_t begin,
@@ -282,8 +281,8 @@ private:
     }
   }
 
-  /// Finds the cheapest boundary between bins, and partitions the items at it. Returns `false` if
-  /// there is none.
+  /// Finds the cheapest boundary between bins, and partitions the items there. Returns `false` if
+  /// there is no boundary.
   static bool partition(std::vector<Item>& items,
                         std::size_t begin,
                         std::size_t end,
@@ -344,7 +343,7 @@ private:
   }
 
   std::vector<Triangle> m_triangles;  // in the order of the leaves
-  std::vector<std::uint32_t> m_order; // their numbers in the caller's order
+  std::vector<std::uint32_t> m_order; // their indices in the input
   std::vector<Node> m_nodes;
 };
 

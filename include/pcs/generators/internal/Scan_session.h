@@ -172,7 +172,7 @@ private:
     }
   }
 
-  //! returns the surroundings at the time of one station; without wind all stations have the same
+  //! returns the scene at the time of one station; without wind, it is the same for all stations
   Scene make_scene(std::size_t station) const
   {
     Scene scene(m_scanner, m_seed);
@@ -217,7 +217,7 @@ private:
     return wood;
   }
 
-  //! scans rows in groups, which limits the memory and allows for progress between them
+  //! scans rows in groups, which limits the memory; progress is reported between groups
   template <class ConcurrencyTag>
   bool scan_from(const Scan_station& station,
                  const Ray_tree& tree,
@@ -375,7 +375,7 @@ private:
   const Virtual_scanner& m_scanner;
   std::uint64_t m_seed;
   std::size_t m_number_of_nodes;
-  Eigen::Vector3d m_origin = Eigen::Vector3d::Zero(); // before m_wood, which sets it
+  Eigen::Vector3d m_origin = Eigen::Vector3d::Zero(); // declared before m_wood, which sets it
   Scan_wood m_wood;
   std::vector<Eigen::Vector3d> m_stations;
   std::vector<Return> m_returns;

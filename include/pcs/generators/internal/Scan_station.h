@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// One station of the virtual scanner: its beams, and what comes back of them.
+// One station of the virtual scanner: its beams and their returns.
 
 #ifndef PCS_GENERATORS_INTERNAL_SCAN_STATION_H
 #define PCS_GENERATORS_INTERNAL_SCAN_STATION_H
@@ -93,7 +93,7 @@ public:
 private:
   static constexpr float none = std::numeric_limits<float>::infinity();
 
-  //! intervals of azimuth, relative to the front, and elevation that enclose given boxes
+  //! intervals of azimuth (relative to the front) and elevation that enclose given boxes
   struct Window
   {
     double left = pcs::internal::pi, right = -pcs::internal::pi, down = pcs::internal::pi / 2,
@@ -128,7 +128,7 @@ private:
 
   void set_grid(const std::vector<Triangle>& triangles, Random_stream& random)
   {
-    // neighbours in the list are close in space, so the boxes of groups replace all corners
+    // neighbours in the list are close in space, so the corners of boxes of groups suffice
     constexpr std::size_t group = 32;
     std::vector<Eigen::AlignedBox3f> boxes((triangles.size() + group - 1) / group);
     Eigen::AlignedBox3f whole;

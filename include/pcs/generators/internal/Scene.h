@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The surface of a tree and its surroundings as triangles that know what they belong to.
+// The surface of a tree and its surroundings as labelled triangles.
 
 #ifndef PCS_GENERATORS_INTERNAL_SCENE_H
 #define PCS_GENERATORS_INTERNAL_SCENE_H
@@ -35,7 +35,7 @@ struct Scan_node
   double radius = 0, major_radius = 0, minor_radius = 0;
 };
 
-//! the scanned tree: its nodes, and those of every branch from base to tip
+//! the scanned tree: its nodes, and the indices of the nodes of every branch from base to tip
 struct Scan_wood
 {
   std::vector<Scan_node> nodes;
@@ -116,8 +116,8 @@ public:
     close(high, Eigen::Vector3d(post.x, post.y, post.height), p);
   }
 
-  //! returns the node nearest to a point along the axis for a triangle of wood, otherwise the label
-  //! of the object
+  //! returns the label of a point of a triangle: for wood, the nearest node along the axis;
+  //! otherwise, the label of the object
   int label(std::uint32_t triangle, const Eigen::Vector3d& point) const
   {
     const Piece& p = m_pieces[m_piece_of[triangle]];

@@ -13,8 +13,8 @@ namespace pcs {
 namespace generators {
 namespace internal {
 
-/// Returns three normal random numbers. As arguments of one call, their order would depend on the
-/// compiler.
+/// Returns three normal random numbers, drawn one after the other. As arguments of one call, they
+/// would be drawn in an order that depends on the compiler.
 inline Eigen::Vector3d normal_vector(pcs::internal::Random_stream& random)
 {
   const double z = random.normal();

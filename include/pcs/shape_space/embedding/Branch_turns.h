@@ -31,16 +31,16 @@ struct Direction_pair
   Returns the rotation with the least sum of weighted angles to pairs of directions and to `known`,
   which has `fraction` times the weight of all pairs.
 
-  It is found by iteratively reweighted means with weights of one over the angle, whose lower limit
-  decreases. The majority of the pairs is met exactly, whatever the others do; degrees of freedom
-  that the pairs do not determine are as in `known`.
+  The rotation is found by iteratively reweighted means. The weights are inverse angles, where the
+  lower limit of the angles decreases. If a majority of the pairs agrees, it is met exactly, however
+  much the others differ. Degrees of freedom that the pairs do not determine are as in `known`.
 */
 inline Quaternion rotation_of_directions(const std::vector<Direction_pair>& pairs,
                                          const Quaternion& known,
                                          double fraction)
 {
   constexpr int most_passes = 80;
-  // lower limits of angles [rad], and their ratio from pass to pass [-]
+  // lower limits of angles [rad], and their ratio between iterations [-]
   constexpr double first_angle = 0.3, last_angle = 1e-8, ratio = 0.5;
   constexpr double least_step = 1e-12; // [rad]
   double total = 0;
@@ -67,9 +67,9 @@ inline Quaternion rotation_of_directions(const std::vector<Direction_pair>& pair
 }
 
 /*!
-  Returns the rotation of each common branch from tree 1 to tree 2, from its edges, the branches on
-  it, each as a whole, and the rotation of its parent; `root` is that of the whole tree. A branch of
-  only one tree rotates with its parent.
+  Returns the rotation of each common branch from tree 1 to tree 2. It is estimated from the edges
+  of the branch, its child branches, each as a whole, and the rotation of its parent. `root` is the
+  rotation of the whole tree. A branch of only one tree rotates with its parent.
 */
 inline std::vector<Quaternion> rotations_of_branches(const Orl_layout& layout,
                                                      const Embedding& one,
@@ -117,10 +117,11 @@ inline std::vector<Quaternion> rotations_of_branches(const Orl_layout& layout,
 }
 
 /*!
-  Chooses the frames of tree 2, whose twist about the edges is free. The frame of an edge is that of
-  tree 1, rotated with its branch and then by the shortest rotation to the direction of the edge. So
-  the rotation of a whole branch counts once, and rotations of single edges, mainly noise of short
-  ones, do not twist the edges behind them. Edges that tree 1 lacks continue the previous frame.
+  Chooses the frames of tree 2, whose twist about the edges is free. The frame of an edge in tree 1
+  is rotated with the branch, and then by the shortest rotation to the direction of the edge in tree
+  2. So the rotation of a whole branch counts once. Rotations of single edges, which are mainly
+  noise of short edges, do not twist the edges behind them. For an edge that tree 1 lacks, the
+  previous frame of tree 2 is rotated instead.
 */
 inline void
 turn_frames(const Orl_layout& layout, const Embedding& one, const Quaternion& root, Embedding& two)

@@ -41,8 +41,8 @@ inline Embedding empty_embedding(const Orl_layout& layout, const Vec3& root)
   return result;
 }
 
-/// Computes length and direction of an edge. Where a path returns to a point, or a node of the
-/// other tree lies beside one of its own, the edge has no direction: see `lend_directions()`.
+/// Computes length and direction of an edge. An edge between coincident nodes has no direction, see
+/// `lend_directions()`: the path returns to a point, or a node of the other tree is near its own.
 inline void set_edge(const Vec3& difference, double shortest, double& length, Vec3& direction)
 {
   const double norm = difference.norm();
@@ -50,8 +50,8 @@ inline void set_edge(const Vec3& difference, double shortest, double& length, Ve
   direction = norm > shortest ? Vec3(difference / norm) : Vec3(Vec3::Zero());
 }
 
-/// Gives edges without a direction that of the previous edge of their branch, or of the first edge
-/// that has one.
+/// Sets missing directions of edges to the direction of the previous edge of the branch, or else of
+/// the first edge that has a direction.
 inline void lend_directions(const Orl_layout::Branch& branch, std::vector<Vec3>& direction)
 {
   const auto begin = direction.begin() + static_cast<std::ptrdiff_t>(branch.first_edge);

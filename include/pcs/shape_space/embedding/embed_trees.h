@@ -48,8 +48,8 @@ inline Orl_layout make_layout(const std::vector<Common_branch>& branches)
 
 namespace internal {
 
-/// Returns the radius of a path at its node `k`; a branch does not begin thicker than its first
-/// edge. [L]
+/// Returns the radius of a path at its node `k`. If the radius at the base of a branch is unknown,
+/// it is at most the radius at the end of its first edge. [L]
 inline double path_radius(const Rooted_tree& tree, const Branch_path& path, std::size_t k)
 {
   const std::size_t v = path.nodes[k];
@@ -68,7 +68,7 @@ node_at(const Rooted_tree& tree, const Branch_path& path, double fraction)
   const auto it = std::lower_bound(path.arc.begin(), path.arc.end(), s);
   auto k = static_cast<std::size_t>(it - path.arc.begin());
   k = std::min(k, path.arc.size() - 1);
-  // a node itself, not a point near it
+  // a position near a node is moved to the node
   for (const std::size_t i : {k, k > 0 ? k - 1 : k})
     if (std::abs(path.arc[i] - s) <= 1e-12 * path.length())
       return {tree.points[path.nodes[i]], path_radius(tree, path, i)};
@@ -106,7 +106,7 @@ inline Embedding embed(const Orl_layout& layout,
   return result;
 }
 
-/// Computes orientations from frames; edges that a tree lacks take those of `other`.
+/// Computes orientations from frames; edges that a tree lacks have the orientations of `other`.
 inline void set_orientations(const Orl_layout& layout,
                              const std::vector<Common_branch>& branches,
                              Orl_orientation kind,
@@ -149,8 +149,8 @@ inline std::array<Orl_coordinates, 2> embed_trees(const Orl_layout& layout,
   Embedding one = embed(layout, branches, *trees[0], paths[0], 0, Vec3::Zero());
   Embedding two = embed(layout, branches, *trees[1], paths[1], 1, shift);
   if (kind == Orl_orientation::world_axes) {
-    // v_c = q v_p q^-1 with the shortest rotation q in the axes of the input; the frame is the
-    // product of these
+    // v_c = q v_p q^-1 with the shortest rotation q in the axes of the input; the frame of an edge
+    // is the product of the rotations q from the root to the edge
     for (Embedding* tree : {&one, &two})
       for (std::size_t e = 0; e < layout.number_of_edges(); ++e)
         if (tree->x.length[e] > 0) {
@@ -160,8 +160,8 @@ inline std::array<Orl_coordinates, 2> embed_trees(const Orl_layout& layout,
           tree->frame[e].normalize();
         }
   } else {
-    // the trunk of tree 2 refers to that of tree 1: the poses of both in the axes of the input do
-    // not matter
+    // the trunk of tree 2 refers to the trunk of tree 1, so the poses of both trees in the axes of
+    // the input do not matter
     set_frames(layout, Quaternion::Identity(), one);
     set_frames(layout, rotation.conjugate() * one.frame[0], two);
     if (kind == Orl_orientation::gauge_fixed)

@@ -19,8 +19,8 @@ namespace pcs {
 namespace shape_space {
 namespace internal {
 
-/// Minimises the sum of squared chords, whatever the signs of the quaternions: a start for both
-/// means.
+/// Returns the rotation with the least sum of squared chords, the initial value of both means. The
+/// signs of the quaternions have no influence.
 inline Quaternion chordal_mean(const std::vector<Quaternion>& q, const std::vector<double>& w)
 {
   Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
@@ -44,7 +44,8 @@ sum_of_angles(const Quaternion& at, const std::vector<Quaternion>& q, const std:
   return sum;
 }
 
-/// A step towards the L1 mean from a rotation that is no data point: Newton's, or else Weiszfeld's.
+/// Steps towards the L1 mean from a rotation that is no data point. If the Newton step cannot be
+/// computed, it is the Weiszfeld step.
 struct L1_step
 {
   Vec3 newton = Vec3::Zero(), weiszfeld = Vec3::Zero();
@@ -88,8 +89,8 @@ struct Rotation_and_cost
   double cost;
 };
 
-/// Replaces `best` by the data point of least cost, if that is lower. Two data points of equal cost
-/// are the ends of an arc of minima; its middle is taken then.
+/// Replaces `best` by the data point of least cost if this cost is lower. Two data points of equal
+/// cost are the ends of an arc of minima, of which the middle is taken.
 inline void try_data_points(const std::vector<Quaternion>& q,
                             const std::vector<double>& w,
                             Rotation_and_cost& best)
@@ -117,8 +118,8 @@ inline void try_data_points(const std::vector<Quaternion>& q,
 }
 
 /// Moves `best` by one step of Newton or Weiszfeld, halved until the cost decreases. Returns
-/// whether another step may improve it. At a data point, the step starts with its weight
-/// subtracted from the gradient.
+/// whether another step may improve it. At a data point, its weight is first
+/// subtracted from the length of the gradient.
 inline bool descend(const std::vector<Quaternion>& q,
                     const std::vector<double>& w,
                     double total_weight,
@@ -153,11 +154,12 @@ inline bool descend(const std::vector<Quaternion>& q,
 } // namespace internal
 
 /*!
-  Returns the geometric median of rotations: that with the least sum of weighted angles to others
-  (R. Hartley, K. Aftab, J. Trumpf 2011), unique if they lie within a ball of radius pi/2. A data
-  point is taken if the pull of all others does not exceed its weight; else steps of Weiszfeld, or
-  of Newton where they do better. Where a whole arc has the least sum, its middle is returned.
-  Rotations of weight 0 are ignored; `q` has one element at least.
+  Returns the geometric median of rotations: the rotation with the least sum of weighted angles to
+  all of them (R. Hartley, K. Aftab, J. Trumpf 2011). It is unique if they lie within a ball of
+  radius pi/2. A data point is the median if the gradient of all others does not exceed its weight.
+  Otherwise the median is found by Newton steps, or by Weiszfeld steps where these decrease the sum
+  and Newton steps do not. If a whole arc has the least sum, its middle is returned. Rotations of
+  weight 0 are ignored; `q` has at least one element.
 */
 inline Quaternion l1_mean_rotation(const std::vector<Quaternion>& q, const std::vector<double>& w)
 {

@@ -26,7 +26,7 @@ namespace shape_space {
   differences of common edges. [rad]
 
   Edges are weighted by their lengths and their horizontal components. Unchanged wood agrees
-  exactly; edges that bent, grew or were matched by chance do not change the median while they have
+  exactly. Edges that bent, grew or were matched by chance do not change the median if they have
   less than half of the weight.
 */
 inline double refine_yaw(const std::array<const Rooted_tree*, 2>& trees,

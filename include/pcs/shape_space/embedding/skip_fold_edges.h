@@ -14,9 +14,9 @@ namespace pcs {
 namespace shape_space {
 namespace internal {
 
-/// Marks the edges of a branch, from `first` to before `last`, between two bends by more than a
-/// right angle, the second of which reverses the first: skeletons have them where two pieces
-/// overlap.
+/// Marks the folds of a branch with the edges [`first`, `last`). A fold is the edges between two
+/// bends by more than a right angle, where the second bend reverses the first. Skeletons have folds
+/// where two pieces overlap.
 inline void mark_folds(const std::vector<Vec3>& direction,
                        std::size_t first,
                        std::size_t last,
@@ -38,8 +38,8 @@ inline void mark_folds(const std::vector<Vec3>& direction,
 } // namespace internal
 
 /*!
-  Transports the frames of edges and branches behind a fold from the last edge before it.
-  `directions`: of the edges, for each tree; null for those that it lacks.
+  Transports the frames of edges and branches behind a fold from the last edge before the fold.
+  `directions`: of the edges, for each tree; null for edges that the tree lacks.
 
   A fold of only one tree consists of two rotations by about pi, about axes that depend on noise or
   rounding. On the path between the trees, their interpolated product may be any rotation, so

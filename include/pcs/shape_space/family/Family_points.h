@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Points of a family: those of one scan per branch, with correspondences in all other scans.
+// Points of a family: on each branch the points of one scan, with correspondences in the others.
 
 #ifndef PCS_SHAPE_SPACE_FAMILY_FAMILY_POINTS_H
 #define PCS_SHAPE_SPACE_FAMILY_FAMILY_POINTS_H
@@ -51,8 +51,9 @@ public:
            bool has_normals,
            ConcurrencyTag);
 
-  /// Calls `put(i, point, normal, k)` for all points of a tree: `i` counts those of its branches,
-  /// `k` all. `scan_weights`: `>= 0`; empty: all equal.
+  /// Calls `put(i, point, normal, k)` for all points of a tree: `i` is the index among the
+  /// points on branches of the tree, `k` the index among all points. `scan_weights`: `>= 0`; empty:
+  /// all equal.
   template <class ConcurrencyTag, class Put>
   void write(const Orl_layout& layout,
              const Orl_coordinates& x,
@@ -127,8 +128,8 @@ private:
     return Vec3(cosine * v.x() - sine * v.y(), sine * v.x() + cosine * v.y(), v.z());
   }
 
-  /// Calls `f(none, w)` for the point and `f(j, w)` for corresponding point j. If all their scans
-  /// have weight 0, the point has weight 1.
+  /// Calls `f(none, w)` for the point and `f(j, w)` for corresponding point j. If the scans of
+  /// all of them have weight 0, the point has weight 1.
   template <class F>
   void for_each_weight(std::size_t k, const std::vector<double>& scan_weights, const F& f) const
   {
@@ -159,7 +160,7 @@ private:
                 const std::vector<Partner>& partners,
                 std::size_t e);
 
-  /// Returns a normal with the components outwards, around and along.
+  /// Returns the components of a normal outwards, around and along the edge.
   static Vec3 local_normal(const Edge_cone& cone, const std::array<double, 3>& v, double angle);
 
   /// Returns whether the radius is known and the point is near the surface, so that its distance
@@ -169,7 +170,7 @@ private:
   std::vector<Family_source> m_source; // by edge
   std::vector<std::size_t> m_first, m_first_partner, m_branch_of;
   std::vector<char> m_is_relative;
-  std::vector<Tube_coordinates> m_coordinates; // off the axis in radii, or in units of length
+  std::vector<Tube_coordinates> m_coordinates; // distances in radii, or in units of length
   std::vector<Vec3> m_normal;                  // outwards, around and along
   std::vector<Difference> m_partner;
   std::vector<Eigen::Vector3f> m_normal_difference; // difference of normals

@@ -22,8 +22,8 @@ namespace pcs {
 namespace shape_space {
 
 /// Chooses, for every branch, the points of the scan with the most points there, or of a preferred
-/// scan, sorted by edge. `edge[t][i]`: of point i of scan t, `none`: left out. `preferred`: a scan,
-/// or `none`.
+/// scan, sorted by edge. `edge[t][i]`: edge of point i of scan t, or `none` if it is left out.
+/// `preferred`: a scan, or `none`.
 inline std::vector<Family_source> choose_points(const Orl_layout& layout,
                                                 const std::vector<std::vector<std::size_t>>& edge,
                                                 std::size_t preferred)

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A tree of the space as the target of a matching.
+// The reference tree of a space, to which other trees are matched.
 
 #ifndef PCS_SHAPE_SPACE_FAMILY_REFERENCE_TREE_H
 #define PCS_SHAPE_SPACE_FAMILY_REFERENCE_TREE_H
@@ -19,8 +19,8 @@
 namespace pcs {
 namespace shape_space {
 
-/// A tree of the space as the target of a matching. `paths.paths[b]` is branch `b` of the topology,
-/// and its only candidate path.
+/// The reference tree of a space, to which other trees are matched. `paths.paths[b]` is branch `b`
+/// of the topology, and its only candidate path.
 struct Reference_tree
 {
   Rooted_tree tree;
@@ -55,7 +55,7 @@ public:
       const Branch_path& path = m_result.paths.paths[b];
       m_result.paths.paths_of[path.nodes[path.is_trunk ? 0 : 1]] = {b};
       for (Branch_path::Child& c : m_result.paths.paths[b].children)
-        c.start = m_result.paths.paths[c.start].nodes[1]; // was the index of the branch
+        c.start = m_result.paths.paths[c.start].nodes[1]; // replaces the index of the branch
     }
     Vec3 low = tree.points[0], high = low;
     for (const Vec3& p : tree.points) {

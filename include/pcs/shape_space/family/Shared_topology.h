@@ -23,18 +23,18 @@
 namespace pcs {
 namespace shape_space {
 
-/// A branch of the topology of many trees. Its nodes divide it into corresponding parts of all
-/// trees. Between nodes branches are straight, so that a bend has one position, not one in each
-/// tree.
+/// A branch of the topology of many trees. Its nodes divide the branch into corresponding parts in
+/// all trees. Between nodes, branches are straight, so that a bend has the same parameter in all
+/// trees.
 struct Shared_branch
 {
   std::size_t parent = none; ///< index of an earlier branch, or `none`
   std::size_t number_of_edges = 1;
   std::size_t reference_edge = 0;        ///< edge of the parent, counted from its first
   std::vector<std::size_t> path;         ///< per tree, `none`: the tree does not have the branch
-  std::vector<std::vector<double>> node; ///< per tree: fractions of its length; empty: none
+  std::vector<std::vector<double>> node; ///< per tree: fractions of the length; empty: none
   std::vector<double>
-      attachment; ///< per tree: number of a node of the parent, plus the fraction behind it
+      attachment; ///< per tree: number of a node of the parent, plus the fraction of the next edge
 
   bool has(std::size_t tree) const { return path[tree] != none; }
   std::size_t number_of_members() const
@@ -47,7 +47,8 @@ struct Shared_branch
 /// length of the branch. [-]
 constexpr double axis_tolerance = 0.01;
 
-/// Numbers of edges of a branch, from which that for its most curved member is taken. [count]
+/// Returns the least of several numbers of straight edges that approximate a path within
+/// `axis_tolerance`. [count]
 inline std::size_t number_of_straight_edges(const Rooted_tree& tree, const Branch_path& path)
 {
   constexpr std::size_t steps[] = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32};
@@ -174,8 +175,8 @@ with_parent_edges(const Orl_layout& from, const Orl_coordinates& x, const Orl_la
 }
 
 /*!
-  Computes the median tree: for each branch, medians of lengths, radii and attachments, and L1 means
-  of orientations, of the trees that have it.
+  Computes the reference tree: for each branch, medians of lengths, radii and attachments, and L1
+  means of orientations, of the trees that have the branch.
 */
 template <class ConcurrencyTag>
 Orl_coordinates middle_of_members(const Orl_layout& layout,
@@ -224,13 +225,13 @@ Orl_coordinates middle_of_members(const Orl_layout& layout,
 struct Embedded_trees
 {
   std::vector<Orl_coordinates> x; ///< of each tree
-  Orl_coordinates reference;      ///< the middle of the trees that have each branch
+  Orl_coordinates reference;      ///< medians over the trees that have each branch
 };
 
 /*!
-  Computes the coordinates of all trees. Twists of frames follow those of the median tree, so that
-  they are no differences. A branch that a tree lacks has the length 0, and the orientation and
-  attachment of the median tree, which leave the median unchanged.
+  Computes the coordinates of all trees. Twists of frames follow the reference tree, so that
+  twists are no differences between trees. A branch that a tree lacks has the length 0. It has the
+  orientation and attachment of the reference tree, which leave the medians unchanged.
 */
 template <class ConcurrencyTag>
 Embedded_trees embed_trees(const Orl_layout& layout,

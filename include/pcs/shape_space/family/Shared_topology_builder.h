@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Common topology of any number of trees, by repeated matching to a mean tree.
+// Common topology of any number of trees, by repeated matching to a reference tree.
 
 #ifndef PCS_SHAPE_SPACE_FAMILY_SHARED_TOPOLOGY_BUILDER_H
 #define PCS_SHAPE_SPACE_FAMILY_SHARED_TOPOLOGY_BUILDER_H
@@ -21,10 +21,11 @@
 namespace pcs {
 namespace shape_space {
 /*!
-  Builds the topology of any number of trees. The first round begins with the branches of the most
-  ordinary tree. Each further tree is matched to the mean of those before it and adds its unmatched
-  branches. In further rounds all trees are matched to the mean tree of the previous round. The
-  order of input has no influence: trees are taken in a canonical order.
+  Builds the topology of any number of trees by matching them to a reference tree. The first round
+  begins with the branches of the most ordinary tree. Each further tree is matched to the mean of
+  the previous trees and adds its unmatched branches. In further rounds, all trees are matched to
+  the median tree of the previous round. The order of input has no influence: trees are taken in a
+  canonical order.
 */
 template <class ConcurrencyTag>
 class Shared_topology_builder
@@ -72,8 +73,8 @@ public:
     return !progress.is_cancelled();
   }
 
-  /// Matches one more tree to a reference tree; its unmatched branches are left out. Returns the
-  /// fraction of its length that is represented. [-]
+  /// Matches one more tree to a given reference tree; unmatched branches of the tree are left out.
+  /// Returns the fraction of the length of the tree that is represented. [-]
   double project(const Rooted_tree& tree,
                  const Reference_tree& reference,
                  std::vector<Shared_branch>& branches,
@@ -113,11 +114,11 @@ private:
   }
 
   /// Sets the number of edges of each branch to the largest that a member needs, and resamples the
-  /// mean tree.
+  /// reference tree.
   void begin_round()
   {
     const Reference_tree old = make_reference(make_layout(m_branches), m_x);
-    std::vector<Shared_branch> as_tree = m_branches; // the mean tree as the only member
+    std::vector<Shared_branch> as_tree = m_branches; // the reference tree as the only member
     for (std::size_t b = 0; b < m_branches.size(); ++b) {
       Shared_branch& branch = m_branches[b];
       branch.number_of_edges = 1;
@@ -169,15 +170,15 @@ private:
     return result;
   }
 
-  static constexpr std::size_t batch = 16;  // trees that are matched to the same mean tree ...
-  static constexpr std::size_t at_once = 4; // ... between calls of the callback
+  static constexpr std::size_t batch = 16;  // trees per update of the topology
+  static constexpr std::size_t at_once = 4; // trees per call of the callback
 
-  /// Number of pairs of trunks to match; with the number for two trees, they would take most of the
-  /// time. [count]
+  /// Number of pairs of trunks to match [count]. With the number for two trees, these pairs would
+  /// take most of the time.
   static constexpr std::size_t number_of_trunk_trials = 4;
 
   /// Matches tree `t`. The result is never null, as the trunks are always matched.
-  /// `is_trunk_known`: the trunk is that of the last round.
+  /// `is_trunk_known`: the trunk of the last round is kept.
   std::shared_ptr<const Matched_branch> match(std::size_t t, bool is_trunk_known) const
   {
     pcs::internal::Progress none_wanted;
@@ -204,7 +205,7 @@ private:
       add_single(t, 0, none, 0);
     if (!is_first_round && m_branches.size() == before)
       return;
-    // the mean tree is updated: running means in the first round, new branches always
+    // updates the reference tree: running means in the first round, later only new branches
     const Orl_layout layout = make_layout(m_branches);
     internal::Embedding tree =
         internal::embed(layout, m_branches, *m_trees[t], m_paths[t], t, Vec3::Zero());
@@ -313,7 +314,7 @@ private:
     m_fraction_of_changed_matches = changed / std::max(1.0, all);
   }
 
-  /// Adds a branch of the mean tree and one of tree `t` as a pair, with their subtrees.
+  /// Adds a branch of the reference tree and one of tree `t` as a pair, with their subtrees.
   void add_match(const Matched_branch& match, std::size_t t, double attachment)
   {
     const std::size_t b = match.path_1;
@@ -397,7 +398,7 @@ private:
   std::size_t m_number_of_rounds;
   std::vector<Branch_paths> m_paths;
   std::vector<Shared_branch> m_branches, m_last_members;
-  Orl_coordinates m_x; // of the mean tree
+  Orl_coordinates m_x; // of the reference tree
   Reference_tree m_reference;
   Elastic_matcher m_matcher{65, 6};
   bool m_do_extend = true;

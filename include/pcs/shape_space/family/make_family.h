@@ -36,7 +36,7 @@ inline void find_growth_direction(Tree_family& family)
   family.up = sum.norm() > 0 ? Vec3(sum.normalized()) : Vec3(Vec3::UnitZ());
 }
 
-/// Converts the orientations of a tree between frames and world axes, to those of `kind`.
+/// Converts the orientations of a tree, between frames and world axes, to the kind `kind`.
 inline void measure_as(Orl_orientation kind, const Orl_layout& layout, Orl_coordinates& x)
 {
   Orl_geometry geometry;
@@ -118,7 +118,7 @@ Tree_family make_family(Shared_topology_builder<ConcurrencyTag>& topology,
                                                         orientation,
                                                         form.direction);
   family.x = std::move(embedded.x);
-  // other trees are matched to a tree in frames, whatever the kind of orientation
+  // further trees are matched to a reference tree in frames, for every kind of orientation
   family.reference =
       orientation == Orl_orientation::gauge_fixed
           ? std::move(embedded.reference)

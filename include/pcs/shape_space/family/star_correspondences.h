@@ -68,7 +68,7 @@ public:
     });
   }
 
-  /// Finds the corresponding points in all scans. `is_stopped(done)` is asked now and then.
+  /// Finds the corresponding points in all scans. `is_stopped(done)` is called repeatedly.
   template <class IsStopped>
   void
   run(const Transport_options& options, Transport_summary& summary, const IsStopped& is_stopped)
@@ -92,7 +92,7 @@ public:
     }
   }
 
-  /// Returns the corresponding points by point of the sampling, then by tree.
+  /// Returns the corresponding points, sorted by point of the sampling, then by tree.
   std::vector<Orl_space_data::Partner> result() const
   {
     std::vector<Orl_space_data::Partner> result;
@@ -112,7 +112,7 @@ public:
   }
 
 private:
-  /// Composes a tree from branches of all trees: those whose points form the sampling.
+  /// Composes a tree of branches, each from the tree whose points form the sampling there.
   void compose_source_tree()
   {
     m_source_tree.assign(m_layout.branches.size(), none);
@@ -134,8 +134,8 @@ private:
       }
   }
 
-  /// Returns the edges of the points of the sampling and of scan `t`, `none` for points of branches
-  /// that tree `t` lacks, and for those whose points form the sampling.
+  /// Returns the edges of the points of the sampling and of scan `t`: `none` on branches that tree
+  /// `t` lacks, and on branches where the sampling is from scan `t`.
   std::array<std::vector<std::size_t>, 2> edges_to_match(std::size_t t) const
   {
     std::array<std::vector<std::size_t>, 2> edges;
@@ -173,7 +173,7 @@ private:
   const std::vector<Family_source>& m_sources;
   std::vector<Orl_geometry> m_geometry;
   std::vector<std::vector<Vec3>> m_points;
-  std::vector<std::size_t> m_branch_of, m_source_tree; // of edges; tree whose points a branch has
+  std::vector<std::size_t> m_branch_of, m_source_tree; // of edges; tree that gives its points
   std::array<Orl_geometry, 2> m_both;                  // of the sampling, and of one scan
   std::array<std::vector<Vec3>, 2> m_positions;        // likewise
   std::vector<char> m_is_relative;
@@ -186,8 +186,8 @@ private:
   Finds the corresponding points in other scans for each point of the common sampling, by tree. For
   each branch, the sampling consists of the points of one scan; it is transported to each other scan
   that has points there, branch by branch as between two trees. `edge[t][i]` as for
-  `choose_points()`. `is_stopped(done)` is asked now and then; the result has no meaning if it
-  returns `true`.
+  `choose_points()`. `is_stopped(done)` is called repeatedly; the result is invalid if it returns
+  `true`.
 */
 template <class ConcurrencyTag, class IsStopped>
 std::vector<Orl_space_data::Partner>

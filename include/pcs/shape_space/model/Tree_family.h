@@ -24,7 +24,7 @@ struct Tree_family
   std::vector<std::vector<char>> has;        ///< per tree and branch
   std::vector<std::vector<std::size_t>> tip; ///< vertex at the tip, per tree and branch, or `none`
   Orl_weights weights;
-  Orl_coordinates reference;  ///< the middle of the trees that have each branch
+  Orl_coordinates reference;  ///< reference tree: medians over the trees with each branch
   Vec3 origin = Vec3::Zero(); ///< of the coordinates, in those of the caller [L]
   Vec3 up = Vec3::UnitZ();    ///< direction of growth, mean over the trees
   Matching_weights matching;
