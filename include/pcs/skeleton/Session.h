@@ -28,8 +28,8 @@ struct Session_options;
 template <class ConcurrencyTag>
 struct Session_state;
 
-/// The stages in order. Each runs those before it that have not run yet, and returns `false` when
-/// it is cancelled; called again, it continues where it was stopped.
+/// The stages in order. Each stage first runs the preceding stages that are not completed. It
+/// returns `false` if it is cancelled; the next call then continues the work.
 template <class ConcurrencyTag>
 class Session
 {
@@ -37,7 +37,7 @@ public:
   /// `input` is finite, with at least two different points; `is_wood` is empty or has one entry per
   /// point.
   Session(std::vector<Vec3> input, std::vector<std::uint8_t> is_wood, Session_hints hints);
-  /// The same with all options of all stages.
+  /// Like the first constructor, but with the options of all stages.
   Session(std::vector<Vec3> input, std::vector<std::uint8_t> is_wood, Session_options options);
   ~Session();
 
@@ -52,20 +52,20 @@ public:
   const std::vector<Joint>& joints() const;
   const Branch_tree& tree() const;
   const Skeleton_report& report() const;
-  /// 1 for the points of the scan that may be the tree, otherwise 0.
+  /// Returns 1 for each point of the scan that may belong to the tree, otherwise 0.
   const std::vector<std::uint8_t>& used_points() const;
 
-  /// The node that explains an input point, or `none`.
+  /// Returns the node that explains an input point, or `none`.
   Index node_of_input(std::size_t i) const;
-  /// The unit vector from the axis to an input point that has a node; null on the axis.
+  /// Returns the unit vector from the axis to an input point that has a node; zero on the axis.
   Vec3 normal_of_input(std::size_t i) const;
-  /// Distance of an input point that has a node from the surface of its branch; negative inside
-  /// [L].
+  /// Returns the distance of an input point that has a node from the surface of its branch; it is
+  /// negative inside [L].
   double residual_of_input(std::size_t i) const;
-  /// Whether an input point was removed as a leaf, by the caller or by the leaf-wood separation.
+  /// Returns whether an input point is a leaf, by the caller or by the leaf-wood separation.
   bool is_leaf_of_input(std::size_t i) const;
 
-  /// Everything that the stages share; for programs that look inside, with Session_impl.h.
+  /// Returns the data of all stages, which Session_impl.h defines.
   Session_state<ConcurrencyTag>& state() { return *m_state; }
 
 private:

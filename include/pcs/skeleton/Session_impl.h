@@ -26,22 +26,22 @@
 namespace pcs {
 namespace skeleton {
 
-/// The last stage that is finished.
+/// The last completed stage.
 enum class Stage { input, neighbors, paths, axes, joints };
 
-/// What the stages read and leave behind; also what survives a cancelled call.
+/// Input and results of all stages. They persist after a cancelled call.
 template <class ConcurrencyTag>
 struct Session_state
 {
   // ---- the task
-  std::vector<Vec3> input;           ///< until the first stage takes it
+  std::vector<Vec3> input;           ///< empty after the first stage
   std::vector<std::uint8_t> is_wood; ///< of the input; empty: unknown
-  Session_options options;           ///< from the first stage on in coordinates of the scan
+  Session_options options;           ///< in coordinates of the scan after the first stage
 
-  // ---- how far it is
+  // ---- progress
   Stage stage = Stage::input;
-  Leaf_state leaves;  ///< rounds of the leaf-wood separation that are finished
-  Joined_axes joined; ///< rounds of regrouping that are finished, joints and branches
+  Leaf_state leaves;  ///< completed rounds of the leaf-wood separation
+  Joined_axes joined; ///< completed rounds of regrouping, joints and branches
 
   // ---- results, in the order of the stages
   Skeleton_report report;
@@ -54,7 +54,7 @@ struct Session_state
   Layer_tree layers;
   Axis_set axes;
   std::vector<Found_section> sections; ///< of the method `sections`
-  std::vector<Index> successors;       ///< of the nodes of the tree
+  std::vector<Index> successors;       ///< next node on the branch, by node of the tree
 
   const std::vector<std::uint8_t>& is_used() const { return labels.flags(); }
   bool has_sections() const { return options.method == Skeleton_method::sections; }
@@ -86,13 +86,14 @@ void take_points(Session_state<Tag>& s)
   skeleton::take_points<Tag>(std::move(s.input), s.options.up, s.scan);
 }
 
-/// The options of a draft of the tree, from some of the points, by which stations are registered.
+/// Returns the options of the draft of the tree to which stations are registered. The draft uses a
+/// subset of the points.
 inline Session_options draft_options(Session_options options, const Scan_frame& frame)
 {
   options.do_register_stations = false;
   options.stations.clear();
   options.method = Skeleton_method::chains;
-  options.axes.passes = 1; // finds thick wood, in leaves as well
+  options.axes.passes = 1; // sufficient for thick wood, even in leaves
   options.leaf_removal = Leaf_removal::never;
   options.given.reset();
   options.up = Vec3::UnitZ();
@@ -103,8 +104,8 @@ inline Session_options draft_options(Session_options options, const Scan_frame& 
   return options;
 }
 
-/// Errors of registration are millimetres; flight lines of a drone differ by decimetres. 2 cm for
-/// scans in metres.
+/// Largest plausible shift of a station: 2 cm for scans in metres [-]. Registration errors are
+/// millimetres, whereas flight lines of a drone differ by decimetres.
 constexpr double max_shift_by_breast_height = 0.02 / 1.3;
 
 template <class Tag>
@@ -140,7 +141,7 @@ void localize_hints(Session_state<Tag>& s)
   Session_options& o = s.options;
   o.up = Vec3::UnitZ();
   o.breast_height /= frame.unit;
-  if (o.given) { // it is the tree, and begins at its root
+  if (o.given) { // the given skeleton is the tree, and its first point is the root
     s.may_be_tree = s.is_used();
     o.method = Skeleton_method::chains;
     if (!o.root)
@@ -158,7 +159,7 @@ Links used_links(const Session_state<Tag>& s)
   return neighbor_links<Tag>(s.scan, s.is_used(), s.options.axes.links);
 }
 
-/// Builds the graph of the used points, and finds the root unless it is to be kept.
+/// Builds the graph of the used points, and finds the root unless `do_keep_root`.
 template <class Tag>
 void link_used(Session_state<Tag>& s, const Links& links, bool do_keep_root, Linked_parts& linked)
 {
@@ -179,8 +180,8 @@ void trace_layers(Session_state<Tag>& s, Links& links, Linked_parts& linked)
   s.paths = skeleton::trace_layers<Tag>(s.scan, s.root, s.options.layers, links, linked, s.layers);
 }
 
-/// Removes the ground and flat faces, and links the points that are left. Returns `false` if
-/// `progress` stopped it; the ground is not removed then.
+/// Removes the ground and flat faces, and links the remaining points. Returns `false` if `progress`
+/// stopped it; in this case, the ground is not removed.
 template <class Tag>
 bool remove_ground(Session_state<Tag>& s,
                    Links& links,
@@ -191,7 +192,7 @@ bool remove_ground(Session_state<Tag>& s,
     if (s.options.do_trace_paths)
       link_used(s, links, false, linked);
   };
-  if (s.options.do_mark_ground) // most scans have no ground: they are linked meanwhile
+  if (s.options.do_mark_ground) // links meanwhile, since most scans have no ground
     s.clutter.mark_ground(links, s.options.up, link);
   else
     link();
@@ -233,8 +234,8 @@ std::vector<std::uint8_t> find_wood(Session_state<Tag>& s)
   return is_wood;
 }
 
-/// Removes leaves, or what strays from the wood if there are none, and traces layers over the rest.
-/// Returns `false` if there is nothing to remove.
+/// Removes leaves, or points far from wood if there are no leaves, and computes the level sets of
+/// the remaining points. Returns `false` if there is nothing to remove.
 template <class Tag>
 bool remove_leaves(Session_state<Tag>& s)
 {
@@ -249,11 +250,11 @@ bool remove_leaves(Session_state<Tag>& s)
   Linked_parts linked;
   link_used(s, links, !s.leaves.has_leaves, linked);
   trace_layers(s, links, linked);
-  ++s.leaves.rounds; // a cancelled call continues with the wood
+  ++s.leaves.rounds; // after a cancellation, the work continues with the wood
   return true;
 }
 
-/// Fits axes, removes leaves, and fits again, as long as there are leaves.
+/// Fits axes and removes leaves, in rounds, as long as there are leaves.
 template <class Tag>
 bool fit_wood(Session_state<Tag>& s, pcs::internal::Progress& progress)
 {
@@ -274,7 +275,8 @@ bool fit_wood(Session_state<Tag>& s, pcs::internal::Progress& progress)
   return true;
 }
 
-/// Points that were removed as leaves but lie on an axis are wood; without leaves all of them are.
+/// Restores removed points that lie on an axis as wood. If there are no leaves, restores all
+/// removed points.
 template <class Tag>
 void restore_wood(Session_state<Tag>& s)
 {
@@ -287,8 +289,7 @@ void restore_wood(Session_state<Tag>& s)
     s.labels.undo_leaf_removal();
 }
 
-/// Fits the axes of all branches, without leaves where there are any, and fuses pieces of the same
-/// axis.
+/// Fits the axes of all branches, removes leaves, and fuses pieces of the same axis.
 template <class Tag>
 bool fit_all_axes(Session_state<Tag>& s, pcs::internal::Progress& progress)
 {
@@ -302,7 +303,7 @@ bool fit_all_axes(Session_state<Tag>& s, pcs::internal::Progress& progress)
   return true;
 }
 
-/// The method `sections`: sections at centers of curvature.
+/// Detects sections at centers of curvature, for the method `sections`.
 template <class Tag>
 bool find_sections(Session_state<Tag>& s, pcs::internal::Progress& progress)
 {
@@ -337,7 +338,7 @@ bool build_tree(Session_state<Tag>& s, pcs::internal::Progress& progress)
   if (s.leaves.has_leaves && s.leaves.rounds > 0) // remaining leaves make twigs thick
     s.options.radii.support.pipes.slack = o.leaves.pipe_slack;
   refine_radii<Tag>(s.scan, s.is_used(), s.axes, o.radii, s.joined.tree);
-  if (!o.given) // which is one tree
+  if (!o.given) // a given skeleton is one tree
     s.report.number_of_other_stems =
         count_other_stems(s.axes, s.joined.joints, s.joined.root, s.joined.tree, o.stems);
   return true;
@@ -382,7 +383,7 @@ void describe_tree(Session_state<Tag>& s)
                           s.report);
 }
 
-/// The tree of the method `sections`.
+/// Builds the tree of the method `sections`.
 template <class Tag>
 bool join_sections(Session_state<Tag>& s, pcs::internal::Progress& progress)
 {
@@ -393,7 +394,7 @@ bool join_sections(Session_state<Tag>& s, pcs::internal::Progress& progress)
   return finish(s, Stage::joints, end_of_radii, progress);
 }
 
-/// The tree of the method `chains`, or the given skeleton with measured radii.
+/// Builds the tree of the method `chains`, or measures the radii of the given skeleton.
 template <class Tag>
 bool join_branches(Session_state<Tag>& s, pcs::internal::Progress& progress)
 {
@@ -474,7 +475,7 @@ bool Session<ConcurrencyTag>::fit_axes(pcs::internal::Progress& progress)
   if (!find_paths(progress) || s.stage >= Stage::axes)
     return s.stage >= Stage::axes;
   const pcs::internal::Stage_timer timer(s.report.seconds.axes);
-  if (!s.root.empty()) // otherwise nothing is a tree
+  if (!s.root.empty()) // without a root, no point belongs to a tree
     if (!(s.has_sections() ? internal::find_sections(s, progress)
                            : internal::fit_all_axes(s, progress)))
       return false;

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Spread of the figures of a skeleton among resampled copies of its scan.
+// Spread of the descriptors of a skeleton among resampled copies of its scan.
 
 #ifndef PCS_SKELETON_ESTIMATE_SPREAD_H
 #define PCS_SKELETON_ESTIMATE_SPREAD_H
@@ -23,7 +23,7 @@
 namespace pcs {
 namespace skeleton {
 
-/// Some of the points of a scan, with their attributes.
+/// A subset of the points of a scan, with their attributes.
 struct Scan_copy
 {
   std::vector<Vec3> points;
@@ -32,8 +32,9 @@ struct Scan_copy
 };
 
 /*!
-  Copies of a scan: each keeps a point with probability `min(0.9, 40000 / n)`, independently, by the
-  number of the point. Fewer than 100 points give no copies. O(n) per copy.
+  Returns copies of a scan. Each copy keeps each point independently with the probability
+  `min(0.9, 40000 / n)`; the choice depends only on the indices of copy and point. Fewer than 100
+  points give no copies. O(n) per copy.
 */
 inline std::vector<Scan_copy> resample_scan(const std::vector<Vec3>& points,
                                             const std::vector<std::uint8_t>& is_wood,
@@ -72,7 +73,7 @@ inline double deviation(const std::vector<double>& values)
   return n > 1 ? std::sqrt(square / (n - 1)) : 0;
 }
 
-/// The figures of the copies that have a tree.
+/// The descriptors of the copies that have a tree.
 struct Copied_figures
 {
   std::vector<double> height, diameter, trunk, length, volume;
@@ -114,12 +115,12 @@ public:
   Spread_estimator(std::vector<Scan_copy> copies, Session_hints hints)
     : m_copies(std::move(copies)), m_hints(std::move(hints)), m_count(m_copies.size())
   {
-    m_hints.stations.clear(); // each copy has its own
+    m_hints.stations.clear(); // set for each copy
   }
 
   bool is_done() const { return m_copies.empty(); }
 
-  /// Extracts the skeletons that are left. Returns `false` when `progress` stops it.
+  /// Extracts the remaining skeletons. Returns `false` if `progress` stopped it.
   bool run(pcs::internal::Progress& progress)
   {
     for (; !m_copies.empty(); m_copies.pop_back()) {
@@ -140,7 +141,7 @@ public:
     return true;
   }
 
-  /// Deviations among the copies that are done.
+  /// Returns the deviations among the completed copies.
   Skeleton_spread spread() const
   {
     Skeleton_spread result = m_figures.spread();

@@ -70,12 +70,13 @@ struct Chain_options
   double width_factor = 1.7320508075688772; ///< radius / standard deviation of the points [-]
   //! standard deviation of a radius by width, in radii and in noise [-]
   double width_share = 0.15, width_noise = 0.5;
-  double visible = 0.5;       ///< least visible fraction of a section for counting its points [-]
-  double counted_share = 0.7; ///< fraction of expected points below which an axis may hide it [-]
-  double hiding_radius = 4;   ///< search radius for such an axis, in radii ...
-  double hiding_offset = 6;   ///< ... plus spacings
-  double noise_share = 0.2;   ///< r^2 is reduced by this many noise^2: noise inflates thin branches
-  double thick = 4;           ///< least radius of branches that are extended beyond their tips
+  double visible = 0.5; ///< least visible fraction of a section for counting its points [-]
+  //! fraction of the expected points below which another axis may hide a section [-]
+  double counted_share = 0.7;
+  double hiding_radius = 4; ///< search radius for such an axis, in radii ...
+  double hiding_offset = 6; ///< ... plus spacings
+  double noise_share = 0.2; ///< r^2 is reduced by this many noise^2: noise inflates thin branches
+  double thick = 4;         ///< least radius of branches that are extended beyond their tips
   double filled = 0.08; ///< thick axes end where a larger fraction of the points lies inside [-]
   //! least radius of thick axes that widen farther out, and least ratio of this widening [-]
   double thick_widening = 2, widening = 1.1;

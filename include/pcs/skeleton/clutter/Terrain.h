@@ -31,10 +31,10 @@ struct Terrain_options
   double spacings = 4;     ///< ... but at least this many spacings
   int scales = 4;          ///< number of grids, each twice as coarse as the previous one [count]
   double clip = 0.001;     ///< fraction of the points beyond each side of the grid [-]
-  double most_cells = 500; ///< along a side of the grid [count]
+  double most_cells = 500; ///< most cells along a side of the grid [count]
   double steepest = 1;     ///< largest slope from cell to cell [-]
   double below = 0.02;     ///< largest fraction of points deeper than half a cell [-]
-  double sheet = 2; ///< least ratio of points within half a cell to those up to one cell higher [-]
+  double sheet = 2; ///< least ratio of points within half a cell to points up to one cell above [-]
 };
 
 /// Horizontal rectangle that contains nearly all points.

@@ -34,12 +34,12 @@ struct Ground_options
   double spread = 0.55; ///< ... and least fraction of these cells that contain points [-]
   double width = 3;     ///< least distance of its farthest points from the stem, in stem widths [-]
   double lying = 0.01;  ///< least ratio of other points to ground if there is no stem [-]
-  double bin = 0.01;    ///< height of a bin by the vertical extent, at least 4 spacings [-]
-  int bins = 12;        ///< lowest bins for the search of the stem [count]
-  double keep = 2;      ///< radius around the stem without search of plants, in stem widths [-]
-  double beside = 1.5;  ///< radius within which ground is thinner, in stem widths [-] ...
-  double foot = 2;      ///< ... and its thickness there, in multiples of the noise [-]
-  double filled = 0.4;  ///< least fraction of filled cells in a bin of plants [-]
+  double bin = 0.01;   ///< height of a bin / vertical extent; the height is at least 4 spacings [-]
+  int bins = 12;       ///< lowest bins for the search of the stem [count]
+  double keep = 2;     ///< radius around the stem without search of plants, in stem widths [-]
+  double beside = 1.5; ///< radius within which ground is thinner, in stem widths [-] ...
+  double foot = 2;     ///< ... and its thickness there, in multiples of the noise [-]
+  double filled = 0.4; ///< least fraction of filled cells in a bin of plants [-]
   Terrain_options terrain;
   Sheet_options sheet;
 };
@@ -198,7 +198,7 @@ struct Stem_foot
   }
 };
 
-/// Detector of ground points: those of a terrain, and of plants on it.
+/// Detector of ground points: the points of a terrain and of plants on it.
 class Ground_finder
 {
 public:
@@ -306,8 +306,8 @@ private:
     }
   }
 
-  /// Adds the points of bins that plants fill, and of connected components that extend from these
-  /// into as many bins above.
+  /// Adds the points of the lowest bins, which plants fill, and of connected components that extend
+  /// from these bins into the same number of bins above.
   void add_plants(const Low_bins& bins, const Links& links, const Stem_foot& foot)
   {
     std::size_t filled = 0;
@@ -340,8 +340,8 @@ private:
 
 /*!
   Removes ground from `is_used`, and returns the number of its points. Ground is a terrain below all
-  other points that is a filled patch much wider than the stem, or with an object lying on it.
-  Plants that cover it are removed, too. `links`: links between neighbours. O(n log n).
+  other points. It is a filled patch much wider than the stem, or an object lies on it. Plants that
+  cover it are removed, too. `links`: links between neighbours. O(n log n).
 */
 inline std::size_t mark_ground(const Scan& scan,
                                const Links& links,

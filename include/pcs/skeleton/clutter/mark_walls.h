@@ -30,15 +30,15 @@ namespace skeleton {
 /// same tolerance.
 struct Wall_options
 {
-  double cell = 0.083;  ///< of the grid, by the root mean square radius of the scan [-] ...
+  double cell = 0.083;  ///< cell of the grid / root mean square radius of the scan [-] ...
   double spacings = 10; ///< ... but at least this many spacings
-  std::size_t most_points = 200000; ///< in the sample for the search of planes [count]
-  std::size_t fewest_points = 12;   ///< of the sample in a cell [count]
+  std::size_t most_points = 200000; ///< most points in the sample for the search of planes [count]
+  std::size_t fewest_points = 12;   ///< least number of sampled points in a cell [count]
   double flat = 0.1;   ///< largest deviation of the points of a cell from their plane, in cells
   double step = 0.045; ///< largest distance of a point from the plane of its face, in cells
   double share = 0.5;  ///< least fraction of the points of a cell that lie on its face [-]
   double width = 3.5;  ///< least width of a face in cells; with `step`, cylinders have 3.4 at most
-  double even = 2.5;   ///< largest ratio of the deviation of a face to the mean one of cells [-]
+  double even = 2.5;   ///< largest ratio of the deviation of a face to the mean deviation of cells
   double crowd = 5;    ///< points per small cell of a uniform distribution [count] ...
   double full = 0.6;   ///< ... and least fraction of these cells that contain points [-]
   double level = 0.7;  ///< cosine of normal and up above which a face is level, not a wall [-]
@@ -46,7 +46,7 @@ struct Wall_options
       0.15; ///< least height of a roof above the lowest point, relative to the vertical extent [-]
   double noise = 3;    ///< points within this many deviations belong to a face [-]
   double reach = 1;    ///< points within this many cells are beside a face ...
-  double beside = 0.5; ///< ... and components with this fraction of them are removed with it [-]
+  double beside = 0.5; ///< ... and components with this fraction of such points are removed [-]
   int rounds = 4;      ///< of detection; the remaining points may have smaller faces [count]
   double least = 0.01; ///< least fraction of remaining points; otherwise no face is removed [-]
 };

@@ -31,7 +31,7 @@ struct Clutter_options
 
 /*!
   Removal of walls and roofs, then of the ground and all other flat faces. After a cancellation
-  between both, the next call continues with the ground.
+  between these steps, the next call continues with the ground.
 */
 template <class ConcurrencyTag>
 class Clutter_removal
@@ -92,8 +92,7 @@ public:
       m_labels.keep_only(std::move(m_is_above_ground));
       links = find_links();
     }
-    const bool may_have_faces =
-        m_walls.has_faces() || has_ground; // otherwise none were found before
+    const bool may_have_faces = m_walls.has_faces() || has_ground; // otherwise, nothing has changed
     return (may_have_faces && m_walls.leave_out_rest(find_links, links)) || has_ground;
   }
 

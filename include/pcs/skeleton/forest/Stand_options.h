@@ -17,12 +17,12 @@ struct Stand_options
   double cell = 0.0155;        ///< voxel size of thinning: one point per voxel
   std::size_t solid_part = 30; ///< smallest connected component of ground or trees [count]
   double ground_cell = 1;      ///< side of the squares whose lowest point is ground
-  double ground_slope = 0.6;   ///< ... largest slope of the ground from there [-]
+  double ground_slope = 0.6;   ///< ... largest slope of the ground from this point [-]
   double rise = 0.5;           ///< least rise of a stem ...
   double steep = 0.5;          ///< ... and least rise per length [-]
   double stout = 4;            ///< least rise, in lower radii [-]
-  double taper = 0.6;          ///< least ratio of its lower radius to its upper radius [-]
-  double thinnest = 0.01;      ///< its least lower radius
+  double taper = 0.6;          ///< least ratio of the lower to the upper radius of a stem [-]
+  double thinnest = 0.01;      ///< least lower radius of a stem
   double foot = 1;             ///< highest foot above the ground ...
   double foot_radii = 20;      ///< ... and in radii of the stem [-]
   double stool_radii = 3;      ///< stems of one tree lie within this many radii of the thicker one,

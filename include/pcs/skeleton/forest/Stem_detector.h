@@ -254,8 +254,8 @@ private:
     m_stems = std::move(found);
   }
 
-  /// Returns the end from which an axis rises like a stem, or null. Its part above the highest node
-  /// is ignored.
+  /// Returns the end from which an axis rises like a stem, or null. Nodes beyond the highest one
+  /// are ignored.
   const Axis_node* foot_of(const Axis& axis, const Lowest_ground& ground) const
   {
     const Axis_node* foot = nullptr;

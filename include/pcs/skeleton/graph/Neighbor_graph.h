@@ -133,7 +133,7 @@ Links neighbor_links(const Scan& scan,
       unsigned bits = 0;
       for (std::size_t b = 0; b < neighbors_per_point; ++b) {
         const Index j = scan.neighbors[i][b];
-        // of two mutual neighbours, the smaller one lists the link
+        // two mutual neighbours list their link with the smaller index
         if (j == none || !is_used[j] || !is_link(i, j) || (j < i && knows(j, i)))
           continue;
         bits |= 1U << b;
@@ -146,7 +146,7 @@ Links neighbor_links(const Scan& scan,
   for (std::size_t b = 0; b < number_of_blocks; ++b)
     first[b + 1] += first[b];
   Links links;
-  links.reserve(first.back() + first.back() / 16); // for those that close gaps
+  links.reserve(first.back() + first.back() / 16); // for links that close gaps
   links.resize(first.back());
   pcs::internal::for_each_block<ConcurrencyTag>(n, block, [&](std::size_t begin, std::size_t end) {
     Link* next = links.data() + first[begin / block];
@@ -203,7 +203,7 @@ Point_sets united_points(std::size_t n, const Links& links, const IsWanted& is_w
 struct Point_parts
 {
   std::vector<Index> part; ///< a point of the component; `none` if not used
-  std::vector<Index> size; ///< by that point
+  std::vector<Index> size; ///< size of the component, by the same point
 
   std::vector<Index> points_of(Index s) const
   {
@@ -349,8 +349,8 @@ private:
 
 /*!
   Returns the shortest links that join the connected components of the points of `is_used` up to the
-  widest gap of the rule, by the method of Boruvka. The largest component is only found by searches
-  from the others. If many points are outside of it, only points near other components search.
+  widest gap of the rule, by the method of Boruvka. Links are searched from the points of all
+  components except the largest. If these are many, only points near other components are used.
 */
 inline Links links_across_gaps(const Scan& scan,
                                const std::vector<std::uint8_t>& is_used,

@@ -75,7 +75,7 @@ public:
 private:
   static constexpr std::uint64_t number_of_buckets = 128;
 
-  /// Distributes the entries beyond the ring. An empty ring restarts at the nearest of them.
+  /// Distributes the entries beyond the ring. An empty ring restarts at the nearest entry.
   void bring_in()
   {
     std::vector<Entry> beyond;

@@ -22,7 +22,7 @@ struct Session_hints
   std::vector<Vec3> scanners;
   std::optional<Given_skeleton> given; ///< its positions remain fixed
   double beam_width = 0;               ///< of the scanners [rad]
-  bool do_register_stations = false;   ///< those of `stations`, or detected ones
+  bool do_register_stations = false;   ///< the stations of `stations`, or detected ones
   std::vector<long long> stations;     ///< of the points; empty: unknown
   bool do_mark_ground = true;
   Leaf_removal leaf_removal = Leaf_removal::where_found; ///< for the method `chains`

@@ -38,7 +38,7 @@ struct Input_options
 {
   Session_hints hints;
   std::function<bool(double)> callback;
-  std::size_t number_of_resamples = 0; ///< copies of the scan that show the spread of the result
+  std::size_t number_of_resamples = 0; ///< copies of the scan to estimate the spread of the result
 };
 
 namespace internal {
@@ -159,8 +159,8 @@ void read_method(const NamedParameters& np, const std::string& caller, Session_h
   check_slices(hints.slices, caller);
 }
 
-/// Reads whether to remove leaves. By default, this depends on the evidence; it is off if the
-/// caller gives the points of wood.
+/// Reads whether to remove leaves. By default, leaves are removed where they are detected, but
+/// never if the caller gives the points of wood.
 template <class NamedParameters>
 void read_leaf_removal(const NamedParameters& np, Session_hints& hints)
 {

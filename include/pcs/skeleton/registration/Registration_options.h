@@ -50,10 +50,10 @@ struct Station_alignment_options
   double agreement = 0.4;
   double least = 0.25;           ///< ... unless the motions are smaller than this, in noise [-]
   std::size_t fewest_pieces = 8; ///< least pieces of every second axis for an error [count]
-  //! size of the applied motions above which another pass follows, in noise [-]
+  //! size of the applied motions above which another draft follows, in noise [-]
   double much = 1.5;
-  int passes = 3; ///< largest number of passes [count]
-  int rounds = 6; ///< Gauss-Newton steps of a pass [count]
+  int passes = 3; ///< largest number of drafts [count]
+  int rounds = 6; ///< Gauss-Newton steps per estimate [count]
 };
 
 /// Options of `register_stations()`.

@@ -62,9 +62,9 @@ public:
 
   /*!
     Estimates the motions from all axes. The difference between separate estimates from the even and
-    the odd axes indicates by which factor their variance exceeds that of independent noise. The
-    weight of the points is divided by this factor. The prior limits motions that the points do not
-    determine.
+    the odd axes indicates by which factor their variance exceeds the variance for independent
+    noise. The weight of the points is divided by this factor. The prior limits motions that the
+    points do not determine.
   */
   Aligned_stations run()
   {

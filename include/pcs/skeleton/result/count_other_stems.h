@@ -24,7 +24,7 @@ struct Stem_options
   double length = 0.25; ///< least rise
   double steep = 0.5;   ///< least rise per length [-]
   double taper =
-      1.2; ///< least ratio of the lower radius to the upper one or to that of the base [-]
+      1.2; ///< least ratio of the lower radius to the upper radius or to the base radius [-]
 };
 
 namespace internal {
@@ -64,9 +64,9 @@ struct Axis_slope_summary
 } // namespace internal
 
 /*!
-  Counts the stems besides that of the root near its height. These are unreachable axes, and
-  branches that descend to this height and are thicker at their lower end: there, another tree is
-  joined to this one where the crowns touch. z points upwards. O(nodes).
+  Counts further stems that begin near the height of the root. They are unreachable axes, and
+  branches that descend to this height and are thicker at their lower end. Such a branch is the stem
+  of another tree, joined to this one where the crowns touch. z points upwards. O(nodes).
 */
 inline std::size_t count_other_stems(const Axis_set& set,
                                      const std::vector<Joint>& joints,

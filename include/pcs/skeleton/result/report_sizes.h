@@ -94,7 +94,7 @@ struct Stem_crossing
 
 /// Reports the diameters of the stems. Stems are branches that rise to half the height of the tree:
 /// the thickest one, and those with at least 0.7 times its diameter. Without such a branch, the
-/// thickest one counts. `ground` is the height of the root.
+/// thickest branch is used. `ground` is the height of the root.
 inline void report_stems(const Branch_tree& tree,
                          const Vec3& up,
                          double ground,

@@ -19,7 +19,7 @@ namespace skeleton {
 struct Coordinate_step
 {
   double step = 0; ///< largest of the three axes; 0: no axis is rounded [L]
-  //! whether the step is that of 32-bit floating-point numbers of this size, far from the origin
+  //! whether the step is the resolution of 32-bit numbers at this distance from the origin
   bool is_single_precision = false;
 };
 
@@ -62,8 +62,8 @@ inline double step_of_sorted(const std::vector<double>& values)
 
 /*!
   Measures the step to which the coordinates are rounded, from a sample of the points. `points` are
-  in the coordinates of the input, since subtracting an offset would hide the cause. O(m log m) for
-  `m` sampled points.
+  in the coordinates of the input, since the resolution of 32-bit numbers depends on their size.
+  O(m log m) for `m` sampled points.
 */
 inline Coordinate_step measure_coordinate_step(const std::vector<Eigen::Vector3d>& points)
 {

@@ -162,7 +162,8 @@ private:
 } // namespace internal
 
 /// Detects the sections of all points that support no earlier section. The result depends on the
-/// order of the points, not on threads. It is incomplete once `progress(fraction)` returns `false`.
+/// order of the points, but not on threads. It is incomplete if `progress(fraction)` returns
+/// `false`.
 template <class Callback>
 std::vector<Found_section> detect_sections(const Scan& scan,
                                            const std::vector<std::uint8_t>& is_used,

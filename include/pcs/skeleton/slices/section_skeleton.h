@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Skeleton by cross-sections in dense regions and spanning trees in sparse ones, as published.
+// Skeleton by cross-sections in dense regions and spanning trees in sparse ones [Aiteanu 2022].
 
 #ifndef PCS_SKELETON_SLICES_SECTION_SKELETON_H
 #define PCS_SKELETON_SLICES_SECTION_SKELETON_H
@@ -243,8 +243,8 @@ private:
     Layer_tree layers;
     std::vector<double> importance; ///< length of all edges beyond each node [L]
     std::vector<Vec3> center;       ///< smoothed centers
-    std::vector<Index> top;         ///< the first node of the tree of each node
-    std::vector<Index> joint;       ///< for each node in `top`: the dense node there, or `none`
+    std::vector<Index> top;         ///< the first node of the tree that contains each node
+    std::vector<Index> joint;       ///< for each node in `top`: its dense parent node, or `none`
   };
 
   /// Adds spanning trees over the remaining points, contracted to level sets. Radii follow from
@@ -279,7 +279,7 @@ private:
   }
 
   /// Returns all dense points, so that every sparse subtree begins at the border of the dense
-  /// region; the root if there are none.
+  /// region. Returns the root if there are no dense points.
   std::vector<Index> sources_of(const std::vector<std::uint8_t>& is_rest,
                                 const std::vector<Index>& root) const
   {
