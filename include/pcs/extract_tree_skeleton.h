@@ -29,7 +29,7 @@ namespace pcs {
   | a bush | its thickest stem is the root; other stems within reach are branches of it |
   | two trees in one cloud | the tree with more points at its foot, relative to its height; the
     other is counted as unreached |
-  | a body that is no tree, such as a sphere | some tree within it |
+  | a body that is not a tree, such as a sphere | an arbitrary tree inside it |
 
   \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or
       `CGAL::Parallel_if_available_tag`

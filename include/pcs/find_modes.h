@@ -74,7 +74,7 @@ Modes_of_variation find_modes(const Orl_shape_space<Kernel, ConcurrencyTag>& spa
   For any scores, edge lengths of the trunk, and radii of edges of positive length, remain at least
   a hundredth of their values in the mean.
   \param space, modes a space and the result of `find_modes()` for it
-  \param scores at most one per mode, finite; missing ones are 0
+  \param scores at most one per mode, finite; missing scores are 0
 */
 template <class Kernel, class ConcurrencyTag>
 Orl_tree tree_of_modes(const Orl_shape_space<Kernel, ConcurrencyTag>& space,
@@ -98,7 +98,7 @@ Orl_tree tree_of_modes(const Orl_shape_space<Kernel, ConcurrencyTag>& space,
 }
 
 //! \ingroup PkgPcsShapeSpaceRef
-//! projects a tree on the space of the first `most` modes; branches that it lacks are ignored
+//! projects a tree on the space of the first `most` modes; branches that the tree lacks are ignored
 template <class Kernel, class ConcurrencyTag>
 Mode_coordinates project_on_modes(const Orl_shape_space<Kernel, ConcurrencyTag>& space,
                                   const Modes_of_variation& modes,

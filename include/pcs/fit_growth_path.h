@@ -40,7 +40,7 @@ using Growth_spline = shape_space::Growth_spline;
     \np{is_monotone} whether lengths and radii never decrease; values that decrease are replaced by
         the closest non-decreasing ones
       \nptype `bool`
-      \npdefault `false`: they decrease only where they do so from tree to tree
+      \npdefault `false`: they decrease only between trees where the given values decrease
   \npend
   \throws pcs::Invalid_input for a wrong handle, or times that do not increase
 */

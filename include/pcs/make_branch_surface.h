@@ -145,7 +145,7 @@ Branch_surface_options read_branch_surface_options(const NamedParameters& np,
   Every branch becomes a tube through its cross-sections, with twist-free frames and a lid at the
   tip. The polygon of each ring has the area of its cross-section. Where the axis of a branch leaves
   its parent, the tube is extended backwards to a loop on the parent's surface and sewn into a hole
-  there, so that the mesh has no internal walls. Every edge is shared by two triangles, which
+  there, so that the mesh has no internal walls. Every edge belongs to two triangles, which
   traverse it in opposite directions. Branches that remain inside their parent have no surface. If
   siblings leave no room for a hole, a branch is a closed tube that begins inside its parent. Thin
   tubes that touch or bend sharply may intersect themselves or each other.

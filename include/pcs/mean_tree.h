@@ -27,7 +27,7 @@ namespace pcs {
 
   `Tree_mean::median` minimises the sum of distances `Orl_metric::sum`. It consists of the medians
   of lengths, radii and attachments, and the L1 means of orientations (Weiszfeld's algorithm). A
-  branch that fewer than half of the trees have obtains the length 0. `Tree_mean::frechet` minimises
+  branch of fewer than half of the trees has the length 0. `Tree_mean::frechet` minimises
   the sum of squared distances. Every branch is present, with its mean length.
 
   \param space a space that was built

@@ -116,10 +116,10 @@ Orl_tree sample_tree(const Orl_shape_space<Kernel, ConcurrencyTag>& space,
   const std::size_t trials = options.do_keep_in_range ? options.number_of_trials : 1;
   Orl_tree best;
   Sample_report found;
-  double least = 0; // violation by the descriptors of the whole tree, without those by order
+  double least = 0; // violation by descriptors of the whole tree, without descriptors by order
   Tree_sampling_options nearer = options;
   for (std::size_t k = 0; k < trials; ++k) {
-    // the second half of the trials approaches the median tree, and lengths are kept in range
+    // the second half of the trials approaches the median tree, and lengths remain in range
     nearer.spread =
         options.spread * std::min(1.0, 1.5 - static_cast<double>(k) / static_cast<double>(trials));
     Orl_tree candidate(shape_space::make_tree(

@@ -85,7 +85,7 @@ void warn_of_trees(const Segmentation_report& r,
 //! returns one sentence for each reason to doubt the segmentation; empty for most stands
 inline std::vector<std::string> warnings(const Segmentation_report& r)
 {
-  constexpr double max_diameter = 0.1; // of a stem, relative to height; trees: 0.01 to 0.05 [-]
+  constexpr double max_diameter = 0.1; // stem diameter / height; trees: 0.01 to 0.05 [-]
   double height = 0;
   for (const Segmented_tree& tree : r.trees)
     height = std::max(height, tree.height);
@@ -141,16 +141,16 @@ void write_trees(const std::vector<skeleton::Vec3>& input,
   half the breast height. Two stems belong to the same tree if the horizontal distance of their feet
   is less than the sum of three radii of the thicker stem, a tenth of the breast height, and the
   height of the higher foot above the ground. Where crowns touch, an axis is assigned to the tree
-  that it most likely continues, by the same odds of distance, direction and radius by which
+  that it most likely continues. The odds of distance, direction and radius are those by which
   `extract_tree_skeleton()` joins axes. A point without an axis is assigned to the tree whose foot
   has the smallest geodesic distance. Ground, walls and outliers remain unassigned, except for
   ground points at the foot of a stem.
 
   The scan is thinned to one point per voxel, with a voxel size of a 65th of the breast height. All
-  points of a voxel are assigned to the tree of that point. Sparsely sampled trees are segmented
-  again with voxels three times as large.
+  points of a voxel are assigned to the tree of the point that represents it. Sparsely sampled trees
+  are segmented again with voxels three times as large.
 
-  The points of one tree are a scan for `extract_tree_skeleton()`.
+  The points of one tree can be passed to `extract_tree_skeleton()`.
 
   \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or
       `CGAL::Parallel_if_available_tag`

@@ -25,8 +25,8 @@ inline std::uint64_t mix_bits(std::uint64_t x)
 
 /*
   SplitMix64, started from a seed and any number of keys, so that the stream of a task does not
-  depend on other tasks. The distributions are implemented here because those of the standard
-  library differ between its implementations.
+  depend on other tasks. The distributions are implemented here, because standard libraries
+  implement them differently.
 */
 class Random_stream
 {

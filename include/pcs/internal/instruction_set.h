@@ -5,7 +5,7 @@
 #ifndef PCS_INTERNAL_INSTRUCTION_SET_H
 #define PCS_INTERNAL_INSTRUCTION_SET_H
 
-// Kernels fuse multiply-adds explicitly, so all machines give the same bits; those without the
+// Kernels fuse multiply-adds explicitly, so all machines give the same bits. Machines without this
 // instruction are slow.
 #if (defined(__GNUC__) || defined(__clang__)) && defined(__x86_64__) &&                            \
     !defined(PCS_NO_RUNTIME_DISPATCH)
@@ -47,8 +47,8 @@ inline bool has_avx2()
 #endif
 }
 
-/// Whether to use full AVX-512 registers. The required extensions are common to all processors that
-/// these registers do not slow down.
+/// Whether to use full AVX-512 registers. The extensions required here exclude processors that slow
+/// down when these registers are used.
 inline bool has_avx512()
 {
 #if PCS_HAS_RUNTIME_DISPATCH

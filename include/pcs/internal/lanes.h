@@ -19,8 +19,8 @@ namespace internal {
 
 #if (defined(__GNUC__) || defined(__clang__)) && !defined(PCS_NO_VECTOR_EXTENSIONS)
 
-// Compilers split vectors that exceed the registers of the machine; the operations, and thus the
-// bits, are unchanged.
+// Compilers split vectors that are wider than the registers of the machine. The operations, and
+// thus the bits, are unchanged.
 using Double2 = double __attribute__((vector_size(16))); // on every machine
 using Double4 = double __attribute__((vector_size(32)));
 using Double8 = double __attribute__((vector_size(64)));
@@ -152,7 +152,7 @@ PCS_ALWAYS_INLINE void store(const Lanes& from, T* to)
   std::memcpy(to, &from, sizeof(Lanes));
 }
 
-/// Prefetches `bytes` of memory that are read soon.
+/// Prefetches `bytes` bytes of memory that are read soon.
 PCS_ALWAYS_INLINE void prefetch([[maybe_unused]] const void* memory,
                                 [[maybe_unused]] std::size_t bytes)
 {
@@ -300,8 +300,8 @@ using Avx512_arithmetic = Plain_arithmetic<Double8>;
 inline constexpr double reciprocal_root_series[] = {1, 0.5, 0.375, 0.3125};
 
 /*!
-  Computes `1 / sqrt(x)` to one or two units in the last place, from a guess based on the bits of
-  `x`, without divisions and roots, which would dominate the time of a kernel. `x` must be positive.
+  Computes `1 / sqrt(x)` to one or two units in the last place (ulp), from a guess based on the bits
+  of `x`. Divisions and roots would dominate the time of a kernel. `x` must be positive.
   With `d = 1 - x y^2`, the series `1 / sqrt(x) = y (1 + d / 2 + 3 d^2 / 8 + 5 d^3 / 16 + ...)` is
   truncated after `d^3`, then in a second step after `d^2`: the error decreases from 3.5 % to 7e-6
   and to 1e-15, with a shorter chain of operations than four steps of Newton's method.

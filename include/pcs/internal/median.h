@@ -31,16 +31,16 @@ T value_of_rank(std::vector<T>& values, std::size_t rank)
   return internal::value_of_rank(values.begin(), values.end(), rank);
 }
 
-/// Returns the median; of an even number of values the lower one of the two in the middle; 0 if
-/// there are no values.
+/// Returns the median. For an even number of values, it is the lower of the two middle ones; for no
+/// values, it is 0.
 template <class T>
 T lower_median(std::vector<T>& values)
 {
   return values.empty() ? T(0) : internal::value_of_rank(values, (values.size() - 1) / 2);
 }
 
-/// Returns the median; of an even number of values the upper one of the two in the middle; 0 if
-/// there are no values.
+/// Returns the median. For an even number of values, it is the upper of the two middle ones; for no
+/// values, it is 0.
 template <class Iterator>
 typename std::iterator_traits<Iterator>::value_type upper_median(Iterator first, Iterator last)
 {
@@ -55,8 +55,8 @@ T upper_median(std::vector<T>& values)
   return internal::upper_median(values.begin(), values.end());
 }
 
-/// Returns the median; of an even number of values the mean of the two in the middle; 0 if there
-/// are no values.
+/// Returns the median. For an even number of values, it is the mean of the two middle ones; for no
+/// values, it is 0.
 template <class T>
 T mean_median(std::vector<T>& values)
 {

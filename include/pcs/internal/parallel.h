@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-// Copied headers follow the definition of CGAL; the CMake target sets PCS_WITH_TBB itself.
+// Without the CMake target, which defines PCS_WITH_TBB, the definition of CGAL applies.
 #if !defined(PCS_WITH_TBB) && defined(CGAL_LINKED_WITH_TBB)
 #define PCS_WITH_TBB 1
 #endif
@@ -48,8 +48,8 @@ constexpr bool is_parallel()
 #if PCS_HAS_TBB
   return wants_parallel;
 #else
-  // Parallel_if_available_tag derives from Parallel_tag exactly if CGAL uses TBB; it must remain
-  // valid here.
+  // Parallel_if_available_tag derives from Parallel_tag if and only if CGAL uses TBB. It must be
+  // accepted here in any case.
   static_assert(!wants_parallel || !std::is_same_v<ConcurrencyTag, CGAL::Parallel_tag>,
                 "pcs: CGAL::Parallel_tag needs TBB; link TBB (PCS_WITH_TBB) or use "
                 "CGAL::Parallel_if_available_tag");

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Stores past the caches, where the machine has them.
+// Stores that bypass the caches, on machines that have such instructions.
 
 #ifndef PCS_INTERNAL_STREAMING_STORES_H
 #define PCS_INTERNAL_STREAMING_STORES_H
@@ -54,8 +54,8 @@ PCS_ALWAYS_INLINE Double_pair across(Double_pair a, Double_pair b)
 PCS_ALWAYS_INLINE void stream(Double_pair both, double* to)
 {
 #if defined(__GNUC__) || defined(__clang__)
-  // Clang merges equal ends of branches and loses the kind of store; a single ordinary store among
-  // the streaming stores to a cache line makes it ten times as slow.
+  // Clang merges equal ends of branches and replaces the streaming store by an ordinary one. A
+  // single ordinary store among the streaming stores to a cache line makes them ten times as slow.
 #ifdef __AVX__
   __asm__ volatile("vmovntpd %1, %0" : "=m"(*reinterpret_cast<__m128d*>(to)) : "x"(both));
 #else

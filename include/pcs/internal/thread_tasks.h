@@ -12,7 +12,7 @@
 namespace pcs {
 namespace internal {
 
-/// Runs two tasks concurrently; both end before an exception is passed on.
+/// Runs two tasks concurrently. An exception is rethrown after both have ended.
 template <class F, class G>
 void run_in_two_threads(const F& f, const G& g)
 {

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Whether a tree is so high that its coordinates must be in another unit than the breast height.
+// Warning about a height that indicates different units of the coordinates and the breast height.
 
 #ifndef PCS_INTERNAL_UNIT_OF_HEIGHT_H
 #define PCS_INTERNAL_UNIT_OF_HEIGHT_H
@@ -20,7 +20,7 @@ inline void warn_of_unit(const std::string& subject,
                          std::vector<std::string>& sentences)
 {
   constexpr double tallest =
-      100; // by the breast height; the tallest of all trees is 116 m high [-]
+      100; // in units of the breast height; the tallest tree is 116 m high [-]
   if (!(breast_height > 0 && height > tallest * breast_height))
     return;
   std::ostringstream sentence;

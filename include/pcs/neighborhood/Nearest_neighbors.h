@@ -41,7 +41,7 @@ public:
   Nearest_neighbors(const Nearest_neighbors&) = delete;
   Nearest_neighbors& operator=(const Nearest_neighbors&) = delete;
 
-  /// Writes the `k` points nearest to `query` to `result`, nearest first; fewer if fewer exist.
+  /// Writes the `k` points nearest to `query` to `result`, nearest first; all if there are fewer.
   void operator()(const Vec3& query, std::size_t k, std::vector<Neighbor>& result) const
   {
     k = std::min(k, m_adaptor.points.size());
@@ -76,7 +76,7 @@ public:
     std::sort(result.begin() + static_cast<std::ptrdiff_t>(before), result.end());
   }
 
-  /// Appends the same indices in the order of the search.
+  /// Appends the indices of all points closer than `radius` to `query`, in the order of the search.
   void append_within(const Vec3& query, double radius, std::vector<std::uint32_t>& result) const
   {
     Collector collector{radius * radius, &result};
@@ -84,8 +84,8 @@ public:
   }
 
   /*!
-    Returns the nearest point that is closer than `radius` and satisfies `is_wanted(index)`; ties by
-    coordinates. `squared_distance` is infinite if there is none.
+    Returns the nearest point that is closer than `radius` and satisfies `is_wanted(index)`.
+    Coordinates decide ties. `squared_distance` is infinite if there is no such point.
   */
   template <class Predicate>
   Neighbor nearest_if(const Vec3& query, double radius, const Predicate& is_wanted) const
@@ -98,7 +98,7 @@ public:
   }
 
 private:
-  // Result sets in the sense of nanoflann, with the members that versions after 1.4 require.
+  // Result sets of nanoflann, with the members that versions after 1.4 require.
   struct Collector
   {
     using DistanceType = double;
@@ -130,7 +130,7 @@ private:
     void sort() {}
     double worstDist() const
     {
-      // the next larger number, so that ties are found
+      // slightly larger than the best distance, so that ties are found
       return is_found ? std::nextafter(best.squared_distance, 2 * best.squared_distance + 1)
                       : best.squared_distance;
     }

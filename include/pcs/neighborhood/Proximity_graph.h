@@ -51,12 +51,13 @@ inline Proximity_graph graph_from_edges(std::size_t n,
   return graph;
 }
 
-/// Neighbours are added to a row if their distance exceeds that of the k-th by at most this factor:
-/// on a regular grid the k nearest would be an arbitrary, asymmetric choice among equal distances.
+/// Neighbours are added to a row if their distance is at most this factor times that of the k-th
+/// neighbour. On a regular grid, exactly k neighbours would be an arbitrary, asymmetric selection
+/// among equal distances.
 constexpr double distance_tie_factor = 1.01;
-/// The largest number of neighbours added for this reason.
+/// The largest number of neighbours added by `distance_tie_factor`.
 constexpr std::size_t maximal_number_of_ties = 4;
-/// The largest `k`: links in only one direction are marked in 64 bits.
+/// The largest `k`, because links in only one direction are marked in 64 bits.
 constexpr std::size_t maximal_number_of_neighbors = 64 - maximal_number_of_ties;
 
 namespace internal {
@@ -108,8 +109,8 @@ Neighbor_lists find_neighbor_lists(const std::vector<Vec3>& points, std::size_t 
   return lists;
 }
 
-/// Returns the links in only one direction, marked in parallel: bit `b` of a point if its `b`-th
-/// neighbour lacks the reverse link.
+/// Returns the links in only one direction: bit `b` of a point is set if its `b`-th neighbour lacks
+/// the reverse link. Computed in parallel.
 template <class ConcurrencyTag>
 std::vector<std::uint64_t> mark_missing_links(const Neighbor_lists& lists)
 {
@@ -122,7 +123,7 @@ std::vector<std::uint64_t> mark_missing_links(const Neighbor_lists& lists)
   return is_missing;
 }
 
-/// Returns the missing reverse links as rows by the point that lacks them.
+/// Returns the missing reverse links, in rows of the points that lack them.
 template <class ConcurrencyTag>
 Proximity_graph find_missing_links(const Neighbor_lists& lists)
 {

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Single points far from all others: found, and left with one link each.
+// Detection of single points far from all others, which keep one link each.
 
 #ifndef PCS_NEIGHBORHOOD_DETACH_OUTLIERS_H
 #define PCS_NEIGHBORHOOD_DETACH_OUTLIERS_H

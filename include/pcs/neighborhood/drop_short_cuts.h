@@ -23,18 +23,19 @@ namespace pcs {
 namespace neighborhood {
 
 /// A link is a short-cut candidate if the sine of its angle to the tangent planes at both ends is
-/// at least this. On sheets 1.5 spacings apart with jitter up to 0.3, 0.45 and 0.6 leave some of
-/// 2,720 links, 0.5 none; bars and scans lose at most 0.2 % of their links. [-]
+/// at least this value. On sheets 1.5 spacings apart with jitter up to 0.3 spacings, the value 0.5
+/// removes all 2,720 links between sheets, and 0.45 and 0.6 do not. Bars and scans lose at most
+/// 0.2 % of their links. [-]
 constexpr double smallest_short_cut_sine = 0.5;
-/// Candidate links of a point are kept if it has fewer other links than this: such a point is an
-/// outlier. [count]
+/// Candidate links of a point are kept if it has fewer other links than this, because such a point
+/// is an outlier. [count]
 constexpr std::size_t smallest_remaining_degree = 2;
 /// A component of at most this many points that is separated by removed links is a group of
-/// outliers, not a sheet: its shortest removed link is restored. [count]
+/// outliers, not a sheet. Its shortest removed link is restored. [count]
 constexpr std::size_t largest_clump = 12;
-/// A neighbourhood is flat enough to have a normal if its smallest eigenvalue is below this
-/// fraction of the middle one, and wide enough if the middle one exceeds `smallest_width` times the
-/// largest.
+/// A neighbourhood has a normal if it is flat and wide. It is flat if its smallest eigenvalue is
+/// below `largest_thickness` times the middle one, and wide if the middle one exceeds
+/// `smallest_width` times the largest one.
 constexpr double largest_thickness = 0.7;
 constexpr double smallest_width = 0.02;
 
@@ -72,8 +73,8 @@ struct Ring_moments
   }
 };
 
-/// Estimates normals from two rings of neighbours; a point counts once per path to it. Two parallel
-/// sheets have the same normal, so links between them hardly change it.
+/// Estimates normals from two rings of neighbours; a point counts once per path to it. Links
+/// between two parallel sheets hardly change the result, because both sheets have the same normal.
 template <class ConcurrencyTag>
 std::vector<Surface_normal> surface_normals(const std::vector<Vec3>& points,
                                             const Proximity_graph& graph)
@@ -115,8 +116,8 @@ std::vector<Surface_normal> surface_normals(const std::vector<Vec3>& points,
   return normal;
 }
 
-/// Averages the normals of each neighbourhood by confidence, up to sign. At the boundary of a sheet
-/// half the neighbourhood is missing, and the estimated normal may lie in the sheet.
+/// Averages the normals of each neighbourhood by confidence, up to sign. At the boundary of a
+/// sheet, half of the neighbourhood is missing, and a single estimate may be tangent to the sheet.
 template <class ConcurrencyTag>
 std::vector<Surface_normal> settled_normals(const Proximity_graph& graph,
                                             const std::vector<Surface_normal>& normal)
@@ -231,8 +232,8 @@ inline void keep_clumps(const std::vector<Vec3>& points,
   occur between sheets whose distance is close to the point spacing, because the nearest neighbours
   of a point then include points of the other sheet.
 
-  Links in volumes, on lines and of outliers are kept, because these have no surface. No point loses
-  its last links. O(n k).
+  Links in volumes, on lines and of outliers are kept, because there is no surface. No point loses
+  all its links. O(n k).
   \return the number of links removed [count]
 */
 template <class ConcurrencyTag>

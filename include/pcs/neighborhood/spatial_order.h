@@ -30,8 +30,8 @@ inline bool lexicographically_less(const Vec3& a, const Vec3& b)
 }
 
 /// The position at which a cell is divided, as a fraction of its box. It differs from 0.5, because
-/// the points of regular grids lie exactly in the middle planes, and rounding (of a translated copy
-/// of the cloud) would decide their side. [-]
+/// points of regular grids lie exactly in the middle planes. In a translated copy of the cloud,
+/// rounding would decide their side. [-]
 constexpr double octree_cut = 0.49371;
 
 /// A cell of the octree: the octants around a point near the centre of the *tight* bounding box of
@@ -60,8 +60,8 @@ struct Octree_cell
   }
 };
 
-/// The largest number of points of an undivided cell in `spatial_order()`, which sorts them by
-/// coordinates. [count]
+/// The largest number of points of an undivided cell, which `spatial_order()` sorts by coordinates.
+/// [count]
 constexpr std::size_t octree_leaf_size = 16;
 
 struct Order_entry
@@ -143,7 +143,7 @@ pcs::internal::Huge_vector<Order_entry> ordered_entries(std::size_t n, const Poi
   return entries;
 }
 
-/// The indices of `points` in octree order.
+/// Returns the indices of `points` in octree order.
 template <class ConcurrencyTag>
 std::vector<std::uint32_t> spatial_order(const std::vector<Vec3>& points)
 {

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Boundary nodes: samples tied to the border of a handle at its true distance.
+// Boundary nodes: connect samples to the border of a handle at its true distance.
 
 #ifndef PCS_DEFORMATION_HANDLES_ADD_BOUNDARY_NODES_H
 #define PCS_DEFORMATION_HANDLES_ADD_BOUNDARY_NODES_H
@@ -22,7 +22,8 @@
 namespace pcs {
 namespace deformation {
 
-/// A boundary node is taken to lie at least this far from its sample, in units of `typical_edge()`.
+/// Smallest distance of a boundary node from its sample that enters weights, in units of
+/// `typical_edge()`.
 constexpr double shortest_boundary_edge = 0.1;
 
 /// Input of `add_boundary_nodes()`. `handle_of_site(site)` is the handle that prescribes a site
@@ -31,7 +32,7 @@ template <class HandleOfSite, class SitePosition>
 struct Boundary_input
 {
   const Elastic_network& network; ///< over the samples
-  double weight_unit;             ///< weight of an edge whose border is as long as itself
+  double weight_unit;             ///< weight of an edge as long as the border that it crosses
   const std::vector<Border_edge>& border;
   const std::vector<std::uint32_t>& sample_of_site;
   HandleOfSite handle_of_site;
@@ -40,15 +41,14 @@ struct Boundary_input
 
 namespace internal {
 
-/// A point where the region of a sample meets a handle; several edges of the site graph join in
-/// one.
+/// An edge of the site graph from the region of a sample into a handle.
 struct Border_crossing
 {
   std::uint32_t sample; ///< the sample of the region outside the handle
   std::uint32_t beyond; ///< the sample of the region inside; may be the same
   Node_constraint handle;
   std::uint32_t site; ///< in the handle
-  double length;      ///< of the edge that crosses [L]
+  double length;      ///< of the edge [L]
 };
 
 /// A half-edge of the sample graph.
@@ -97,7 +97,7 @@ private:
     return (m_in.site_position(crossing.site) - m_in.network.rest[sample]).squaredNorm();
   }
 
-  /// The crossings in the order of the region inside, the handle, and the sample outside.
+  /// Collects the crossings, sorted by the region inside, the handle, and the sample outside.
   void collect_crossings()
   {
     m_crossings.reserve(m_in.border.size());
@@ -117,7 +117,7 @@ private:
               });
   }
 
-  /// Adds a node at `site`, prescribed like the handle `h`, and its edges to sample `s` over a
+  /// Adds a node at `site`, prescribed like the handle `h`, and its edge to sample `s` across a
   /// border of length `border`.
   void add_node(std::size_t s, std::uint32_t site, Node_constraint h, double border)
   {
@@ -132,7 +132,7 @@ private:
     m_edges.push_back({node, static_cast<std::uint32_t>(s), m_edges.back().weight});
   }
 
-  /// One node for each border that runs through regions of free samples.
+  /// Adds a node for each border between regions of free samples.
   void add_nodes_in_free_regions()
   {
     for (std::size_t c = 0; c < m_crossings.size();) {
@@ -156,8 +156,8 @@ private:
     }
   }
 
-  /// The site nearest to sample `outside` where handle `h` meets the region of sample `inside`, or
-  /// `no_sample`.
+  /// Returns the site of handle `h` nearest to sample `outside` on the border in the region of
+  /// sample `inside`, or `no_sample`.
   std::uint32_t nearest_crossing(std::uint32_t inside, Node_constraint h, std::size_t outside) const
   {
     auto crossing =
@@ -180,8 +180,8 @@ private:
     return site;
   }
 
-  /// The edges of the sample graph. Those into a handle end at its border if it runs through the
-  /// region behind them.
+  /// Adds the edges of the sample graph. An edge into a handle ends at the border of the handle if
+  /// the border lies in the region of the sample inside.
   void add_edges()
   {
     const Weighted_graph& base = m_in.network.surface;
@@ -244,12 +244,12 @@ private:
 
 /*!
   Returns the network with nodes added on the borders of exact handles, and extends `constraints` to
-  them.
+  these nodes.
 
-  With few samples the nearest sample in a handle lies well inside it, and the body would yield as
-  if the handle ended there. A boundary node lies at the point of the handle that is nearest to the
-  free sample, is prescribed like the handle, and takes over the border between the two regions at
-  its true distance. Costs one pass over the border.
+  With few samples, the nearest sample in a handle lies well inside it, and the body would deform as
+  if the handle ended at this sample. Therefore a boundary node is added at the point of the handle
+  that is nearest to the free sample. It is prescribed like the handle, and its edge has the true
+  distance. O(border edges).
 */
 template <class HandleOfSite, class SitePosition>
 Elastic_network add_boundary_nodes(const Boundary_input<HandleOfSite, SitePosition>& in,

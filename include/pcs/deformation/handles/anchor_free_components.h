@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Anchoring of components that only handles between their nodes hold.
+// Anchoring of components without constrained nodes to the handles in their regions.
 
 #ifndef PCS_DEFORMATION_HANDLES_ANCHOR_FREE_COMPONENTS_H
 #define PCS_DEFORMATION_HANDLES_ANCHOR_FREE_COMPONENTS_H
@@ -17,8 +17,8 @@ namespace pcs {
 namespace deformation {
 
 /*!
-  In components of a network that no node holds, the nodes become those of the handles in whose
-  regions they lie: without any, its matrices are singular. O(nodes + finer nodes).
+  Assigns nodes of components without constrained nodes to the handles that lie in the regions of
+  these nodes. Otherwise the matrices would be singular. O(nodes + finer nodes).
 
   \param component_of `component_of(node)`
   \param node_of_finer the node in whose region each finer node lies, or `no_sample`

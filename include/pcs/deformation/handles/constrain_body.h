@@ -25,8 +25,8 @@ namespace deformation {
 /// The constraints of handles on a body.
 struct Body_constraints
 {
-  Node_constraints of_samples; ///< in every component that a handle reaches, one sample is held
-  Node_constraints of_nodes;   ///< of `network` if there is one, else of the samples
+  Node_constraints of_samples; ///< at least one sample is held in each component with a handle
+  Node_constraints of_nodes;   ///< of `network` if it exists, otherwise of the samples
   Elastic_network network;     ///< the samples, with nodes on the borders of exact handles
   bool has_network = false;
   std::vector<Border_edge> border; ///< edges out of exact handles, if the body is sampled
@@ -40,8 +40,8 @@ inline auto exact_handles(const Handle_set& handles)
 
 namespace internal {
 
-/// Holds the components that only handles without samples reach. In the network of the finest
-/// level, nodes on borders hold them.
+/// Holds the components in which all handles lack samples. In the network of the finest level,
+/// nodes on borders hold these components.
 template <class ConcurrencyTag, class HandleOfSite>
 void anchor_samples(const Sampled_body<ConcurrencyTag>& body,
                     const HandleOfSite& handle_of_site,
@@ -75,8 +75,8 @@ void add_border_nodes(const Sampled_body<ConcurrencyTag>& body,
 
 } // namespace internal
 
-/// Finds how each site is written and which nodes are held: by handles that have samples, at the
-/// borders of exact handles, and where components would otherwise be free.
+/// Classifies the sites and finds the held nodes: samples of handles, nodes on the borders of exact
+/// handles, and nodes in components that would otherwise be free.
 template <class ConcurrencyTag>
 Body_constraints constrain_body(const Sampled_body<ConcurrencyTag>& body,
                                 const Border_finder& border_finder,

@@ -35,7 +35,7 @@ constexpr double least_free_share = 0.2;
 /// Borders nearer to their node than this are not moved. [fractions of the edge]
 constexpr double negligible_advance = 1e-6;
 
-/// Returns the distance of the border from node `j`: the border is the line through the outermost
+/// Returns the distance of the border from node `j`. The border is the line through the outermost
 /// nodes of the handle around `j`.
 inline Border_advance
 border_advance(const Elastic_network& network, const Node_constraints& constraints, std::size_t j)
@@ -185,7 +185,7 @@ inline Elastic_network cut_held_edges(const Elastic_network& network,
   half a spacing shorter. Here the border leads through the outermost points of the handle around
   each point (on a grid: through all of them). Where it crosses an edge at the fraction `t` of its
   length, `result` gets an additional node that moves with the handle. The weight of the new edge is
-  that of the old one divided by `1 - t`. Constraints are extended to the new nodes.
+  the weight of the old edge divided by `1 - t`. Constraints are extended to the new nodes.
 
   Returns `false`, with `result` unchanged, if no border extends beyond its nodes. O(n).
 */

@@ -35,7 +35,7 @@ inline Affine_map identity_map()
   return {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
 }
 
-/// The rotation nearest to `a`; the identity if `a` is not invertible.
+/// Returns the rotation nearest to `a`; the identity if `a` is not invertible.
 inline Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& a)
 {
   const Vec3 x = a.col(0).normalized(), z = a.col(0).cross(a.col(1)).normalized();
@@ -43,11 +43,11 @@ inline Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& a)
   start << x, z.cross(x), z;
   if (!(a.determinant() > 0) || !start.allFinite())
     return Eigen::Matrix3d::Identity();
-  constexpr int number_of_steps = 20; // it stops by itself after a few
+  constexpr int number_of_steps = 20; // a few suffice until convergence
   return improve_rotation(a, Quaternion(start), number_of_steps).toRotationMatrix();
 }
 
-/// The normal of a surface that `a` maps, as long as before.
+/// Returns the normal of a surface after the linear map `a`, with unchanged length.
 inline Vec3 turn_normal(const Eigen::Matrix3d& a, const Vec3& normal)
 {
   Eigen::Matrix3d cofactor;

@@ -33,29 +33,29 @@ struct Elastic_network
 {
   std::vector<Vec3> rest; ///< positions of the nodes [L]
   Weighted_graph surface; ///< edges along the surface
-  Weighted_graph links;   ///< springs through the inside; may be empty (then `links.size() == 0`)
+  Weighted_graph links;   ///< springs through the interior; may be empty (then `links.size() == 0`)
   /// Fractions of the surface of their components that the first nodes represent. [-]
   std::vector<double> area;
-  /// Orders of elimination of the first nodes, for factors over the surface, and over surface and
-  /// links. Found once, they serve any choice of free nodes; empty if they do not pay.
+  /// Orders of elimination of the first nodes, for factors of the surface, and of surface and
+  /// links. They apply to any choice of free nodes; empty if computing them does not pay.
   std::vector<std::uint32_t> surface_rank, rank;
   std::size_t size() const { return rest.size(); }
 };
 
-/// An edge is never taken for shorter than this fraction of the spacing around it, so that two
-/// points that nearly coincide do not outweigh all others.
+/// Least edge length that enters weights, as a fraction of the local spacing, so that two points
+/// that nearly coincide do not outweigh all others. [-]
 constexpr double shortest_relative_edge = 0.2;
-/// Spacings of two neighbours that differ by more are an outlier and its victim.
+/// Largest ratio of the spacings of two neighbours; larger ratios indicate an outlier. [-]
 constexpr double widest_spacing_step = 2;
 
-/// Squares of extreme lengths underflow; the matrices need finite, positive weights.
+/// Limits a weight to a finite, positive range, because squares of extreme lengths underflow.
 inline double representable_weight(double w)
 {
   return std::isfinite(w) ? std::min(1e9, std::max(1e-30, w)) : 1;
 }
 
-/// Median length of the edges at node `i`: the spacing there, whatever single outlier is linked to
-/// it. [L]
+/// Returns the spacing at node `i`: the median length of its edges, which is robust against a
+/// single outlier. [L]
 inline double local_spacing(const std::vector<Vec3>& rest,
                             const neighborhood::Proximity_graph& graph,
                             std::size_t i)
@@ -90,10 +90,10 @@ void set_areas(const std::vector<std::uint32_t>& component, Elastic_network& net
     network.area[i] = sum[component[i]] > 0 ? network.area[i] / sum[component[i]] : 1;
 }
 
-/// Edges beyond this many median spacings lead to outliers.
+/// Longer edges, in median spacings, lead to outliers. [-]
 constexpr double longest_typical_edge = 4;
 
-/// Root mean square length of the edges, those to outliers left out. [L]
+/// Returns the root mean square length of the edges, without edges to outliers. [L]
 inline double typical_edge(const std::vector<Vec3>& rest,
                            const neighborhood::Proximity_graph& graph)
 {
@@ -119,10 +119,11 @@ inline double typical_edge(const std::vector<Vec3>& rest,
 }
 
 /*!
-  Weights `w_ij = (s_i^2 + s_j^2) / (2 |x_j - x_i|^2)`, scaled to mean 1, where `s_i` is
-  `local_spacing()`, the larger taken for at most `widest_spacing_step` times the smaller. `1 / d^2`
-  turns differences into slopes. The factor `s^2` is the area of the surface per point: densely
-  sampled parts do not become stiffer than sparse ones, and far outliers have no effect.
+  Sets the weights `w_ij = (s_i^2 + s_j^2) / (2 |x_j - x_i|^2)`, scaled to mean 1. `s_i` is
+  `local_spacing()`, and the larger spacing is limited to `widest_spacing_step` times the smaller
+  one. Division by the squared distance turns differences into slopes. The factor `s^2` is the area
+  of the surface per point, so that densely sampled parts do not become stiffer than sparse ones,
+  and distant outliers have no effect.
 */
 template <class ConcurrencyTag>
 void set_edge_weights(const std::vector<Vec3>& rest, Weighted_graph& graph)

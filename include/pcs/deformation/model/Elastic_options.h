@@ -16,50 +16,52 @@ namespace pcs {
 
 namespace deformation {
 
-/// A warm start that has more than this times the energy of the last result is a cold one.
+/// Largest ratio of the energy after a warm start to the energy of the last result; above it, the
+/// start is cold. [-]
 constexpr double largest_warm_growth = 2;
 
-/// Weight of the local fit against its neighbours' when rotations are smoothed, at stiffness 1, of
-/// a node that represents one part in `reference_size` of the surface. [-]
-/// Chosen among 0.004 ... 2 on the bars, tubes and plates of benchmark/quality: smaller values hold
-/// back bending that a dragged handle asks for, larger ones let surfaces buckle.
+/// Weight of the local fit relative to the neighbours in the smoothing of rotations, at stiffness
+/// 1, for a node with the fraction `1 / reference_size` of the surface. Chosen among 0.004 to 2 on
+/// the bars, tubes and plates of benchmark/quality. Smaller values resist the bending by a dragged
+/// handle, and with larger values surfaces buckle. [-]
 constexpr double default_fit_weight = 0.3;
-/// Smoothing reaches a few edges of a network of so many nodes, whatever the size of the network:
-/// otherwise a body would bend the more easily the denser its points. Chosen on the same cases,
-/// where it trades even bends for short edges.
+/// Size of a reference network: smoothing always extends over a few of its edges. Otherwise denser
+/// sampling would make a body bend more easily. Chosen on the same cases, as a compromise between
+/// uniform bending and short edges. [count]
 constexpr double reference_size = 10000;
-/// Networks of fewer nodes than one in this many of it bend the more stiffly: with a few hundred
-/// samples, rotations that are hardly smoothed would buckle.
+/// Largest area of a node in the weight of its local fit, in units of a node of the reference
+/// network. Smaller networks are therefore stiffer: with a few hundred samples, rotations with
+/// little smoothing would buckle. [-]
 constexpr double largest_relative_area = 5;
 constexpr double smallest_relative_area = 1e-9;
-/// Passes end when the energy falls by less than this fraction. Smaller values bring the cases of
-/// benchmark/quality no nearer to their exact shapes. [-]
+/// Iterations end when the energy decreases by less than this fraction. Smaller values do not make
+/// the results of benchmark/quality more accurate. [-]
 constexpr double default_tolerance = 0.05;
 constexpr int default_maximal_number_of_passes = 20;
-/// Each pass turns nodes towards their best rotation by one damped step of Newton's method. Without
-/// damping, passes converge faster, and the coarsest networks fold up under large twists. Chosen on
-/// the same cases among 0 ... 0.8.
+/// Damping of the single Newton step by which each iteration improves the rotations. Without
+/// damping, iterations converge faster, but the coarsest networks fold under large twists. Chosen
+/// on the same cases among 0 to 0.8. [-]
 constexpr double fit_damping = 0.2;
-/// Passes are accelerated from this one on if they start from the field of the handles: where that
-/// explains the motion, fewer are needed. Those that start from a guess are accelerated as soon as
-/// two states are known.
+/// The first accelerated iteration after a start from the rotation field of the handles. If the
+/// field explains the motion, fewer iterations suffice. After a start from a guess, iterations are
+/// accelerated as soon as two states are known.
 constexpr int first_accelerated_pass = 4;
-/// An accelerated pass that gains less than this fraction of the tolerance may have been a poor
-/// proposal: a plain one decides whether there is more to gain. [-]
+/// If an accelerated iteration reduces the energy by less than this fraction of the tolerance, a
+/// plain iteration decides whether the iterations end. [-]
 constexpr double poor_gain = 0.1;
-/// A guess from a coarser network is taken if it has less than this fraction of the energy after
-/// one pass. Where the field of the handles explains the motion, on the bars and tubes of
-/// benchmark/quality, it has .95 or more; on the plate, the bar bent about two axes and bodies with
-/// turned heads .03 to .8. [-]
+/// A guess from a coarser network is accepted if its energy is below this fraction of the energy
+/// after one iteration. The fraction is 0.95 or more if the field of the handles explains the
+/// motion (bars and tubes of benchmark/quality). It is 0.03 to 0.8 for the plate, the bar bent
+/// about two axes, and bodies with turned heads. [-]
 constexpr double guess_advantage = 0.8;
-/// A network that lowered the energy of its own first pass to less than the first fraction need not
-/// have its guess tried on the finer one, nor one that left more than the second: the finer one
-/// would find the same. Of 150 drags of scanned bodies and of the cases of benchmark/quality, no
-/// guess was refused below a fraction of .43 and none was taken above .81. [-]
+/// Limits for the final energy of a network, as a fraction of its energy after the first iteration.
+/// Below `sure_advantage`, the finer network accepts the guess untested; from `least_advantage` on,
+/// the guess is discarded. In 150 drags of scanned bodies and the cases of benchmark/quality, no
+/// guess was rejected below a fraction of 0.43, and none was accepted above 0.81. [-]
 constexpr double sure_advantage = 0.35;
 constexpr double least_advantage = 0.9;
-/// Solves in which the links of a network find their directions under a guess, before its energy is
-/// measured.
+/// Number of solves that determine the directions of the links under a guess, before its energy is
+/// measured. [count]
 constexpr int settling_solves = 3;
 
 struct Elastic_options
@@ -76,21 +78,21 @@ struct Elastic_result
   Status status = Status::nothing_to_do;
   int number_of_passes = 0;
   double energy = 0;         ///< [L^2]
-  double initial_energy = 0; ///< after the first positions, before any pass [L^2]
-  /// After the first pass if the passes started from the field of the handles, otherwise 0. [L^2]
+  double initial_energy = 0; ///< after the first positions, before any iteration [L^2]
+  /// After the first iteration if the start was the field of the handles, otherwise 0. [L^2]
   double first_pass_energy = 0;
-  /// Whether the guess turned out clearly better than the field of the handles, here or on a
-  /// coarser network.
+  /// Whether the guess had clearly less energy than the field of the handles, on this or a coarser
+  /// network.
   bool is_far_from_field = false;
 };
 
-/// Solution of a coarser network, for the first nodes of this one: deviations from the field of the
-/// handles.
+/// Solution of a coarser network, interpolated at the first nodes of this network: deviations from
+/// the field of the handles.
 struct Deviation_guess
 {
-  std::vector<Vec3> deviations; ///< empty if they are not worth a trial
+  std::vector<Vec3> deviations; ///< empty if the guess was discarded
   bool is_far_from_field =
-      false; ///< clearly better than the field there, which need not be tried again
+      false; ///< clearly better than the field on the coarser network; accepted untested
   std::vector<Vec3>
       /// offsets of positions by the interior links of coarser networks; may be empty
       link_offsets;

@@ -20,15 +20,15 @@ namespace deformation {
 /// Constraint of a node: the number of its handle, or one of the two values below.
 using Node_constraint = std::int32_t;
 constexpr Node_constraint free_node = -1;
-/// The node belongs to no part that a handle reaches; it stays where it is.
+/// The node belongs to a component without handle and keeps its position.
 constexpr Node_constraint unreached_node = -2;
 
-/// Which nodes are unknowns, and how soft the others are.
+/// The constraint of each node, and the softness of each handle.
 struct Node_constraints
 {
   std::vector<Node_constraint> handle_of_node;
-  /// Per handle: 0 prescribes its nodes exactly; a positive value ties them with springs of that
-  /// weight relative to the sum of the node's edge weights. [-]
+  /// Per handle: 0 prescribes its nodes exactly; a positive value is the weight of the springs of
+  /// its nodes, relative to the sum of the edge weights of a node. [-]
   std::vector<double> softness_weight;
 
   bool is_prescribed(std::size_t node) const
@@ -41,8 +41,8 @@ struct Node_constraints
     const Node_constraint h = handle_of_node[node];
     return h >= 0 && softness_weight[static_cast<std::size_t>(h)] > 0;
   }
-  /// Weight of the spring of a soft node; `degree` is the sum of its edge weights. A node without
-  /// edges has only its spring.
+  /// Returns the weight of the spring of a soft node; `degree` is the sum of its edge weights. A
+  /// node without edges has only its spring.
   double soft_weight(std::size_t node, double degree) const
   {
     return softness_weight[static_cast<std::size_t>(handle_of_node[node])] *
@@ -50,7 +50,7 @@ struct Node_constraints
   }
 };
 
-/// Rows of the unknowns: nodes that are free or soft, in increasing order.
+/// Rows of the unknowns, which are the free and soft nodes in increasing order.
 struct Free_rows
 {
   std::vector<std::uint32_t> row_of_node;
@@ -70,7 +70,7 @@ struct Free_rows
   std::size_t size() const { return node_of_row.size(); }
 };
 
-/// Finds orders of elimination of a network that serve all constraints.
+/// Finds orders of elimination of a network that apply to all constraints.
 inline void rank_nodes(Elastic_network& network)
 {
   Node_constraints all_free;
@@ -85,7 +85,7 @@ inline void rank_nodes(Elastic_network& network)
     network.rank = order({&network.surface, &network.links});
 }
 
-/// The ranks of the unknowns; empty if there are none.
+/// Returns the ranks of the unknowns; empty if there are no ranks of nodes.
 inline std::vector<std::uint32_t> rank_of_rows(const std::vector<std::uint32_t>& rank_of_node,
                                                const Free_rows& rows)
 {
@@ -96,7 +96,7 @@ inline std::vector<std::uint32_t> rank_of_rows(const std::vector<std::uint32_t>&
   return rank;
 }
 
-/// Sum of the surface weights at node `i`: the mass with which local terms enter. [-]
+/// Returns the sum of the edge weights at node `i`, which is the weight of its local terms. [-]
 inline double node_degree(const Weighted_graph& graph, std::size_t i)
 {
   double sum = 0;
@@ -112,10 +112,10 @@ inline double node_degree(const Weighted_graph& graph, std::size_t i)
 
   over `u` at the free and soft nodes, for given `u` at the prescribed ones. `w_ij` are the weights
   of the graph [-], `s_i` is `Node_constraints::soft_weight()`. The normal equations are `L u = 0`
-  at free nodes and `(L u)_i + s_i (u_i - value_i) = 0` at soft ones; constraints as in equation
-  (2.3) of the dissertation. `factor` holds `L`, with the `s_i` on its diagonal, without the
-  prescribed nodes. `value(node)` is asked for prescribed and soft nodes. `result[node]` is written
-  for the unknown nodes only.
+  at free nodes and `(L u)_i + s_i (u_i - value_i) = 0` at soft ones, with constraints as
+  in equation (2.3) of [Aiteanu 2022]. `factor` is the factor of `L` without the prescribed nodes,
+  with the `s_i` added on its diagonal. `value(node)` is called for prescribed and soft nodes.
+  `result[node]` is written for the unknown nodes only.
 */
 template <class ConcurrencyTag, class Row, class Value>
 void solve_harmonic(const linear_algebra::Sparse_cholesky& factor,

@@ -24,15 +24,15 @@ struct Lane_vectors
   double value[3][lanes];
 };
 
-/// The weights of samples are stored in 16 bits, in steps of one over this.
+/// The weights of samples are stored in 16 bits, in steps of `1 / weight_steps`.
 constexpr double weight_steps = 65535;
 
-/// Instead of the handle that holds all points of a block: there is none; or nothing moves any of
-/// them.
+/// Values for blocks that no single handle holds (`mixed_block`), and for blocks in which no point
+/// moves (`still_block`).
 constexpr std::int32_t mixed_block = -1, still_block = -2;
 
-/// Points at rest, and their normals if they have any: 24 bytes each. The last point fills up the
-/// last block.
+/// Points at rest, and normals if there are any, of 24 bytes each. The last block is filled up with
+/// copies of the last point.
 class Point_blocks
 {
 public:
@@ -64,7 +64,7 @@ public:
   Vec3 normal(std::size_t i) const { return lane(m_normals, i); }
 
   const Lane_vectors& positions(std::size_t block) const { return m_positions[block]; }
-  /// Only with normals.
+  /// Must only be called if there are normals.
   const Lane_vectors& normals(std::size_t block) const { return m_normals[block]; }
 
 private:

@@ -26,34 +26,35 @@
 namespace pcs {
 namespace deformation {
 
-/// A level has one node for this many of the finer one.
+/// Number of nodes of the finer level per node of a level.
 constexpr std::size_t coarsening_ratio = 5;
-/// Networks with fewer nodes get no coarser level.
+/// Networks with fewer nodes have no coarser level.
 constexpr std::size_t smallest_coarsened_network = 1000;
-/// Largest number of passes on a coarse level; they are cheap, and each reaches far.
+/// Largest number of iterations on a coarse level, where each is cheap and propagates far.
 constexpr int number_of_coarse_passes = 100;
 
-/// Tolerance of a coarse level, relative to the tolerance that ends the passes of the finest level:
-/// a pass there costs more than one here, and errors that remain here cost passes there. [-]
+/// Tolerance of a coarse level, relative to the tolerance of the finest level. It is smaller,
+/// because errors that remain on a coarse level cost more expensive iterations on the finest level.
+/// [-]
 constexpr double coarse_share_of_tolerance = 0.5;
 
 /*!
-  Reduces the energy of `Elastic_solver` over a network of one node per `coarsening_ratio` nodes of
-  the finer one, with weights of its own (`sample_graph()`). Deviations are prolonged linearly,
-  `d_i = sum_s w_is d_s`, over the samples `s` near a finer node with the weights of `Sample_links`;
-  they are the initial guess on the finer level. The scheme goes from coarse to fine once, without
-  residual correction.
+  Reduces the energy of `Elastic_solver` on a network with one node per `coarsening_ratio` nodes of
+  the finer network, with its own weights (`sample_graph()`). Deviations are prolonged linearly,
+  `d_i = sum_s w_is d_s`, over the samples `s` near a finer node with the weights of `Sample_links`.
+  The result is the initial guess on the finer level. The scheme goes from coarse to fine once,
+  without residual correction.
 
-  One pass propagates a rotation over a few edges only, but a handle that is dragged without being
-  turned needs rotations in the whole body. On a coarse network the same distance is a few edges.
+  One iteration propagates a rotation over a few edges only, but a handle that is translated without
+  rotation causes rotations of the whole body. On a coarse network, a few edges span the body.
 */
 template <class ConcurrencyTag>
 class Coarse_level
 {
 public:
-  /// \param finer its nodes in spatial order
-  /// \param component the component of each of its nodes
-  /// \param has_links whether closed surfaces get springs through their inside
+  /// \param finer the finer network, with nodes in spatial order
+  /// \param component the component of each node of `finer`
+  /// \param has_links whether closed surfaces have springs through their interior
   Coarse_level(const Elastic_network& finer,
                const std::vector<std::uint32_t>& component,
                bool has_links)
@@ -85,7 +86,7 @@ public:
   const std::vector<std::uint32_t>& component() const { return m_component; }
   const Node_constraints& constraints() const { return m_constraints; }
 
-  /// Takes over the constraints of the finer level.
+  /// Transfers the constraints of the finer level.
   void constrain(const Node_constraints& of_finer)
   {
     m_constraints = Node_constraints();
@@ -122,9 +123,9 @@ public:
     return m_solver.constrain(m_bounded, std::move(constraints), stiffness);
   }
 
-  /// Runs the passes of this level, fewer if `progress` cancels. On input, `guess` is empty or of
-  /// the nodes of this level; on output it is of the nodes of the finer level. The gain at which
-  /// passes end is proportional to their cost, relative to a pass over `finest_size` nodes.
+  /// Iterates on this level, unless `progress` cancels. On input, `guess` is empty or refers to the
+  /// nodes of this level; on output it refers to the nodes of the finer level. The tolerance is
+  /// proportional to the cost of an iteration relative to one with `finest_size` nodes.
   void improve(const std::vector<Similarity>& transforms,
                Elastic_options options,
                std::size_t finest_size,
@@ -157,7 +158,7 @@ public:
       to_finer(guess.link_offsets);
   }
 
-  /// Takes over the new rest shape of the finer level.
+  /// Transfers the new rest shape of the finer level.
   void accept(const Elastic_network& finer)
   {
     for (std::size_t s = 0; s < m_node_of_sample.size(); ++s)
@@ -165,8 +166,8 @@ public:
   }
 
 private:
-  /// Applies soft handles without nodes to the nodes of the regions of their points, in every
-  /// component that they hold.
+  /// In components where a soft handle has no node, assigns it to the nodes in whose regions its
+  /// points lie.
   void draw_nodes_of_soft_handles(const Node_constraints& of_finer)
   {
     auto& of_node = m_constraints.handle_of_node;
@@ -189,18 +190,18 @@ private:
         if (m_links.sample[b] != no_sample)
           m_fine[i] += static_cast<double>(m_links.weight[b]) * values[m_links.sample[b]];
     });
-    values.assign(m_fine.begin(), m_fine.end()); // keeps the memory of both
+    values.assign(m_fine.begin(), m_fine.end()); // reuses the memory of both
   }
 
   std::vector<std::uint32_t> m_node_of_sample, m_sample_of_node, m_component;
   Elastic_network m_network;     ///< over the samples
-  Border_finder m_border_finder; ///< of the finer network's surface
+  Border_finder m_border_finder; ///< for the surface of the finer network
   double m_weight_unit = 1;
   Sample_links m_links; ///< from the finer nodes to the samples
   Node_constraints m_constraints;
   Elastic_network m_bounded; ///< with nodes on the borders of the handles
   Elastic_solver<ConcurrencyTag> m_solver;
-  std::vector<Vec3> m_fine; ///< of the finer network's nodes
+  std::vector<Vec3> m_fine; ///< values at the nodes of the finer network
 };
 
 } // namespace deformation

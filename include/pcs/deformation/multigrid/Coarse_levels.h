@@ -31,8 +31,8 @@ class Coarse_levels
 public:
   Coarse_levels() = default;
 
-  /// \param finest its nodes in spatial order
-  /// \param component the component of each of its nodes
+  /// \param finest the session's network, with nodes in spatial order
+  /// \param component the component of each node of `finest`
   /// \param has_links whether closed surfaces have springs through their interior
   Coarse_levels(const Elastic_network& finest, std::vector<std::uint32_t> component, bool has_links)
     : m_size_of_passes(finest.size())
@@ -107,10 +107,10 @@ public:
 
 private:
   std::deque<Coarse_level<ConcurrencyTag>>
-      m_level; ///< the finest first; a deque does not move them
+      m_level; ///< finest first; a deque does not move its elements
   Deviation_guess m_guess;
   std::size_t m_first = 0;          ///< finest level that is solved; finer ones only interpolate
-  bool m_has_offsets = false;       ///< whether this level has links that finer networks lack
+  bool m_has_offsets = false;       ///< whether it has links that finer networks lack
   std::size_t m_size_of_passes = 0; ///< size of the finest network that is solved to convergence
 };
 

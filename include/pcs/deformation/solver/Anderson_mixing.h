@@ -19,9 +19,9 @@ namespace pcs {
 namespace deformation {
 
 /*!
-  For the iteration `x <- g(x)`, proposes the combination of the last few `g(x_j)` whose residuals
-  `g(x_j) - x_j` cancel best (D. G. Anderson 1965; H. F. Walker, P. Ni, SIAM J. Numer. Anal. 49,
-  2011). Memory: `2 depth` vectors.
+  For the iteration `x <- g(x)`, proposes the combination of the last few `g(x_j)` that minimises
+  the combined residual of the `g(x_j) - x_j` (D. G. Anderson 1965; H. F. Walker, P. Ni, SIAM J.
+  Numer. Anal. 49, 2011). Memory: `2 depth` vectors.
 */
 template <class ConcurrencyTag>
 class Anderson_mixing
@@ -37,13 +37,13 @@ public:
     m_has_last = false;
   }
 
-  /// Replaces `g`, which is `g(x)`, by the proposal if `is_wanted`; in any case, stores both.
+  /// Stores `x` and `g = g(x)`. If `is_wanted`, replaces `g` by the proposal.
   void mix(const std::vector<Vec3>& x, std::vector<Vec3>& g, bool is_wanted = true)
   {
     const std::size_t n = x.size(), slot = m_count % depth;
     m_last_residual.resize(n);
     m_last_image.resize(n);
-    if (!m_has_last) { // nothing to differ from
+    if (!m_has_last) { // no earlier iterate for differences
       m_has_last = true;
       pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
         m_last_residual[i] = g[i] - x[i];
@@ -115,7 +115,7 @@ private:
       for (Eigen::Index b = 0; b < rows; ++b)
         normal(a, b) = m_normal[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)];
     }
-    // The differences become parallel near the solution; 1e-10 keeps the coefficients bounded.
+    // The differences become parallel near the solution; 1e-10 bounds the coefficients.
     normal.diagonal().array() += 1e-10 * normal.trace() + 1e-300;
     const Vector gamma = normal.ldlt().solve(right);
     if (!gamma.allFinite())

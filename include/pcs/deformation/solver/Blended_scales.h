@@ -24,16 +24,16 @@ namespace pcs {
 namespace deformation {
 
 /*!
-  The logarithm of the scale is harmonic between handles. Edges across its gradient grow with it;
-  along the gradient they grow by a fraction of it, as far as the handles leave room: a rod with one
-  end scaled in place gets thicker, not longer, or it would have to buckle. The fraction is the same
-  for all bodies.
+  The logarithm of the scale is harmonic between handles. Edges perpendicular to its gradient are
+  multiplied by the scale. Edges along the gradient grow by a fraction of it, as far as the
+  positions of the handles permit: a rod with one end scaled at a fixed position must become thicker
+  but not longer, otherwise it would buckle. The fraction is the same for all bodies.
 */
 template <class ConcurrencyTag>
 class Blended_scales
 {
 public:
-  /// For new motions of the handles; along the gradient nothing grows yet.
+  /// Computes the scales for new motions of the handles, with the fraction 0.
   void begin(const Elastic_network& network,
              const Node_constraints& constraints,
              const Elastic_factors& factors,
@@ -51,11 +51,11 @@ public:
     set_share(0);
   }
 
-  /// Growth of the edges of every node before the rotation: symmetric; empty if no handle has a
-  /// scale. [-]
+  /// Returns the growth of the edges at every node before the rotation, a symmetric matrix; empty
+  /// if no handle is scaled. [-]
   const std::vector<Eigen::Matrix3d>& growth() const { return m_growth; }
 
-  /// Edges along the gradient of the scale grow by this fraction of it. [-]
+  /// Sets the fraction of the scale by which edges along its gradient grow. [-]
   void set_share(double share)
   {
     pcs::internal::for_each_index<ConcurrencyTag>(
@@ -71,8 +71,8 @@ public:
         512);
   }
 
-  /// From the energies with fractions of 0, 1/2 and 1, as they are quadratic in it; 1 if it does
-  /// not matter. [-]
+  /// Returns the fraction with the least energy, from the energies at 0, 1/2 and 1. The energy is
+  /// quadratic in the fraction. Returns 1 if the energy is constant. [-]
   static double share_of_least_energy(double none, double half, double all)
   {
     const double curvature = 2 * (none + all) - 4 * half, slope = all - none - curvature;
@@ -84,16 +84,16 @@ public:
 private:
   using Vec1 = Eigen::Matrix<double, 1, 1>;
 
-  /// Scales that differ by less than this across an edge have no direction. [-]
+  /// Least difference of the logarithms of scale across an edge that defines a gradient. [-]
   static constexpr double least_difference = 1e-9;
-  /// Over one ring, differences of a harmonic function scatter: bodies would get longer by some per
-  /// cent of the scale, and buckle.
+  /// Rings of neighbours for the gradient. With one ring, its direction would scatter: bodies would
+  /// become longer by a few per cent of the scale, and buckle. [count]
   static constexpr int number_of_rings = 3;
-  static constexpr double normal_share = 1e-3; ///< across a surface, where there are no edges [-]
-  /// Of an edge along the gradient, where a negative fraction would turn it around. [-]
+  static constexpr double normal_share = 1e-3; ///< regularises the direction of the normal [-]
+  /// Least growth of an edge along the gradient, because a negative fraction could invert it. [-]
   static constexpr double least_growth = 0.25;
 
-  /// Of edges around a node.
+  /// Sums over the edges around a node.
   struct Sums
   {
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
@@ -133,7 +133,7 @@ private:
   }
 
   /// Finds the directions of the gradient of the logarithm of scale at rest, by least squares over
-  /// rings of neighbours. Null where the scale is constant.
+  /// rings of neighbours. A direction is null where the scale is constant.
   void find_directions(const Elastic_network& network, const Node_constraints& constraints)
   {
     const auto& graph = network.surface;

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Factorised constant matrices of an elastic network under handles.
+// Factors of the constant matrices of an elastic network with handles.
 
 #ifndef PCS_DEFORMATION_SOLVER_ELASTIC_FACTORS_H
 #define PCS_DEFORMATION_SOLVER_ELASTIC_FACTORS_H
@@ -20,20 +20,20 @@
 namespace pcs {
 namespace deformation {
 
-/// Factors over the free and soft nodes: of the field of the handles, of positions, and of the
-/// smoothing of deviations.
+/// Factors for the free and soft nodes, of three systems: the field of the handles, the positions,
+/// and the smoothing of deviations.
 class Elastic_factors
 {
 public:
   const Free_rows& rows() const { return m_rows; }
   const linear_algebra::Sparse_cholesky& field() const { return m_field; }
   const linear_algebra::Sparse_cholesky& smoothing() const { return m_smoothing; }
-  /// The factor of the positions: without links, that of the field.
+  /// Returns the factor for the positions; without links, it is the factor for the field.
   const linear_algebra::Sparse_cholesky& position() const { return m_has_links ? m_link : m_field; }
-  /// `mu D` of a row: weight of the best local rotation against those of the neighbours.
+  /// Returns `mu D` of a row, the weight of the best local rotation relative to the neighbours.
   double fit_weight(std::size_t row) const { return m_fit_weight[row]; }
 
-  /// Returns `false` if a matrix is singular (a free part without handle).
+  /// Returns `false` if a matrix is singular (a free component without handle).
   template <class ConcurrencyTag>
   bool
   factorize(const Elastic_network& network, const Node_constraints& constraints, double stiffness)
@@ -76,7 +76,7 @@ public:
   }
 
 private:
-  /// The area of a node in units of the reference network's.
+  /// Returns the area of a node in units of a node of the reference network.
   static double relative_area(const Elastic_network& network, std::size_t node)
   {
     const double area = node < network.area.size() ? reference_size * network.area[node] : 1;
@@ -85,7 +85,7 @@ private:
 
   Free_rows m_rows;
   linear_algebra::Sparse_cholesky m_field, m_link, m_smoothing;
-  std::vector<double> m_fit_weight; ///< of each row, its degree included
+  std::vector<double> m_fit_weight; ///< of each row, multiplied by its degree
   bool m_has_links = false;
 };
 

@@ -29,7 +29,7 @@ namespace deformation {
 
   which is the residual of equation (2.2) of [Aiteanu 2022]. `x0` are the positions at rest, `w_ij`
   are the weights of the surface edges [-], and `G_i` is `R_i` times growth and stretch
-  (`Elastic_step`). Each pass
+  (`Elastic_step`). Each iteration
 
   1. fits the rotation of every node to its edges (`fit_rotations.h`), as a deviation `d_i` from the
      rotation field of the handles (`rotation_field.h`);
@@ -38,8 +38,8 @@ namespace deformation {
      (`Elastic_factors::fit_weight()`); for soft nodes, a spring towards zero is added;
   3. solves for the positions with `R_i = exp(d'_i) B_i` fixed.
 
-  Passes are accelerated by Anderson mixing. The smoothing is a regularisation that is not part of
-  `E`. The state with the lowest energy is kept, so additional passes never increase `E`.
+  The iterations are accelerated by Anderson mixing. The smoothing is a regularisation that is not
+  part of `E`. The state with the lowest energy is kept, so further iterations never increase `E`.
 */
 template <class ConcurrencyTag>
 class Elastic_solver
@@ -52,7 +52,7 @@ public:
   /// Returns the rotation of every node relative to the rotation field of the handles [rad].
   const std::vector<Vec3>& deviations() const { return m_smooth; }
 
-  /// This function and `constrain()` are those of `Elastic_step`.
+  /// See `Elastic_step`, also for `constrain()`.
   void link_offsets(std::vector<Vec3>& offsets) { m_shape.link_offsets(offsets); }
   bool constrain(const Elastic_network& network, Node_constraints constraints, double stiffness)
   {
@@ -61,8 +61,8 @@ public:
 
   /// Solves for one transformation per handle, starting from the rest shape. If the guess is known
   /// to be better, it is the initial state; otherwise it is compared with the state after the first
-  /// pass. If the guess was computed with links that this network lacks, energies cannot be
-  /// compared. The guess is then accepted, and a single pass follows.
+  /// iteration. If the guess was computed with links that this network lacks, energies cannot be
+  /// compared. The guess is then accepted, and a single iteration follows.
   Elastic_result solve(const std::vector<Similarity>& transforms,
                        const Elastic_options& options,
                        pcs::internal::Progress& progress,
@@ -114,7 +114,7 @@ public:
 private:
   const Free_rows& rows() const { return m_shape.rows(); }
 
-  /// Performs all passes. The guess, if there is one, may replace the state after the first pass.
+  /// Performs all iterations. The guess, if given, may replace the state after the first iteration.
   void make_passes(const Elastic_options& options,
                    pcs::internal::Progress& progress,
                    const Deviation_guess* guess,
@@ -124,7 +124,7 @@ private:
         options.maximal_number_of_passes == 0 ? Status::iteration_limit : Status::converged;
     if (rows().size() == 0)
       return;
-    bool is_checking = false; // whether the last, accelerated pass gained too little
+    bool is_checking = false; // whether the last iteration, an accelerated one, gained too little
     for (int pass = 0; pass < options.maximal_number_of_passes; ++pass) {
       if (!progress(static_cast<double>(pass) / options.maximal_number_of_passes)) {
         result.status = Status::cancelled;
@@ -144,7 +144,7 @@ private:
       }
       result.number_of_passes = pass + 1;
       result.status = Status::converged;
-      // Without the links, each further pass would let the body collapse.
+      // Without the links, further iterations would let the body collapse.
       if (m_shape.has_link_offsets() || !has_improved)
         return;
       const double gain = before - result.energy;
@@ -157,7 +157,7 @@ private:
     }
   }
 
-  /// Performs one pass: an accelerated pass if it lowers the energy, otherwise a plain one. Returns
+  /// Performs one iteration, accelerated if this lowers the energy, otherwise plain. Returns
   /// `false` if neither lowers the energy, because only rounding errors remain at the optimum.
   bool improve(bool is_accelerated, bool is_last, Elastic_result& result)
   {
@@ -183,7 +183,7 @@ private:
     return true;
   }
 
-  /// Mixes the input and the output of a pass: the deviations and, if there are links, the
+  /// Mixes the input and the output of an iteration: the deviations and, if there are links, the
   /// positions that define the directions of the links. Without the positions, the resistance of
   /// the links would be attributed to the deviations.
   void mix(bool is_wanted)
@@ -253,7 +253,7 @@ private:
   Elastic_step<ConcurrencyTag> m_shape;
   Anderson_mixing<ConcurrencyTag> m_mixing;
   std::vector<Vec3> m_smooth, m_best_smooth, m_plain; ///< smoothed deviations
-  std::vector<Vec3> m_state, m_image;                 ///< input and output of a mixed pass
+  std::vector<Vec3> m_state, m_image;                 ///< input and output of the mixing
 };
 
 } // namespace deformation

@@ -23,7 +23,7 @@
 namespace pcs {
 namespace deformation {
 
-/// View of a network: present positions of its nodes, and targets of its edges.
+/// View of a network with the current positions of its nodes and the targets of its edges.
 struct Elastic_state
 {
   const Elastic_network& network;
@@ -31,20 +31,20 @@ struct Elastic_state
   const std::vector<Vec3>& position; ///< [L]
   /// `R_i A_i`: the rotation after the growth. [-]
   const std::vector<Eigen::Matrix3d>& frame;
-  /// The frame, times the stretch that the material allows. [-]
+  /// The frame times the transverse stretch of the material. [-]
   const std::vector<Eigen::Matrix3d>& target;
   /// Growth of edges between scaled handles, `A_i`; empty if no handle is scaled. [-]
   const std::vector<Eigen::Matrix3d>& growth;
 
-  /// Weight of the frame in `deformation_gradient()`, relative to the spread of the edges: it
-  /// determines the direction across a surface, in which there are no edges.
+  /// Weight of the frame in `deformation_gradient()`, relative to the spread of the edges. The
+  /// frame determines the gradient along the surface normal, where there are no edges. [-]
   static constexpr double frame_share = 0.05;
-  /// Of shorter edges, relative to the coordinates, rounding leaves too little to measure a
-  /// gradient. [-]
+  /// Shortest edges, relative to the coordinates, that are long enough against rounding to measure
+  /// a gradient. [-]
   static constexpr double shortest_measured_edge = 1e-10;
 
-  /// Right side of node `i` from its surface edges; returns its degree. Number by number, as in
-  /// `newton_turn()`.
+  /// Computes the right-hand side of node `i` from its surface edges, and returns its degree.
+  /// Scalars are faster, see `newton_turn()`.
   double sum_edges(std::size_t i, Vec3& b) const
   {
     const auto& graph = network.surface;
@@ -109,7 +109,7 @@ struct Elastic_state
     return energy;
   }
 
-  /// The rest shape that a material of the given Poisson's ratio takes under the present main
+  /// Returns the stretch of a material with the given Poisson's ratio `nu` under its current main
   /// stretch `s1` along `v`: `S = s1 v v^T + s1^-nu (I - v v^T)`.
   Eigen::Matrix3d transverse_stretch(std::size_t i, double poisson_ratio) const
   {
@@ -121,18 +121,18 @@ struct Elastic_state
     for (int k = 1; k < 3; ++k)
       if (std::abs(std::log(eigen.values[k])) > std::abs(std::log(eigen.values[main])))
         main = k;
-    // Beyond a factor of ten the network is torn, not stretched.
+    // Factors beyond ten indicate a torn network.
     const double s1 = std::min(10.0, std::max(0.1, eigen.values[main]));
     const Vec3 v = eigen.vectors.col(main);
     const double across = std::pow(s1, -poisson_ratio);
     return (s1 - across) * v * v.transpose() + across * Eigen::Matrix3d::Identity();
   }
 
-  /// Least-squares linear map of the edges at node `i` from rest to the present, completed by the
-  /// frame across the surface. [-]
+  /// Returns the least-squares linear map of the edges at node `i` from rest to the current state.
+  /// The frame completes it along the surface normal. [-]
   Eigen::Matrix3d deformation_gradient(std::size_t i) const
   {
-    // Number by number, as in `newton_turn()`.
+    // Scalars are faster, see `newton_turn()`.
     const auto& graph = network.surface;
     const double *xi = network.rest[i].data(), *pi = position[i].data();
     double longest = 0, farthest = 0, covariance[9] = {};

@@ -30,13 +30,14 @@ namespace pcs {
 namespace deformation {
 
 /*!
-  Rotations are `exp(d) B`: deviations from the rotation field `B` of the handles. From them follow
-  positions, `L x = b`, `b_i = sum_j w_ij (G_i + G_j)/2 (x0_i - x0_j)` with `G_i = R_i A_i S_i`: the
-  rotation, the growth between handles of different scale (`Blended_scales`), the stretch that the
-  material allows; from positions their energy, and the deviations of the rotations that fit them
-  best.
+  Rotations are `R = exp(d) B`, with deviations `d` from the rotation field `B` of the handles.
+  Positions are computed from rotations by `L x = b`, with
+  `b_i = sum_j w_ij (G_i + G_j)/2 (x0_i - x0_j)`. Here `G_i = R_i A_i S_i` is the product of the
+  rotation, the growth between handles of different scale (`Blended_scales`), and the transverse
+  stretch of the material. From positions, the energy and the deviations of the best-fitting
+  rotations are computed.
 
-  All matrices are constant while the constraints are; the three factors are made in `constrain()`.
+  All matrices are constant for constant constraints; `constrain()` computes the three factors.
 */
 template <class ConcurrencyTag>
 class Elastic_step
@@ -44,10 +45,10 @@ class Elastic_step
 public:
   const Elastic_network& network() const { return *m_network; }
   const Node_constraints& constraints() const { return m_constraints; }
-  /// The nodes that are solved for.
+  /// Returns the rows of the unknowns.
   const Free_rows& rows() const { return m_factors.rows(); }
   bool has_links() const { return !m_network->links.neighbor.empty(); }
-  /// The present shape, until the next call.
+  /// Returns a view of the current shape, which is valid until the next call.
   Elastic_state state() const
   {
     return {*m_network,
@@ -58,8 +59,8 @@ public:
             m_scales.growth()};
   }
 
-  /// Takes a network, which must outlive its use here, and constraints, and factorises. Returns
-  /// `false` if a matrix is singular (a free part without handle).
+  /// Factorises for the given constraints. The network must outlive its use here. Returns `false`
+  /// if a matrix is singular (a free component without handle).
   bool constrain(const Elastic_network& network, Node_constraints constraints, double stiffness)
   {
     m_network = &network;
@@ -71,7 +72,7 @@ public:
   }
 
   /*!
-    New motions of the handles; rotations are those of their field.
+    Begins a solve for new motions of the handles, with the rotations of their field.
     \param is_further whether the stretch of the material is kept
     \param link_offsets offsets of the first nodes by links that this network lacks; may be null
   */
@@ -99,11 +100,11 @@ public:
     m_link_offsets = link_offsets;
   }
 
-  /// Whether positions contain offsets by links of another network: energies cannot be compared
-  /// with those of other solutions.
+  /// Whether positions contain offsets by links of another network. If so, energies cannot be
+  /// compared with those of other solutions.
   bool has_link_offsets() const { return m_link_offsets != nullptr; }
 
-  /// Rotations from deviations. [rad]
+  /// Computes the rotations from deviations. [rad]
   void turn(const std::vector<Vec3>& deviations)
   {
     pcs::internal::for_each_index<ConcurrencyTag>(
@@ -115,21 +116,22 @@ public:
         block);
   }
 
-  /// Positions of constrained nodes, then of all others.
+  /// Computes the positions of constrained nodes, then of all other nodes.
   void place(bool links_turn)
   {
     place_constrained_nodes(*m_network, m_constraints, *m_transforms, m_position);
     follow(links_turn);
   }
 
-  /// Positions that follow the rotations.
+  /// Computes the positions from the rotations.
   void follow(bool links_turn)
   {
     update_frames();
     solve_positions(links_turn);
   }
 
-  /// The same again, after positions have changed, from which links take their directions.
+  /// Solves for the positions with unchanged rotations; links have the directions of the last
+  /// positions unless `links_turn`.
   void solve_positions(bool links_turn)
   {
     m_position_solver(state(), *m_transforms, m_factors, links_turn, m_position);
@@ -139,8 +141,8 @@ public:
           m_position[i] += (*m_link_offsets)[i];
   }
 
-  /// One sweep: the energy of the present state and, if there is a next pass, the deviation of each
-  /// node's best rotation from the field.
+  /// Returns the energy of the current state. If a further iteration follows, also computes the
+  /// deviation of each node's best rotation from the field.
   double fit_and_measure(bool has_next)
   {
     const std::size_t n = m_network->size();
@@ -155,7 +157,7 @@ public:
     return std::accumulate(m_energies.begin(), m_energies.end(), 0.0);
   }
 
-  /// Smoothed deviations of the rotations that fit best: `(L + mu D) d' = mu D d`. [rad]
+  /// Smooths the deviations of the best-fitting rotations: `(L + mu D) d' = mu D d`. [rad]
   void smooth_deviations(std::vector<Vec3>& smooth)
   {
     m_rhs.resize(rows().size());
@@ -169,20 +171,20 @@ public:
   }
 
   std::vector<Vec3>& position() { return m_position; }
-  /// From where links had their directions. [L]
+  /// Returns the positions that defined the directions of the links. [L]
   const std::vector<Vec3>& directing() const { return m_position_solver.directing(); }
 
-  /// How far the interior links move the nodes: to the present positions from those that the
-  /// surface alone would give with the same frames. Empty without links. One solve.
+  /// Computes the displacements by the interior links: the current positions minus the positions
+  /// without links for the same frames. Empty without links. One solve. [L]
   void link_offsets(std::vector<Vec3>& offsets)
   {
     m_position_solver.link_offsets(state(), *m_transforms, m_factors, offsets);
   }
 
-  /// \name Kept states can be restored
+  /// \name Stored States
   /// @{
 
-  /// Positions and frames; the frames are to be made anew.
+  /// Stores positions and frames; the frames must then be recomputed.
   void keep()
   {
     m_kept_position = m_position;
@@ -194,10 +196,10 @@ public:
     m_position.swap(m_kept_position);
     m_frame.swap(m_kept_frame);
   }
-  /// The positions go on from those that were kept.
+  /// Restores the stored positions only.
   void restart_from_kept() { m_position = m_kept_position; }
 
-  /// All that a pass goes on from.
+  /// Stores the complete state from which an iteration continues.
   void keep_all()
   {
     keep();
@@ -220,7 +222,7 @@ private:
 
   bool is_stretched() const { return m_poisson_ratio != 0; }
 
-  /// `fit_and_measure()` for a block of nodes.
+  /// Implements `fit_and_measure()` for a block of nodes.
   double fit_block(std::size_t begin, std::size_t end, bool has_next)
   {
     const Elastic_state state = this->state();
@@ -260,9 +262,9 @@ private:
     return energy;
   }
 
-  /// How much bodies grow along the gradient of scale: as the field of the handles leaves room for
-  /// them, so that least energy is left. That is quadratic in the fraction, because positions are
-  /// linear in it. The present positions stay.
+  /// Finds the growth of bodies along the gradient of scale: the fraction with the least energy
+  /// under the field of the handles. The energy is quadratic in the fraction, because positions are
+  /// linear in it. The current positions are unchanged.
   void find_room()
   {
     m_kept_position = m_position;
@@ -336,7 +338,7 @@ private:
   std::vector<Eigen::Matrix3d> m_frame, m_kept_frame, m_stretch, m_target;
   std::vector<Vec3> m_position, m_kept_position, m_ungrown, m_kept_directing, m_rhs, m_work;
   std::vector<Vec3> m_deviation, m_kept_deviation; ///< of the best local rotations from the field
-  std::vector<double> m_energies;                  ///< of blocks of nodes
+  std::vector<double> m_energies;                  ///< by block of nodes
 };
 
 } // namespace deformation

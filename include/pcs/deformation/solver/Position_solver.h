@@ -18,7 +18,7 @@
 namespace pcs {
 namespace deformation {
 
-/// Moves nodes of handles with these; nodes that no handle reaches stay at rest.
+/// Moves the nodes of handles rigidly; sets nodes of components without handle to rest.
 inline void place_constrained_nodes(const Elastic_network& network,
                                     const Node_constraints& constraints,
                                     const std::vector<Similarity>& transforms,
@@ -33,16 +33,16 @@ inline void place_constrained_nodes(const Elastic_network& network,
 }
 
 /*!
-  Solves `(L + L_links) x = b`: surface edges aim at their rest edges, turned by the mean of the
-  frames at their ends; links at their rest length, in a direction that is known beforehand.
+  Solves `(L + L_links) x = b`. The target of a surface edge is its rest edge, mapped by the mean of
+  the frames at its ends. The target of a link has the rest length and a given direction.
 */
 template <class ConcurrencyTag>
 class Position_solver
 {
 public:
-  /// Links keep their turned direction if they turn, as at first; otherwise they are springs in the
-  /// direction that they have in `position`, because a link through a twisted bar must not turn
-  /// with either end. \p state looks at `position`.
+  /// Solves for `position`, of which \p state is a view. If `links_turn`, as in the first solve,
+  /// the frames rotate the links. Otherwise links are springs in their directions in `position`,
+  /// because a link through a twisted bar must not rotate with either end.
   void operator()(const Elastic_state& state,
                   const std::vector<Similarity>& transforms,
                   const Elastic_factors& factors,
@@ -70,14 +70,14 @@ public:
       m_directing = position;
   }
 
-  /// The positions that gave the links their directions in the last solve; the present ones if the
-  /// links turned; of no use without links. [L]
+  /// Returns the positions that defined the directions of the links in the last solve, or its
+  /// result if the frames rotated the links. Undefined without links. [L]
   const std::vector<Vec3>& directing() const { return m_directing; }
-  /// Undoes the solves since it was \p directing, which is of no use afterwards.
+  /// Restores earlier values of `directing()`; \p directing is unspecified afterwards.
   void restore_directing(std::vector<Vec3>& directing) { m_directing.swap(directing); }
 
-  /// How far the links move the nodes: to the positions of `state` from those that the surface
-  /// alone would give with the same frames. Empty without links. One solve. [L]
+  /// Computes the displacements by the links: the positions of `state` minus the positions without
+  /// links for the same frames. Empty without links. One solve. [L]
   void link_offsets(const Elastic_state& state,
                     const std::vector<Similarity>& transforms,
                     const Elastic_factors& factors,

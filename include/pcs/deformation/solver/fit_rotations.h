@@ -22,7 +22,7 @@ namespace deformation {
   A fit maximises `tr(R^T C_i)` over rotations `R` (Kabsch, Wahba), which for fixed lengths
   minimises `sum_j w_ij |(x_j - x_i) - R (x0_j - x0_i)|^2`, with the covariance
   `C_i = sum_j w_ij (x_j - x_i) (x0_j - x0_i)^T` and the weights `w_ij` of the surface edges. One
-  damped step of Newton's method is made, from the present rotation.
+  damped step of Newton's method is made from the current rotation.
 */
 struct Rotation_fits
 {
@@ -60,7 +60,7 @@ PCS_ALWAYS_INLINE void absolute(const Doubles& x, Doubles& y)
   pcs::internal::select_less(x, Doubles{}, Doubles(-x), x, y);
 }
 
-/// `covariance R^T` for the rotations `R` of unit quaternions, column by column.
+/// Computes `covariance R^T` for the rotations `R` of unit quaternions, column by column.
 template <class Arithmetic, class Doubles>
 PCS_ALWAYS_INLINE void turn_back(const Doubles* covariance, const Doubles* q, Doubles* turned)
 {
@@ -94,7 +94,7 @@ PCS_ALWAYS_INLINE void turn_back(const Doubles* covariance, const Doubles* q, Do
   });
 }
 
-/// As `pcs::newton_turn()`.
+/// Implements `pcs::newton_turn()`.
 template <class Arithmetic, class Doubles>
 PCS_ALWAYS_INLINE void newton_turn(const Doubles* m, double damping, Doubles* turn)
 {
@@ -150,7 +150,7 @@ PCS_ALWAYS_INLINE void newton_turn(const Doubles* m, double damping, Doubles* tu
   });
 }
 
-/// Fits the rotations of one register of lanes, from `first` on.
+/// Fits the rotations of the lanes of one register, from `first` on.
 template <class Arithmetic>
 PCS_ALWAYS_INLINE void fit_lanes(double damping, std::size_t first, Rotation_fits& fits)
 {
@@ -174,7 +174,7 @@ PCS_ALWAYS_INLINE void fit_lanes(double damping, std::size_t first, Rotation_fit
     Arithmetic::fma(p[l], f[j], q[i]);
     Arithmetic::fma(p[i], f[i], q[3]);
   });
-  // (1 + u / 2) q, as `rodrigues_from_rotation()`
+  // (1 + u / 2) q
   Doubles fit[4] = {q[0], q[1], q[2], q[3]}, squared, root, factor;
   unroll<3>([&](auto k) PCS_LAMBDA_INLINE { u[k] = u[k] * 0.5; });
   unroll<3>([&](auto k) PCS_LAMBDA_INLINE {
@@ -229,13 +229,13 @@ fit_rotations_avx512(double damping, std::size_t count, Rotation_fits& fits)
 } // namespace internal
 
 /*!
-  For the first `count` fits: one step of Newton's method (`newton_turn()`) from the present
-  rotation towards that which maximises `trace(R^T covariance)`, as a deviation from the field
-  (`rodrigues_from_rotation()`).
+  Performs, for the first `count` fits, one step of Newton's method (`newton_turn()`) from the
+  current rotation towards the maximiser of `trace(R^T covariance)`. The results are deviations from
+  the field (`rodrigues_from_rotation()`).
 */
 using Fit_rotations = void (*)(double damping, std::size_t count, Rotation_fits& fits);
 
-/// The kernel for this machine. All give the same bits.
+/// Returns the kernel for this machine. All kernels give the same bits.
 inline Fit_rotations choose_fit_rotations()
 {
 #if PCS_HAS_RUNTIME_DISPATCH

@@ -16,15 +16,15 @@
 namespace pcs {
 namespace deformation {
 
-/// The edges of a network, and where its nodes are.
+/// The edges of a network, and the positions of its nodes.
 struct Edge_input
 {
-  const std::uint32_t* first;      ///< of the half-edges of a node
-  const std::uint32_t* neighbor;   ///< of a half-edge
+  const std::uint32_t* first;      ///< first half-edge of a node
+  const std::uint32_t* neighbor;   ///< end node of a half-edge
   const double* weight;            ///< of a half-edge [-]
   const Eigen::Vector3d* rest;     ///< [L]
   const Eigen::Vector3d* position; ///< [L]
-  const Eigen::Matrix3d* target;   ///< the map that the edges at a node should undergo [-]
+  const Eigen::Matrix3d* target;   ///< target map of the edges at a node [-]
 };
 
 namespace internal {
@@ -100,10 +100,11 @@ measure_edges_avx2(const Edge_input& in, std::size_t node, Eigen::Matrix3d& cova
 
 } // namespace internal
 
-/// Half the energy of the edges of a node, and `sum_j w_ij (x_j - x_i) (x0_j - x0_i)^T`.
+/// Returns half the energy of the edges of a node; sets `covariance` to
+/// `sum_j w_ij (x_j - x_i) (x0_j - x0_i)^T`.
 using Measure_edges = double (*)(const Edge_input&, std::size_t node, Eigen::Matrix3d& covariance);
 
-/// The kernel for this machine. All give the same bits.
+/// Returns the kernel for this machine. All kernels give the same bits.
 inline Measure_edges choose_measure_edges()
 {
 #if PCS_HAS_RUNTIME_DISPATCH

@@ -21,30 +21,32 @@ namespace pcs {
 namespace deformation {
 
 /*!
-  Rotations of all nodes from those of the handles.
+  Interpolates the rotations of the handles at all nodes.
 
-  With frames `q_i = p_i q_i0`, equation (2.1) of the dissertation, `q_i q_ij = q_j`, in the
-  least-squares sense is `min sum_{edges ij} w_ij |p_i - p_j|^2` over the quaternions `p_i` of the
-  free and soft nodes, from rest to deformed, with `p_k` given at the handles (2.3) and the surface
-  weights `w_ij`: a scalar Laplacian, in which the local frames cancel. The unit length is restored
-  afterwards. `Rotation_field::quaternion` solves just that. Linear blending spreads a large angle
-  unevenly and cannot count turns; `Rotation_field::geodesic` therefore
+  Let `q_i = p_i q_i0` be the frames, with rotations `p_i` from rest to deformed. The least-squares
+  form of equation (2.1) of [Aiteanu 2022], `q_i q_ij = q_j`, is then
+  `min sum_{edges ij} w_ij |p_i - p_j|^2` over the quaternions `p_i` of the free and soft nodes,
+  with the surface weights `w_ij` and given `p_k` at the handles (2.3). The local frames cancel, and
+  the matrix is a scalar Laplacian. The unit length is restored afterwards.
+  `Rotation_field::quaternion` is this solution. Linear blending distributes a large angle unevenly
+  and cannot count turns. Therefore `Rotation_field::geodesic`
 
-  1. blends rotation vectors where all turns share one axis (exact for any angle);
-  2. otherwise, where the handles are less than `widest_lifted_angle` apart, blends quaternions and
+  1. blends rotation vectors if all rotations have the same axis (exact for any angle);
+  2. otherwise, if the handles are less than `widest_lifted_angle` apart, blends quaternions and
      follows with three steps of the harmonic map, `L s = sum w log(q_j q_i^-1)`, `q <- exp(s) q`;
-  3. otherwise blends the handles' turns one after another, each as rotation vectors in space.
+  3. otherwise blends the successive rotations of the handles one after another, each as rotation
+     vectors in space.
 */
 template <class ConcurrencyTag>
 class Rotation_field_solver
 {
 public:
-  /// Angle between handles on the double cover [rad] up to which linear blending is a safe start;
-  /// it fails at pi.
+  /// Largest angle between handles on the double cover for which linear blending is a safe start;
+  /// blending fails at pi. [rad]
   static constexpr double widest_lifted_angle = 1.9;
   static constexpr int number_of_intrinsic_steps = 3;
 
-  /// Writes the rotation of every node to `field`; unreached nodes get the identity.
+  /// Writes the rotation of every node to `field`, the identity for unreached nodes.
   void operator()(Rotation_field kind,
                   const linear_algebra::Sparse_cholesky& factor,
                   const Weighted_graph& graph,
@@ -104,7 +106,8 @@ private:
     return true;
   }
 
-  /// Handles without nodes, removed ones for instance, are ignored.
+  /// Whether linear blending is a safe start. Handles without nodes, such as removed ones, are
+  /// ignored.
   bool is_narrow(const std::vector<Similarity>& transforms)
   {
     m_has_nodes.assign(transforms.size(), 0);
@@ -144,8 +147,8 @@ private:
     pcs::internal::for_each_index<ConcurrencyTag>(m_rows->size(), [&](std::size_t r) {
       const std::size_t i = m_rows->node_of_row[r];
       const double length = m_value4[i].norm();
-      // Opposite handles cancel between them; the field is undefined there, and any rotation will
-      // do.
+      // Opposite rotations of two handles cancel somewhere between them. The field is undefined
+      // there, and any rotation is valid.
       if (length > 1e-12)
         field[i].coeffs() = m_value4[i] / length;
     });

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Dirty flags of handles: points of unmoved handles keep every bit.
+// Dirty flags of handles, so that points of unmoved handles remain bitwise unchanged.
 
 #ifndef PCS_DEFORMATION_UPSAMPLING_DIRTY_HANDLES_H
 #define PCS_DEFORMATION_UPSAMPLING_DIRTY_HANDLES_H
@@ -19,13 +19,13 @@ class Dirty_handles
 {
 public:
   /*!
-    Finds for each handle whether its points are written: if it moves, or has moved before.
-    Allocates nothing while the number of handles stays.
+    Finds for each handle whether its points are written: whether it moves or has moved before.
+    Allocates nothing if the number of handles is unchanged.
 
     \param transforms of the handles, in local coordinates; the outside of the region of interest,
            which never moves, comes last if there is one
     \param followed handles that displaced points have begun to follow
-    \param is_at_rest whether the samples are
+    \param is_at_rest whether the samples are at rest
   */
   const std::vector<char>& find(const std::vector<Similarity>& transforms,
                                 bool has_outside,
@@ -49,7 +49,7 @@ public:
     return m_is_written;
   }
 
-  /// Makes the present shape the rest shape.
+  /// Makes the current shape the rest shape.
   void accept()
   {
     m_was_moved.clear();

@@ -24,7 +24,8 @@
 namespace pcs {
 namespace deformation {
 
-/// See `border_fades()`. Transformations are those of the handles, in local coordinates.
+/// Blend weights of `border_fades()`, by site and by block. The transformations of the handles are
+/// in local coordinates.
 class Handle_fades
 {
 public:
@@ -66,7 +67,7 @@ public:
     }
   }
 
-  /// For the blocks of the upsampling. None before `find()`.
+  /// Returns the weights for the blocks of the upsampling; empty before `find()`.
   Upsampling::Fades of_blocks() const
   {
     if (m_of_blocks.empty())
@@ -74,7 +75,8 @@ public:
     return {m_first.data(), m_of_blocks.data()};
   }
 
-  /// Draws one point near `site` that the samples have moved, in local coordinates.
+  /// Blends a point near `site`, already moved by the samples, towards the handles. Coordinates are
+  /// local.
   void apply(std::size_t site,
              const std::vector<Similarity>& transforms,
              const Vec3& rest,
@@ -101,7 +103,7 @@ public:
   }
 
 private:
-  /// Keeps the fades of a block in the order of the handles, in which those of a point are meant.
+  /// Inserts a weight in the order of the handles, in which they are applied to a point.
   void add(const Border_fade& fade, std::size_t lane)
   {
     auto f = m_of_blocks.begin() + m_first.back();
@@ -116,8 +118,8 @@ private:
   static constexpr std::uint32_t none = ~std::uint32_t(0);
 
   std::vector<Border_fade> m_of_sites; ///< increasing by site
-  std::vector<Block_fade> m_of_blocks; ///< the same by block
-  std::vector<std::uint32_t> m_first;  ///< of each block in `m_of_blocks`, and the end
+  std::vector<Block_fade> m_of_blocks; ///< increasing by block
+  std::vector<std::uint32_t> m_first;  ///< index in `m_of_blocks` of each block, and the end
 };
 
 } // namespace deformation

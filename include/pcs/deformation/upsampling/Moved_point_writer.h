@@ -21,25 +21,26 @@
 namespace pcs {
 namespace deformation {
 
-/// The input of writing.
+/// The input of a `Moved_point_writer`.
 template <class ConcurrencyTag>
 struct Moved_points
 {
   const Sampled_body<ConcurrencyTag>& body;
-  Upsampling& upsampling;              ///< stores maps of its own
+  Upsampling& upsampling;              ///< not const, because it stores its own maps
   const std::vector<Affine_map>& maps; ///< of the samples
   const Outlier_maps& outlier_maps;
   const Site_constraints& sites;
   const std::vector<Similarity>& transforms; ///< of the handles, in local coordinates
   const std::vector<char>& is_written;       ///< of each handle: whether its points are written
   Upsampling::Block_motions motions;         ///< if the body is sampled
-  double& seconds;                           ///< of writing, in the report
+  double& seconds;                           ///< time of writing in the report [s]
 };
 
 /*!
-  The `Writer` of `Upsampling::apply()`, over places. `Output` writes the caller's points, by input
-  index: `write(i, position, normal, gradient)` and, with the meaning of the calls of `Writer`,
-  `prefetch(i)`, `can_stream()` and `stream(i, positions, normals)`.
+  The `Writer` of `Upsampling::apply()`, whose functions receive upsampling indices. An `Output`
+  writes the caller's points by input index, with `write(i, position, normal, gradient)`. Its
+  further functions `prefetch(i)`, `can_stream()` and `stream(i, positions, normals)` correspond to
+  `expect()`, `does_stream()` and `stream()` of `Writer`.
 */
 template <class ConcurrencyTag, class Output>
 class Moved_point_writer
@@ -56,7 +57,7 @@ public:
   {
   }
 
-  /// A point in the caller's coordinates.
+  /// Writes a point in the caller's coordinates.
   PCS_ALWAYS_INLINE void
   write(std::size_t place, const Vec3& p, const Vec3& normal, const Eigen::Matrix3d& gradient) const
   {
@@ -75,7 +76,7 @@ public:
     return m_output.stream(first_place, out.position, out.normal);
   }
 
-  /// A point that is not blended from samples.
+  /// Writes a point that is not blended from samples.
   void write_other(std::size_t place) const
   {
     const std::size_t site = m_body.site_of_place[place];

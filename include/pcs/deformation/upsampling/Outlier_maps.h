@@ -21,8 +21,8 @@
 namespace pcs {
 namespace deformation {
 
-/// The similarity nearest to the map of the sample that an outlier is attached to: far away, a
-/// stretch would move it too far.
+/// Map of each outlier: the similarity nearest to the map of the sample to which it is attached. A
+/// stretch would move distant outliers too far.
 class Outlier_maps
 {
 public:
@@ -46,7 +46,7 @@ public:
     });
   }
 
-  /// The map of a site that is an outlier of the body.
+  /// Returns the map of a site that is an outlier of the body.
   template <class ConcurrencyTag>
   const Affine_map& of_site(const Sampled_body<ConcurrencyTag>& body, std::size_t site) const
   {

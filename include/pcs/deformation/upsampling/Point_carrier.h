@@ -23,10 +23,10 @@ namespace pcs {
 namespace deformation {
 
 /*!
-  The link of a point to the samples is found through the nearest site: its region, then the nearest
-  samples among the rings around that, with the weights that a point of the session would have.
-  Built once per rest shape, 40 bytes per site; const calls may run side by side. O(log n) per
-  point.
+  The weights of the samples at a point are found from the nearest site: the candidates are the
+  samples in the rings around its region. The weights are those of a point of the session at the
+  same position. The object is built once per rest shape, and needs 40 bytes per site. Const
+  functions may run concurrently. O(log n) per point.
 */
 class Point_carrier
 {
@@ -57,7 +57,7 @@ public:
     return found.front().index;
   }
 
-  /// The blended map at `point`, which has the nearest site `site`.
+  /// Returns the blended map at `point`, whose nearest site is `site`.
   Affine_map map_at(const Vec3& point, std::size_t site, const std::vector<Affine_map>& maps) const
   {
     thread_local std::vector<internal::Sample_candidate> nearest;

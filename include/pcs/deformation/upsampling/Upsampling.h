@@ -46,7 +46,7 @@ public:
     const std::size_t number_of_blocks = (n + lanes - 1) / lanes;
     m_first.push_back(0);
     m_base.reserve(number_of_blocks);
-    std::unordered_map<std::uint64_t, std::uint32_t> pair_index; // looked up only, never iterated
+    std::unordered_map<std::uint64_t, std::uint32_t> pair_index; // never iterated over
     std::vector<Member> members;
     for (std::size_t block = 0; block < number_of_blocks; ++block) {
       find_members(block, n, row, links, members);

@@ -34,21 +34,21 @@ struct Base_map
   double a[9], origin[3], center[3];
 };
 
-/// How the map of a sample differs from that of the base, around the base's position, per step of
-/// weight: linear part row by row, then offset.
+/// Difference between the maps of a sample and of the base, about the position of the base, per
+/// step of weight: linear part row by row, then offset.
 struct Map_difference
 {
   double value[12];
 };
 
-/// A sample of a block besides its base: which difference, and its weight for each point.
+/// A sample of a block besides its base: the index of its difference, and its weight at each point.
 struct Block_entry
 {
   std::uint32_t pair;
   std::uint16_t weight[lanes];
 };
 
-/// How far the points of a block are drawn to one handle; zero for those that are not.
+/// Blend weights of the points of a block towards one handle; zero for unaffected points.
 struct Block_fade
 {
   std::uint32_t handle;
@@ -61,12 +61,12 @@ struct Block_input
   const Map_difference* differences;
   const Block_entry *entry, *entry_end;
   const Lane_vectors *rest, *normal;
-  double frame_unit;          ///< positions are multiplied by it, then
-  const double* frame_origin; ///< moved by this
+  double frame_unit;          ///< factor of positions
+  const double* frame_origin; ///< added to scaled positions
   const Block_fade *fade, *fade_end;
   const Handle_map* handles;
   const Handle_map*
-      holder; ///< takes all points of the block along, whatever the samples do; or null
+      holder; ///< the handle that moves all points of the block instead of the samples; or null
 };
 
 inline Base_map base_map(const Affine_map& map, const double* origin)
@@ -101,14 +101,13 @@ map_difference(const Affine_map& base, const Affine_map& sample, const double* o
 using Blend_block = void (*)(const Block_input&, Block_output&);
 
 /*!
-  The kernel for this machine. All give the same bits. A point `p` moves to
+  Returns the kernel for this machine. All kernels give the same bits. A point `p` moves to
 
       p' = sum_s w_s (A_s p + t_s),  sum_s w_s = 1,
 
-  over the samples `s` of its block, with stored weights `w_s` in steps of `1 / weight_steps`:
-  equations (2.4) and (2.5) of the dissertation, with the affine map of a sample in place of its
-  rotation. Points near a handle `h` then become `p' + f_h (A_h p + t_h - p')`, one handle after the
-  other.
+  over the samples `s` of its block, with stored weights `w_s` in steps of `1 / weight_steps`. These
+  are equations (2.4) and (2.5) of [Aiteanu 2022], with affine maps of samples instead of rotations.
+  Points near a handle `h` then become `p' + f_h (A_h p + t_h - p')`, one handle after the other.
 */
 template <Blend_outputs Outputs>
 Blend_block choose_blend_block();

@@ -42,8 +42,8 @@ PCS_ALWAYS_INLINE void squared_length(const Doubles* v, Doubles& result)
 
 inline constexpr double smallest_square = 1e-290;
 
-/// The factor that gives `v` the length of which `squared` is the square; finite, and of no effect,
-/// where `v` is zero.
+/// Computes the factor that changes the length of `v` to the root of `squared`. The factor is
+/// finite where `v` is zero.
 template <class Arithmetic, class Doubles>
 PCS_ALWAYS_INLINE void scale_to_length(const Doubles& squared, const Doubles* v, Doubles& scale)
 {
@@ -76,7 +76,7 @@ PCS_ALWAYS_INLINE void multiply_by_cofactors(const Doubles* g, const Doubles* v,
   });
 }
 
-/// In the frame of the caller.
+/// Converts positions to the caller's coordinates.
 template <class Arithmetic, class Doubles>
 PCS_ALWAYS_INLINE void store_positions(const Block_input& in,
                                        const Doubles* position,
@@ -91,7 +91,7 @@ PCS_ALWAYS_INLINE void store_positions(const Block_input& in,
   });
 }
 
-/// A block that moves with one handle.
+/// Moves a block with one handle.
 template <Blend_outputs Outputs, class Arithmetic>
 PCS_ALWAYS_INLINE void carry_block(const Block_input& in, Block_output& out)
 {
@@ -128,8 +128,8 @@ PCS_ALWAYS_INLINE void carry_block(const Block_input& in, Block_output& out)
   });
 }
 
-/// The blended map of the points of one register, around the base's position at rest: linear part
-/// `g`, row by row, and `position`.
+/// Computes the blended map of the points of one register, about the base's position at rest:
+/// linear part `g`, row by row, and `position`.
 template <class Arithmetic, class Doubles>
 PCS_ALWAYS_INLINE void
 blend_maps(const Block_input& in, std::size_t first, Doubles* g, Doubles* position)
@@ -164,7 +164,7 @@ add_offsets(const Block_input& in, std::size_t first, const Doubles* g, Doubles*
   });
 }
 
-/// Draws positions towards the handles.
+/// Blends positions towards the handles.
 template <class Arithmetic, class Doubles>
 PCS_ALWAYS_INLINE void fade_positions(const Block_input& in, std::size_t first, Doubles* position)
 {
@@ -183,7 +183,7 @@ PCS_ALWAYS_INLINE void fade_positions(const Block_input& in, std::size_t first, 
   }
 }
 
-/// Draws the normals `turned`, of which `v` are the ones at rest, towards the handles.
+/// Blends the normals `turned` towards the handles; `v` are the normals at rest.
 template <class Arithmetic, class Doubles>
 PCS_ALWAYS_INLINE void
 fade_normals(const Block_input& in, std::size_t first, const Doubles* v, Doubles* turned)
@@ -201,7 +201,7 @@ fade_normals(const Block_input& in, std::size_t first, const Doubles* v, Doubles
   }
 }
 
-/// Gives `v` the length of which `squared` is the square.
+/// Changes the length of `v` to the root of `squared`.
 template <class Arithmetic, class Doubles>
 PCS_ALWAYS_INLINE void set_length(const Doubles& squared, Doubles* v)
 {
@@ -210,7 +210,8 @@ PCS_ALWAYS_INLINE void set_length(const Doubles& squared, Doubles* v)
   pcs::internal::unroll<3>([&](auto r) PCS_LAMBDA_INLINE { v[r] = v[r] * scale; });
 }
 
-/// Normals get the cofactor matrix of `g`, are drawn towards the handles, and keep their length.
+/// Maps normals by the cofactor matrix of `g` and blends them towards the handles, with unchanged
+/// length.
 template <class Arithmetic, class Doubles>
 PCS_ALWAYS_INLINE void
 blend_normals(const Block_input& in, std::size_t first, const Doubles* g, Block_output& out)
@@ -229,7 +230,7 @@ blend_normals(const Block_input& in, std::size_t first, const Doubles* g, Block_
   });
 }
 
-/// Draws the gradients `g` towards the handles, and stores them.
+/// Blends the gradients `g` towards the handles, and stores them.
 template <class Arithmetic, class Doubles>
 PCS_ALWAYS_INLINE void
 store_gradients(const Block_input& in, std::size_t first, Doubles* g, Block_output& out)
@@ -246,14 +247,14 @@ store_gradients(const Block_input& in, std::size_t first, Doubles* g, Block_outp
 }
 
 /*!
-  Equations (2.4) and (2.5) of the dissertation for one block. With `sum w = 1`,
+  Implements equations (2.4) and (2.5) of [Aiteanu 2022] for one block. With `sum w = 1`,
 
       sum w_s (A_s p + t_s) = (A_b + G) (p - o) + (A_b o + t_b) + g,
       G = sum w_s (A_s - A_b),  g = sum w_s ((A_s - A_b) o + t_s - t_b)
 
-  for any base sample `b` of the block and its position `o`: one sample less to add up, and a rigid
-  motion, where all differences are zero, stays exact. Normals get the cofactor matrix of the
-  blended map, and keep their length. Last, points around handles are drawn towards these.
+  for any base sample `b` of the block and its position `o`. The sum has one term less, and rigid
+  motions remain exact, because all differences are zero. Normals are mapped by the cofactor matrix
+  of the blended map, with unchanged length. Finally, points near handles are blended towards them.
 */
 template <Blend_outputs Outputs, class Arithmetic>
 PCS_ALWAYS_INLINE void blend_block(const Block_input& in, Block_output& out)

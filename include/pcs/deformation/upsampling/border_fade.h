@@ -21,8 +21,8 @@
 namespace pcs {
 namespace deformation {
 
-/// A site that follows a handle by the fraction `weight` in (0, 1]. Sites near several handles are
-/// drawn to one after the other, in the order of the handles.
+/// A site that is blended towards a handle with the weight `weight` in (0, 1]. Sites near several
+/// handles are blended towards one after the other, in the order of the handles.
 struct Border_fade
 {
   std::uint32_t site;
@@ -41,9 +41,9 @@ struct Band_site
 };
 
 /*!
-  Shortest paths out of handles, each edge measured in the spacings of the samples at its ends:
-  unlike distances over the spacing at the nearest handle, these change no more between neighbours
-  than the edge between them is long.
+  Finds shortest paths from handles. Each edge is measured in units of the local sample spacing at
+  its ends, so that distances of neighbours differ by at most the length of the edge between them.
+  This would not hold with the spacing at the nearest handle as the unit.
 */
 template <class HandleOfSite, class SitePosition>
 class Band_search
@@ -63,8 +63,8 @@ public:
   {
   }
 
-  /// Appends the sites nearer than one spacing to the handle that the edges in `[begin, end)`
-  /// leave.
+  /// Appends the sites nearer than one spacing to the handle from which the edges in `[begin, end)`
+  /// start.
   template <class EdgeIterator>
   void search(EdgeIterator begin, EdgeIterator end, std::vector<Band_site>& band)
   {
@@ -97,8 +97,8 @@ private:
     double per_length; ///< spacings in a unit of length
     std::uint32_t site;
   };
-  /// Sites wait in buckets of distance; one may wait more than once, and is left alone if it came
-  /// nearer meanwhile.
+  /// An entry of a bucket of similar distances. A site may have several entries; an entry is
+  /// skipped if the distance of its site has decreased since.
   struct Entry
   {
     double distance;
@@ -149,18 +149,20 @@ private:
   const std::vector<double>& m_spacing_of_sample;
   const HandleOfSite& m_handle_of_site;
   const SitePosition& m_position;
-  std::vector<std::uint32_t> m_index; ///< of a site in `m_reached`
+  std::vector<std::uint32_t> m_index; ///< index of a site in `m_reached`
   std::vector<Reached> m_reached;
   std::array<std::vector<Entry>, number_of_buckets> m_buckets;
 };
 
 /*!
-  The weight of a handle at `d` spacings is `(1 - d)^2`. The motions by the handle and by the
-  samples differ more with the distance from the handle. A weight that falls at once, where they
-  agree, makes the field less steep than one that leaves the handle smoothly.
+  The weight of a handle at a distance of `d` spacings is `(1 - d)^2`. The difference between the
+  motions of the handle and of the samples increases with the distance from the handle. The steep
+  decrease of the weight at the handle, where both motions agree, keeps the blended field less steep
+  than a smooth start would.
 
-  Several handles have together the weight `1 - prod(1 - w)`, each in proportion to `w / (1 - w)`
-  with its own weight `w`; the weight is 1 at the border of each.
+  Several handles have the total weight `1 - prod(1 - w)`. It is divided in proportion to
+  `w / (1 - w)`, where `w` is the separate weight of a handle. At the border of a handle, its weight
+  is 1.
   \param begin, end the handles that reach one site, increasing
 */
 template <class Iterator>
@@ -176,7 +178,8 @@ void append_fades(Iterator begin, Iterator end, std::vector<Border_fade>& fades)
     rest *= 1 - share(*s);
     sum += share(*s) / (1 - share(*s));
   }
-  // Handles draw one after the other: earlier weights are larger, since later ones reduce them.
+  // Handles are applied one after the other. Earlier weights are larger, since later handles reduce
+  // their effect.
   const std::size_t first = fades.size();
   double left = 1;
   for (Iterator s = end; s-- != begin;) {
@@ -190,9 +193,10 @@ void append_fades(Iterator begin, Iterator end, std::vector<Border_fade>& fades)
 } // namespace internal
 
 /*!
-  Free sites nearer to exact handles, along the graph, than one sample spacing, and their weights.
-  Without them the handle's points, which are placed exactly, part from their neighbours, which are
-  blended from samples. Increasing by site, then by handle. Costs the width of the bands only.
+  Returns the free sites whose distance from an exact handle along the graph is less than one sample
+  spacing, with their weights. Without blending, the points of a handle, which move exactly, would
+  separate from their neighbours, which are blended from samples. The result is sorted by site, then
+  by handle. The time is proportional to the number of these sites.
   \param border edges from sites of exact handles to others
   \param handle_of_site the handle that prescribes a site, or negative
   \param spacing_of_sample mean distance of each sample to its neighbours [L]

@@ -20,9 +20,8 @@
 namespace pcs {
 namespace deformation {
 
-/// Whether a sample has another one for a neighbour, and not only nodes on the borders of handles,
-/// which may be so near that a stretch measured there would throw the points of the sample away.
-/// The samples are the first nodes.
+/// Whether a sample has another sample as a neighbour. Nodes on the borders of handles may be too
+/// near to measure a stretch from them alone. The samples are the first nodes.
 inline bool
 has_sample_beside(const Weighted_graph& graph, std::size_t sample, std::size_t number_of_samples)
 {
@@ -31,14 +30,14 @@ has_sample_beside(const Weighted_graph& graph, std::size_t sample, std::size_t n
   });
 }
 
-/// The deformation gradient of every sample, which contains stretch as well, about its new
-/// position; the frame of one without another beside it. The samples are the first nodes of the
-/// network.
+/// Computes the affine map of every sample from its deformation gradient, which includes stretch,
+/// and its new position. For samples without adjacent samples, the frame replaces the gradient. The
+/// samples are the first nodes of the network.
 /// \param transforms of the handles, in the coordinates of the network
 /// \param rest of the samples [L]
 /// \param maps one for each sample
-/// \param are_finite room to work in
-/// \return whether all of them are finite
+/// \param are_finite workspace
+/// \return whether all maps are finite
 template <class ConcurrencyTag>
 bool read_maps(const Elastic_state& state,
                const std::vector<Similarity>& transforms,
@@ -59,7 +58,7 @@ bool read_maps(const Elastic_state& state,
         const bool is_measured =
             !is_rigid && has_sample_beside(state.network.surface, s, maps.size());
         const Eigen::Matrix3d a = is_measured ? state.deformation_gradient(s) : state.frame[s];
-        // A prescribed map is the handle's own, to the last bit.
+        // A prescribed map is bitwise that of the handle.
         const Vec3 t = is_rigid ? transforms[static_cast<std::size_t>(h)].translation()
                                 : Vec3(state.position[s] - a * rest[s]);
         Eigen::Map<Row_major_matrix>(maps[s].a) = a;

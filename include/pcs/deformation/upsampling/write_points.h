@@ -16,7 +16,7 @@ namespace pcs {
 namespace deformation {
 
 /*!
-  Writes points to `output`, an `Output` of `Moved_point_writer`, side by side. Points of a sampled
+  Writes points to `output`, an `Output` of `Moved_point_writer`, concurrently. Points of a sampled
   body are blended from the maps of the samples; otherwise each point is a sample, with its own map.
 */
 template <bool HasGradients, class ConcurrencyTag, class Output>
