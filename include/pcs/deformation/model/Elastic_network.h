@@ -90,7 +90,7 @@ void set_areas(const std::vector<std::uint32_t>& component, Elastic_network& net
     network.area[i] = sum[component[i]] > 0 ? network.area[i] / sum[component[i]] : 1;
 }
 
-/// Longer edges, in median spacings, lead to outliers. [-]
+/// Longest edge in `typical_edge()`; longer edges lead to outliers. [median spacings]
 constexpr double longest_typical_edge = 4;
 
 /// Returns the root mean square length of the edges, without edges to outliers. [L]

@@ -130,8 +130,8 @@ public:
     solve_positions(links_turn);
   }
 
-  /// Solves for the positions with unchanged rotations; links have the directions of the last
-  /// positions unless `links_turn`.
+  /// Solves for the positions with unchanged rotations. Unless `links_turn`, links have their
+  /// directions in the last positions.
   void solve_positions(bool links_turn)
   {
     m_position_solver(state(), *m_transforms, m_factors, links_turn, m_position);

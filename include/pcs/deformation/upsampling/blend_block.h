@@ -18,8 +18,8 @@ namespace deformation {
 /// The output of a kernel for every point.
 enum class Blend_outputs {
   positions,
-  normals,  ///< and normals
-  gradients ///< and normals, if the input has them, and the linear part of the blended map
+  normals,  ///< positions and normals
+  gradients ///< positions, normals if given, and the linear part of the blended map
 };
 
 struct Block_output

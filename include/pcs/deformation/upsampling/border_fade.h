@@ -73,7 +73,7 @@ public:
     for (auto e = begin; e != end; ++e)
       relax(reach(e->inside, 0), e->outside);
     for (auto& bucket : m_buckets) {
-      for (std::size_t b = 0; b < bucket.size(); ++b) { // grows while it is read
+      for (std::size_t b = 0; b < bucket.size(); ++b) { // the bucket grows in this loop
         const Entry entry = bucket[b];
         const Reached source = m_reached[entry.reached];
         if (entry.distance > source.distance)
