@@ -56,7 +56,7 @@ inline Vec3 extension(const Vec3& end, double radius, const std::vector<Vec3>& p
   return last * direction;
 }
 
-/// Positions along all axes of a tree, of which some are ends.
+/// Positions along all axes of a tree; some of them are ends of axes.
 struct Axis_samples
 {
   std::vector<Vec3> positions;
@@ -97,7 +97,7 @@ Vec3 position_of(const Point& p)
   return Vec3(CGAL::to_double(p.x()), CGAL::to_double(p.y()), CGAL::to_double(p.z()));
 }
 
-/// Collects, for each end, the points that are nearest to it of all samples and lie beyond it.
+/// Collects, for each end, the points beyond the end that are nearer to it than to other samples.
 template <class PointRange>
 std::vector<std::vector<Vec3>> points_beyond_ends(const PointRange& scan,
                                                   const Vec3& origin,
@@ -122,13 +122,13 @@ std::vector<std::vector<Vec3>> points_beyond_ends(const PointRange& scan,
 } // namespace internal
 
 /*!
-  Moves the tips of a tree, and its root if one branch begins there, to where the points of its scan
-  end; returns how many.
+  Moves the tips of a tree, and its root if only one branch begins there, to the ends of the points
+  of its scan. Returns the number of moved nodes.
 
-  The length of a branch is that of its axis. If the axes of one scan reach the tips of leaves and
-  those of another one do not, leaves seem to shrink. The extension is estimated from the points
-  that are nearest to an end and lie beyond it, if there are at least eight and they extend farther
-  along the axis than across. \f$O(n \log m)\f$ for n points and m nodes.
+  The length of a branch is the length of its axis. If axes reach the tips of leaves in one scan but
+  not in another, leaves seem to shrink. The extension is estimated from the points that lie beyond
+  an end and are nearest to it. There must be at least eight such points, which extend farther along
+  the axis than across. \f$O(n \log m)\f$ for n points and m nodes.
 */
 template <class Kernel, class PointRange>
 std::size_t extend_axes(Tree_skeleton<Kernel>& tree, const PointRange& scan)

@@ -144,7 +144,7 @@ Path_options read_path_options(const NamedParameters& np, const char* caller)
   read_parameter(np, tags::max_extrapolation_angle, options.max_extrapolation_angle);
   read_parameter(np, tags::do_limit_radii, options.do_limit_radii);
   read_parameter(np, tags::branch_emergence, options.emergence);
-  if (!(options.max_extrapolation_angle >= 0)) // paths allocate nothing
+  if (!(options.max_extrapolation_angle >= 0)) // as paths allocate nothing
     pcs::internal::check_value(caller,
                                "`max_extrapolation_angle`",
                                options.max_extrapolation_angle,
@@ -153,8 +153,8 @@ Path_options read_path_options(const NamedParameters& np, const char* caller)
   return options;
 }
 
-/// Reads the path of points. More than two trees have no pairs of points, so their path is
-/// cylindrical.
+/// Reads the kind of point paths. Spaces of more than two trees have no pairs of points, so their
+/// points move in cylindrical coordinates.
 template <class NamedParameters>
 Point_path read_point_path(const NamedParameters& np, bool is_pair, const char* caller)
 {

@@ -94,7 +94,8 @@ struct Is_listable_graph<
     Graph,
     std::void_t<decltype(num_vertices(std::declval<const Graph&>())),
                 decltype(vertices(std::declval<const Graph&>())),
-                // after these two: it is an error, instead of `false`, for types that are no graphs
+                // only after these two, as it is an error instead of `false` for types that are no
+                // graphs
                 typename boost::graph_traits<Graph>::vertex_descriptor,
                 decltype(out_edges(
                     std::declval<typename boost::graph_traits<Graph>::vertex_descriptor>(),

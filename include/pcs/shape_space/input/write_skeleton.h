@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A tree of the space as a skeleton of the caller.
+// Writes a tree of the space to a skeleton of the caller.
 
 #ifndef PCS_SHAPE_SPACE_INPUT_WRITE_SKELETON_H
 #define PCS_SHAPE_SPACE_INPUT_WRITE_SKELETON_H
@@ -21,8 +21,9 @@ namespace shape_space {
 
 namespace internal {
 
-/// Returns the attachments of the children of each branch, in numbers of its nodes, without
-/// duplicates. Those near a node are moved to it. `attachment`: of each branch.
+/// Returns, for each branch, the positions at which its children begin, without duplicates: number
+/// of a node plus the fraction of the next edge. Positions near a node are moved to it.
+/// `attachment`: position of each branch on its parent.
 inline std::vector<std::vector<double>>
 attachments_of_children(const Orl_layout& layout,
                         const Orl_coordinates& x,
@@ -102,7 +103,7 @@ void write_skeleton(const Orl_layout& layout,
     for (std::size_t j = 0; j <= branch.number_of_edges; ++j) {
       const std::size_t v = layout.first_node(b) + j;
       const auto position = static_cast<double>(j);
-      // between this node and the last
+      // between the previous node and this one
       for (; next != attachments[b].end() && *next < position; ++next) {
         const double f = *next - (position - 1);
         add((1 - f) * geometry.node[v - 1] + f * geometry.node[v],

@@ -34,10 +34,10 @@ namespace shape_space {
 /*!
   Searches for the matching of least energy.
 
-  Two branches are tried with several candidate paths each. For each trial, children are assigned at
-  least cost, which requires the matching of every pair of children in the same manner. All pairs of
-  trunks are first matched with one trial per pair of children, and the best of these again with
-  more.
+  Two branches are matched in several trials, each with one pair of their candidate paths. In each
+  trial, children are assigned at least cost; for this, pairs of children are matched recursively.
+  All pairs of trunks are first matched with one trial per pair of children, then the best pairs of
+  trunks again with more trials.
 */
 template <class ConcurrencyTag>
 class Branch_matching
@@ -68,21 +68,22 @@ public:
   const Branch_paths& paths(int t) const { return m_energy.paths(t); }
   const Matching_energy& energy() const { return m_energy; }
 
-  /// Sets the number of pairs of trunks that are matched with all their children. They take most of
-  /// the time.
+  /// Sets the number of pairs of trunks that are matched with all their children. Their
+  /// matching takes most of the time.
   void set_number_of_trunk_trials(std::size_t n) { m_most_trunk_trials = n; }
   /// Fixes the trunk of tree 2, a path of `paths(1)`.
   void set_second_trunk(std::size_t path) { m_energy.set_second_trunk(path); }
   /// Returns whether there are `Branch_paths::other_trunks`.
   bool has_other_trunks() const { return !paths(0).other_trunks.empty(); }
-  /// Selects whether these are matched. Memoised matchings of branches stay valid.
+  /// Selects whether the other trunks are matched. Memoised matchings of branches stay valid.
   void use_other_trunks(bool do_use)
   {
     if (do_use != m_uses_other_trunks)
       m_energy.swap_trunks();
     m_uses_other_trunks = do_use;
   }
-  /// Rotates tree 2 as a whole about an axis in the coordinates of the caller, at no cost. [rad]
+  /// Rotates tree 2 as a whole about an axis in the coordinates of the caller. The energy does
+  /// not include this rotation. [rad]
   void set_turn(double angle, const Vec3& axis)
   {
     m_rotation = Eigen::AngleAxisd(angle, m_energy.frame().transpose() * axis).toRotationMatrix();
@@ -98,7 +99,7 @@ public:
     return match_children(find_trials(0, 0, m_rotation, any, 1).front(), m_rotation, any)->cost;
   }
 
-  /// Returns null when `progress` asks to stop, and when the cost is not below `most_cost`.
+  /// Returns null when `progress` asks to stop, or if the cost is not below `most_cost`.
   /// Matchings with few trials are admitted up to a slightly higher cost.
   std::shared_ptr<const Matched_branch>
   run(pcs::internal::Progress& progress,
@@ -154,7 +155,7 @@ private:
   using Children = Matching_energy::Children;
 
   static constexpr std::size_t most_at_once = 512; // children that are assigned at a time
-  static constexpr int number_of_passes = 3;       // of the rotation by curve and children
+  static constexpr int number_of_passes = 3;       // of rotation from curve and children
   static constexpr double rematch_threshold = 0.4; // Frobenius norm: a rotation by about 0.3 rad
   static constexpr double trunk_slack = 1.05;      // relative error of the cost with one trial
 
@@ -201,7 +202,7 @@ private:
     const bool is_turned = m_energy.is_turned(), is_alone = paths_1.size() * paths_2.size() == 1;
     std::vector<Trial> chosen;
     const auto take = [&](std::size_t p1, std::size_t p2) {
-      // unless both have children, no attachment depends on the correspondence of the curves
+      // if one has no children, no attachment depends on the correspondence of the curves
       const bool is_leaf =
           m_energy.path(0, p1).children.empty() || m_energy.path(1, p2).children.empty();
       Trial trial = m_energy.match_curves(p1,
@@ -226,7 +227,7 @@ private:
       for (const std::size_t p2 : paths_2) {
         if (curve_weight * m_energy.least_energy(p1, p2, rotation) + difference >= limit)
           continue;
-        // paths that separate beyond their cut are the same
+        // paths that differ only beyond their cut are equivalent
         if (!is_alone && !known.insert(compared_ends(p1, p2)).second)
           continue;
         double cost = 0;
@@ -270,7 +271,7 @@ private:
     result->cost = trial.cost;
     if (m_energy.is_turned()) {
       if ((turned - rotation).norm() > rematch_threshold) {
-        // with the better rotation the curves correspond better
+        // the new rotation improves the correspondence of the curves
         trial = m_energy.match_curves(trial.path_1, trial.path_2, turned, trial.gamma.size());
         b = m_energy.children_of(1, path_2, trial.last[1], &trial.gamma);
         turned = find_rotation();
@@ -294,8 +295,8 @@ private:
   }
 
   /// Adds the pairs of children and their gains; returns `false` if the cost is not below `limit`.
-  /// Very many children are assigned in batches, the heaviest first: time and memory grow linearly
-  /// with their number, not as its cube.
+  /// Very many children are assigned in batches, the heaviest first, so time and memory grow
+  /// linearly with their number.
   bool assign_children(const Branch_path& path_1,
                        const Branch_path& path_2,
                        const Children& a,
@@ -313,7 +314,7 @@ private:
          done += most_at_once) {
       for (std::size_t t = 0; t < 2; ++t) {
         std::vector<std::size_t>&all = order[t], &now = open[t];
-        // the lightest of the unmatched ones are tried once more
+        // the lightest unmatched children are tried once more
         if (now.size() > most_at_once)
           now.erase(now.begin(), now.end() - most_at_once);
         for (std::size_t k = done; k < std::min(all.size(), done + most_at_once); ++k)
@@ -352,8 +353,8 @@ private:
     values.erase(std::find(values.begin(), values.end(), value));
   }
 
-  /// Assigns some children of both, first by lower bounds. The costs of assigned pairs are computed
-  /// exactly until all pairs of the assignment are exact.
+  /// Assigns some children of both branches, first by lower bounds of their costs. Then the costs
+  /// of assigned pairs are replaced by exact ones, until the costs of all assigned pairs are exact.
   bool assign_some(const Branch_path& path_1,
                    const Branch_path& path_2,
                    const Children& a,

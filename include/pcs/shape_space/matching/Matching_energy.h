@@ -34,7 +34,7 @@ namespace shape_space {
   All lengths are in units of the longest path of each tree, or of both trees where growth is at
   tips [-]; factors are those of `Matching_weights`.
 
-  Two branches of lengths `L1` and `L2`, with all that they support, cost
+  Two branches of lengths `L1` and `L2`, with their subtrees, cost
 
       C = curve 2 L (1 - M(g) + rotation (1 - cos(alpha))) + length unmatched |L1 - L2|
           + sum_{(i, j) in A} (C_ij + P_ij) + unmatched sum_{i not in A} w_i,
@@ -59,7 +59,7 @@ namespace shape_space {
     length of the shorter one; the length of its remainder, with the children there, is unmatched.
   - Without `is_rotation_inherited`: `R = R_p`, the terms of `rotation` and `length` vanish, and the
     elastic energy is `L1 + L2 - 2 L M` instead of `2 L (1 - M)`.
-  - `is_published` (after section 4.7 of \cite aiteanu2022): likewise, with `unmatched = 1` and
+  - `is_published` (after section 4.7 of \cite aiteanu2022): the same, with `unmatched = 1` and
     `P_ij = position L1 d^2`.
 
   A pair of curves of n samples costs O(n^2), an assignment of k children O(k^3).
@@ -67,14 +67,14 @@ namespace shape_space {
 class Matching_energy : public Path_curves
 {
 public:
-  static constexpr std::size_t most_children = 256; ///< in quick costs: the heaviest ones
+  static constexpr std::size_t most_children = 256; ///< in quick costs; the heaviest are used
 
   /// Two matched curves.
   struct Trial
   {
     std::size_t path_1, path_2;
     std::array<std::size_t, 2>
-        last; ///< nodes at which they end; with growth at tips not always their tips
+        last; ///< nodes at which the curves end; with growth at tips, not always tips
     double cost;
     std::vector<double> gamma;
   };
@@ -116,8 +116,8 @@ public:
     return single_term(length);
   }
 
-  /// Bounds the elastic energy from below: no pair of tangents is closer than the cones around the
-  /// mean directions.
+  /// Bounds the elastic energy from below: two tangents differ at least by the angle between the
+  /// cones of tangents around both mean directions.
   double least_energy(std::size_t p1, std::size_t p2, const Eigen::Matrix3d& rotation) const
   {
     const Sampled_curve &a = curves(0)[p1], &b = curves(1)[p2];
@@ -128,7 +128,7 @@ public:
     const double angle = std::max(0.0, std::acos(cosine) - a.spread - b.spread);
     if (m_weights.is_published || !m_weights.is_rotation_inherited)
       return elastic_energy(length_1, length_2, std::max(0.0, std::cos(angle)) * (1 + 1e-12));
-    // the branch may be rotated by part of the angle
+    // a rotation of the branch may compensate for part of the angle
     const double t = m_weights.rotation;
     const double gain = std::sqrt(1 + t * t + 2 * t * std::cos(angle)) - t;
     return elastic_energy(length_1, length_2, gain * (1 + 1e-12));
@@ -152,8 +152,8 @@ public:
                        : 0;
   }
 
-  /// Returns the energy of two branches, whose parents are rotated by `inherited` and they
-  /// themselves by `rotation`. [-]
+  /// Returns the energy of two branches that are rotated by `rotation` and their parents by
+  /// `inherited`. [-]
   double turned_energy(const Trial& trial,
                        const Eigen::Matrix3d& inherited,
                        const Eigen::Matrix3d& rotation) const
@@ -184,7 +184,7 @@ public:
     const double d = std::abs(s1 - s2);
     if (m_weights.is_published)
       return m_weights.position * parent_length * d * d;
-    // the cost is bounded: branches of other species do not stay unmatched for their position alone
+    // bounded, so that positions alone do not leave branches of different species unmatched
     const double w = grows_at_tips() ? std::min(w1, w2) : 0.5 * (w1 + w2);
     return m_weights.position * w * d / (1 + d / m_weights.half_cost_distance);
   }
@@ -253,7 +253,7 @@ public:
     return cost + quick_cost_of_children(a, b, turned, length(0, p1), most - cost, prices);
   }
 
-  /// Estimates the rotation that aligns two paths and their children, likewise.
+  /// Estimates the rotation that aligns two paths and their children, without their subtrees.
   Eigen::Matrix3d
   quick_turn(std::size_t p1, std::size_t p2, const Eigen::Matrix3d& rotation, int passes) const
   {
@@ -266,8 +266,8 @@ public:
   }
 
   /// Returns the least cost of an assignment of children by quick costs; infinity as soon as it is
-  /// known to exceed `most`. Of very many children, the difference in weight of the light ones
-  /// counts as unmatched.
+  /// known to exceed `most`. Of very many children, only the heaviest are assigned; the difference
+  /// between the total weights of the others counts as unmatched.
   double quick_cost_of_children(const Children& all_1,
                                 const Children& all_2,
                                 const Eigen::Matrix3d& rotation,
@@ -363,9 +363,9 @@ public:
   }
 
 private:
-  /// Returns the elastic energy of curves whose tangents agree by `agreement`. Where lengths have a
-  /// term of their own, it excludes their difference: otherwise a branch that grew to four times
-  /// its length would stay unmatched even if nothing else had changed.
+  /// Returns the elastic energy of curves whose tangents agree by `agreement`. If there is a
+  /// separate term for lengths, the elastic energy excludes their difference: otherwise a branch
+  /// that grew to four times its length would stay unmatched even if nothing else had changed.
   double elastic_energy(double a, double b, double agreement) const
   {
     const double mean = 2 * std::sqrt(a * b);

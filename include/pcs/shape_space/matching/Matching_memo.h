@@ -21,8 +21,8 @@ namespace pcs {
 namespace shape_space {
 
 /// Key of a pair of branches below any parents: the same pair is matched for each trial of the
-/// parents. Rotations are rounded before use, so that these trials share a key and their order does
-/// not matter.
+/// parents. Rotations are rounded before use, so that trials with similar rotations have the same
+/// key, and the order of trials does not matter.
 class Matching_key
 {
 public:
@@ -71,13 +71,13 @@ class Matching_memo
 public:
   using Result = std::shared_ptr<const Matched_branch>;
 
-  /// Returns null if there is no entry; a null result is an entry.
+  /// Returns null if there is no entry. The result of an entry may also be null.
   const Result* find(const Matching_key& key)
   {
     Shard& shard = shard_of(key);
     const std::lock_guard<std::mutex> lock(shard.mutex);
     const auto it = shard.results.find(key);
-    return it == shard.results.end() ? nullptr : &it->second; // rehashing keeps its address
+    return it == shard.results.end() ? nullptr : &it->second; // rehashing keeps addresses
   }
 
   void keep(const Matching_key& key, const Result& result)

@@ -21,13 +21,13 @@
 namespace pcs {
 namespace shape_space {
 
-/// All paths of two trees, sampled. Lengths are in units of the longest path of each tree; where
-/// growth is at tips, in units of the longest of both.
+/// All paths of two trees, sampled. Lengths are in units of the longest path of each tree; with
+/// growth at tips, in units of the longest path of both trees.
 class Path_curves
 {
 public:
   static constexpr std::size_t number_of_samples = 25; ///< of a curve
-  static constexpr std::size_t few_samples = 13;       ///< for comparisons of many: every other one
+  static constexpr std::size_t few_samples = 13;       ///< every other sample, for quick costs
 
   template <class ConcurrencyTag>
   Path_curves(const Rooted_tree& tree_1,
@@ -85,8 +85,8 @@ public:
            m_unit[static_cast<std::size_t>(t)];
   }
 
-  /// Returns the nodes at which two matched branches end: their tips, or with growth at tips the
-  /// tip of the shorter one and the node of the longer one at the same distance from the base.
+  /// Returns the nodes at which two matched branches end: their tips; or with growth at tips, the
+  /// tip of the shorter branch and the node of the longer branch nearest to that length.
   std::array<std::size_t, 2> last_nodes(std::size_t p1, std::size_t p2) const
   {
     std::array<std::size_t, 2> last = {path(0, p1).nodes.size() - 1, path(1, p2).nodes.size() - 1};
@@ -133,13 +133,13 @@ protected:
   }
 
 private:
-  // not round, as trees made of round numbers are
+  // not round, as lengths of synthetic trees often are
   static constexpr double longest_cut =
       0.950001;                              // above this ratio of lengths, branches end together
-  static constexpr double nearer = 0.999999; // of two nodes about equally far, the one behind
+  static constexpr double nearer = 0.999999; // of two nodes about equally near, the farther node
 
-  /// Transforms a curve to the axes of tree 1. Rotations are rounded in these, so that the poses of
-  /// the trees do not matter.
+  /// Transforms a curve to the axes of tree 1. Rotations are rounded in these axes, so that the
+  /// poses of the trees do not matter.
   void rotate_curve(Sampled_curve& curve) const
   {
     curve.tangents = (m_frame.transpose() * curve.tangents).eval();

@@ -20,12 +20,12 @@ namespace shape_space {
   determine stay as in `q`.
 
   Where the trace is concave, three or four Newton steps replace dozens of `improve_rotation()`,
-  which converges linearly when the vectors are nearly parallel. Elsewhere the step of the latter is
-  taken.
+  which converges linearly when the vectors are nearly parallel. Elsewhere, a step of
+  `improve_rotation()` is taken.
 */
 inline Quaternion align_vectors(Eigen::Matrix3d covariance, Quaternion q)
 {
-  // third powers of numbers in any unit stay in range; a power of 2 changes no bit
+  // scaled, so that third powers stay in range in any unit; scaling by a power of 2 is exact
   const double largest = covariance.cwiseAbs().maxCoeff();
   if (largest > 0 && std::isfinite(largest))
     covariance *= std::ldexp(1.0, std::min(1000, -std::ilogb(largest)));

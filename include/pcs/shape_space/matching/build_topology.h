@@ -18,14 +18,15 @@
 namespace pcs {
 namespace shape_space {
 
-/// Nodes of the two trees closer than this fraction of a branch are merged. Here and below the
-/// numbers are not round, so that rounding does not decide where trees are made of round numbers.
-/// [-]
+/// Nodes of the two trees closer than this fraction of a branch are merged. This and the
+/// following numbers are not round, so that rounding does not decide in trees with round
+/// coordinates. [-]
 constexpr double node_tolerance = 0.010001;
-/// Corresponding forks may shift the elastic correspondence of their parents by this fraction of
-/// the branch. [-]
+/// Corresponding forks may shift the elastic correspondence of their parents by at most this
+/// fraction of the branch. [-]
 constexpr double fork_tolerance = 0.100001;
-/// Largest ratio of the fractions of the two branches between two such forks. [-]
+/// Largest ratio between both branches of the distance of two such forks, relative to the branch.
+/// [-]
 constexpr double steepest_forks = 5.00001;
 
 namespace internal {
@@ -36,8 +37,8 @@ struct Place_pair
   double a, b;
 };
 
-/// Returns the heaviest chain of pairs that increases in both positions and is not steeper than
-/// allowed.
+/// Returns the heaviest chain of pairs that increases in both positions, with slopes up to
+/// `steepest_forks`.
 inline std::vector<Place_pair> heaviest_chain(std::vector<std::pair<Place_pair, double>> pairs)
 {
   std::sort(pairs.begin(), pairs.end(), [](const auto& x, const auto& y) {
@@ -162,7 +163,7 @@ common_nodes(const Branch_path& one, const Branch_path& two, const Warp& warp)
   return nodes;
 }
 
-/// Returns the number of the node before `s`, plus the fraction of the edge behind it.
+/// Returns the number of the node before `s`, plus the fraction of the next edge.
 inline double node_number(const std::vector<double>& node, double s)
 {
   const auto it = std::upper_bound(node.begin(), node.end(), s);
@@ -175,7 +176,7 @@ inline double node_number(const std::vector<double>& node, double s)
   return std::abs(t - rounded) < 1e-9 ? rounded : t;
 }
 
-/// Returns whether no sibling leads further.
+/// Returns whether no sibling has a longer path to a tip.
 inline bool is_longest_child(const Rooted_tree& tree, std::size_t v)
 {
   return tree.children[tree.first_child[tree.parents[v]]] == v;
@@ -204,14 +205,14 @@ private:
   }
 
   /// Cuts a path at its node `last` and returns the first part; the rest becomes a branch that
-  /// begins at its end.
+  /// begins at the end of the first part.
   std::size_t cut(std::size_t t, std::size_t p, std::size_t last)
   {
     Branch_path head = m_paths[t].paths[p];
     if (last + 1 >= head.nodes.size())
       return p;
     const std::size_t next = head.nodes[last + 1];
-    // the longest, whatever path was matched: paths that separate behind the end cost the same
+    // the longest continuation: paths that differ only beyond the end have the same cost
     std::vector<std::size_t> rest{head.nodes[last], next};
     follow_longest(*m_trees[t], rest);
     head.nodes.resize(last + 1);

@@ -30,7 +30,7 @@ inline Eigen::Matrix3d canonical_frame(const Rooted_tree& tree)
     z = tree.points[tree.children[tree.first_child[0]]] - tree.points[0];
   z.normalize();
   double total = 0;
-  // fourth powers of lengths in any unit stay in range; a power of 2 changes no bit
+  // scaled, so that fourth powers stay in range in any unit; scaling by a power of 2 is exact
   const int unit = tree.extent > 0 ? std::ilogb(tree.extent) : 0;
   for (std::size_t v = 1; v < tree.size(); ++v) {
     const double length = std::ldexp(tree.edge_length(v), -unit);

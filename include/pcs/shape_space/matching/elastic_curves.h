@@ -22,8 +22,8 @@
 namespace pcs {
 namespace shape_space {
 
-/// Unit tangents of a curve at positions of equal distance along it, column by column, and its
-/// length. The square-root velocity is the tangent times the root of the length.
+/// Unit tangents of a curve at equidistant positions, as columns, and the length of the curve. The
+/// square-root velocity is the tangent times the root of the length.
 struct Sampled_curve
 {
   Eigen::Matrix3Xd tangents;
@@ -43,8 +43,8 @@ inline Vec3 point_at(const Rooted_tree& tree, const Branch_path& path, double s)
   return (1 - f) * tree.points[path.nodes[k - 1]] + f * tree.points[path.nodes[k]];
 }
 
-/// Samples a path up to the node `last`. Tangents are differences over two steps, which smooth
-/// kinks shorter than the step, like the published spline [Aiteanu 2022].
+/// Samples a path up to the node `last`. Tangents are differences over two steps. Like the
+/// published spline [Aiteanu 2022], they smooth kinks shorter than the step.
 inline Sampled_curve
 sample_curve(const Rooted_tree& tree, const Branch_path& path, std::size_t n, std::size_t last)
 {
@@ -59,7 +59,7 @@ sample_curve(const Rooted_tree& tree, const Branch_path& path, std::size_t n, st
   Vec3 mean = Vec3::Zero();
   for (Eigen::Index i = 0; i < size; ++i) {
     Vec3 t = places.col(std::min(size - 1, i + 1)) - places.col(std::max<Eigen::Index>(0, i - 1));
-    if (t.squaredNorm() <= 0 || !(t.norm() > 0)) // reverses its direction
+    if (t.squaredNorm() <= 0 || !(t.norm() > 0)) // the curve reverses its direction
       t = i > 0 ? Vec3(curve.tangents.col(i - 1)) : Vec3(places.col(size - 1) - places.col(0));
     curve.tangents.col(i) = t.norm() > 0 ? Vec3(t.normalized()) : Vec3(Vec3::UnitZ());
     mean += curve.tangents.col(i);
@@ -86,7 +86,7 @@ struct Slope
 using Slopes = std::vector<Slope>;
 inline Slopes make_slopes(int largest)
 {
-  Slopes slopes{{1, 1}}; // first: ties keep the plain correspondence
+  Slopes slopes{{1, 1}}; // first, so that ties keep the linear correspondence
   for (int a = 1; a <= largest; ++a)
     for (int b = 1; b <= largest; ++b)
       if (std::gcd(a, b) == 1 && a != b)
@@ -141,7 +141,7 @@ public:
   /// pieces. [-]
   static constexpr double least_gain = 1e-9;
 
-  /// Returns the largest `M`, at least 0, where `rotation` is applied to curve 2 first.
+  /// Returns the maximum of `M`, but at least 0, with curve 2 rotated by `rotation`.
   double
   operator()(const Sampled_curve& one, const Sampled_curve& two, const Eigen::Matrix3d& rotation)
   {
@@ -180,11 +180,11 @@ public:
 
 private:
   /// Updates the cells of row `i` by the step `k`; inner loops run along rows of the tables. Cells
-  /// that no path from corner to corner can pass, as the steps are not steep enough, are left out.
+  /// that no path of such steps from corner to corner can reach are left out.
   void take_step(std::size_t i, std::size_t k)
   {
     const std::size_t n = m_size, a = m_slopes[k].a, b = m_slopes[k].b, rest = n - 1 - i;
-    const std::size_t behind = m_steepest * rest; // cells that the remaining steps can pass
+    const std::size_t behind = m_steepest * rest; // columns that the remaining steps can pass
     const std::size_t first =
         std::max({b, (i + m_steepest - 1) / m_steepest, n - 1 > behind ? n - 1 - behind : 0});
     const std::size_t last = std::min(m_steepest * i, n - 1 - (rest + m_steepest - 1) / m_steepest);
@@ -203,7 +203,7 @@ private:
     }
   }
 
-  /// Cells of a row: a multiple of the lanes, and an end.
+  /// A range of cells of a row; `begin` is a multiple of the number of lanes.
   struct Span
   {
     std::size_t row, begin, end;
@@ -224,8 +224,8 @@ private:
     }
   }
 
-  /// Updates a span of cells by a step over at most `Most` rows, for up to 3 exactly this number,
-  /// so that gains stay in registers.
+  /// Updates a span of cells by a step over at most `Most` rows, so that gains stay in registers.
+  /// For `Most` up to 3, the step is over exactly `Most` rows.
   template <std::size_t Most>
   void take_step(const Span& span, std::size_t k)
   {
@@ -289,12 +289,12 @@ private:
   std::size_t m_stride;      // of rows
   Eigen::MatrixX3d m_turned; // tangents of curve 2
   std::vector<std::vector<std::array<double, 2>>>
-      m_weights; // per slope and row of it: of a cell and the next one
+      m_weights; // per slope and row of the step: for a cell and the next one
   std::vector<double> m_dots, m_best;
   std::vector<double> m_gamma;
 };
 
-/// Returns the value at `t` in [0, 1] of a function given at positions of equal distance.
+/// Returns the value at `t` in [0, 1] of a function given at equidistant positions.
 inline double value_at(const std::vector<double>& gamma, double t)
 {
   const double x = std::min(1.0, std::max(0.0, t)) * static_cast<double>(gamma.size() - 1);

@@ -75,11 +75,11 @@ refine_yaw_candidate(const Matching_energy& energy, const Vec3& axis, double ang
 } // namespace internal
 
 /*!
-  Finds angles about the vertical by which branches agree, the most promising first. [rad]
+  Finds angles about the vertical for which branches agree, the most promising first. [rad]
 
   From 24 start angles, the yaw is refined by the branches on the trunks, without their subtrees.
-  Angles below one step are discarded: small differences between aligned trees are left to their
-  branches. The result is empty if `progress` asks to stop.
+  Angles below one step are discarded: small differences between aligned trees are represented by
+  rotations of branches. The result is empty if `progress` asks to stop.
 */
 template <class ConcurrencyTag>
 std::vector<double> find_yaw_candidates(const Matching_energy& energy,

@@ -19,15 +19,15 @@ namespace shape_space {
   Minimises the sum of `gain[i * m + j]` over pairs, each row and column at most once; rows and
   columns may stay single. Non-negative entries are never used.
 
-  Shortest augmenting paths (Jonker, Volgenant 1987); O(n^2 m) at first. When entries grow, only
-  their pairs are solved again; the prices of all others stay valid. Ties are broken by the lowest
-  index.
+  Shortest augmenting paths (Jonker, Volgenant 1987); O(n^2 m) at first. When the entries of pairs
+  grow, only the rows and columns of these pairs are assigned again; all other prices stay valid.
+  Ties are broken by the lowest index.
 */
 class Assignment
 {
 public:
-  /// `gain` is kept by reference and may change between calls, see `raise()`. `prices` of columns,
-  /// not positive, are those of a similar problem, which saves time, or empty.
+  /// `gain` is kept by reference and may change between calls, see `raise()`. `prices`: not
+  /// positive, of the columns in a similar problem, which saves time; or empty.
   Assignment(std::size_t n,
              std::size_t m,
              const std::vector<double>& gain,
@@ -72,7 +72,7 @@ public:
   /// Returns the column of each row, or `none`.
   const std::vector<std::size_t>& columns() const { return m_rows.partner; }
 
-  /// Updates the pairs after entries of these rows with their columns grew, and no others changed.
+  /// Updates the pairs after the entries of the pairs of these rows grew, and no others changed.
   void raise(const std::vector<std::size_t>& rows)
   {
     std::vector<std::size_t> columns;
@@ -101,8 +101,8 @@ private:
     std::size_t stride; ///< in the table
   };
 
-  /// Result of a search: the free vertex of the other side that ends the path, or else the row that
-  /// is left single at least cost.
+  /// Result of a search: the free vertex of the other side that ends the path, or else the row to
+  /// leave single at least cost.
   struct Path_end
   {
     std::size_t column, single_row;
@@ -120,8 +120,8 @@ private:
     flip_path(own, other, r, end);
   }
 
-  /// Grows the shortest-path tree from row `r` until it reaches a free vertex or it is cheapest to
-  /// leave a row of the tree single.
+  /// Grows the shortest-path tree from row `r` until it reaches a free vertex, or until it is
+  /// cheapest to leave a row of the tree single.
   Path_end find_path(const Side& own, const Side& other, std::size_t r)
   {
     constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -132,7 +132,7 @@ private:
     double *const least = m_least.data(), *const open = m_open.data();
     std::size_t* const previous = m_previous.data();
     m_tree.assign(1, {r, none, 0});
-    double single = -own.price[r]; // least reduced cost of leaving one of the tree single
+    double single = -own.price[r]; // least reduced cost of leaving a row of the tree single
     Path_end end{none, r, 0};
     for (;;) {
       const std::size_t row = m_tree.back().row;

@@ -21,10 +21,10 @@ struct Tree_descriptors
 {
   double length = 0;      ///< of all branches [L]
   double height = 0;      ///< extent along the direction of growth [L]
-  double crown_width = 0; ///< extent across it, mean over all directions [L]
+  double crown_width = 0; ///< mean extent across this direction [L]
   double depth = 0;       ///< extent of the tree below the root [L]
   double lean =
-      0; ///< distance of the centroid of the branches from the root, across that direction [L]
+      0; ///< distance of the centroid of branches from the root, across the direction of growth [L]
   std::vector<std::size_t> number_of_branches; ///< by order, the trunk first [count]
   std::vector<double>
       mean_angle; ///< between branches and their parents at the base, by order [rad]
@@ -131,7 +131,7 @@ constexpr double upright_tolerance = 0.05;
 
 /// Returns the sum of the relative distances of the descriptors from their ranges among `others`
 /// [-]. Descriptors by order are included if `has_orders`, for orders that all others have. The
-/// lean, and the depth below the root, may be smaller than those of all others.
+/// lean and the depth below the root may be smaller than in all others.
 inline double range_violation(const Tree_descriptors& x,
                               const std::vector<Tree_descriptors>& others,
                               bool has_orders = true)

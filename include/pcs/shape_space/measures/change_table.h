@@ -28,7 +28,7 @@ struct Branch_change
   bool is_turned = false;
   double length[2] = {0, 0}; ///< at either date [L]
   double radius[2] = {0, 0}; ///< mean along the branch [L]
-  double angle = 0; ///< of its rotation relative to its parent, at its base; 0 if new or lost [rad]
+  double angle = 0; ///< of rotation relative to the parent, at the base; 0 if new or lost [rad]
 };
 
 /// Lists every branch that at least one of two trees has, parents first. The angle of the trunk

@@ -24,7 +24,7 @@ constexpr double tip_share = 0.05;
 /// branches depends on it. [-]
 constexpr std::size_t trunk_factor = 6;
 
-/// Branches of a higher level than this have a single candidate. Each candidate of a branch begins
+/// Branches of deeper levels have a single candidate. Each candidate of a branch begins
 /// other branches, so the number of pairs to match would grow as the square of the number of
 /// levels. [count]
 constexpr std::size_t levels_of_choice = 24;
@@ -41,8 +41,8 @@ struct Branch_path
     std::size_t position; ///< index in `nodes`
   };
   std::vector<Child> children; ///< by position, then longest first
-  bool is_continued = false;   ///< whether it continues a branch that was cut, with its radius
-  bool is_trunk = false;       ///< whether it begins with the root itself, without an edge before
+  bool is_continued = false;   ///< whether it continues a cut branch, with its radius
+  bool is_trunk = false;       ///< whether it begins at the root, without a previous edge
   double length() const { return arc.back(); }
   std::size_t tip() const { return nodes.back(); }
 };

@@ -25,7 +25,7 @@ struct Common_branch
       node; ///< both of the same size, at least 2; empty for a virtual branch
   std::array<double, 2> attachment = {
       0,
-      0}; ///< on the parent: number of a node, plus the fraction of the edge behind it
+      0}; ///< on the parent: number of a node, plus the fraction of the next edge
   std::size_t number_of_nodes() const { return std::max(node[0].size(), node[1].size()); }
   bool is_virtual(int tree) const { return path[static_cast<std::size_t>(tree)] == none; }
 };

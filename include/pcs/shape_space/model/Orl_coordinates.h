@@ -64,7 +64,7 @@ struct Orl_coordinates
   std::vector<double> length, radius;  ///< per edge; the radius is that of its end [L]
   std::vector<double> base_radius;     ///< per branch [L]
   std::vector<double>
-      attachment; ///< per branch: number of a node of the parent, plus the fraction behind it
+      attachment; ///< per branch: number of a node of the parent, plus fraction of the next edge
 };
 
 /// The geometry of a tree in space. Buffers are reused.
@@ -80,8 +80,8 @@ inline Quaternion turn_about_z(double angle)
   return Quaternion(std::cos(0.5 * angle), 0, 0, std::sin(0.5 * angle));
 }
 
-/// Returns the shortest rotation from one unit vector to another; about an axis near x or y if they
-/// are opposite.
+/// Returns the shortest rotation from one unit vector to another. For opposite vectors, its axis is
+/// perpendicular to them, and to the x or y axis.
 inline Quaternion shortest_turn(const Vec3& from, const Vec3& to)
 {
   const double c = from.dot(to);
@@ -96,8 +96,8 @@ inline Quaternion shortest_turn(const Vec3& from, const Vec3& to)
   return q;
 }
 
-/// Returns the position on branch `b` at `t`, the number of a node plus the fraction of the edge
-/// behind it. [L]
+/// Returns the position on branch `b` at `t`, the number of a node plus the fraction of the next
+/// edge. [L]
 inline Vec3
 place_on_branch(const Orl_layout& layout, const Orl_geometry& geometry, std::size_t b, double t)
 {
@@ -211,9 +211,9 @@ inline double distance(const Orl_coordinates& x,
 /// Otherwise edges nearly vanish, and all branches that grow on them gather at one position. [-]
 constexpr double least_beyond_end = 0.5;
 
-/// Returns the value at `t` of a non-negative quantity: linear between `x` and `y`, and beyond an
-/// end if it grows there. If it shrinks beyond an end, it decays from there with the same slope
-/// towards its least fraction.
+/// Returns the value at `t` of a non-negative quantity: linear between `x` and `y`, and also
+/// beyond an end if it grows there. If it shrinks there, it begins with the same slope and decays
+/// towards the fraction `least_beyond_end` of its value at the end.
 inline double positive_value(double x, double y, double t)
 {
   if (t >= 0 && t <= 1)
@@ -225,8 +225,8 @@ inline double positive_value(double x, double y, double t)
   return end * (least_beyond_end + rest * std::exp(beyond * step / (rest * end)));
 }
 
-/// Returns the same for a quantity in [0, `last`]. Beyond an end it approaches a value before the
-/// bound and never reaches the bound, so branches that move along their parent do not gather at its
+/// Returns the same for a quantity in [0, `last`]. Beyond an end, its distance from the bound that
+/// it approaches decays likewise, so branches that move along their parent do not gather at its
 /// end.
 inline double bounded_value(double x, double y, double t, double last)
 {
@@ -286,7 +286,8 @@ inline void coordinates_at(const Orl_layout& layout,
   }
 }
 
-/// Limits the radius of each edge to that of the branch where it begins.
+/// Limits each radius to the previous one on the branch, and base radii to the radius of the
+/// parent.
 inline void limit_radii(const Orl_layout& layout, Orl_coordinates& x)
 {
   for (std::size_t b = 0; b < layout.branches.size(); ++b) {

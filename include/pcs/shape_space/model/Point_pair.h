@@ -22,8 +22,8 @@ using Point_pair = Orl_correspondences::Pair;
 struct Transport_summary
 {
   std::size_t number_of_windows = 0;
-  std::size_t number_of_failures = 0; ///< windows whose method did not come to its end
-  double worst_violation = 0;         ///< of the marginals of a window, whose mass is 1 [-]
+  std::size_t number_of_failures = 0; ///< windows without convergence
+  double worst_violation = 0;         ///< of the marginals of a window of mass 1 [-]
   double mean_violation = 0;          ///< over windows
   double mean_remaining = 0;          ///< mass without counterpart within reach, over windows [-]
 };

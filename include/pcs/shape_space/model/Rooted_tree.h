@@ -28,7 +28,7 @@ namespace shape_space {
 
 using Vec3 = Eigen::Vector3d;
 
-/// No node, no branch.
+/// Index of no node and no branch.
 constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 
 /// Edges shorter than this fraction of the extent of the tree are contracted: they have no
@@ -122,7 +122,7 @@ inline void connect(Rooted_tree& tree)
   }
 }
 
-/// Returns the level of the branch of each node, 0 for the trunk, where every branch follows the
+/// Returns the level of the branch of each node, 0 for the trunk, if every branch follows the
 /// longest path. [count]
 inline std::vector<std::size_t> levels_of_branches(const Rooted_tree& tree)
 {
@@ -150,7 +150,7 @@ axes_through(const Rooted_tree& tree, std::size_t p, const std::vector<std::size
   const double shortest = shortest_edge * tree.extent;
   std::vector<Vec3> edge(n);
   std::vector<double> length(n);
-  std::vector<std::pair<double, std::size_t>> by_x; // of its direction, and the child
+  std::vector<std::pair<double, std::size_t>> by_x; // x of the direction, and the child
   double thickest = tree.radii[p];
   for (std::size_t i = 0; i < n; ++i) {
     edge[i] = tree.points[children[i]] - tree.points[p];
@@ -162,7 +162,7 @@ axes_through(const Rooted_tree& tree, std::size_t p, const std::vector<std::size
   std::sort(by_x.begin(), by_x.end());
   std::vector<std::size_t> near;
   for (const auto& [x, i] : by_x) {
-    // unit vectors are no farther apart than this, where one end is as near to the other edge
+    // bound for the distance of the unit vectors if the end of edge i is on edge j
     const double apart = 1e-9 + 1.5 * std::max(on_axis * thickest, shortest) / length[i];
     near.clear();
     for (auto other =
@@ -186,8 +186,8 @@ axes_through(const Rooted_tree& tree, std::size_t p, const std::vector<std::size
 }
 
 /*!
-  Adds nodes to axes at the bases of branches: where the first node of a branch lies on the axis of
-  its parent, between two nodes. Otherwise the branch would begin at the node before and run along
+  Adds nodes to axes at the bases of branches, where the first node of a branch lies on the axis of
+  its parent between two nodes. Otherwise the branch would begin at the previous node and run along
   its parent.
 */
 inline Rooted_tree with_nodes_at_bases(const Rooted_tree& all)
@@ -219,7 +219,7 @@ inline Rooted_tree with_nodes_at_bases(const Rooted_tree& all)
     for (std::size_t i = 0; i < children[p].size(); ++i)
       if (axis_of[i] != none) {
         std::size_t axis = axis_of[i];
-        while (axis_of[axis] != none) // an axis that lies on a longer one itself
+        while (axis_of[axis] != none) // this axis may itself lie on a longer one
           axis = axis_of[axis];
         const Vec3 w = all.points[children[p][axis]] - all.points[p];
         const double t = (all.points[children[p][i]] - all.points[p]).dot(w) / w.squaredNorm();

@@ -31,7 +31,7 @@ struct Matching_cost
 {
   double energy = 0; ///< in units of the kind of growth [-]
   double share =
-      /// of the largest possible cost: 0 if the other tree contains all of the smaller one, 1 if
+      /// fraction of the possible cost: 0 if the larger tree contains the whole smaller tree, 1 if
       /// nothing is matched [-]
       0;
   bool is_at_tips = false; ///< whether it assumes growth at tips
@@ -42,9 +42,10 @@ struct Matching_cost
   Matches the branches of two trees; the result has no branches when `progress` asks to stop.
 
   The two kinds of growth have different units of energy. They are compared by the fraction of the
-  possible cost: the cost above that of the excess length of the larger tree, divided by its value
-  if nothing is matched. Growth at tips is accepted only for a clearly smaller fraction. The same
-  holds for trunks other than the longest or nearly longest paths where growth is along branches.
+  possible cost, `(cost - least) / (most - least)`: `least` is the cost of the excess length of the
+  larger tree, and `most` the cost if nothing is matched. Growth at tips is accepted only for a
+  clearly smaller fraction. With growth along branches, the same holds for trunks that are not the
+  longest or nearly longest paths.
 */
 template <class ConcurrencyTag>
 class Tree_matching
@@ -78,10 +79,10 @@ private:
   using Result = std::shared_ptr<const Matched_branch>;
 
   // virtual trees that grew at their tips have ratios below 0.6; most plants with stretching leaves
-  // have 0.7 and more, and the days between are predicted better by stretched branches then
+  // have 0.7 and more; stretched branches then predict intermediate days better
   static constexpr double clearly = 2. / 3;
   // the longest path of a tomato plant is its stem and one of its leaves, which changes from day to
-  // day; but among all paths some other one has a slightly lower cost by chance
+  // day; but among all paths, some path has a slightly lower cost by chance
   static constexpr double wide_fork_ratio = 0.3;
 
   static constexpr double any_cost = std::numeric_limits<double>::infinity();
@@ -123,7 +124,7 @@ private:
   {
     const auto excess = [&](double cost) { return std::max(0.0, cost - from.least); };
     matching.use_other_trunks(false);
-    // a cost at which any other matching below `most` is clearly better need not be exact
+    // the exact cost is irrelevant if any other matching below `most` is clearly better
     const Result longest = matching.run(m_progress, from.least + excess(most) / clearly);
     const double least = longest ? from.least + clearly * excess(longest->cost) : most;
     if (m_progress.is_cancelled() || !matching.has_other_trunks())
@@ -204,7 +205,7 @@ private:
     const Range from = range(highest, highest);
     Matching matching(*m_trees[0], *m_trees[1], m_weights, paths(1), true);
     matching.set_number_of_trunk_trials(2 * m_weights.number_of_trials);
-    // where both kinds are tried, `m_cost` is that of growth along branches
+    // if both kinds of growth are tried, `m_cost` is the cost of growth along branches
     const double most = m_weights.growth == Branch_growth::at_tips
                             ? any_cost
                             : from.least + clearly * m_cost.share * from.more;
@@ -217,8 +218,8 @@ private:
   }
 
   static constexpr std::size_t number_of_looks = 8, number_of_yaws = 2;
-  // largest ratio of the costs with and without a yaw: aligned copies with noise seem to be rotated
-  // by chance
+  // largest ratio of the costs with and without a yaw: noise lets some rotation of aligned
+  // copies have a lower cost by chance
   static constexpr double largest_ratio_with_yaw = 0.95;
 
   std::array<const Rooted_tree*, 2> m_trees;
@@ -241,8 +242,8 @@ inline double second_moment(const Rooted_tree& tree)
   return sum;
 }
 
-/// Returns whether `one` is first in the matching of two trees: the shorter one, of equally long
-/// ones the more compact one, if the difference exceeds rounding.
+/// Returns whether `one` must be the first tree of a matching: it is shorter, or equally long and
+/// more compact. Differences within rounding do not count.
 inline bool is_clearly_shorter(const Rooted_tree& one, const Rooted_tree& two)
 {
   constexpr double rounding = 1e-9;

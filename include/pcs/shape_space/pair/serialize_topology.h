@@ -116,7 +116,7 @@ private:
     m_result.branches.push_back(std::move(branch));
   }
 
-  /// Adds the path of branch `i` in tree `t`, if that has the branch.
+  /// Adds the path of branch `i` in tree `t`, if the tree has the branch.
   void add_path(std::size_t i, std::size_t t, Common_branch& branch)
   {
     const Orl_correspondences::Branch& b = m_stored.branches[i];

@@ -20,21 +20,21 @@ namespace shape_space {
 struct Extrapolation_buffers
 {
   Orl_geometry end, near;
-  std::vector<double> low; ///< per node: height of the lowest part of the subtrees there
+  std::vector<double> low; ///< per node: lowest height of it and its subtrees
 };
 
 /*!
   Limits a tree that lies beyond the end of a path.
 
-  Every rotation continues at its own rate, and those of an edge and its ancestors accumulate about
-  different axes. So each edge is limited twice: its own rotation, and its rotation in space
-  relative to the end.
+  Beyond an end, every rotation continues at its own rate, and the rotations of an edge and its
+  ancestors accumulate about different axes. So each edge is limited twice: in its own rotation, and
+  in its rotation in space relative to the end.
 
-  Branches that become longer or lower would also reach below the base. The floor is the height of
-  the base, or of the lowest part of the trees at both ends. The edges of a branch that would pass
-  below it, itself or with its subtree, are interpolated between those at the end and those wanted,
-  with the largest admissible weight in [0, 1]. Heights are linear in the weight, so one pass is
-  enough. A subtree whose base came nearer to the floor descends less steeply.
+  Branches that become longer or lower could also reach below the base of the tree. The floor is the
+  lowest height of the trees at both ends, at most the height of the base. If a branch or its
+  subtree would reach below the floor, the edges of the branch are interpolated between the end and
+  the extrapolation, with the largest admissible weight in [0, 1]. Heights are linear in the weight,
+  so one iteration is enough. A subtree whose base comes nearer to the floor descends less steeply.
 
   Everything is continuous in the parameter of the path. Linear in the number of edges.
 */
@@ -70,8 +70,8 @@ private:
   double height(const Vec3& p, const Orl_coordinates& x) const { return m_up.dot(p - x.root); }
   Vec3 axis(const Quaternion& frame) const { return frame * Vec3::UnitZ(); }
 
-  /// Finds the lowest part of the subtrees at each node, without the branch itself, and returns the
-  /// lowest of all. [L]
+  /// Finds, for each node, the lowest height of the node and of the subtrees attached next to it.
+  /// Returns the lowest height of all. [L]
   double find_lowest(const Orl_coordinates& x, const Orl_geometry& geometry)
   {
     std::vector<double>& low = m_buffers.low;
@@ -107,7 +107,7 @@ private:
     if (!(m_max_extrapolation_angle < pi))
       return frame;
     const Vec3 turn = rotation_log(frame * at_end.conjugate());
-    // near half a rotation the axis flips: there the frame returns to that of the end
+    // near half a turn the axis flips, so the frame returns to the frame at the end
     const double angle = turn.norm(), most = std::min(m_max_extrapolation_angle, 4 * (pi - angle));
     if (!(angle > most))
       return frame;

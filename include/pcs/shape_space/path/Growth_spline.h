@@ -54,7 +54,7 @@ inline double cubic(double a, double b, double slope_a, double slope_b, double s
          f * g * step * (g * slope_a - f * slope_b);
 }
 
-/// Returns the closest non-decreasing values (pool adjacent violators, least squares).
+/// Replaces values by the closest non-decreasing ones (pool adjacent violators, least squares).
 inline void make_rising(std::vector<double>& values)
 {
   struct Pool
@@ -188,7 +188,7 @@ private:
     return q;
   }
 
-  /// Evaluates a Bezier curve by De Casteljau's scheme with arcs in place of lines.
+  /// Evaluates a Bezier curve by De Casteljau's scheme, with arcs instead of lines.
   static Quaternion bezier(const Quaternion& a,
                            const Quaternion& b,
                            const Quaternion& c,

@@ -35,8 +35,8 @@ public:
   {
   }
 
-  /// Changes `x`, the tree at `t`, in [0, 1], of the path from `a` to `b`. Linear in the number of
-  /// edges and, for each of a few dozen search steps, of branches.
+  /// Changes `x`, the tree at `t` in [0, 1] on the path from `a` to `b`. The time is linear in the
+  /// number of edges, and for each of a few dozen search steps in the number of branches.
   void operator()(const Orl_coordinates& a, const Orl_coordinates& b, double t, Orl_coordinates& x)
   {
     grow(a, b, t, x);
@@ -93,8 +93,8 @@ private:
     }
   }
 
-  /// Returns the time before the end at which the wanted length has grown. The grown length is a
-  /// convex, piecewise linear, decreasing function of this time, so Newton steps from 0 never
+  /// Returns the time until the end of the path when the wanted length has grown. The grown length
+  /// is a convex, piecewise linear, decreasing function of this time, so Newton steps from 0 never
   /// overshoot and end on the right piece.
   double rest_of_time(double wanted, double total) const
   {

@@ -29,8 +29,8 @@ inline void apply_pipe_model(const Orl_layout& layout, double exponent, Orl_coor
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t c) {
       return x.attachment[a] != x.attachment[c] ? x.attachment[a] < x.attachment[c] : a < c;
     });
-    // from the base to the tip: radii above each edge are scaled to the power that is available
-    // below it
+    // from the base to the tip: radii above each node are scaled so that their powers sum to at
+    // most the power below the node
     std::size_t next = 0;
     for (std::size_t k = 0; k < branch.number_of_edges; ++k) {
       const double before = k == 0 ? x.base_radius[b] : x.radius[branch.first_edge + k - 1];

@@ -92,7 +92,7 @@ public:
   }
 
   /// Returns the range of points for the next corresponding position: the first index, and the one
-  /// after the last. Must be called once per `add_partner()`, after all of these calls.
+  /// after the last. Must be called after all calls of `add_partner()`, once for each of them.
   std::array<std::size_t, 2> next(std::size_t position, std::size_t number_of_points)
   {
     const auto bound = [&] {

@@ -61,7 +61,7 @@ class Point_instances
 public:
   /// A pair as a line in tube coordinates: value + t * change. On edges with flat sections, `angle`
   /// and `distance` are Cartesian coordinates in the section, because polar interpolation about an
-  /// axis beside them would thicken blades.
+  /// axis beside a blade would thicken the blade.
   struct Line
   {
     double t, dt, overshoot, d_overshoot, angle, d_angle, distance, d_distance;

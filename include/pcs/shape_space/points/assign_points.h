@@ -169,7 +169,7 @@ inline Vec3 estimate_normal(const std::vector<Vec3>& points,
 } // namespace internal
 
 /// Chooses between two successive tubes on the outer side of a bend, where both are equally near,
-/// by the plane that halves the angle between them. `tube` is either of them.
+/// by the plane that halves the angle between them. `tube` is one of the two.
 inline std::size_t side_of_bend(const std::vector<Tube>& tubes, std::size_t tube, const Vec3& p)
 {
   const auto is_next = [&](std::size_t k) {
@@ -189,7 +189,7 @@ inline std::size_t side_of_bend(const std::vector<Tube>& tubes, std::size_t tube
 namespace internal {
 
 /// Returns the median distance of a sample of points from the nearest tube surface, but at least
-/// 1e-6 of the extent of the tree: noise that does not shrink with the radius. [L]
+/// 1e-6 of the extent of the tree. It is the noise that does not shrink with the radius. [L]
 inline double
 absolute_noise(const std::vector<Vec3>& points, const std::vector<Tube>& tubes, double extent)
 {
@@ -219,7 +219,7 @@ inline void find_candidates(const std::vector<Tube>& tubes,
                             const Vec3& p,
                             std::vector<Tube_candidate>& found)
 {
-  // misfit that the best branch must be ahead for normals not to matter: three times the noise
+  // normals matter if misfits differ by less than this from the best: three times the noise
   constexpr double margin = 9;
   found.clear();
   double least = std::numeric_limits<double>::infinity();
@@ -271,9 +271,9 @@ inline std::size_t choose_by_normal(const Tube_tree& tree,
 } // namespace internal
 
 /*!
-  Assigns each point to a tube, that of the branch with the nearest surface in units of the noise.
-  Where several branches are about as near, at forks, the angle between the normal of the point and
-  the direction away from the axis decides as well. `normals` may be empty: then they are estimated,
+  Assigns each point to a tube of the branch with the nearest surface, in units of the noise. At
+  forks, where several branches are about as near, the angle between the normal of the point and the
+  direction away from the axis also counts. `normals` may be empty: then they are estimated,
   at forks only.
 */
 template <class ConcurrencyTag>

@@ -21,7 +21,7 @@ namespace shape_space {
 struct Section
 {
   Eigen::Vector2d center = Eigen::Vector2d::Zero(), axis = Eigen::Vector2d::UnitX();
-  double wide = 0, thin = 0; ///< deviations along the axis and across it [L]
+  double wide = 0, thin = 0; ///< standard deviations along `axis` and across it [L]
 
   /// Returns whether the section is flat. A half circle, the part of a stem visible from one
   /// station, is 2.3 times as wide as thin.

@@ -70,7 +70,8 @@ inline std::vector<double> to_shares(std::vector<double> weights)
   return weights;
 }
 
-/// Returns the weights of positions, which sum to one. As areas, coincident points count once. [-]
+/// Returns the weights of positions, which sum to one. With areas, coincident points
+/// count once. [-]
 inline std::vector<double>
 weights_of(const Distinct_positions& places, const std::vector<double>& areas, Point_weights kind)
 {
@@ -82,9 +83,9 @@ weights_of(const Distinct_positions& places, const std::vector<double>& areas, P
   return to_shares(std::move(numbers));
 }
 
-/// Returns the usual distance of the points of two trees: the median of the distances to nearest
-/// ones, but at least a quarter of the spacing, as most points may be the same [L]. Arguments are
-/// squared.
+/// Returns the usual distance of corresponding points: the median distance to the nearest point of
+/// the other tree, but at least a quarter of the point spacing, as most points may coincide [L].
+/// Arguments are squared distances.
 inline double usual_distance(std::vector<double> squared, std::vector<double> areas)
 {
   constexpr double least = 1. / 4;
@@ -104,8 +105,8 @@ inline double extent(const std::vector<Vec3>& one, const std::vector<Vec3>& two)
   return (high - low).norm();
 }
 
-/// Finds the sources that keep mass although a target within `reach` does, too: an arc between
-/// these would have taken mass.
+/// Finds the sources that keep mass although a target within `reach` also keeps mass: an arc
+/// between both would have moved mass.
 inline std::vector<std::size_t> sources_that_lack_arcs(const std::vector<Vec3>& one,
                                                        const std::vector<Vec3>& two,
                                                        const Transport_plan& plan,
@@ -135,7 +136,7 @@ inline std::vector<std::size_t> sources_that_lack_arcs(const std::vector<Vec3>& 
 
 /// Returns, for each source and each target, the arc with the most mass, or the cheapest arc if
 /// none has mass: every point has a corresponding point, and few have two. Arcs are sorted by
-/// source; the one with the most mass comes first.
+/// source, with the arc chosen for the source first.
 inline std::vector<std::uint32_t> main_arcs(const Transport_problem& problem,
                                             const Transport_plan& plan)
 {
@@ -173,7 +174,7 @@ inline std::vector<std::uint32_t> main_arcs(const Transport_problem& problem,
 
 /// Finds the transport between two sets of distinct positions. Mass is moved no farther than the
 /// reach, and the rest stays. Candidates are nearest neighbours in both directions; sources that
-/// keep mass although further targets are within reach get more candidates.
+/// keep mass although targets that keep mass are within reach get more candidates.
 inline Transport_plan match_places(const Distinct_positions& places_1,
                                    const Distinct_positions& places_2,
                                    const Transport_options& options,

@@ -30,7 +30,7 @@ template <class ConcurrencyTag>
 class Point_matching
 {
 public:
-  /// `edge[t][i]`: the edge of point i of tree t. Geometries are those of the trees themselves.
+  /// `edge[t][i]`: edge of point i of tree t. `geometry[t]`: of tree t.
   Point_matching(const Orl_layout& layout,
                  const std::array<Orl_geometry, 2>& geometry,
                  const std::array<std::vector<Vec3>, 2>& points,
@@ -50,7 +50,7 @@ public:
         m_branch_of[layout.branches[b].first_edge + j] = b;
   }
 
-  /// Finds pairs, sorted by edge. `is_stopped(done)` is asked between batches of windows; the
+  /// Finds pairs, sorted by edge. `is_stopped(done)` is called between batches of windows; the
   /// result is empty if it returns `true`.
   template <class IsStopped>
   std::vector<Point_pair>
@@ -172,7 +172,7 @@ private:
     return windows;
   }
 
-  /// Cuts a long edge across, so that each window has about the same fraction of the points of both
+  /// Cuts a long edge across into windows, each with about the same fraction of the points of both
   /// trees. Points at equal heights stay together.
   std::vector<Window> cut(std::size_t e, const Transport_options& options) const
   {
@@ -202,7 +202,7 @@ private:
     for (const Height& p : heights) {
       const Window& open = windows.back();
       const std::size_t n = open.point[0].size(), m = open.point[1].size();
-      // where one tree has no points, those of the other must not be matched far away
+      // where one tree has no points, points of the other tree must not be matched far away
       const bool is_full = std::max(n, m) >= 2 * options.largest_window;
       const bool has_fraction =
           mass >= 2 * static_cast<double>(windows.size()) / parts && std::min(n, m) > 0;
@@ -240,8 +240,8 @@ private:
         }
         return {};
       }
-    // tree 1 is mapped to tree 2 edge by edge: rotated, stretched along and across, and moved;
-    // blades also within their sections
+    // points of tree 1 are mapped to tree 2 by their edges: rotated, stretched along and across,
+    // and moved; points of blades also within their sections
     std::vector<Vec3> one, two;
     for (const Placed& p : window.point[0]) {
       const std::size_t b = m_branch_of[p.edge];

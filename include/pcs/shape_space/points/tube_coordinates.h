@@ -27,8 +27,8 @@ struct Edge_cone
   double length, from_radius, to_radius;
   Eigen::Vector2d begin_slope = Eigen::Vector2d::Zero(), end_slope = Eigen::Vector2d::Zero();
 
-  static constexpr double inner_fraction = 0.4; ///< of the edge, at most cut off by a plane
-  static constexpr double steepest = 2; ///< slope: bends by more than 127 degrees leave gaps
+  static constexpr double inner_fraction = 0.4; ///< largest fraction of the edge cut off by a plane
+  static constexpr double steepest = 2; ///< slope limit; bends by more than 127 degrees leave gaps
 
   double radius(double t) const { return (1 - t) * from_radius + t * to_radius; }
   /// Returns the height over the beginning of the edge at the fraction `t` between the planes. [L]

@@ -23,7 +23,7 @@ Triple to_triple(const Vec3& v)
   return Triple(static_cast<Number>(v.x()), static_cast<Number>(v.y()), static_cast<Number>(v.z()));
 }
 
-/// A map that was not given.
+/// Replaces a property map that was not given.
 struct No_map
 {
 };

@@ -20,12 +20,13 @@ namespace shape_space {
 
 /*!
   Represents the direction of each edge by two numbers, which are 0 in the mean of the trees.
-  Usually they are the slant, the angle to the direction of growth, and the azimuth about it
-  relative to the parent. So a branch that rotates about the trunk moves its children, and one that
-  is lowered need not, as branches grow upwards by themselves; how far they follow the slant of
-  their parent is estimated from the trees for each order. Upright edges have no azimuth; their
-  numbers are inclinations to two sides. In orders whose branches clearly move rigidly with their
-  parents, the numbers are inclinations relative to these.
+  Usually they are the slant, which is the angle to the direction of growth, and the azimuth about
+  this direction relative to the parent. So a branch that rotates about the trunk moves its
+  children. A branch that is lowered need not move them, as branches grow upwards by themselves. The
+  fraction of the slant of their parent that branches follow is estimated from the trees for each
+  order. Upright edges have no azimuth; their numbers are inclinations to two sides. In orders whose
+  branches clearly move rigidly with their parents, the numbers are inclinations relative to the
+  parents.
 
   Rotations relative to the parent alone would accumulate: trees with rotations of branches as large
   as in the inputs would not grow upwards. Frames are not twisted about the direction of growth, so
@@ -38,8 +39,8 @@ public:
 
   Direction_chart() = default;
 
-  /// `middle[e]`: frames of the middle tree; `frame[t][e]`: of the trees; `has[t][b]`: whether tree
-  /// `t` has branch `b`; `weight[e]` of the edges.
+  /// `middle[e]`: frames of the mean tree; `frame[t][e]`: frames of the trees; `has[t][b]`: whether
+  /// tree `t` has branch `b`; `weight[e]`: weights of the edges.
   Direction_chart(const Orl_layout& layout,
                   const Vec3& up,
                   const std::vector<Quaternion>& middle,
@@ -74,7 +75,7 @@ public:
     place_middle();
   }
 
-  /// Returns the numbers of tree `t` of the constructor; 0 for branches that it lacks.
+  /// Returns the numbers of tree `t` of the constructor; 0 for branches that the tree lacks.
   std::vector<Pair>
   log(const std::vector<Vec3>& direction, const std::vector<char>& has, std::size_t t) const
   {
@@ -118,8 +119,8 @@ public:
     return frame;
   }
 
-  /// Returns the factor that makes the second number of an edge an angle of the edge, as the first
-  /// one is. [-]
+  /// Returns the factor from the second number of an edge to the angle by which the edge rotates.
+  /// The factor of the first number is 1. [-]
   double reach(std::size_t b, std::size_t e) const
   {
     return m_is_upright[e] || m_is_rigid[m_order[b]] ? 1 : std::sin(m_middle[e][0]);
@@ -151,7 +152,7 @@ private:
            std::sin(p.slant) * (std::cos(p.azimuth) * m_side + std::sin(p.azimuth) * m_other);
   }
 
-  /// Returns the frame of an edge if it is rotated relative to its parent as in the middle tree.
+  /// Returns the frame of an edge that has the same rotation to its parent as in the mean tree.
   Quaternion start_of(const std::vector<Quaternion>& frame, std::size_t e) const
   {
     const std::size_t p = m_layout.parent_edge[e];
@@ -159,7 +160,7 @@ private:
   }
   static Quaternion leaning(const Pair& z)
   {
-    const double f = z.norm() > pi ? pi / z.norm() : 1; // about the axis across
+    const double f = z.norm() > pi ? pi / z.norm() : 1; // about an axis across the edge
     return rotation_exp(Vec3(-f * z[1], f * z[0], 0));
   }
   static Pair lean_of(const Quaternion& start, const Vec3& direction)
@@ -169,8 +170,7 @@ private:
     return across > 0 ? Pair(d.head<2>() * (std::atan2(across, d.z()) / across))
                       : Pair(d.z() < 0 ? pi : 0, 0);
   }
-  /// Returns the direction of the middle tree, rotated about the direction of growth and up or
-  /// down.
+  /// Returns the frame in the mean tree, rotated about the direction of growth and up or down.
   Quaternion free_frame(std::size_t e, const Polar& p) const
   {
     const Polar& middle = m_polar[e];
@@ -220,7 +220,7 @@ private:
     }
   }
 
-  /// Finds the upright edges, and for each branch the edge whose azimuth its own refers to.
+  /// Finds the upright edges, and for each branch the edge to which its azimuths refer.
   void find_kinds(const std::vector<std::vector<Polar>>& polar,
                   const std::vector<std::vector<char>>& has)
   {
@@ -243,7 +243,7 @@ private:
     }
   }
 
-  /// Finds the yaw of each tree for which the branches on the trunk agree, and subtracts it.
+  /// Finds the yaw of each tree for which the branches on the trunks agree, and subtracts it.
   void align_azimuths(std::vector<std::vector<Polar>>& polar,
                       const std::vector<std::vector<char>>& has,
                       const std::vector<double>& weight)
@@ -298,7 +298,7 @@ private:
     });
   }
 
-  /// Computes frames of the middle tree with the twist of those of the constructor.
+  /// Computes frames of the mean tree with the same twist as the frames of the constructor.
   void place_middle()
   {
     m_frame.resize(m_middle.size());
@@ -341,8 +341,8 @@ private:
     }
   }
 
-  /// Estimates by least squares, over the first edges of all branches of an order, how far they
-  /// follow the slant of their parents.
+  /// Estimates, for each order, the fraction of the slant of their parents that branches follow, by
+  /// least squares over their edges.
   void find_following(const std::vector<std::vector<Polar>>& polar,
                       const std::vector<std::vector<char>>& has,
                       const std::vector<double>& weight)
@@ -365,7 +365,7 @@ private:
   }
 
   /// Finds the orders whose directions are predicted much better by rigid rotation with their
-  /// parents than by the slant and azimuth of these. The branches on the trunk, which is upright,
+  /// parents than by slant and azimuth of the parents. The branches on the trunk, which is upright,
   /// are excluded.
   void find_rigid_orders(const std::vector<std::vector<Vec3>>& direction,
                          const std::vector<std::vector<char>>& has,
@@ -398,7 +398,7 @@ private:
 
   Orl_layout m_layout;
   Vec3 m_up = Vec3::UnitZ(), m_side = Vec3::UnitX(), m_other = Vec3::UnitY();
-  std::vector<Quaternion> m_step, m_frame;    // of the middle tree, per edge
+  std::vector<Quaternion> m_step, m_frame;    // of the mean tree, per edge
   std::vector<Polar> m_polar;                 // likewise
   std::vector<char> m_is_upright;             // per edge
   std::vector<std::size_t> m_order, m_anchor; // per branch

@@ -26,7 +26,7 @@ struct Mode_features
   Eigen::VectorXd mean;                 ///< [L]
   Eigen::MatrixXd directions;           ///< per standard deviation of each mode (column) [L]
   std::vector<double> weight, variance; ///< per block, see `Tree_covariance`
-  double least_deviation = 0;           ///< smaller ones are rounding [L]
+  double least_deviation = 0;           ///< smaller deviations are rounding [L]
 };
 
 /// Coordinates of a tree in the space of the modes.
@@ -68,10 +68,11 @@ struct Modes_of_variation
 };
 
 /*!
-  Returns the dissimilarity of a tree from the trees of the modes: the root of the mean of two
-  squares, that of its scores and that of its distance from the space of the modes in units of the
-  median left-out distance. It is about 1 for a tree of the same kind; without modes or spread, 0
-  for the mean and infinite for all others. [-]
+  Returns the dissimilarity of a tree to the trees of the modes: the root of the mean of two
+  squares. The first is the mean square of the scores, the second the squared distance from the
+  space of the modes in units of the median left-out distance. The dissimilarity is about 1 for a
+  tree of the same kind. Without modes or spread, it is 0 for the mean and infinite for all other
+  trees. [-]
 */
 inline double outlier_score(const Modes_of_variation& modes, const Mode_coordinates& at)
 {

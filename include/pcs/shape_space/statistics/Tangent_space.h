@@ -21,7 +21,7 @@ namespace shape_space {
   The tangent space at a tree. A vector has three coordinates per edge for its rotation, one for its
   length and one for its radius, then per branch the radius at the base and the attachment, each
   multiplied by its weight in the metric. Its norm is the distance `Orl_metric::square` from the
-  base, without the root: the position of a tree is not part of its shape.
+  base, except for the position of the root, which is not part of the shape.
 */
 class Tangent_space
 {
@@ -59,8 +59,8 @@ public:
 
   /*!
     Returns the tree at the end of a tangent vector. Rotations are limited to pi, attachments to the
-    parent, and lengths to values of at least 0; remainders of rounding become 0. Lengths of the
-    trunk, and radii of edges that have length, keep a fraction of their values at the base.
+    parent, and lengths to values of at least 0; values within rounding of 0 become 0. Lengths of
+    the trunk, and radii of edges that have length, keep a fraction of their values at the base.
   */
   Orl_coordinates exp(const Eigen::VectorXd& z) const
   {
@@ -107,7 +107,7 @@ private:
   static double radius_at(double base, double step, bool is_there)
   {
     const double radius = base + step;
-    if (radius >= -rounding * base) // 0 where it is 0 in an input
+    if (radius >= -rounding * base) // 0 if it is 0 in an input
       return std::max(0.0, radius);
     return is_there ? least_fraction * base : 0;
   }

@@ -50,15 +50,16 @@ inline Eigen::MatrixXd inverse_of_symmetric(Eigen::MatrixXd a)
       S <- sum_b w_b (Z_b^T Z_b + U_b),   w_b = (k_b / n) / tr(Z_b (S + 0.02 I)^-1 Z_b^T)    [1/L^2]
 
   with the deviations `Z_b` [L] from the mean of the block, and the number `k_b` of trees that have
-  it: the M-estimator of D. E. Tyler (1987), by which all blocks have the same influence, however
-  much they vary. Values that trees lack are replaced by their expectations (A. P. Dempster,
-  N. M. Laird, D. B. Rubin 1977): with the trees `K` that have the block and the others, `O`,
+  it: the M-estimator of D. E. Tyler (1987), by which all blocks have the same influence,
+  whatever their variance. Values that trees lack are replaced by their expectations (A. P.
+  Dempster, N. M. Laird, D. B. Rubin 1977): with the trees `K` that have the block and the others,
+  `O`,
 
       Z_O = Z_K S_KK^-1 S_KO,   U_OO = c (S_OO - S_OK S_KK^-1 S_KO),                         [L^2]
       c = tr(Z_K S_KK^-1 Z_K^T) / max(1, k_b - 1),   mean = X_K S_KK^-1 1 / (1^T S_KK^-1 1)
 
   for the values `X_b` and with 1e-6 on the diagonal of `S` added. `U_b` is zero elsewhere; the mean
-  of a block that all trees have is the arithmetic one. Without a start, the first step has `Z_O`
+  of a block that all trees have is the arithmetic mean. Without a start, the first step has `Z_O`
   and `U_b` zero and the inverse in `w_b` is `I`. Blocks that do not vary are left out. At most 60
   steps, each O(sum_b (k_b^3 + rows_b n^2)).
 */
@@ -101,10 +102,10 @@ public:
 
   /// Returns the covariance of the trees, n x n; the trace is n, or 0 if no block varies.
   const Eigen::MatrixXd& covariance() const { return m_covariance; }
-  /// Returns the mean of all trees, as far as known. [L]
+  /// Returns the mean of each block over the trees, estimated from the trees that have it. [L]
   const Eigen::VectorXd& mean() const { return m_mean; }
-  /// Returns the sum of the variances of the numbers of a block; 0: it does not vary, or less than
-  /// two trees have it. [L^2]
+  /// Returns the sum of the variances of the numbers of a block; 0 if it does not vary, or if fewer
+  /// than two trees have it. [L^2]
   double variance(std::size_t block) const { return m_variance[block]; }
   /// Returns the weight of squared deviations of a block. [1/L^2]
   double weight(std::size_t block) const { return m_weight[block]; }

@@ -22,14 +22,15 @@ namespace pcs {
 namespace shape_space {
 
 /*!
-  A Gaussian in a space where lengths and radii are logarithms, so that they stay positive, and
-  directions those of a `Direction_chart`, so that branches keep their slant; and a probability of
-  each branch to exist if its parent does.
+  A Gaussian distribution of trees, and for each branch a probability to exist if its parent exists.
+  Lengths and radii are represented by logarithms, so that they stay positive, and directions by a
+  `Direction_chart`, so that branches keep their slant.
 
   The coordinates of an edge are two angles of direction [rad] and the logarithms of length and
-  radius relative to the middle of the trees [-]; those of a branch are the logarithm of the radius
+  radius relative to the mean tree [-]. The coordinates of a branch are the logarithm of the radius
   at its base [-] and the difference of its attachment [edges of the parent]. Tree `t` of `n` has
-  the deviations `D_tb` of branch `b`; they are zero if it lacks the branch. `m_b` trees have it.
+  the deviations `D_tb` of branch `b`; they are zero if the tree lacks the branch. `m_b` trees have
+  branch `b`.
   With independent normal numbers `g`, `h`, `k` of unit variance, a random tree deviates by
 
       z_b = sqrt((1 - a) / (m_b - 1)) sum_t g_t D_tb
@@ -51,7 +52,7 @@ namespace shape_space {
       a = sum V_ij / sum s_ij^2,   s_ij = sum_t z_ti z_tj / n,                         in [0, 1]
       V_ij = (sum_t (z_ti z_tj)^2 / n - s_ij^2) / (n - 1),
 
-  or 0.5 for less than three trees. Branch `b` with the parent `p` exists with the probability
+  or 0.5 for fewer than three trees. Branch `b` with the parent `p` exists with the probability
   `m_b / m_p` if `p` exists. O(n^2 coordinates), and O(n coordinates) for each tree that is drawn.
 */
 class Tree_distribution
@@ -147,8 +148,8 @@ private:
     return static_cast<Eigen::Index>(4 * m_layout.branches[b].number_of_edges + 2);
   }
 
-  /// Draws which branches exist, order by order. If there are more or fewer than in all inputs, the
-  /// branches with the least odds change.
+  /// Draws which branches exist, order by order. If the number of an order is out of the range of
+  /// the inputs, the branches with log-odds nearest to 0 change.
   template <class Uniform>
   std::vector<char> draw_presence(const Tree_sampling_options& o, const Uniform& uniform) const
   {
@@ -240,7 +241,7 @@ private:
     }
   }
 
-  /// Finds the interval of each branch that supports branches in an input.
+  /// Finds, for each branch, the interval of the attachments of its children in the inputs.
   void find_attachments(const std::vector<const Orl_coordinates*>& trees)
   {
     m_lowest_attachment.assign(m_order.size(), std::numeric_limits<double>::infinity());
@@ -297,7 +298,8 @@ private:
         8);
   }
 
-  /// Computes the deviations of tree t from the middle in column t; 0 for branches that it lacks.
+  /// Computes the deviations of tree t from the mean tree in column t; 0 for branches that it
+  /// lacks.
   void find_deviations(const std::vector<const Orl_coordinates*>& trees, const Vec3& up)
   {
     const std::size_t n = trees.size();
@@ -361,8 +363,8 @@ private:
   /// the data only.
   void estimate_shrinkage()
   {
-    // units: a rotation is multiplied by the length it moves, a logarithm by the length or radius
-    // itself
+    // units: a rotation is multiplied by the length that it moves, a logarithm by the length or
+    // radius
     const Eigen::Index trees = m_deviations.cols();
     const auto n = static_cast<double>(trees);
     double typical = 0;

@@ -33,7 +33,7 @@ struct Principal_scores
   Eigen::VectorXd shares;  ///< k, of the trace
 };
 
-/// Eigenvectors of a covariance of trees about their mean that belong to eigenvalues above
+/// Returns the eigenvectors of a covariance of trees about their mean with eigenvalues above
 /// rounding, largest first.
 inline Principal_scores principal_scores(const Eigen::MatrixXd& covariance)
 {
@@ -66,7 +66,7 @@ inline Mode_fit fit_modes(const Tree_features& features,
                           const std::vector<char>& has)
 {
   Eigen::VectorXd root = Eigen::VectorXd::Zero(values.size());
-  double scale = 0; // expected square for no modes
+  double scale = 0; // expected squared distance without modes
   for (std::size_t b = 0; b < features.number_of_blocks(); ++b)
     if (has[b]) {
       root.segment(features.first(b), features.size(b)).setConstant(std::sqrt(modes.weight[b]));
@@ -77,7 +77,7 @@ inline Mode_fit fit_modes(const Tree_features& features,
   Eigen::MatrixXd q = root.asDiagonal() * modes.directions, r = Eigen::MatrixXd::Zero(k, k);
   Eigen::VectorXd c = Eigen::VectorXd::Zero(k);
   Mode_fit result;
-  double apart = 0; // of trees without spread
+  double apart = 0; // distance if the trees have no spread
   if (!(scale > 0))
     for (std::size_t b = 0; b < features.number_of_blocks(); ++b)
       if (has[b] && (values - modes.mean).segment(features.first(b), features.size(b)).norm() >
@@ -96,7 +96,7 @@ inline Mode_fit fit_modes(const Tree_features& features,
         r(i, j) += d;
       }
     r(j, j) = q.col(j).norm();
-    if (r(j, j) > 1e-8 * whole) { // else it depends on the previous modes for this tree
+    if (r(j, j) > 1e-8 * whole) { // otherwise, it is a combination of previous modes
       q.col(j) /= r(j, j);
       for (int pass = 0; pass < 2; ++pass) {
         const double d = q.col(j).dot(rest);
@@ -256,10 +256,10 @@ inline std::vector<double> left_out_distances(const Tree_features& features,
   Scores are the principal components of the `Tree_covariance` of `Tree_features`, which compare
   trees by the branches that they have. With the centered tangent vectors `z_t` and the scores
   `s_tk` of `n` trees, a mode is the regression `u_k = sum_t s_tk z_t / (n - 1)` of tangent vectors
-  on scores, so lengths of branches that only some trees have change with it, too. All modes
+  on scores, so lengths of branches that only some trees have also change with a mode. All modes
   together reproduce all trees. If no branch differs between the trees that have it, trees differ
-  only by which branches they have; the modes are then those of `Mode_inner_product::metric`, as
-  `features.measure` says.
+  only by which branches they have; the modes are then the modes of `Mode_inner_product::metric`,
+  and `features.measure` has this value.
 */
 template <class ConcurrencyTag>
 Modes_of_variation find_modes(const Orl_layout& layout,
@@ -276,7 +276,7 @@ Modes_of_variation find_modes(const Orl_layout& layout,
   double size = 0;
   for (const double length : mean.length)
     size += length;
-  const double least = 1e-9 * size; // of equal trees
+  const double least = 1e-9 * size; // less is rounding of equal trees
   const Tree_covariance covariance(features,
                                    in.values,
                                    in.has,

@@ -61,8 +61,8 @@ inline Orl_coordinates tree_of_modes(const Orl_layout& layout,
   return tangent.exp(z);
 }
 
-/// Makes the tree with coordinates `x`. `lambda` below 0: the projection on the geodesic of two
-/// trees. Negative `scan_weights` become 0: details of points are not extrapolated.
+/// Makes the tree with coordinates `x`. If `lambda` is negative, it is found by projection on the
+/// geodesic of two trees. Negative `scan_weights` become 0: details of points are not extrapolated.
 inline Tree_state make_tree(const Tree_family& family,
                             Orl_coordinates x,
                             double lambda = -1,

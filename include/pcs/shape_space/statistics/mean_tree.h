@@ -156,8 +156,8 @@ inline void set_mean_base(const Orl_layout& layout,
 
 /*!
   Computes the mean of trees with weights, coordinate by coordinate. `median` requires weights
-  `>= 0`; of an interval of medians it takes the middle. With `frechet` weights may be negative if
-  their sum is positive: lengths stay at least 0, radii a hundredth of the least one.
+  `>= 0`; if medians form an interval, its middle is taken. With `frechet`, weights may be negative
+  if their sum is positive: lengths stay at least 0, radii at least a hundredth of the least radius.
 */
 template <class ConcurrencyTag>
 Orl_coordinates mean_tree(const Orl_layout& layout,

@@ -40,7 +40,7 @@ inline void
 limit_moments(const Figure_range& mean, const Figure_range& deviation, std::vector<double>& angles)
 {
   constexpr double pi = pcs::internal::pi;
-  constexpr int number_of_passes = 50; // one, unless angles reach a limit
+  constexpr int number_of_passes = 50; // one is enough, unless angles reach a limit
   const auto n = static_cast<double>(angles.size());
   for (int pass = 0; pass < number_of_passes; ++pass) {
     double m = 0, square = 0;
@@ -96,7 +96,7 @@ inline void limit_angles(const Orl_layout& layout,
       const std::size_t e = layout.branches[of_order[i]].first_edge,
                         p = layout.branches[of_order[i]].reference_edge;
       const Vec3 across = axis(p).cross(axis(e));
-      constexpr double straight = 1e-9; // then in any direction, always the same
+      constexpr double straight = 1e-9; // below: rotated in an arbitrary but fixed direction
       const Vec3 about = across.norm() > straight ? Vec3(across.normalized())
                                                   : Vec3(geometry.frame[p] * Vec3::UnitX());
       const Quaternion turned =
@@ -140,7 +140,7 @@ inline void limit_lengths(const Orl_layout& layout,
     double factor[3] = {ratio(height.nearest(f.height), f.height),
                         ratio(width.nearest(f.crown_width), f.crown_width),
                         1};
-    // the rest for the others, by a plausible factor at most
+    // all others take the remaining length, limited to plausible factors
     const double rest =
         length.nearest(f.length) - factor[0] * of_order[0] - factor[1] * of_order[1];
     factor[2] = std::min(1.5, std::max(0.67, ratio(rest, of_order[2])));

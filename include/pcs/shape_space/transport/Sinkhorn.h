@@ -105,16 +105,16 @@ inline double unit_of_costs(const Transport_problem& problem)
 
   subject to `sum_{a from i} P_a = s_i` and `sum_{a to j} P_a = t_j`, with the costs `c_a`, [L] or
   [L^2] as given, and the supplies `s_i` and demands `t_j` [-], which both sum to one. The minimum
-  is `P_a = exp((f_i + g_j - c_a) / epsilon)`. A pass makes the sums of all sources exact, then
-  those of all targets, by the potentials:
+  is `P_a = exp((f_i + g_j - c_a) / epsilon)`. An iteration makes the sums of all sources exact,
+  then the sums of all targets, by the potentials:
 
       f_i += epsilon ln(s_i / sum_{a from i} P_a),   g_j += epsilon ln(t_j / sum_{a to j} P_a).
 
-  `epsilon` is halved every 20 passes, from the largest cost to `regularization` times that. There,
-  at most `iterations` passes are made, until the sum of all violations of the constraints is below
-  `tolerance`. `cost` is without the entropy. All arcs have a flow, so `is_unmet` is 0 for all
-  points. With arcs that do not admit the marginals, the violation stays large: it is reported.
-  O(arcs) for each pass.
+  `epsilon` is halved every 20 iterations, from the largest cost to `regularization` times the
+  largest cost. With the last `epsilon`, at most `iterations` iterations are made, until the sum of
+  all violations of the constraints is below `tolerance`. `cost` does not include the entropy. All
+  arcs have a flow, so `is_unmet` is 0 for all points. If the arcs do not admit the marginals, the
+  violation stays large and is reported. O(arcs) for each iteration.
 */
 inline Transport_plan sinkhorn(const Transport_problem& problem, const Sinkhorn_options& options)
 {

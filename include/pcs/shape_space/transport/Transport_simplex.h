@@ -41,15 +41,15 @@ struct Transport_plan
   double violation = 0;    ///< sum over sources and targets of the difference from the given mass
   double remaining = 0;    ///< of a partial transport: mass that is not moved, of 1
   std::vector<char> is_unmet;       ///< per source, then per target: whether some mass is not moved
-  bool is_complete = false;         ///< all mass moved that must be, and the method has converged
+  bool is_complete = false;         ///< all mass that must move has moved, and the method converged
   std::size_t number_of_pivots = 0; ///< of the network simplex
 };
 
 /*!
-  Primal network simplex with block search, on strongly feasible trees, so that it ends. Weights and
-  costs are rounded to integers (2^-50 of the mass, 2^-32 of the largest cost): pivots are exact,
-  and the same on every machine. Mass that the arcs cannot take goes over an artificial node and is
-  reported. At most n + m - 1 flows.
+  Primal network simplex with block search. Its trees are strongly feasible, so the method
+  terminates. Weights and costs are rounded to integers (units of 2^-50 of the mass and 2^-32 of the
+  largest cost), so pivots are exact and the same on every machine. Mass that the arcs cannot take
+  moves over an artificial node and is reported. There are at most n + m - 1 flows.
 */
 class Transport_simplex
 {
@@ -121,8 +121,8 @@ private:
   {
     std::size_t parent = none, child = none, next = none, previous = none;
     std::size_t arc = none; ///< to the parent; `none`: artificial
-    bool is_up = false;     ///< whether that arc leads to the parent
-    Int flow = 0, cost = 0; ///< of that arc
+    bool is_up = false;     ///< whether this arc leads to the parent
+    Int flow = 0, cost = 0; ///< of this arc
     Int potential = 0;
     std::size_t depth = 0;
   };
@@ -153,8 +153,8 @@ private:
     const std::size_t number = m_arcs.size();
     const std::size_t block =
         std::max<std::size_t>(10, static_cast<std::size_t>(std::sqrt(static_cast<double>(number))));
-    // never reached on strongly feasible trees in practice; an endless loop is worse than a
-    // reported failure
+    // not reached in practice with strongly feasible trees; a reported failure is better than an
+    // endless loop
     const std::size_t most_pivots = 1000 + 50 * (number + m_root);
     std::size_t position = 0;
     for (m_number_of_pivots = 0; m_number_of_pivots < most_pivots; ++m_number_of_pivots) {
@@ -181,7 +181,7 @@ private:
     return false;
   }
 
-  /// The arc that leaves the tree, named by the node below it.
+  /// The arc that leaves the tree, identified by the node below the arc.
   struct Leaving_arc
   {
     std::size_t node;
@@ -239,8 +239,8 @@ private:
       m_nodes[x].flow += m_nodes[x].is_up ? delta : -delta;
   }
 
-  /// Attaches the subtree that the leaving arc cuts off to the entering arc: arcs from there to the
-  /// leaving arc are reversed.
+  /// Attaches the subtree that the leaving arc cuts off to the entering arc. The arcs between the
+  /// entering and the leaving arc are reversed.
   void attach_subtree(std::size_t entering, const Leaving_arc& leaving)
   {
     const Arc& arc = m_arcs[entering];

@@ -33,15 +33,15 @@ inline Transport_plan solve_transport(const Transport_problem& problem,
       sum_a P_a c_a + p (sum_i (s_i - sum_{a from i} P_a) + sum_j (t_j - sum_{a to j} P_a))
 
   where no difference is negative, with the costs `c_a`, [L] or [L^2] as given, and the supplies
-  `s_i` and demands `t_j` [-], which both sum to one. As the arc `a` gains only if `c_a < 2 p`, all
-  others are left out.
+  `s_i` and demands `t_j` [-], which both sum to one. An arc `a` can reduce the sum only if
+  `c_a < 2 p`; all others are left out.
 
   One additional source and one additional target, each of mass 1, take the mass that stays, over
   arcs of cost `p` from all sources and to all targets; the arc between them costs nothing. All
-  masses are halved, so that those of this complete transport sum to one; `solve_transport()` finds
-  it. `cost` is without the price. `problem` needs no arcs; n + m + 1 are added to it. With
-  `Point_transport::sinkhorn` every arc has a flow, so `is_unmet` marks all points; with `exact` it
-  marks those of which mass stays.
+  masses are halved, so that the supplies and the demands of this complete transport sum to one; it
+  is found by `solve_transport()`. `cost` does not include the price. `problem` may have no arcs;
+  n + m + 1 arcs are added. With `Point_transport::sinkhorn` every arc has a flow, so `is_unmet`
+  marks all points; with `exact`, it marks the points that keep mass.
 */
 inline Transport_plan
 solve_partially(const Transport_problem& problem, double price, const Transport_options& options)
