@@ -110,8 +110,8 @@ private:
     return v;
   }
 
-  /// Whether `c` lies behind a gap without points and not straight ahead, so that it does not
-  /// continue the branch of `v`.
+  /// Returns whether `c` lies behind a gap without points and not straight ahead, so that it does
+  /// not continue the branch of `v`.
   bool is_crooked_gap(Index v, Index c, const Vec3& along) const
   {
     const Vec3 jump = m_tree.center[c] - m_tree.center[v];

@@ -21,7 +21,8 @@
 namespace pcs {
 namespace skeleton {
 
-/// Whether noise hides the curvature of a section, so that the fit does not determine its radius.
+/// Returns whether noise hides the curvature of a section, so that the fit does not determine its
+/// radius.
 inline bool is_blurred(const Chain_view& view, double radius)
 {
   return radius < view.rules.blurred * view.set.noise;

@@ -39,11 +39,11 @@ inline Index nearest_axis(const Axis_set& set, const Vec3& p)
 }
 
 /*!
-  Selects the axis of the root: the one with the most root points, weighted by its number of points,
-  since the buttresses of a trunk may have more root points. If no axis has root points, selects the
-  nearest axis. A small axis is replaced by a much larger one close to the root, since a small piece
-  of the foot may have all root points by chance. This step is omitted for a given root
-  (`is_given`). `root` and `set` are not empty. O(axes + root).
+  Selects the axis of the root: the axis with the largest product of the numbers of its root points
+  and of all its points, since buttresses may have more root points than the trunk. If no axis has
+  root points, selects the nearest axis. A small axis is replaced by a much larger one close to the
+  root, since a small piece of the foot may have all root points by chance. This step is omitted for
+  a given root (`is_given`). `root` and `set` are not empty. O(axes + root).
 */
 inline Index
 root_axis(const Scan& scan, const Axis_set& set, const std::vector<Index>& root, bool is_given)

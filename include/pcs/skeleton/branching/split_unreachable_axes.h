@@ -18,10 +18,10 @@ namespace skeleton {
 
 /*!
   Splits unreachable axes at the position where two pieces were fused at their bases. Two pieces
-  whose bases are adjacent may belong to one branch that is crossed by another one, or to two
-  branches on opposite sides of a third one. The latter holds if their fused axis is unreachable
-  from the root, but a reachable axis lies within `reach` [L] of this position. Both pieces then
-  become separate axes that begin there. `joints` are the joints of the axes, and `root` is the axis
+  with adjacent bases belong either to one branch that another branch crosses, or to two branches on
+  opposite sides of a third branch. The second case is assumed if the fused axis is unreachable from
+  the root, but a reachable axis lies within `reach` [L] of this position. Both pieces then become
+  separate axes that begin there. `joints` are the joints of the axes, and `root` is the axis
   of the root. Returns the number of additional axes. O(axes log points + points).
 */
 inline std::size_t split_unreachable_axes(const Scan& scan,

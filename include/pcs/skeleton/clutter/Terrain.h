@@ -106,7 +106,7 @@ public:
     return at.height - level;
   }
 
-  /// Whether few points lie below the surface, and few directly above it.
+  /// Returns whether few points lie below the surface, and few directly above it.
   bool carries_all(const Scan& scan,
                    const Terrain_options& rules,
                    const std::vector<std::uint8_t>& is_used) const

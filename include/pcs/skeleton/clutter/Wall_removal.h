@@ -33,7 +33,7 @@ public:
   {
   }
 
-  /// Whether the last detection found any flat face.
+  /// Returns whether the last detection found any flat face.
   bool has_faces() const { return m_has_faces; }
 
   void leave_out_walls_and_roofs(const Vec3& up)

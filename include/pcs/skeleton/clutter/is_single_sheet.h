@@ -73,8 +73,8 @@ struct Sheet_disc
     return std::sqrt(crowd * area() / double(std::max<std::size_t>(1, places.size())));
   }
 
-  /// Whether the fraction `share` of the cells of the disc contains points; `false` for few points
-  /// or cells.
+  /// Returns whether the fraction `share` of the cells of the disc contains points; `false` for few
+  /// points or cells.
   bool is_filled(double cell, double share) const
   {
     const double all = area() / (cell * cell);
@@ -92,7 +92,8 @@ private:
   double area() const { return pcs::internal::pi * radius * radius; }
 };
 
-/// Whether a tree is upright or lying on a sheet: few points, but high relative to their width.
+/// Returns whether a tree stands or lies on a sheet: few points that are high relative to their
+/// width.
 inline bool carries_a_tree(const Scan& scan,
                            const std::vector<Index>& points,
                            const Vec3& normal,
@@ -121,8 +122,8 @@ inline bool carries_a_tree(const Scan& scan,
 
 } // namespace internal
 
-/// Whether all points form one thin filled sheet, such as ground or a wall. Sheets longer than
-/// `rules.longest` widths are excluded, since they may be boards or rows of objects.
+/// Returns whether all points form one thin filled sheet, such as ground or a wall. Sheets longer
+/// than `rules.longest` widths are excluded, since they may be boards or rows of objects.
 inline bool is_single_sheet(const Scan& scan,
                             const std::vector<std::uint8_t>& is_used,
                             const Sheet_options& rules)

@@ -26,8 +26,8 @@
 namespace pcs {
 namespace skeleton {
 
-/// Criteria for a flat face: points fill a plane that is wider than a strip of a stem within the
-/// same tolerance.
+/// Criteria for a flat face: points fill a plane that is wider than any flat strip of a stem within
+/// the same tolerance.
 struct Wall_options
 {
   double cell = 0.083;  ///< cell of the grid / root mean square radius of the scan [-] ...
@@ -88,8 +88,8 @@ struct Flat_face
   double thickness = 0; ///< of the face to each side [L]
   std::vector<std::uint64_t> places;
 
-  /// Whether the distance of a point from one of the cells, along the normal, is at most `reach`
-  /// [L].
+  /// Returns whether the distance of a point from one of the cells, along the normal, is at most
+  /// `reach` [L].
   bool covers(const Vec3& p, double reach) const
   {
     return std::abs(plane.height(p)) <= reach &&
@@ -264,7 +264,7 @@ private:
     m_faces.push_back(std::move(face));
   }
 
-  /// Whether enough small cells contain points, within cells that have four neighbours.
+  /// Returns whether enough small cells contain points, within cells that have four neighbours.
   bool is_filled(const std::vector<Index>& patch, const Flat_face& face, double count) const
   {
     const double per_cell = count / double(patch.size());

@@ -87,8 +87,8 @@ void collect_nodes(const Scan& scan, Layer_tree& tree)
   });
 }
 
-/// Selects as the parent of a node the one from which most shortest paths to its points come. Ties
-/// go to the node with more points, then to the wider one.
+/// Selects the parent of each node: the node from which most shortest paths reach its points. Ties
+/// go to the node with more points, then to the wider node.
 template <class ConcurrencyTag>
 void vote_for_parents(const std::vector<Index>& predecessor, Layer_tree& tree)
 {
@@ -126,8 +126,8 @@ void vote_for_parents(const std::vector<Index>& predecessor, Layer_tree& tree)
 } // namespace internal
 
 /*!
-  Cuts the shortest paths into level sets and returns the tree of their connected components.
-  `links` are the edges of the graph in which the paths were computed.
+  Groups the points into level sets of the path length, and returns the tree of the connected
+  components of these sets. `links` are the edges of the graph in which `paths` were computed.
 */
 template <class ConcurrencyTag>
 Layer_tree layer_tree(const Scan& scan, const Links& links, const Shortest_paths& paths)

@@ -48,8 +48,8 @@ struct Root_options
   double ring_deviation = 0.15; ///< largest deviation of points from a ring, in radii [-]
   double ring_spreads = 2;      ///< largest radius of a ring, in spreads of its points [-]
   //! A stem is lying if its length exceeds `lying_length` slab heights and `lying_ratio` widths, or
-  //! if its length exceeds `lying_side` slab heights and it has more than the fraction
-  //! `lying_share` of the points of its component [-].
+  //! if its length exceeds `lying_side` slab heights and its fraction of the component points
+  //! exceeds `lying_share` [-].
   double lying_length = 6;
   double lying_ratio = 3;
   double lying_share = 0.3;
@@ -290,8 +290,8 @@ std::vector<Index> find_root(const Scan& scan,
 {
   const internal::Stem_search<ConcurrencyTag> search(scan, is_used, links, parts, up, rules);
   internal::Stem stem = search();
-  // the band includes the whole circumference of a thick stem, since level sets would be tilted
-  // otherwise; the band of a lying stem is one of its ends
+  // the band includes the whole circumference of a thick stem, so that level sets are not tilted;
+  // the band of a lying stem is one of its ends
   const double spread = stem.is_lying ? stem.shape.width : stem.spread();
   const double band = std::max(layer_thickness * scan.spacing, rules.band * spread);
   const auto place = [&](Index i) {

@@ -29,9 +29,9 @@ struct Ring_arc_options
   double share = 0.75;      ///< least fraction of the points of an arc in the band [-]
   double main_share =
       0.4;              ///< the same for the arc with the most points, where a branch may begin [-]
-  double lasting = 2;   ///< radius, in `smallest`, from which a ring without successor ends [-],
+  double lasting = 2;   ///< least radius of a ring that may end a branch, in `smallest` [-]
   double growth = 1.1;  ///< largest growth of a radius between level sets [-]
-  int age = 8;          ///< least number of level sets with such a ring [count]
+  int age = 8;          ///< least number of level sets of a ring that may end a branch [count]
   double inertia = 0.7; ///< weight of the previous radius and centre [-]
   int sectors = 6;      ///< least number of sectors, of 12, with points to correct the centre
 };
@@ -91,7 +91,7 @@ public:
     return m_leader;
   }
 
-  /// Returns for each leader the one that continues its ring, or itself where a thick ring ends.
+  /// Returns for each leader the leader that continues its ring, or itself if a thick ring ends.
   const std::vector<Index>& next() const { return m_next; }
 
 private:

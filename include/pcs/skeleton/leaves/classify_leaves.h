@@ -78,7 +78,7 @@ inline bool has_thick_wood(const std::vector<std::uint8_t>& is_used,
 
 /*!
   Returns whether the points outside thick wood and lines are leaves. Barely resolved twigs form no
-  lines either, but they are mixed with well resolved ones and form no planar patches. O(points).
+  lines either, but they are mixed with well resolved twigs and form no planar patches. O(points).
 */
 inline bool are_leaves(const Scan& scan,
                        const std::vector<std::uint8_t>& is_used,
@@ -118,7 +118,7 @@ struct Found_wood
   its surroundings and by the shortest paths through it. `paths` connect all used points. `is_sure`
   indicates that the tree has leaves. Otherwise, all points are wood if the points outside thick
   wood and lines do not resemble leaves. The same applies if the points of thick wood lie in rows:
-  each row is a line, and its surroundings match neither those of a twig nor those of a leaf.
+  each row is a line, and its surroundings resemble neither a twig nor a leaf.
 */
 template <class ConcurrencyTag>
 Found_wood classify_wood_points(const Scan& scan,

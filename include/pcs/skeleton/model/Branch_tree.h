@@ -46,7 +46,7 @@ struct Branch_tree
   std::vector<Index> node_of_point; ///< per point of the scan; `none`: not explained
   std::size_t number_of_unreached_axes = 0;
 
-  /// Whether `v` is the base of its branch, so that its edge leads to another branch.
+  /// Returns whether `v` is the base of its branch, so that its edge leads to another branch.
   bool is_base(Index v) const
   {
     return nodes[v].parent == none || nodes[nodes[v].parent].branch != nodes[v].branch;

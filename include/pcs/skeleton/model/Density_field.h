@@ -78,7 +78,7 @@ public:
   static constexpr std::size_t fewest_samples = 60;
   static constexpr double shared = 5; ///< number of adjacent sections with points in common [count]
 
-  /// Whether there were enough samples.
+  /// Returns whether there were enough samples.
   bool is_known() const { return m_is_known; }
 
   /// Fits the field to samples of positive density. O(samples). Defined in fit_fields.h, as it

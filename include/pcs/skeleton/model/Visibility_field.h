@@ -29,7 +29,7 @@ namespace skeleton {
 class Visibility_field
 {
 public:
-  /// Whether there were enough samples.
+  /// Returns whether there were enough samples.
   bool is_known() const { return m_is_known; }
 
   /// Fits the field. O(samples). Defined in fit_fields.h.

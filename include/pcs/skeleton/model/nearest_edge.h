@@ -35,11 +35,11 @@ struct Place_on_edge
 
 enum class Base_edge {
   left_out,
-  cylinder ///< with the radius of the branch, as in its surface
+  cylinder ///< with the radius of the branch, as in the surface mesh
 };
 
-/// Projects `point` onto the nearest of the edge before node `v` and the two behind it on its
-/// branch. `next`: `successors()` of the tree.
+/// Projects `point` onto the nearest of three edges: the edge before node `v` and the two after it
+/// on its branch. `next`: `successors()` of the tree.
 inline Place_on_edge nearest_edge(const Branch_tree& tree,
                                   const std::vector<Index>& next,
                                   Index v,

@@ -42,8 +42,8 @@ struct Support_options
   //! standard error, in radii, up to which `expected` points confirm a section if one below it is
   //! as thick, since one side may be occluded [-]
   double proof_precise = 0.03;
-  double mostly = 0.7; ///< least confirmed fraction of the volume of a branch without leaves [-]
-  double slack = 3;    ///< bound of a section without support, in allometric radii [-]
+  double mostly = 0.7;     ///< least confirmed fraction of the volume of a branch of wood [-]
+  double slack = 3;        ///< bound of a section without support, in allometric radii [-]
   double filled_slack = 1; ///< the same for a filled section [-]
   double foot = 8;         ///< length of the foot of a trunk, in radii [-]
   Pipe_model_options pipes;
@@ -248,8 +248,8 @@ private:
   /// The evidence for the radius of a node.
   struct Evidence
   {
-    bool is_proven = false;    ///< the points confirm it, even if it is thicker than below
-    bool is_supported = false; ///< sufficient points support it
+    bool is_proven = false;    ///< the points confirm the radius, even if it is larger than below
+    bool is_supported = false; ///< sufficient points support the radius
     bool is_leafy = false;     ///< points lie inside this section or inside sections below
   };
 
@@ -285,7 +285,7 @@ private:
     }
   }
 
-  /// Judges the radius of the `k`-th node of a branch. `is_inside` indicates
+  /// Returns the evidence for the radius of the `k`-th node of a branch. `is_inside` indicates
   /// whether the sections from the base to this one contain many inside points.
   Evidence judge(const Branch_support& sections,
                  std::size_t k,

@@ -39,10 +39,10 @@ struct Given_skeleton_options
   double inside =
       1.3; ///< nodes within this many parent radii of the base lie inside the parent [-]
   std::size_t lowest_count = 3; ///< least number of points for the radius of an edge [count]
-  double thicker = 1.5;         ///< largest ratio of a circle to the last one below [-]
-  double slack = 1.5; ///< largest change of a radius by points without a circle, as a factor [-]
+  double thicker = 1.5; ///< largest ratio of the radius of a circle to the last one below [-]
+  double slack = 1.5;   ///< largest change of a radius by points without a circle, as a factor [-]
   double found_thicker =
-      1.3; ///< largest ratio of a detected branch to the radius from the points of the edge [-]
+      1.3; ///< largest ratio of the radius of a detected branch to the median distance [-]
   double aligned = 0.7; ///< least cosine between an edge and a detected branch along it [-]
 };
 
@@ -318,8 +318,8 @@ private:
   }
 
   /*!
-  Computes the radii at the nodes from those of the edges. If there is neither a detected branch nor
-  a circle, the last measured radius towards the root is reduced in proportion to the remaining
+  Computes the radii of the nodes from the radii of the edges. If there is neither a detected branch
+  nor a circle, the last measured radius towards the root is reduced in proportion to the remaining
   length to the tip, but not below the next measured radius towards the tip. The few points at such
   an edge may belong to other branches; they change the radius by at most a factor of `slack`.
   */

@@ -23,14 +23,14 @@ struct Step_peak
 {
   std::size_t hypothesis = 0;
   double step = 0;     ///< [L]
-  double contrast = 0; ///< mean cosine less that of neighbouring steps [-]
+  double contrast = 0; ///< mean cosine minus the mean cosine of neighbouring steps [-]
   double score = 0;    ///< contrast in typical deviations of all hypotheses [-]
 };
 
 /*!
-  Computes a contrast for each hypothesis and step: the mean cosine of the lengths in steps, less
-  the mean of the cosines for a shorter and a longer step. The difference removes parts that change
-  slowly with the step; they come from the shape of the surface, not from a grid.
+  Computes a contrast for each hypothesis and step: the mean cosine of the lengths in steps, minus
+  the mean of the cosines for a shorter and a longer step. The difference removes components that
+  change slowly with the step; they are due to the shape of the surface, not to a grid.
 */
 class Periodogram
 {

@@ -57,7 +57,7 @@ public:
 
   const Flags& flags() const { return m_is_used; }
   bool is_empty() const { return number_of(m_is_used) == 0; }
-  /// Whether a point was removed as a leaf.
+  /// Returns whether a point was removed as a leaf.
   bool is_leaf(Index i) const { return m_is_leaf[i] != 0; }
 
   /// Removes all points as ground.
