@@ -99,8 +99,8 @@ PCS_ALWAYS_INLINE void subtract_tile(const Dense_product& l,
   });
 }
 
-/// Applies the same product to the rows from `row` to `end`, with large tiles first. Every entry is
-/// summed in the same order.
+/// Applies the same product to the rows from `row` to `end`, with large tiles first. The order
+/// of summation of an entry does not depend on the tile.
 template <class Arithmetic, std::size_t Columns>
 PCS_ALWAYS_INLINE void subtract_strip(const Dense_product& l,
                                       std::size_t row,

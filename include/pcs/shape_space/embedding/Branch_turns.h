@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Rotations of the branches of one tree to those of another, and the frames that they define.
+// Rotations of branches from one tree to another, and the frames that these rotations define.
 
 #ifndef PCS_SHAPE_SPACE_EMBEDDING_BRANCH_TURNS_H
 #define PCS_SHAPE_SPACE_EMBEDDING_BRANCH_TURNS_H

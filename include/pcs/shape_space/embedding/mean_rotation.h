@@ -118,8 +118,8 @@ inline void try_data_points(const std::vector<Quaternion>& q,
 }
 
 /// Moves `best` by one step of Newton or Weiszfeld, halved until the cost decreases. Returns
-/// whether another step may improve it. At a data point, its weight is first
-/// subtracted from the length of the gradient.
+/// whether another step may improve it. At a data point, the weight of
+/// this point is first subtracted from the length of the gradient.
 inline bool descend(const std::vector<Quaternion>& q,
                     const std::vector<double>& w,
                     double total_weight,

@@ -116,7 +116,7 @@ public:
   }
 
 private:
-  /// Difference of the tube coordinates of a corresponding point from those of the point.
+  /// The tube coordinates of a corresponding point minus the tube coordinates of the point.
   struct Difference
   {
     std::uint32_t tree, index;

@@ -175,7 +175,7 @@ private:
   std::vector<std::vector<Vec3>> m_points;
   std::vector<std::size_t> m_branch_of, m_source_tree; // of edges; tree that gives its points
   std::array<Orl_geometry, 2> m_both;                  // of the sampling, and of one scan
-  std::array<std::vector<Vec3>, 2> m_positions;        // likewise
+  std::array<std::vector<Vec3>, 2> m_positions;        // of both
   std::vector<char> m_is_relative;
   std::vector<std::vector<std::uint32_t>> m_found; // per scan and point of the sampling
 };

@@ -32,7 +32,7 @@ inline void check_sampling(const Tree_sampling_options& o, const std::string& ca
         "`pipe_exponent` must be >= 0 and finite");
 }
 
-/// Checks that there is one weight per tree, with a positive sum; throws likewise.
+/// Checks that there is one weight per tree, with a positive sum. Throws like `check_sampling()`.
 inline void check_tree_weights(const std::vector<double>& w,
                                std::size_t number_of_trees,
                                bool may_be_negative,

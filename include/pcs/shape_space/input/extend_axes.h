@@ -27,8 +27,8 @@ namespace shape_space {
 
 namespace internal {
 
-/// Returns the vector from `end` to the end of the points beyond it; null if they extend no farther
-/// along than across. [L]
+/// Returns the vector from `end` to the end of the points beyond it; null if the points extend no
+/// farther along the axis than across. [L]
 inline Vec3 extension(const Vec3& end, double radius, const std::vector<Vec3>& points)
 {
   constexpr std::size_t least_number = 8;

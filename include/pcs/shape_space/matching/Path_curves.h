@@ -64,7 +64,7 @@ public:
 
   const Branch_paths& paths(int t) const { return m_paths[static_cast<std::size_t>(t)]; }
   const Branch_path& path(int t, std::size_t i) const { return paths(t).paths[i]; }
-  /// Returns the length of a path, in units of the longest one of the tree. [-]
+  /// Returns the length of a path, in units of the longest path of the tree. [-]
   double length(int t, std::size_t path) const { return curves(t)[path].length; }
   /// Restricts the trunks of tree 2 to this path.
   void set_second_trunk(std::size_t path) { m_paths[1].paths_of[0] = {path}; }
@@ -74,7 +74,7 @@ public:
     for (Branch_paths& paths : m_paths)
       paths.paths_of[0].swap(paths.other_trunks);
   }
-  /// Returns the axes of tree 1 in those of the caller; all rotations refer to them.
+  /// Returns the axes of tree 1, to which all rotations refer, in the axes of the caller.
   const Eigen::Matrix3d& frame() const { return m_frame; }
 
   /// Returns the total length of the subtree that begins with the edge to `start`. [-]

@@ -102,7 +102,7 @@ inline Slopes make_slopes(int largest)
       M(g) = int sqrt(g') u1 . u2(g)                                                         [-]
 
   where `g` increases from 0 to 1. `M` is at most 1, so `(sqrt L1 - sqrt L2)^2` bounds the energy
-  from below whatever the grid. `M` is maximised by dynamic programming over a grid of `n` by `n`
+  from below for every grid. `M` is maximised by dynamic programming over a grid of `n` by `n`
   samples,
 
       B(i, j) = max_{a, b} (B(i-a, j-b) + sqrt(b/a) sum_{0 <= x < a} u1(i-a+x) . u2(j-b + x b/a))

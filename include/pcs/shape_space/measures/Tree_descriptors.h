@@ -28,7 +28,7 @@ struct Tree_descriptors
   std::vector<std::size_t> number_of_branches; ///< by order, the trunk first [count]
   std::vector<double>
       mean_angle; ///< between branches and their parents at the base, by order [rad]
-  std::vector<double> angle_deviation; ///< standard deviation of the same [rad]
+  std::vector<double> angle_deviation; ///< standard deviation of this angle [rad]
 
   std::size_t total_number_of_branches() const
   {

@@ -47,7 +47,7 @@ struct Branch_path
   std::size_t tip() const { return nodes.back(); }
 };
 
-/// All candidate paths of a matching. `paths_of[v]`: those that begin with the edge to `v`, longest
+/// All candidate paths of a matching. `paths_of[v]`: paths that begin with the edge to `v`, longest
 /// first; for the root, the trunks.
 struct Branch_paths
 {

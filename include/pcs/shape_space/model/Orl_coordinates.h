@@ -61,7 +61,7 @@ struct Orl_coordinates
 {
   Vec3 root = Vec3::Zero();            ///< [L]
   std::vector<Quaternion> orientation; ///< per edge
-  std::vector<double> length, radius;  ///< per edge; the radius is that of its end [L]
+  std::vector<double> length, radius;  ///< per edge; the radius at its end [L]
   std::vector<double> base_radius;     ///< per branch [L]
   std::vector<double>
       attachment; ///< per branch: number of a node of the parent, plus fraction of the next edge

@@ -35,8 +35,8 @@ constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 /// direction. [-]
 constexpr double shortest_edge = 1e-9;
 
-/// Largest coordinate relative to the root, length or radius. Larger ones are refused like infinite
-/// ones, because sums of their squares must stay finite far beyond the ends of a path. [L]
+/// Largest coordinate relative to the root, length or radius. Larger values are refused like
+/// infinite ones, because sums of squares must stay finite far beyond the ends of a path. [L]
 constexpr double most_length = 1e100;
 
 inline bool is_length(double value)
@@ -138,9 +138,9 @@ inline std::vector<std::size_t> levels_of_branches(const Rooted_tree& tree)
 constexpr double on_axis = 1e-3;
 
 /*!
-  Finds, for each child of `p`, the longest sibling whose edge passes through it, or `none`; the
-  first one of equal lengths. Siblings are searched by the x coordinates of their directions: O(n
-  log n) for `n` children in all directions.
+  Finds, for each child of `p`, the longest sibling whose edge passes through the child, or `none`.
+  Among equal lengths, the first is taken. Siblings are searched by the x coordinates of their
+  directions: O(n log n) for `n` children in all directions.
 */
 inline std::vector<std::size_t>
 axes_through(const Rooted_tree& tree, std::size_t p, const std::vector<std::size_t>& children)

@@ -118,8 +118,8 @@ private:
             Matching::find_paths(*m_trees[1], m_weights, other_ratio)};
   }
 
-  /// Matches the trees with trunks that are the longest paths, or nearly so, unless others have a
-  /// clearly lower cost. Matchings of cost `most` or more are ignored.
+  /// Matches the trees with trunks that are the longest paths, or nearly so, unless other trunks
+  /// have a clearly lower cost. Matchings of cost `most` or more are ignored.
   Result match_trunks(Matching& matching, const Range& from, double most)
   {
     const auto excess = [&](double cost) { return std::max(0.0, cost - from.least); };

@@ -93,9 +93,9 @@ class Growth_spline
 public:
   Growth_spline() = default;
 
-  /// Times must increase, with one tree for each, and at least 2. `has[i][b]`: whether tree `i` has
-  /// branch `b`. If `is_monotone`, lengths and radii are changed as little as possible so that none
-  /// decreases. `scans`: handles of the trees, for the caller.
+  /// Times must increase; there is one tree per time, and at least two. `has[i][b]`: whether tree
+  /// `i` has branch `b`. If `is_monotone`, lengths and radii are changed as little as possible so
+  /// that none decreases. `scans`: handles of the trees, for the caller.
   Growth_spline(const Orl_layout& layout,
                 std::vector<double> times,
                 std::vector<Orl_coordinates> trees,
@@ -235,7 +235,7 @@ private:
           (m_times[k + 1] - m_times[k]);
     for (std::size_t k = 0; k < n; ++k) {
       // in the frame of the edge itself; the rotation vector between trees k and k + 1 has the same
-      // coordinates in the frames of both
+      // coordinates in the frames of both trees
       Vec3 speed = Vec3::Zero();
       if (k == 0)
         speed = rate[0];

@@ -85,7 +85,7 @@ public:
       }
       const double a = least_misfit(m_cells[cell.left], p);
       const double b = least_misfit(m_cells[cell.right], p);
-      // the nearer one last, so that it is visited first; the depth is that of a balanced tree
+      // the nearer child last, so that it is visited first; the tree is balanced
       stack[size++] = a < b ? std::make_pair(b, cell.right) : std::make_pair(a, cell.left);
       stack[size++] = a < b ? std::make_pair(a, cell.left) : std::make_pair(b, cell.right);
     }

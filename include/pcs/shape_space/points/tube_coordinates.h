@@ -17,8 +17,8 @@ namespace shape_space {
 /*!
   An edge as a cone around the z axis of a frame. It ends at the planes that halve the angles to the
   edges before and behind it on the branch. So a surface along a bend does not tear when the bend
-  grows, and sections across the axis keep their size. On the inner side of a bend tubes overlap;
-  there the planes are limited before the middle of the edge.
+  grows, and sections across the axis keep their size. On the inner side of a bend, where tubes
+  overlap, the planes end before the middle of the edge.
 */
 struct Edge_cone
 {

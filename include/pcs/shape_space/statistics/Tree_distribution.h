@@ -156,7 +156,7 @@ private:
     const std::size_t m = m_layout.branches.size();
     std::vector<char> result(m, 1);
     std::vector<double> odds(m,
-                             0); // log-odds of the probability minus those of the drawn number
+                             0); // log-odds of the probability minus log-odds of the drawn number
     for (std::size_t b = 0; b < m; ++b)
       if (const std::size_t parent = m_layout.branches[b].parent; parent != none) {
         const double chance = m_count[b] / m_count[parent], drawn = uniform();

@@ -57,7 +57,7 @@ public:
   Eigen::Index size(std::size_t block) const { return m_first[block + 1] - m_first[block]; }
   Eigen::Index dimension() const { return m_first.back(); }
 
-  /// Returns the features; those of blocks that the tree lacks are 0. `has`: per block. [L]
+  /// Returns the features; they are 0 in blocks that the tree lacks. `has`: per block. [L]
   Eigen::VectorXd operator()(const Orl_coordinates& x, std::vector<char>& has) const
   {
     has.assign(number_of_blocks(), 1);
