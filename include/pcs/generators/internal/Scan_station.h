@@ -128,7 +128,7 @@ private:
 
   void set_grid(const std::vector<Triangle>& triangles, Random_stream& random)
   {
-    // neighbours in the list are close in space, so the corners of boxes of groups suffice
+    // neighbours in the list are close in space, so bounding boxes of groups suffice
     constexpr std::size_t group = 32;
     std::vector<Eigen::AlignedBox3f> boxes((triangles.size() + group - 1) / group);
     Eigen::AlignedBox3f whole;

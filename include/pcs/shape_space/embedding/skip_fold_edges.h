@@ -14,9 +14,9 @@ namespace pcs {
 namespace shape_space {
 namespace internal {
 
-/// Marks the folds of a branch with the edges [`first`, `last`). A fold is the edges between two
-/// bends by more than a right angle, where the second bend reverses the first. Skeletons have folds
-/// where two pieces overlap.
+/// Marks the folds of a branch with the edges [`first`, `last`). A fold consists of the edges
+/// between two bends by more than a right angle, where the second bend reverses the first.
+/// Skeletons have folds where two pieces overlap.
 inline void mark_folds(const std::vector<Vec3>& direction,
                        std::size_t first,
                        std::size_t last,

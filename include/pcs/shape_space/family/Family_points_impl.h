@@ -148,7 +148,7 @@ Family_points::local_normal(const Edge_cone& cone, const std::array<double, 3>& 
 
 inline bool Family_points::is_near(const Edge_cone& cone, const Vec3& position)
 {
-  constexpr double farthest = 2; // radii
+  constexpr double farthest = 2; // in radii
   if (!(std::min(cone.from_radius, cone.to_radius) >
         1e-3 * std::max(cone.from_radius, cone.to_radius)))
     return false;

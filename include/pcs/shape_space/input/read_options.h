@@ -144,7 +144,7 @@ Path_options read_path_options(const NamedParameters& np, const char* caller)
   read_parameter(np, tags::max_extrapolation_angle, options.max_extrapolation_angle);
   read_parameter(np, tags::do_limit_radii, options.do_limit_radii);
   read_parameter(np, tags::branch_emergence, options.emergence);
-  if (!(options.max_extrapolation_angle >= 0)) // as paths allocate nothing
+  if (!(options.max_extrapolation_angle >= 0)) // valid values must not allocate
     pcs::internal::check_value(caller,
                                "`max_extrapolation_angle`",
                                options.max_extrapolation_angle,

@@ -16,12 +16,12 @@ namespace pcs {
 namespace shape_space {
 
 /*!
-  Maximises `trace(R^T covariance)` from `q` upwards; degrees of freedom that the vectors do not
+  Maximises `trace(R^T covariance)` by ascent from `q`; degrees of freedom that the vectors do not
   determine stay as in `q`.
 
-  Where the trace is concave, three or four Newton steps replace dozens of `improve_rotation()`,
-  which converges linearly when the vectors are nearly parallel. Elsewhere, a step of
-  `improve_rotation()` is taken.
+  Where the trace is concave, three or four Newton steps replace dozens of calls of
+  `improve_rotation()`, which converges linearly when the vectors are nearly parallel. Elsewhere, a
+  step of `improve_rotation()` is taken.
 */
 inline Quaternion align_vectors(Eigen::Matrix3d covariance, Quaternion q)
 {

@@ -25,8 +25,7 @@ constexpr double node_tolerance = 0.010001;
 /// Corresponding forks may shift the elastic correspondence of their parents by at most this
 /// fraction of the branch. [-]
 constexpr double fork_tolerance = 0.100001;
-/// Largest ratio between both branches of the distance of two such forks, relative to the branch.
-/// [-]
+/// Largest ratio of the relative distances of two such forks on the two branches. [-]
 constexpr double steepest_forks = 5.00001;
 
 namespace internal {

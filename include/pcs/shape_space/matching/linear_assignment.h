@@ -26,8 +26,8 @@ namespace shape_space {
 class Assignment
 {
 public:
-  /// `gain` is kept by reference and may change between calls, see `raise()`. `prices`: not
-  /// positive, of the columns in a similar problem, which saves time; or empty.
+  /// `gain` is kept by reference and may change between calls, see `raise()`. `prices`: of
+  /// the columns in a similar problem, none positive, to save time; may be empty.
   Assignment(std::size_t n,
              std::size_t m,
              const std::vector<double>& gain,

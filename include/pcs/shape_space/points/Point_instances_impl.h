@@ -67,7 +67,7 @@ inline bool Point_instances::are_near(std::size_t e,
                                       const std::array<Edge_cone, 2>& cone,
                                       const std::array<std::vector<Vec3>, 2>& points) const
 {
-  constexpr double farthest = 2; // radii
+  constexpr double farthest = 2; // in radii
   for (std::size_t k = m_first[e]; k < m_first[e + 1]; ++k)
     for (std::size_t t = 0; t < 2; ++t)
       if (m_pairs[k].point[t] != no_point) {

@@ -58,10 +58,10 @@ inline Eigen::MatrixXd inverse_of_symmetric(Eigen::MatrixXd a)
       Z_O = Z_K S_KK^-1 S_KO,   U_OO = c (S_OO - S_OK S_KK^-1 S_KO),                         [L^2]
       c = tr(Z_K S_KK^-1 Z_K^T) / max(1, k_b - 1),   mean = X_K S_KK^-1 1 / (1^T S_KK^-1 1)
 
-  for the values `X_b` and with 1e-6 on the diagonal of `S` added. `U_b` is zero elsewhere; the mean
-  of a block that all trees have is the arithmetic mean. Without a start, the first step has `Z_O`
-  and `U_b` zero and the inverse in `w_b` is `I`. Blocks that do not vary are left out. At most 60
-  steps, each O(sum_b (k_b^3 + rows_b n^2)).
+  where `X_b` are the values, and 1e-6 is added to the diagonal of `S`. `U_b` is zero elsewhere; the
+  mean of a block that all trees have is the arithmetic mean. Without a start, the first step has
+  `Z_O` and `U_b` zero and the inverse in `w_b` is `I`. Blocks that do not vary are left out. At
+  most 60 steps, each O(sum_b (k_b^3 + rows_b n^2)).
 */
 class Tree_covariance
 {

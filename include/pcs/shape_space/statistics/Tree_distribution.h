@@ -30,8 +30,8 @@ namespace shape_space {
   radius relative to the mean tree [-]. The coordinates of a branch are the logarithm of the radius
   at its base [-] and the difference of its attachment [edges of the parent]. Tree `t` of `n` has
   the deviations `D_tb` of branch `b`; they are zero if the tree lacks the branch. `m_b` trees have
-  branch `b`.
-  With independent normal numbers `g`, `h`, `k` of unit variance, a random tree deviates by
+  branch `b`. With independent normal numbers `g`, `h`, `k` of unit variance, a random tree deviates
+  by
 
       z_b = sqrt((1 - a) / (m_b - 1)) sum_t g_t D_tb
           + sqrt(a / (m_b + 1)) (sum_t h_tb D_tb + sqrt(2) sum_{i=1..6} k_ib P_i)
@@ -148,8 +148,8 @@ private:
     return static_cast<Eigen::Index>(4 * m_layout.branches[b].number_of_edges + 2);
   }
 
-  /// Draws which branches exist, order by order. If the number of an order is out of the range of
-  /// the inputs, the branches with log-odds nearest to 0 change.
+  /// Draws which branches exist, order by order. If the number of branches of an order is out of
+  /// the range of the inputs, the branches with log-odds nearest to 0 change.
   template <class Uniform>
   std::vector<char> draw_presence(const Tree_sampling_options& o, const Uniform& uniform) const
   {
