@@ -44,6 +44,23 @@ BOOST_AUTO_TEST_CASE(stages_share_the_range)
   BOOST_TEST(last == 0.4, boost::test_tools::tolerance(1e-12));
 }
 
+BOOST_AUTO_TEST_CASE(a_scoped_stage_ends_with_its_scope)
+{
+  double last = -1;
+  pcs::internal::Progress progress([&](double f) {
+    last = f;
+    return true;
+  });
+  progress.stage(0, 0.5);
+  {
+    const pcs::internal::Progress_stage stage(progress, 0.125, 0.25);
+    progress(1);
+    BOOST_TEST(last == 0.25);
+  }
+  progress(1);
+  BOOST_TEST(last == 0.5);
+}
+
 BOOST_AUTO_TEST_CASE(a_request_to_stop_is_remembered_and_ends_the_calls)
 {
   int calls = 0;

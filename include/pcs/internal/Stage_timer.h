@@ -15,13 +15,21 @@ class Stage_timer
 {
 public:
   explicit Stage_timer(double& seconds) : m_seconds(seconds) {}
-  ~Stage_timer() { m_seconds += m_watch.lap(); }
+  ~Stage_timer()
+  {
+    if (m_is_counted)
+      m_seconds += m_watch.lap();
+  }
 
   Stage_timer(const Stage_timer&) = delete;
   Stage_timer& operator=(const Stage_timer&) = delete;
 
+  /// Leaves `seconds` unchanged when the stage ends.
+  void discard() { m_is_counted = false; }
+
 private:
   double& m_seconds;
+  bool m_is_counted = true;
   Stopwatch m_watch;
 };
 

@@ -49,9 +49,31 @@ public:
   bool is_cancelled() const { return m_is_cancelled; }
 
 private:
+  friend class Progress_stage;
+
   std::function<bool(double)> m_callback;
   double m_from = 0, m_to = 1, m_value = 0;
   bool m_is_cancelled = false;
+};
+
+/// A stage that ends with its scope; then the interval of the enclosing stage applies again.
+class Progress_stage
+{
+public:
+  /// Begins a stage that covers the interval `[from, to]` of the total work, as fractions of it.
+  Progress_stage(Progress& progress, double from, double to)
+    : m_progress(progress), m_outer_from(progress.m_from), m_outer_to(progress.m_to)
+  {
+    m_progress.stage(from, to);
+  }
+  ~Progress_stage() { m_progress.stage(m_outer_from, m_outer_to); }
+
+  Progress_stage(const Progress_stage&) = delete;
+  Progress_stage& operator=(const Progress_stage&) = delete;
+
+private:
+  Progress& m_progress;
+  double m_outer_from, m_outer_to;
 };
 
 } // namespace internal

@@ -7,12 +7,12 @@
 
 #include <pcs/core/Orl_options.h>
 #include <pcs/internal/Stage_timer.h>
-#include <pcs/internal/Stopwatch.h>
 #include <pcs/shape_space/build_space.h>
 #include <pcs/shape_space/family/build_family.h>
 #include <pcs/shape_space/family/make_family.h>
 #include <pcs/shape_space/family/serialize_family.h>
 #include <pcs/shape_space/model/Alignment_options.h>
+#include <pcs/shape_space/model/Build_run.h>
 #include <pcs/shape_space/model/Point_pair.h>
 #include <pcs/shape_space/pair/build_pair.h>
 #include <pcs/shape_space/pair/embed_pair.h>
@@ -22,6 +22,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -30,11 +31,13 @@ namespace shape_space {
 
 namespace internal {
 
+/// Returns the inputs of a pair.
 inline std::array<const Tree_input*, 2> first_two(const std::vector<Tree_input>& inputs)
 {
   return {&inputs[0], &inputs[1]};
 }
 
+/// Returns a report with the sizes of the input.
 inline Orl_report new_report(const std::vector<Tree_input>& inputs)
 {
   Orl_report report;
@@ -46,7 +49,7 @@ inline Orl_report new_report(const std::vector<Tree_input>& inputs)
   return report;
 }
 
-/// What is built replaces the state as a whole.
+/// Replaces the state by what is built; the inputs stay.
 inline void replace(Space_state& state, Space_state&& built)
 {
   built.inputs = std::move(state.inputs);
@@ -54,89 +57,126 @@ inline void replace(Space_state& state, Space_state&& built)
   state = std::move(built);
 }
 
-/// Points of a family in the coordinates of its edges.
+/// Brings the stored points of a family into the coordinates of its edges.
 template <class ConcurrencyTag>
-void set_family_points(std::vector<Orl_space_data::Point> points,
-                       std::vector<Orl_space_data::Partner> partners,
-                       bool has_normals,
-                       Space_state& state)
+void set_family_points(bool has_normals, Space_state& state)
 {
   Tree_family& family = state.family;
   std::vector<Orl_geometry> geometry(family.x.size());
   for (std::size_t t = 0; t < family.x.size(); ++t)
     build_geometry(family.layout, family.x[t], family.orientation, geometry[t]);
-  state.family_points.set(family.layout, geometry, points, partners, has_normals, ConcurrencyTag());
+  state.family_points.set(family.layout,
+                          geometry,
+                          state.stored_points,
+                          state.stored_partners,
+                          has_normals,
+                          ConcurrencyTag());
   family.first_point = state.family_points.first();
-  state.stored_points = std::move(points);
-  state.stored_partners = std::move(partners);
 }
 
-/// The family of two trees whose correspondences are known, with the instances of their points.
+/// Brings the paired points of both scans into the coordinates of their edges.
 template <class ConcurrencyTag>
-Tree_family finish_pair(const std::array<const Tree_input*, 2>& inputs,
-                        std::vector<Point_pair> pairs,
-                        const Matching_weights& weights,
-                        Embedded_pair& built,
-                        Orl_report& report)
+void set_pair_points(const std::array<const Tree_input*, 2>& inputs,
+                     std::vector<Point_pair> pairs,
+                     Embedded_pair& pair)
 {
-  built.instances.set(built.layout,
-                      built.geometry,
-                      {inputs[0]->points, points_of_second(inputs)},
-                      {inputs[0]->normals, inputs[1]->normals},
-                      built.is_relative,
-                      std::move(pairs),
-                      ConcurrencyTag());
-  Tree_family family = make_family(built, inputs, weights);
-  family.first_point = first_of_edges(built.instances.pairs(), built.layout.number_of_edges());
-  describe(built, report);
-  return family;
+  pair.instances.set(pair.layout,
+                     pair.geometry,
+                     {inputs[0]->points, points_of_second(inputs)},
+                     {inputs[0]->normals, inputs[1]->normals},
+                     pair.is_relative,
+                     std::move(pairs),
+                     ConcurrencyTag());
 }
 
+/// Makes the family of two trees from their correspondences.
 template <class ConcurrencyTag>
-bool build_two(const std::vector<Tree_input>& inputs,
-               const Build_options& options,
-               pcs::internal::Progress& progress,
-               Space_state& built,
-               Orl_report& report)
-{
-  built.pair.form = options.form;
-  std::vector<Point_pair> pairs;
-  if (!find_correspondences<ConcurrencyTag>(first_two(inputs),
-                                            options,
-                                            progress,
-                                            built.pair,
-                                            pairs,
-                                            report))
-    return false;
-  const pcs::internal::Stage_timer timer(report.seconds.instances);
-  built.family = finish_pair<ConcurrencyTag>(first_two(inputs),
-                                             std::move(pairs),
-                                             options.weights,
-                                             built.pair,
-                                             report);
-  return true;
-}
-
-template <class ConcurrencyTag>
-bool build_many(const std::vector<Tree_input>& inputs,
-                const Build_options& options,
-                pcs::internal::Progress& progress,
+void finish_two(const std::array<const Tree_input*, 2>& inputs,
+                std::vector<Point_pair> pairs,
+                const Matching_weights& weights,
                 Space_state& built,
                 Orl_report& report)
 {
-  Built_family family;
-  if (!build_family<ConcurrencyTag>(inputs, options, progress, family, report))
-    return false;
   const pcs::internal::Stage_timer timer(report.seconds.instances);
-  built.family = std::move(family.family);
-  set_family_points<ConcurrencyTag>(std::move(family.points),
-                                    std::move(family.partners),
-                                    family.has_normals,
-                                    built);
+  set_pair_points<ConcurrencyTag>(inputs, std::move(pairs), built.pair);
+  built.family = make_family(built.pair, inputs, weights);
+  built.family.first_point =
+      first_of_edges(built.pair.instances.pairs(), built.pair.layout.number_of_edges());
+  describe(built.pair, report);
+}
+
+/// Makes the space of more than two trees from their family.
+template <class ConcurrencyTag>
+void finish_many(Built_family&& found, Space_state& built, Orl_report& report)
+{
+  const pcs::internal::Stage_timer timer(report.seconds.instances);
+  built.family = std::move(found.family);
+  built.stored_points = std::move(found.points);
+  built.stored_partners = std::move(found.partners);
+  set_family_points<ConcurrencyTag>(found.has_normals, built);
   report.distance =
       distance(built.family.x[0], built.family.x[1], built.family.weights, Orl_metric::sum);
   report.number_of_point_pairs = built.family_points.size();
+}
+
+/// Builds the space of two trees. Returns `false` when `progress` asks to stop.
+template <class ConcurrencyTag>
+bool build_two(const std::vector<Tree_input>& inputs, const Build_run& run, Space_state& built)
+{
+  const std::array<const Tree_input*, 2> both = first_two(inputs);
+  built.pair.form = run.options.form;
+  std::vector<Point_pair> pairs;
+  if (!find_correspondences<ConcurrencyTag>(both, run, built.pair, pairs))
+    return false;
+  finish_two<ConcurrencyTag>(both, std::move(pairs), run.options.weights, built, run.report);
   return true;
+}
+
+/// Builds the space of more than two trees. Returns `false` when `progress` asks to stop.
+template <class ConcurrencyTag>
+bool build_many(const std::vector<Tree_input>& inputs, const Build_run& run, Space_state& built)
+{
+  Built_family found;
+  if (!build_family<ConcurrencyTag>(inputs, run, found))
+    return false;
+  finish_many<ConcurrencyTag>(std::move(found), built, run.report);
+  return true;
+}
+
+/// Computes topology and coordinates of both trees from stored correspondences.
+inline void embed_two(const std::array<const Tree_input*, 2>& inputs,
+                      const Orl_correspondences& stored,
+                      const Build_options& options,
+                      const std::string& caller,
+                      Embedded_pair& built,
+                      Orl_report& report)
+{
+  const pcs::internal::Stage_timer timer(report.seconds.topology);
+  report.matching_energy = report.unexplained_fraction = std::numeric_limits<double>::quiet_NaN();
+  built.form = options.form;
+  embed_stored(stored, inputs, caller, built);
+  report.yaw = angle_about(options.alignment.up, built.rotation);
+}
+
+/// Restores the points of more than two trees; throws like `restore_space()`.
+template <class ConcurrencyTag>
+void restore_family_points(const Orl_space_data& stored,
+                           const std::string& caller,
+                           Space_state& state)
+{
+  check_family_points(stored, state.family.layout.number_of_edges(), caller);
+  state.stored_points = stored.points;
+  state.stored_partners = stored.partners;
+  set_family_points<ConcurrencyTag>(stored.has_normals, state);
+}
+
+/// Restores the trees and the points of two scans; throws like `restore_space()`.
+template <class ConcurrencyTag>
+void restore_two(const Orl_space_data& stored, const std::string& caller, Space_state& state)
+{
+  state.inputs = restore_pair<ConcurrencyTag>(stored, state.family, caller, state.pair);
+  state.family.first_point =
+      first_of_edges(state.pair.instances.pairs(), state.family.layout.number_of_edges());
 }
 
 } // namespace internal
@@ -146,11 +186,11 @@ Orl_report
 build_space(const Build_options& options, pcs::internal::Progress& progress, Space_state& state)
 {
   Orl_report report = internal::new_report(state.inputs);
+  const Build_run run{options, progress, report};
   Space_state built;
-  const bool is_done =
-      state.inputs.size() == 2
-          ? internal::build_two<ConcurrencyTag>(state.inputs, options, progress, built, report)
-          : internal::build_many<ConcurrencyTag>(state.inputs, options, progress, built, report);
+  const bool is_done = state.inputs.size() == 2
+                           ? internal::build_two<ConcurrencyTag>(state.inputs, run, built)
+                           : internal::build_many<ConcurrencyTag>(state.inputs, run, built);
   report.status = is_done ? Status::converged : Status::cancelled;
   if (is_done) {
     internal::replace(state, std::move(built));
@@ -166,24 +206,17 @@ Orl_report build_space_from(const Orl_correspondences& stored,
                             Space_state& state)
 {
   const std::array<const Tree_input*, 2> inputs = internal::first_two(state.inputs);
-  Orl_report report = internal::new_report(state.inputs);
-  report.matching_energy = report.unexplained_fraction = std::numeric_limits<double>::quiet_NaN();
-  pcs::internal::Stopwatch watch;
-  Space_state built;
-  built.pair.form = options.form;
-  embed_stored(stored, inputs, caller, built.pair);
-  report.yaw = angle_about(options.alignment.up, built.pair.rotation);
-  report.seconds.topology = watch.lap();
   const bool has_points = !inputs[0]->points.empty() || !inputs[1]->points.empty();
-  built.family =
-      internal::finish_pair<ConcurrencyTag>(inputs,
-                                            has_points ? stored.pairs : std::vector<Point_pair>(),
-                                            options.weights,
-                                            built.pair,
-                                            report);
+  Orl_report report = internal::new_report(state.inputs);
+  Space_state built;
+  internal::embed_two(inputs, stored, options, caller, built.pair, report);
+  internal::finish_two<ConcurrencyTag>(inputs,
+                                       has_points ? stored.pairs : std::vector<Point_pair>(),
+                                       options.weights,
+                                       built,
+                                       report);
   internal::replace(state, std::move(built));
   report.status = Status::converged;
-  report.seconds.instances = watch.lap();
   return report;
 }
 
@@ -215,17 +248,10 @@ Space_state restore_space(const Orl_space_data& stored, const std::string& calle
 {
   Space_state state;
   state.family = restore_family(stored, caller);
-  const std::size_t number_of_edges = state.family.layout.number_of_edges();
-  if (state.is_pair()) {
-    state.inputs = restore_pair<ConcurrencyTag>(stored, state.family, caller, state.pair);
-    state.family.first_point = first_of_edges(state.pair.instances.pairs(), number_of_edges);
-  } else {
-    check_family_points(stored, number_of_edges, caller);
-    internal::set_family_points<ConcurrencyTag>(stored.points,
-                                                stored.partners,
-                                                stored.has_normals,
-                                                state);
-  }
+  if (state.is_pair())
+    internal::restore_two<ConcurrencyTag>(stored, caller, state);
+  else
+    internal::restore_family_points<ConcurrencyTag>(stored, caller, state);
   state.is_built = state.is_restored = true;
   return state;
 }

@@ -8,18 +8,19 @@
 #include <pcs/core/Orl_options.h>
 #include <pcs/core/Orl_report.h>
 #include <pcs/core/Orl_space_data.h>
-#include <pcs/internal/Stopwatch.h>
+#include <pcs/internal/Stage_timer.h>
 #include <pcs/internal/progress.h>
 #include <pcs/shape_space/family/Family_points_impl.h>
 #include <pcs/shape_space/family/make_family.h>
 #include <pcs/shape_space/family/star_correspondences.h>
 #include <pcs/shape_space/matching/find_yaw_candidates.h>
 #include <pcs/shape_space/model/Build_options.h>
+#include <pcs/shape_space/model/Build_run.h>
 #include <pcs/shape_space/model/Point_pair.h>
 #include <pcs/shape_space/model/Tree_family.h>
 
 #include <cstddef>
-#include <utility>
+#include <memory>
 #include <vector>
 
 namespace pcs {
@@ -27,22 +28,59 @@ namespace shape_space {
 
 namespace internal {
 
+/// Matches the branches of all trees to those of their mean tree. Returns null when `progress` asks
+/// to stop.
+template <class ConcurrencyTag>
+std::unique_ptr<Shared_topology_builder<ConcurrencyTag>>
+match_to_mean(const std::vector<const Rooted_tree*>& trees, const Build_run& run)
+{
+  const pcs::internal::Progress_stage stage(run.progress, 0, 0.7);
+  pcs::internal::Stage_timer timer(run.report.seconds.matching);
+  auto topology =
+      std::make_unique<Shared_topology_builder<ConcurrencyTag>>(trees,
+                                                                run.options.weights,
+                                                                run.options.number_of_rounds);
+  if (topology->run(run.progress))
+    return topology;
+  timer.discard();
+  return nullptr;
+}
+
+/// Finds the topology of all trees and their coordinates on it. Returns null when `progress` asks
+/// to stop.
+template <class ConcurrencyTag>
+std::unique_ptr<Shared_topology_builder<ConcurrencyTag>>
+find_topology(const std::vector<Tree_input>& inputs, const Build_run& run, Tree_family& family)
+{
+  std::vector<const Rooted_tree*> trees;
+  for (const Tree_input& input : inputs)
+    trees.push_back(&input.tree);
+  auto topology = match_to_mean<ConcurrencyTag>(trees, run);
+  if (topology) {
+    const pcs::internal::Stage_timer timer(run.report.seconds.topology);
+    family = make_family<ConcurrencyTag>(*topology, trees, run.options.weights, run.options.form);
+  }
+  return topology;
+}
+
 /// Finds the edge of each point of each scan. Returns `false` when `progress` asks to stop.
 template <class ConcurrencyTag>
-bool find_edges_of_points(const std::vector<Tree_input>& inputs,
-                          const Tree_family& family,
-                          const Point_assignment_options& options,
-                          pcs::internal::Progress& progress,
-                          std::vector<std::vector<std::size_t>>& edges)
+bool assign_all(const std::vector<Tree_input>& inputs,
+                const Tree_family& family,
+                const Build_run& run,
+                std::vector<std::vector<std::size_t>>& edges)
 {
+  const pcs::internal::Progress_stage stage(run.progress, 0.7, 0.8);
+  const pcs::internal::Stage_timer timer(run.report.seconds.assignment);
   Orl_geometry geometry;
   for (std::size_t t = 0; t < inputs.size(); ++t) {
-    if (!progress(static_cast<double>(t) / static_cast<double>(inputs.size())))
+    if (!run.progress(static_cast<double>(t) / static_cast<double>(inputs.size())))
       return false;
     build_geometry(family.layout, family.x[t], family.orientation, geometry);
-    edges.push_back(edges_of_points<ConcurrencyTag>(family, inputs[t], t, geometry, options));
+    edges.push_back(
+        edges_of_points<ConcurrencyTag>(family, inputs[t], t, geometry, run.options.assignment));
   }
-  return progress(1);
+  return run.progress(1);
 }
 
 /// Copies the points of the family from the scans; they have normals if all scans have.
@@ -62,6 +100,43 @@ inline void copy_points(const std::vector<Tree_input>& inputs,
   }
 }
 
+/// Chooses the scan of each branch, and copies its points to the family.
+inline std::vector<Family_source> sample_family(const std::vector<Tree_input>& inputs,
+                                                const std::vector<std::vector<std::size_t>>& edges,
+                                                const Build_run& run,
+                                                Built_family& built)
+{
+  const pcs::internal::Stage_timer timer(run.report.seconds.transport);
+  std::vector<Family_source> sources =
+      choose_points(built.family.layout, edges, run.options.points_of);
+  copy_points(inputs, sources, built);
+  return sources;
+}
+
+/// Finds the corresponding points in all scans by transport. Returns `false` when `progress` asks
+/// to stop.
+template <class ConcurrencyTag>
+bool match_scans(const std::vector<Tree_input>& inputs,
+                 const std::vector<std::vector<std::size_t>>& edges,
+                 const std::vector<Family_source>& sources,
+                 const Build_run& run,
+                 Built_family& built)
+{
+  const pcs::internal::Progress_stage stage(run.progress, 0.8, 1);
+  const pcs::internal::Stage_timer timer(run.report.seconds.transport);
+  Transport_summary summary;
+  built.partners = find_partners<ConcurrencyTag>(built.family,
+                                                 inputs,
+                                                 edges,
+                                                 sources,
+                                                 run.options.transport,
+                                                 summary,
+                                                 [&](double f) { return !run.progress(f); });
+  if (!run.progress.is_cancelled())
+    describe(summary, run.report);
+  return !run.progress.is_cancelled();
+}
+
 /// Counts branches and edges. Matched branches are those of the first two trees.
 inline void describe_branches(const Tree_family& family, Orl_report& report)
 {
@@ -78,55 +153,17 @@ inline void describe_branches(const Tree_family& family, Orl_report& report)
 
 /// Builds a family with points. Returns `false` when `progress` asks to stop.
 template <class ConcurrencyTag>
-bool build_family(const std::vector<Tree_input>& inputs,
-                  const Build_options& options,
-                  pcs::internal::Progress& progress,
-                  Built_family& built,
-                  Orl_report& report)
+bool build_family(const std::vector<Tree_input>& inputs, const Build_run& run, Built_family& built)
 {
-  pcs::internal::Stopwatch watch;
-  std::vector<const Rooted_tree*> trees;
-  for (const Tree_input& input : inputs)
-    trees.push_back(&input.tree);
-  progress.stage(0, 0.7);
-  Shared_topology_builder<ConcurrencyTag> topology(trees,
-                                                   options.weights,
-                                                   options.number_of_rounds);
-  if (!topology.run(progress))
+  const auto topology = internal::find_topology<ConcurrencyTag>(inputs, run, built.family);
+  std::vector<std::vector<std::size_t>> edges; // of the points, by tree
+  if (!topology || !internal::assign_all<ConcurrencyTag>(inputs, built.family, run, edges))
     return false;
-  report.seconds.matching = watch.lap();
-  built.family = make_family<ConcurrencyTag>(topology, trees, options.weights, options.form);
-  report.seconds.topology = watch.lap();
-
-  progress.stage(0.7, 0.8);
-  std::vector<std::vector<std::size_t>> edges;
-  const bool is_assigned = internal::find_edges_of_points<ConcurrencyTag>(inputs,
-                                                                          built.family,
-                                                                          options.assignment,
-                                                                          progress,
-                                                                          edges);
-  report.seconds.assignment = watch.lap();
-  if (!is_assigned)
+  const std::vector<Family_source> sources = internal::sample_family(inputs, edges, run, built);
+  if (!internal::match_scans<ConcurrencyTag>(inputs, edges, sources, run, built))
     return false;
-  const std::vector<Family_source> sources =
-      choose_points(built.family.layout, edges, options.points_of);
-  internal::copy_points(inputs, sources, built);
-
-  progress.stage(0.8, 1);
-  Transport_summary summary;
-  built.partners = find_partners<ConcurrencyTag>(built.family,
-                                                 inputs,
-                                                 edges,
-                                                 sources,
-                                                 options.transport,
-                                                 summary,
-                                                 [&](double f) { return !progress(f); });
-  report.seconds.transport = watch.lap();
-  if (progress.is_cancelled())
-    return false;
-  describe(summary, report);
-  internal::describe_branches(built.family, report);
-  report.fraction_of_changed_matches = topology.fraction_of_changed_matches();
+  internal::describe_branches(built.family, run.report);
+  run.report.fraction_of_changed_matches = topology->fraction_of_changed_matches();
   return true;
 }
 

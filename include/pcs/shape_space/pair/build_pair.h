@@ -9,9 +9,9 @@
 #include <pcs/core/Orl_options.h>
 #include <pcs/core/Orl_report.h>
 #include <pcs/core/Orl_space_data.h>
-#include <pcs/internal/Stopwatch.h>
+#include <pcs/internal/Stage_timer.h>
 #include <pcs/internal/progress.h>
-#include <pcs/shape_space/model/Build_options.h>
+#include <pcs/shape_space/model/Build_run.h>
 #include <pcs/shape_space/model/Point_pair.h>
 #include <pcs/shape_space/pair/Embedded_pair.h>
 #include <pcs/shape_space/pair/embed_pair.h>
@@ -29,60 +29,106 @@
 namespace pcs {
 namespace shape_space {
 
-/// Matches branches and points of two trees. Returns `false` when `progress` asks to stop. Reads
-/// `built.form`, computes all but the instances.
-template <class ConcurrencyTag>
-bool find_correspondences(const std::array<const Tree_input*, 2>& inputs,
-                          const Build_options& options,
-                          pcs::internal::Progress& progress,
-                          Embedded_pair& built,
-                          std::vector<Point_pair>& pairs,
-                          Orl_report& report)
+namespace internal {
+
+/// Reports the matching of the branches.
+inline void describe_matching(const Matching_cost& cost, Orl_report& report)
 {
-  pcs::internal::Stopwatch watch;
-  progress.stage(0, 0.4);
-  if (!progress(0))
-    return false;
-  const Matching_cost cost = match_trees<ConcurrencyTag>({&inputs[0]->tree, &inputs[1]->tree},
-                                                         options.weights,
-                                                         options.alignment,
-                                                         progress,
-                                                         built.topology);
-  built.rotation = rotation_exp(cost.yaw * options.alignment.up);
   report.yaw = cost.yaw;
   report.matching_energy = cost.energy;
   report.unexplained_fraction = cost.share;
   report.is_grown_at_tips = cost.is_at_tips;
-  report.seconds.matching = watch.lap();
-  if (progress.is_cancelled())
-    return false;
-  embed(inputs, built);
-  report.seconds.topology = watch.lap();
+}
 
-  progress.stage(0.4, 0.6);
-  if (!progress(0))
+/// Matches the branches of both trees and aligns the second with the first. Returns `false` when
+/// `progress` asks to stop.
+template <class ConcurrencyTag>
+bool match_branches(const std::array<const Tree_input*, 2>& inputs,
+                    const Build_run& run,
+                    Embedded_pair& built)
+{
+  const pcs::internal::Progress_stage stage(run.progress, 0, 0.4);
+  if (!run.progress(0))
     return false;
-  std::array<std::vector<std::size_t>, 2> edges;
-  for (std::size_t t = 0; t < 2; ++t) {
-    edges[t] = edges_of_points<ConcurrencyTag>(inputs, built, t, options.assignment);
-    if (!progress(0.5 * static_cast<double>(t + 1)))
-      return false;
+  const pcs::internal::Stage_timer timer(run.report.seconds.matching);
+  const Matching_cost cost = match_trees<ConcurrencyTag>({&inputs[0]->tree, &inputs[1]->tree},
+                                                         run.options.weights,
+                                                         run.options.alignment,
+                                                         run.progress,
+                                                         built.topology);
+  built.rotation = rotation_exp(cost.yaw * run.options.alignment.up);
+  describe_matching(cost, run.report);
+  return !run.progress.is_cancelled();
+}
+
+/// Computes the coordinates of both trees on their common topology.
+inline void embed_both(const std::array<const Tree_input*, 2>& inputs,
+                       const Build_run& run,
+                       Embedded_pair& built)
+{
+  const pcs::internal::Stage_timer timer(run.report.seconds.topology);
+  shape_space::embed(inputs, built);
+}
+
+/// Finds the edge of each point of both scans. Returns `false` when `progress` asks to stop.
+template <class ConcurrencyTag>
+bool assign_both(const std::array<const Tree_input*, 2>& inputs,
+                 const Build_run& run,
+                 const Embedded_pair& built,
+                 std::array<std::vector<std::size_t>, 2>& edges)
+{
+  const pcs::internal::Progress_stage stage(run.progress, 0.4, 0.6);
+  pcs::internal::Stage_timer timer(run.report.seconds.assignment);
+  bool is_running = run.progress(0);
+  for (std::size_t t = 0; is_running && t < 2; ++t) {
+    edges[t] = edges_of_points<ConcurrencyTag>(inputs, built, t, run.options.assignment);
+    is_running = run.progress(0.5 * static_cast<double>(t + 1));
   }
-  report.seconds.assignment = watch.lap();
+  if (!is_running)
+    timer.discard();
+  return is_running;
+}
 
-  progress.stage(0.6, 1);
+/// Pairs the points on corresponding edges by transport. Returns `false` when `progress` asks to
+/// stop.
+template <class ConcurrencyTag>
+bool pair_points(const std::array<const Tree_input*, 2>& inputs,
+                 const Build_run& run,
+                 const Embedded_pair& built,
+                 const std::array<std::vector<std::size_t>, 2>& edges,
+                 std::vector<Point_pair>& pairs)
+{
+  const pcs::internal::Progress_stage stage(run.progress, 0.6, 1);
+  const pcs::internal::Stage_timer timer(run.report.seconds.transport);
+  const std::array<std::vector<Vec3>, 2> points = {inputs[0]->points, points_of_second(inputs)};
+  Point_matching<ConcurrencyTag> matching(built.layout,
+                                          built.geometry,
+                                          points,
+                                          edges,
+                                          built.is_relative);
   Transport_summary summary;
-  pairs = Point_matching<ConcurrencyTag>(built.layout,
-                                         built.geometry,
-                                         {inputs[0]->points, points_of_second(inputs)},
-                                         edges,
-                                         built.is_relative)
-              .run(options.transport, summary, [&](double f) { return !progress(f); });
-  report.seconds.transport = watch.lap();
-  if (progress.is_cancelled())
+  pairs = matching.run(run.options.transport, summary, [&](double f) { return !run.progress(f); });
+  if (!run.progress.is_cancelled())
+    describe(summary, run.report);
+  return !run.progress.is_cancelled();
+}
+
+} // namespace internal
+
+/// Matches branches and points of two trees. Returns `false` when `progress` asks to stop. Reads
+/// `built.form`, computes all but the instances.
+template <class ConcurrencyTag>
+bool find_correspondences(const std::array<const Tree_input*, 2>& inputs,
+                          const Build_run& run,
+                          Embedded_pair& built,
+                          std::vector<Point_pair>& pairs)
+{
+  if (!internal::match_branches<ConcurrencyTag>(inputs, run, built))
     return false;
-  describe(summary, report);
-  return true;
+  internal::embed_both(inputs, run, built);
+  std::array<std::vector<std::size_t>, 2> edges;
+  return internal::assign_both<ConcurrencyTag>(inputs, run, built, edges) &&
+         internal::pair_points<ConcurrencyTag>(inputs, run, built, edges, pairs);
 }
 
 /// Reports counts and the distance of a pair with instances.
