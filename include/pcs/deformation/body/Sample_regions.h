@@ -6,6 +6,7 @@
 #define PCS_DEFORMATION_BODY_SAMPLE_REGIONS_H
 
 #include <pcs/deformation/model/Elastic_network.h>
+#include <pcs/internal/compress_rows.h>
 #include <pcs/neighborhood/Proximity_graph.h>
 
 #include <algorithm>
@@ -146,36 +147,38 @@ inline Weighted_graph sample_graph(const std::vector<Vec3>& points,
 {
   struct Crossing
   {
-    std::uint64_t pair;
+    std::uint32_t from, to; // samples
     double length;
   };
-  std::vector<Crossing> crossings;
+  std::vector<Crossing> crossings, ordered;
   const auto& label = regions.sample_of_point;
   for (std::size_t i = 0; i < points.size(); ++i)
     for (auto j = graph.begin(i); j != graph.end(i); ++j)
       if (label[i] != label[*j] && label[i] != no_sample)
-        crossings.push_back(
-            {std::uint64_t(label[i]) << 32 | label[*j], crossing_length(points, graph, i, *j)});
-  // Stable: the sums below are then formed in the order of the points on every platform.
-  std::stable_sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {
-    return a.pair < b.pair;
-  });
+        crossings.push_back({label[i], label[*j], crossing_length(points, graph, i, *j)});
+  const auto first = pcs::internal::compress_rows<std::size_t>(
+      samples.size(),
+      crossings.size(),
+      [&](std::size_t c) { return crossings[c].from; },
+      [&](std::size_t count) { ordered.resize(count); },
+      [&](std::size_t c, std::size_t at) { ordered[at] = crossings[c]; });
   Weighted_graph result;
-  result.first.assign(samples.size() + 1, 0);
-  double sum = 0;
-  for (std::size_t c = 0; c < crossings.size();) {
-    const std::uint64_t pair = crossings[c].pair;
-    double border = 0;
-    for (; c < crossings.size() && crossings[c].pair == pair; ++c)
-      border += crossings[c].length;
-    const auto s = static_cast<std::uint32_t>(pair >> 32), t = static_cast<std::uint32_t>(pair);
-    const double distance = (points[samples[t]] - points[samples[s]]).norm();
-    ++result.first[s + 1];
-    result.neighbor.push_back(t);
-    result.weight.push_back(representable_weight(border / distance));
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    // Stable: the sums below are then formed in the order of the points on every platform.
+    const auto end = ordered.begin() + static_cast<std::ptrdiff_t>(first[s + 1]);
+    auto c = ordered.begin() + static_cast<std::ptrdiff_t>(first[s]);
+    std::stable_sort(c, end, [](const Crossing& a, const Crossing& b) { return a.to < b.to; });
+    while (c != end) {
+      const std::uint32_t t = c->to;
+      double border = 0;
+      for (; c != end && c->to == t; ++c)
+        border += c->length;
+      result.neighbor.push_back(t);
+      result.weight.push_back(
+          representable_weight(border / (points[samples[t]] - points[samples[s]]).norm()));
+    }
+    result.first.push_back(static_cast<std::uint32_t>(result.neighbor.size()));
   }
-  for (std::size_t s = 0; s < samples.size(); ++s)
-    result.first[s + 1] += result.first[s];
   // Both half-edges of a pair were summed in different orders: give them the same bits.
   for (std::size_t s = 0; s < samples.size(); ++s)
     for (std::size_t e = result.first[s]; e < result.first[s + 1]; ++e) {
@@ -186,7 +189,7 @@ inline Weighted_graph sample_graph(const std::vector<Vec3>& points,
           std::lower_bound(result.begin(t), result.end(t), static_cast<std::uint32_t>(s));
       result.weight[static_cast<std::size_t>(back - result.neighbor.data())] = result.weight[e];
     }
-  sum = damp_long_edges(points, samples, result);
+  const double sum = damp_long_edges(points, samples, result);
   weight_unit = sum > 0 ? static_cast<double>(result.weight.size()) / sum : 1;
   for (double& w : result.weight)
     w *= weight_unit;

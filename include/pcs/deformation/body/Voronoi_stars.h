@@ -7,6 +7,7 @@
 
 #include <pcs/deformation/body/Voronoi_cell.h>
 #include <pcs/deformation/model/Elastic_network.h>
+#include <pcs/internal/compress_rows.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/neighborhood/Proximity_graph.h>
 
@@ -218,29 +219,24 @@ struct Star_neighbors
       for (std::size_t e = stars.first[i]; e < stars.first[i + 1]; ++e)
         is_mutual[e] = stars.holds(stars.side[e].neighbor, static_cast<std::uint32_t>(i)) ? 1 : 0;
     });
-    std::vector<std::uint32_t>& first = graph.first;
-    first.assign(stars.size() + 1, 0);
-    const auto for_each_edge = [&](const auto& use) {
-      for (std::uint32_t i = 0; i < stars.size(); ++i)
-        for (std::size_t e = stars.first[i]; e < stars.first[i + 1]; ++e)
-          use(i, stars.side[e].neighbor, is_mutual[e] != 0);
-    };
-    for_each_edge([&](std::uint32_t i, std::uint32_t j, bool is_both) {
-      ++first[i + 1];
-      if (!is_both) {
-        ++first[j + 1];
-        is_doubtful[i] = is_doubtful[j] = 1;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> links; // in both directions
+    links.reserve(stars.side.size() +
+                  static_cast<std::size_t>(std::count(is_mutual.begin(), is_mutual.end(), 0)));
+    for (std::uint32_t i = 0; i < stars.size(); ++i)
+      for (std::size_t e = stars.first[i]; e < stars.first[i + 1]; ++e) {
+        const std::uint32_t j = stars.side[e].neighbor;
+        links.emplace_back(i, j);
+        if (!is_mutual[e]) {
+          links.emplace_back(j, i);
+          is_doubtful[i] = is_doubtful[j] = 1;
+        }
       }
-    });
-    for (std::size_t i = 0; i < stars.size(); ++i)
-      first[i + 1] += first[i];
-    graph.neighbor.resize(first.back());
-    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-    for_each_edge([&](std::uint32_t i, std::uint32_t j, bool is_both) {
-      graph.neighbor[next[i]++] = j;
-      if (!is_both)
-        graph.neighbor[next[j]++] = i;
-    });
+    graph.first = pcs::internal::compress_rows<std::uint32_t>(
+        stars.size(),
+        links.size(),
+        [&](std::size_t k) { return links[k].first; },
+        [&](std::size_t count) { graph.neighbor.resize(count); },
+        [&](std::size_t k, std::size_t at) { graph.neighbor[at] = links[k].second; });
   }
 
   template <class Use>
