@@ -258,6 +258,26 @@ BOOST_AUTO_TEST_CASE(a_hoop_is_a_few_long_branches)
   BOOST_CHECK_LE(report.number_of_branches, 3u);
 }
 
+BOOST_AUTO_TEST_CASE(a_stem_below_an_occlusion_is_the_foot)
+{
+  // 3 % of the points are below a gap of 0.6 m
+  Cloud points = cylinder(160, 0.1, 1.2);
+  append(points, cylinder(3600, 0.1, 3.2, Point(0, 0, 1.8)));
+  append(points, cylinder(1200, 0.05, 2, Point(0, 0, 3), Vector(1, 0, 0.5)));
+  Tree tree;
+  const auto report = pcs::extract_tree_skeleton(points, tree);
+  check_is_a_tree(tree);
+  BOOST_TEST(tree[0].point.z() < 0.15);
+  BOOST_CHECK_CLOSE(report.height, 5.0, 3.0);
+  BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.2, 10.0);
+  // a pole beside the tree, which begins lower, is no foot
+  Cloud beside = cylinder(3600, 0.1, 4);
+  append(beside, cylinder(160, 0.03, 1.2, Point(1, 0, -0.8)));
+  const auto other = pcs::extract_tree_skeleton(beside, tree);
+  BOOST_TEST(std::abs(tree[0].point.x()) < 0.05);
+  BOOST_CHECK_CLOSE(other.height, 4.0, 3.0);
+}
+
 BOOST_AUTO_TEST_CASE(a_lamp_post_is_a_trunk)
 {
   Cloud points = cylinder(9000, 0.06, 6);

@@ -207,6 +207,19 @@ BOOST_AUTO_TEST_CASE(given_branches_without_points_taper)
   BOOST_TEST(count == 7u);
 }
 
+BOOST_AUTO_TEST_CASE(a_root_on_the_bark_gives_the_tree_of_its_foot)
+{
+  Cloud points = cylinder(6000, 0.1, 3);
+  append(points, cylinder(1500, 0.03, 1, Point(0.1, 0, 2), Vector(1, 0, 0.3)));
+  Tree found, hinted;
+  const auto plain = pcs::extract_tree_skeleton(points, found);
+  const auto np = pcs::parameters::root_position(Point(0.1, 0, 0.01));
+  const auto report = pcs::extract_tree_skeleton(points, hinted, np);
+  BOOST_TEST(report.number_of_branches == plain.number_of_branches);
+  BOOST_CHECK_CLOSE(report.total.volume, plain.total.volume, 2.0);
+  BOOST_TEST(CGAL::squared_distance(found[0].point, hinted[0].point) < 0.02 * 0.02);
+}
+
 BOOST_AUTO_TEST_CASE(hints_that_make_no_sense_are_refused)
 {
   const Cloud points = cylinder(2000, 0.1, 2);

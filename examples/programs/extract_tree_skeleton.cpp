@@ -7,6 +7,7 @@
 #include "common/check_output.h"
 #include "common/run_program.h"
 #include "common/up_direction.h"
+#include "scan/tree_foot.h"
 #include "skeleton/Batch_log.h"
 #include "skeleton/Skeleton_options.h"
 #include "skeleton/point_attributes.h"
@@ -43,6 +44,7 @@
 #include <functional>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -101,6 +103,15 @@ pcs::Skeleton_report extract_with_labels(const Range& indices,
                                         .point_residual_map(map(labels.residual))
                                         .point_is_dense_map(map(labels.dense))
                                         .normal_map(map(labels.normal)));
+}
+
+/// Returns the given root, or the foot that segment_trees wrote to the file.
+std::optional<std::array<double, 3>> foot_of(const pcs::IO::Point_table& table,
+                                             const Skeleton_options& options)
+{
+  if (options.root.empty())
+    return read_foot(table);
+  return std::array<double, 3>{options.root[0], options.root[1], options.root[2]};
 }
 
 pcs::Skeleton_report extract(const std::string& input,
@@ -164,9 +175,10 @@ pcs::Skeleton_report extract(const std::string& input,
     pcs::IO::read_swc<Kernel>(options.given, given);
     return extract_with_labels(indices, options, tree, labels, np.given_skeleton(std::cref(given)));
   }
-  if (options.root.empty())
+  const std::optional<std::array<double, 3>> foot = foot_of(table, options);
+  if (!foot)
     return extract_with_labels(indices, options, tree, labels, np);
-  const Kernel::Point_3 root(options.root[0], options.root[1], options.root[2]);
+  const Kernel::Point_3 root((*foot)[0], (*foot)[1], (*foot)[2]);
   return extract_with_labels(indices, options, tree, labels, np.root_position(root));
 }
 

@@ -8,6 +8,7 @@
 #include "common/check_output.h"
 #include "common/run_program.h"
 #include "common/up_direction.h"
+#include "scan/tree_foot.h"
 #include <pcs/IO/points/Point_table.h>
 #include <pcs/IO/read_points.h>
 #include <pcs/IO/write_points.h>
@@ -48,7 +49,8 @@ const char* help()
 {
   return R"(Scans: PLY, LAS, OFF, or text (xyz, txt, csv, asc, pts, pwn).
 Folder: DIR/SCAN_1.ply, DIR/SCAN_2.ply, ..., trees with the thickest stems first, with all
-properties of their points. extract_tree_skeleton processes all of them with its own --folder.
+properties of their points and the foot of the tree as a comment. extract_tree_skeleton reads the
+foot, and processes all files with its own --folder.
 Points: the scan with the property `tree` (-1: ground, or not part of a tree).
 
 Exit codes: 0 success, 1 bad input, bad usage or no tree, 2 internal error.)";
@@ -154,8 +156,11 @@ void write_trees(const pcs::IO::Point_table& table,
     if (trees[i] >= 0)
       points[static_cast<std::size_t>(trees[i])].push_back(i);
   for (std::size_t t = 0; t < points.size(); ++t)
-    if (points[t].size() >= options.min_points)
-      pcs::IO::write_points(file_of_tree(options, t), table.select(points[t]));
+    if (points[t].size() >= options.min_points) {
+      pcs::IO::Point_table tree = table.select(points[t]);
+      write_foot(report.trees[t].foot, tree);
+      pcs::IO::write_points(file_of_tree(options, t), tree);
+    }
 }
 
 void run(const Options& options)

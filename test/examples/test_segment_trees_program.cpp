@@ -15,11 +15,14 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <examples/Program_run.h>
 #include <filesystem>
+#include <optional>
+#include <scan/tree_foot.h>
 #include <string>
 #include <vector>
 
@@ -72,6 +75,9 @@ BOOST_AUTO_TEST_CASE(files_labels_and_report_agree)
     BOOST_TEST(row["points"] == count);
     const auto own = pcs::IO::read_points(path("trees/stand_" + std::to_string(t + 1) + ".ply"));
     BOOST_TEST_REQUIRE(own.number_of_points() == count);
+    const std::optional<std::array<double, 3>> foot = program::read_foot(own);
+    BOOST_TEST_REQUIRE(bool(foot));
+    BOOST_TEST((row["foot"] == nlohmann::json(*foot)));
     const auto& number = own.property<std::int32_t>("number");
     for (std::size_t k = 0; k < count; ++k) {
       const auto i = static_cast<std::size_t>(number[k]);
@@ -83,6 +89,21 @@ BOOST_AUTO_TEST_CASE(files_labels_and_report_agree)
   BOOST_TEST(json["points"] == tree.size());
   BOOST_TEST(json["unassigned_points"] == tree.size() - assigned);
   BOOST_TEST(double(assigned) > 0.98 * double(tree.size()));
+}
+
+BOOST_AUTO_TEST_CASE(the_foot_of_a_moved_file_is_ignored)
+{
+  pcs::IO::Point_table table = pcs::IO::read_points(path("stand.ply"));
+  program::write_foot({0.5, 0.25, 0.125}, table);
+  program::write_foot({0.25, 0.5, 0.1}, table); // replaces the first
+  BOOST_TEST(table.comments().size() == 1u);
+  pcs::IO::write_points(path("foot.ply"), table);
+  const auto foot = program::read_foot(pcs::IO::read_points(path("foot.ply")));
+  BOOST_TEST_REQUIRE(bool(foot));
+  BOOST_TEST((*foot == std::array<double, 3>{0.25, 0.5, 0.1}));
+  for (Kernel::Point_3& p : table.points())
+    p = p + Kernel::Vector_3(500, 0, 0);
+  BOOST_TEST(!program::read_foot(table));
 }
 
 BOOST_AUTO_TEST_CASE(trees_have_heights_and_a_wrong_unit_is_noticed)

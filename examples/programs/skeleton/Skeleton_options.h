@@ -113,7 +113,11 @@ inline void declare(CLI::App& app, Skeleton_options& options)
   app.add_option("--up", options.up, "up direction: x, y, z, -x, -y or -z")
       ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))
       ->capture_default_str();
-  app.add_option("--root", options.root, "x y z of the foot of the trunk")->expected(3);
+  app.add_option("--root",
+                 options.root,
+                 "x y z of the foot of the trunk; default: the foot that "
+                 "segment_trees wrote to the file, or detected")
+      ->expected(3);
   app.add_option("--scanner", options.scanners, "x y z of a scanner; for several: x y z x y z ...");
   app.add_option("--beam-milliradians",
                  options.beam_milliradians,

@@ -153,6 +153,15 @@ void localize_hints(Session_state<Tag>& s)
 
 // ---- paths
 
+/// Returns the given root in coordinates of the scan.
+template <class Tag>
+std::optional<Vec3> root_hint(const Session_state<Tag>& s)
+{
+  if (!s.options.root)
+    return std::nullopt;
+  return s.scan.frame.to_local(*s.options.root);
+}
+
 template <class Tag>
 Links used_links(const Session_state<Tag>& s)
 {
@@ -165,11 +174,8 @@ void link_used(Session_state<Tag>& s, const Links& links, bool do_keep_root, Lin
 {
   const Session_options& o = s.options;
   const auto find_root = [&](const Point_parts& parts) {
-    std::optional<Vec3> hint;
-    if (o.root)
-      hint = s.scan.frame.to_local(*o.root);
     if (!do_keep_root)
-      s.root = points_of_root<Tag>(s.scan, s.is_used(), links, parts, hint, o.up, o.layers);
+      s.root = points_of_root<Tag>(s.scan, s.is_used(), links, parts, root_hint(s), o.up, o.layers);
   };
   link_parts<Tag>(s.scan, s.is_used(), links, o.axes.links, find_root, linked);
 }
@@ -218,7 +224,7 @@ std::vector<std::uint8_t> find_wood(Session_state<Tag>& s)
                              o.leaves,
                              s.leaves);
   const auto trunk = [&]() -> const Axis& {
-    return s.axes.axes[root_axis(s.scan, s.axes, s.root, o.root.has_value())].axis;
+    return s.axes.axes[root_axis(s.scan, s.axes, s.root, root_hint(s))].axis;
   };
   std::vector<std::uint8_t> is_wood = wood_by_points<Tag>(s.scan,
                                                           s.axes,
@@ -231,7 +237,20 @@ std::vector<std::uint8_t> find_wood(Session_state<Tag>& s)
                                                           o.leaves,
                                                           s.leaves);
   s.report.is_in_rows = s.leaves.is_in_rows;
+  if (s.leaves.has_leaves)
+    s.leaves.is_stem = points_of_stem(s.layers, s.leaves.wood_score, o.leaves.stem);
   return is_wood;
+}
+
+/// Keeps the root and the wood of the stem, whatever is found out about single points and axes.
+template <class Tag>
+void keep_foot(const Session_state<Tag>& s, std::vector<std::uint8_t>& is_wood)
+{
+  for (Index i = 0; i < s.leaves.is_stem.size(); ++i)
+    if (s.leaves.is_stem[i] && s.is_used()[i])
+      is_wood[i] = 1;
+  for (const Index i : s.root)
+    is_wood[i] = 1;
 }
 
 /// Removes leaves, or points far from wood if there are no leaves, and computes the level sets of
@@ -241,14 +260,17 @@ bool remove_leaves(Session_state<Tag>& s)
 {
   if (s.axes.axes.empty() || (s.leaves.rounds > 0 && !s.leaves.has_leaves))
     return false;
-  const std::vector<std::uint8_t> is_wood = find_wood(s);
+  std::vector<std::uint8_t> is_wood = find_wood(s);
   const bool has_wood = std::find(is_wood.begin(), is_wood.end(), 1) != is_wood.end();
-  if (!has_wood || is_wood == s.is_used())
+  if (!has_wood)
+    return false;
+  keep_foot(s, is_wood);
+  if (is_wood == s.is_used())
     return false;
   s.labels.remove_leaves(is_wood);
   Links links = used_links(s);
   Linked_parts linked;
-  link_used(s, links, !s.leaves.has_leaves, linked);
+  link_used(s, links, true, linked);
   trace_layers(s, links, linked);
   ++s.leaves.rounds; // after a cancellation, the work continues with the wood
   return true;
@@ -327,13 +349,7 @@ bool build_tree(Session_state<Tag>& s, pcs::internal::Progress& progress)
   const auto joining = [&](double f) {
     return progress(end_of_axes + (end_of_joints - end_of_axes) * f);
   };
-  if (!build_branch_tree<Tag>(s.scan,
-                              s.root,
-                              o.root.has_value(),
-                              o.branching,
-                              joining,
-                              s.axes,
-                              s.joined))
+  if (!build_branch_tree<Tag>(s.scan, s.root, root_hint(s), o.branching, joining, s.axes, s.joined))
     return false;
   if (s.leaves.has_leaves && s.leaves.rounds > 0) // remaining leaves make twigs thick
     s.options.radii.support.pipes.slack = o.leaves.pipe_slack;

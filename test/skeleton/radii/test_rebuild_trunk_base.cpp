@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -177,11 +178,12 @@ BOOST_AUTO_TEST_CASE(the_root_is_of_the_trunk_and_not_of_a_piece_beside_it)
   for (Index i = 0; i < set.axis_of_point.size(); ++i)
     scan.points.push_back(set.axes[set.axis_of_point[i]].axis[set.segment_of_point[i]].point);
   const std::vector<Index> root = {400, 401, 402};
-  BOOST_CHECK_EQUAL(root_axis(scan, set, root, false), 0u);
-  BOOST_CHECK_EQUAL(root_axis(scan, set, root, true), 1u);
+  BOOST_CHECK_EQUAL(root_axis(scan, set, root, std::nullopt), 0u);
+  BOOST_CHECK_EQUAL(root_axis(scan, set, root, Vec3(0, 0, 0.5)), 0u);
+  BOOST_CHECK_EQUAL(root_axis(scan, set, root, Vec3(-1.5, 0, 0)), 1u); // beside the trunk
   for (Axis_node& node : set.axes[0].axis)
     node.point.x() += 2; // another tree
-  BOOST_CHECK_EQUAL(root_axis(scan, set, root, false), 1u);
+  BOOST_CHECK_EQUAL(root_axis(scan, set, root, std::nullopt), 1u);
 }
 
 BOOST_AUTO_TEST_CASE(buttresses_do_not_hide_the_trunk)

@@ -17,6 +17,7 @@
 #include <pcs/skeleton/model/Joint.h>
 #include <pcs/skeleton/model/Scan.h>
 
+#include <optional>
 #include <vector>
 
 namespace pcs {
@@ -44,11 +45,11 @@ template <class ConcurrencyTag>
 void join_axes(const Scan& scan,
                const Axis_set& axes,
                const std::vector<Index>& root,
-               bool is_root_given,
+               const std::optional<Vec3>& hint,
                const Joint_options& options,
                Joined_axes& joined)
 {
-  joined.root = root_axis(scan, axes, root, is_root_given);
+  joined.root = root_axis(scan, axes, root, hint);
   const Axis_joiner joiner(axes, scan.spacing, options);
   joined.joints = joiner.template run<ConcurrencyTag>(joined.root);
   joined.joints[joined.root].is_reversed =
@@ -64,14 +65,14 @@ void join_axes(const Scan& scan,
 template <class ConcurrencyTag, class Progress>
 bool build_branch_tree(const Scan& scan,
                        const std::vector<Index>& root,
-                       bool is_root_given,
+                       const std::optional<Vec3>& hint,
                        const Branching_options& options,
                        const Progress& progress,
                        Axis_set& axes,
                        Joined_axes& joined)
 {
   const auto join = [&] {
-    join_axes<ConcurrencyTag>(scan, axes, root, is_root_given, options.joints, joined);
+    join_axes<ConcurrencyTag>(scan, axes, root, hint, options.joints, joined);
   };
   join();
   while (joined.regroupings + 1 < options.joints.rounds) {

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace pcs {
@@ -39,16 +40,19 @@ inline Index nearest_axis(const Axis_set& set, const Vec3& p)
 }
 
 /*!
-  Selects the axis of the root: the axis with the largest product of the numbers of its root points
-  and of all its points, since buttresses may have more root points than the trunk. If no axis has
-  root points, selects the nearest axis. A small axis is replaced by a much larger one close to the
-  root, since a small piece of the foot may have all root points by chance. This step is omitted for
-  a given root (`is_given`). `root` and `set` are not empty. O(axes + root).
+  Selects the axis of the root: the one with the most root points, weighted by its number of points,
+  since the buttresses of a trunk may have more root points. If no axis has root points, selects the
+  nearest axis. A small axis is replaced by a much larger one close to the root, since chance pieces
+  of a foot may have all root points. A given root (`hint`, in coordinates of the scan) takes the place
+  of the mean of the root points. `root` and `set` are not empty. O(axes + root).
 */
-inline Index
-root_axis(const Scan& scan, const Axis_set& set, const std::vector<Index>& root, bool is_given)
+inline Index root_axis(const Scan& scan,
+                       const Axis_set& set,
+                       const std::vector<Index>& root,
+                       const std::optional<Vec3>& hint)
 {
-  constexpr double small = 0.1, near = 4; // fraction of the points, distance from the axis in radii
+  constexpr double small = 0.1; // fraction of the points
+  constexpr double near = 4;    // distance from the larger axis in radii
   const auto points_of = [&](Index a) { return double(set.axes[a].number_of_points); };
   std::vector<double> votes(set.axes.size(), 0);
   for (const Index i : root)
@@ -57,9 +61,7 @@ root_axis(const Scan& scan, const Axis_set& set, const std::vector<Index>& root,
   const auto most = std::max_element(votes.begin(), votes.end());
   const Index best = *most > 0 ? static_cast<Index>(most - votes.begin())
                                : nearest_axis(set, scan.points[root.front()]);
-  if (is_given)
-    return best;
-  const Vec3 middle = middle_of(scan, root);
+  const Vec3 middle = hint ? *hint : middle_of(scan, root);
   Index largest = best;
   for (Index a = 0; a < set.axes.size(); ++a) {
     if (small * points_of(a) <= points_of(best) || points_of(a) <= points_of(largest))

@@ -20,6 +20,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -39,10 +40,18 @@ struct Root_options
       /// a stem of a further slab replaces a thin stem if its spread is this many times as large
       /// and, in the widest slab, its foot is round; also the least ratio of ring radii [-]
       3;
-  double band = 0.4;   ///< height of the root points, in half widths of the stem [-]
+  double band = 0.4; ///< height of the root points, in half widths of the stem [-]
+  //! largest spread of a stem at a given root; wider sections are crowns. In extents [-]
+  double widest_hinted = 0.1;
   double rival = 0.03; ///< least number of points of another stem, relative to the first [-]
   double smallest_component =
       0.05; ///< least fraction of the points in a component with the root [-]
+  //! the same for an upright component, such as a stem below an occlusion [-]
+  double smallest_piece = 0.01;
+  //! least height of such a component, relative to the root mean square distance of its points from
+  //! its vertical axis [-]
+  double upright = 4;
+  double above = 0.7; ///< least cosine between `up` and the gap between it and the tree [-]
   double floating =
       0.05; ///< largest height of the lower end of such a component, relative to the extent [-]
   double ring_deviation = 0.15; ///< largest deviation of points from a ring, in radii [-]
@@ -161,12 +170,11 @@ public:
       m_low_of(scan.size(), infinity),
       m_high_of(scan.size(), -infinity)
   {
-    const Index largest = *std::max_element(m_parts.size.begin(), m_parts.size.end());
-    const double smallest =
-        std::min(double(largest), rules.smallest_component * double(scan.size()));
-    for (Index i = 0; i < scan.size(); ++i) {
+    for (Index i = 0; i < scan.size(); ++i)
       m_height[i] = up.dot(scan.points[i]);
-      if (!is_used[i] || m_parts.size[m_parts.part[i]] < smallest)
+    const std::vector<std::uint8_t> is_large = large_parts(is_used);
+    for (Index i = 0; i < scan.size(); ++i) {
+      if (!is_used[i] || !is_large[m_parts.part[i]])
         continue;
       m_low = std::min(m_low, m_height[i]);
       m_high = std::max(m_high, m_height[i]);
@@ -177,6 +185,19 @@ public:
   }
 
   const std::vector<double>& height() const { return m_height; }
+  double extent() const { return m_high - m_low; } ///< vertical, of all large components [L]
+
+  /// Returns the stem around point `seed`: the connected points at most a slab above or below it.
+  Stem around(Index seed) const
+  {
+    const double slab = height_of_slab(m_rules.slab);
+    std::vector<std::uint8_t> is_near(m_scan.size(), 0);
+    for (Index i = 0; i < m_scan.size(); ++i)
+      is_near[i] =
+          m_parts.part[i] == m_parts.part[seed] && std::abs(m_height[i] - m_height[seed]) <= slab;
+    const Point_parts near_parts = connected_parts<ConcurrencyTag>(is_near, m_links);
+    return Stem(m_scan, m_up, slab, m_parts, near_parts, near_parts.part[seed], m_rules);
+  }
 
   Stem operator()() const
   {
@@ -196,6 +217,55 @@ public:
 
 private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+  /// Marks the components that may contain the root, by one of their points: the large ones, and
+  /// smaller ones that are upright, such as a stem below an occlusion.
+  std::vector<std::uint8_t> large_parts(const std::vector<std::uint8_t>& is_used) const
+  {
+    const std::size_t n = m_scan.size();
+    const Index largest = *std::max_element(m_parts.size.begin(), m_parts.size.end());
+    const double smallest = std::min(double(largest), m_rules.smallest_component * double(n));
+    const double smallest_piece = m_rules.smallest_piece * double(n);
+    std::vector<std::uint8_t> result(n, 0);
+    std::map<Index, std::vector<Index>> pieces;
+    for (Index i = 0; i < n; ++i) {
+      if (!is_used[i])
+        continue;
+      const Index part = m_parts.part[i];
+      const double size = double(m_parts.size[part]);
+      result[part] = size >= smallest;
+      if (size < smallest && size >= smallest_piece)
+        pieces[part].push_back(i);
+    }
+    std::vector<Index> stems;
+    for (const auto& [part, points] : pieces)
+      if (is_below_tree(points, is_used, result))
+        stems.push_back(part);
+    for (const Index part : stems)
+      result[part] = 1;
+    return result;
+  }
+
+  /// Returns whether a component is upright and a large one lies above it, across a gap of at most
+  /// the height of the component.
+  bool is_below_tree(const std::vector<Index>& points,
+                     const std::vector<std::uint8_t>& is_used,
+                     const std::vector<std::uint8_t>& is_large) const
+  {
+    const auto is_lower = [&](Index i, Index j) { return m_height[i] < m_height[j]; };
+    const Index top = *std::max_element(points.begin(), points.end(), is_lower);
+    const double height =
+        m_height[top] - m_height[*std::min_element(points.begin(), points.end(), is_lower)];
+    const Slab_shape shape(m_scan, points, m_up);
+    if (height < m_rules.upright * std::hypot(shape.length, shape.width))
+      return false;
+    const auto above = m_scan.search->nearest_if(m_scan.points[top], height, [&](Index i) {
+      return is_used[i] && is_large[m_parts.part[i]];
+    });
+    return above.squared_distance < height * height &&
+           m_height[above.index] - m_height[top] >=
+               m_rules.above * std::sqrt(above.squared_distance);
+  }
 
   /// Returns the height of a slab [L]. `share` is this height as a fraction of the vertical extent.
   double height_of_slab(double share) const
@@ -304,6 +374,40 @@ std::vector<Index> find_root(const Scan& scan,
   root.erase(
       std::remove_if(root.begin(), root.end(), [&](Index i) { return place(i) > foot + band; }),
       root.end());
+  return std::move(root);
+}
+
+/*!
+  Returns the points of the stem at the height of `hint`, which lies on its surface or within it: the
+  connected points around the used point nearest to `hint`. Only that point where nothing like a
+  stem is connected to it: a lying stem, or a crown.
+*/
+template <class ConcurrencyTag>
+std::vector<Index> find_root_near(const Vec3& hint,
+                                  const Scan& scan,
+                                  const std::vector<std::uint8_t>& is_used,
+                                  const Links& links,
+                                  const Point_parts& parts,
+                                  const Vec3& up,
+                                  const Root_options& rules)
+{
+  const Index seed = scan.search
+                         ->nearest_if(hint,
+                                      std::numeric_limits<double>::max(),
+                                      [&](Index i) { return is_used[i] != 0; })
+                         .index;
+  const internal::Stem_search<ConcurrencyTag> search(scan, is_used, links, parts, up, rules);
+  internal::Stem stem = search.around(seed);
+  if (stem.is_lying || stem.spread() > rules.widest_hinted * search.extent())
+    return {seed};
+  const double band = std::max(layer_thickness * scan.spacing, rules.band * stem.spread());
+  std::vector<Index>& root = stem.points;
+  root.erase(std::remove_if(root.begin(),
+                            root.end(),
+                            [&](Index i) {
+                              return std::abs(search.height()[i] - search.height()[seed]) > band;
+                            }),
+             root.end());
   return std::move(root);
 }
 

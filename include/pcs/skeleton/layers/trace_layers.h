@@ -29,8 +29,8 @@ struct Layer_options
   Ring_arc_options rings;
 };
 
-/// Returns the points of the root: the used point nearest to `hint` (in coordinates of the scan),
-/// or the result of `find_root()`.
+/// Returns the points of the root: those of `find_root_near()` for a `hint` (in coordinates of the
+/// scan), otherwise those of `find_root()`.
 template <class ConcurrencyTag>
 std::vector<Index> points_of_root(const Scan& scan,
                                   const std::vector<std::uint8_t>& is_used,
@@ -40,13 +40,9 @@ std::vector<Index> points_of_root(const Scan& scan,
                                   const Vec3& up,
                                   const Layer_options& options)
 {
-  if (!hint)
-    return find_root<ConcurrencyTag>(scan, is_used, links, parts, up, options.roots);
-  return {scan.search
-              ->nearest_if(*hint,
-                           std::numeric_limits<double>::max(),
-                           [&](Index i) { return is_used[i] != 0; })
-              .index};
+  return hint
+             ? find_root_near<ConcurrencyTag>(*hint, scan, is_used, links, parts, up, options.roots)
+             : find_root<ConcurrencyTag>(scan, is_used, links, parts, up, options.roots);
 }
 
 /*!

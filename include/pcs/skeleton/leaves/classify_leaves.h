@@ -9,6 +9,7 @@
 #include <pcs/skeleton/graph/shortest_paths.h>
 #include <pcs/skeleton/leaves/detect_linear_points.h>
 #include <pcs/skeleton/leaves/detect_planar_patches.h>
+#include <pcs/skeleton/leaves/find_stem_wood.h>
 #include <pcs/skeleton/leaves/find_surface_wood.h>
 #include <pcs/skeleton/leaves/sampling_dimension.h>
 #include <pcs/skeleton/leaves/wood_score_of_paths.h>
@@ -44,6 +45,7 @@ struct Leaf_options
   int rounds = 3;          ///< rounds of removal: points first, then axes twice [count]
   double pipe_slack = 1.5; ///< `Pipe_model_options::slack` of trees with leaves [-]
   Surface_wood_options hollow;
+  Stem_wood_options stem;
   Linear_point_options lines;
   Wood_path_options paths;
   Planar_patch_options patches;

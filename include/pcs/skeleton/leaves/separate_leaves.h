@@ -23,10 +23,11 @@ namespace skeleton {
 /// The state of a leaf-wood separation between rounds.
 struct Leaf_state
 {
-  int rounds = 0;                ///< rounds in which points were removed
-  bool has_leaves = false;       ///< otherwise only points far from wood were removed
-  bool is_in_rows = false;       ///< the points lie in rows, where leaves cannot be recognized
-  std::vector<float> wood_score; ///< log-odds of wood, by point; empty: unknown
+  int rounds = 0;                    ///< rounds in which points were removed
+  bool has_leaves = false;           ///< otherwise only points far from wood were removed
+  bool is_in_rows = false;           ///< the points lie in rows, where leaves cannot be recognized
+  std::vector<float> wood_score;     ///< log-odds of wood, by point; empty: unknown
+  std::vector<std::uint8_t> is_stem; ///< wood of the stem, by point; empty without leaves
 };
 
 /// Returns the points of axes that are wood; without leaves, all points except outliers.
