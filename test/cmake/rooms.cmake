@@ -64,6 +64,7 @@ set(skeleton_session
   scan/Point_labels.h
   scan/measure_coordinate_step.h
   scan/prepare_scan.h
+  scan/thin_dense_points.h
   slices/section_skeleton.h)
 set(skeleton_clutter graph/Neighbor_graph.h scan/Point_labels.h)
 set(skeleton_layers graph/Neighbor_graph.h graph/shortest_paths.h)

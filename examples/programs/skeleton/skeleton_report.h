@@ -68,6 +68,7 @@ inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skele
   json["status"] = pcs::to_string(r.status);
   json["points"] = {{"all", r.number_of_points},
                     {"duplicates", r.number_of_duplicates},
+                    {"scan", r.number_of_scan_points},
                     {"outliers", r.number_of_outliers},
                     {"leaves", r.number_of_leaf_points},
                     {"ground", r.number_of_ground_points},
@@ -76,6 +77,7 @@ inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skele
                     {"unreachable", r.number_of_unreached_points}};
   json["spacing"] = r.spacing;
   json["voxel_size"] = r.voxel_size;
+  json["merging_cell"] = r.merging_cell;
   json["coordinate_step"] = r.coordinate_step;
   json["noise"] = r.noise;
   json["residual"] = r.residual;

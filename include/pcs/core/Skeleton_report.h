@@ -72,8 +72,14 @@ struct Skeleton_report
   Status status = Status::nothing_to_do;
 
   std::size_t number_of_points = 0; ///< of the input [count]
-  //! points that coincide with another point within the noise [count]
+  //! points that coincide with another point within the noise; in dense scans, these are all points
+  //! that are merged with others of their cell [count]
   std::size_t number_of_duplicates = 0;
+  //! points from which the tree is computed, `number_of_points - number_of_duplicates`; the
+  //! following numbers of points count these [count]
+  std::size_t number_of_scan_points = 0;
+  //! side of the cells in which the points of a dense scan were merged; 0: not a dense scan [L]
+  double merging_cell = 0;
   std::size_t number_of_outliers = 0; ///< removed points far from all others [count]
   //! points removed by `wood_map` or `do_remove_leaves` [count]
   std::size_t number_of_leaf_points = 0;
@@ -104,7 +110,8 @@ struct Skeleton_report
   //! whether `coordinate_step` is the resolution of 32-bit floating-point numbers far from the
   //! origin
   bool is_single_precision = false;
-  double noise = 0; ///< standard deviation of the points from the surface [L]
+  //! standard deviation of the points from the surface; in dense scans, of the merged points [L]
+  double noise = 0;
   //! median distance of the points from the fitted surfaces; several times `noise` indicates a
   //! poor fit [L]
   double residual = 0;
@@ -155,16 +162,17 @@ inline void warn_of_points(const Skeleton_report& r, std::vector<std::string>& s
     sentences.push_back("more than one tree: " + std::to_string(r.number_of_other_stems) +
                         " other stem(s) at the height of the foot; only one tree is kept "
                         "(root_position selects it)");
-  if (double(r.number_of_unreached_points) > max_unreached * double(r.number_of_points))
+  const std::size_t points = r.number_of_points - r.number_of_duplicates;
+  if (double(r.number_of_unreached_points) > max_unreached * double(points))
     sentences.push_back(std::to_string(r.number_of_unreached_points) + " of " +
-                        std::to_string(r.number_of_points) +
+                        std::to_string(points) +
                         " points belong to branches that are too far from the tree");
   if (r.number_of_wall_points > 0)
     sentences.push_back(std::to_string(r.number_of_wall_points) +
                         " points on or beside walls or other flat faces were removed; similar "
                         "objects may remain among the branches");
-  const double tree = double(r.number_of_points) - double(r.number_of_ground_points) -
-                      double(r.number_of_wall_points);
+  const double tree =
+      double(points) - double(r.number_of_ground_points) - double(r.number_of_wall_points);
   if (double(r.number_of_leaf_points) > max_leaves * tree)
     sentences.push_back("most of the points are classified as leaves, which hide wood: radii and "
                         "volume may differ much between scans of the same tree");

@@ -14,6 +14,7 @@
 #include <pcs/skeleton/scan/Point_labels.h>
 #include <pcs/skeleton/scan/measure_coordinate_step.h>
 #include <pcs/skeleton/scan/prepare_scan.h>
+#include <pcs/skeleton/scan/thin_dense_points.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -91,6 +92,7 @@ void take_points(Session_state<Tag>& s)
 inline Session_options draft_options(Session_options options, const Scan_frame& frame)
 {
   options.do_register_stations = false;
+  options.do_thin = false; // merged points would not belong to one station
   options.stations.clear();
   options.method = Skeleton_method::chains;
   options.axes.passes = 1; // sufficient for thick wood, even in leaves
@@ -460,6 +462,8 @@ bool Session<ConcurrencyTag>::find_neighbors(pcs::internal::Progress& progress)
     internal::take_points(s);
   if (!internal::register_stations(s, progress))
     return false;
+  if (s.options.do_thin)
+    thin_dense_points<ConcurrencyTag>(s.is_wood, s.options.thinning, s.scan);
   measure_points<ConcurrencyTag>(s.scan);
   s.labels.start(s.is_wood);
   internal::localize_hints(s);
@@ -571,7 +575,7 @@ template <class ConcurrencyTag>
 Vec3 Session<ConcurrencyTag>::normal_of_input(std::size_t i) const
 {
   const Vec3 across =
-      offset_of_point(scan(), tree(), m_state->successors, scan().point_of_input[i]);
+      offset_of_point(tree(), m_state->successors, node_of_input(i), scan().position_of_input(i));
   const double length = across.norm();
   return length > 0 ? scan().frame.direction_to_input(across / length) : Vec3(Vec3::Zero());
 }
@@ -579,8 +583,10 @@ Vec3 Session<ConcurrencyTag>::normal_of_input(std::size_t i) const
 template <class ConcurrencyTag>
 double Session<ConcurrencyTag>::residual_of_input(std::size_t i) const
 {
-  return scan().frame.unit *
-         residual_of_point(scan(), tree(), m_state->successors, scan().point_of_input[i]);
+  return scan().frame.unit * residual_of_point(tree(),
+                                               m_state->successors,
+                                               node_of_input(i),
+                                               scan().position_of_input(i));
 }
 
 template <class ConcurrencyTag>

@@ -14,6 +14,7 @@
 #include <pcs/skeleton/radii/refine_radii.h>
 #include <pcs/skeleton/registration/register_stations.h>
 #include <pcs/skeleton/result/describe_tree.h>
+#include <pcs/skeleton/scan/thin_dense_points.h>
 #include <pcs/skeleton/slices/section_skeleton.h>
 
 #include <utility>
@@ -29,7 +30,10 @@ struct Session_options : Session_hints
 
   bool do_trace_paths = true; ///< if `false`, `find_paths()` ends with the points that may be trees
 
+  bool do_thin = true; ///< whether the points of dense scans are merged
+
   Registration_options registration;
+  Thinning_options thinning;
   Clutter_options clutter;
   Layer_options layers;
   Axis_options axes;

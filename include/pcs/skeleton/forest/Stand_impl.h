@@ -57,6 +57,7 @@ bool find_stand(const std::vector<Vec3>& input,
   Session_options options(hints);
   options.leaf_removal = Leaf_removal::never;
   options.do_trace_paths = false;
+  options.do_thin = false;
   Session<ConcurrencyTag> session(thinned.points, {}, options);
   if (!session.find_paths(progress))
     return false;

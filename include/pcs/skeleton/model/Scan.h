@@ -40,6 +40,9 @@ struct Scan
   Scan_frame frame;
   std::vector<Vec3> points;
   std::vector<Index> point_of_input; ///< index into `points` of each input point
+  double cell_side = 0; ///< of the cells in which points were merged; 0: not a dense scan [L]
+  std::vector<Vec3> place_of_input;    ///< positions before this merging; empty without it
+  std::vector<std::uint8_t> is_sparse; ///< points far less dense than wood; empty without merging
   pcs::internal::Huge_vector<std::array<Index, neighbors_per_point>>
       neighbors;                     ///< nearest first, padded with `none`
   std::vector<double> local_spacing; ///< distance to the 4th neighbour [L]
@@ -48,6 +51,11 @@ struct Scan
   std::unique_ptr<neighborhood::Nearest_neighbors> search; ///< over all `points`
 
   std::size_t size() const { return points.size(); }
+  /// Returns the position of an input point.
+  const Vec3& position_of_input(std::size_t i) const
+  {
+    return place_of_input.empty() ? points[point_of_input[i]] : place_of_input[i];
+  }
 };
 
 } // namespace skeleton

@@ -17,24 +17,22 @@
 namespace pcs {
 namespace skeleton {
 
-/// Returns the vector from the axis of its branch to point `p`, which has a node. `next` is the
-/// result of `successors()`.
+/// Returns the vector from the axis to a point on the branch at node `v`. `next` is the result of
+/// `successors()`.
 inline Vec3
-offset_of_point(const Scan& scan, const Branch_tree& tree, const std::vector<Index>& next, Index p)
+offset_of_point(const Branch_tree& tree, const std::vector<Index>& next, Index v, const Vec3& point)
 {
-  return nearest_edge(tree, next, tree.node_of_point[p], scan.points[p], Base_edge::cylinder)
-      .offset;
+  return nearest_edge(tree, next, v, point, Base_edge::cylinder).offset;
 }
 
-/// Returns the signed distance of point `p`, which has a node, from the surface of its branch,
-/// which consists of truncated cones between nodes; it is negative inside [L].
-inline double residual_of_point(const Scan& scan,
-                                const Branch_tree& tree,
+/// Returns the signed distance of a point from the surface of the branch at node `v`, which consists
+/// of truncated cones between nodes; it is negative inside [L].
+inline double residual_of_point(const Branch_tree& tree,
                                 const std::vector<Index>& next,
-                                Index p)
+                                Index v,
+                                const Vec3& point)
 {
-  const Place_on_edge place =
-      nearest_edge(tree, next, tree.node_of_point[p], scan.points[p], Base_edge::cylinder);
+  const Place_on_edge place = nearest_edge(tree, next, v, point, Base_edge::cylinder);
   return std::sqrt(place.squared_distance) - place.radius;
 }
 
@@ -48,7 +46,8 @@ median_residual(const Scan& scan, const Branch_tree& tree, const std::vector<Ind
   const std::size_t n = tree.node_of_point.size(), step = 1 + n / enough;
   for (std::size_t i = 0; i < n; i += step)
     if (tree.node_of_point[i] != none)
-      distances.push_back(std::abs(residual_of_point(scan, tree, next, static_cast<Index>(i))));
+      distances.push_back(
+          std::abs(residual_of_point(tree, next, tree.node_of_point[i], scan.points[i])));
   return pcs::internal::lower_median(distances);
 }
 

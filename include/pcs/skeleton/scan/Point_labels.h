@@ -49,6 +49,8 @@ public:
     m_is_found_leaf.assign(n, 0);
     for (std::size_t i = 0; i < n; ++i)
       m_is_leaf[i] = !may_be_wood[i];
+    m_report.number_of_scan_points = n;
+    m_report.merging_cell = m_scan.frame.unit * m_scan.cell_side;
     m_report.number_of_duplicates = m_report.number_of_points - n;
     m_report.number_of_leaf_points = number_of(m_is_leaf);
     m_report.number_of_outliers = number_of(m_scan.is_outlier) - m_report.number_of_leaf_points;

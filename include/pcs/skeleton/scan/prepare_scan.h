@@ -91,7 +91,8 @@ template <class ConcurrencyTag>
 void find_neighbors(Scan& scan)
 {
   const std::size_t n = scan.size();
-  scan.search = std::make_unique<neighborhood::Nearest_neighbors>(scan.points);
+  if (!scan.search)
+    scan.search = std::make_unique<neighborhood::Nearest_neighbors>(scan.points);
   scan.neighbors.resize(n);
   scan.local_spacing.resize(n);
   std::vector<double> nearest(n);
@@ -161,6 +162,7 @@ inline bool merge_copies(Scan& scan)
     return false;
   for (Index& i : scan.point_of_input)
     i = number[i];
+  scan.search.reset();
   scan.points = std::move(kept);
   return true;
 }
@@ -179,6 +181,10 @@ void mark_outliers(const std::vector<std::uint8_t>& is_part, Scan& scan)
   pcs::internal::for_each_index<ConcurrencyTag>(n, [&](std::size_t i) {
     if (!is_part[i])
       return;
+    if (!scan.is_sparse.empty() && scan.is_sparse[i]) {
+      scan.is_outlier[i] = 1;
+      return;
+    }
     // A point of a thin twig has two near neighbours, an outlier has none.
     const Index second = scan.neighbors[i][outlier_neighbor - 1];
     const double own = second != none ? (scan.points[i] - scan.points[second]).norm()
@@ -219,12 +225,14 @@ void take_points(std::vector<Vec3> input, const Vec3& up, Scan& scan)
   scan.points = std::move(found.places);
 }
 
-/// Merges copies, and measures neighbours, spacing and outliers of a scan with points. O(n log n).
+/// Merges copies, and measures neighbours, spacing and outliers of a scan with points. If it is
+/// dense, its points are already merged. O(n log n).
 template <class ConcurrencyTag>
 void measure_points(Scan& scan)
 {
   internal::find_neighbors<ConcurrencyTag>(scan);
-  for (int round = 0; round < copy_rounds && internal::merge_copies(scan); ++round)
+  const int rounds = scan.cell_side > 0 ? 0 : copy_rounds;
+  for (int round = 0; round < rounds && internal::merge_copies(scan); ++round)
     internal::find_neighbors<ConcurrencyTag>(scan);
   internal::mark_outliers<ConcurrencyTag>(std::vector<std::uint8_t>(scan.size(), 1), scan);
 }
