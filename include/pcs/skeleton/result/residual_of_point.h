@@ -25,8 +25,8 @@ offset_of_point(const Branch_tree& tree, const std::vector<Index>& next, Index v
   return nearest_edge(tree, next, v, point, Base_edge::cylinder).offset;
 }
 
-/// Returns the signed distance of a point from the surface of the branch at node `v`, which consists
-/// of truncated cones between nodes; it is negative inside [L].
+/// Returns the signed distance of a point from the surface of the branch at node `v`; it is negative
+/// inside [L]. The surface consists of truncated cones between nodes.
 inline double residual_of_point(const Branch_tree& tree,
                                 const std::vector<Index>& next,
                                 Index v,
