@@ -25,7 +25,7 @@ offset_of_point(const Branch_tree& tree, const std::vector<Index>& next, Index v
   return nearest_edge(tree, next, v, point, Base_edge::cylinder).offset;
 }
 
-/// Returns the signed distance of a point from the surface of the branch at node `v`; it is negative
+/// Returns the signed distance of a point from the surface of the branch at node `v`, negative
 /// inside [L]. The surface consists of truncated cones between nodes.
 inline double residual_of_point(const Branch_tree& tree,
                                 const std::vector<Index>& next,
