@@ -86,6 +86,8 @@ struct Skeleton_report
   std::size_t number_of_ground_points = 0; ///< points removed as ground [count]
   std::size_t number_of_wall_points = 0;   ///< points removed as walls or other flat faces [count]
   std::size_t number_of_unexplained_points = 0; ///< other points not assigned to a branch [count]
+  //! those of them around the base of a thick branch that no thick wood joins to the tree [count]
+  std::size_t number_of_unexplained_thick_points = 0;
   //! points of branches too far from the tree, which are not part of the result [count]
   std::size_t number_of_unreached_points = 0;
   std::size_t number_of_unreached_branches = 0; ///< branches too far from the tree [count]
@@ -167,6 +169,10 @@ inline void warn_of_points(const Skeleton_report& r, std::vector<std::string>& s
     sentences.push_back(std::to_string(r.number_of_unreached_points) + " of " +
                         std::to_string(points) +
                         " points belong to branches that are too far from the tree");
+  if (r.number_of_unexplained_thick_points > 0)
+    sentences.push_back("a part of a thick branch may be missing: " +
+                        std::to_string(r.number_of_unexplained_thick_points) +
+                        " points around its base belong to no branch");
   if (r.number_of_wall_points > 0)
     sentences.push_back(std::to_string(r.number_of_wall_points) +
                         " points on or beside walls or other flat faces were removed; similar "
@@ -316,14 +322,14 @@ inline std::ostream& operator<<(std::ostream& out, const Skeleton_report& r)
       << r.number_of_duplicates << " duplicates, " << r.number_of_outliers << " outliers, "
       << r.number_of_leaf_points << " leaves, " << r.number_of_ground_points << " on the ground, "
       << r.number_of_wall_points << " on walls, " << r.number_of_unexplained_points
-      << " unexplained, " << r.number_of_unreached_points << " out of reach), "
-      << r.number_of_other_stems << " other stems, " << r.number_of_branches << " branches, "
-      << r.number_of_nodes << " nodes, spacing " << r.spacing << ", noise " << r.noise
-      << ", residual " << r.residual << ", height " << r.height << ", diameter at breast height "
-      << r.diameter_at_breast_height << ", length " << r.total.length << ", volume "
-      << r.total.volume << "; seconds: neighbors " << r.seconds.neighbors << ", paths "
-      << r.seconds.paths << ", axes " << r.seconds.axes << ", joints " << r.seconds.joints
-      << ", sections " << r.seconds.sections;
+      << " unexplained, " << r.number_of_unexplained_thick_points << " of them on thick branches, "
+      << r.number_of_unreached_points << " out of reach), " << r.number_of_other_stems
+      << " other stems, " << r.number_of_branches << " branches, " << r.number_of_nodes
+      << " nodes, spacing " << r.spacing << ", noise " << r.noise << ", residual " << r.residual
+      << ", height " << r.height << ", diameter at breast height " << r.diameter_at_breast_height
+      << ", length " << r.total.length << ", volume " << r.total.volume << "; seconds: neighbors "
+      << r.seconds.neighbors << ", paths " << r.seconds.paths << ", axes " << r.seconds.axes
+      << ", joints " << r.seconds.joints << ", sections " << r.seconds.sections;
   return out;
 }
 

@@ -5,11 +5,10 @@
 #ifndef PCS_SKELETON_AXES_DROP_TWO_POINT_AXES_H
 #define PCS_SKELETON_AXES_DROP_TWO_POINT_AXES_H
 
+#include <pcs/skeleton/axes/remove_axes.h>
 #include <pcs/skeleton/model/Axis_set.h>
 
 #include <cstddef>
-#include <utility>
-#include <vector>
 
 namespace pcs {
 namespace skeleton {
@@ -41,23 +40,7 @@ inline std::size_t drop_two_point_axes(const Two_point_axis_options& rules, Axis
                          double(pairs) >= rules.share * double(set.axes.size());
   if (pairs == 0 || are_twigs)
     return 0;
-  // new index of each kept axis, and of the nearest kept axis towards the root
-  std::vector<Index> own(set.axes.size(), none), next(set.axes.size(), none);
-  std::vector<Fitted_axis> kept;
-  for (Index a = 0; a < set.axes.size(); ++a) {
-    Fitted_axis& axis = set.axes[a];
-    if (axis.parent != none)
-      axis.parent = next[axis.parent]; // parents come first
-    next[a] = axis.parent;
-    if (axis.number_of_points == 2)
-      continue;
-    own[a] = next[a] = static_cast<Index>(kept.size());
-    kept.push_back(std::move(axis));
-  }
-  for (Index& a : set.axis_of_point)
-    if (a != none)
-      a = own[a];
-  set.axes = std::move(kept);
+  remove_axes([&](Index a) { return set.axes[a].number_of_points == 2; }, set);
   return pairs;
 }
 

@@ -1,0 +1,158 @@
+// Copyright (c) 2026 The pcs authors
+// SPDX-License-Identifier: BSL-1.0
+// A thick limb whose inner part has few points: it is continued to its trunk, or counted.
+
+#include <pcs/core/Skeleton_report.h>
+#include <pcs/skeleton/axes/follow_thick_ends.h>
+#include <pcs/skeleton/scan/prepare_scan.h>
+
+#include <CGAL/tags.h>
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace test_follow_thick_ends {
+
+using namespace pcs::skeleton;
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846, trunk_radius = 0.1, limb_radius = 0.04;
+constexpr double inner = 0.8, outer = 1.6; ///< ends of the part with few points, and of the limb
+
+/// A trunk and a limb. The axis of the limb begins at `inner`, where its points become dense.
+class Limb
+{
+public:
+  Scan scan;
+  Axis_set set;
+  std::vector<Index> root; ///< lowest points
+
+  /// `number_of_points`: on the inner part of the limb; `depth`: they lie up to this many radii
+  /// below its surface.
+  Limb(std::size_t number_of_points, double depth)
+  {
+    add_tube(0, Vec3::Zero(), Vec3(0, 0, 2), trunk_radius);
+    add_tube(1, inner * m_along + m_seat, outer * m_along + m_seat, limb_radius);
+    add_few(number_of_points, depth);
+    prepare_scan<CGAL::Sequential_tag>(m_points, Vec3::UnitZ(), scan);
+    std::fill(scan.is_outlier.begin(), scan.is_outlier.end(), std::uint8_t(0));
+    set.noise = 0.001 / scan.frame.unit;
+    set.axis_of_point.assign(scan.size(), none);
+    set.segment_of_point.assign(scan.size(), none);
+    add_axis(Vec3::Zero(), Vec3(0, 0, 2), trunk_radius);
+    add_axis(inner * m_along + m_seat, outer * m_along + m_seat, limb_radius);
+    for (std::size_t k = 0; k < m_points.size(); ++k) {
+      const Index i = scan.point_of_input[k];
+      set.axis_of_point[i] = m_axis[k];
+      if (m_axis[k] == none)
+        continue;
+      Fitted_axis& axis = set.axes[m_axis[k]];
+      ++axis.number_of_points;
+      set.segment_of_point[i] = nearest_place(axis.axis, scan.points[i]).segment;
+      if (m_points[k].z() < 0.02)
+        root.push_back(i);
+    }
+  }
+
+  Followed_ends follow()
+  {
+    return follow_thick_ends(scan, Chain_options(), Thick_end_options(), root, set);
+  }
+  Vec3 seat() const { return scan.frame.to_local(m_seat); }
+
+private:
+  void add(Index axis, const Vec3& p)
+  {
+    m_points.push_back(p);
+    m_axis.push_back(axis);
+  }
+  void add_tube(Index axis, const Vec3& a, const Vec3& b, double r)
+  {
+    constexpr double spacing = 0.01;
+    const Vec3 along = (b - a).normalized(), e1 = along.unitOrthogonal(), e2 = along.cross(e1);
+    for (double z = 0; z < (b - a).norm(); z += spacing)
+      for (double t = 0; t < 2 * pi; t += spacing / r)
+        add(axis, a + z * along + r * (std::cos(t) * e1 + std::sin(t) * e2));
+  }
+  void add_few(std::size_t count, double depth)
+  {
+    constexpr double golden = 2.39996323; // [rad]
+    const Vec3 e1 = m_along.unitOrthogonal(), e2 = m_along.cross(e1);
+    for (std::size_t k = 0; k < count; ++k) {
+      const double z = trunk_radius + (inner - trunk_radius) * (double(k) + 0.5) / double(count);
+      const double r = limb_radius * (1 - depth * double(k % 4) / 3), t = golden * double(k);
+      add(none, m_seat + z * m_along + r * (std::cos(t) * e1 + std::sin(t) * e2));
+    }
+  }
+  void add_axis(const Vec3& a, const Vec3& b, double r)
+  {
+    Fitted_axis axis;
+    constexpr int steps = 40;
+    for (int k = 0; k <= steps; ++k) {
+      Axis_node node;
+      node.point = scan.frame.to_local(a + double(k) / steps * (b - a));
+      node.radius = r / scan.frame.unit;
+      axis.axis.push_back(node);
+    }
+    set.axes.push_back(axis);
+  }
+
+  Vec3 m_seat = Vec3(0, 0, 1), m_along = Vec3(0.8, 0, 0.6);
+  std::vector<Vec3> m_points;
+  std::vector<Index> m_axis;
+};
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(thick_ends)
+
+BOOST_AUTO_TEST_CASE(a_thick_limb_with_few_points_is_continued_to_its_trunk)
+{
+  // 400 points per square metre: five centimetres apart, on a radius of four
+  Limb limb(70, 0);
+  const Followed_ends found = limb.follow();
+  BOOST_TEST(found.number_of_ends == 1u);
+  BOOST_TEST(found.number_of_unexplained_points == 0u);
+  BOOST_REQUIRE(limb.set.axes.size() == 2u);
+  const double unit = limb.scan.frame.unit;
+  const Axis& axis = limb.set.axes[1].axis;
+  BOOST_TEST((axis.front().point - limb.seat()).norm() * unit < trunk_radius + limb_radius);
+  for (const Axis_node& node : axis) {
+    const Vec3 d = node.point - limb.seat();
+    const Vec3 along(0.8, 0, 0.6);
+    BOOST_TEST((d - d.dot(along) * along).norm() * unit < 0.1 * limb_radius);
+    BOOST_TEST(std::abs(node.radius * unit / limb_radius - 1) < 0.1);
+  }
+  const auto open = std::count(limb.set.axis_of_point.begin(), limb.set.axis_of_point.end(), none);
+  BOOST_TEST(open <= 7); // beside the trunk
+}
+
+BOOST_AUTO_TEST_CASE(points_inside_are_no_wood_and_are_counted)
+{
+  Limb limb(140, 1);
+  const Axis before = limb.set.axes[1].axis;
+  const Followed_ends found = limb.follow();
+  BOOST_TEST(found.number_of_ends == 0u);
+  BOOST_TEST(found.number_of_unexplained_points > 30u);
+  BOOST_TEST(limb.set.axes[1].axis.size() == before.size());
+}
+
+BOOST_AUTO_TEST_CASE(unexplained_points_of_thick_wood_give_a_warning)
+{
+  pcs::Skeleton_report report;
+  BOOST_TEST(pcs::warnings(report).empty());
+  report.number_of_unexplained_thick_points = 42;
+  const std::vector<std::string> sentences = pcs::warnings(report);
+  BOOST_REQUIRE(sentences.size() == 1u);
+  BOOST_TEST(sentences.front().find("42 points") != std::string::npos);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_follow_thick_ends
