@@ -74,6 +74,7 @@ inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skele
                     {"ground", r.number_of_ground_points},
                     {"walls", r.number_of_wall_points},
                     {"unexplained", r.number_of_unexplained_points},
+                    {"unexplained_thick", r.number_of_unexplained_thick_points},
                     {"unreachable", r.number_of_unreached_points}};
   json["spacing"] = r.spacing;
   json["voxel_size"] = r.voxel_size;
