@@ -55,6 +55,7 @@ set(skeleton_session
   axes/reassign_points.h
   branching/build_branch_tree.h
   clutter/remove_clutter.h
+  continuation/follow_thick_ends.h
   input/Session_hints.h
   layers/trace_layers.h
   leaves/separate_leaves.h
@@ -69,6 +70,7 @@ set(skeleton_session
 set(skeleton_clutter graph/Neighbor_graph.h scan/Point_labels.h)
 set(skeleton_layers graph/Neighbor_graph.h graph/shortest_paths.h)
 set(skeleton_axes graph/Neighbor_graph.h layers/cut_layers.h)
+set(skeleton_continuation axes/Axis_fit.h axes/Chain_options.h axes/remove_axes.h)
 set(skeleton_leaves graph/Neighbor_graph.h graph/shortest_paths.h)
 set(skeleton_slices layers/cut_layers.h)
 set(skeleton_forest

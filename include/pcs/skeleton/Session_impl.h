@@ -313,8 +313,8 @@ void restore_wood(Session_state<Tag>& s)
     s.labels.undo_leaf_removal();
 }
 
-/// Fits the axes of all branches, removes leaves, fuses pieces of the same axis, and continues thick
-/// axes through wood with few points.
+/// Fits the axes of all branches, removes leaves, fuses pieces of the same axis, and continues
+/// thick axes through wood with few points.
 template <class Tag>
 bool fit_all_axes(Session_state<Tag>& s, pcs::internal::Progress& progress)
 {
@@ -323,7 +323,7 @@ bool fit_all_axes(Session_state<Tag>& s, pcs::internal::Progress& progress)
   restore_wood(s);
   fuse_axes<Tag>(s.scan.spacing, s.options.branching.fusion, s.axes);
   s.report.number_of_unexplained_thick_points =
-      follow_thick_ends(s.scan, s.options.axes.chains, s.options.axes.thick_ends, s.root, s.axes)
+      follow_thick_ends(s.scan, s.options.axes.chains, s.options.thick_ends, s.root, s.axes)
           .number_of_unexplained_points;
   const double unit = s.scan.frame.unit;
   s.report.noise = unit * s.axes.noise;

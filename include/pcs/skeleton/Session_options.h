@@ -8,6 +8,7 @@
 #include <pcs/skeleton/axes/fit_axes.h>
 #include <pcs/skeleton/branching/build_branch_tree.h>
 #include <pcs/skeleton/clutter/remove_clutter.h>
+#include <pcs/skeleton/continuation/follow_thick_ends.h>
 #include <pcs/skeleton/input/Session_hints.h>
 #include <pcs/skeleton/layers/trace_layers.h>
 #include <pcs/skeleton/leaves/separate_leaves.h>
@@ -37,6 +38,7 @@ struct Session_options : Session_hints
   Clutter_options clutter;
   Layer_options layers;
   Axis_options axes;
+  Thick_end_options thick_ends;
   Leaf_options leaves;
   Branching_options branching;
   Radius_options radii;

@@ -10,7 +10,6 @@
 #include <pcs/skeleton/axes/Chain_fit.h>
 #include <pcs/skeleton/axes/Noise_and_density_model.h>
 #include <pcs/skeleton/axes/drop_two_point_axes.h>
-#include <pcs/skeleton/axes/follow_thick_ends.h>
 #include <pcs/skeleton/graph/Neighbor_graph.h>
 #include <pcs/skeleton/layers/cut_layers.h>
 #include <pcs/skeleton/model/Layer_tree.h>
@@ -42,7 +41,6 @@ struct Axis_options
   int most_cuts = 4;             ///< most successive fits of the remainder of a chain [count]
   std::size_t shortest_rest = 4; ///< least number of level sets of such a remainder [count]
   Two_point_axis_options pairs;
-  Thick_end_options thick_ends;
   std::size_t largest_wave = 64; ///< most chains that are fitted concurrently [count]
   double most_lost = 0.05;       ///< largest fraction of points lost to chains of the same wave [-]
 };

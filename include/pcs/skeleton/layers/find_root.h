@@ -378,9 +378,9 @@ std::vector<Index> find_root(const Scan& scan,
 }
 
 /*!
-  Returns the points of the stem at the height of `hint`, which lies on its surface or within it: the
-  connected points around the used point nearest to `hint`. Only that point where nothing like a
-  stem is connected to it: a lying stem, or a crown.
+  Returns the points of the stem at the height of `hint`, which lies on its surface or within it:
+  the connected points around the used point nearest to `hint`. In a lying stem and in a crown,
+  returns only that point.
 */
 template <class ConcurrencyTag>
 std::vector<Index> find_root_near(const Vec3& hint,

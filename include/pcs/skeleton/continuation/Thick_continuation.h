@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSL-1.0
 // Trial pieces that continue a thick axis where few points are left.
 
-#ifndef PCS_SKELETON_AXES_THICK_CONTINUATION_H
-#define PCS_SKELETON_AXES_THICK_CONTINUATION_H
+#ifndef PCS_SKELETON_CONTINUATION_THICK_CONTINUATION_H
+#define PCS_SKELETON_CONTINUATION_THICK_CONTINUATION_H
 
 #include <pcs/internal/constants.h>
 #include <pcs/skeleton/axes/Axis_fit.h>
@@ -258,4 +258,4 @@ private:
 } // namespace skeleton
 } // namespace pcs
 
-#endif // PCS_SKELETON_AXES_THICK_CONTINUATION_H
+#endif // PCS_SKELETON_CONTINUATION_THICK_CONTINUATION_H

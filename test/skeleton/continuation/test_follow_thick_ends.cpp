@@ -3,7 +3,7 @@
 // A thick limb whose inner part has few points: it is continued to its trunk, or counted.
 
 #include <pcs/core/Skeleton_report.h>
-#include <pcs/skeleton/axes/follow_thick_ends.h>
+#include <pcs/skeleton/continuation/follow_thick_ends.h>
 #include <pcs/skeleton/scan/prepare_scan.h>
 
 #include <CGAL/tags.h>

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSL-1.0
 // Continuation of thick axes to their parents through wood with few points.
 
-#ifndef PCS_SKELETON_AXES_FOLLOW_THICK_ENDS_H
-#define PCS_SKELETON_AXES_FOLLOW_THICK_ENDS_H
+#ifndef PCS_SKELETON_CONTINUATION_FOLLOW_THICK_ENDS_H
+#define PCS_SKELETON_CONTINUATION_FOLLOW_THICK_ENDS_H
 
 #include <pcs/skeleton/axes/Chain_options.h>
-#include <pcs/skeleton/axes/Thick_continuation.h>
 #include <pcs/skeleton/axes/remove_axes.h>
+#include <pcs/skeleton/continuation/Thick_continuation.h>
 #include <pcs/skeleton/model/Axis_set.h>
 
 #include <algorithm>
@@ -341,4 +341,4 @@ inline Followed_ends follow_thick_ends(const Scan& scan,
 } // namespace skeleton
 } // namespace pcs
 
-#endif // PCS_SKELETON_AXES_FOLLOW_THICK_ENDS_H
+#endif // PCS_SKELETON_CONTINUATION_FOLLOW_THICK_ENDS_H
