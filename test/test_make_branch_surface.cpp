@@ -227,7 +227,32 @@ BOOST_AUTO_TEST_CASE(branches_may_be_tubes_of_their_own)
   check_is_closed(triangles);
 }
 
-BOOST_AUTO_TEST_CASE(leaves_hang_on_fine_branches)
+BOOST_AUTO_TEST_CASE(leaves_begin_on_the_bark)
+{
+  // a thin branch along z, whose root is not the first vertex
+  Tree tree;
+  for (const double z : {0.5, 1.0, 0.0}) {
+    const auto v = add_vertex(tree);
+    tree[v].point = Point(0, 0, z);
+    tree[v].radius = 0.1;
+    tree[v].branch = 0;
+  }
+  add_edge(2, 0, tree);
+  add_edge(0, 1, tree);
+  tree[boost::graph_bundle].root = 2;
+  std::vector<Point> points;
+  std::vector<std::array<std::size_t, 3>> triangles;
+  const std::size_t count = pcs::make_leaf_surface(tree, points, triangles);
+  BOOST_TEST_REQUIRE(count > 0u);
+  const double length = pcs::default_leaf_share * 1.0; // the farthest node is 1 from the root
+  for (std::size_t k = 0; k < count; ++k) {
+    const Point& base = points[4 * k];
+    BOOST_CHECK_CLOSE(std::hypot(base.x(), base.y()), 0.1, 1e-6);
+    BOOST_CHECK_CLOSE(CGAL::squared_distance(points[4 * k + 2], base), length * length, 1e-6);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(leaves_grow_on_fine_branches)
 {
   const Tree& tree = small_scan().truth;
   std::vector<Point> points, others;

@@ -60,10 +60,12 @@ Leaf_nodes read_leaf_nodes(const Tree_skeleton<Kernel>& tree, const std::string&
           caller,
           "position or radius of node " + std::to_string(v) +
               " is not finite, or the radius is negative");
-    nodes.extent = std::max(nodes.extent, (position - nodes.position[0]).norm());
     if (out_degree(v, tree) == 0)
       tips.push_back(radius);
   }
+  const std::size_t root = tree[boost::graph_bundle].root;
+  for (const Eigen::Vector3d& position : nodes.position)
+    nodes.extent = std::max(nodes.extent, (position - nodes.position[root < n ? root : 0]).norm());
   const auto middle = tips.begin() + static_cast<std::ptrdiff_t>(tips.size() / 2);
   std::nth_element(tips.begin(), middle, tips.end());
   nodes.tip_radius = tips.empty() ? 0 : *middle;
@@ -177,7 +179,10 @@ std::size_t make_leaf_surface(const Tree_skeleton<Kernel>& tree,
       const Vec3 along = direction();
       Vec3 side = along.cross(direction());
       side = side.norm() > 1e-6 ? Vec3(side.normalized()) : Vec3(along.unitOrthogonal());
-      const Vec3 base = nodes.position[p] + uniform() * d + radius * along;
+      const Vec3 across = d.cross(along).cross(d);
+      const Vec3 normal = across.norm() > 1e-9 * d.squaredNorm() ? Vec3(across.normalized())
+                                                                 : Vec3(d.unitOrthogonal());
+      const Vec3 base = nodes.position[p] + uniform() * d + radius * normal;
       const std::size_t first = vertices.size();
       add(base);
       add(base + 0.5 * length * along + 0.25 * length * side);

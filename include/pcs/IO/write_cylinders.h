@@ -57,7 +57,7 @@ void write_cylinders(const std::string& path, const Tree_skeleton<Kernel>& tree)
                          CGAL::to_double(b.z()) - CGAL::to_double(a.z())};
     const double length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     row[v] = row[p];
-    if (!(length > 0) || tree[v].branch != tree[p].branch)
+    if (length == 0 || tree[v].branch != tree[p].branch)
       continue;
     line.clear();
     const double radius = 0.5 * (CGAL::to_double(tree[p].radius) + CGAL::to_double(tree[v].radius));
@@ -80,7 +80,11 @@ void write_cylinders(const std::string& path, const Tree_skeleton<Kernel>& tree)
     internal::append_number(line,
                             branch < bundle.branches.size() ? bundle.branches[branch].order : 0);
     line += ',';
-    internal::append_number(line, CGAL::to_double(tree[v].radius_error));
+    internal::append_number(line,
+                            internal::finite_value(CGAL::to_double(tree[v].radius_error),
+                                                   "the error of a radius",
+                                                   v,
+                                                   "write_cylinders"));
     line += tree[v].is_measured ? ",1\n" : ",0\n";
     file.write(line);
     row[v] = ++count;
