@@ -27,7 +27,7 @@ int main()
   stages.find_neighbors();
   std::cout << "spacing " << 1000 * stages.report().spacing << " mm\n";
   stages.find_paths();
-  std::cout << stages.layers().size() << " parts of layers\n";
+  std::cout << stages.layers().size() << " level-set components\n";
   stages.fit_axes();
   std::cout << stages.axes().axes.size() << " axes\n";
 

@@ -342,7 +342,7 @@ bool run_batch(const Skeleton_options& options)
   }
   if (!options.is_quiet)
     std::cout << done_before + done_now << " of " << options.inputs.size()
-              << " scans have a skeleton, " << done_before << " of them from before; see "
+              << " scans have a skeleton, " << done_before << " of them from previous runs; see "
               << log.path().string() << '\n';
   return done_before + done_now == options.inputs.size();
 }

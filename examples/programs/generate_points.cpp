@@ -35,7 +35,8 @@ std::uint64_t read_count(const std::string& text)
   std::uint64_t n = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), n);
   if (error != std::errc() || end != text.data() + text.size() || n == 0 || n > 4294967295U)
-    throw std::invalid_argument("\"" + text + "\" is no number of points between 1 and 4294967295");
+    throw std::invalid_argument("\"" + text +
+                                "\" is not a number of points between 1 and 4294967295");
   return n;
 }
 

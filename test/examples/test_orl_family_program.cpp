@@ -260,7 +260,7 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_with_a_sentence)
   refuses(skeletons + "--sample -1 --output out", "sample");
   refuses(skeletons + "--modes -1 --output out", "modes");
   refuses(skeletons + "--mean --matches m.csv --output out", "two trees");
-  refuses(skeletons + "--load-space s.txt --mean --output out", "one of both");
+  refuses(skeletons + "--load-space s.txt --mean --output out", "only one of them");
   refuses("--load-space missing.txt --mean --output out", "missing.txt");
   refuses(skeletons + "--skeleton missing.swc --mean --output out", "missing.swc");
   write("file", "");

@@ -455,7 +455,7 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_with_a_sentence)
 {
   refuses("--output out", "--skeleton");
   refuses(trees, "--output");
-  refuses("--skeleton a.swc --output out", "expected 2");
+  refuses("--skeleton a.swc --output out", "expected at least 2");
   refuses(trees + "--skeleton a.swc --output out", "expected as many");
   refuses("--skeleton a.swc --skeleton missing.swc --output out", "missing.swc");
   refuses("--skeleton a.swc --skeleton a.ply --output out", "a.ply");

@@ -500,7 +500,8 @@ BOOST_AUTO_TEST_CASE(a_batch_replaces_what_is_out_of_date)
   const std::string swc = content("out/tree.swc"), mesh = content("out/tree_mesh.ply");
   BOOST_TEST(run(batch) == 0, err);
   BOOST_TEST(log().size() == 1u); // all there
-  BOOST_TEST(out.find("1 of 1 scans have a skeleton, 1 of them from before") != std::string::npos);
+  BOOST_TEST(out.find("1 of 1 scans have a skeleton, 1 of them from previous runs") !=
+             std::string::npos);
 
   // other options, of the mesh and of the tree
   BOOST_TEST(run(batch + "--also mesh --separate") == 0, err);

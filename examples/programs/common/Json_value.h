@@ -139,7 +139,7 @@ inline Json read_json(const std::string& path)
     else if (event == Json::parse_event_t::key &&
              !keys.back().insert(value.get<std::string>()).second)
       throw pcs::IO_error(path,
-                          "the key \"" + value.get<std::string>() + "\" stands twice in an object");
+                          "the key \"" + value.get<std::string>() + "\" occurs twice in an object");
     return true;
   };
   try {

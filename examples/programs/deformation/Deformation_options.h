@@ -48,7 +48,7 @@ rotation and scale; without it that is the centroid of the selected points. The 
 must be made of a rotation, one scale and a translation. Bounds are inclusive.
 
 Files: PLY, LAS, OFF, or text (xyz, txt, csv, asc, pts, pwn). Order and properties of
-the points are kept, normals nx, ny, nz are turned; faces and lists are not kept. PLY is
+the points are kept, normals nx, ny, nz are rotated; faces and lists are not kept. PLY is
 written in binary, with coordinates in double precision.
 
 With --stream the input may be larger than memory. It is read twice (text: three times;
@@ -71,8 +71,8 @@ inline void declare(CLI::App& app, Options& options)
   app.add_flag(
       "--default-edit",
       options.is_default_edit,
-      "instead of --edit: hold the lowest 20 % along the longest axis, turn the highest 15 % by 40 "
-      "degrees about it and move them sideways");
+      "instead of --edit: hold the lowest 20 % along the longest axis, rotate the highest 15 % by "
+      "40 degrees about it and move them sideways");
   app.add_option("--output", options.output, "deformed points; may be the input")->required();
   app.add_option("--samples",
                  options.number_of_samples,

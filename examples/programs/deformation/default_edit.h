@@ -58,7 +58,7 @@ inline Edit default_edit(const std::vector<pcs::IO::Point_table::Point_3>& point
   const double foot = extent.low + 0.4 * half, head = extent.high - 0.3 * half;
   if (!(foot < head))
     throw pcs::Invalid_input(
-        "default edit: the points lie too close together to tell a foot from a head");
+        "default edit: the points lie too close together to separate a foot from a head");
 
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Box lowest{Vec3::Constant(-infinity), Vec3::Constant(infinity)}, highest = lowest;

@@ -96,28 +96,29 @@ inline void declare_family(CLI::App& app, Options& o)
 {
   const char* const group = "Families of trees";
   app.add_flag("--mean", o.do_mean, "the mean of all trees: mean.swc, mean.ply")->group(group);
-  app.add_option("--mean-kind", o.mean_kind, "least sum of distances, or of their squares")
+  app.add_option("--mean-kind",
+                 o.mean_kind,
+                 "minimizes the sum of distances (median) or of squared distances (frechet)")
       ->check(CLI::IsMember({"median", "frechet"}))
       ->capture_default_str()
       ->group(group);
   app.add_option("--modes",
                  o.number_of_modes,
-                 "so many modes of variation, at two standard deviations either way: "
+                 "number of modes of variation; trees at minus and plus two standard deviations: "
                  "mode_1_minus.swc, mode_1_plus.swc, ..., and modes.json")
       ->check(CLI::Range(0, 10000))
       ->group(group);
-  app.add_option(
-         "--mode-inner-product",
-         o.mode_inner_product,
-         "what modes explain: how branches differ where trees have them, or the metric, for "
-         "trees that differ by which branches they have")
+  app.add_option("--mode-inner-product",
+                 o.mode_inner_product,
+                 "inner product of the variance: branches compared among the trees that have "
+                 "them, or the metric, for trees that differ in the presence of branches")
       ->check(CLI::IsMember({"branches", "metric"}))
       ->capture_default_str()
       ->group(group);
-  app.add_option("--sample", o.number_of_samples, "so many new trees: sample_0000.swc, ...")
+  app.add_option("--sample", o.number_of_samples, "number of new trees: sample_0000.swc, ...")
       ->check(CLI::Range(0, 10000))
       ->group(group);
-  app.add_option("--seed", o.seed, "of new trees")
+  app.add_option("--seed", o.seed, "random seed of new trees")
       ->check(program::is_seed)
       ->check(CLI::Range(std::int64_t(0), std::numeric_limits<std::int64_t>::max()))
       ->capture_default_str()
@@ -128,21 +129,26 @@ inline void declare_family(CLI::App& app, Options& o)
       ->group(group);
   app.add_option("--pipe-model",
                  o.pipe_exponent,
-                 "radii of new trees to this power do not add up to more at forks; 2 to 2.5")
+                 "exponent of the pipe model for new trees: the sum of the children's radii to "
+                 "this power is at most that of the parent; 2 to 2.5")
       ->check(CLI::Range(0.0, 10.0))
       ->group(group);
-  add_numbers(app, "--weights", o.weights, "one per tree: the tree between, weighted_mean.swc")
+  add_numbers(app, "--weights", o.weights, "one per tree: the weighted mean, weighted_mean.swc")
       ->group(group);
   app.add_flag("--growth", o.do_growth, "a smooth path through all trees: growth_0000.swc, ...")
       ->group(group);
-  add_numbers(app, "--times", o.times, "of the trees for --growth, increasing; 0,1,2,... otherwise")
+  add_numbers(app,
+              "--times",
+              o.times,
+              "times of the trees for --growth, increasing; default: 0,1,2,...")
       ->group(group);
-  app.add_option("--frames", o.number_of_frames, "of the path")
+  app.add_option("--frames", o.number_of_frames, "number of trees on the path of --growth")
       ->check(CLI::Range(2, 100000))
       ->capture_default_str()
       ->group(group);
-  app.add_flag("--monotone", o.is_monotone, "nothing shrinks on the path")->group(group);
-  app.add_option("--changes", o.changes, "write what became of each branch here (CSV, two trees)")
+  app.add_flag("--monotone", o.is_monotone, "lengths and radii never decrease on the path")
+      ->group(group);
+  app.add_option("--changes", o.changes, "write the changes of each branch here (CSV, two trees)")
       ->group(group);
   app.add_option("--distances", o.distances, "write the distances of all pairs here (CSV)")
       ->group(group);
@@ -154,34 +160,36 @@ inline void declare_family(CLI::App& app, Options& o)
 inline void declare(CLI::App& app, Options& o)
 {
   app.footer(
-      R"(Give --tree and --skeleton once for each tree: twice at least. Points: PLY, LAS, OFF or
+      R"(Give --tree and --skeleton once for each tree, at least twice. Points: PLY, LAS, OFF or
 text. Skeletons: SWC, CSV, or .txtskl with layers of branches. Without --skeleton, skeletons are
 extracted from the points; without --tree, only skeletons are made.
 
-DIR gets lambda_0.250.ply and lambda_0.250.swc for each place on the path between the first two
-trees: 0 is the first, 1 the second; places beyond are allowed. Properties that all point files
-have are kept. Means, modes and the like are made instead of the path, or with --lambda as well.
+The files lambda_0.250.ply and lambda_0.250.swc are written to DIR for each parameter of the path
+between the first two trees: 0 is the first, 1 the second; parameters below 0 and above 1 are
+allowed. Properties that all point files have are kept. The options for families of trees replace
+the path; with --lambda, it is written as well.
 
 Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
   app.set_version_flag("--version", PCS_PROGRAM_VERSION);
   app.add_option("--tree", o.trees, "points of a tree, once for each")->allow_extra_args(false);
   app.add_option("--skeleton", o.skeletons, "skeleton of a tree, once for each")
       ->allow_extra_args(false);
-  add_numbers(app, "--lambda", o.lambda, "places on the path, separated by commas")
+  add_numbers(app, "--lambda", o.lambda, "parameters on the path, separated by commas")
       ->default_str("0,0.25,0.5,0.75,1");
-  app.add_option("--output", o.output, "folder for the results; it is made")->required();
+  app.add_option("--output", o.output, "folder for the results; created if missing")->required();
   app.add_option("--matches",
                  o.matches,
                  "write the ids of the tips of matched branches here (CSV)");
   app.add_option("--report", o.report, "write distances, counts and seconds here (JSON)");
   app.add_option("--correspondences",
                  o.correspondences,
-                 "read what was computed before from this file, or write it if there is none");
-  app.add_option("--align",
-                 o.align,
-                 "whether the second of two trees may stand turned about the vertical, as a pot "
-                 "that was put down anew; of more trees each is turned to stand like the one "
-                 "before, if this is given")
+                 "read correspondences from this file, or write them if it does not exist");
+  app.add_option(
+         "--align",
+         o.align,
+         "whether the second of two trees may be rotated about the vertical, for example in a "
+         "pot that was moved; more than two trees: if given, each is rotated to match "
+         "the previous one")
       ->check(CLI::IsMember({"none", "yaw"}))
       ->capture_default_str();
   app.add_option("--up", o.up, "the vertical")
@@ -195,24 +203,27 @@ Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
       ->capture_default_str();
   app.add_option("--max-extrapolation-degrees",
                  o.max_extrapolation_angle,
-                 "of an edge beyond the ends, in all [degrees]")
+                 "largest rotation of an edge beyond an end of the path [degrees]")
       ->check(CLI::Range(0.0, 180.0))
       ->capture_default_str();
   app.add_flag("--extend-axes",
                o.do_extend_axes,
-               "axes of given skeletons go to where the points end");
+               "extend the axes of given skeletons to the end of the points");
   CLI::Option* const in_order =
       app.add_flag("--sequential-emergence",
                    o.do_order_births,
-                   "new branches begin when the tip of their parent passes, as wood grows; default "
-                   "for two trees that were found to have "
-                   "grown at their tips");
+                   "new branches begin when the tip of their parent passes their base; default for "
+                   "two trees that were found to have grown at their tips");
   app.add_flag("--simultaneous-emergence",
                o.do_join_births,
-               "new branches begin all at once; default for all others, and with --load-space")
+               "all new branches begin at once; default for all other trees and with --load-space")
       ->excludes(in_order);
-  app.add_flag("--limit-radii", o.do_limit_radii, "no branch thicker than where it grows from");
-  app.add_flag("--published-energy", o.is_published, "match branches with the energy of the text");
+  app.add_flag("--limit-radii",
+               o.do_limit_radii,
+               "no branch is thicker than its parent at its base");
+  app.add_flag("--published-energy",
+               o.is_published,
+               "match branches with the energy as published [Aiteanu 2022]");
   app.add_flag("--quiet", o.is_quiet, "print errors only");
   declare_family(app, o);
   app.parse_complete_callback([&app, &o] {
@@ -233,13 +244,13 @@ inline void check_effects(const Options& o)
       };
   refuse(!o.load.empty(),
          {"--orientation", "--extend-axes", "--align", "--up", "--transport", "--published-energy"},
-         "with --load-space: the trees of " + o.load + " were compared before");
+         "with --load-space: the trees of " + o.load + " are already matched");
   refuse(o.load.empty() && o.trees.empty(),
          {"--transport", "--extend-axes"},
          "without points (--tree)");
   refuse(o.load.empty() && o.skeletons.empty(),
          {"--extend-axes"},
-         "without --skeleton: extracted axes go to where the points end");
+         "without --skeleton: extracted axes already extend to the end of the points");
   refuse(!o.has_places(),
          {"--max-extrapolation-degrees", "--sequential-emergence", "--simultaneous-emergence"},
          "without --lambda");
@@ -282,21 +293,21 @@ inline void check(const Options& o)
 {
   const auto fail = [](const std::string& what) { throw pcs::Invalid_input(what); };
   if (!o.load.empty() && !(o.trees.empty() && o.skeletons.empty()))
-    fail("--load-space is given with trees, expected one of both");
+    fail("--load-space is given with trees, expected only one of them");
   if (o.load.empty()) {
     if (o.trees.empty() && o.skeletons.empty())
       fail("expected --tree or --skeleton, twice");
     for (const auto& [name, files] :
          {std::make_pair("--tree", &o.trees), std::make_pair("--skeleton", &o.skeletons)})
       if (files->size() == 1)
-        fail(std::string(name) + " is given 1 times, expected 2 at least");
+        fail(std::string(name) + " is given once, expected at least 2 times");
     if (!o.trees.empty() && !o.skeletons.empty() && o.trees.size() != o.skeletons.size())
       fail("--tree is given " + std::to_string(o.trees.size()) + " times, --skeleton " +
            std::to_string(o.skeletons.size()) + " times, expected as many");
     const std::size_t n = o.number_of_trees();
     if (n > 2 && !o.is_family() && !o.is_given("--lambda"))
       fail("for " + std::to_string(n) +
-           " trees say what is wanted: --mean, --modes, --sample, --weights, --growth, "
+           " trees, expected one of --mean, --modes, --sample, --weights, --growth, "
            "--save-space or --lambda");
     if (n > 2 && (!o.correspondences.empty() || !o.matches.empty()))
       fail("--correspondences and --matches are for two trees; use --save-space");
@@ -309,7 +320,7 @@ inline void check(const Options& o)
   std::map<std::string, double> names;
   for (const double l : o.lambda)
     if (const auto [it, is_new] = names.emplace(name_of(l), l); !is_new && it->second != l)
-      fail("--lambda has two places whose files would both be called " + it->first);
+      fail("--lambda has two numbers whose files have the same name: " + it->first);
   check_effects(o);
 }
 

@@ -73,13 +73,13 @@ inline const char* skeleton_help()
   return R"(Scans: PLY, LAS, OFF, or text (xyz, txt, csv, asc, pts, pwn). A property `wood`
 (1: wood, 0: leaf) is used if it exists, and `station` as the station of a point, whose
 registration is corrected (--stations point_source_id for terrestrial LAS files). Rays without
-return (alpha 0 in ray clouds) are left out. Lengths are in the unit of the scan, and positions in
+return (alpha 0 in ray clouds) are ignored. Lengths are in the unit of the scan, and positions in
 its coordinates.
 
 SWC rows: id, type, x, y, z, radius, parent (-1 for the root); type is 5 + the order of the branch.
 Cylinders: the columns of TreeQSM, and the standard error of the radius.
 Points: the scan with `branch` (-1: none), `dense` (1: the section was measured there), `residual`,
-and `leaf` (1: left out as a leaf).
+and `leaf` (1: removed as a leaf).
 
 Several scans with --folder DIR: each gives DIR/NAME.swc, the results of --also (DIR/NAME_mesh.ply,
 DIR/NAME_cylinders.csv, DIR/NAME_edges.ply, DIR/NAME_points.ply), and a line of JSON in
@@ -140,10 +140,11 @@ inline void declare(CLI::App& app, Skeleton_options& options)
                  options.given,
                  "SWC: measure radii along this skeleton, whose positions are kept")
       ->excludes("--root");
-  app.add_option("--resamples",
-                 options.number_of_resamples,
-                 "copies of the scan, with some of its points, whose skeletons show how much the "
-                 "figures of the report depend on chance; 0: none")
+  app.add_option(
+         "--resamples",
+         options.number_of_resamples,
+         "number of random subsamples of the scan, whose skeletons show how much the values "
+         "of the report vary by chance; 0: none")
       ->check(CLI::Range(0, 100))
       ->default_str("4 up to 44,000 points, otherwise 0");
   app.add_option("--breast-height", options.breast_height, "height of the diameter in the report")
@@ -152,7 +153,7 @@ inline void declare(CLI::App& app, Skeleton_options& options)
       ->check(CLI::NonNegativeNumber);
   app.add_option("--method",
                  options.method,
-                 "how branches are found; `sections` is the method of the dissertation")
+                 "how branches are found; `sections` is the published method [Aiteanu 2022]")
       ->check(CLI::IsMember({"chains", "sections"}))
       ->capture_default_str();
   app.add_option("--fit",
