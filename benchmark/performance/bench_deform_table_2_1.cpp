@@ -243,7 +243,8 @@ Measured measure_apart(const Row& row,
 
 int main(int argc, char** argv)
 {
-  CLI::App app("Times every stage of the deformation beside the dissertation's Table 2.1.");
+  CLI::App app("Compares the times of all stages of the deformation with the published ones "
+               "[Aiteanu 2022, table 2.1].");
   std::string folder = pcs_bench::default_data_folder(), csv;
   std::vector<std::string> only;
   int repetitions = 3;
@@ -254,26 +255,25 @@ int main(int argc, char** argv)
       ->check(CLI::ExistingDirectory);
   app.add_option("--only", only, "only rows of these models")
       ->check(CLI::IsMember({"bunny", "armadillo", "dragon", "plain"}));
-  app.add_option("--csv", csv, "write all figures to this file");
-  app.add_option("--repetitions", repetitions, "constructions of each row; the best counts")
+  app.add_option("--csv", csv, "write all values to this file");
+  app.add_option("--repetitions", repetitions, "constructions of each row; the best time is listed")
       ->check(CLI::Range(1, 1000));
-  app.add_option("--limit",
-                 time_limit,
-                 "seconds after which a row is given up"); // ./run bench gives it to all
+  app.add_option("--limit", time_limit,
+                 "time limit of a row [s]"); // ./run bench gives it to all
   CLI11_PARSE(app, argc, argv);
 
   pcs_bench::Table seconds({"model",
                             "points",
                             "samples",
                             "threads",
-                            "sampling: text",
+                            "sampling 2022",
                             "pcs",
-                            "precomputation: text",
+                            "precomputation 2022",
                             "pcs",
-                            "solving: text",
+                            "solving, one pass 2022",
                             "pcs, pass",
                             "pcs, all",
-                            "upsampling: text",
+                            "upsampling 2022",
                             "pcs"});
   pcs_bench::Table ratios({"model",
                            "samples",
@@ -414,9 +414,9 @@ int main(int argc, char** argv)
       }
   }
   try {
-    std::cout << "Seconds (best of several), text: the dissertation's Table 2.1\n\n";
+    std::cout << "Seconds (best of several); 2022: as published [Aiteanu 2022, table 2.1]\n\n";
     seconds.print(std::cout);
-    std::cout << "Ratios to yardsticks of one thread in the same process\n\n";
+    std::cout << "Ratios to reference computations on one thread in the same process\n\n";
     ratios.print(std::cout);
     for (const std::string& line : given_up)
       std::cout << "given up: " << line << '\n';

@@ -82,17 +82,18 @@ double milliseconds_of_slerps(std::size_t n)
 int main(int argc, char** argv)
 {
   std::string data, output;
-  CLI::App app("Table 4.1: correspondences and instances for the pairs of trees of the text.");
-  app.add_option("--data", data, "folder with AL06a.txtskl and the others")->required();
+  CLI::App app("Compares the times of correspondences and instances with the published ones "
+               "[Aiteanu 2022, section 4.11.1].");
+  app.add_option("--data", data, "folder with the skeletons, AL06a.txtskl and others")->required();
   app.add_option("--output",
                  output,
-                 "write the points at seven places on each path to this folder");
+                 "write the points at seven parameters of each path to this folder");
   CLI11_PARSE(app, argc, argv);
 
-  std::printf("| pair | matching [s] | points [s] | all [s] | CPU [s] | text [min] | points | "
+  std::printf("| pair | matching [s] | points [s] | all [s] | CPU [s] | 2022 [min] | points | "
               "instance [ms] | at -0.5 [ms] | at 1.5 [ms] "
               "| slerps [ms] | "
-              "ratio | text [ms] |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+              "ratio | 2022 [ms] |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const Pair& pair : pairs) {
     Tree one, two;
     pcs::IO::read_txtskl<Kernel>(data + "/" + pair.one + ".txtskl", one);

@@ -272,7 +272,9 @@ int main(int argc, char** argv)
   Options options;
   std::string csv;
   app.add_option("--only", options.only, "only cases whose name contains this, for example T3");
-  app.add_flag("--peers", options.has_peers, "also CGAL::Surface_mesh_deformation; takes minutes");
+  app.add_flag("--peers",
+               options.has_peers,
+               "compare with CGAL::Surface_mesh_deformation as well; takes minutes");
   app.add_option("--csv", csv, "write the first table to this file"); // ./run bench gives it to all
   CLI11_PARSE(app, argc, argv);
 

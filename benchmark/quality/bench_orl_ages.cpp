@@ -30,9 +30,9 @@ int main(int argc, char** argv)
   app.add_option("--growth", weights.growth, "how branches become longer")
       ->transform(CLI::CheckedTransformer(growths));
   CLI11_PARSE(app, argc, argv);
-  std::printf("| habit | age | points | right branch [%%] | same wood, within one radius [%%] | "
+  std::printf("| habit | age | points | correct branch [%%] | same wood, within one radius [%%] | "
               "attainable [%%] | same "
-              "share, within one radius [%%] | from the same wood [radii] | seconds |\n"
+              "fraction, within one radius [%%] | from the same wood [radii] | seconds |\n"
               "|---|---|---|---|---|---|---|---|---|\n");
   for (const std::string habit : {"broadleaf", "fruit"})
     for (const double age : {0.9, 0.7, 0.5}) {

@@ -19,10 +19,10 @@ int main(int argc, char** argv)
   int seeds = 2;
   double noise = 0.02, stretch = 0, pruned = 0.3;
   CLI::App app(
-      "Share of branches of a tree that are matched to themselves after simulated growth.");
+      "Fraction of the branches of a tree that are matched to themselves after simulated growth.");
   app.add_option("skeletons", files, "skeletons, .txtskl")->required();
   app.add_option("--seeds", seeds, "repetitions")->capture_default_str();
-  app.add_option("--noise", noise, "of attachments, share of the parent's length")
+  app.add_option("--noise", noise, "noise of attachments, as a fraction of the parent's length")
       ->capture_default_str();
   app.add_option("--stretch", stretch, "deviation of the logarithm of lengths")
       ->capture_default_str();

@@ -142,14 +142,15 @@ int main(int argc, char** argv)
 {
   std::string data;
   int first_seed = 1, trees = 2;
-  CLI::App app("Chamfer distances of predictions to what was seen.");
+  CLI::App app("Chamfer distances of predicted points to the scan in the middle.");
   app.add_option("--data", data, "folder with tomato_series, growth_swc and skel_collections");
-  app.add_option("--trees", trees, "virtual ones of each habit")->capture_default_str();
-  app.add_option("--first-seed", first_seed, "of these")->capture_default_str();
+  app.add_option("--trees", trees, "number of virtual trees of each habit")->capture_default_str();
+  app.add_option("--first-seed", first_seed, "first seed of the virtual trees")
+      ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   std::printf(
-      "| plant | lambda | geodesic | in order | linear | first end | last end | attainable | "
-      "unexplained | growth | turn |\n"
+      "| plant | lambda | geodesic | sequential | linear | first end | last end | attainable | "
+      "unexplained | growth | rotation [deg] |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|\n");
   if (!data.empty()) {
     tomato(data);

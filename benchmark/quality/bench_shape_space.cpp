@@ -99,7 +99,7 @@ void run_group(const std::vector<std::string>& files, const std::string& folder)
   write(space, mean, folder, "mean_1");
   write(space, square, folder, "mean_2");
   const auto modes = pcs::find_modes(space, files.size());
-  std::printf("modes in %.3f s; share of variance, left-out error:\n   0  0.000 %9.3f\n",
+  std::printf("modes in %.3f s; fraction of the variance, left-out error:\n   0  0.000 %9.3f\n",
               watch.lap(),
               modes.left_out_error(0));
   for (std::size_t k = 1; k <= modes.size(); ++k)
@@ -276,11 +276,13 @@ int main(int argc, char** argv)
   bool is_left_out = false;
   app.add_option("files", files, ".txtskl skeletons of one group");
   app.add_option("--output", folder, "write skeletons of means, modes and new trees here");
-  app.add_flag("--left-out", is_left_out, "error of each tree by the modes of the others instead");
-  app.add_option("--parameters", parameters, "so many virtual trees of two known parameters");
-  app.add_option("--seed", seed, "of virtual and new trees")->capture_default_str();
-  app.add_option("--points", points, "seconds per new tree of so many points");
-  app.add_option("--trees", trees, "new trees for --points");
+  app.add_flag("--left-out",
+               is_left_out,
+               "only the error of each tree with the modes of the others");
+  app.add_option("--parameters", parameters, "number of virtual trees with two known parameters");
+  app.add_option("--seed", seed, "seed of virtual and new trees")->capture_default_str();
+  app.add_option("--points", points, "measure the time per new tree with this number of points");
+  app.add_option("--trees", trees, "number of new trees for --points");
   CLI11_PARSE(app, argc, argv);
   try {
     if (!folder.empty())

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Table: the dissertation's variant of each step of the skeleton beside ours, on the same virtual
-// scans.
+// Compares each step of the skeleton extraction with the published step [Aiteanu 2022] on the same
+// virtual scans.
 
 #include "measure_skeleton.h"
 #include "support/Table.h"
@@ -58,40 +58,42 @@ std::vector<Variant> variants()
     result.push_back({name, std::move(o)});
   };
   const auto nothing = [](Session_options&) {};
-  add("text: all steps", text(), nothing);
-  add("text, direct ellipse", text(), [](auto& o) { o.slices.fit = Section_fit::ellipse; });
-  add("text, circle", text(), [](auto& o) { o.slices.fit = Section_fit::circle; });
-  add("text, ellipse or circle by arc", text(), [](auto& o) {
+  add("published: all steps", text(), nothing);
+  add("published, direct ellipse", text(), [](auto& o) { o.slices.fit = Section_fit::ellipse; });
+  add("published, circle", text(), [](auto& o) { o.slices.fit = Section_fit::circle; });
+  add("published, ellipse or circle by arc", text(), [](auto& o) {
     o.slices.fit = Section_fit::by_arc;
   });
-  add("text, all points of a slice", text(), [](auto& o) { o.slices.highest_count = 0; });
-  add("text, height by local spacing", text(), [](auto& o) { o.slices.is_height_local = true; });
-  add("text, no tilting", text(), [](auto& o) { o.slices.tilts = 0; });
-  add("text, no support marking", text(), [](auto& o) { o.slices.do_mark_support = false; });
-  add("text, cost of turns", text(), [](auto& o) { o.section_tree.turn_cost = 1; });
-  add("text, square-root radii", text(), [](auto& o) { o.section_tree.allometry = 0.5; });
-  add("text, all of these of ours", text(), [](auto& o) {
+  add("published, all points of a slice", text(), [](auto& o) { o.slices.highest_count = 0; });
+  add("published, height by local spacing", text(), [](auto& o) {
+    o.slices.is_height_local = true;
+  });
+  add("published, no tilting", text(), [](auto& o) { o.slices.tilts = 0; });
+  add("published, no support marking", text(), [](auto& o) { o.slices.do_mark_support = false; });
+  add("published, cost of turns", text(), [](auto& o) { o.section_tree.turn_cost = 1; });
+  add("published, square-root radii", text(), [](auto& o) { o.section_tree.allometry = 0.5; });
+  add("published, four steps of pcs", text(), [](auto& o) {
     o.slices.fit = Section_fit::by_arc;
     o.slices.highest_count = 0;
     o.slices.is_height_local = true;
     o.section_tree.turn_cost = 1;
   });
-  add("ours: whole chains", Session_options(), nothing);
-  add("ours, one pass", Session_options(), [](auto& o) { o.axes.passes = 1; });
-  add("ours, arcs of rings apart", Session_options(), [](auto& o) {
+  add("pcs: whole chains", Session_options(), nothing);
+  add("pcs, one pass", Session_options(), [](auto& o) { o.axes.passes = 1; });
+  add("pcs, arcs not joined to rings", Session_options(), [](auto& o) {
     o.layers.rings.smallest = 1e9;
   });
-  add("ours, gaps stay open", Session_options(), [](auto& o) { o.axes.links.gap = 0; });
-  add("ours, no noise correction", Session_options(), [](auto& o) {
+  add("pcs, gaps not closed", Session_options(), [](auto& o) { o.axes.links.gap = 0; });
+  add("pcs, no noise correction", Session_options(), [](auto& o) {
     o.axes.chains.noise_share = 0;
   });
-  add("ours, no prior by counting", Session_options(), [](auto& o) {
+  add("pcs, no prior by counting", Session_options(), [](auto& o) {
     o.axes.chains.prior_share = 1e6;
   });
-  add("ours, no radii by width", Session_options(), [](auto& o) {
+  add("pcs, no radii by width", Session_options(), [](auto& o) {
     o.axes.chains.width_count = std::numeric_limits<double>::infinity();
   });
-  add("ours, radii not bounded", Session_options(), [](auto& o) {
+  add("pcs, radii not bounded", Session_options(), [](auto& o) {
     pcs::skeleton::Support_options& r = o.radii.support;
     r.filled = r.branch_filled = r.thicker = std::numeric_limits<double>::infinity();
     r.fewest = r.expected = r.pipes.slack = 0;
@@ -169,19 +171,20 @@ int main(int argc, char** argv)
   std::size_t stations = 4;
   double degrees = 0.12;
   std::string only, csv;
-  CLI::App app("The dissertation's variant of each step of the skeleton beside ours, on virtual "
-               "scans.",
-               "bench_skeleton_ablation");
-  app.add_option("--preset", presets, "trees")->capture_default_str();
-  app.add_option("--seed", seeds, "of trees and scans")->capture_default_str();
-  app.add_option("--stations", stations, "of the scanner")->capture_default_str();
-  app.add_option("--step-degrees", degrees, "between beams")->capture_default_str();
-  app.add_option("--only", only, "rows whose name holds this text");
-  app.add_option("--csv", csv, "write the rows here, too");
+  CLI::App app(
+      "Compares each step of the skeleton extraction with the published step [Aiteanu 2022] on "
+      "virtual scans.",
+      "bench_skeleton_ablation");
+  app.add_option("--preset", presets, "presets of the virtual trees")->capture_default_str();
+  app.add_option("--seed", seeds, "seeds of trees and scans")->capture_default_str();
+  app.add_option("--stations", stations, "number of scanner stations")->capture_default_str();
+  app.add_option("--step-degrees", degrees, "angle between beams")->capture_default_str();
+  app.add_option("--only", only, "only rows whose name contains this text");
+  app.add_option("--csv", csv, "write the rows to this file (CSV)");
   try {
     app.parse(argc, argv);
     const std::vector<std::string> header{"scan",
-                                          "way",
+                                          "variant",
                                           "F1 2.5 cm",
                                           "1 cm",
                                           "r > 5 [%]",

@@ -38,7 +38,7 @@ constexpr Variant variants[] = {
     {"regions, compact (default)", pcs::Sample_search::regions, pcs::Sample_weights::compact},
     {"regions, inverse square", pcs::Sample_search::regions, pcs::Sample_weights::inverse_square},
     {"hops, compact", pcs::Sample_search::breadth_first_hops, pcs::Sample_weights::compact},
-    {"hops, inverse square (text)",
+    {"hops, inverse square (published)",
      pcs::Sample_search::breadth_first_hops,
      pcs::Sample_weights::inverse_square}};
 

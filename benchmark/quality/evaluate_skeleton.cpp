@@ -65,9 +65,9 @@ int main(int argc, char** argv)
   CLI::App app("Compares a tree skeleton with the true one; lengths in metres.",
                "evaluate_skeleton");
   app.add_option("--truth", truth_file, "true tree: csv with hits, or swc")->required();
-  app.add_option("--result", result_file, "tree to judge: swc or csv")->required();
+  app.add_option("--result", result_file, "tree to evaluate: swc or csv")->required();
   app.add_option("--points", point_file, "scan, for the distance to the surface of the result");
-  app.add_option("--json", json_file, "write all figures here");
+  app.add_option("--json", json_file, "write all values here");
   app.add_option("--step", rules.sampling_step, "axes are sampled at this distance")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();

@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 # Copyright (c) 2026 The pcs authors
 # SPDX-License-Identifier: BSL-1.0
-"""Fits a Rectified_network to what collect_wood_evidence wrote, and prints it for its header.
+"""Fits a Multilayer_perceptron (leaves/Multilayer_perceptron.h) to the rows of a file.
 
-Needs Debian's python3-sklearn. The last quarter of the scans takes no part; the losses are of that.
+Reads a file of collect_wood_evidence, and prints the network in the format of its header. Needs
+Debian's python3-sklearn. The last quarter of the scans is not used for fitting; the losses are
+measured on it.
 """
 
 import argparse
@@ -55,7 +57,7 @@ def main():
     last = network.intercepts_[1][0]
     likeness = np.maximum(0, test[:, BEFORE:] @ weights.T + offsets) @ output + last
     print(f"// loss {loss(test, likeness):.4f}, of the network in use {loss(test, test[:, 3]):.4f}, "
-          f"of {len(test)} rows that took no part")
+          f"of {len(test)} rows not used for fitting")
 
     def braces(numbers):
         return "{" + ", ".join(f"{x:.4g}" for x in numbers) + "}"
