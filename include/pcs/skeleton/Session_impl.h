@@ -110,20 +110,28 @@ inline Session_options draft_options(Session_options options, const Scan_frame& 
 /// millimetres, whereas flight lines of a drone differ by decimetres.
 constexpr double max_shift_by_breast_height = 0.02 / 1.3;
 
+/// Fits the axes of some points for the registration. Returns null if `progress` stopped it.
+template <class Tag>
+std::unique_ptr<Session<Tag>> fit_draft(const Session_state<Tag>& s,
+                                        std::vector<Vec3> points,
+                                        std::vector<std::uint8_t> is_wood,
+                                        pcs::internal::Progress& progress)
+{
+  auto session = std::make_unique<Session<Tag>>(std::move(points),
+                                                std::move(is_wood),
+                                                draft_options(s.options, s.scan.frame));
+  if (!session->fit_axes(progress))
+    session.reset();
+  return session;
+}
+
 template <class Tag>
 bool register_stations(Session_state<Tag>& s, pcs::internal::Progress& progress)
 {
   if (!s.options.do_register_stations)
     return true;
-  const auto draft = [&s](std::vector<Vec3> points,
-                          std::vector<std::uint8_t> is_wood,
-                          pcs::internal::Progress& draft_progress) {
-    auto session = std::make_unique<Session<Tag>>(std::move(points),
-                                                  std::move(is_wood),
-                                                  draft_options(s.options, s.scan.frame));
-    if (!session->fit_axes(draft_progress))
-      session.reset();
-    return session;
+  const auto draft = [&s](auto points, auto is_wood, pcs::internal::Progress& draft_progress) {
+    return fit_draft(s, std::move(points), std::move(is_wood), draft_progress);
   };
   return skeleton::register_stations<Tag>(s.is_wood,
                                           s.options.stations,
@@ -133,6 +141,16 @@ bool register_stations(Session_state<Tag>& s, pcs::internal::Progress& progress)
                                           s.scan,
                                           s.report,
                                           progress);
+}
+
+/// Thins dense scans, measures the points, and labels those that may be the tree.
+template <class Tag>
+void start_labels(Session_state<Tag>& s)
+{
+  if (s.options.do_thin)
+    thin_dense_points<Tag>(s.is_wood, s.options.thinning, s.scan);
+  measure_points<Tag>(s.scan);
+  s.labels.start(s.is_wood);
 }
 
 /// Expresses the hints in coordinates of the scan.
@@ -213,34 +231,49 @@ bool remove_ground(Session_state<Tag>& s,
 
 // ---- axes
 
+/// Classifies the points, in the first round of the leaf-wood separation.
 template <class Tag>
-std::vector<std::uint8_t> find_wood(Session_state<Tag>& s)
+std::vector<std::uint8_t> find_wood_by_points(Session_state<Tag>& s)
 {
   const Session_options& o = s.options;
-  if (s.leaves.rounds > 0)
-    return wood_by_axes<Tag>(s.scan,
-                             s.axes,
-                             s.is_used(),
-                             s.paths,
-                             o.breast_height,
-                             o.leaves,
-                             s.leaves);
   const auto trunk = [&]() -> const Axis& {
     return s.axes.axes[root_axis(s.scan, s.axes, s.root, root_hint(s))].axis;
   };
-  std::vector<std::uint8_t> is_wood = wood_by_points<Tag>(s.scan,
-                                                          s.axes,
-                                                          s.is_used(),
-                                                          s.paths,
-                                                          s.root,
-                                                          trunk,
-                                                          o.leaf_removal == Leaf_removal::always,
-                                                          o.breast_height,
-                                                          o.leaves,
-                                                          s.leaves);
+  return wood_by_points<Tag>(s.scan,
+                             s.axes,
+                             s.is_used(),
+                             s.paths,
+                             s.root,
+                             trunk,
+                             o.leaf_removal == Leaf_removal::always,
+                             o.breast_height,
+                             o.leaves,
+                             s.leaves);
+}
+
+/// Classifies the axes, in the later rounds.
+template <class Tag>
+std::vector<std::uint8_t> find_wood_by_axes(Session_state<Tag>& s)
+{
+  const Session_options& o = s.options;
+  return wood_by_axes<Tag>(s.scan,
+                           s.axes,
+                           s.is_used(),
+                           s.paths,
+                           o.breast_height,
+                           o.leaves,
+                           s.leaves);
+}
+
+template <class Tag>
+std::vector<std::uint8_t> find_wood(Session_state<Tag>& s)
+{
+  if (s.leaves.rounds > 0)
+    return find_wood_by_axes(s);
+  std::vector<std::uint8_t> is_wood = find_wood_by_points(s);
   s.report.is_in_rows = s.leaves.is_in_rows;
   if (s.leaves.has_leaves)
-    s.leaves.is_stem = points_of_stem(s.layers, s.leaves.wood_score, o.leaves.stem);
+    s.leaves.is_stem = points_of_stem(s.layers, s.leaves.wood_score, s.options.leaves.stem);
   return is_wood;
 }
 
@@ -263,9 +296,8 @@ bool remove_leaves(Session_state<Tag>& s)
   if (s.axes.axes.empty() || (s.leaves.rounds > 0 && !s.leaves.has_leaves))
     return false;
   std::vector<std::uint8_t> is_wood = find_wood(s);
-  const bool has_wood = std::find(is_wood.begin(), is_wood.end(), 1) != is_wood.end();
-  if (!has_wood)
-    return false;
+  if (std::find(is_wood.begin(), is_wood.end(), 1) == is_wood.end())
+    return false; // no wood
   keep_foot(s, is_wood);
   if (is_wood == s.is_used())
     return false;
@@ -405,6 +437,16 @@ void describe_tree(Session_state<Tag>& s)
                           s.report);
 }
 
+/// Corrects the radii, fits ellipses to the sections, and describes the tree.
+template <class Tag>
+void measure_sections(Session_state<Tag>& s)
+{
+  const pcs::internal::Stage_timer timer(s.report.seconds.sections);
+  correct_widening(s);
+  fit_section_ellipses<Tag>(s.scan, s.axes.noise, s.options.radii.sections, s.joined.tree);
+  describe_tree(s);
+}
+
 /// Builds the tree of the method `sections`.
 template <class Tag>
 bool join_sections(Session_state<Tag>& s, pcs::internal::Progress& progress)
@@ -466,10 +508,7 @@ bool Session<ConcurrencyTag>::find_neighbors(pcs::internal::Progress& progress)
     internal::take_points(s);
   if (!internal::register_stations(s, progress))
     return false;
-  if (s.options.do_thin)
-    thin_dense_points<ConcurrencyTag>(s.is_wood, s.options.thinning, s.scan);
-  measure_points<ConcurrencyTag>(s.scan);
-  s.labels.start(s.is_wood);
+  internal::start_labels(s);
   internal::localize_hints(s);
   return internal::finish(s, Stage::neighbors, internal::end_of_neighbors, progress);
 }
@@ -516,13 +555,7 @@ bool Session<ConcurrencyTag>::join(pcs::internal::Progress& progress)
     return internal::join_sections(s, progress);
   if (!internal::join_branches(s, progress))
     return false;
-  const pcs::internal::Stage_timer timer(s.report.seconds.sections);
-  internal::correct_widening(s);
-  fit_section_ellipses<ConcurrencyTag>(s.scan,
-                                       s.axes.noise,
-                                       s.options.radii.sections,
-                                       s.joined.tree);
-  internal::describe_tree(s);
+  internal::measure_sections(s);
   s.stage = Stage::joints;
   return true;
 }
