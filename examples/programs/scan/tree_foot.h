@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The foot of a tree as a comment of its file: segment_trees hands it to extract_tree_skeleton.
+// Foot of a tree as a comment of its file; segment_trees writes it, extract_tree_skeleton reads it.
 
 #ifndef PCS_EXAMPLES_TREE_FOOT_H
 #define PCS_EXAMPLES_TREE_FOOT_H
@@ -20,7 +20,7 @@
 
 namespace program {
 
-/// How the comment begins; three coordinates of the file follow.
+/// Beginning of the comment. Three coordinates follow, in the frame of the file.
 inline const std::string& foot_keyword()
 {
   static const std::string keyword = "foot of the tree: ";
@@ -45,7 +45,7 @@ inline void write_foot(const std::array<double, 3>& foot, pcs::IO::Point_table& 
 }
 
 /// Returns the foot in the comments of a table, unless it lies outside the bounding box of the
-/// points (with a margin of 5 % of its sides), as in a file that was moved since.
+/// points (with a margin of 5 % of its sides). This occurs if the points were moved afterwards.
 inline std::optional<std::array<double, 3>> read_foot(const pcs::IO::Point_table& table)
 {
   CGAL::Bbox_3 box;

@@ -19,7 +19,8 @@ namespace pcs {
 
 /*!
   \ingroup PkgPcsCoreRef
-  asks the C library to reuse freed memory, and Linux to use pages of 2 MB for its first gigabyte.
+  asks the C library to reuse freed memory, and Linux to use pages of 2 MB for the first gigabyte of
+  the heap.
   Every stage on a large cloud allocates and frees arrays of tens of megabytes. By default, glibc
   returns each of them to the system, which clears the pages again: this takes a quarter to a third
   of the time of a skeleton on virtual machines, and less on physical ones.

@@ -86,7 +86,7 @@ public:
 
   /// Whether the current shape was solved with the current handles, or is the rest shape.
   bool has_shape_of_handles() const;
-  /// Whether the matrices were factorised for other handles than those of the current shape.
+  /// Whether the handles of the factorised matrices differ from those of the current shape.
   bool is_ahead_of_shape() const;
   /// Whether a snapshot was taken from this session with its current rest shape and handles.
   bool is_of_setting(const Session_snapshot& s) const;
@@ -100,11 +100,10 @@ public:
   void reset();
 
   /*!
-    Writes every point that the deformation may move to `output`, an `Output` of
-    `Moved_point_writer`, concurrently. Points outside the region of interest, points that are not
-    connected to a handle, and points of handles that have not moved are not written. Positions are
-    in the caller's coordinates. If `HasGradients`, the gradient is the linear part of the map of
-    the point.
+    Writes, concurrently, all points that the deformation may move. It omits points outside the
+    region of interest, points that are not connected to a handle, and points of handles that have
+    not moved. `output` is an `Output` of `Moved_point_writer`. Positions are in the caller's
+    coordinates. If `HasGradients`, the gradient is the linear part of the map of the point.
   */
   template <bool HasGradients, class Output>
   void write(Output& output)

@@ -49,7 +49,7 @@ inline Orl_report new_report(const std::vector<Tree_input>& inputs)
   return report;
 }
 
-/// Replaces the state by what is built; the inputs stay.
+/// Replaces the state by the built state, but keeps the inputs.
 inline void replace(Space_state& state, Space_state&& built)
 {
   built.inputs = std::move(state.inputs);

@@ -36,8 +36,8 @@ struct Scan_return
 };
 
 /*
-  The beam grid of a station covers only the triangles of the scene as seen from the station. Each
-  beam has a separate random stream.
+  The beam grid covers only the directions from the station to the triangles of the scene. Each beam
+  has a separate random stream.
 */
 class Scan_station
 {
@@ -99,7 +99,7 @@ private:
     double left = pcs::internal::pi, right = -pcs::internal::pi, down = pcs::internal::pi / 2,
            up = -pcs::internal::pi / 2;
 
-    //! adds a box; `low` and `high` as seen from the station
+    //! adds a box; `low` and `high` are relative to the station
     void
     extend(const Eigen::Vector3d& low, const Eigen::Vector3d& high, const Eigen::Vector2d& front)
     {
@@ -118,7 +118,7 @@ private:
           right = std::max(right, azimuth);
           is_ahead = is_ahead && ahead > 0;
         }
-      // the azimuths of the corners need not enclose a box beside or around the station
+      // the azimuths of the corners do not bound a box beside, behind or around the station
       if (!is_ahead) {
         left = -pcs::internal::pi;
         right = pcs::internal::pi;

@@ -83,7 +83,7 @@ bool assign_all(const std::vector<Tree_input>& inputs,
   return run.progress(1);
 }
 
-/// Copies the points of the family from the scans; they have normals if all scans have.
+/// Copies the points of the family from the scans; they have normals if all scans have normals.
 inline void copy_points(const std::vector<Tree_input>& inputs,
                         const std::vector<Family_source>& sources,
                         Built_family& built)
@@ -137,7 +137,7 @@ bool match_scans(const std::vector<Tree_input>& inputs,
   return !run.progress.is_cancelled();
 }
 
-/// Counts branches and edges. Matched branches are those of the first two trees.
+/// Counts branches and edges. Branches that are matched are counted for the first two trees only.
 inline void describe_branches(const Tree_family& family, Orl_report& report)
 {
   for (std::size_t b = 0; b < family.layout.branches.size(); ++b) {

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What all steps of the construction of a space use.
+// Arguments that all steps of the construction of a space have in common.
 
 #ifndef PCS_SHAPE_SPACE_MODEL_BUILD_RUN_H
 #define PCS_SHAPE_SPACE_MODEL_BUILD_RUN_H
@@ -12,7 +12,8 @@
 namespace pcs {
 namespace shape_space {
 
-/// One construction of a space: the options that its steps read, and where they report.
+/// Arguments of one construction of a space: its steps read the options, and update progress and
+/// report.
 struct Build_run
 {
   const Build_options& options;

@@ -115,8 +115,8 @@ bool pair_points(const std::array<const Tree_input*, 2>& inputs,
 
 } // namespace internal
 
-/// Matches branches and points of two trees. Returns `false` when `progress` asks to stop. Reads
-/// `built.form`, computes all but the instances.
+/// Matches branches and points of two trees. `built.form` is an input; all other members of `built`
+/// except the instances are computed. Returns `false` when `progress` asks to stop.
 template <class ConcurrencyTag>
 bool find_correspondences(const std::array<const Tree_input*, 2>& inputs,
                           const Build_run& run,
@@ -131,7 +131,7 @@ bool find_correspondences(const std::array<const Tree_input*, 2>& inputs,
          internal::pair_points<ConcurrencyTag>(inputs, run, built, edges, pairs);
 }
 
-/// Reports counts and the distance of a pair with instances.
+/// Reports the counts and the distance of a pair. Requires its instances.
 inline void describe(const Embedded_pair& pair, Orl_report& report)
 {
   report.number_of_common_branches = pair.topology.branches.size();
@@ -148,7 +148,7 @@ inline void describe(const Embedded_pair& pair, Orl_report& report)
 }
 
 /// Computes topology and coordinates from stored correspondences. Throws `Invalid_input`, with a
-/// message that begins with `caller`, if they do not fit.
+/// message that begins with `caller`, if they do not fit the inputs.
 inline void embed_stored(const Orl_correspondences& stored,
                          const std::array<const Tree_input*, 2>& inputs,
                          const std::string& caller,

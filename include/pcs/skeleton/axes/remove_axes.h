@@ -13,8 +13,9 @@
 namespace pcs {
 namespace skeleton {
 
-/// Removes the axes for which `is_removed(axis)` holds; their points become unexplained, and their
-/// parents become those of their children. O(axes + points) unless many in a row are removed.
+/// Removes the axes for which `is_removed(axis)` holds. Their points become unexplained, and their
+/// children become children of their parents. O(axes + points) unless long chains of parents are
+/// removed.
 template <class IsRemoved>
 void remove_axes(const IsRemoved& is_removed, Axis_set& set)
 {

@@ -40,11 +40,12 @@ inline Index nearest_axis(const Axis_set& set, const Vec3& p)
 }
 
 /*!
-  Selects the axis of the root: the one with the most root points, weighted by its number of points,
-  since the buttresses of a trunk may have more root points. If no axis has root points, selects the
-  nearest axis. A small axis is replaced by a much larger one close to the root, since chance pieces
-  of a foot may have all root points. A given root (`hint`, in coordinates of the scan) replaces the
-  mean of the root points. `root` and `set` are not empty. O(axes + root).
+  Selects the axis of the root: the one with the largest product of its numbers of root points and
+  of all points. The second factor matters because the buttresses of a trunk may have more root
+  points than the trunk. If no axis has root points, selects the nearest axis. A small axis is
+  replaced by a much larger one close to the root, since a small axis in the foot may have all root
+  points. A given root (`hint`, in coordinates of the scan) replaces the mean of the root points.
+  `root` and `set` are not empty. O(axes + root).
 */
 inline Index root_axis(const Scan& scan,
                        const Axis_set& set,

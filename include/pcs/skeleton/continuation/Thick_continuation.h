@@ -28,13 +28,13 @@ struct Thick_end_options
 {
   double thinnest = 1.5;  ///< least radius of a base, in spacings ...
   double noise = 12;      ///< ... and in noise: a hollow interior is then recognized
-  double firm_base = 0.9; ///< a thin base is removed up to this fraction of the steady radius [-]
+  double firm_base = 0.9; ///< a thin base ends at this fraction of the steady radius [-]
   double piece = 4;       ///< length of a short trial piece, and of the tail that is fitted again
   double steepest = 0.9;  ///< largest angle between a base and its continuation [rad]
-  double band = 0.25;     ///< half width of the surface when directions are compared
+  double band = 0.25;     ///< half thickness of the wall of a tube when directions are compared
   double radius_share = 0.2; ///< standard deviation of the radius of a piece, in radii [-]
   std::size_t fewest = 8;    ///< least number of points on a piece [count]
-  double sectors = 0.7;      ///< least number of sectors with points, in those of random points [-]
+  double sectors = 0.7;      ///< least number of sectors with points, relative to random points [-]
   double filled = 0.33;      ///< largest fraction of its points inside; 0.67 for random points [-]
   double shortest = 0.4;     ///< least length of a piece, in lengths of the trial piece [-]
   double thinner = 0.6, thicker = 1.6; ///< bounds on the radius of a piece
@@ -45,7 +45,7 @@ struct Thick_end_options
   double at_root = 3;    ///< distance from a point of the root at which a base is joined
   double least = 4;      ///< shorter gaps are left to `join_axes()`
   double released = 0.6; ///< axes below this radius may lose their points ...
-  double small = 0.1; ///< ... and those with a smaller number of points, relative to the axis [-]
+  double small = 0.1; ///< ... and axes with fewer points, as a fraction of the continued axis [-]
   double lost = 0.5;  ///< axes that lose a larger fraction of their points are dropped [-]
   double loose = 8;   ///< distance within which a loose base has no wood of similar thickness
 };
@@ -58,9 +58,10 @@ struct Thick_trial
 };
 
 /*!
-  Continues a line of nodes beyond its last one, the base of a thick axis of radius `r` [L], by
-  pieces for which a scan of wood gives evidence: points on a tube around a hollow interior. Neither
-  the density nor the links of the points matter, so that ten points are sufficient.
+  Continues a line of nodes beyond its last node, which is the base of a thick axis of radius
+  `r` [L]. The continuation consists of pieces that the points support as in scans of wood: they lie
+  on a tube around a hollow interior. Neither the density nor the links of the points matter, so
+  that ten points are sufficient.
 
   Each piece begins as the straight tube of length `L` [L] and radius `q` [L] with the largest score
 
@@ -73,7 +74,8 @@ struct Thick_trial
   - `on >= fewest` points lie within `d = max(filled_noise s, filled_depth r)` [L] of its surface
     (`Chain_options`), with the noise `s` [L];
   - at most the fraction `filled` of its points is deeper inside;
-  - they cover `sectors` of the `12 (1 - (11 / 12)^on)` sectors that random points would;
+  - they cover at least the fraction `sectors` of the `12 (1 - (11 / 12)^on)` sectors that random
+    points would cover;
   - length and radius are within the bounds of `Thick_end_options`.
 */
 class Thick_continuation
@@ -172,7 +174,7 @@ private:
     return best;
   }
 
-  /// Appends nodes up to `end` to the axis, with the usual distances.
+  /// Appends nodes up to `end` to the axis, with the node spacing of `Chain_options`.
   void append(const Axis_node& end, double length, Axis& axis) const
   {
     const Axis_node base = axis.back();
@@ -219,8 +221,8 @@ private:
     return true;
   }
 
-  /// Returns the place, segment and parameter, up to which the nodes beyond `seam` have points
-  /// around a hollow interior; 0 if they have too few.
+  /// Returns the position, as the sum of segment and parameter, up to which points around a hollow
+  /// interior support the axis beyond `seam`; 0 if the support is insufficient.
   double supported_end(const Axis_fit& fit, std::size_t seam) const
   {
     const Axis& axis = fit.axis();

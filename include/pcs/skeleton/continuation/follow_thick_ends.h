@@ -133,14 +133,14 @@ private:
     return double(m_set.axes[b].number_of_points) <
            m_rules.small * double(m_set.axes[a].number_of_points);
   }
-  /// Returns whether the covered point `i` belongs to another axis that may carry axis `a`, which
-  /// has the given radius.
+  /// Returns whether the covered point `i` belongs to another axis that may support axis `a`.
+  /// `radius`: of axis `a` at its end [L].
   bool is_similar(Index a, double radius, Index i) const
   {
     const Index b = m_set.axis_of_point[i];
     return b != a && radius_of(i) >= m_rules.touched * radius && !is_small(b, a);
   }
-  /// Returns whether axis `a`, of this radius, may explain the point `i`.
+  /// Returns whether axis `a` may explain the point `i`. `radius`: of axis `a` near the point [L].
   bool may_take(Index i, Index a, double radius) const
   {
     if (m_scan.is_outlier[i])
@@ -149,8 +149,8 @@ private:
            radius_of(i) < m_rules.released * radius || is_small(m_set.axis_of_point[i], a);
   }
 
-  /// Returns the nodes of axis `a` from the tip to the base, without a thin base, as removed by
-  /// `cut_thin_base()`. Returns none if the base is not thick.
+  /// Returns the nodes of axis `a` from the tip to the base. A thin base is left out, as in
+  /// `cut_thin_base()`. Returns no nodes if the base is not thick.
   Axis line_to_base(Index a) const
   {
     Axis line(m_set.axes[a].axis.rbegin(), m_set.axes[a].axis.rend());
@@ -195,7 +195,7 @@ private:
     return is_on_axis(end, true, seen);
   }
   /// Returns whether an end of axis `seen.front()` lies on an axis outside of `seen`. The loose
-  /// base of another axis does not count: both belong to a branch that is not continued yet.
+  /// base of another axis does not count: both axes then belong to a loose branch.
   bool is_on_axis(const Axis_node& end, bool does_check_base, std::vector<Index>& seen) const
   {
     std::vector<Index> near;
@@ -221,7 +221,7 @@ private:
     return false;
   }
 
-  /// Adds a piece to `line`, which belongs to axis `a`. Returns whether there is one.
+  /// Adds a piece to `line`, which belongs to axis `a`. Returns whether a piece was found.
   bool extend(Index a, const Thick_trial& trial, Axis& line) const
   {
     Thick_continuation continuation(m_scan, m_set.noise, m_chains, m_rules);
@@ -269,7 +269,7 @@ private:
     m_set.axes[a].number_of_points = points.size();
     m_points[a] = std::move(points);
   }
-  /// Returns how far outside of the surface points are explained [L].
+  /// Returns the largest distance from the surface of explained points outside it [L].
   double cover(double radius) const
   {
     return std::max(m_chains.cover_offset * m_scan.spacing, m_chains.cover_factor * radius);
@@ -312,11 +312,11 @@ struct Followed_ends
 /*!
   Continues thick axes towards the root where thick wood has few points, as in the shade of a crown.
   The level sets of such wood fall apart into strands and single points, so that chains explain only
-  the ends of a limb. A limb does not begin in the air: a thick base that lies neither at the root
-  nor on an axis of similar thickness is continued by pieces (`Thick_continuation`) until it does;
-  otherwise nothing changes. It takes over the points on its surface from thinner and from much
-  smaller axes, and axes that lose most of their points are dropped. `root`: points of the root. O(n
-  + points near the continued axes).
+  the ends of a limb. A thick base is loose if it lies neither at the root nor on an axis of similar
+  thickness. It is continued by pieces (`Thick_continuation`) until it lies at one of these; if this
+  fails, its axis does not change. A continued axis takes over the points on its surface from
+  thinner and from much smaller axes. Axes that lose most of their points are dropped. `root`:
+  points of the root. O(n + points near the continued axes).
 */
 inline Followed_ends follow_thick_ends(const Scan& scan,
                                        const Chain_options& chains,

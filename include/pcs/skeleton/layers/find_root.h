@@ -45,13 +45,13 @@ struct Root_options
   double widest_hinted = 0.1;
   double rival = 0.03; ///< least number of points of another stem, relative to the first [-]
   double smallest_component =
-      0.05; ///< least fraction of the points in a component with the root [-]
+      0.05; ///< least fraction of all points in a component that may contain the root [-]
   //! the same for an upright component, such as a stem below an occlusion [-]
   double smallest_piece = 0.01;
   //! least height of such a component, relative to the root mean square distance of its points from
   //! its vertical axis [-]
   double upright = 4;
-  double above = 0.7; ///< least cosine between `up` and the gap between it and the tree [-]
+  double above = 0.7; ///< least cosine between `up` and the gap from its top to the tree [-]
   double floating =
       0.05; ///< largest height of the lower end of such a component, relative to the extent [-]
   double ring_deviation = 0.15; ///< largest deviation of points from a ring, in radii [-]
@@ -218,8 +218,8 @@ public:
 private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
-  /// Marks the components that may contain the root, by one of their points: the large ones, and
-  /// smaller ones that are upright, such as a stem below an occlusion.
+  /// Marks the components that may contain the root: large ones, and smaller ones that are upright,
+  /// such as a stem below an occlusion. The result is indexed like `Point_parts::size`.
   std::vector<std::uint8_t> large_parts(const std::vector<std::uint8_t>& is_used) const
   {
     const std::size_t n = m_scan.size();

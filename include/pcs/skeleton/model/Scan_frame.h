@@ -13,10 +13,11 @@ namespace pcs {
 namespace skeleton {
 
 /*!
-  Local frame. The origin is a robust mean of the points, the third axis points upwards, the first
-  towards the side with most distant points. The unit is a typical distance of points from the
-  origin. All computations use these coordinates, rounded to a grid: transformed copies of a scan
-  are then bitwise identical, and results do not depend on rounding.
+  Local frame. The origin is a robust mean of the points. The third axis points upwards. The first
+  axis points horizontally towards a mean of the points that is weighted by their distances. The
+  unit is a typical distance of points from the origin. All computations use these coordinates,
+  rounded to a grid: transformed copies of a scan are then bitwise identical, and results do not
+  depend on rounding.
 */
 struct Scan_frame
 {

@@ -39,10 +39,10 @@ struct Support_options
                                ///< to the expected number [-]
   double proof_filled = 0.05;  ///< largest fraction of inside points of a confirmed section [-]
   double proof_error = 0.1;    ///< largest standard error of a confirmed radius, in radii [-]
-  //! standard error, in radii, up to which `expected` points confirm a section if one below it is
-  //! as thick, since one side may be occluded [-]
+  //! largest standard error, in radii, of a section that `expected` points confirm because a
+  //! section below is as thick; one side may be occluded [-]
   double proof_precise = 0.03;
-  double mostly = 0.7;     ///< least confirmed fraction of the volume of a branch of wood [-]
+  double mostly = 0.7;     ///< confirmed fraction of its volume at which a branch is wood [-]
   double slack = 3;        ///< bound of a section without support, in allometric radii [-]
   double filled_slack = 1; ///< the same for a filled section [-]
   double foot = 8;         ///< length of the foot of a trunk, in radii [-]
@@ -242,7 +242,7 @@ private:
   struct Reference
   {
     double radius = 0, way = 0; ///< of the nearest supported node [L]; 0: none
-    double narrowest = 0;       ///< least supported radius from the nearest confirmed one on [L]
+    double narrowest = 0;       ///< least supported radius up to the nearest confirmed node [L]
     double thickest = 0;        ///< largest of all supported radii [L]
   };
   /// The evidence for the radius of a node.
@@ -295,7 +295,7 @@ private:
   {
     const double on = sections.on[k], inside = sections.inside[k];
     Evidence evidence;
-    // a confirmed section thicker than its parent indicates a wrong joint or parent
+    // a confirmed section may be thicker than its parent: the joint or the parent is wrong then
     evidence.is_proven = sections.is_proven[k] != 0 ||
                          (sections.is_precise[k] != 0 && node.radius <= below.thickest);
     const bool is_bush = is_inside && !(evidence.is_proven && sections.is_mostly_proven);

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Result as a graph of the caller, in coordinates and units of the input.
+// Writes the result to a graph of the caller, in coordinates and units of the input.
 
 #ifndef PCS_SKELETON_RESULT_WRITE_RESULT_H
 #define PCS_SKELETON_RESULT_WRITE_RESULT_H
@@ -89,8 +89,8 @@ void clear_graph(Graph& graph)
 
 } // namespace internal
 
-/// Replaces the contents of a graph of another type. Writes positions and radii to the maps in the
-/// named parameters.
+/// Replaces the contents of a graph that is not a `Tree_skeleton`. Writes positions and radii to
+/// the maps in the named parameters.
 template <class NamedParameters, class Graph>
 void write_graph(const Branch_tree& found,
                  const Scan_frame& frame,

@@ -17,8 +17,8 @@
 namespace pcs {
 namespace skeleton {
 
-/// Occupied cells, sorted by key. The key has 20 bits for each coordinate of the cell, x highest.
-/// Points that are too far away for these bits have cells of their own.
+/// Occupied cells, sorted by key. The key has 20 bits for each coordinate of the cell, with x
+/// first. Points that are too far away for these bits have cells of their own.
 class Voxel_cells
 {
 public:
@@ -67,7 +67,7 @@ public:
         [&](std::size_t begin, std::size_t end) {
           for (std::int64_t x = -1; x <= 1; ++x)
             for (std::int64_t y = -1; y <= 1; ++y) {
-              // the neighbours of consecutive cells are in the same order as these
+              // the cells and their neighbours in this row have the same order
               const Key row = static_cast<Key>(x * (1ll << x_bit) + y * (1ll << y_bit));
               const auto first = std::lower_bound(keys.begin(), keys.end(), keys[begin] + row - 1);
               std::size_t k = static_cast<std::size_t>(first - keys.begin());

@@ -30,9 +30,9 @@ namespace internal {
 
   With the eigenvalues `a <= b <= c` of the covariance of the `n` points within the distance `d`,
   the deviation is `sqrt(a n / (n - 3))`. `d` grows from the distance of the 16th point until the
-  deviation is at most `d / 8`: closer points show the noise, but not the surface. A patch of a
-  surface is about as wide as it is long, `b >= c / 2`, and has at most 1 % of the points. Branches
-  thinner than about eight times the noise have no patches.
+  deviation is at most `d / 8`: smaller neighbourhoods show the noise, but not the surface. A patch
+  of a surface is about as wide as it is long, `b >= c / 2`, and has at most 1 % of the points.
+  Branches thinner than about eight times the noise have no patches.
 */
 inline double deviation_from_plane(const std::vector<Vec3>& points,
                                    const neighborhood::Nearest_neighbors& search,

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Merging of points that are denser than the noise of the scan can resolve.
+// Merging of points that are so close together that noise hides the structure between them.
 
 #ifndef PCS_SKELETON_SCAN_THIN_DENSE_POINTS_H
 #define PCS_SKELETON_SCAN_THIN_DENSE_POINTS_H
@@ -28,9 +28,10 @@ struct Thinning_options
   double side = 3.6;    ///< of the cells, in noise [-]
   double steps = 8;     ///< sides per factor of two: nearly equal scans have equal cells [count]
   double growth = 1.4;  ///< least ratio of the numbers of cells of half and of full side [-]
-  double margin = 0.15; ///< most points of a cell beside a surface, relative to the next cell [-]
+  double margin = 0.15; ///< most points of a cell beside a surface, relative to one on it [-]
   double sparse = 0.15; ///< least density of a cell, relative to the mean in its surroundings [-]
-  int surroundings = 5; ///< 27 blocks of `2^surroundings` cells along each axis [count]
+  int surroundings = 5; ///< size of a block: `2^surroundings` cells along each axis; the
+                        ///< surroundings are 27 blocks [-]
 };
 
 namespace internal {
@@ -59,10 +60,11 @@ double growth_of_cells(const std::vector<Vec3>& points, double side)
 }
 
 /*!
-  Returns for each cell the cell whose point represents it. With noise, the points of a surface fill
-  several layers of cells. The outer layers have few points, but each of their cells would have the
-  same weight as a cell on the surface, and would make thin branches thicker. So a cell that has at
-  most the fraction `margin` of the points of an adjacent cell is represented by the fullest one.
+  Returns for each cell the cell with which it is merged; this may be the cell itself. With noise,
+  the points of a surface fill several layers of cells. The outer layers have few points, but each
+  of their cells would have the same weight as a cell on the surface, and would make thin branches
+  thicker. So a cell is merged with the fullest adjacent cell if it has at most the fraction
+  `margin` of the points of that cell.
 */
 template <class ConcurrencyTag>
 std::vector<Index> fullest_neighbors(const Voxel_cells& cells, const Thinning_options& rules)
@@ -86,9 +88,10 @@ std::vector<Index> fullest_neighbors(const Voxel_cells& cells, const Thinning_op
 }
 
 /*!
-  Returns which cells have much fewer points than the wood around them: points of beams that were
-  split at an edge, and other outliers. The density is the number of points in 27 cells. In coarse
-  scans such points are single, but in dense scans they form chains that resemble twigs.
+  Marks the cells that have much fewer points than the wood around them. Their points are ghosts of
+  beams that were split at an edge, and other outliers. The density is the number of points in 27
+  cells. In coarse scans such points are single, but in dense scans they form chains that resemble
+  twigs.
 */
 template <class ConcurrencyTag>
 std::vector<std::uint8_t> sparse_cells(const Voxel_cells& cells, const Thinning_options& rules)
@@ -150,16 +153,18 @@ inline void merge_points(const Voxel_cells& cells,
 } // namespace internal
 
 /*!
-  Merges the points of a dense scan in cells whose side is a few times the noise, which hides all
-  structure within a cell, and marks sparse cells. The number of points then depends on the surface,
-  not on the steps of the scanner. A scan is dense if halving the side of the cells increases the
-  number of occupied cells: by the factor 1 if the points are far apart, 4 on a densely sampled
-  surface. Copies of points do not change this factor.
+  Merges the points of a dense scan in cells, and marks sparse cells. The side of the cells is a few
+  times the noise, which hides all structure within a cell. The number of points then depends on the
+  surface, not on the steps of the scanner.
 
-  On a surface with the radius of curvature `r`, the mean of the points of a cell of side `h` lies
-  about `h^2 / (24 r)` inside. `scan` needs only its points; `is_wood` has one entry per input point
-  or none. Returns whether points were merged; otherwise, only the search of `scan` is set.
-  O(n log n).
+  Halving the side of the cells increases the number of occupied cells by a factor that indicates
+  the density: 1 if the points are far apart, 4 on a densely sampled surface. A scan is dense if the
+  factor is at least `growth`. Copies of points do not change it.
+
+  On a surface with the radius of curvature `r` [L], the mean of the points of a cell of side
+  `h` [L] lies about `h^2 / (24 r)` inside the surface. Only the points of `scan` are required.
+  `is_wood` is empty or has one entry per input point. Returns whether points were merged;
+  otherwise, only the search of `scan` is set. O(n log n).
 */
 template <class ConcurrencyTag>
 bool thin_dense_points(const std::vector<std::uint8_t>& is_wood,
