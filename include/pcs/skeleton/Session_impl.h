@@ -147,7 +147,7 @@ bool register_stations(Session_state<Tag>& s, pcs::internal::Progress& progress)
 template <class Tag>
 void start_labels(Session_state<Tag>& s)
 {
-  if (s.options.do_thin)
+  if (s.options.do_thin && s.scan.size() >= s.options.thinning.fewest)
     thin_dense_points<Tag>(s.is_wood, s.options.thinning, s.scan);
   measure_points<Tag>(s.scan);
   s.labels.start(s.is_wood);

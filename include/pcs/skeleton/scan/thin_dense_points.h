@@ -24,6 +24,9 @@ namespace skeleton {
 /// Criteria for dense scans, and for the cells in which their points are merged.
 struct Thinning_options
 {
+  //! least number of points of a scan that is thinned by a session [count]. Smaller scans take
+  //! seconds, and the curvature of a stem with few points resembles noise.
+  std::size_t fewest = 200000;
   double flat = 0.37;   ///< least fraction of the points on flat patches, which show the noise [-]
   double side = 3.6;    ///< of the cells, in noise [-]
   double steps = 8;     ///< sides per factor of two: nearly equal scans have equal cells [count]
