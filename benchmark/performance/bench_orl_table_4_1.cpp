@@ -6,6 +6,7 @@
 #include <pcs/IO/read_txtskl.h>
 #include <pcs/IO/write_points.h>
 #include <pcs/Orl_shape_space.h>
+#include <pcs/internal/Stopwatch.h>
 #include <support/orl_trees.h>
 
 #include <CLI/CLI.hpp>
