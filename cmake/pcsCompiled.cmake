@@ -1,7 +1,7 @@
 # What of pcs depends on no type of the caller, compiled once in the build tree of whoever links to it, with its flags:
 # pcs::compiled, or pcs::compiled_<part> for one algorithm. Without them, every source that includes pcs compiles it.
 
-set(PCS_COMPILED_PARTS deformation shape_space skeleton)
+set(PCS_COMPILED_PARTS deformation io shape_space skeleton)
 if(NOT TARGET pcs_compiled)
   add_library(pcs_compiled INTERFACE)
   add_library(pcs::compiled ALIAS pcs_compiled)

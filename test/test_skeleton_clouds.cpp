@@ -328,28 +328,6 @@ BOOST_AUTO_TEST_CASE(the_stems_of_a_bush_are_branches)
   BOOST_CHECK_CLOSE(report.total.length, stems * 1.5, 10.0);
 }
 
-BOOST_AUTO_TEST_CASE(a_sheet_is_no_tree)
-{
-  const Vector x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
-  for (const Cloud& points : {sheet(4000, 2, x, y, 0),
-                              sheet(20000, 4, x, y, 0.01),
-                              sheet(4000, 2, x, z, 0.005),
-                              sheet(4000, 2, x, (y + z) / std::sqrt(2.0), 0.005),
-                              sheet(20000, 2, 3 * x, z, 0.003),
-                              sheet(20000, 2, 5 * x, y, 0)}) {
-    Tree tree;
-    const auto report = pcs::extract_tree_skeleton(points, tree);
-    BOOST_CHECK_EQUAL(report.status, pcs::Status::nothing_to_do);
-    BOOST_CHECK_EQUAL(report.number_of_ground_points, points.size());
-    BOOST_CHECK_EQUAL(num_vertices(tree), 0u);
-    BOOST_CHECK_EQUAL(report.number_of_branches, 0u);
-    const auto kept =
-        pcs::extract_tree_skeleton(points, tree, pcs::parameters::do_remove_ground(false));
-    BOOST_CHECK_EQUAL(kept.status, pcs::Status::converged);
-    check_is_a_tree(tree);
-  }
-}
-
 // Nothing says that these are no trees.
 BOOST_AUTO_TEST_CASE(bodies_give_some_tree_that_stays_within_them)
 {
@@ -379,25 +357,6 @@ BOOST_AUTO_TEST_CASE(bodies_give_some_tree_that_stays_within_them)
     }
   }
   BOOST_CHECK_GE(doubted, 5); // one of thirty spheres looks like a trunk
-}
-
-BOOST_AUTO_TEST_CASE(spheres_are_doubted)
-{
-  std::normal_distribution<double> normal;
-  for (const unsigned seed : {1u, 2u, 3u, 4u})
-    for (const int n : {1000, 3000, 10000})
-      for (const double size : {1.0, 30.0}) {
-        std::mt19937 random(seed);
-        Cloud sphere;
-        for (int i = 0; i < n; ++i) {
-          const Vector d = pcs_test::drawn<Vector>([&] { return normal(random); });
-          sphere.push_back(CGAL::ORIGIN + size * d / std::sqrt(d.squared_length()));
-        }
-        Tree tree;
-        const auto report = pcs::extract_tree_skeleton(sphere, tree);
-        BOOST_TEST(!pcs::warnings(report).empty(),
-                   "seed " << seed << ", " << n << " points, " << report);
-      }
 }
 
 // A trunk of ten diameters is no cause for doubt, one of two is.
@@ -635,42 +594,6 @@ BOOST_AUTO_TEST_CASE(shrubs_on_the_ground_are_no_trunk)
   BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.2, 3.0);
 }
 
-// A wall with a ledge and posts beside it, and a roof: none of their points is left to be wood.
-BOOST_AUTO_TEST_CASE(walls_beside_the_tree_are_left_out)
-{
-  Tree bare, tree;
-  const Cloud& wood = pcs_test::small_scan().scan.points;
-  const auto expected = pcs::extract_tree_skeleton(wood, bare);
-  BOOST_CHECK_EQUAL(expected.number_of_wall_points, 0u);
-  const Vector y(0, 1, 0), z(0, 0, 1);
-  const auto moved = [](const Cloud& points, const Vector& by) {
-    Cloud result;
-    for (const Point& p : points)
-      result.push_back(p + by);
-    return result;
-  };
-  for (const bool has_ground : {false, true}) {
-    Cloud things = moved(sheet(40000, 4, y, z, 0.003), Vector(1.9, 0, 2));
-    append(things, moved(sheet(15000, 2, Vector(1, 0, 0.4), 2 * y, 0.003), Vector(2.9, 0, 4.4)));
-    append(things, cylinder(3000, 0.04, 4, Point(1.95, -2, 1.2), y));
-    for (const double at : {-1.5, 0.0, 1.5})
-      append(things, cylinder(1200, 0.05, 4, Point(1.95, at, 0.1)));
-    Cloud points = wood;
-    append(points, things);
-    if (has_ground)
-      append(points, sheet(40000, 7, Vector(1, 0, 0), y, 0.005));
-    const auto report = pcs::extract_tree_skeleton(points, tree);
-    BOOST_TEST(double(report.number_of_wall_points) > 0.98 * double(things.size()));
-    BOOST_CHECK_CLOSE(report.total.length, expected.total.length, 10.0);
-    BOOST_CHECK_CLOSE(report.total.volume, expected.total.volume, 15.0);
-    BOOST_CHECK_EQUAL(pcs::warnings(report).size(), 1u);
-    const auto kept =
-        pcs::extract_tree_skeleton(points, tree, pcs::parameters::do_remove_ground(false));
-    BOOST_CHECK_EQUAL(kept.number_of_wall_points, 0u);
-    BOOST_TEST(kept.total.volume > 2 * expected.total.volume);
-  }
-}
-
 // A roof alone has the shape of a terrain, with little of the stem below it.
 BOOST_AUTO_TEST_CASE(a_roof_is_no_ground)
 {
@@ -715,6 +638,106 @@ BOOST_AUTO_TEST_CASE(thick_stems_are_no_walls)
       }
 }
 
+BOOST_AUTO_TEST_CASE(leaves_may_be_named)
+{
+  Cloud points = cylinder(4000, 0.1, 2);
+  const std::size_t n = points.size();
+  append(points, cylinder(4000, 0.05, 2, Point(0.2, 0, 0)));
+  std::map<Point, bool> is_wood;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    is_wood[points[i]] = i < n;
+  Tree tree;
+  const auto report = pcs::extract_tree_skeleton(
+      points,
+      tree,
+      pcs::parameters::wood_map(boost::make_assoc_property_map(is_wood)));
+  BOOST_CHECK_EQUAL(report.number_of_branches, 1u);
+  BOOST_CHECK_EQUAL(report.number_of_leaf_points, 4000u);
+  BOOST_CHECK_EQUAL(report.number_of_outliers, 0u);
+  BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.2, 3.0);
+}
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(tree_skeleton_large_clouds)
+
+BOOST_AUTO_TEST_CASE(a_sheet_is_no_tree)
+{
+  const Vector x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  for (const Cloud& points : {sheet(4000, 2, x, y, 0),
+                              sheet(20000, 4, x, y, 0.01),
+                              sheet(4000, 2, x, z, 0.005),
+                              sheet(4000, 2, x, (y + z) / std::sqrt(2.0), 0.005),
+                              sheet(20000, 2, 3 * x, z, 0.003),
+                              sheet(20000, 2, 5 * x, y, 0)}) {
+    Tree tree;
+    const auto report = pcs::extract_tree_skeleton(points, tree);
+    BOOST_CHECK_EQUAL(report.status, pcs::Status::nothing_to_do);
+    BOOST_CHECK_EQUAL(report.number_of_ground_points, points.size());
+    BOOST_CHECK_EQUAL(num_vertices(tree), 0u);
+    BOOST_CHECK_EQUAL(report.number_of_branches, 0u);
+    const auto kept =
+        pcs::extract_tree_skeleton(points, tree, pcs::parameters::do_remove_ground(false));
+    BOOST_CHECK_EQUAL(kept.status, pcs::Status::converged);
+    check_is_a_tree(tree);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(spheres_are_doubted)
+{
+  std::normal_distribution<double> normal;
+  for (const unsigned seed : {1u, 2u, 3u, 4u})
+    for (const int n : {1000, 3000, 10000})
+      for (const double size : {1.0, 30.0}) {
+        std::mt19937 random(seed);
+        Cloud sphere;
+        for (int i = 0; i < n; ++i) {
+          const Vector d = pcs_test::drawn<Vector>([&] { return normal(random); });
+          sphere.push_back(CGAL::ORIGIN + size * d / std::sqrt(d.squared_length()));
+        }
+        Tree tree;
+        const auto report = pcs::extract_tree_skeleton(sphere, tree);
+        BOOST_TEST(!pcs::warnings(report).empty(),
+                   "seed " << seed << ", " << n << " points, " << report);
+      }
+}
+
+// A wall with a ledge and posts beside it, and a roof: none of their points is left to be wood.
+BOOST_AUTO_TEST_CASE(walls_beside_the_tree_are_left_out)
+{
+  Tree bare, tree;
+  const Cloud& wood = pcs_test::small_scan().scan.points;
+  const auto expected = pcs::extract_tree_skeleton(wood, bare);
+  BOOST_CHECK_EQUAL(expected.number_of_wall_points, 0u);
+  const Vector y(0, 1, 0), z(0, 0, 1);
+  const auto moved = [](const Cloud& points, const Vector& by) {
+    Cloud result;
+    for (const Point& p : points)
+      result.push_back(p + by);
+    return result;
+  };
+  for (const bool has_ground : {false, true}) {
+    Cloud things = moved(sheet(40000, 4, y, z, 0.003), Vector(1.9, 0, 2));
+    append(things, moved(sheet(15000, 2, Vector(1, 0, 0.4), 2 * y, 0.003), Vector(2.9, 0, 4.4)));
+    append(things, cylinder(3000, 0.04, 4, Point(1.95, -2, 1.2), y));
+    for (const double at : {-1.5, 0.0, 1.5})
+      append(things, cylinder(1200, 0.05, 4, Point(1.95, at, 0.1)));
+    Cloud points = wood;
+    append(points, things);
+    if (has_ground)
+      append(points, sheet(40000, 7, Vector(1, 0, 0), y, 0.005));
+    const auto report = pcs::extract_tree_skeleton(points, tree);
+    BOOST_TEST(double(report.number_of_wall_points) > 0.98 * double(things.size()));
+    BOOST_CHECK_CLOSE(report.total.length, expected.total.length, 10.0);
+    BOOST_CHECK_CLOSE(report.total.volume, expected.total.volume, 15.0);
+    BOOST_CHECK_EQUAL(pcs::warnings(report).size(), 1u);
+    const auto kept =
+        pcs::extract_tree_skeleton(points, tree, pcs::parameters::do_remove_ground(false));
+    BOOST_CHECK_EQUAL(kept.number_of_wall_points, 0u);
+    BOOST_TEST(kept.total.volume > 2 * expected.total.volume);
+  }
+}
+
 // Where chance puts a ring of leaves that looks hollow, one in five is: of 100 other seeds 16.
 BOOST_AUTO_TEST_CASE(a_bush_of_leaves_is_mostly_not_wood)
 {
@@ -739,25 +762,6 @@ BOOST_AUTO_TEST_CASE(a_bush_of_leaves_is_mostly_not_wood)
     bounded += is_bounded ? 1 : 0;
   }
   BOOST_CHECK_GE(bounded, 13);
-}
-
-BOOST_AUTO_TEST_CASE(leaves_may_be_named)
-{
-  Cloud points = cylinder(4000, 0.1, 2);
-  const std::size_t n = points.size();
-  append(points, cylinder(4000, 0.05, 2, Point(0.2, 0, 0)));
-  std::map<Point, bool> is_wood;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    is_wood[points[i]] = i < n;
-  Tree tree;
-  const auto report = pcs::extract_tree_skeleton(
-      points,
-      tree,
-      pcs::parameters::wood_map(boost::make_assoc_property_map(is_wood)));
-  BOOST_CHECK_EQUAL(report.number_of_branches, 1u);
-  BOOST_CHECK_EQUAL(report.number_of_leaf_points, 4000u);
-  BOOST_CHECK_EQUAL(report.number_of_outliers, 0u);
-  BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.2, 3.0);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

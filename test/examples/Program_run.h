@@ -72,7 +72,7 @@ inline Table make_cloud()
 
 struct Program_run
 {
-  Program_run()
+  explicit Program_run(const std::string& name) : program(PCS_TEST_PROGRAMS "/" + name)
   {
     static int number = 0;
     folder = std::filesystem::temp_directory_path() /
@@ -109,8 +109,8 @@ struct Program_run
   /// Runs in the folder; returns the exit code, or 1000 + the signal that killed it.
   int run(const std::string& arguments)
   {
-    const std::string command = "cd '" + folder.string() + "' && '" PCS_TEST_PROGRAM "' " +
-                                arguments + " > stdout.txt 2> stderr.txt < /dev/null";
+    const std::string command = "cd '" + folder.string() + "' && '" + program + "' " + arguments +
+                                " > stdout.txt 2> stderr.txt < /dev/null";
     const int status = std::system(command.c_str());
     out = content("stdout.txt");
     err = content("stderr.txt");
@@ -133,10 +133,17 @@ struct Program_run
     return pcs::IO::read_points(path("out.ply"));
   }
 
+  std::string program;
   std::filesystem::path folder;
   Table input;
   Json report;
   std::string out, err;
+};
+
+/// A run of deform_point_set.
+struct Deform_run : Program_run
+{
+  Deform_run() : Program_run("deform_point_set") {}
 };
 
 /// Handles as JSON, so that cases read like edit files.

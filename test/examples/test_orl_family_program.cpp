@@ -23,7 +23,7 @@ namespace {
 
 struct Three_trees : Program_run
 {
-  Three_trees()
+  Three_trees() : Program_run("orl_geodesic")
   {
     using namespace orl_test;
     for (unsigned k = 0; k < 3; ++k) {

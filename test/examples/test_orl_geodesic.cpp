@@ -27,7 +27,7 @@ namespace {
 
 struct Two_trees : Program_run
 {
-  Two_trees()
+  Two_trees() : Program_run("orl_geodesic")
   {
     using namespace orl_test;
     const orl_test::Tree a = random_tree(61, 4, 2), b = random_tree(62, 4, 2);

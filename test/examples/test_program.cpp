@@ -82,7 +82,7 @@ const Json fixed_foot = parse(R"({"select": {"property": "status", "equals": 0},
 constexpr double rounding = 1e-9; // coordinates of 1e3 in double precision, with room
 
 /// Number of points that the report gives for the last handle, which `select` stands for.
-std::size_t selected(Program_run& program, const std::string& select)
+std::size_t selected(Deform_run& program, const std::string& select)
 {
   program.deform(edit_of({{{"select", parse(select)}, {"fixed", true}}}));
   return program.report["points_of_handles"].back().get<std::size_t>();
@@ -92,7 +92,7 @@ std::size_t selected(Program_run& program, const std::string& select)
 
 BOOST_AUTO_TEST_SUITE(motions)
 
-BOOST_FIXTURE_TEST_CASE(every_selector_and_every_motion_reaches_its_target, Program_run)
+BOOST_FIXTURE_TEST_CASE(every_selector_and_every_motion_reaches_its_target, Deform_run)
 {
   const Table result = deform(parse(R"({"handles": [
     {"select": {"box": [[990, -30, 6.7], [1010, -10, 0]]}, "fixed": true},
@@ -131,7 +131,7 @@ BOOST_FIXTURE_TEST_CASE(every_selector_and_every_motion_reaches_its_target, Prog
   BOOST_TEST(largest_motion(input, result, with_status(input, 3)) > 0.01); // the others followed
 }
 
-BOOST_FIXTURE_TEST_CASE(center_defaults_to_the_centroid, Program_run)
+BOOST_FIXTURE_TEST_CASE(center_defaults_to_the_centroid, Deform_run)
 {
   const std::vector<std::size_t> head = with_status(input, 9);
   const Vec3 c = centroid(input, head);
@@ -147,7 +147,7 @@ BOOST_FIXTURE_TEST_CASE(center_defaults_to_the_centroid, Program_run)
              }) < rounding);
 }
 
-BOOST_FIXTURE_TEST_CASE(two_full_turns_twist_what_lies_between, Program_run)
+BOOST_FIXTURE_TEST_CASE(two_full_turns_twist_what_lies_between, Deform_run)
 {
   const Table result =
       deform(edit_of({fixed_foot, parse(R"({"select": {"property": "status", "equals": 9},
@@ -157,7 +157,7 @@ BOOST_FIXTURE_TEST_CASE(two_full_turns_twist_what_lies_between, Program_run)
   BOOST_TEST(largest_motion(input, result, with_status(input, 3)) > 1.5);
 }
 
-BOOST_FIXTURE_TEST_CASE(a_soft_handle_stays_behind_a_hard_one, Program_run)
+BOOST_FIXTURE_TEST_CASE(a_soft_handle_stays_behind_a_hard_one, Deform_run)
 {
   Json head = parse(R"({"select": {"property": "status", "equals": 9}, "translate": [2, 0, 0]})");
   const Vec3 before = centroid(input, with_status(input, 9));
@@ -171,7 +171,7 @@ BOOST_FIXTURE_TEST_CASE(a_soft_handle_stays_behind_a_hard_one, Program_run)
   BOOST_TEST(reached[1] < 1.99);
 }
 
-BOOST_FIXTURE_TEST_CASE(fixed_and_unreached_points_keep_every_bit, Program_run)
+BOOST_FIXTURE_TEST_CASE(fixed_and_unreached_points_keep_every_bit, Deform_run)
 {
   const Table result =
       deform(edit_of({fixed_foot, parse(R"({"select": {"property": "status", "equals": 9},
@@ -185,7 +185,7 @@ BOOST_FIXTURE_TEST_CASE(fixed_and_unreached_points_keep_every_bit, Program_run)
   BOOST_TEST(report["unreached_components"] == 1);
 }
 
-BOOST_FIXTURE_TEST_CASE(the_default_edit_holds_the_foot_and_turns_the_head, Program_run)
+BOOST_FIXTURE_TEST_CASE(the_default_edit_holds_the_foot_and_turns_the_head, Deform_run)
 {
   Table pillar(std::vector<Table::Point_3>(input.points().begin(),
                                            input.points().begin() + number_of_pillar_points));
@@ -210,7 +210,7 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(selections)
 
-BOOST_FIXTURE_TEST_CASE(bounds_are_inclusive_and_corners_come_in_any_order, Program_run)
+BOOST_FIXTURE_TEST_CASE(bounds_are_inclusive_and_corners_come_in_any_order, Deform_run)
 {
   std::vector<Table::Point_3> grid;
   for (int i = 0; i < 1000; ++i)
@@ -224,7 +224,7 @@ BOOST_FIXTURE_TEST_CASE(bounds_are_inclusive_and_corners_come_in_any_order, Prog
              1000);
 }
 
-BOOST_FIXTURE_TEST_CASE(properties_are_compared_in_their_own_type, Program_run)
+BOOST_FIXTURE_TEST_CASE(properties_are_compared_in_their_own_type, Deform_run)
 {
   BOOST_TEST(selected(*this, R"({"property": "status", "equals": 2})") == 200);
   BOOST_TEST(selected(*this, R"({"property": "status", "equals": 2.0})") == 200);
@@ -252,7 +252,7 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(files)
 
-BOOST_FIXTURE_TEST_CASE(order_and_properties_are_kept_with_their_types, Program_run)
+BOOST_FIXTURE_TEST_CASE(order_and_properties_are_kept_with_their_types, Deform_run)
 {
   const Table result =
       deform(edit_of({fixed_foot, parse(R"({"select": {"property": "status", "equals": 9},
@@ -264,7 +264,7 @@ BOOST_FIXTURE_TEST_CASE(order_and_properties_are_kept_with_their_types, Program_
   BOOST_TEST(number_of_files() == 4); // in, edit, out, report: nothing temporary is left
 }
 
-BOOST_FIXTURE_TEST_CASE(the_output_may_be_the_input, Program_run)
+BOOST_FIXTURE_TEST_CASE(the_output_may_be_the_input, Deform_run)
 {
   write("edit.json",
         edit_of({fixed_foot, parse(R"({"select": {"indices": [1999]}, "translate": [1, 0, 0]})")})
@@ -274,7 +274,7 @@ BOOST_FIXTURE_TEST_CASE(the_output_may_be_the_input, Program_run)
   BOOST_TEST((position(result, 1999) - position(input, 1999) - Vec3(1, 0, 0)).norm() < rounding);
 }
 
-BOOST_FIXTURE_TEST_CASE(every_format_is_read_and_written, Program_run)
+BOOST_FIXTURE_TEST_CASE(every_format_is_read_and_written, Deform_run)
 {
   write("edit.json",
         R"({"handles": [{"select": {"indices": [0, 1]}, "fixed": true},
@@ -293,7 +293,7 @@ BOOST_FIXTURE_TEST_CASE(every_format_is_read_and_written, Program_run)
   BOOST_TEST(pcs::IO::read_points(path("out.off")).points()[0] == input.points()[0]);
 }
 
-BOOST_FIXTURE_TEST_CASE(normals_keep_integer_types_and_zeros, Program_run)
+BOOST_FIXTURE_TEST_CASE(normals_keep_integer_types_and_zeros, Deform_run)
 {
   std::vector<std::int8_t> components[3];
   for (std::size_t i = 0; i < input.number_of_points(); ++i)
@@ -315,7 +315,7 @@ BOOST_FIXTURE_TEST_CASE(normals_keep_integer_types_and_zeros, Program_run)
     BOOST_TEST(result.property<std::int8_t>("nx")[i] == 0);
 }
 
-BOOST_FIXTURE_TEST_CASE(an_invalid_normal_leaves_all_normals_and_warns_in_one_line, Program_run)
+BOOST_FIXTURE_TEST_CASE(an_invalid_normal_leaves_all_normals_and_warns_in_one_line, Deform_run)
 {
   input.property<float>("ny")[17] = std::numeric_limits<float>::infinity();
   pcs::IO::write_points(path("in.ply"), input);
@@ -335,7 +335,7 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(reports)
 
-BOOST_FIXTURE_TEST_CASE(the_report_has_every_number, Program_run)
+BOOST_FIXTURE_TEST_CASE(the_report_has_every_number, Deform_run)
 {
   deform(edit_of(
              {fixed_foot,
@@ -373,7 +373,7 @@ BOOST_FIXTURE_TEST_CASE(the_report_has_every_number, Program_run)
   BOOST_TEST(report["energy"] <= report["initial_energy"]);
 }
 
-BOOST_FIXTURE_TEST_CASE(the_summary_names_counts_and_files_and_quiet_prints_nothing, Program_run)
+BOOST_FIXTURE_TEST_CASE(the_summary_names_counts_and_files_and_quiet_prints_nothing, Deform_run)
 {
   deform(edit_of({fixed_foot}));
   for (const char* word : {"points      2100",
@@ -391,7 +391,7 @@ BOOST_FIXTURE_TEST_CASE(the_summary_names_counts_and_files_and_quiet_prints_noth
   BOOST_TEST(err == "");
 }
 
-BOOST_FIXTURE_TEST_CASE(names_that_are_not_utf8_do_not_break_the_report, Program_run)
+BOOST_FIXTURE_TEST_CASE(names_that_are_not_utf8_do_not_break_the_report, Deform_run)
 {
   write("edit.json", edit_of({fixed_foot}).dump());
   BOOST_TEST(run("--input in.ply --edit edit.json --output \"$(printf 'a\\377.ply')\" --report "

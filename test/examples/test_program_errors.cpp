@@ -21,7 +21,7 @@ const std::string arguments =
 
 /// Runs `arguments`, which must fail and say so in one or two lines with these words, and must
 /// leave files alone.
-void refuses(Program_run& program,
+void refuses(Deform_run& program,
              const std::string& args,
              const std::vector<std::string>& words,
              const std::string& what)
@@ -41,7 +41,7 @@ void refuses(Program_run& program,
   BOOST_TEST(program.number_of_files() == number_of_files, what << ": files came or went");
 }
 
-void refuses_edit(Program_run& program, const std::string& edit, std::vector<std::string> words)
+void refuses_edit(Deform_run& program, const std::string& edit, std::vector<std::string> words)
 {
   program.write("edit.json", edit);
   words.push_back("edit.json: ");
@@ -49,7 +49,7 @@ void refuses_edit(Program_run& program, const std::string& edit, std::vector<std
 }
 
 /// The same for a handle that stands at /handles/1 behind a valid one.
-void refuses_handle(Program_run& program,
+void refuses_handle(Deform_run& program,
                     const std::string& handle,
                     const std::vector<std::string>& words)
 {
@@ -65,7 +65,7 @@ const std::string head = R"("select": {"property": "status", "equals": 9})";
 
 BOOST_AUTO_TEST_SUITE(edit_errors)
 
-BOOST_FIXTURE_TEST_CASE(what_is_no_json_is_refused, Program_run)
+BOOST_FIXTURE_TEST_CASE(what_is_no_json_is_refused, Deform_run)
 {
   refuses_edit(*this, "", {"empty"});
   refuses_edit(*this, "{", {"not valid JSON", "line 1"});
@@ -80,7 +80,7 @@ BOOST_FIXTURE_TEST_CASE(what_is_no_json_is_refused, Program_run)
   refuses_edit(*this, R"({"handles": [], "handles": []})", {"\"handles\"", "twice"});
 }
 
-BOOST_FIXTURE_TEST_CASE(the_top_level_is_checked, Program_run)
+BOOST_FIXTURE_TEST_CASE(the_top_level_is_checked, Deform_run)
 {
   refuses_edit(*this, "[]", {"top level: expected an object with handles, found an array"});
   refuses_edit(*this, "{}", {"the key handles is missing"});
@@ -94,7 +94,7 @@ BOOST_FIXTURE_TEST_CASE(the_top_level_is_checked, Program_run)
   refuses_edit(*this, R"({"handles": [7]})", {"/handles/0: expected an object", "found 7"});
 }
 
-BOOST_FIXTURE_TEST_CASE(a_selection_is_checked, Program_run)
+BOOST_FIXTURE_TEST_CASE(a_selection_is_checked, Deform_run)
 {
   refuses_handle(*this, R"({"fixed": true})", {"/handles/1: the key select is missing"});
   const auto refuses_select = [&](const std::string& select,
@@ -143,7 +143,7 @@ BOOST_FIXTURE_TEST_CASE(a_selection_is_checked, Program_run)
                  {"/handles/1/select/indices/0: there is no point"});
 }
 
-BOOST_FIXTURE_TEST_CASE(a_motion_is_checked, Program_run)
+BOOST_FIXTURE_TEST_CASE(a_motion_is_checked, Deform_run)
 {
   const auto refuses_motion = [&](const std::string& motion,
                                   const std::vector<std::string>& words) {
@@ -192,7 +192,7 @@ BOOST_FIXTURE_TEST_CASE(a_motion_is_checked, Program_run)
   refuses_motion(R"(, "scale": 1e308, "translate": [1e308, 0, 0])", {"edit"});
 }
 
-BOOST_FIXTURE_TEST_CASE(overlapping_handles_are_named_with_the_number_of_points, Program_run)
+BOOST_FIXTURE_TEST_CASE(overlapping_handles_are_named_with_the_number_of_points, Deform_run)
 {
   refuses_handle(
       *this,
@@ -205,7 +205,7 @@ BOOST_FIXTURE_TEST_CASE(overlapping_handles_are_named_with_the_number_of_points,
       {"/handles/0 and /handles/1 overlap: both select 1 point, number 199", "1 more pair"});
 }
 
-BOOST_FIXTURE_TEST_CASE(one_place_in_two_handles_is_refused, Program_run)
+BOOST_FIXTURE_TEST_CASE(one_place_in_two_handles_is_refused, Deform_run)
 {
   input.points()[1999] = input.points()[0];
   pcs::IO::write_points(path("in.ply"), input);
@@ -215,7 +215,7 @@ BOOST_FIXTURE_TEST_CASE(one_place_in_two_handles_is_refused, Program_run)
 }
 
 // only that it neither crashes nor claims an internal error
-BOOST_FIXTURE_TEST_CASE(mutated_edits_end_with_success_or_one_message, Program_run)
+BOOST_FIXTURE_TEST_CASE(mutated_edits_end_with_success_or_one_message, Deform_run)
 {
   pcs::IO::write_points(
       path("in.ply"),
@@ -248,7 +248,7 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(usage_errors)
 
-BOOST_FIXTURE_TEST_CASE(the_command_line_is_checked, Program_run)
+BOOST_FIXTURE_TEST_CASE(the_command_line_is_checked, Deform_run)
 {
   write("edit.json", edit_of({parse("{" + head + R"(, "fixed": true})")}).dump());
   const auto refuses_usage = [&](const std::string& args, const std::vector<std::string>& words) {
@@ -266,7 +266,7 @@ BOOST_FIXTURE_TEST_CASE(the_command_line_is_checked, Program_run)
   refuses_usage(arguments + " extra", {"extra"});
 }
 
-BOOST_FIXTURE_TEST_CASE(files_are_checked_before_the_work, Program_run)
+BOOST_FIXTURE_TEST_CASE(files_are_checked_before_the_work, Deform_run)
 {
   write("edit.json", edit_of({parse("{" + head + R"(, "fixed": true})")}).dump());
   const std::string in = "--input in.ply --edit edit.json";
@@ -295,7 +295,7 @@ BOOST_FIXTURE_TEST_CASE(files_are_checked_before_the_work, Program_run)
   BOOST_TEST(exists("edit.json"));
 }
 
-BOOST_FIXTURE_TEST_CASE(clouds_that_cannot_be_deformed_are_refused, Program_run)
+BOOST_FIXTURE_TEST_CASE(clouds_that_cannot_be_deformed_are_refused, Deform_run)
 {
   write("edit.json", R"({"handles": [{"select": {"indices": [0]}, "translate": [1, 0, 0]}]})");
   const auto refuses_cloud =

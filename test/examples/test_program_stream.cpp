@@ -25,7 +25,7 @@ const std::string edit_text = R"({"handles": [
    "translate": [1, 0, 0]}]})";
 
 /// Runs the edit on a file in memory and as a stream, and compares the outputs byte for byte.
-void is_same_as_in_memory(Program_run& program,
+void is_same_as_in_memory(Deform_run& program,
                           const std::string& in,
                           const std::string& out,
                           const std::string& edit = "--edit edit.json")
@@ -74,7 +74,7 @@ double distance(const Table& a, const Table& b, std::size_t i)
   return std::sqrt((a.points()[i] - b.points()[i]).squared_length());
 }
 
-struct Large_run : Program_run
+struct Large_run : Deform_run
 {
   Large_run()
   {
@@ -91,7 +91,7 @@ struct Large_run : Program_run
 
 BOOST_AUTO_TEST_SUITE(streams)
 
-BOOST_FIXTURE_TEST_CASE(a_small_file_gives_the_bytes_of_the_memory_mode, Program_run)
+BOOST_FIXTURE_TEST_CASE(a_small_file_gives_the_bytes_of_the_memory_mode, Deform_run)
 {
   write("edit.json", edit_text);
   for (const char* target : {"out.ply", "out.csv", "out.xyz", "out.las"})
@@ -109,7 +109,7 @@ BOOST_FIXTURE_TEST_CASE(a_small_file_gives_the_bytes_of_the_memory_mode, Program
   is_same_as_in_memory(*this, "in.off", "out.off", "--default-edit");
 }
 
-BOOST_FIXTURE_TEST_CASE(a_las_grid_that_no_longer_fits_is_renewed_in_the_same_way, Program_run)
+BOOST_FIXTURE_TEST_CASE(a_las_grid_that_no_longer_fits_is_renewed_in_the_same_way, Deform_run)
 {
   pcs::IO::write_points(path("in.las"), input);
   write("far.json", R"({"handles": [{"select": {"property": "status", "equals": 9},
@@ -117,7 +117,7 @@ BOOST_FIXTURE_TEST_CASE(a_las_grid_that_no_longer_fits_is_renewed_in_the_same_wa
   is_same_as_in_memory(*this, "in.las", "out.las", "--edit far.json");
 }
 
-BOOST_FIXTURE_TEST_CASE(a_stream_writes_what_it_reads, Program_run)
+BOOST_FIXTURE_TEST_CASE(a_stream_writes_what_it_reads, Deform_run)
 {
   write("edit.json", edit_text);
   BOOST_TEST_REQUIRE(run("--input in.ply --edit edit.json --output out.ply") == 0, err);
@@ -127,7 +127,7 @@ BOOST_FIXTURE_TEST_CASE(a_stream_writes_what_it_reads, Program_run)
   BOOST_TEST(number_of_files() == 3); // in, edit, out: nothing temporary is left
 }
 
-BOOST_FIXTURE_TEST_CASE(an_invalid_normal_leaves_all_normals_in_a_stream, Program_run)
+BOOST_FIXTURE_TEST_CASE(an_invalid_normal_leaves_all_normals_in_a_stream, Deform_run)
 {
   input.property<float>("ny")[1700] = std::numeric_limits<float>::quiet_NaN();
   pcs::IO::write_points(path("in.ply"), input);
@@ -218,7 +218,7 @@ BOOST_AUTO_TEST_SUITE_END()
 BOOST_AUTO_TEST_SUITE(stream_errors)
 
 /// The messages must not depend on the mode, and no file may be touched.
-BOOST_FIXTURE_TEST_CASE(errors_are_those_of_the_memory_mode, Program_run)
+BOOST_FIXTURE_TEST_CASE(errors_are_those_of_the_memory_mode, Deform_run)
 {
   write("out.ply", "an old file");
   pcs::IO::write_points(path("in.csv"), input);
@@ -244,7 +244,7 @@ BOOST_FIXTURE_TEST_CASE(errors_are_those_of_the_memory_mode, Program_run)
   BOOST_TEST(number_of_files() == 4); // in.ply, in.csv, edit, out
 }
 
-BOOST_FIXTURE_TEST_CASE(files_and_numbers_are_checked, Program_run)
+BOOST_FIXTURE_TEST_CASE(files_and_numbers_are_checked, Deform_run)
 {
   const auto refuses = [&](const std::string& arguments, const std::string& word) {
     write("out.ply", "an old file");
@@ -274,7 +274,7 @@ BOOST_FIXTURE_TEST_CASE(files_and_numbers_are_checked, Program_run)
   refuses(files + "--stream", "in.ply");
 }
 
-BOOST_FIXTURE_TEST_CASE(one_place_in_two_handles_is_refused_in_a_stream, Program_run)
+BOOST_FIXTURE_TEST_CASE(one_place_in_two_handles_is_refused_in_a_stream, Deform_run)
 {
   input.points()[1999] = input.points()[0];
   pcs::IO::write_points(path("in.ply"), input);

@@ -35,7 +35,7 @@ namespace {
 /// Two trees beside each other, with a property of the points.
 struct Stand_run : Program_run
 {
-  Stand_run()
+  Stand_run() : Program_run("segment_trees")
   {
     pcs::Tree_skeleton<Kernel> tree;
     pcs::grow_tree(tree, pcs::fruit_habit(), pcs::parameters::random_seed(5));

@@ -23,6 +23,8 @@
 #include <string>
 #include <vector>
 
+namespace test_skeleton_program {
+
 using Kernel = CGAL::Simple_cartesian<double>;
 using Tree = pcs::Tree_skeleton<Kernel>;
 
@@ -84,7 +86,7 @@ std::size_t count_lines(const std::string& text)
 
 struct Skeleton_run : Program_run
 {
-  Skeleton_run() { write("tree.xyz", fork_text()); }
+  Skeleton_run() : Program_run("extract_tree_skeleton") { write("tree.xyz", fork_text()); }
 
   /// Without resampled copies, which take several times as long, unless the arguments ask for them.
   int run(const std::string& arguments)
@@ -566,3 +568,5 @@ BOOST_AUTO_TEST_CASE(what_is_not_there_is_no_number)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_skeleton_program

@@ -16,10 +16,17 @@
 #include <string>
 #include <vector>
 
+namespace test_virtual_scan {
+
 using Kernel = CGAL::Simple_cartesian<double>;
 using Tree = pcs::Tree_skeleton<Kernel>;
 
 namespace {
+
+struct Scan_run : Program_run
+{
+  Scan_run() : Program_run("virtual_scan") {}
+};
 
 const std::string fruit = "--preset fruit --seed 7 --step-degrees 0.2 --output scan.ply ";
 
@@ -54,7 +61,7 @@ void refuses(Program_run& program, const std::string& arguments, const std::stri
 
 } // namespace
 
-BOOST_FIXTURE_TEST_SUITE(virtual_scan, Program_run)
+BOOST_FIXTURE_TEST_SUITE(virtual_scan, Scan_run)
 
 BOOST_AUTO_TEST_CASE(scan_truth_swc_and_report_agree)
 {
@@ -150,3 +157,5 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
 }
 
 BOOST_AUTO_TEST_SUITE_END()
+
+} // namespace test_virtual_scan

@@ -12,5 +12,5 @@ foreach(way find_package add_subdirectory copied_headers)
     -D PCS_WITH_TBB=${PCS_WITH_TBB}
     -D EIGEN_INCLUDE_DIR=${eigen_include_dir}
     -P ${CMAKE_CURRENT_SOURCE_DIR}/install/use_pcs.cmake)
-  set_tests_properties(install.${way} PROPERTIES LABELS "static;install")
+  set_tests_properties(install.${way} PROPERTIES LABELS "static;install;long")
 endforeach()

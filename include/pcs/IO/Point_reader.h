@@ -6,12 +6,9 @@
 #define PCS_IO_POINT_READER_H
 
 #include <pcs/IO/internal/Format_reader.h>
-#include <pcs/IO/internal/Off_reader.h>
 #include <pcs/IO/internal/Row_block.h>
-#include <pcs/IO/internal/Text_reader.h>
 #include <pcs/IO/internal/file_format.h>
-#include <pcs/IO/internal/las/Las_reader.h>
-#include <pcs/IO/internal/ply/Ply_reader.h>
+#include <pcs/IO/internal/open_format.h>
 #include <pcs/IO/points/Point_schema.h>
 #include <pcs/IO/points/Point_table.h>
 #include <pcs/core/errors.h>
@@ -95,16 +92,16 @@ private:
   {
     switch (internal::format_by_content(path)) {
     case File_format::ply:
-      return std::make_unique<internal::Ply_reader>(path);
+      return internal::open_reader<File_format::ply>(path);
     case File_format::las:
-      return std::make_unique<internal::Las_reader>(path);
+      return internal::open_reader<File_format::las>(path);
     case File_format::off:
-      return std::make_unique<internal::Off_reader>(path);
+      return internal::open_reader<File_format::off>(path);
     case File_format::text:
     case File_format::automatic:
       break;
     }
-    return std::make_unique<internal::Text_reader>(path);
+    return internal::open_reader<File_format::text>(path);
   }
 
   //! prepares a chunk and reuses its memory
@@ -128,13 +125,7 @@ private:
       m_format->read_rows(m_block, std::min(rows_per_block, max_points - chunk.number_of_points()));
       if (m_block.number_of_rows == 0)
         break;
-      append_rows(m_block,
-                  m_format->layout(),
-                  chunk,
-                  [&](std::size_t row, const std::string& what) {
-                    m_format->fail_at(m_block.locations[row],
-                                      "point " + std::to_string(m_points_read + row) + ": " + what);
-                  });
+      m_format->append_rows(m_block, m_points_read, chunk);
       m_points_read += m_block.number_of_rows;
     }
   }

@@ -7,11 +7,8 @@
 
 #include <pcs/IO/internal/Format_reader.h>
 #include <pcs/IO/internal/Format_writer.h>
-#include <pcs/IO/internal/Off_writer.h>
-#include <pcs/IO/internal/Text_writer.h>
 #include <pcs/IO/internal/file_format.h>
-#include <pcs/IO/internal/las/Las_writer.h>
-#include <pcs/IO/internal/ply/Ply_writer.h>
+#include <pcs/IO/internal/open_format.h>
 #include <pcs/IO/points/Point_schema.h>
 #include <pcs/IO/points/Point_table.h>
 #include <pcs/IO/points/Write_options.h>
@@ -107,16 +104,16 @@ private:
                                    : internal::format_by_extension(path);
     switch (format) {
     case File_format::las:
-      return std::make_unique<internal::Las_writer>(path, m_schema, options);
+      return internal::open_writer<File_format::las>(path, m_schema, options);
     case File_format::off:
-      return std::make_unique<internal::Off_writer>(path, m_schema, options);
+      return internal::open_writer<File_format::off>(path, m_schema, options);
     case File_format::text:
-      return std::make_unique<internal::Text_writer>(path, m_schema, options);
+      return internal::open_writer<File_format::text>(path, m_schema, options);
     case File_format::ply:
     case File_format::automatic:
       break;
     }
-    return std::make_unique<internal::Ply_writer>(path, m_schema, options);
+    return internal::open_writer<File_format::ply>(path, m_schema, options);
   }
 
   void check_usable(const std::string& caller) const

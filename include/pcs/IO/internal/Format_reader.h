@@ -36,6 +36,17 @@ public:
   //! throws the error for a row of the current block
   [[noreturn]] virtual void fail_at(std::uint64_t location, const std::string& what) const = 0;
 
+  /*!
+    Appends the rows of the current block to a table with the properties of the schema. `first` is
+    the index of the first row in the file, for the error of a coordinate that is not finite.
+  */
+  virtual void append_rows(const Row_block& block, std::uint64_t first, Point_table& table) const
+  {
+    internal::append_rows(block, m_layout, table, [&](std::size_t row, const std::string& what) {
+      fail_at(block.locations[row], "point " + std::to_string(first + row) + ": " + what);
+    });
+  }
+
   const Point_schema& schema() const { return m_schema; }
   const Row_layout& layout() const { return m_layout; }
   std::optional<std::uint64_t> number_of_points() const { return m_number_of_points; }

@@ -28,7 +28,7 @@ public:
   virtual ~Format_writer() = default;
 
   //! writes the points of a table that has the properties of the schema
-  void append(const Point_table& table)
+  virtual void append(const Point_table& table)
   {
     const std::vector<std::size_t> columns = find_columns(table.schema(), m_layout);
     const std::size_t rows = rows_per_block(m_layout);
@@ -40,7 +40,7 @@ public:
   }
 
   //! completes the file, which contains `number_of_points` points, and renames it to its final name
-  void commit(std::uint64_t number_of_points)
+  virtual void commit(std::uint64_t number_of_points)
   {
     finish(number_of_points);
     m_file.commit();
