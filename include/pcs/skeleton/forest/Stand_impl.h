@@ -10,6 +10,7 @@
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Session.h>
 #include <pcs/skeleton/Session_options.h>
+#include <pcs/skeleton/forest/Sparse_ground.h>
 #include <pcs/skeleton/forest/Stand.h>
 #include <pcs/skeleton/forest/Stand_options.h>
 #include <pcs/skeleton/forest/Stem_detector.h>
@@ -19,6 +20,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -37,6 +39,24 @@ struct Stand_state
   std::vector<float>
       spacing_of_input; ///< of the thinned points, relative to the median of trees [-]
 };
+
+/// Returns the points of a scan that are left after the removal of clutter. If no ground was found,
+/// the points of a sparse ground are removed, too.
+template <class ConcurrencyTag>
+std::vector<std::uint8_t> points_above_ground(const Session<ConcurrencyTag>& session,
+                                              double breast_height)
+{
+  std::vector<std::uint8_t> is_used = session.used_points();
+  const Scan& scan = session.scan();
+  const Sparse_ground_options rules;
+  const Sparse_ground ground(scan, breast_height / scan.frame.unit, rules, is_used);
+  if (session.report().number_of_ground_points > 0 || !ground.is_found())
+    return is_used;
+  for (std::size_t i = 0; i < is_used.size(); ++i)
+    if (ground.height(scan.points[i]) <= ground.thickness())
+      is_used[i] = 0;
+  return is_used;
+}
 
 /// Detects the stems. Assigns points to trees only if `are_wanted(stand)` holds for these stems.
 /// Returns `false` if the work was cancelled.
@@ -63,8 +83,9 @@ bool find_stand(const std::vector<Vec3>& input,
     return false;
   const Scan& scan = session.scan();
   stand.frame = scan.frame;
+  const std::vector<std::uint8_t> is_used = points_above_ground(session, hints.breast_height);
   Stem_detector<ConcurrencyTag> finder(scan,
-                                       session.used_points(),
+                                       is_used,
                                        hints.breast_height / scan.frame.unit,
                                        options,
                                        rules);
