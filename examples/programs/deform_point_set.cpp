@@ -74,6 +74,7 @@ void run_in_memory(const Options& options, std::optional<Edit> edit, Run_report&
   pcs::IO::Point_table table = pcs::IO::read_points(options.input);
   run.seconds_read = reading.seconds();
   run.number_of_points = table.number_of_points();
+  run.warnings = table.schema().warnings;
   run.number_of_neighbors = options.number_of_neighbors;
   check_output(options.output, table.schema());
   if (!edit)

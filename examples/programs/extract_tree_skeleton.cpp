@@ -257,6 +257,8 @@ nlohmann::ordered_json work_on(const std::string& input, const Skeleton_options&
     throw pcs::Invalid_input("there is no tree in this scan (" +
                              std::to_string(report.number_of_points) + " points)");
   nlohmann::ordered_json json = to_json(input, report);
+  for (const std::string& sentence : table.schema().warnings)
+    json["warnings"].push_back(sentence);
   if (number_of_empty_rays > 0)
     json["warnings"].push_back(std::to_string(number_of_empty_rays) +
                                " rays without return (alpha 0) were left out");

@@ -212,8 +212,11 @@ std::vector<Tree_file> read_trees(const Options& o)
   const auto file = [](const std::vector<std::string>& names, std::size_t i) {
     return names.empty() ? std::string() : names[i];
   };
-  for (std::size_t i = 0; i < o.number_of_trees(); ++i)
+  for (std::size_t i = 0; i < o.number_of_trees(); ++i) {
     files.push_back(read_tree(file(o.trees, i), file(o.skeletons, i)));
+    for (const std::string& warning : files.back().points.schema().warnings)
+      std::cerr << "orl_geodesic: warning: " << file(o.trees, i) << ": " << warning << '\n';
+  }
   return files;
 }
 

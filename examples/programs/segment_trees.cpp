@@ -198,10 +198,12 @@ void run(const Options& options)
     table.add_property("tree", std::move(trees));
     pcs::IO::write_points(options.points, table);
   }
-  const nlohmann::ordered_json json = to_json(options, report);
+  nlohmann::ordered_json json = to_json(options, report);
+  for (const std::string& warning : table.schema().warnings)
+    json["warnings"].push_back(warning);
   if (report_file)
     report_file->commit(json);
-  for (const std::string& warning : pcs::warnings(report))
+  for (const std::string warning : json["warnings"])
     std::cerr << "segment_trees: warning: " << options.input << ": " << warning << '\n';
   if (!options.is_quiet)
     std::cout << "trees " << report.trees.size() << ", unassigned points "

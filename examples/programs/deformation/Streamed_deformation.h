@@ -109,6 +109,7 @@ private:
     {
       const pcs::IO::Point_reader reader(m_options.input);
       m_empty = Table(reader.schema());
+      m_run.warnings = reader.schema().warnings;
       n = reader.number_of_points();
     }
     m_run.number_of_points =

@@ -38,8 +38,12 @@ namespace IO {
     type (`int64` and `uint64` are an extension). Lists and other elements, such as faces, are
     checked and discarded.
   - Text: columns separated by blanks, tabs, commas or semicolons, all read as `float64`. Lines
-    that begin with `#` or `//` are comments. A first line without any number names the columns;
-    otherwise they are `x`, `y`, `z`, `column_4`, `column_5`, ...
+    that begin with `#`, `%` or `//` are comments. The columns are named by a line without numbers
+    or by the comment before the first row; coordinates may have names such as `Easting`,
+    `y_coord`, `Height`. Otherwise the columns are `x`, `y`, `z`, `column_4`, `column_5`, ...
+    Missing values (`NA`, `nan`, nothing) are NaN, but not in coordinates. Columns of text are left
+    out with a sentence in `Point_schema::warnings`. Decimal commas are read unless commas separate
+    columns.
   - OFF, NOFF, COFF, CNOFF: `nx`, `ny`, `nz` and `red`, `green`, `blue`, `alpha`; faces are
     checked and discarded.
   - LAS 1.0 to 1.4, point formats 0 to 10, uncompressed: every dimension is a property. Extra bytes
@@ -109,7 +113,8 @@ private:
   {
     if (chunk.schema().properties == schema().properties && chunk.schema().las == schema().las &&
         chunk.schema().format == schema().format && chunk.schema().comments == schema().comments &&
-        chunk.schema().obj_info == schema().obj_info)
+        chunk.schema().obj_info == schema().obj_info &&
+        chunk.schema().warnings == schema().warnings)
       chunk.clear();
     else
       chunk = Point_table(schema());

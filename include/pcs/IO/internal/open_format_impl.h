@@ -7,8 +7,8 @@
 
 #include <pcs/IO/internal/Off_reader.h>
 #include <pcs/IO/internal/Off_writer.h>
-#include <pcs/IO/internal/Text_reader.h>
-#include <pcs/IO/internal/Text_writer.h>
+#include <pcs/IO/internal/text/Text_reader.h>
+#include <pcs/IO/internal/text/Text_writer.h>
 #include <pcs/IO/internal/las/Las_reader.h>
 #include <pcs/IO/internal/las/Las_writer.h>
 #include <pcs/IO/internal/open_format.h>

@@ -78,6 +78,8 @@ struct Point_schema
   std::vector<std::string> comments;           //!< PLY comment lines, without the keyword
   std::vector<std::string> obj_info;           //!< PLY obj_info lines, without the keyword
   std::shared_ptr<const Las_metadata> las;     //!< null unless read from a LAS file
+  std::vector<std::string>
+      warnings; //!< sentences on what of the file was not read as it is written
 
   //! returns the index of a property in `properties`, or `properties.size()`
   std::size_t find(const std::string& name) const

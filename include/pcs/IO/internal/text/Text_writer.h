@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSL-1.0
 // Writes points as text, one per line.
 
-#ifndef PCS_IO_INTERNAL_TEXT_WRITER_H
-#define PCS_IO_INTERNAL_TEXT_WRITER_H
+#ifndef PCS_IO_INTERNAL_TEXT_TEXT_WRITER_H
+#define PCS_IO_INTERNAL_TEXT_TEXT_WRITER_H
 
 #include <pcs/IO/internal/Format_writer.h>
 #include <pcs/IO/internal/file_format.h>
@@ -68,4 +68,4 @@ private:
 } // namespace IO
 } // namespace pcs
 
-#endif // PCS_IO_INTERNAL_TEXT_WRITER_H
+#endif // PCS_IO_INTERNAL_TEXT_TEXT_WRITER_H
