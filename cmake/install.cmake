@@ -14,6 +14,7 @@ install(FILES
   ${PROJECT_BINARY_DIR}/pcsConfig.cmake
   ${PROJECT_BINARY_DIR}/pcsConfigVersion.cmake
   cmake/pcsCompiled.cmake
+  cmake/pcsFindLaszip.cmake
   cmake/pcsFindNanoflann.cmake
   DESTINATION ${PCS_CMAKE_DIR})
 install(DIRECTORY cmake/compiled DESTINATION ${PCS_CMAKE_DIR})

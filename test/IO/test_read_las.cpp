@@ -101,14 +101,6 @@ BOOST_AUTO_TEST_CASE(extra_bytes_without_description_are_kept)
   BOOST_TEST(int(table.property<std::uint8_t>("extra_byte_2")[1]) == 22);
 }
 
-BOOST_AUTO_TEST_CASE(compressed_files_are_refused)
-{
-  std::string bytes = Las_file().bytes();
-  bytes[104] = static_cast<char>(128);
-  refuses("a.las", bytes, "compressed (LAZ)");
-  refuses("a.laz", bytes, "compressed (LAZ)");
-}
-
 BOOST_AUTO_TEST_CASE(every_truncated_file_is_refused)
 {
   Las_file las;

@@ -46,7 +46,7 @@ namespace IO {
     columns.
   - OFF, NOFF, COFF, CNOFF: `nx`, `ny`, `nz` and `red`, `green`, `blue`, `alpha`; faces are
     checked and discarded.
-  - LAS 1.0 to 1.4, point formats 0 to 10, uncompressed: every dimension is a property. Extra bytes
+  - LAS 1.0 to 1.4, point formats 0 to 10, and LAZ if built with LASzip: every dimension is a property. Extra bytes
     are properties with the name in the file if it describes them, otherwise `extra_byte_0`, ...
     Header, VLRs and EVLRs are stored in `Point_schema::las`, in memory.
 
@@ -123,9 +123,9 @@ private:
   void fill(Point_table& chunk, std::size_t max_points)
   {
     const std::size_t rows_per_block = internal::rows_per_block(m_format->layout());
-    if (points_left()) // known and checked against the size of the file
-      chunk.points().reserve(
-          static_cast<std::size_t>(std::min<std::uint64_t>(max_points, *points_left())));
+    if (points_left())
+      chunk.points().reserve(static_cast<std::size_t>(std::min(
+          {std::uint64_t(max_points), *points_left(), m_format->largest_plausible_count()})));
     while (chunk.number_of_points() < max_points) {
       m_format->read_rows(m_block, std::min(rows_per_block, max_points - chunk.number_of_points()));
       if (m_block.number_of_rows == 0)

@@ -50,6 +50,8 @@ public:
   const Point_schema& schema() const { return m_schema; }
   const Row_layout& layout() const { return m_layout; }
   std::optional<std::uint64_t> number_of_points() const { return m_number_of_points; }
+  //! returns a number of points that the size of the file makes plausible, to reserve memory
+  virtual std::uint64_t largest_plausible_count() const { return m_number_of_points.value_or(0); }
 
 protected:
   void add_property(const std::string& name, Scalar_type type)

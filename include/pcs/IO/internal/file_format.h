@@ -41,13 +41,11 @@ inline File_format format_by_extension(const std::string& path)
     return File_format::ply;
   if (extension == "off")
     return File_format::off;
-  if (extension == "las")
+  if (extension == "las" || extension == "laz")
     return File_format::las;
   for (const char* text : {"xyz", "txt", "csv", "asc", "pts", "pwn"})
     if (extension == text)
       return File_format::text;
-  if (extension == "laz")
-    throw IO_error(path, "LAZ is compressed and not supported, expected an uncompressed LAS file");
   std::error_code error;
   if (std::filesystem::is_directory(path, error))
     throw IO_error(path, "is a directory, expected a file name");

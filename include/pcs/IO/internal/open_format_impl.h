@@ -7,13 +7,16 @@
 
 #include <pcs/IO/internal/Off_reader.h>
 #include <pcs/IO/internal/Off_writer.h>
-#include <pcs/IO/internal/text/Text_reader.h>
-#include <pcs/IO/internal/text/Text_writer.h>
+#include <pcs/IO/internal/file_format.h>
 #include <pcs/IO/internal/las/Las_reader.h>
 #include <pcs/IO/internal/las/Las_writer.h>
+#include <pcs/IO/internal/las/Laz_reader.h>
 #include <pcs/IO/internal/open_format.h>
 #include <pcs/IO/internal/ply/Ply_reader.h>
 #include <pcs/IO/internal/ply/Ply_writer.h>
+#include <pcs/IO/internal/text/Text_reader.h>
+#include <pcs/IO/internal/text/Text_writer.h>
+#include <pcs/core/errors.h>
 
 #include <memory>
 #include <string>
@@ -22,11 +25,24 @@ namespace pcs {
 namespace IO {
 namespace internal {
 
+inline std::unique_ptr<Format_reader> open_las_reader(const std::string& path)
+{
+  if (!has_compressed_points(path))
+    return std::make_unique<Las_reader>(path);
+#ifdef PCS_WITH_LASZIP
+  return std::make_unique<Laz_reader>(path);
+#else
+  throw IO_error(path,
+                 "the points are compressed (LAZ), and this program was built without LASzip; " +
+                     laz_conversions());
+#endif
+}
+
 template <File_format format>
 std::unique_ptr<Format_reader> open_reader(const std::string& path)
 {
   if constexpr (format == File_format::las)
-    return std::make_unique<Las_reader>(path);
+    return open_las_reader(path);
   else if constexpr (format == File_format::off)
     return std::make_unique<Off_reader>(path);
   else if constexpr (format == File_format::ply)
@@ -39,9 +55,13 @@ template <File_format format>
 std::unique_ptr<Format_writer>
 open_writer(const std::string& path, const Point_schema& schema, const Write_options& options)
 {
-  if constexpr (format == File_format::las)
+  if constexpr (format == File_format::las) {
+    if (extension_of(path) == "laz")
+      throw IO_error(path,
+                     "LAZ cannot be written; write a file with the extension las and compress it: "
+                     "laszip -i a.las -o a.laz");
     return std::make_unique<Las_writer>(path, schema, options);
-  else if constexpr (format == File_format::off)
+  } else if constexpr (format == File_format::off)
     return std::make_unique<Off_writer>(path, schema, options);
   else if constexpr (format == File_format::ply)
     return std::make_unique<Ply_writer>(path, schema, options);

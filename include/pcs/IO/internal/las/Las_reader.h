@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Reads the point records of an uncompressed LAS file.
+// Reads a LAS file: header, records and uncompressed points.
 
 #ifndef PCS_IO_INTERNAL_LAS_LAS_READER_H
 #define PCS_IO_INTERNAL_LAS_LAS_READER_H
@@ -29,17 +29,9 @@ namespace internal {
 class Las_reader : public Format_reader
 {
 public:
-  explicit Las_reader(const std::string& path)
-    : m_file(path), m_las(std::make_shared<Las_metadata>())
+  explicit Las_reader(const std::string& path) : Las_reader(path, false)
   {
-    read_header();
-    read_scale();
-    read_vlrs();
-    read_count();
-    read_tail();
-    make_schema();
     m_file.seek(m_first_point);
-    m_rows_left = *m_number_of_points;
   }
 
   void read_rows(Row_block& block, std::size_t max_rows) override
@@ -58,13 +50,27 @@ public:
     m_file.fail_at_byte(location, what);
   }
 
-private:
+protected:
+  //! reads all but the points, which may be compressed
+  Las_reader(const std::string& path, bool is_compressed)
+    : m_file(path), m_las(std::make_shared<Las_metadata>()), m_is_compressed(is_compressed)
+  {
+    read_header();
+    read_scale();
+    read_vlrs();
+    read_count();
+    read_tail();
+    make_schema();
+    m_rows_left = *m_number_of_points;
+  }
+
   template <class T>
   T header(std::size_t at) const
   {
     return load_little<T>(m_las->header, at);
   }
 
+private:
   void read_header()
   {
     m_las->header.resize(las_header::size_1_2);
@@ -88,12 +94,14 @@ private:
     check_point_format();
   }
 
-  void check_point_format() const
+  void check_point_format()
   {
-    const unsigned format = m_las->header[las_header::point_format];
-    if (format >= 64) // the compressor marks its files in the two highest bits
-      m_file.fail_at_byte(las_header::point_format,
-                          "the points are compressed (LAZ), expected an uncompressed LAS file");
+    unsigned format = m_las->header[las_header::point_format];
+    if (format < las_header::compressed_bit && m_is_compressed)
+      m_file.fail_at_byte(las_header::point_format, "expected compressed points");
+    if (m_is_compressed)
+      format -= las_header::compressed_bit;
+    m_las->header[las_header::point_format] = static_cast<unsigned char>(format);
     if (format > largest_point_format)
       m_file.fail_at_byte(las_header::point_format,
                           "expected a point format of 0 to 10, found " + std::to_string(format));
@@ -154,12 +162,33 @@ private:
                                 " and " + std::to_string(count));
     }
     const std::uint64_t length = header<std::uint16_t>(las_header::record_length);
+    if (m_is_compressed) {
+      m_number_of_points = count;
+      m_las->tail_position = find_compressed_tail();
+      return;
+    }
     if (count > (m_file.size() - m_first_point) / length)
       m_file.fail_at_byte(m_minor >= 4 ? las_header::count : las_header::legacy_count,
                           "the file is too small for " + std::to_string(count) + " points of " +
                               std::to_string(length) + " bytes");
     m_number_of_points = count;
     m_las->tail_position = m_first_point + count * length;
+  }
+
+  //! returns the first byte of extended records or waveforms behind compressed points
+  std::uint64_t find_compressed_tail() const
+  {
+    const std::uint64_t waveforms = m_minor >= 3 ? header<std::uint64_t>(las_header::waveforms) : 0;
+    const std::uint32_t n = m_minor >= 4 ? header<std::uint32_t>(las_header::number_of_evlrs) : 0;
+    std::uint64_t tail = m_file.size();
+    if (waveforms != 0)
+      tail = std::min(tail, waveforms);
+    if (n > 0)
+      tail = std::min(tail, header<std::uint64_t>(las_header::first_evlr));
+    if (tail < m_first_point)
+      m_file.fail_at_byte(n > 0 ? las_header::first_evlr : las_header::waveforms,
+                          "expected extended records and waveforms after the points");
+    return tail;
   }
 
   //! stores extended records and waveforms unchanged
@@ -218,8 +247,10 @@ private:
           {field.name, is_coordinate_name(field.name) ? Scalar_type::float64 : field.type});
   }
 
+protected:
   Input_file m_file;
   std::shared_ptr<Las_metadata> m_las;
+  bool m_is_compressed;
   unsigned m_minor = 0;
   std::uint64_t m_first_point = 0; // [byte]
   std::uint64_t m_rows_left = 0;

@@ -32,6 +32,7 @@ constexpr std::size_t global_encoding = 6, version_major = 24, version_minor = 2
                       legacy_count = 107, legacy_by_return = 111, scale = 131, offset = 155,
                       box = 179, waveforms = 227, first_evlr = 235, number_of_evlrs = 243,
                       count = 247, by_return = 255;
+constexpr unsigned compressed_bit = 128; // of the point format, in LAZ files
 constexpr std::size_t size_1_2 = 227, size_1_3 = 235, size_1_4 = 375;
 } // namespace las_header
 

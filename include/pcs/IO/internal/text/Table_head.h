@@ -38,7 +38,7 @@ inline std::string_view without_byte_order_mark(std::string_view line)
   Reads the lines before the first row and the first rows. Before the first row, there may be the
   number of points, lines of text, a line with the names of the columns and a line with their units.
   The comment directly before the first row may contain the names as well (as in files of
-  CloudCompare). The rows may have one word more than there are names, as R writes the names of rows.
+  CloudCompare). The rows may have one word more than there are names, as R writes row names.
 */
 class Table_head
 {
