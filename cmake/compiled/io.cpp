@@ -21,6 +21,10 @@ PCS_INSTANTIATE(File_format::text)
 
 #undef PCS_INSTANTIATE
 
+template std::unique_ptr<Format_reader> open_reader<File_format::pcd>(const std::string&);
+template std::unique_ptr<Format_reader> open_reader<File_format::ptx>(const std::string&);
+template std::unique_ptr<Format_reader> open_reader<File_format::obj>(const std::string&);
+
 } // namespace internal
 } // namespace IO
 } // namespace pcs

@@ -27,8 +27,9 @@ namespace IO {
   \ingroup PkgPcsIORef
   \brief Reads a point file in chunks.
 
-  The format is recognised by its first bytes (`ply`, `LASF`, `OFF` and its variants). A file
-  without them is read as text if its extension is xyz, txt, csv, asc, pts or pwn.
+  The format is recognised by its first bytes (`ply`, `LASF`, `# .PCD`, `OFF` and its variants). A
+  file without them is read by its extension: pcd, ptx, obj, or text if it is xyz, txt, csv, asc,
+  pts or pwn.
 
   The reader is strict. Counts are compared with the size of the file before memory is allocated;
   coordinates must be finite, other properties need not be; the file must end as its header states.
@@ -46,9 +47,16 @@ namespace IO {
     columns.
   - OFF, NOFF, COFF, CNOFF: `nx`, `ny`, `nz` and `red`, `green`, `blue`, `alpha`; faces are
     checked and discarded.
-  - LAS 1.0 to 1.4, point formats 0 to 10, and LAZ if built with LASzip: every dimension is a property. Extra bytes
-    are properties with the name in the file if it describes them, otherwise `extra_byte_0`, ...
+  - LAS 1.0 to 1.4, point formats 0 to 10, and LAZ where LASzip is available (CMake option
+    `PCS_WITH_LASZIP`): every dimension is a property. Extra bytes are properties with the name in
+    the file if it describes them, otherwise `extra_byte_0`, ...
     Header, VLRs and EVLRs are stored in `Point_schema::las`, in memory.
+  - PCD: ascii, binary and binary_compressed, the last in memory. Fields are read in their own type;
+    `rgb` is `red`, `green`, `blue`. Points whose coordinates are NaN have no return and are left
+    out.
+  - PTX: the matrix of each scan is applied; `scan` is its index. Points 0 0 0 have no return and
+    are left out.
+  - OBJ: vertices, with a weight or colours; a warning states the number of faces.
 
   \par Memory
   One chunk and buffers of less than 1 MB; a line of text may require up to 16 MB more.
@@ -59,7 +67,7 @@ public:
   //! opens the file and reads its header; throws `pcs::IO_error`
   explicit Point_reader(const std::string& path) : m_format(open(path)) {}
 
-  //! returns the number of points if the file states it, as all formats except text do
+  //! returns the number of points if it is known, as for all formats except text, PCD and PTX
   std::optional<std::uint64_t> number_of_points() const { return m_format->number_of_points(); }
 
   //! returns the properties of the points
@@ -101,6 +109,12 @@ private:
       return internal::open_reader<File_format::las>(path);
     case File_format::off:
       return internal::open_reader<File_format::off>(path);
+    case File_format::pcd:
+      return internal::open_reader<File_format::pcd>(path);
+    case File_format::ptx:
+      return internal::open_reader<File_format::ptx>(path);
+    case File_format::obj:
+      return internal::open_reader<File_format::obj>(path);
     case File_format::text:
     case File_format::automatic:
       break;

@@ -109,6 +109,10 @@ private:
       return internal::open_writer<File_format::off>(path, m_schema, options);
     case File_format::text:
       return internal::open_writer<File_format::text>(path, m_schema, options);
+    case File_format::pcd:
+    case File_format::ptx:
+    case File_format::obj:
+      throw IO_error(path, "this format can only be read; write ply, las, off, xyz, txt or csv");
     case File_format::ply:
     case File_format::automatic:
       break;

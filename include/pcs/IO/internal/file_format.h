@@ -33,6 +33,36 @@ inline std::string extension_of(const std::string& path)
   return text;
 }
 
+//! returns how to convert files that pcs does not read, or an empty string
+inline std::string conversion_of(const std::string& extension)
+{
+  struct Conversion
+  {
+    const char* extension;
+    const char* sentence;
+  };
+  constexpr std::array<Conversion, 14> conversions = {{
+      {"e57", "convert the file to LAS: pdal translate a.e57 a.las, or CloudCompare"},
+      {"bin", "convert the file to PLY or LAS with CloudCompare"},
+      {"rcp", "export the project as PTS with Autodesk ReCap"},
+      {"rcs", "export the scan as PTS with Autodesk ReCap"},
+      {"fls", "export the scan as PTX, PTS or LAS with FARO SCENE"},
+      {"fws", "export the scans as PTX, PTS or LAS with FARO SCENE"},
+      {"zfs", "export the scan as PTX, PTS or LAS with Z+F LaserControl"},
+      {"rxp", "export the scan as LAS with RiSCAN PRO"},
+      {"rdbx", "export the scan as LAS with RiSCAN PRO"},
+      {"ptg", "export the scan as PTX or PTS with Leica Cyclone"},
+      {"gz", "unpack the file: gunzip -k FILE"},
+      {"bz2", "unpack the file: bunzip2 -k FILE"},
+      {"zip", "unpack the file: unzip FILE"},
+      {"7z", "unpack the file: 7z x FILE"},
+  }};
+  for (const Conversion& c : conversions)
+    if (extension == c.extension)
+      return c.sentence;
+  return {};
+}
+
 //! returns the format of a file extension; throws if there is none
 inline File_format format_by_extension(const std::string& path)
 {
@@ -43,16 +73,27 @@ inline File_format format_by_extension(const std::string& path)
     return File_format::off;
   if (extension == "las" || extension == "laz")
     return File_format::las;
+  if (extension == "pcd")
+    return File_format::pcd;
+  if (extension == "ptx")
+    return File_format::ptx;
+  if (extension == "obj")
+    return File_format::obj;
   for (const char* text : {"xyz", "txt", "csv", "asc", "pts", "pwn"})
     if (extension == text)
       return File_format::text;
+  const std::string conversion = conversion_of(extension);
+  if (!conversion.empty())
+    throw IO_error(path, "files of type " + extension + " are not supported; " + conversion);
   std::error_code error;
   if (std::filesystem::is_directory(path, error))
     throw IO_error(path, "is a directory, expected a file name");
   throw IO_error(path,
                  (extension.empty() ? std::string("a name without extension")
                                     : "unknown format '" + extension + "'") +
-                     ", expected ply, las, off, xyz, txt, csv, asc, pts or pwn");
+                     ", expected ply, las, off, xyz, txt, csv, asc, pts or pwn, or for input also "
+                     "laz, pcd, ptx "
+                     "or obj");
 }
 
 //! opens the file and returns the format by its first bytes, otherwise by the extension
@@ -71,6 +112,8 @@ inline File_format format_by_content(const std::string& path)
     return File_format::ply;
   if (text.substr(0, 4) == "LASF")
     return File_format::las;
+  if (text.substr(0, 6) == "# .PCD")
+    return File_format::pcd;
   if (is_off_keyword(word))
     return File_format::off;
   return format_by_extension(path); // the reader of that format reports missing data

@@ -14,6 +14,9 @@
 #include <pcs/IO/internal/open_format.h>
 #include <pcs/IO/internal/ply/Ply_reader.h>
 #include <pcs/IO/internal/ply/Ply_writer.h>
+#include <pcs/IO/internal/scans/Obj_reader.h>
+#include <pcs/IO/internal/scans/Pcd_reader.h>
+#include <pcs/IO/internal/scans/Ptx_reader.h>
 #include <pcs/IO/internal/text/Text_reader.h>
 #include <pcs/IO/internal/text/Text_writer.h>
 #include <pcs/core/errors.h>
@@ -47,6 +50,12 @@ std::unique_ptr<Format_reader> open_reader(const std::string& path)
     return std::make_unique<Off_reader>(path);
   else if constexpr (format == File_format::ply)
     return std::make_unique<Ply_reader>(path);
+  else if constexpr (format == File_format::pcd)
+    return std::make_unique<Pcd_reader>(path);
+  else if constexpr (format == File_format::ptx)
+    return std::make_unique<Ptx_reader>(path);
+  else if constexpr (format == File_format::obj)
+    return std::make_unique<Obj_reader>(path);
   else
     return std::make_unique<Text_reader>(path);
 }

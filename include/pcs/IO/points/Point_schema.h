@@ -19,14 +19,17 @@ namespace IO {
 
 /*!
   \ingroup PkgPcsIORef
-  \brief The families of point file formats that pcs reads and writes.
+  \brief The families of point file formats that pcs reads; most are also written.
 */
 enum class File_format : std::uint8_t {
   automatic, //!< reading: by content, then extension; writing: by extension
   ply,       //!< ascii, binary little endian, binary big endian
   text,      //!< one point per line: xyz, txt, csv, asc, pts, pwn
   off,       //!< OFF, NOFF, COFF, CNOFF
-  las        //!< LAS 1.0 to 1.4, not compressed
+  las,       //!< LAS 1.0 to 1.4, and reading LAZ where LASzip is available
+  pcd,       //!< ascii, binary, binary_compressed; reading only
+  ptx,       //!< one or several scans with their poses; reading only
+  obj        //!< the vertices; reading only
 };
 
 /*!
