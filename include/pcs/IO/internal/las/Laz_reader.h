@@ -23,7 +23,8 @@ namespace internal {
 //! the programs that convert LAZ to LAS, for messages
 inline std::string laz_conversions()
 {
-  return "build pcs with LASzip (package liblaszip-dev, CMake option PCS_WITH_LASZIP), or convert "
+  return "build pcs with LASzip (package liblaszip-dev where there is one, CMake variable "
+         "PCS_WITH_LASZIP), or convert "
          "the file: laszip -i a.laz -o a.las, las2las -i a.laz -o a.las, or pdal translate a.laz "
          "a.las";
 }
