@@ -5,6 +5,7 @@
 #include "common/Progress_line.h"
 #include "common/Report_file.h"
 #include "common/check_output.h"
+#include "common/read_skeleton.h"
 #include "common/run_program.h"
 #include "common/up_direction.h"
 #include "scan/tree_foot.h"
@@ -15,7 +16,6 @@
 #include <pcs/IO/internal/Output_file.h>
 #include <pcs/IO/points/Point_table.h>
 #include <pcs/IO/read_points.h>
-#include <pcs/IO/read_swc.h>
 #include <pcs/IO/write_cylinders.h>
 #include <pcs/IO/write_mesh.h>
 #include <pcs/IO/write_points.h>
@@ -114,11 +114,22 @@ std::optional<std::array<double, 3>> foot_of(const pcs::IO::Point_table& table,
   return std::array<double, 3>{options.root[0], options.root[1], options.root[2]};
 }
 
+/// Reads the given skeleton. Returns a warning if trees of its file were left out.
+std::string read_given(const Skeleton_options& options, Tree& given)
+{
+  std::vector<std::int64_t> ids;
+  const pcs::IO::Tree_selection selection =
+      read_skeleton<Kernel>(options.given, given, ids, options.root_number);
+  const std::string warning = warning_of_selection(selection, "--root-number");
+  return warning.empty() ? warning : options.given + ": " + warning;
+}
+
 pcs::Skeleton_report extract(const std::string& input,
                              const pcs::IO::Point_table& table,
                              const Skeleton_options& options,
                              Tree& tree,
-                             Labels& labels)
+                             Labels& labels,
+                             std::vector<std::string>& warnings)
 {
   const std::size_t n = table.number_of_points();
   const std::vector<std::uint8_t> wood = wood_of_points(table, options.wood);
@@ -172,7 +183,9 @@ pcs::Skeleton_report extract(const std::string& input,
                       .callback(callback);
   if (!options.given.empty()) {
     Tree given;
-    pcs::IO::read_swc<Kernel>(options.given, given);
+    const std::string warning = read_given(options, given);
+    if (!warning.empty())
+      warnings.push_back(warning);
     return extract_with_labels(indices, options, tree, labels, np.given_skeleton(std::cref(given)));
   }
   const std::optional<std::array<double, 3>> foot = foot_of(table, options);
@@ -252,7 +265,8 @@ nlohmann::ordered_json work_on(const std::string& input, const Skeleton_options&
   const double reading = watch.lap();
   Tree tree;
   Labels labels;
-  const pcs::Skeleton_report report = extract(input, table, options, tree, labels);
+  std::vector<std::string> warnings; // of the input
+  const pcs::Skeleton_report report = extract(input, table, options, tree, labels, warnings);
   if (report.status != pcs::Status::converged)
     throw pcs::Invalid_input("there is no tree in this scan (" +
                              std::to_string(report.number_of_points) + " points)");
@@ -260,8 +274,10 @@ nlohmann::ordered_json work_on(const std::string& input, const Skeleton_options&
   for (const std::string& sentence : table.schema().warnings)
     json["warnings"].push_back(sentence);
   if (number_of_empty_rays > 0)
-    json["warnings"].push_back(std::to_string(number_of_empty_rays) +
-                               " rays without return (alpha 0) were left out");
+    warnings.push_back(std::to_string(number_of_empty_rays) +
+                       " rays without return (alpha 0) were left out");
+  for (const std::string& sentence : warnings)
+    json["warnings"].push_back(sentence);
   if (!options.is_quiet)
     for (const std::string sentence : json["warnings"])
       std::cerr << "extract_tree_skeleton: warning: " << input << ": " << sentence << '\n';

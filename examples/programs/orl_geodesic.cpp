@@ -205,6 +205,16 @@ nlohmann::ordered_json report_json(const Space& space,
   return json;
 }
 
+/// Returns which tree is read from the skeleton file `i`.
+Root_number root_number(const Options& o, std::size_t i)
+{
+  if (o.root_numbers.empty())
+    return {};
+  if (o.root_numbers.size() == 1)
+    return {o.root_numbers.front(), true};
+  return {o.root_numbers[i], false};
+}
+
 /// Reads all files before skeletons are computed, which takes time.
 std::vector<Tree_file> read_trees(const Options& o)
 {
@@ -213,9 +223,13 @@ std::vector<Tree_file> read_trees(const Options& o)
     return names.empty() ? std::string() : names[i];
   };
   for (std::size_t i = 0; i < o.number_of_trees(); ++i) {
-    files.push_back(read_tree(file(o.trees, i), file(o.skeletons, i)));
-    for (const std::string& warning : files.back().points.schema().warnings)
-      std::cerr << "orl_geodesic: warning: " << file(o.trees, i) << ": " << warning << '\n';
+    std::string warning;
+    files.push_back(read_tree(file(o.trees, i), file(o.skeletons, i), root_number(o, i), warning));
+    for (const std::string& w : files.back().points.schema().warnings)
+      if (!o.is_quiet)
+        std::cerr << "orl_geodesic: warning: " << file(o.trees, i) << ": " << w << '\n';
+    if (!warning.empty() && !o.is_quiet)
+      std::cerr << "orl_geodesic: warning: " << warning << '\n';
   }
   return files;
 }

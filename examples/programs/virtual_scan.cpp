@@ -5,11 +5,10 @@
 #include "common/Progress_line.h"
 #include "common/Report_file.h"
 #include "common/check_output.h"
+#include "common/read_skeleton.h"
 #include "common/run_program.h"
 #include "scan/Scan_options.h"
 #include <pcs/IO/points/Point_table.h>
-#include <pcs/IO/read_swc.h>
-#include <pcs/IO/read_tree_csv.h>
 #include <pcs/IO/write_points.h>
 #include <pcs/IO/write_swc.h>
 #include <pcs/IO/write_tree_csv.h>
@@ -26,7 +25,6 @@
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
-#include <filesystem>
 #include <iostream>
 #include <optional>
 #include <string>
@@ -55,10 +53,14 @@ Tree make_tree(const Scan_options& options)
   Tree tree;
   if (options.tree.empty())
     pcs::grow_tree(tree, habit_of(options), pcs::parameters::random_seed(options.seed));
-  else if (std::filesystem::path(options.tree).extension() == ".csv")
-    pcs::IO::read_tree_csv(options.tree, tree);
-  else
-    pcs::IO::read_swc(options.tree, tree);
+  else {
+    std::vector<std::int64_t> ids;
+    const std::string warning =
+        warning_of_selection(read_skeleton<Kernel>(options.tree, tree, ids, options.root_number),
+                             "--root-number");
+    if (!warning.empty() && !options.is_quiet)
+      std::cerr << "virtual_scan: warning: " << options.tree << ": " << warning << '\n';
+  }
 
   for (const auto& [id, factor] : options.lengthened)
     pcs::lengthen_branch(tree, id, factor);

@@ -15,6 +15,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
@@ -170,7 +171,11 @@ BOOST_AUTO_TEST_CASE(malformed_files_are_refused_with_the_line)
   refuses_tree("", "the file has no node");
   refuses_tree("# nothing\n", "the file has no node");
   refuses_tree("1 0 0 0 0 1 -1\n2 0 0 0 1 1\n", "line 2: expected the 7 columns");
-  refuses_tree("1 0 0 0 0 1 -1 8\n", "line 1: expected the 7 columns");
+  refuses_tree("1 0 0 0 0 1 # -1\n", "line 1: expected the 7 columns");
+  refuses_tree("1 0 0 0 0 1 -1\n2 0 0 0 1 1 1 3 0 0 0 2 1 2\n",
+               "line 2: expected 7 columns as in the first row, found 14");
+  refuses_tree("1 0 0 0 0 1 -1 2 0 0 0 1 1 1\n3 0 0 0 2 1 1\n",
+               "line 2: expected 14 columns as in the first row, found 7");
   refuses_tree("1 0 0 0 zero 1 -1\n", "line 1: expected a number as 'z', found 'zero'");
   refuses_tree("1 0 0 0 nan 1 -1\n", "line 1: expected a finite number as 'z'");
   refuses_tree("1 0 0 0 1e999 1 -1\n", "line 1: 'z' is out of range");
@@ -179,11 +184,66 @@ BOOST_AUTO_TEST_CASE(malformed_files_are_refused_with_the_line)
   refuses_tree("-4 0 0 0 0 1 -1\n", "line 1: an id must not be negative");
 }
 
-BOOST_AUTO_TEST_CASE(files_that_hold_no_single_tree_are_refused_with_the_line)
+BOOST_AUTO_TEST_CASE(further_columns_and_comments_behind_data_are_ignored)
+{
+  const Tree tree = read_tree("##n type x y z radius parent seg level\n"
+                              "1 1 0 0 0 1 -1 7 8.5 # soma\n"
+                              "2 3 0 0 1 0.5 1 8 nan# no blank before\n"
+                              "3 3 0 0 2 0.25 2 label\n"
+                              " # indented\n");
+  BOOST_TEST_REQUIRE(num_vertices(tree) == 3u);
+  BOOST_TEST(tree[2].radius == 0.25);
+  BOOST_TEST(pcs::parent_node<Kernel>(2, tree) == 1u);
+}
+
+BOOST_AUTO_TEST_CASE(one_of_several_trees_is_read)
+{
+  // trees of 2, 3 and 2 nodes, whose rows alternate
+  const std::string content = "10 0 0 0 0 1 -1\n21 0 5 0 1 1 20\n11 0 0 0 1 1 10\n"
+                              "20 0 5 0 0 2 -1\n31 0 9 0 1 1 30\n22 0 5 0 2 1 21\n"
+                              "30 0 9 0 0 3 -1\n";
+  const std::string name = file("a.swc", content);
+  using Ids = std::vector<std::int64_t>;
+  const auto read = [&](std::size_t number, Tree& tree) {
+    Ids ids;
+    const pcs::IO::Tree_selection selection = pcs::IO::read_swc<Kernel>(name, tree, ids, number);
+    BOOST_TEST(selection.number_of_trees == 3u);
+    BOOST_TEST(selection.number_of_nodes == 7u);
+    BOOST_TEST(selection.number_of_omitted_nodes == 7 - ids.size());
+    BOOST_TEST(num_vertices(tree) == ids.size());
+    return ids;
+  };
+  Tree tree;
+  BOOST_TEST((read(1, tree) == Ids{21, 20, 22}));
+  BOOST_TEST(tree[boost::graph_bundle].root == 1u);
+  BOOST_TEST(tree[1].radius == 2);
+  BOOST_TEST(pcs::parent_node<Kernel>(0, tree) == 1u);
+  BOOST_TEST(pcs::parent_node<Kernel>(2, tree) == 0u);
+  BOOST_TEST((read(2, tree) == Ids{10, 11}));
+  BOOST_TEST((read(3, tree) == Ids{31, 30}));
+  for (const std::size_t number : {0, 4}) {
+    std::string message;
+    try {
+      pcs::IO::read_swc<Kernel>(name, tree, number);
+    } catch (const pcs::IO_error& e) {
+      message = e.what();
+    }
+    BOOST_TEST(message.find("there is no tree " + std::to_string(number) +
+                            ": the file has 3 trees") != std::string::npos,
+               message);
+    BOOST_TEST(tree[1].radius == 3); // untouched
+  }
+  const pcs::IO::Tree_selection selection = pcs::IO::read_swc<Kernel>(name, tree);
+  BOOST_TEST_REQUIRE(warnings(selection).size() == 1u);
+  BOOST_TEST(warnings(selection)[0].find("4 of 7 nodes, those of the other 2") !=
+             std::string::npos);
+  BOOST_TEST(warnings(pcs::IO::read_swc<Kernel>(file("b.swc", "1 0 0 0 0 1 -1\n"), tree)).empty());
+}
+
+BOOST_AUTO_TEST_CASE(files_that_hold_no_tree_are_refused_with_the_line)
 {
   refuses_tree("1 0 0 0 0 1 -1\n1 0 0 0 1 1 1\n", "line 2: the id 1 is used twice");
   refuses_tree("1 0 0 0 0 1 -1\n2 0 0 0 1 1 3\n", "line 2: there is no node with the id 3");
-  refuses_tree("1 0 0 0 0 1 -1\n2 0 0 0 1 1 -1\n", "line 2: a second root");
   refuses_tree("1 0 0 0 0 1 2\n2 0 0 0 1 1 1\n", "no node has the parent -1");
   refuses_tree("1 0 0 0 0 1 -1\n2 0 0 0 1 1 3\n3 0 0 0 1 1 2\n", "form a cycle");
   refuses_tree("1 0 0 0 0 1 -1\n2 0 0 0 1 1 2\n", "line 2: the parents of this node form a cycle");

@@ -32,6 +32,7 @@ struct Scan_options
   std::string preset = "broadleaf";
   std::int64_t stations = 4, seed = 0;
   std::optional<double> height;
+  std::size_t root_number = 1; ///< of the tree in the file of `tree`
   double age = 1;
   double step_degrees = 0.05, arc_degrees = 360, first_degrees = 0, beam_milliradians = 0.4;
   pcs::Virtual_scanner scanner;
@@ -76,8 +77,15 @@ inline void declare(CLI::App& app, Scan_options& o)
   const char* tree = "The tree";
   CLI::Option* preset =
       app.add_option("--preset", o.preset, presets)->capture_default_str()->group(tree);
-  app.add_option("--tree", o.tree, "scan this tree instead (CSV or SWC)")
+  app.add_option("--tree", o.tree, "scan this tree instead (SWC, CSV or .txtskl)")
       ->excludes(preset)
+      ->group(tree);
+  app.add_option("--root-number",
+                 o.root_number,
+                 "which tree of a file with several trees is scanned, 1: the one with the most "
+                 "nodes")
+      ->check(CLI::Range(std::size_t(1), std::size_t(1) << 52))
+      ->needs("--tree")
       ->group(tree);
   app.add_option("--seed", o.seed, "random seed of the tree and of the scan")
       ->check(is_seed)

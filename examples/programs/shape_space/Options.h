@@ -30,7 +30,8 @@ namespace orl_program {
 struct Options
 {
   std::vector<std::string> trees, skeletons;
-  std::set<std::string> given; ///< names of all options of the command line
+  std::vector<std::size_t> root_numbers; ///< one for all skeletons, or one for each
+  std::set<std::string> given;           ///< names of all options of the command line
   std::vector<double> lambda = {0, 0.25, 0.5, 0.75, 1};
   std::string output, matches, report, correspondences;
   std::string transport = "exact", orientation = "gauge-fixed", align = "yaw", up = "z";
@@ -164,6 +165,10 @@ inline void declare(CLI::App& app, Options& o)
 text. Skeletons: SWC, CSV, or .txtskl with layers of branches. Without --skeleton, skeletons are
 extracted from the points; without --tree, only skeletons are made.
 
+SWC rows: id, type, x, y, z, radius, parent (-1: a root). Further columns, and comments behind #, are
+ignored. Of a file with several roots, the tree with the most nodes is read, with a warning, or the
+one of --root-number.
+
 The files lambda_0.250.ply and lambda_0.250.swc are written to DIR for each parameter of the path
 between the first two trees: 0 is the first, 1 the second; parameters below 0 and above 1 are
 allowed. Properties that all point files have are kept. The options for families of trees replace
@@ -173,6 +178,13 @@ Exit codes: 0 success, 1 bad input or usage, 2 internal error.)");
   app.set_version_flag("--version", PCS_PROGRAM_VERSION);
   app.add_option("--tree", o.trees, "points of a tree, once for each")->allow_extra_args(false);
   app.add_option("--skeleton", o.skeletons, "skeleton of a tree, once for each")
+      ->allow_extra_args(false);
+  app.add_option("--root-number",
+                 o.root_numbers,
+                 "which tree of a skeleton file with several trees is read, 1: the one with the "
+                 "most nodes; once for all such files, or once for each --skeleton")
+      ->check(CLI::Range(std::size_t(1), std::size_t(1) << 52))
+      ->delimiter(',')
       ->allow_extra_args(false);
   add_numbers(app, "--lambda", o.lambda, "parameters on the path, separated by commas")
       ->default_str("0,0.25,0.5,0.75,1");
@@ -248,6 +260,7 @@ inline void check_effects(const Options& o)
   refuse(o.load.empty() && o.trees.empty(),
          {"--transport", "--extend-axes"},
          "without points (--tree)");
+  refuse(o.skeletons.empty(), {"--root-number"}, "without --skeleton");
   refuse(o.load.empty() && o.skeletons.empty(),
          {"--extend-axes"},
          "without --skeleton: extracted axes already extend to the end of the points");
@@ -305,6 +318,9 @@ inline void check(const Options& o)
       fail("--tree is given " + std::to_string(o.trees.size()) + " times, --skeleton " +
            std::to_string(o.skeletons.size()) + " times, expected as many");
     const std::size_t n = o.number_of_trees();
+    if (o.root_numbers.size() > 1 && o.root_numbers.size() != o.skeletons.size())
+      fail("--root-number has " + std::to_string(o.root_numbers.size()) + " numbers for " +
+           std::to_string(o.skeletons.size()) + " skeletons, expected one, or one for each");
     if (n > 2 && !o.is_family() && !o.is_given("--lambda"))
       fail("for " + std::to_string(n) +
            " trees, expected one of --mean, --modes, --sample, --weights, --growth, "

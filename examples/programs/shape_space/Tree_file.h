@@ -5,12 +5,10 @@
 #ifndef PCS_EXAMPLES_PROGRAMS_SHAPE_SPACE_TREE_FILE_H
 #define PCS_EXAMPLES_PROGRAMS_SHAPE_SPACE_TREE_FILE_H
 
+#include "common/read_skeleton.h"
 #include "common/up_direction.h"
 #include <pcs/IO/points/Point_table.h>
 #include <pcs/IO/read_points.h>
-#include <pcs/IO/read_swc.h>
-#include <pcs/IO/read_tree_csv.h>
-#include <pcs/IO/read_txtskl.h>
 #include <pcs/core/Tree_skeleton.h>
 #include <pcs/core/errors.h>
 #include <pcs/shape_space/input/extend_axes.h>
@@ -26,7 +24,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -43,16 +40,24 @@ struct Tree_file
   bool has_valid_normals = false;
 };
 
-inline void read_skeleton(const std::string& path, Tree_file& tree)
+/// Which tree of a skeleton file is read.
+struct Root_number
 {
-  const std::filesystem::path extension = std::filesystem::path(path).extension();
-  if (extension == ".txtskl" || extension == ".TXTSKL")
-    pcs::IO::read_txtskl<Kernel>(path, tree.skeleton);
-  else if (extension == ".csv" || extension == ".CSV") {
-    std::vector<std::size_t> hits;
-    pcs::IO::read_tree_csv<Kernel>(path, tree.skeleton, hits, tree.ids);
-  } else
-    pcs::IO::read_swc<Kernel>(path, tree.skeleton, tree.ids);
+  std::size_t value = 1;  ///< 1: the largest tree
+  bool is_common = false; ///< applies to all skeleton files; files with one tree ignore it
+};
+
+/// Reads one tree of a skeleton file. Returns a warning if trees were left out.
+inline std::string read_skeleton(const std::string& path, Root_number root, Tree_file& tree)
+{
+  const auto read = [&](std::size_t number) {
+    return program::read_skeleton<Kernel>(path, tree.skeleton, tree.ids, number);
+  };
+  pcs::IO::Tree_selection selection = read(root.is_common ? 1 : root.value);
+  if (root.is_common && root.value != 1 && selection.number_of_trees > 1)
+    selection = read(root.value);
+  const std::string warning = program::warning_of_selection(selection, "--root-number");
+  return warning.empty() ? warning : path + ": " + warning;
 }
 
 inline void extract_skeleton(const std::string& points, const std::string& up, Tree_file& tree)
@@ -101,14 +106,18 @@ check_place(const std::string& points, const std::string& skeleton, const Tree_f
                              " than it is large; both must be in the same coordinates and unit");
 }
 
-/// Reads a tree from its files. Either path may be empty, but not both.
-inline Tree_file read_tree(const std::string& points, const std::string& skeleton)
+/// Reads a tree from its files. Either path may be empty, but not both. Of a skeleton file with
+/// several trees, the tree `root` is read, and `warning` counts the others.
+inline Tree_file read_tree(const std::string& points,
+                           const std::string& skeleton,
+                           Root_number root,
+                           std::string& warning)
 {
   Tree_file tree;
   if (!points.empty())
     tree.points = pcs::IO::read_points(points);
   if (!skeleton.empty()) {
-    read_skeleton(skeleton, tree);
+    warning = read_skeleton(skeleton, root, tree);
     check_place(points, skeleton, tree);
   }
   if (tree.points.has_normals()) {

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -31,6 +32,7 @@ struct Skeleton_options
   double beam_milliradians = -1; // < 0: the default of the library
   double tolerance = -1;         // < 0: the default of the library
   double breast_height = 1.3;
+  std::size_t root_number = 1;  ///< of the tree in the file of the given skeleton
   int number_of_resamples = -1; ///< negative: 4 where copies are not thinned, otherwise 0
   bool do_keep_stations = false, do_keep_ground = false, do_remove_leaves = false,
        do_keep_leaves = false, do_separate = false, do_use_all = false, do_fit_all = false,
@@ -139,8 +141,14 @@ inline void declare(CLI::App& app, Skeleton_options& options)
       ->excludes("--stations");
   app.add_option("--skeleton",
                  options.given,
-                 "SWC: measure radii along this skeleton, whose positions are kept")
+                 "measure radii along this skeleton (SWC, CSV, .txtskl), whose positions are kept")
       ->excludes("--root");
+  app.add_option("--root-number",
+                 options.root_number,
+                 "which tree of a skeleton file with several trees is used, 1: the one with the "
+                 "most nodes")
+      ->check(CLI::Range(std::size_t(1), std::size_t(1) << 52))
+      ->needs("--skeleton");
   app.add_option(
          "--resamples",
          options.number_of_resamples,

@@ -15,6 +15,7 @@
 #include <boost/graph/graph_traits.hpp>
 #include <boost/range/iterator_range.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -26,6 +27,31 @@
 
 namespace pcs {
 namespace IO {
+
+/*!
+  \ingroup PkgPcsIORef
+  \brief The trees of a skeleton file, of which one is read.
+*/
+struct Tree_selection
+{
+  std::size_t number_of_trees = 0;         //!< of the file [count]
+  std::size_t number_of_nodes = 0;         //!< or cylinders, of all trees of the file [count]
+  std::size_t number_of_omitted_nodes = 0; //!< nodes or cylinders of the other trees [count]
+};
+
+//! \ingroup PkgPcsIORef
+//! returns a sentence if trees of the file were left out
+inline std::vector<std::string> warnings(const Tree_selection& selection)
+{
+  if (selection.number_of_trees < 2)
+    return {};
+  return {"the file has " + std::to_string(selection.number_of_trees) +
+          " trees: " + std::to_string(selection.number_of_omitted_nodes) + " of " +
+          std::to_string(selection.number_of_nodes) + " nodes, those of the other " +
+          std::to_string(selection.number_of_trees - 1) +
+          ", were left out (root_number selects a tree, 1: the largest)"};
+}
+
 namespace internal {
 
 constexpr std::int64_t no_parent = -1; // parent of the root in the file
@@ -64,43 +90,72 @@ inline double required_length(const Input_file& file, std::string_view word, con
   return value;
 }
 
+enum class Roots { one, several };
+
 /*
-  The parents of all rows as indices, `npos` for the root. There must be exactly one root, from
-  which every row descends.
+  The parents of all rows as indices, `npos` for roots. Every row descends from a root.
 */
 class Tree_links
 {
 public:
-  Tree_links(std::string path, const std::vector<Tree_row>& rows) : m_path(std::move(path))
+  Tree_links(std::string path, const std::vector<Tree_row>& rows, Roots roots = Roots::one)
+    : m_path(std::move(path))
   {
     if (rows.empty())
       throw IO_error(m_path, "the file has no node, expected at least one");
     std::unordered_map<std::int64_t, std::size_t> index;
     index.reserve(rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i)
-      if (!index.emplace(rows[i].id, i).second)
-        fail(rows[i], "the id " + std::to_string(rows[i].id) + " is used twice");
+      if (const auto [first, is_new] = index.emplace(rows[i].id, i); !is_new)
+        fail(rows[i],
+             "the id " + std::to_string(rows[i].id) + " is used twice, first in line " +
+                 std::to_string(rows[first->second].line) +
+                 "; give every node an id of its own, or remove one of the lines");
     for (std::size_t i = 0; i < rows.size(); ++i) {
       if (rows[i].parent == no_parent) {
-        if (m_root != npos)
+        if (!m_roots.empty() && roots == Roots::one)
           fail(rows[i],
-               "a second root; the first one is in line " + std::to_string(rows[m_root].line));
-        m_root = i;
+               "a second root; the first one is in line " +
+                   std::to_string(rows[m_roots.front()].line) +
+                   "; split the file into one file per tree");
+        m_roots.push_back(i);
         m_parents.push_back(npos);
         continue;
       }
       const auto parent = index.find(rows[i].parent);
       if (parent == index.end())
-        fail(rows[i], "there is no node with the id " + std::to_string(rows[i].parent));
+        fail(rows[i],
+             "there is no node with the id " + std::to_string(rows[i].parent) +
+                 ", the parent of this one; a root has the parent -1");
       m_parents.push_back(parent->second);
     }
-    if (m_root == npos)
+    if (m_roots.empty())
       throw IO_error(m_path, "no node has the parent -1, expected one root");
     refuse_cycles(rows);
   }
 
-  std::size_t root() const { return m_root; }
+  std::size_t root() const { return m_roots.front(); }
+  //! returns the roots in the order of the rows
+  const std::vector<std::size_t>& roots() const { return m_roots; }
   const std::vector<std::size_t>& parents() const { return m_parents; }
+
+  /*
+    Returns the root of every row. Linear, as every parent is followed once.
+  */
+  std::vector<std::size_t> root_of_rows() const
+  {
+    std::vector<std::size_t> root(m_parents.size(), npos), path;
+    for (std::size_t i = 0; i < root.size(); ++i) {
+      std::size_t v = i;
+      for (; root[v] == npos && m_parents[v] != npos; v = m_parents[v])
+        path.push_back(v);
+      root[v] = root[v] == npos ? v : root[v];
+      for (const std::size_t w : path)
+        root[w] = root[v];
+      path.clear();
+    }
+    return root;
+  }
 
 private:
   [[noreturn]] void fail(const Tree_row& row, const std::string& what) const
@@ -123,9 +178,38 @@ private:
   }
 
   std::string m_path;
-  std::size_t m_root = npos;
-  std::vector<std::size_t> m_parents;
+  std::vector<std::size_t> m_roots, m_parents;
 };
+
+/*
+  Returns the rows of one tree, in the order of the file. Trees are numbered from 1 by decreasing
+  number of rows, trees of the same size in the order of their roots.
+*/
+inline std::vector<std::size_t> rows_of_tree(const std::string& path,
+                                             const Tree_links& links,
+                                             std::size_t root_number,
+                                             Tree_selection& selection)
+{
+  const std::vector<std::size_t> root_of = links.root_of_rows();
+  std::vector<std::size_t> size(root_of.size(), 0), roots = links.roots();
+  if (root_number == 0 || root_number > roots.size())
+    throw IO_error(path,
+                   "there is no tree " + std::to_string(root_number) + ": the file has " +
+                       std::to_string(roots.size()) + (roots.size() == 1 ? " tree" : " trees") +
+                       ", which are numbered from 1 by decreasing size");
+  for (const std::size_t root : root_of)
+    ++size[root];
+  std::stable_sort(roots.begin(), roots.end(), [&](std::size_t a, std::size_t b) {
+    return size[a] > size[b];
+  });
+  const std::size_t root = roots[root_number - 1];
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < root_of.size(); ++i)
+    if (root_of[i] == root)
+      rows.push_back(i);
+  selection = {roots.size(), root_of.size(), root_of.size() - rows.size()};
+  return rows;
+}
 
 /*
   The nodes of a graph in the order of the file: in the order of their numbers if parents precede
