@@ -5,6 +5,7 @@
 #ifndef PCS_EXAMPLES_PROGRAMS_COMMON_READ_SKELETON_H
 #define PCS_EXAMPLES_PROGRAMS_COMMON_READ_SKELETON_H
 
+#include <pcs/IO/read_cylinders.h>
 #include <pcs/IO/read_swc.h>
 #include <pcs/IO/read_tree_csv.h>
 #include <pcs/IO/read_txtskl.h>
@@ -21,9 +22,10 @@
 namespace program {
 
 /*!
-  Reads a skeleton: .txtskl, .csv, or SWC with any other extension. `ids` receives the ids of the
-  nodes, none if the format has none. Of a file with several trees, the tree `root_number` is read;
-  1 is the largest. Formats of a single tree ignore the number.
+  Reads a skeleton: .txtskl, .csv, or SWC with any other extension. Files .csv and .txt may be tables
+  of cylinders. `ids` receives the ids of the nodes, none if the format has none. Of a file with
+  several trees, the tree `root_number` is read; 1 is the largest. Formats of a single tree ignore
+  the number.
 */
 template <class Kernel>
 pcs::IO::Tree_selection read_skeleton(const std::string& path,
@@ -40,6 +42,8 @@ pcs::IO::Tree_selection read_skeleton(const std::string& path,
     pcs::IO::read_txtskl<Kernel>(path, tree);
     return {1, num_vertices(tree), 0};
   }
+  if ((extension == ".csv" || extension == ".txt") && pcs::IO::is_cylinder_table(path))
+    return pcs::IO::read_cylinders<Kernel>(path, tree, ids, root_number);
   if (extension == ".csv") {
     std::vector<std::size_t> hits;
     pcs::IO::read_tree_csv<Kernel>(path, tree, hits, ids);

@@ -55,8 +55,10 @@ inline std::array<std::size_t, 11> find_tree_columns(const Input_file& file,
     while (c < tree_columns.size() && names[i] != tree_columns[c])
       ++c;
     if (c == tree_columns.size())
-      file.fail_at_line("unknown column " + in_quotes(names[i]) +
-                        ", expected id,parent,branch,order,x,y,z,r,a,b,hits");
+      file.fail_at_line(
+          "unknown column " + in_quotes(names[i]) +
+          ", expected id,parent,branch,order,x,y,z,r,a,b,hits; a table of cylinders has "
+          "columns of their starts");
     if (index[c] != npos)
       file.fail_at_line("the column " + in_quotes(names[i]) + " is named twice");
     index[c] = i;
