@@ -8,6 +8,7 @@
 #include "common/read_skeleton.h"
 #include "common/run_program.h"
 #include "common/up_direction.h"
+#include "scan/rays_without_return.h"
 #include "scan/tree_foot.h"
 #include "skeleton/Batch_log.h"
 #include "skeleton/Skeleton_options.h"
@@ -132,7 +133,11 @@ pcs::Skeleton_report extract(const std::string& input,
                              std::vector<std::string>& warnings)
 {
   const std::size_t n = table.number_of_points();
-  const std::vector<std::uint8_t> wood = wood_of_points(table, options.wood);
+  std::string warning_of_wood;
+  const std::vector<std::uint8_t> wood =
+      wood_of_points(table, options.wood, options.wood_values, warning_of_wood);
+  if (!warning_of_wood.empty())
+    warnings.push_back(warning_of_wood);
   if (!wood.empty() && !options.is_quiet && (options.do_keep_leaves || options.do_remove_leaves))
     std::cerr << "extract_tree_skeleton: warning: " << input
               << ": the wood labels of the points are used; --keep-leaves and --remove-leaves are "
@@ -274,8 +279,7 @@ nlohmann::ordered_json work_on(const std::string& input, const Skeleton_options&
   for (const std::string& sentence : table.schema().warnings)
     json["warnings"].push_back(sentence);
   if (number_of_empty_rays > 0)
-    warnings.push_back(std::to_string(number_of_empty_rays) +
-                       " rays without return (alpha 0) were left out");
+    warnings.push_back(warning_of_rays(number_of_empty_rays));
   for (const std::string& sentence : warnings)
     json["warnings"].push_back(sentence);
   if (!options.is_quiet)

@@ -8,6 +8,7 @@
 #include "common/check_output.h"
 #include "common/run_program.h"
 #include "common/up_direction.h"
+#include "scan/rays_without_return.h"
 #include "scan/tree_foot.h"
 #include <pcs/IO/points/Point_table.h>
 #include <pcs/IO/read_points.h>
@@ -53,6 +54,7 @@ Folder: DIR/SCAN_1.ply, DIR/SCAN_2.ply, ..., trees with the thickest stems first
 properties of their points and the foot of the tree as a comment. extract_tree_skeleton reads the
 foot, and processes all files with its own --folder.
 Points: the scan with the property `tree` (-1: ground, or not part of a tree).
+Ray clouds (PLY with `time` and `alpha`): rays without return, whose alpha is 0, are left out.
 
 Exit codes: 0 success, 1 bad input, bad usage or no tree, 2 internal error.)";
 }
@@ -176,6 +178,7 @@ void run(const Options& options)
   if (!options.report.empty())
     report_file = std::make_unique<Report_file>(options.report);
   pcs::IO::Point_table table = pcs::IO::read_points(options.input);
+  const std::size_t number_of_empty_rays = remove_rays_without_return(table);
   if (table.has_property("tree"))
     table.remove_property("tree");
   if (!options.folder.empty()) {
@@ -202,6 +205,8 @@ void run(const Options& options)
   nlohmann::ordered_json json = to_json(options, report);
   for (const std::string& warning : table.schema().warnings)
     json["warnings"].push_back(warning);
+  if (number_of_empty_rays > 0)
+    json["warnings"].push_back(warning_of_rays(number_of_empty_rays));
   if (report_file)
     report_file->commit(json);
   for (const std::string warning : json["warnings"])

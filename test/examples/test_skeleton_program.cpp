@@ -300,25 +300,39 @@ std::string fork_table(const std::string& names, Values values)
 BOOST_AUTO_TEST_CASE(wood_labels_of_other_programs_need_a_value)
 {
   write("labels.csv", fork_table("label", [](bool is_branch) { return is_branch ? "2" : "4"; }));
-  refuses("--input labels.csv --swc old.swc --wood label", "--wood label=1");
-  refuses("--input labels.csv --swc old.swc --wood label", "2, 4");
+  refuses("--input labels.csv --swc old.swc --wood label", "--wood label --wood-value 1");
+  refuses("--input labels.csv --swc old.swc --wood label", "2 (1500 points), 4 (6000 points)");
   refuses("--input labels.csv --swc old.swc --wood label=3", "no point is wood");
   refuses("--input labels.csv --swc old.swc --wood label=stem", "PROPERTY=VALUE");
+  refuses("--input labels.csv --swc old.swc --wood label=4 --wood-value 4", "given twice");
+  refuses("--input labels.csv --swc old.swc --wood label --wood-value 3,5", "no point is wood");
+  refuses("--input labels.csv --swc old.swc --wood-value 4", "no property 'wood'");
   const int code = run("--quiet --input labels.csv --wood label=4 --swc a.swc --report a.json");
   BOOST_REQUIRE_MESSAGE(code == 0, err);
   BOOST_TEST(Json::parse(content("a.json"))["points"]["leaves"] == 1500);
+  for (const std::string values :
+       {"--wood-value 4", "--wood-value 3,4", "--wood-value 3 --wood-value 4"}) {
+    const int same = run("--quiet --input labels.csv --wood label --swc b.swc " + values);
+    BOOST_REQUIRE_MESSAGE(same == 0, err);
+    BOOST_TEST(content("b.swc") == content("a.swc"));
+  }
+  const int all = run("--input labels.csv --wood label --wood-value 2,4 --swc b.swc");
+  BOOST_REQUIRE_MESSAGE(all == 0, err);
+  BOOST_TEST(err.find("warning: labels.csv: all points are wood") != std::string::npos, err);
   // a property with the name that is used by default is no exception
   write("wood.csv", fork_table("wood", [](bool is_branch) { return is_branch ? "1" : "2"; }));
-  refuses("--input wood.csv --swc old.swc", "1, 2");
+  refuses("--input wood.csv --swc old.swc", "1 (1500 points), 2 (6000 points)");
 }
 
 BOOST_AUTO_TEST_CASE(rays_without_return_are_left_out)
 {
-  const auto cloud = [](const std::string& alpha, const std::string& alpha_of_rays) {
-    std::string table = fork_table("alpha", [&](bool) { return alpha; });
+  const auto cloud = [](const std::string& alpha,
+                        const std::string& alpha_of_rays,
+                        const std::string& time = "time") {
+    std::string table = fork_table("alpha," + time, [&](bool) { return alpha + ",3"; });
     for (int i = 0; i < 50; ++i) // ends of rays that met nothing, high above
       table +=
-          std::to_string(far_x + i) + ',' + std::to_string(far_y) + ",40," + alpha_of_rays + '\n';
+          std::to_string(far_x + i) + ',' + std::to_string(far_y) + ",40," + alpha_of_rays + ",3\n";
     return table;
   };
   write("rays.csv", cloud("255", "0"));
@@ -333,6 +347,11 @@ BOOST_AUTO_TEST_CASE(rays_without_return_are_left_out)
   // an alpha of 0 throughout says nothing about rays
   write("colours.csv", cloud("0", "0"));
   code = run("--quiet --input colours.csv --swc c.swc --report c.json");
+  BOOST_REQUIRE_MESSAGE(code == 0, err);
+  BOOST_TEST(Json::parse(content("c.json"))["points"]["all"] == 7550);
+  // colours with transparent points, but without times, are no ray cloud
+  write("clear.csv", cloud("255", "0", "intensity"));
+  code = run("--quiet --input clear.csv --swc c.swc --report c.json");
   BOOST_REQUIRE_MESSAGE(code == 0, err);
   BOOST_TEST(Json::parse(content("c.json"))["points"]["all"] == 7550);
 }

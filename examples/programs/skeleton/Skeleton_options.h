@@ -28,7 +28,7 @@ struct Skeleton_options
   std::string swc, mesh, leaves, cylinders, edges, points, report, folder;
   std::string up = "z", method = "chains", fit, wood, stations,
               given; // no fit: the default of the library
-  std::vector<double> root, scanners;
+  std::vector<double> root, scanners, wood_values;
   double beam_milliradians = -1; // < 0: the default of the library
   double tolerance = -1;         // < 0: the default of the library
   double breast_height = 1.3;
@@ -58,6 +58,8 @@ inline nlohmann::ordered_json to_json(const Skeleton_options& o)
                                                        : "automatic"},
                                  {"breast_height", o.breast_height},
                                  {"resamples", o.number_of_resamples}};
+  if (!o.wood_values.empty())
+    json["wood_values"] = o.wood_values;
   if (o.method == "sections") {
     json["fit"] = o.fit;
     json["all_points"] = o.do_use_all;
@@ -76,8 +78,11 @@ inline const char* skeleton_help()
 pwn). A property `wood`
 (1: wood, 0: leaf) is used if it exists, and `station` as the station of a point, whose
 registration is corrected (--stations point_source_id for terrestrial LAS files). Rays without
-return (alpha 0 in ray clouds) are ignored. Lengths are in the unit of the scan, and positions in
-its coordinates.
+return (alpha 0 in ray clouds, which have `time` and `alpha`) are left out, with a warning. Lengths
+are in the unit of the scan, and positions in its coordinates.
+
+Wood labels of other programs: --wood names the property, --wood-value the values of wood, for
+example --wood label --wood-value 4. Labels other than 0 and 1 need it.
 
 SWC rows: id, type, x, y, z, radius, parent (-1 for the root); type is 5 + the order of the branch.
 Cylinders: the columns of TreeQSM, and the standard error of the radius.
@@ -131,6 +136,12 @@ inline void declare(CLI::App& app, Skeleton_options& options)
       "--wood",
       options.wood,
       "property that is 1 for wood and 0 for leaves; PROPERTY=VALUE if wood has another value");
+  app.add_option("--wood-value",
+                 options.wood_values,
+                 "values of that property (default: `wood`) that denote wood, separated by commas "
+                 "or repeated")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   app.add_option("--stations",
                  options.stations,
                  "property with the station of each point; otherwise stations are found by "
@@ -289,6 +300,9 @@ inline void check(const Skeleton_options& options)
                              std::to_string(options.scanners.size()) + " numbers");
   if (!std::isfinite(options.tolerance)) // CLI11 accepts NaN in every range
     throw pcs::Invalid_input("--tolerance must be a finite number");
+  for (const double value : options.wood_values)
+    if (!std::isfinite(value))
+      throw pcs::Invalid_input("--wood-value must be finite numbers");
   const auto refuse = [](bool is_given, const char* name, const char* lacking) {
     if (is_given)
       throw pcs::Invalid_input(std::string(name) + " has no effect without " + lacking);

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Attributes of the points of a scan: wood labels, scanner stations, rays without return.
+// Attributes of the points of a scan: wood labels and scanner stations.
 
 #ifndef PCS_EXAMPLES_PROGRAMS_SKELETON_POINT_ATTRIBUTES_H
 #define PCS_EXAMPLES_PROGRAMS_SKELETON_POINT_ATTRIBUTES_H
@@ -14,15 +14,15 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
-#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
 
 namespace program {
 
-/// The option --wood: NAME, or NAME=VALUE for labels of other programs.
+/// The option --wood: NAME, or NAME=VALUE for labels with another value of wood than 1.
 struct Wood_option
 {
   std::string property;
@@ -43,54 +43,74 @@ inline Wood_option parse_wood(const std::string& text)
   return {text.substr(0, at), value};
 }
 
-/// Lists the first distinct values, for messages.
+/// Lists the first distinct values with the numbers of their points, for messages.
 inline std::string list_values(const std::vector<double>& values)
 {
-  constexpr std::size_t max_listed = 6;
-  std::set<double> distinct;
+  constexpr std::size_t max_listed = 6, max_counted = 1000;
+  std::map<double, std::size_t> counts;
+  std::size_t number_of_nan = 0;
   for (const double x : values)
-    if (distinct.insert(x).second && distinct.size() > max_listed)
-      break;
+    if (std::isnan(x))
+      ++number_of_nan;
+    else if (counts.size() < max_counted || counts.count(x) > 0)
+      ++counts[x];
   std::ostringstream out;
   std::size_t k = 0;
-  for (const double x : distinct) {
+  for (const auto& [x, count] : counts) {
     if (k == max_listed)
       return out.str() + ", ...";
-    out << (k++ > 0 ? ", " : "") << x;
+    out << (k++ > 0 ? ", " : "") << x << " (" << count << (count == 1 ? " point)" : " points)");
   }
+  if (number_of_nan > 0)
+    out << (k > 0 ? ", " : "") << "NaN (" << number_of_nan << " points)";
   return out.str();
 }
 
 /*!
   Returns which points are wood, from the property of --wood or from a property `wood`; empty if it
-  does not exist. Throws `pcs::Invalid_input` if the property of --wood is missing, or if its values
-  are not 0 and 1 and the value of wood is not specified, because programs number their classes
-  differently.
+  does not exist. `wood_values` are the values of --wood-value. Throws `pcs::Invalid_input` if the
+  property of --wood is missing, if its values are not 0 and 1 and the values of wood are not
+  specified, because programs number their classes differently, or if no point is wood. `warning` is
+  set if all points are wood.
 */
 inline std::vector<std::uint8_t> wood_of_points(const pcs::IO::Point_table& table,
-                                                const std::string& option)
+                                                const std::string& option,
+                                                const std::vector<double>& wood_values,
+                                                std::string& warning)
 {
   const Wood_option wood = parse_wood(option);
+  if (wood.value && !wood_values.empty())
+    throw pcs::Invalid_input("the values of wood are given twice, by --wood " + option +
+                             " and by --wood-value; use one of them");
   if (!table.has_property(wood.property)) {
-    if (option.empty())
+    if (option.empty() && wood_values.empty())
       return {};
-    throw pcs::Invalid_input("the scan has no property '" + wood.property + "'");
+    throw pcs::Invalid_input("the scan has no property '" + wood.property +
+                             "'; name the property of the labels with --wood");
   }
   const std::vector<double> values = table.property_as_double(wood.property);
-  if (!wood.value)
+  if (!wood.value && wood_values.empty())
     for (const double x : values)
       if (!(x == 0 || x == 1))
-        throw pcs::Invalid_input("property '" + wood.property + "' has the values " +
-                                 list_values(values) + "; expected 1 for wood and 0 for leaves. " +
-                                 "Name the value of wood, for example --wood " + wood.property +
-                                 "=1");
-  const double value = wood.value.value_or(1);
+        throw pcs::Invalid_input(
+            "property '" + wood.property + "' has the values " + list_values(values) +
+            "; expected 1 for wood and 0 for leaves. Name the values of wood with --wood-value, "
+            "for example --wood " +
+            wood.property + " --wood-value 1");
+  std::vector<double> accepted = wood_values;
+  if (accepted.empty())
+    accepted.push_back(wood.value.value_or(1));
   std::vector<std::uint8_t> is_wood(values.size());
   for (std::size_t i = 0; i < values.size(); ++i)
-    is_wood[i] = values[i] == value;
+    is_wood[i] = std::find(accepted.begin(), accepted.end(), values[i]) != accepted.end();
   if (!values.empty() && std::find(is_wood.begin(), is_wood.end(), 1) == is_wood.end())
     throw pcs::Invalid_input("no point is wood: property '" + wood.property + "' has the values " +
-                             list_values(values));
+                             list_values(values) +
+                             "; name the values of wood with --wood-value, or use another property "
+                             "with --wood");
+  if (std::find(is_wood.begin(), is_wood.end(), 0) == is_wood.end())
+    warning = "all points are wood: property '" + wood.property + "' has the values " +
+              list_values(values);
   return is_wood;
 }
 
@@ -113,26 +133,6 @@ inline std::vector<long long> stations_of_points(const pcs::IO::Point_table& tab
   for (const double x : table.property_as_double(name))
     stations.push_back(x >= 0 && x < 1e15 ? std::llround(x) : -1);
   return stations;
-}
-
-/*!
-  Removes rays without return from a ray cloud of raycloudtools, where their `alpha` is 0 and their
-  position is an arbitrary point in the air. Returns their number. Colours with an alpha of 0
-  throughout are unchanged.
-*/
-inline std::size_t remove_rays_without_return(pcs::IO::Point_table& table)
-{
-  if (!table.has_property("alpha"))
-    return 0;
-  const std::vector<double> alpha = table.property_as_double("alpha");
-  std::vector<std::size_t> returns;
-  for (std::size_t i = 0; i < alpha.size(); ++i)
-    if (alpha[i] > 0)
-      returns.push_back(i);
-  if (returns.empty() || returns.size() == alpha.size())
-    return 0;
-  table = table.select(returns);
-  return alpha.size() - returns.size();
 }
 
 } // namespace program
