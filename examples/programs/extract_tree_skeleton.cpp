@@ -17,10 +17,10 @@
 #include <pcs/IO/internal/Output_file.h>
 #include <pcs/IO/points/Point_table.h>
 #include <pcs/IO/read_points.h>
-#include <pcs/IO/write_cylinders.h>
 #include <pcs/IO/write_mesh.h>
 #include <pcs/IO/write_points.h>
 #include <pcs/IO/write_swc.h>
+#include <pcs/IO/write_tree_tables.h>
 #include <pcs/core/errors.h>
 #include <pcs/extract_tree_skeleton.h>
 #include <pcs/internal/Stopwatch.h>
@@ -250,12 +250,27 @@ void write_points_to(const std::string& path,
     check_output(path, table.schema());
 }
 
+void write_tables(const Skeleton_options& options, const Tree& tree)
+{
+  const Kernel::Vector_3 up = up_direction<Kernel>(options.up);
+  if (!options.cylinders.empty())
+    pcs::IO::write_cylinders(options.cylinders, tree);
+  if (!options.branches.empty())
+    pcs::IO::write_branches(options.branches, tree, up);
+  if (!options.tree_table.empty())
+    pcs::IO::write_tree_table(options.tree_table, tree, up, options.breast_height);
+  if (!options.edges.empty())
+    pcs::IO::write_ply_edges(options.edges, tree);
+}
+
 nlohmann::ordered_json work_on(const std::string& input, const Skeleton_options& options)
 {
   for (const std::string* path : {&options.swc,
                                   &options.mesh,
                                   &options.leaves,
                                   &options.cylinders,
+                                  &options.branches,
+                                  &options.tree_table,
                                   &options.edges,
                                   &options.points})
     if (!path->empty())
@@ -291,10 +306,7 @@ nlohmann::ordered_json work_on(const std::string& input, const Skeleton_options&
   if (!options.leaves.empty())
     json["leaves"] = write_leaves(options.leaves, tree);
   const double meshing = watch.lap();
-  if (!options.cylinders.empty())
-    pcs::IO::write_cylinders(options.cylinders, tree);
-  if (!options.edges.empty())
-    pcs::IO::write_ply_edges(options.edges, tree);
+  write_tables(options, tree);
   if (!options.points.empty())
     write_points_to(options.points, std::move(table), labels, true);
   pcs::IO::write_swc(options.swc, tree);

@@ -4,7 +4,7 @@
 
 #include "temporary_files.h"
 #include <pcs/IO/read_cylinders.h>
-#include <pcs/IO/write_cylinders.h>
+#include <pcs/IO/write_tree_tables.h>
 #include <support/trees.h>
 
 #include <CGAL/Simple_cartesian.h>

@@ -148,7 +148,7 @@ private:
   static std::set<std::string> names_of_results(const Skeleton_options& one)
   {
     std::set<std::string> names;
-    for (const std::string* path : {&one.swc, &one.mesh, &one.cylinders, &one.edges, &one.points})
+    for (const std::string* path : results_of(one))
       if (!path->empty())
         names.insert(std::filesystem::path(*path).filename().string());
     return names;

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
@@ -25,7 +26,7 @@ namespace program {
 struct Skeleton_options
 {
   std::vector<std::string> inputs, also;
-  std::string swc, mesh, leaves, cylinders, edges, points, report, folder;
+  std::string swc, mesh, leaves, cylinders, branches, tree_table, edges, points, report, folder;
   std::string up = "z", method = "chains", fit, wood, stations,
               given; // no fit: the default of the library
   std::vector<double> root, scanners, wood_values;
@@ -85,13 +86,16 @@ Wood labels of other programs: --wood names the property, --wood-value the value
 example --wood label --wood-value 4. Labels other than 0 and 1 need it.
 
 SWC rows: id, type, x, y, z, radius, parent (-1 for the root); type is 5 + the order of the branch.
-Cylinders: the columns of TreeQSM, and the standard error of the radius.
+Cylinders: the columns of TreeQSM, and the standard error of the radius. Branches: order, parent (a
+row number, 0: none), volume [litres], area [m^2], length [m], angle to the parent [degrees], height
+of the base [m], azimuth and zenith [degrees], diameter [m]. Tree table: one row with the names of
+TreeQSM's treedata, in the same units. The units assume a scan in metres.
 Points: the scan with `branch` (-1: none), `dense` (1: the section was measured there), `residual`,
 and `leaf` (1: removed as a leaf).
 
 Several scans with --folder DIR: each gives DIR/NAME.swc, the results of --also (DIR/NAME_mesh.ply,
-DIR/NAME_cylinders.csv, DIR/NAME_edges.ply, DIR/NAME_points.ply), and a line of JSON in
-DIR/batch.jsonl. A failed scan gets a line with its error, and the batch continues. When it is
+DIR/NAME_cylinders.csv, DIR/NAME_branches.csv, DIR/NAME_tree.csv, DIR/NAME_edges.ply,
+DIR/NAME_points.ply), and a line of JSON in DIR/batch.jsonl. A failed scan gets a line with its error, and the batch continues. When it is
 started again, the batch skips scans that have succeeded; it replaces the results of scans or
 options that have changed.
 
@@ -109,14 +113,20 @@ inline void declare(CLI::App& app, Skeleton_options& options)
   app.add_option("--cylinders",
                  options.cylinders,
                  "table of cylinders, CSV; branches are numbered from 1");
+  app.add_option("--branches", options.branches, "table of branches with TreeQSM's columns, CSV");
+  app.add_option("--tree-table",
+                 options.tree_table,
+                 "sizes of the tree with TreeQSM's names, CSV of one row");
   app.add_option("--edges", options.edges, "the skeleton as vertices and edges, PLY");
   app.add_option("--points",
                  options.points,
                  "the scan with branch, residual and outward normal of every point");
   app.add_option("--report", options.report, "counts, sizes and seconds (JSON)");
   app.add_option("--folder", options.folder, "folder for the results of several scans");
-  app.add_option("--also", options.also, "with --folder: mesh, cylinders, edges, points")
-      ->check(CLI::IsMember({"mesh", "cylinders", "edges", "points"}))
+  app.add_option("--also",
+                 options.also,
+                 "with --folder: mesh, cylinders, branches, tree-table, edges, points")
+      ->check(CLI::IsMember({"mesh", "cylinders", "branches", "tree-table", "edges", "points"}))
       ->delimiter(',');
   app.add_option("--up", options.up, "up direction: x, y, z, -x, -y or -z")
       ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))
@@ -221,6 +231,8 @@ inline void check_single(const Skeleton_options& options)
                                   &options.mesh,
                                   &options.leaves,
                                   &options.cylinders,
+                                  &options.branches,
+                                  &options.tree_table,
                                   &options.edges,
                                   &options.points,
                                   &options.report}) {
@@ -254,11 +266,27 @@ inline Skeleton_options options_of_one(const std::string& input, const Skeleton_
       one.mesh = name + "_mesh.ply";
     else if (kind == "cylinders")
       one.cylinders = name + "_cylinders.csv";
+    else if (kind == "branches")
+      one.branches = name + "_branches.csv";
+    else if (kind == "tree-table")
+      one.tree_table = name + "_tree.csv";
     else if (kind == "edges")
       one.edges = name + "_edges.ply";
     else
       one.points = name + "_points.ply";
   return one;
+}
+
+/// Returns the paths of all results of one scan of a batch; those that are not made are empty.
+inline std::array<const std::string*, 7> results_of(const Skeleton_options& one)
+{
+  return {&one.swc,
+          &one.mesh,
+          &one.cylinders,
+          &one.branches,
+          &one.tree_table,
+          &one.edges,
+          &one.points};
 }
 
 inline void check_batch(const Skeleton_options& options)
@@ -267,6 +295,8 @@ inline void check_batch(const Skeleton_options& options)
                                   &options.mesh,
                                   &options.leaves,
                                   &options.cylinders,
+                                  &options.branches,
+                                  &options.tree_table,
                                   &options.edges,
                                   &options.points,
                                   &options.report})
@@ -287,7 +317,7 @@ inline void check_batch(const Skeleton_options& options)
     files.add_input(input);
   for (const std::string& input : options.inputs) {
     const Skeleton_options one = options_of_one(input, options);
-    for (const std::string* path : {&one.swc, &one.mesh, &one.cylinders, &one.edges, &one.points})
+    for (const std::string* path : results_of(one))
       files.add_output(*path);
   }
 }
