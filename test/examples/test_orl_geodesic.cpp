@@ -100,6 +100,37 @@ BOOST_AUTO_TEST_CASE(axes_are_drawn_out_to_the_points_on_request)
   BOOST_TEST(std::abs(whole - length(swc("long/lambda_0.000.swc"))) < 0.4 * missing);
 }
 
+BOOST_AUTO_TEST_CASE(one_tree_of_a_skeleton_file_is_used)
+{
+  // a copy of the first tree between two smaller ones
+  const std::string forest = "900001 0 5 0 0 0.1 -1\n900002 0 5 0 1 0.1 900001\n" +
+                             content("a.swc") + "900003 0 9 0 0 0.1 -1\n";
+  write("forest.swc", forest);
+  const auto pair = [](const std::string& first) {
+    return "--skeleton " + first + " --skeleton b.swc --lambda 0.5 --output " + first + ".out ";
+  };
+  succeeds(pair("a.swc"));
+  succeeds(pair("forest.swc"));
+  BOOST_TEST(err.find("warning: forest.swc: the file has 3 trees: 3 of ") != std::string::npos,
+             err);
+  BOOST_TEST(content("a.swc.out/lambda_0.500.swc") == content("forest.swc.out/lambda_0.500.swc"));
+  succeeds(pair("forest.swc") + "--quiet");
+  BOOST_TEST(err == "");
+  // b.swc has a single tree, so the number is for the other file; or each file has a number
+  write("stick.swc", "1 0 5 0 0 0.1 -1\n2 0 5 0 1 0.1 1\n");
+  succeeds(pair("stick.swc"));
+  for (const std::string numbers : {"--root-number 2", "--root-number 2,1"}) {
+    succeeds(pair("forest.swc") + numbers);
+    BOOST_TEST(content("stick.swc.out/lambda_0.500.swc") ==
+               content("forest.swc.out/lambda_0.500.swc"));
+  }
+  refuses(pair("forest.swc") + "--root-number 4", "there is no tree 4");
+  refuses(pair("forest.swc") + "--root-number 1,2", "there is no tree 2: the file has 1 tree");
+  refuses(pair("forest.swc") + "--root-number 0", "--root-number");
+  refuses(pair("forest.swc") + "--root-number 1,1,1", "has 3 numbers for 2 skeletons");
+  refuses("--tree a.ply --tree b.ply --output o --root-number 1", "without --skeleton");
+}
+
 BOOST_AUTO_TEST_CASE(every_place_on_the_path_has_points_and_a_skeleton)
 {
   succeeds(trees + "--lambda 0,0.25,1.5,-0.5 --output out --matches m.csv --report r.json");

@@ -139,6 +139,29 @@ BOOST_AUTO_TEST_CASE(names_of_files_need_not_be_utf_8)
   BOOST_TEST(nlohmann::json::parse(content("report.json"))["trees"].size() == 2u);
 }
 
+BOOST_AUTO_TEST_CASE(rays_without_return_are_left_out)
+{
+  pcs::IO::Point_table table = pcs::IO::read_points(path("stand.ply"));
+  const std::size_t n = table.number_of_points();
+  table.add_property("time", std::vector<double>(n, 1));
+  std::vector<std::uint8_t> alpha(n, 255);
+  for (std::size_t i = 0; i < n; i += 100) { // these rays end high above the trees
+    table.points()[i] = Kernel::Point_3(table.points()[i].x(), table.points()[i].y(), 99);
+    alpha[i] = 0;
+  }
+  table.add_property("alpha", alpha);
+  pcs::IO::write_points(path("rays.ply"), table);
+  BOOST_TEST_REQUIRE(run("--input rays.ply --points p.ply --report report.json") == 0, err);
+  const std::string warning = std::to_string((n + 99) / 100) + " rays without return";
+  BOOST_TEST(err.find(warning) != std::string::npos, err);
+  const auto json = nlohmann::json::parse(content("report.json"));
+  BOOST_TEST(json["warnings"].dump().find(warning) != std::string::npos);
+  BOOST_TEST(json["trees"].size() == 2u);
+  for (const auto& tree : json["trees"])
+    BOOST_TEST(tree["height"].get<double>() < 90);
+  BOOST_TEST(pcs::IO::read_points(path("p.ply")).number_of_points() == n - (n + 99) / 100);
+}
+
 BOOST_AUTO_TEST_CASE(small_trees_get_no_file)
 {
   const int code = run("--input stand.ply --folder trees --min-points 100000000");

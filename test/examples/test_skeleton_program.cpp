@@ -137,7 +137,8 @@ BOOST_AUTO_TEST_CASE(the_report_has_the_spread_of_resampled_copies)
 BOOST_AUTO_TEST_CASE(all_results_agree)
 {
   const int code = run("--input tree.xyz --swc t.swc --mesh m.ply --cylinders c.csv --edges e.ply "
-                       "--points p.ply --leaves l.ply --report r.json");
+                       "--branches b.csv --tree-table s.csv --points p.ply --leaves l.ply "
+                       "--report r.json");
   BOOST_TEST_REQUIRE(code == 0, err);
   const Json json = Json::parse(content("r.json"));
   BOOST_TEST(json["status"] == "converged");
@@ -190,6 +191,17 @@ BOOST_AUTO_TEST_CASE(all_results_agree)
     BOOST_TEST(std::abs(v[1] - far_y) < 0.2);
   }
   BOOST_TEST(std::abs(total - length) < 1e-9 * length);
+
+  // tables of branches and of the tree: litres and metres
+  std::istringstream sizes(content("s.csv"));
+  std::getline(sizes, line);
+  BOOST_TEST(line.rfind("TotalVolume,TrunkVolume,BranchVolume,TreeHeight", 0) == 0u);
+  double litres = 0;
+  BOOST_TEST_REQUIRE(bool(sizes >> litres));
+  BOOST_TEST(std::abs(litres - 1000 * volume) < 1e-6 * litres);
+  const std::string branches = content("b.csv");
+  BOOST_TEST(branches.rfind("order,parent,volume,area,length,angle", 0) == 0u);
+  BOOST_TEST(std::count(branches.begin(), branches.end(), '\n') == 3);
 
   // the points keep their order, and name branches that exist
   const Table points = pcs::IO::read_points(path("p.ply"));
@@ -267,6 +279,21 @@ BOOST_AUTO_TEST_CASE(options_change_what_they_say)
   BOOST_TEST(given["branches"] == 2);
   BOOST_TEST(std::abs(given["diameter_at_breast_height"].get<double>() - 0.2) < 0.004);
   BOOST_TEST(std::abs(given["total"]["length"].get<double>() - 3.8) < 1e-6);
+  // the largest of two trees, and the same tree as a table of cylinders
+  write("two.swc", "9 0 0 0 0 1 -1 # another tree\n" + content("given.swc"));
+  const Json largest = report_of("--swc c.swc --skeleton two.swc");
+  BOOST_TEST(content("c.swc") == content("b.swc"));
+  BOOST_TEST(largest["warnings"].dump().find("two.swc: the file has 2 trees: 1 of 5 nodes") !=
+             std::string::npos);
+  refuses("--input tree.xyz --swc old.swc --skeleton two.swc --root-number 3",
+          "there is no tree 3: the file has 2 trees");
+  write("given.txt",
+        "radius\tlength\tstart_point\taxis_direction\tparent\n"
+        "9\t1.5\t500000\t5000000\t0\t0\t0\t1\t0\n9\t1\t500000\t5000000\t1.5\t0\t0\t1\t1\n"
+        "8\t1.3\t500000\t5000000\t1.5\t1\t0\t0\t1\n");
+  const Json table = report_of("--swc c.swc --skeleton given.txt");
+  BOOST_TEST(table["branches"] == 2);
+  BOOST_TEST(std::abs(table["total"]["length"].get<double>() - 3.8) < 1e-6);
 
   // a property tells what is wood
   std::istringstream in(fork_text());

@@ -22,10 +22,10 @@
 namespace program {
 
 /*!
-  Reads a skeleton: .txtskl, .csv, or SWC with any other extension. Files .csv and .txt may be tables
-  of cylinders. `ids` receives the ids of the nodes, none if the format has none. Of a file with
-  several trees, the tree `root_number` is read; 1 is the largest. Formats of a single tree ignore
-  the number.
+  Reads a skeleton: .txtskl, .csv, or SWC with any other extension. Files .csv and .txt may be
+  tables of cylinders. `ids` receives the ids of the nodes, none if the format has none. Of a file
+  with several trees, the tree `root_number` is read; 1 is the largest. Formats of a single tree
+  ignore the number.
 */
 template <class Kernel>
 pcs::IO::Tree_selection read_skeleton(const std::string& path,

@@ -77,7 +77,9 @@ inline void declare(CLI::App& app, Scan_options& o)
   const char* tree = "The tree";
   CLI::Option* preset =
       app.add_option("--preset", o.preset, presets)->capture_default_str()->group(tree);
-  app.add_option("--tree", o.tree, "scan this tree instead (SWC, CSV or .txtskl)")
+  app.add_option("--tree",
+                 o.tree,
+                 "scan this tree instead (SWC, CSV, a table of cylinders, or .txtskl)")
       ->excludes(preset)
       ->group(tree);
   app.add_option("--root-number",

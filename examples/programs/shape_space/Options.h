@@ -162,12 +162,13 @@ inline void declare(CLI::App& app, Options& o)
 {
   app.footer(
       R"(Give --tree and --skeleton once for each tree, at least twice. Points: PLY, LAS, OFF or
-text. Skeletons: SWC, CSV, or .txtskl with layers of branches. Without --skeleton, skeletons are
+text. Skeletons: SWC; CSV; tables of cylinders (.csv or .txt, of extract_tree_skeleton, TreeQSM,
+SimpleForest, aRchi, rTwig); .txtskl with layers of branches. Without --skeleton, skeletons are
 extracted from the points; without --tree, only skeletons are made.
 
-SWC rows: id, type, x, y, z, radius, parent (-1: a root). Further columns, and comments behind #, are
-ignored. Of a file with several roots, the tree with the most nodes is read, with a warning, or the
-one of --root-number.
+SWC rows: id, type, x, y, z, radius, parent (-1: a root). Further columns and comments behind #
+are ignored. Of a file with several roots, the tree with the most nodes is read, with a warning, or
+the one of --root-number.
 
 The files lambda_0.250.ply and lambda_0.250.swc are written to DIR for each parameter of the path
 between the first two trees: 0 is the first, 1 the second; parameters below 0 and above 1 are

@@ -95,9 +95,9 @@ and `leaf` (1: removed as a leaf).
 
 Several scans with --folder DIR: each gives DIR/NAME.swc, the results of --also (DIR/NAME_mesh.ply,
 DIR/NAME_cylinders.csv, DIR/NAME_branches.csv, DIR/NAME_tree.csv, DIR/NAME_edges.ply,
-DIR/NAME_points.ply), and a line of JSON in DIR/batch.jsonl. A failed scan gets a line with its error, and the batch continues. When it is
-started again, the batch skips scans that have succeeded; it replaces the results of scans or
-options that have changed.
+DIR/NAME_points.ply), and a line of JSON in DIR/batch.jsonl. A failed scan gets a line with its
+error, and the batch continues. When it is started again, the batch skips scans that have succeeded;
+it replaces the results of scans or options that have changed.
 
 Exit codes: 0 success, 1 bad input or usage, or a scan of several failed, 2 internal error.)";
 }
@@ -160,9 +160,11 @@ inline void declare(CLI::App& app, Skeleton_options& options)
                options.do_keep_stations,
                "do not correct the registration of stations")
       ->excludes("--stations");
-  app.add_option("--skeleton",
-                 options.given,
-                 "measure radii along this skeleton (SWC, CSV, .txtskl), whose positions are kept")
+  app.add_option(
+         "--skeleton",
+         options.given,
+         "measure radii along this skeleton, whose positions are kept: SWC, CSV, a table of "
+         "cylinders (.csv, .txt), or .txtskl")
       ->excludes("--root");
   app.add_option("--root-number",
                  options.root_number,

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Writes a tree skeleton as tables of its cylinders, its branches and its sizes, or as a PLY file of
-// nodes and edges.
+// Writes a tree skeleton as tables of cylinders, branches and sizes, or as a PLY file of its edges.
 
 #ifndef PCS_IO_WRITE_TREE_TABLES_H
 #define PCS_IO_WRITE_TREE_TABLES_H
