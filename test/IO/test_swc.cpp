@@ -235,7 +235,7 @@ BOOST_AUTO_TEST_CASE(one_of_several_trees_is_read)
   }
   const pcs::IO::Tree_selection selection = pcs::IO::read_swc<Kernel>(name, tree);
   BOOST_TEST_REQUIRE(warnings(selection).size() == 1u);
-  BOOST_TEST(warnings(selection)[0].find("4 of 7 nodes, those of the other 2") !=
+  BOOST_TEST(warnings(selection)[0].find("4 of 7 nodes, in the 2 other trees") !=
              std::string::npos);
   BOOST_TEST(warnings(pcs::IO::read_swc<Kernel>(file("b.swc", "1 0 0 0 0 1 -1\n"), tree)).empty());
 }

@@ -327,7 +327,7 @@ std::string fork_table(const std::string& names, Values values)
 BOOST_AUTO_TEST_CASE(wood_labels_of_other_programs_need_a_value)
 {
   write("labels.csv", fork_table("label", [](bool is_branch) { return is_branch ? "2" : "4"; }));
-  refuses("--input labels.csv --swc old.swc --wood label", "--wood label --wood-value 1");
+  refuses("--input labels.csv --swc old.swc --wood label", "--wood label --wood-value 4");
   refuses("--input labels.csv --swc old.swc --wood label", "2 (1500 points), 4 (6000 points)");
   refuses("--input labels.csv --swc old.swc --wood label=3", "no point is wood");
   refuses("--input labels.csv --swc old.swc --wood label=stem", "PROPERTY=VALUE");

@@ -66,6 +66,21 @@ inline std::string list_values(const std::vector<double>& values)
   return out.str();
 }
 
+/// Returns the largest value as text, for examples in messages; 1 if no value is a number.
+inline std::string largest_value(const std::vector<double>& values)
+{
+  bool is_number = false;
+  double most = 1;
+  for (const double x : values)
+    if (!std::isnan(x) && (!is_number || x > most)) {
+      most = x;
+      is_number = true;
+    }
+  std::ostringstream out;
+  out << most;
+  return out.str();
+}
+
 /*!
   Returns which points are wood, from the property of --wood or from a property `wood`; empty if it
   does not exist. `wood_values` are the values of --wood-value. Throws `pcs::Invalid_input` if the
@@ -96,7 +111,7 @@ inline std::vector<std::uint8_t> wood_of_points(const pcs::IO::Point_table& tabl
             "property '" + wood.property + "' has the values " + list_values(values) +
             "; expected 1 for wood and 0 for leaves. Name the values of wood with --wood-value, "
             "for example --wood " +
-            wood.property + " --wood-value 1");
+            wood.property + " --wood-value " + largest_value(values));
   std::vector<double> accepted = wood_values;
   if (accepted.empty())
     accepted.push_back(wood.value.value_or(1));

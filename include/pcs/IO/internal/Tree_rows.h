@@ -45,10 +45,11 @@ inline std::vector<std::string> warnings(const Tree_selection& selection)
 {
   if (selection.number_of_trees < 2)
     return {};
+  const std::size_t others = selection.number_of_trees - 1;
   return {"the file has " + std::to_string(selection.number_of_trees) +
           " trees: " + std::to_string(selection.number_of_omitted_nodes) + " of " +
-          std::to_string(selection.number_of_nodes) + " nodes, those of the other " +
-          std::to_string(selection.number_of_trees - 1) +
+          std::to_string(selection.number_of_nodes) + " nodes, in the " +
+          (others == 1 ? std::string("other tree") : std::to_string(others) + " other trees") +
           ", were left out (root_number selects a tree, 1: the largest)"};
 }
 
