@@ -125,6 +125,8 @@ BOOST_AUTO_TEST_CASE(one_tree_of_a_skeleton_file_is_used)
                content("forest.swc.out/lambda_0.500.swc"));
   }
   refuses(pair("forest.swc") + "--root-number 4", "there is no tree 4");
+  write("cylinders.txt", "0.1\t1\t0\t0\t0\t0\t0\t1\t0\t0\t1\t0\t1\t0\t0.1\n");
+  refuses(pair("cylinders.txt"), "needs the names of its columns");
   refuses(pair("forest.swc") + "--root-number 1,2", "there is no tree 2: the file has 1 tree");
   refuses(pair("forest.swc") + "--root-number 0", "--root-number");
   refuses(pair("forest.swc") + "--root-number 1,1,1", "has 3 numbers for 2 skeletons");

@@ -10,6 +10,7 @@
 #include <pcs/IO/read_tree_csv.h>
 #include <pcs/IO/read_txtskl.h>
 #include <pcs/core/Tree_skeleton.h>
+#include <pcs/core/errors.h>
 
 #include <algorithm>
 #include <cctype>
@@ -49,7 +50,17 @@ pcs::IO::Tree_selection read_skeleton(const std::string& path,
     pcs::IO::read_tree_csv<Kernel>(path, tree, hits, ids);
     return {1, num_vertices(tree), 0};
   }
-  return pcs::IO::read_swc<Kernel>(path, tree, ids, root_number);
+  try {
+    return pcs::IO::read_swc<Kernel>(path, tree, ids, root_number);
+  } catch (const pcs::IO_error& error) {
+    if (extension != ".txt")
+      throw;
+    const std::string what = error.what();
+    throw pcs::IO_error(path,
+                        what.substr(std::min(what.size(), path.size() + 2)) +
+                            " (read as SWC; a table of cylinders needs the names of its columns in "
+                            "the first line)");
+  }
 }
 
 /// Returns the warning of a selection, with the option of the program instead of the parameter;

@@ -65,7 +65,9 @@ inline std::array<std::size_t, 11> find_tree_columns(const Input_file& file,
   }
   for (std::size_t c = 0; c < tree_columns.size(); ++c)
     if (index[c] == npos && c != column_hits)
-      file.fail_at_line(std::string("there is no column '") + tree_columns[c] + "'");
+      file.fail_at_line(std::string("there is no column '") + tree_columns[c] +
+                        "', expected id,parent,branch,order,x,y,z,r,a,b,hits; a table of "
+                        "cylinders has columns of their starts");
   return index;
 }
 
