@@ -5,6 +5,7 @@
 #include "measure_skeleton.h"
 #include "print_accuracy.h"
 #include <pcs/IO/internal/Output_file.h>
+#include <pcs/IO/read_cylinders.h>
 #include <pcs/IO/read_points.h>
 #include <pcs/IO/read_swc.h>
 #include <pcs/IO/read_tree_csv.h>
@@ -28,10 +29,16 @@ namespace {
 
 void read_tree(const std::string& path, Tree& tree, std::vector<std::size_t>& hits)
 {
-  if (std::filesystem::path(path).extension() == ".csv")
+  const std::string extension = std::filesystem::path(path).extension().string();
+  pcs::IO::Tree_selection selection;
+  if ((extension == ".csv" || extension == ".txt") && pcs::IO::is_cylinder_table(path))
+    selection = pcs::IO::read_cylinders<Kernel>(path, tree);
+  else if (extension == ".csv")
     pcs::IO::read_tree_csv<Kernel>(path, tree, hits);
   else
-    pcs::IO::read_swc<Kernel>(path, tree);
+    selection = pcs::IO::read_swc<Kernel>(path, tree);
+  for (const std::string& sentence : warnings(selection))
+    std::cerr << "evaluate_skeleton: warning: " << path << ": " << sentence << '\n';
 }
 
 /// The points, without those that a virtual scan labels as ghosts and outliers.
