@@ -122,6 +122,9 @@ std::string read_given(const Skeleton_options& options, Tree& given)
   const pcs::IO::Tree_selection selection =
       read_skeleton<Kernel>(options.given, given, ids, options.root_number);
   const std::string warning = warning_of_selection(selection, "--root-number");
+  if (num_vertices(given) < 2)
+    throw pcs::Invalid_input(options.given + ": the skeleton has fewer than two nodes" +
+                             (warning.empty() ? "" : "; " + warning));
   return warning.empty() ? warning : options.given + ": " + warning;
 }
 
