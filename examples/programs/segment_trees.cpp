@@ -48,8 +48,8 @@ struct Options
 
 const char* help()
 {
-  return R"(Scans: PLY, LAS (LAZ if built with LASzip), PCD, PTX, OFF, OBJ, or text (xyz, txt, csv, asc, pts,
-pwn).
+  return R"(Scans: PLY, LAS (LAZ if built with LASzip), PCD, PTX, OFF, OBJ, or text (xyz, txt, csv,
+asc, pts, pwn).
 Folder: DIR/SCAN_1.ply, DIR/SCAN_2.ply, ..., trees with the thickest stems first, with all
 properties of their points and the foot of the tree as a comment. extract_tree_skeleton reads the
 foot, and processes all files with its own --folder.

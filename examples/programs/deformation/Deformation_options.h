@@ -48,8 +48,9 @@ rotation and scale; without it that is the centroid of the selected points. The 
 must be made of a rotation, one scale and a translation. Bounds are inclusive.
 
 Files: PLY, LAS, OFF, or text (xyz, txt, csv, asc, pts, pwn). The input may also be
-PCD, PTX, OBJ, or LAZ if built with LASzip. Order and properties of the points are kept, normals nx, ny, nz are rotated; faces and lists are not kept. PLY is
-written in binary, with coordinates in double precision.
+PCD, PTX, OBJ, or LAZ if built with LASzip. Order and properties of the points are kept,
+normals nx, ny, nz are rotated; faces and lists are not kept. PLY is written in binary, with
+coordinates in double precision.
 
 With --stream the input may be larger than memory. It is read twice (text: three times;
 LAS output: once more). At most --stream-points points, spread over the file, are kept and

@@ -75,8 +75,8 @@ inline nlohmann::ordered_json to_json(const Skeleton_options& o)
 
 inline const char* skeleton_help()
 {
-  return R"(Scans: PLY, LAS (LAZ if built with LASzip), PCD, PTX, OFF, OBJ, or text (xyz, txt, csv, asc, pts,
-pwn). A property `wood`
+  return R"(Scans: PLY, LAS (LAZ if built with LASzip), PCD, PTX, OFF, OBJ, or text (xyz, txt, csv,
+asc, pts, pwn). A property `wood`
 (1: wood, 0: leaf) is used if it exists, and `station` as the station of a point, whose
 registration is corrected (--stations point_source_id for terrestrial LAS files). Rays without
 return (alpha 0 in ray clouds, which have `time` and `alpha`) are left out, with a warning. Lengths
