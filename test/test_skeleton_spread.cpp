@@ -10,6 +10,7 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -84,6 +85,45 @@ BOOST_AUTO_TEST_CASE(figures_that_depend_on_chance_are_named)
   for (const std::string& sentence : pcs::warnings(report))
     all += sentence + '\n';
   BOOST_TEST(all.find("position of the root +- ") != std::string::npos, all);
+}
+
+BOOST_AUTO_TEST_CASE(standard_errors_have_a_part_by_chance_and_a_shared_part)
+{
+  pcs::Skeleton_report report;
+  report.by_order.push_back({1, 3, 0.03});
+  report.by_size.resize(5);
+  report.by_size[4].volume = 2;
+  report.height = 10;
+  BOOST_TEST(pcs::standard_errors(report).height == 0); // no copies
+  report.spread.number_of_copies = 4;
+  report.spread.fraction = 0.9;
+  report.spread.volume_by_size = {0, 0, 0, 0, 0.1};
+  const pcs::Skeleton_errors shared = pcs::standard_errors(report);
+  BOOST_TEST(shared.height > 0.05);
+  BOOST_TEST(shared.height < 0.2);
+  report.spread.height = 1;
+  const double by_chance =
+      std::sqrt(std::pow(pcs::standard_errors(report).height, 2) - std::pow(shared.height, 2));
+  BOOST_TEST(by_chance == 3, boost::test_tools::tolerance(1e-9)); // sqrt(0.9 / 0.1)
+  BOOST_TEST_REQUIRE(shared.volume_by_size.size() == 5u);
+  BOOST_TEST(shared.volume_by_size[4] > 0.3);
+  report.spread.fraction = 0.04; // thinned copies vary more than the scan, but not by chance
+  const double thinned =
+      std::sqrt(std::pow(pcs::standard_errors(report).height, 2) - std::pow(shared.height, 2));
+  BOOST_TEST(thinned == 1, boost::test_tools::tolerance(1e-9));
+}
+
+BOOST_AUTO_TEST_CASE(a_tree_has_standard_errors)
+{
+  Tree tree;
+  const pcs::Skeleton_report report =
+      pcs::extract_tree_skeleton(clear_tree(), tree, np::number_of_resamples(4));
+  const pcs::Skeleton_errors errors = pcs::standard_errors(report);
+  BOOST_TEST(report.spread.fraction == 0.9);
+  BOOST_TEST(errors.height >= 3 * report.spread.height);
+  BOOST_TEST(errors.trunk_volume > 0);
+  BOOST_TEST(errors.trunk_volume <= errors.volume);
+  BOOST_TEST(errors.volume_by_size.size() == report.by_size.size());
 }
 
 BOOST_AUTO_TEST_CASE(copies_without_a_tree_are_named)

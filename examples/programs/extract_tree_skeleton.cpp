@@ -163,10 +163,7 @@ pcs::Skeleton_report extract(const std::string& input,
     line.show("skeleton", f);
     return true;
   };
-  constexpr std::size_t max_unthinned = 44000; // copies are not thinned up to this size
-  const int resamples = options.number_of_resamples >= 0 ? options.number_of_resamples
-                        : n <= max_unthinned             ? 4
-                                                         : 0;
+  const int resamples = options.number_of_resamples;
   pcs::Slice_options slices;
   slices.fit = section_fit(options.fit);
   slices.do_mark_support = !options.do_fit_all;

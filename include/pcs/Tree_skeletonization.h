@@ -287,6 +287,8 @@ public:
         m_callback(1);
       Skeleton_report report = m_session->report();
       report.spread = m_resamples.spread();
+      if (report.spread.number_of_copies > 0)
+        report.spread.fraction = skeleton::resampled_fraction(report.number_of_points);
       return report;
     } else
       return Skeleton_report();

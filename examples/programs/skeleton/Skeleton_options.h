@@ -34,7 +34,7 @@ struct Skeleton_options
   double tolerance = -1;         // < 0: the default of the library
   double breast_height = 1.3;
   std::size_t root_number = 1;  ///< of the tree in the file of the given skeleton
-  int number_of_resamples = -1; ///< negative: 4 where copies are not thinned, otherwise 0
+  int number_of_resamples = 4;
   bool do_keep_stations = false, do_keep_ground = false, do_remove_leaves = false,
        do_keep_leaves = false, do_separate = false, do_use_all = false, do_fit_all = false,
        is_quiet = false;
@@ -175,10 +175,10 @@ inline void declare(CLI::App& app, Skeleton_options& options)
   app.add_option(
          "--resamples",
          options.number_of_resamples,
-         "number of random subsamples of the scan, whose skeletons show how much the values "
-         "of the report vary by chance; 0: none")
+         "number of random subsamples of the scan, whose skeletons give the standard errors in "
+         "the report; 0: none")
       ->check(CLI::Range(0, 100))
-      ->default_str("4 up to 44,000 points, otherwise 0");
+      ->capture_default_str();
   app.add_option("--breast-height", options.breast_height, "height of the diameter in the report")
       ->capture_default_str();
   app.add_option("--tolerance", options.tolerance, "maximal distance of the mesh from the sections")

@@ -57,7 +57,20 @@ inline nlohmann::ordered_json to_json(const pcs::Skeleton_spread& s)
           {"trunk_length", s.trunk_length},
           {"length", s.length},
           {"volume", s.volume},
+          {"trunk_volume", s.trunk_volume},
+          {"volume_by_size", s.volume_by_size},
           {"root", s.root}};
+}
+
+inline nlohmann::ordered_json to_json(const pcs::Skeleton_errors& e)
+{
+  return {{"height", e.height},
+          {"diameter_at_breast_height", e.diameter_at_breast_height},
+          {"trunk_length", e.trunk_length},
+          {"length", e.length},
+          {"volume", e.volume},
+          {"trunk_volume", e.trunk_volume},
+          {"volume_by_size", e.volume_by_size}};
 }
 
 /// Returns all members of the report; lengths are in the unit of the input.
@@ -116,6 +129,8 @@ inline nlohmann::ordered_json to_json(const std::string& input, const pcs::Skele
   }
   if (r.spread.number_of_copies + r.spread.number_of_empty_copies > 0)
     json["spread"] = to_json(r.spread);
+  if (r.spread.number_of_copies > 1)
+    json["standard_errors"] = to_json(pcs::standard_errors(r));
   json["seconds"] = {{"neighbors", r.seconds.neighbors},
                      {"paths", r.seconds.paths},
                      {"axes", r.seconds.axes},

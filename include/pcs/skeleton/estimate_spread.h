@@ -31,9 +31,17 @@ struct Scan_copy
   std::vector<long long> stations;   ///< empty: unknown
 };
 
+/// Returns the probability that a copy of a scan of `n` points keeps a point [-].
+inline double resampled_fraction(std::size_t n)
+{
+  constexpr double max_fraction = 0.9;
+  constexpr double max_points = 40000; // enough for trunk and limbs, and fast
+  return std::min(max_fraction, max_points / double(std::max<std::size_t>(n, 1)));
+}
+
 /*!
   Returns copies of a scan. Each copy keeps each point independently with the probability
-  `min(0.9, 40000 / n)`; the choice depends only on the indices of copy and point. Fewer than 100
+  `resampled_fraction(n)`; the choice depends only on the indices of copy and point. Fewer than 100
   points give no copies. O(n) per copy.
 */
 inline std::vector<Scan_copy> resample_scan(const std::vector<Vec3>& points,
@@ -41,11 +49,9 @@ inline std::vector<Scan_copy> resample_scan(const std::vector<Vec3>& points,
                                             const std::vector<long long>& stations,
                                             std::size_t number_of_copies)
 {
-  constexpr double max_fraction = 0.9;
-  constexpr double max_points = 40000; // enough for trunk and limbs, and fast
   constexpr std::size_t min_points = 100;
   std::vector<Scan_copy> copies(points.size() < min_points ? 0 : number_of_copies);
-  const double fraction = std::min(max_fraction, max_points / double(points.size()));
+  const double fraction = resampled_fraction(points.size());
   for (std::size_t k = 0; k < copies.size(); ++k)
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (!(pcs::internal::Random_stream(k, i).uniform() < fraction))
@@ -76,7 +82,8 @@ inline double deviation(const std::vector<double>& values)
 /// The descriptors of the copies that have a tree.
 struct Copied_figures
 {
-  std::vector<double> height, diameter, trunk, length, volume;
+  std::vector<double> height, diameter, trunk, length, volume, trunk_volume;
+  std::vector<std::vector<double>> by_size;
   std::vector<double> root[3];
 
   void add(const Skeleton_report& r, const Vec3& root_position)
@@ -86,6 +93,10 @@ struct Copied_figures
     trunk.push_back(r.by_order.empty() ? 0 : r.by_order.front().length);
     length.push_back(r.total.length);
     volume.push_back(r.total.volume);
+    trunk_volume.push_back(r.by_order.empty() ? 0 : r.by_order.front().volume);
+    by_size.resize(r.by_size.size());
+    for (std::size_t k = 0; k < by_size.size(); ++k)
+      by_size[k].push_back(r.by_size[k].volume);
     for (int k = 0; k < 3; ++k)
       root[k].push_back(root_position[k]);
   }
@@ -99,6 +110,9 @@ struct Copied_figures
     result.trunk_length = deviation(trunk);
     result.length = deviation(length);
     result.volume = deviation(volume);
+    result.trunk_volume = deviation(trunk_volume);
+    for (const std::vector<double>& volumes : by_size)
+      result.volume_by_size.push_back(deviation(volumes));
     result.root = std::hypot(deviation(root[0]), deviation(root[1]), deviation(root[2]));
     return result;
   }
