@@ -33,7 +33,7 @@ struct Skeleton_options
   double beam_milliradians = -1; // < 0: the default of the library
   double tolerance = -1;         // < 0: the default of the library
   double breast_height = 1.3;
-  std::size_t root_number = 1;  ///< of the tree in the file of the given skeleton
+  std::size_t root_number = 1; ///< of the tree in the file of the given skeleton
   int number_of_resamples = 4;
   bool do_keep_stations = false, do_keep_ground = false, do_remove_leaves = false,
        do_keep_leaves = false, do_separate = false, do_use_all = false, do_fit_all = false,

@@ -8,6 +8,7 @@
 #include <pcs/IO/internal/Input_file.h>
 #include <pcs/IO/internal/Tree_rows.h>
 #include <pcs/IO/internal/numbers.h>
+#include <pcs/IO/internal/text/table_words.h>
 #include <pcs/core/Tree_skeleton.h>
 
 #include <algorithm>
@@ -54,17 +55,8 @@ constexpr std::array<const char*, number_of_cylinder_columns> cylinder_columns =
                                                                                   "id",
                                                                                   "branch"};
 
-//! removes quotes around a word
-inline std::string_view without_quotes(std::string_view word)
-{
-  word = trim(word);
-  if (word.size() >= 2 && word.front() == '"' && word.back() == '"')
-    word = trim(word.substr(1, word.size() - 2));
-  return word;
-}
-
 //! returns the letters and digits of a column name in lower case, without a unit in parentheses
-inline std::string plain_name(std::string_view name)
+inline std::string plain_column_name(std::string_view name)
 {
   std::string plain;
   for (const char c : name.substr(0, name.find('(')))
@@ -76,7 +68,7 @@ inline std::string plain_name(std::string_view name)
 //! returns the first of the columns that a name denotes and their number, 0 for other names
 inline std::pair<std::size_t, std::size_t> columns_of_name(std::string_view name)
 {
-  const std::string plain = plain_name(name);
+  const std::string plain = plain_column_name(name);
   for (const auto& [prefix, first] : {std::make_pair("start", column_start),
                                       std::make_pair("startpoint", column_start),
                                       std::make_pair("s", column_start),

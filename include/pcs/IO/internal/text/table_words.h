@@ -30,9 +30,10 @@ inline std::string to_lower(std::string_view word)
   return text;
 }
 
-//! removes the quotation marks around a word
+//! removes blanks at both ends and the quotation marks around a word
 inline std::string_view without_quotes(std::string_view word)
 {
+  word = trim(word);
   if (word.size() >= 2 && word.front() == '"' && word.back() == '"')
     word = trim(word.substr(1, word.size() - 2));
   return word;
