@@ -163,7 +163,6 @@ pcs::Skeleton_report extract(const std::string& input,
     line.show("skeleton", f);
     return true;
   };
-  const int resamples = options.number_of_resamples;
   pcs::Slice_options slices;
   slices.fit = section_fit(options.fit);
   slices.do_mark_support = !options.do_fit_all;
@@ -176,7 +175,7 @@ pcs::Skeleton_report extract(const std::string& input,
                       .slice_options(slices)
                       .up_direction(up_direction<Kernel>(options.up))
                       .breast_height(options.breast_height)
-                      .number_of_resamples(resamples)
+                      .number_of_resamples(options.number_of_resamples)
                       .do_register_stations(!options.do_keep_stations)
                       .station_map(station)
                       .do_remove_ground(!options.do_keep_ground)
