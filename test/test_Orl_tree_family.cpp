@@ -623,6 +623,10 @@ BOOST_AUTO_TEST_CASE(age_and_crown_angle_of_trees_with_different_branches_are_fo
   }
 }
 
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(orl_grown_modes)
+
 BOOST_AUTO_TEST_CASE(parameters_of_grown_trees_are_found)
 {
   for (const Second_parameter second : {Second_parameter::crown_angle, Second_parameter::tropism}) {
@@ -642,6 +646,10 @@ BOOST_AUTO_TEST_CASE(parameters_of_grown_trees_are_found)
     BOOST_TEST(correlation(plain.scores, family.known.col(1)) < other);
   }
 }
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(orl_modes)
 
 BOOST_AUTO_TEST_CASE(left_out_trees_are_nearer_with_more_modes)
 {

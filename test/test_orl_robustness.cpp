@@ -447,6 +447,10 @@ BOOST_AUTO_TEST_CASE(a_star_of_five_hundred_branches)
   BOOST_TEST(report.number_of_matched_branches > 400u);
 }
 
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(orl_large)
+
 BOOST_AUTO_TEST_CASE(a_star_of_thirteen_hundred_branches)
 {
   // more than are assigned at a time, and all about as heavy
@@ -462,6 +466,10 @@ BOOST_AUTO_TEST_CASE(a_star_of_thirteen_hundred_branches)
   BOOST_TEST(number_matched > 1150u);
   BOOST_TEST(number_near > 9 * number_matched / 10);
 }
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(orl_robustness)
 
 BOOST_AUTO_TEST_CASE(a_chain_of_a_hundred_thousand_nodes_and_a_tree_a_million_times_smaller)
 {

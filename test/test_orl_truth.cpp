@@ -97,6 +97,10 @@ BOOST_AUTO_TEST_CASE(the_trunk_of_a_growing_tree_goes_on_as_the_trunk)
   }
 }
 
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(orl_growth_order)
+
 BOOST_AUTO_TEST_CASE(a_growing_tree_is_predicted_best_with_branches_born_in_order)
 {
   Tree tree;
@@ -115,6 +119,10 @@ BOOST_AUTO_TEST_CASE(a_growing_tree_is_predicted_best_with_branches_born_in_orde
   BOOST_TEST(p.geodesic < p.linear);
   BOOST_TEST(p.geodesic < p.first);
 }
+
+BOOST_AUTO_TEST_SUITE_END()
+
+BOOST_AUTO_TEST_SUITE(orl_truth)
 
 BOOST_AUTO_TEST_CASE(a_plant_in_the_middle_is_predicted_from_the_ends)
 {

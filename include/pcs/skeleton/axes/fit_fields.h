@@ -11,7 +11,6 @@
 #include <pcs/skeleton/model/Scan.h>
 #include <pcs/skeleton/model/Visibility_field.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -83,10 +82,10 @@ inline void Density_field::learn(const std::vector<Density_sample>& all)
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const double x = errors[i] / (2 * deviation);
       const double w = 1 / ((1 + x * x) * deviation * deviation * shared);
-      matrix.selfadjointView<Eigen::Lower>().rankUpdate(rows[i], w);
+      matrix += w * rows[i] * rows[i].transpose();
       right += w * (values[i] - m_middle) * rows[i];
     }
-    m_weights = matrix.selfadjointView<Eigen::Lower>().ldlt().solve(right);
+    linear_algebra::solve_symmetric(matrix, right, m_weights);
   }
 }
 
@@ -120,7 +119,7 @@ inline void Visibility_field::learn(const std::vector<Density_sample>& all)
         right.segment<3>(3 * a) += w * r[a] * (across * samples[i].facing);
       }
     }
-    m_weights = matrix.ldlt().solve(right);
+    linear_algebra::solve_symmetric(matrix, right, m_weights);
   }
 }
 

@@ -7,11 +7,11 @@
 
 #include <pcs/internal/median.h>
 #include <pcs/internal/parallel.h>
+#include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/graph/Neighbor_graph.h>
 #include <pcs/skeleton/model/Scan.h>
 #include <pcs/skeleton/model/circle_fit.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -139,8 +139,8 @@ private:
       rise += (m_distance[m->second] - middle) * d;
     }
     covariance += 1e-3 * covariance.trace() * Eigen::Matrix3d::Identity();
-    const Vec3 along = covariance.ldlt().solve(rise);
-    if (!(along.squaredNorm() > 0))
+    Vec3 along;
+    if (!linear_algebra::solve_symmetric(covariance, rise, along) || !(along.squaredNorm() > 0))
       return false;
     const Vec3 e1 = along.normalized().unitOrthogonal(), e2 = along.normalized().cross(e1);
     std::vector<Vec2> plane;

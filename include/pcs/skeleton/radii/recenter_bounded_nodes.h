@@ -5,11 +5,11 @@
 #ifndef PCS_SKELETON_RADII_RECENTER_BOUNDED_NODES_H
 #define PCS_SKELETON_RADII_RECENTER_BOUNDED_NODES_H
 
+#include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/model/Branch_tree.h>
 #include <pcs/skeleton/model/Index_groups.h>
 #include <pcs/skeleton/model/Scan.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -69,7 +69,9 @@ public:
   Vec3 move(double hold) const
   {
     const Eigen::Matrix3d matrix = m_matrix + hold * m_weight * Eigen::Matrix3d::Identity();
-    return matrix.ldlt().solve(m_right);
+    Vec3 displacement;
+    linear_algebra::solve_symmetric(matrix, m_right, displacement);
+    return displacement;
   }
 
 private:

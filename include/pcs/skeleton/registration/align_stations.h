@@ -6,6 +6,7 @@
 #define PCS_SKELETON_REGISTRATION_ALIGN_STATIONS_H
 
 #include <pcs/internal/parallel.h>
+#include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/model/Axis.h>
 #include <pcs/skeleton/model/Axis_set.h>
 #include <pcs/skeleton/model/Index_groups.h>
@@ -102,6 +103,7 @@ private:
   static constexpr int local = 10;  ///< radius (2), lateral position (3 each), oval (2)
   using Motion = Eigen::Matrix<double, freedom, 1>;
   using Local = Eigen::Matrix<double, local, 1>;
+  using Local_matrix = Eigen::Matrix<double, local, local>;
 
   struct Answer
   {
@@ -246,7 +248,7 @@ private:
     const Eigen::Index size = freedom * static_cast<Eigen::Index>(stations.size());
     Eigen::MatrixXd motions = Eigen::MatrixXd::Zero(size, size);
     Eigen::MatrixXd mixed = Eigen::MatrixXd::Zero(size, local);
-    Eigen::Matrix<double, local, local> own = precision(piece).asDiagonal();
+    Local_matrix own = precision(piece).asDiagonal();
     Eigen::VectorXd motion_right = Eigen::VectorXd::Zero(size);
     Local own_right = Local::Zero();
     for (const Index i : piece.points) {
@@ -260,9 +262,10 @@ private:
       motion_right.segment<freedom>(at) += w * s.height * s.motion;
       own_right += w * s.height * s.wrong;
     }
-    const Eigen::LDLT<Eigen::Matrix<double, local, local>> solver(own);
-    piece.wrong = solver.solve(own_right); // for the current motions
-    motions -= mixed * solver.solve(mixed.transpose());
+    Local_matrix inverse;
+    linear_algebra::solve_symmetric(own, Local_matrix(Local_matrix::Identity()), inverse);
+    piece.wrong = inverse * own_right; // for the current motions
+    motions -= mixed * inverse * mixed.transpose();
     motion_right -= mixed * piece.wrong;
     for (std::size_t a = 0; a < stations.size(); ++a) {
       const Eigen::Index ra = freedom * static_cast<Eigen::Index>(stations[a]);

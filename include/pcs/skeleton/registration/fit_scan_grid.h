@@ -6,11 +6,11 @@
 #define PCS_SKELETON_REGISTRATION_FIT_SCAN_GRID_H
 
 #include <pcs/internal/parallel.h>
+#include <pcs/linear_algebra/small_symmetric.h>
 #include <pcs/skeleton/registration/Point_pairs.h>
 #include <pcs/skeleton/registration/Registration_options.h>
 #include <pcs/skeleton/registration/Scan_grid.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -166,7 +166,8 @@ private:
     const double place = m_rules.spacing * m_rules.spacing, tilt = m_rules.tilt * m_rules.tilt;
     for (Eigen::Index k = 0; k < size; ++k)
       m(k, k) += variance / (k == 3 || k == 4 ? tilt : place);
-    const Step x = -m.ldlt().solve(slope);
+    Step x;
+    linear_algebra::solve_symmetric(m, Step(-slope), x);
     change = std::sqrt(x.dot((all.columns + all.rows) * x) / double(pairs.size()));
     move(x);
     return all.cosine;
@@ -238,8 +239,8 @@ private:
     });
     constexpr double ridge = 1e-9;
     all.matrix.diagonal() = (1 + ridge) * all.matrix.diagonal().array() + ridge;
-    const Long_step x = -all.matrix.ldlt().solve(all.slope);
-    if (!x.allFinite())
+    Long_step x;
+    if (!linear_algebra::solve_symmetric(all.matrix, Long_step(-all.slope), x))
       return;
     move(x.head<size>());
     m_grid.phase += x.tail<2>();
