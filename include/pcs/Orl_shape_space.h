@@ -222,8 +222,7 @@ public:
   {
     const char* const caller = "pcs::Orl_shape_space::build_from()";
     check_two_inputs(caller);
-    const shape_space::Build_options options =
-        shape_space::read_build_options(np, m_state.inputs.size(), caller);
+    const shape_space::Build_options options = shape_space::read_embedding_options(np, caller);
     return shape_space::build_space_from<ConcurrencyTag>(correspondences, options, caller, m_state);
   }
 

@@ -84,7 +84,8 @@ private:
   static_assert(
       is_point_ok,
       "pcs::Tree_skeletonization: `point_map` must be a property map that stores points "
-      "with x(), y(), z() and a constructor from three coordinates, like Kernel::Point_3");
+      "with x(), y(), z(), which are no integers, and a constructor from three coordinates, like "
+      "Kernel::Point_3");
   static constexpr bool is_point_map_ok =
       !is_point_ok || is_readable_map_v<Point_map, typename Types::Element, Point>;
   static_assert(

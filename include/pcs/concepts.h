@@ -51,7 +51,8 @@ struct Is_point<T,
                             decltype(std::declval<const T&>().z())>>
 {
   using FT = std::decay_t<decltype(std::declval<const T&>().x())>;
-  static constexpr bool value = std::is_constructible_v<T, FT, FT, FT>;
+  // integers cannot hold the computed coordinates
+  static constexpr bool value = !std::is_integral_v<FT> && std::is_constructible_v<T, FT, FT, FT>;
 };
 
 template <class T, class = void>
@@ -127,8 +128,8 @@ constexpr bool is_random_access_range_v =
 template <class Range>
 using Element_reference = decltype(*std::begin(std::declval<Range&>()));
 
-//! whether `T` has `x()`, `y()`, `z()` and a constructor from three such values: any `Point_3` or
-//! `Vector_3` of CGAL, `Eigen::Vector3d`, or a user-defined type
+//! whether `T` has `x()`, `y()`, `z()`, which are no integers, and a constructor from three such
+//! values: any `Point_3` or `Vector_3` of CGAL, `Eigen::Vector3d`, or a user-defined type
 template <class T>
 constexpr bool is_point_or_vector_v = internal::Is_point<T>::value;
 

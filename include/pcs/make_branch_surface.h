@@ -123,6 +123,7 @@ template <class NamedParameters>
 Branch_surface_options read_branch_surface_options(const NamedParameters& np,
                                                    const std::string& caller)
 {
+  check_names<internal_np::tolerance_t, internal_np::do_join_t>(np);
   static_assert(is_parameter_v<double, NamedParameters, internal_np::tolerance_t>,
                 "pcs::make_branch_surface(): named parameter `tolerance` must be a number");
   static_assert(is_parameter_v<bool, NamedParameters, internal_np::do_join_t>,

@@ -85,6 +85,10 @@ struct Leaf_surface_options
 template <class NamedParameters>
 Leaf_surface_options read_leaf_surface_options(const NamedParameters& np, const std::string& caller)
 {
+  check_names<CGAL::internal_np::random_seed_t,
+              internal_np::leaf_length_t,
+              internal_np::leaves_per_length_t,
+              internal_np::leaf_branch_radius_t>(np);
   static_assert(is_parameter_v<double, NamedParameters, internal_np::leaf_length_t>,
                 "pcs::make_leaf_surface(): named parameter `leaf_length` must be a number");
   static_assert(is_parameter_v<double, NamedParameters, internal_np::leaves_per_length_t>,

@@ -204,7 +204,8 @@ Segmentation_report segment_trees(PointRange& points,
   constexpr bool is_point_ok = is_point_or_vector_v<typename Types::Point>;
   static_assert(is_point_ok,
                 "pcs::segment_trees(): `point_map` must be a property map that stores points with "
-                "x(), y(), z() and a constructor from three coordinates, like Kernel::Point_3");
+                "x(), y(), z(), which are no integers, and a constructor from three coordinates, "
+                "like Kernel::Point_3");
   constexpr bool is_point_map_ok =
       !is_point_ok ||
       is_readable_map_v<typename Types::Point_map, typename Types::Element, typename Types::Point>;

@@ -25,6 +25,7 @@ struct Growth_options
 template <class NamedParameters>
 Growth_options read_growth_options(const NamedParameters& np)
 {
+  check_names<CGAL::internal_np::random_seed_t>(np);
   static_assert(is_integer_parameter_v<NamedParameters, CGAL::internal_np::random_seed_t>,
                 "pcs::grow_tree(): named parameter `random_seed` must be an integer");
   return {read_random_seed(np)};

@@ -31,6 +31,7 @@ struct Scan_options
 template <class NamedParameters>
 Scan_options read_scan_options(const NamedParameters& np)
 {
+  check_names<CGAL::internal_np::random_seed_t, CGAL::internal_np::callback_t>(np);
   static_assert(is_integer_parameter_v<NamedParameters, CGAL::internal_np::random_seed_t>,
                 "pcs::scan_tree(): named parameter `random_seed` must be an integer");
   Scan_options options;

@@ -23,6 +23,42 @@
 namespace pcs {
 namespace internal {
 
+/// Does not compile if the function ignores the named parameter `Tag`. The error names the tag.
+template <class Tag, bool is_read>
+struct Parameter_is_read
+{
+  static constexpr bool value = is_read;
+  static_assert(is_read,
+                "pcs: the function would ignore the named parameter with this tag; its "
+                "documentation lists the parameters that it reads");
+};
+
+/// Checks each tag of a chain. Parameters that describe the points may be passed to every function,
+/// because `CGAL::Point_set_3::parameters()` has them.
+template <class... Read>
+struct Read_parameters
+{
+  static constexpr bool check(const void*) { return true; }
+  template <class T, class Tag, class Base>
+  static constexpr bool check(const CGAL::Named_function_parameters<T, Tag, Base>*)
+  {
+    namespace tags = CGAL::internal_np;
+    constexpr bool is_about_points =
+        std::is_same_v<Tag, tags::all_default_t> || std::is_same_v<Tag, tags::geom_traits_t> ||
+        std::is_same_v<Tag, tags::point_t> || std::is_same_v<Tag, tags::normal_t>;
+    constexpr bool is_read = is_about_points || (std::is_same_v<Tag, Read> || ...);
+    return Parameter_is_read<Tag, is_read>::value && check(static_cast<const Base*>(nullptr));
+  }
+};
+
+/// Does not compile if `np` has a parameter that is not in `Read` and would be ignored.
+template <class... Read, class NamedParameters>
+constexpr void check_names(const NamedParameters&)
+{
+  [[maybe_unused]] constexpr bool are_read =
+      Read_parameters<Read...>::check(static_cast<const NamedParameters*>(nullptr));
+}
+
 /// Whether a `Given` is accepted as an `Option`. Pointers and floating-point numbers are not
 /// accepted as `bool`.
 template <class Given, class Option>

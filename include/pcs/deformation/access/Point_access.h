@@ -80,8 +80,8 @@ private:
   static constexpr bool is_point_ok = is_point_or_vector_v<Point>;
   static_assert(is_point_ok,
                 "pcs::Point_set_deformation: `point_map` must be a property map that stores points "
-                "with x(), y(), "
-                "z() and a constructor from three coordinates, like Kernel::Point_3");
+                "with x(), y(), z(), which are no integers, and a constructor from three "
+                "coordinates, like Kernel::Point_3");
   static constexpr bool is_point_map_ok = is_read_write_map_v<Point_map, Element, Point>;
   static_assert(!is_point_ok || is_point_map_ok,
                 "pcs::Point_set_deformation: named parameter `point_map` must be readable and "

@@ -115,6 +115,21 @@ template <class NamedParameters>
 Sampling_options read_sampling_options(const NamedParameters& np, const std::string& caller)
 {
   namespace tags = internal::tags;
+  pcs::internal::check_names<CGAL::internal_np::callback_t,
+                             CGAL::internal_np::number_of_iterations_t,
+                             tags::vector_map_t,
+                             tags::tensor_map_t,
+                             tags::number_of_samples_t,
+                             tags::number_of_neighbors_t,
+                             tags::number_of_sample_neighbors_t,
+                             tags::sample_search_t,
+                             tags::sample_weights_t,
+                             tags::rotation_field_t,
+                             tags::tolerance_t,
+                             tags::stiffness_t,
+                             tags::poisson_ratio_t,
+                             tags::do_preserve_volume_t,
+                             tags::region_of_interest_t>(np);
   static_assert(internal::is_parameter_v<Sample_search, NamedParameters, tags::sample_search_t>,
                 "pcs: named parameter `sample_search` must be a pcs::Sample_search");
   static_assert(internal::is_parameter_v<Sample_weights, NamedParameters, tags::sample_weights_t>,

@@ -30,6 +30,29 @@ namespace shape_space {
 
 namespace internal {
 
+/// Checks the names of parameters for a space and for what is computed from it. `orl_geodesic()`
+/// passes all of them to each step.
+template <class NamedParameters>
+void check_space_names(const NamedParameters& np)
+{
+  namespace tags = pcs::internal_np;
+  pcs::internal::check_names<tags::matching_weights_t,
+                             tags::assignment_options_t,
+                             tags::transport_options_t,
+                             tags::alignment_t,
+                             tags::up_direction_t,
+                             tags::orientation_t,
+                             tags::virtual_direction_t,
+                             tags::do_use_unit_weights_t,
+                             tags::number_of_rounds_t,
+                             tags::points_of_t,
+                             CGAL::internal_np::callback_t,
+                             tags::max_extrapolation_angle_t,
+                             tags::do_limit_radii_t,
+                             tags::branch_emergence_t,
+                             tags::point_path_t>(np);
+}
+
 template <class NamedParameters>
 void read_matching(const NamedParameters& np, Build_options& options)
 {
@@ -115,6 +138,7 @@ Build_options read_build_options(const NamedParameters& np,
                                  std::size_t number_of_trees,
                                  const std::string& caller)
 {
+  internal::check_space_names(np);
   pcs::internal::check(number_of_trees >= 2,
                        caller,
                        std::to_string(number_of_trees) + " trees were added, expected 2 at least");
@@ -127,9 +151,24 @@ Build_options read_build_options(const NamedParameters& np,
   return options;
 }
 
+/// Reads the options of a space with given correspondences.
+template <class NamedParameters>
+Build_options read_embedding_options(const NamedParameters& np, const std::string& caller)
+{
+  namespace tags = pcs::internal_np;
+  pcs::internal::check_names<tags::matching_weights_t,
+                             tags::up_direction_t,
+                             tags::orientation_t,
+                             tags::virtual_direction_t,
+                             tags::do_use_unit_weights_t>(np);
+  constexpr std::size_t number_of_trees = 2;
+  return read_build_options(np, number_of_trees, caller);
+}
+
 template <class NamedParameters>
 Path_options read_path_options(const NamedParameters& np, const char* caller)
 {
+  internal::check_space_names(np);
   namespace tags = pcs::internal_np;
   using pcs::internal::is_parameter_v;
   using pcs::internal::read_parameter;
@@ -159,6 +198,7 @@ template <class NamedParameters>
 Point_path read_point_path(const NamedParameters& np, bool is_pair, const char* caller)
 {
   using Tag = pcs::internal_np::point_path_t;
+  internal::check_space_names(np);
   Point_path path = Point_path::cylindrical;
   static_assert(pcs::internal::is_parameter_v<Point_path, NamedParameters, Tag>,
                 "pcs: named parameter `point_path` must be a pcs::Point_path");
@@ -174,6 +214,7 @@ template <class NamedParameters>
 Orl_metric read_metric(const NamedParameters& np)
 {
   using Tag = pcs::internal_np::metric_t;
+  pcs::internal::check_names<Tag>(np);
   Orl_metric metric = Orl_metric::sum;
   static_assert(pcs::internal::is_parameter_v<Orl_metric, NamedParameters, Tag>,
                 "pcs: named parameter `metric` must be a pcs::Orl_metric");
@@ -185,6 +226,7 @@ template <class NamedParameters>
 Change_limits read_change_limits(const NamedParameters& np, const std::string& caller)
 {
   using Tag = pcs::internal_np::change_limits_t;
+  pcs::internal::check_names<Tag>(np);
   Change_limits limits;
   static_assert(pcs::internal::is_parameter_v<Change_limits, NamedParameters, Tag>,
                 "pcs: named parameter `change_limits` must be a pcs::Change_limits");
@@ -205,6 +247,7 @@ Mean_options
 read_mean_options(const NamedParameters& np, std::size_t number_of_trees, const std::string& caller)
 {
   namespace tags = pcs::internal_np;
+  pcs::internal::check_names<tags::tree_mean_t, tags::tree_weights_t>(np);
   Mean_options options;
   options.weights.assign(number_of_trees, 1);
   static_assert(pcs::internal::is_parameter_v<Tree_mean, NamedParameters, tags::tree_mean_t>,
@@ -222,6 +265,7 @@ template <class NamedParameters>
 Mode_inner_product read_mode_inner_product(const NamedParameters& np)
 {
   using Tag = pcs::internal_np::mode_inner_product_t;
+  pcs::internal::check_names<Tag>(np);
   Mode_inner_product product = Mode_inner_product::branches;
   static_assert(pcs::internal::is_parameter_v<Mode_inner_product, NamedParameters, Tag>,
                 "pcs: named parameter `mode_inner_product` must be a pcs::Mode_inner_product");
@@ -233,6 +277,7 @@ template <class NamedParameters>
 Tree_sampling_options read_sampling_options(const NamedParameters& np, const std::string& caller)
 {
   using Tag = pcs::internal_np::sampling_options_t;
+  pcs::internal::check_names<Tag>(np);
   Tree_sampling_options options;
   static_assert(pcs::internal::is_parameter_v<Tree_sampling_options, NamedParameters, Tag>,
                 "pcs: named parameter `sampling_options` must be a pcs::Tree_sampling_options");
@@ -245,6 +290,7 @@ template <class NamedParameters>
 bool read_is_monotone(const NamedParameters& np)
 {
   using Tag = pcs::internal_np::is_monotone_t;
+  pcs::internal::check_names<Tag>(np);
   bool is_monotone = false;
   static_assert(pcs::internal::is_parameter_v<bool, NamedParameters, Tag>,
                 "pcs: named parameter `is_monotone` must be a bool");

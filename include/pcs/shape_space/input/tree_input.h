@@ -10,6 +10,7 @@
 #include <pcs/core/Orl_correspondences.h>
 #include <pcs/core/Tree_skeleton.h>
 #include <pcs/core/errors.h>
+#include <pcs/core/parameters/read_parameter.h>
 #include <pcs/shape_space/model/Rooted_tree.h>
 
 #include <CGAL/number_utils.h>
@@ -285,6 +286,8 @@ Tree_input make_tree_input(const TreeGraph& graph,
                            const std::string& caller)
 {
   namespace tags = pcs::internal_np;
+  pcs::internal::
+      check_names<tags::node_point_map_t, tags::node_radius_map_t, tags::node_index_map_t>(np);
   Tree_input result;
   constexpr bool is_graph = internal::Is_listable_graph<TreeGraph>::value;
   static_assert(is_graph,

@@ -208,6 +208,29 @@ Input_options read_common_options(const NamedParameters& np, const std::string& 
 template <class NamedParameters>
 Input_options read_skeleton_options(const NamedParameters& np, const std::string& caller)
 {
+  namespace tags = internal::tags;
+  pcs::internal::check_names<CGAL::internal_np::callback_t,
+                             tags::up_direction_t,
+                             tags::root_position_t,
+                             tags::breast_height_t,
+                             tags::number_of_resamples_t,
+                             tags::do_register_stations_t,
+                             tags::station_map_t,
+                             tags::do_remove_ground_t,
+                             tags::wood_map_t,
+                             tags::do_remove_leaves_t,
+                             tags::point_is_leaf_map_t,
+                             tags::point_branch_map_t,
+                             tags::point_residual_map_t,
+                             tags::point_is_dense_map_t,
+                             tags::node_point_map_t,
+                             tags::node_radius_map_t,
+                             tags::skeleton_method_t,
+                             tags::slice_options_t,
+                             tags::scanner_positions_t,
+                             tags::beam_width_t,
+                             tags::given_skeleton_t,
+                             tags::given_point_map_t>(np);
   static_assert(
       internal::is_parameter_v<bool, NamedParameters, internal::tags::do_register_stations_t>,
       "pcs::extract_tree_skeleton(): named parameter `do_register_stations` must be a bool");
@@ -217,6 +240,9 @@ Input_options read_skeleton_options(const NamedParameters& np, const std::string
   internal::read_scanners(np, caller, hints);
   internal::read_given_skeleton(np, caller, hints);
   internal::read_method(np, caller, hints);
+  pcs::internal::check(!hints.given || hints.method == Skeleton_method::chains,
+                       caller,
+                       "`given_skeleton` and `skeleton_method(sections)` exclude each other");
   hints.do_register_stations = true;
   internal::read_parameter(np, internal::tags::do_register_stations, hints.do_register_stations);
   internal::read_leaf_removal(np, hints);
@@ -237,6 +263,11 @@ Input_options read_skeleton_options(const NamedParameters& np, const std::string
 template <class NamedParameters>
 Input_options read_segmentation_options(const NamedParameters& np, const std::string& caller)
 {
+  namespace tags = internal::tags;
+  pcs::internal::check_names<CGAL::internal_np::callback_t,
+                             tags::up_direction_t,
+                             tags::breast_height_t,
+                             tags::do_remove_ground_t>(np);
   return internal::read_common_options(np, caller);
 }
 
