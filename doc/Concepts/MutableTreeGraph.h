@@ -16,15 +16,29 @@
   \par Required expressions
   \code
   auto v = add_vertex(graph), w = add_vertex(graph);
-  add_edge(v, w, graph);      // from parent to child
+  add_edge(v, w, graph);                   // from parent to child
+
+  // for a graph other than pcs::Tree_skeleton:
+  graph.clear();                           // or, without clear(), the four expressions below
+  num_vertices(graph);
+  auto first = *vertices(graph).first;
+  clear_vertex(v, graph);
+  remove_vertex(v, graph);
+
+  Point p(FT(), FT(), FT());               // the value type of node_point_map
+  p.x(); p.y(); p.z();                     // p.x() gives the type FT
+  put(node_point_map, v, p);
+  put(node_radius_map, v, Radius(0.5));    // the value type, a floating point type
   \endcode
 
   \par Required
-  for a graph other than `pcs::Tree_skeleton`, writable property maps from vertices to points
-  (`node_point_map`) and to radii of a floating point type (`node_radius_map`)
+  for a graph other than `pcs::Tree_skeleton`, the property maps `node_point_map` and
+  `node_radius_map`, which must accept new vertices as keys
 
   \par Checked by
-  a `static_assert` of `pcs::extract_tree_skeleton()`
+  `static_assert`s of `pcs::extract_tree_skeleton()`: `add_vertex()` and `add_edge()` of the graph,
+  both maps given, `pcs::is_point_or_vector_v` for the value of `node_point_map`,
+  `std::is_floating_point_v` for that of `node_radius_map`, and `pcs::is_map_for_v` for both
 
   \par Models
   `pcs::Tree_skeleton<Kernel>`; any directed `boost::adjacency_list` with these maps
