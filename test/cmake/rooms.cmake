@@ -37,7 +37,6 @@ set(deformation_upsampling
   handles/Border_finder.h
   handles/Site_constraints.h
   solver/Elastic_state.h)
-set(deformation_model solver/rotation_field.h)
 
 # ---- skeleton: extract_tree_skeleton, segment_trees
 set(root_skeleton

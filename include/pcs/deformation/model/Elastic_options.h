@@ -8,7 +8,6 @@
 #include <pcs/core/Deformation_options.h>
 #include <pcs/core/Status.h>
 #include <pcs/deformation/model/Elastic_network.h>
-#include <pcs/deformation/solver/rotation_field.h>
 
 #include <vector>
 
