@@ -16,7 +16,7 @@
   \code
   Point p = get(map, element);
   put(map, element, p);                    // read-write maps only
-  p.x(); p.y(); p.z();                     // of one number type FT
+  p.x(); p.y(); p.z();                     // of one number type FT, no integer type
   Point q(FT(), FT(), FT());
   \endcode
 
