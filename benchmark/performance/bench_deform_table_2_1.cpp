@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Times of every stage beside the dissertation's Table 2.1, with ratios to yardsticks and the peak
-// of memory.
+// Compares the times of all stages of the deformation with the published ones [Aiteanu 2022, table
+// 2.1]. Also measures ratios to reference computations and the peak memory.
 
 #include <pcs/Point_set_deformation.h>
 #include <support/Table.h>
@@ -37,13 +37,13 @@ using Point_map = CGAL::First_of_pair_property_map<Point_with_normal>;
 using Normal_map = CGAL::Second_of_pair_property_map<Point_with_normal>;
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-/// One line of the table; `samples` 0 stands for "no sampling".
+/// Row of the table; `samples` 0 means "no sampling".
 struct Row
 {
   const char* model;
   std::size_t samples;
   bool do_preserve_volume;
-  double text_sampling, text_precomputation, text_solving, text_upsampling; ///< dissertation [s]
+  double text_sampling, text_precomputation, text_solving, text_upsampling; ///< published [s]
 };
 
 constexpr Row rows[] = {{"bunny", 100, true, 4.0, .1, .001, .003},
@@ -64,7 +64,7 @@ struct Time
   Time(const pcs_bench::Timings& t) : best(t.best()), median(t.median()) {}
 };
 
-/// What the process of one row sends back.
+/// Values that the process of one row returns.
 struct Measured
 {
   bool is_generated = true;
@@ -82,7 +82,7 @@ std::vector<Point_with_normal> with_normals(const std::vector<Vec3>& points)
     center += p / static_cast<double>(points.size());
   std::vector<Point_with_normal> result;
   result.reserve(points.size());
-  for (const Vec3& p : points) { // any vectors will do: the time does not depend on them
+  for (const Vec3& p : points) { // arbitrary vectors: the time does not depend on them
     const Vec3 n = (p - center + Vec3(0, 0, 1e-3)).normalized();
     result.emplace_back(Kernel::Point_3(p.x(), p.y(), p.z()),
                         Kernel::Vector_3(n.x(), n.y(), n.z()));
@@ -115,7 +115,7 @@ Measured measure(const Row& row, const std::string& folder, int repetitions)
 
   pcs_bench::Timings neighbors, sampling, construction, factorization, solving, pass, upsampling,
       frame, drag;
-  // At full resolution one drag takes seconds.
+  // Without sampling, one drag takes seconds.
   const int number_of_constructions = row.samples == 0 ? 1 : repetitions;
   const int number_of_factorizations = row.samples == 0 ? 1 : 3;
   const int number_of_drags = row.samples == 0 ? 2 : 4;
@@ -146,14 +146,14 @@ Measured measure(const Row& row, const std::string& folder, int repetitions)
         if (repeat == 0)
           factorization.add(report.seconds.factorization);
         else
-          frame.add(frame_seconds); // without factorisation
+          frame.add(frame_seconds); // without factorization
         solving.add(report.seconds.solving);
-        // The first positions, before any pass, cost as much as a pass.
+        // The first positions are computed before any pass and cost as much as a pass.
         pass.add((report.seconds.solving - report.seconds.coarse_levels) /
                  static_cast<double>(report.number_of_iterations + 1));
         upsampling.add(report.seconds.upsampling);
       }
-      // Frames of a drag by one degree each, from the frame before.
+      // Frames of a drag by one degree each, each starting from the previous result.
       constexpr int number_of_frames = 4;
       for (int step = 1; step <= number_of_frames; ++step) {
         session.set_rotation(handle, axis, pi / 3 + step * pi / 180);
@@ -176,7 +176,7 @@ Measured measure(const Row& row, const std::string& folder, int repetitions)
   m.upsampling = upsampling;
   m.frame = frame;
   m.drag = drag;
-  // the point itself is one of seven
+  // The point itself is one of the seven neighbours.
   m.knn = pcs_bench::repeat(repetitions, [&] { pcs_bench::query_neighbors(model.points, 7); });
   for (const bool has_links : {true, false}) {
     pcs_bench::Triad triad(points.size(), has_links);
@@ -186,7 +186,7 @@ Measured measure(const Row& row, const std::string& folder, int repetitions)
   return m;
 }
 
-/// A row took too long: a finding, not a failure of the program.
+/// Time limit of a row; an exceeded limit is a result, not a failure of the program.
 struct Time_limit_exceeded : std::runtime_error
 {
   using std::runtime_error::runtime_error;
@@ -199,7 +199,7 @@ std::string label(const Row& row)
          (row.do_preserve_volume ? "" : ", without interior links");
 }
 
-/// Runs `measure()` in a process of its own, so that the peak of memory is that of this row.
+/// Runs `measure()` in a separate process, so that the peak memory is that of this row.
 Measured measure_apart(const Row& row,
                        bool is_parallel,
                        const std::string& folder,
@@ -259,7 +259,7 @@ int main(int argc, char** argv)
   app.add_option("--repetitions", repetitions, "constructions of each row; the best time is listed")
       ->check(CLI::Range(1, 1000));
   app.add_option("--limit", time_limit,
-                 "time limit of a row [s]"); // ./run bench gives it to all
+                 "time limit of a row [s]"); // passed by ./run bench
   CLI11_PARSE(app, argc, argv);
 
   pcs_bench::Table seconds({"model",
@@ -408,7 +408,7 @@ int main(int argc, char** argv)
         all.add(std::move(line));
       } catch (const Time_limit_exceeded& e) {
         given_up.push_back(std::string(e.what()) + (is_parallel ? ", all threads" : ", 1 thread"));
-      } catch (const std::exception& e) { // the other rows are still worth having
+      } catch (const std::exception& e) { // the other rows are still measured
         std::cerr << e.what() << '\n';
         status = 1;
       }

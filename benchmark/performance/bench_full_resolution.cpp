@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Deformation without sampling beside CGAL::Surface_mesh_deformation, on the vertices of one large
-// mesh.
+// Compares deformation without sampling with CGAL::Surface_mesh_deformation on the vertices of one
+// large mesh.
 
 #include <pcs/Point_set_deformation.h>
 #include <support/Table.h>
@@ -36,7 +36,7 @@ using Vec3 = Eigen::Vector3d;
 
 namespace {
 
-/// The largest part of the mesh in a file.
+/// Reads the largest connected component of the mesh in a file.
 pcs_test::Deformation_case read_case(const std::string& path)
 {
   namespace PMP = CGAL::Polygon_mesh_processing;
@@ -65,7 +65,7 @@ pcs_test::Deformation_case read_case(const std::string& path)
   return c;
 }
 
-/// The lowest 5 % along y stay, the highest 8 % are turned by 60 degrees and moved.
+/// Fixes the lowest 5 % along y. Turns the highest 8 % by 60 degrees and moves them.
 void set_handles(pcs_test::Deformation_case& c)
 {
   const pcs_bench::Ends ends(c.points, 0.05, 0.08);

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The dissertation's pairs of trees of table 4.1: seconds for correspondences, milliseconds for an
-// instance.
+// Measures the pairs of trees of table 4.1 [Aiteanu 2022]: seconds for correspondences,
+// milliseconds for an instance.
 
 #include <pcs/IO/read_txtskl.h>
 #include <pcs/IO/write_points.h>
@@ -33,7 +33,8 @@ constexpr Pair pairs[] = {{"AL06a", "AL12a", 232054, 99960, 22, 650},
                           {"AL17a", "BS07a", 150195, 130137, 20.5, 500},
                           {"AL06a", "Weeping_Willow", 232054, 83981, 21, 450}};
 
-/// Points on the tubes of the branches; edges that only lead to a branch are not part of it.
+/// Samples points on the tubes of the branches, without the edges that connect a branch to its
+/// parent.
 std::vector<Point> sample(Tree tree, std::size_t n, unsigned seed)
 {
   remove_edge_if(
@@ -42,7 +43,7 @@ std::vector<Point> sample(Tree tree, std::size_t n, unsigned seed)
   return orl_test::whole_tube_points(tree, n, seed);
 }
 
-/// The best of nine trees with all points about one place on the path.
+/// Minimum time of nine trees with all points, at adjacent parameters of the path.
 double milliseconds_of_instance(const pcs::Orl_shape_space<Kernel>& space,
                                 double lambda,
                                 std::vector<Point>& points)
@@ -53,13 +54,13 @@ double milliseconds_of_instance(const pcs::Orl_shape_space<Kernel>& space,
     pcs::internal::Stopwatch watch;
     space.geodesic(0, 1, lambda + 0.01 * repetition, tree);
     space.points(tree, points);
-    if (repetition > 0) // the first one allocates
+    if (repetition > 0) // the first repetition allocates memory
       best = std::min(best, 1e3 * watch.lap());
   }
   return best;
 }
 
-/// One slerp per point and nothing else.
+/// Time of one slerp per point, for comparison.
 double milliseconds_of_slerps(std::size_t n)
 {
   std::vector<pcs::Quaternion> from(n), to(n), out(n);
@@ -102,7 +103,7 @@ int main(int argc, char** argv)
     pcs::Orl_shape_space<Kernel> space;
     space.add(one, sample(one, pair.points_1, 1));
     space.add(two, sample(two, pair.points_2, 2));
-    const std::clock_t begin = std::clock(); // of all threads: others do not count
+    const std::clock_t begin = std::clock(); // CPU time of all threads of this process
     const pcs::Orl_report r = space.build();
     const double cpu = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
     std::vector<Point> points;

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Seconds of virtual scans, beside those of the bare ray casts, on one thread and on all.
+// Compares the seconds of virtual scans with those of plain ray casts, on one thread and on all.
 
 #include <pcs/generators/grow_tree.h>
 #include <pcs/generators/scan_tree.h>
@@ -34,7 +34,7 @@ struct Case
   double step_degrees;
 };
 
-/// A dense crown over 15 m, as a beech without leaves.
+/// A dense crown over 15 m, similar to a beech without leaves.
 pcs::Tree_habit beech()
 {
   pcs::Tree_habit h = pcs::broadleaf_habit();
@@ -45,7 +45,7 @@ pcs::Tree_habit beech()
   return h;
 }
 
-/// The beams of all stations through the tree of boxes, and nothing else: no noise, no labels, no
+/// Casts the beams of all stations through the bounding volume hierarchy, without noise, labels or
 /// points.
 double bare_casts(const Tree& tree, const pcs::Virtual_scanner& scanner, std::size_t beams)
 {
@@ -61,7 +61,7 @@ double bare_casts(const Tree& tree, const pcs::Virtual_scanner& scanner, std::si
     high = std::max(high, node.point.z());
     side = std::max({side, std::abs(node.point.x()), std::abs(node.point.y())});
   }
-  // as many beams as the scan had, evenly over the tree
+  // As many beams as the scan has, uniformly over the tree.
   const double area = 2 * side * (high - low);
   const double per_station = double(beams) / double(scanner.number_of_stations);
   const double spacing = std::sqrt(area / per_station);

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Seconds of the stages of a skeleton and of its mesh, beside those of a query for 25 neighbours of
-// every point.
+// Compares the seconds of the stages of a skeleton and of its mesh with those of a query for the 25
+// nearest neighbours of every point.
 
 #include <pcs/IO/read_points.h>
 #include <pcs/core/keep_memory.h>
@@ -46,7 +46,7 @@ Points virtual_scan(double degrees)
   return std::move(scan.points);
 }
 
-/// `share` more points, anywhere in a box twice as large.
+/// Adds the fraction `share` of uniform outliers in a box twice as large as that of the points.
 Points with_outliers(Points points, double share)
 {
   std::array<double, 3> low{}, high{};
@@ -69,7 +69,8 @@ Points with_outliers(Points points, double share)
   return points;
 }
 
-/// nanoflann's tree and 25 nearest neighbours of all points on one thread.
+/// Time of building nanoflann's tree and querying the 25 nearest neighbours of all points, on one
+/// thread.
 double query_seconds(const Points& points)
 {
   std::vector<Eigen::Vector3d> local;
@@ -130,9 +131,10 @@ int main(int argc, char** argv)
   CLI::App app("Seconds of the stages of a skeleton, on one thread and on two.", "bench_skeleton");
   app.add_option("--input", files, "scans; none: a virtual one");
   app.add_option("--step-degrees", degrees, "of the virtual scan")->capture_default_str();
-  app.add_option("--outliers", outliers, "shares of points added anywhere")->capture_default_str();
-  app.add_option("--repetitions", repetitions, "the best counts")->capture_default_str();
-  app.add_option("--csv", csv, "write the rows here, too");
+  app.add_option("--outliers", outliers, "fractions of uniform outliers")->capture_default_str();
+  app.add_option("--repetitions", repetitions, "number of runs; the minimum is reported")
+      ->capture_default_str();
+  app.add_option("--csv", csv, "write the rows to this CSV file");
   try {
     app.parse(argc, argv);
     pcs_bench::Table table({"scan",

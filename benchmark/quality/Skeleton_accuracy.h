@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// How well a skeleton agrees with the true one: what is measured, and the rules of measuring.
+// Measures of the agreement of a skeleton with the true one, and the parameters of measuring.
 
 #ifndef PCS_BENCHMARK_QUALITY_SKELETON_ACCURACY_H
 #define PCS_BENCHMARK_QUALITY_SKELETON_ACCURACY_H
@@ -13,27 +13,27 @@ namespace pcs_bench {
 
 constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
-/// Lengths are in the unit of the trees; the defaults suppose metres.
+/// Lengths are in the unit of the trees; the default values assume metres.
 struct Accuracy_rules
 {
   double sampling_step = 0.01;                    ///< axes are cut into pieces of this length
   std::vector<double> tolerances = {0.01, 0.025}; ///< for precision and recall
-  std::vector<double> radius_fractions = {0.25, 0.5, 1}; ///< the same as shares of the true radius
-  /// Radii are compared where the axes are nearer than the larger of this and half the true radius.
+  std::vector<double> radius_fractions = {0.25, 0.5, 1}; ///< as fractions of the true radius
+  /// Radii are compared where the axes are nearer than max(`radius_match`, true radius / 2).
   double radius_match = 0.01;
-  /// Lower bounds of the classes of radii, falling; what is thinner is the last class.
+  /// Lower bounds of the classes of radii, in decreasing order; smaller radii form the last class.
   std::vector<double> class_bounds = {0.05, 0.02, 0.01, 0.005};
-  /// Branches match where their axes are nearer than the larger of this and half the true radius.
+  /// Branches match where their axes are nearer than max(`branch_match`, true radius / 2).
   double branch_match = 0.025;
   double breast_height = 1.3; ///< above the root of the true tree, along z
 };
 
-/// Share of the length of one tree that has the other tree within a distance.
+/// Fraction of the length of one tree that is within a distance of the other tree.
 struct Agreement
 {
-  double tolerance = 0; ///< a length, or a share of the true radius
-  double precision = 0; ///< share of the result that has a true axis nearby
-  double recall = 0;    ///< share of the true axes with points that have the result nearby
+  double tolerance = 0; ///< a length, or a fraction of the true radius
+  double precision = 0; ///< fraction of the result that is near a true axis
+  double recall = 0;    ///< fraction of the true axes with points that is near the result
 
   double f1() const
   {
@@ -47,26 +47,26 @@ struct Distances
   double mean = no_value, median = no_value, rms = no_value, quantile_95 = no_value;
 };
 
-/// A class of radii. Truth is classed by the true radius, the result by its own.
+/// A class of radii. True axes are classified by the true radius, the result by its own radius.
 struct Size_class
 {
   double from = 0, to = 0;            ///< radii of the class [L]
   double true_length = 0, length = 0; ///< [L]
   double true_volume = 0, volume = 0; ///< sums of frusta [L^3]
-  double seen_length = 0;             ///< of `true_length`, where the scan has points
-  double matched_share = 0;           ///< of `seen_length`, where radii are compared
+  double seen_length = 0;             ///< part of `true_length` where the scan has points
+  double matched_share = 0;           ///< fraction of `seen_length` where radii are compared
   double radius_error = no_value;     ///< median of |r - true r| / true r, where compared
   double radius_bias = no_value;      ///< median of (r - true r) / true r, where compared
   Agreement agreement;                ///< at the first tolerance
 };
 
-/// Branches of one order. Parts of a branch inside its parent do not count.
+/// Branches of one order; the parts of a branch inside its parent are not counted.
 struct Order_class
 {
   std::size_t number_of_true_branches = 0;    ///< with points outside their parent
-  std::size_t number_of_missed_branches = 0;  ///< of those, less than half found
+  std::size_t number_of_missed_branches = 0;  ///< of these, less than half found
   std::size_t number_of_branches = 0;         ///< of the result, by its own orders
-  std::size_t number_of_false_branches = 0;   ///< of those, more than half without true axis
+  std::size_t number_of_false_branches = 0;   ///< of these, more than half without true axis
   std::size_t number_of_matched_branches = 0; ///< of the result, by the order of their true branch
   std::size_t number_of_correct_parents = 0;  ///< of `number_of_matched_branches`
   double matched_length = 0;                  ///< of `number_of_matched_branches` [L]
@@ -88,12 +88,12 @@ struct Skeleton_accuracy
   double true_height = 0, height = 0;                     ///< extents along z [L]
   double radius_error = no_value, radius_bias = no_value; ///< as in `Size_class`, over all
 
-  Distances point_to_surface; ///< of the points, if any were given, to the result's surface [L]
+  Distances point_to_surface; ///< from the given points to the result's surface [L]
 
   double length_error() const { return (length - true_length) / true_length; }
   double volume_error() const { return (volume - true_volume) / true_volume; }
   double dbh_error() const { return dbh - true_dbh; }
-  /// Share of the branches that match a true one, and hang on the true parent or its continuation.
+  /// Fraction of the matched branches that are children of the true parent or its continuation.
   double correct_parent_share() const
   {
     std::size_t matched = 0, correct = 0;

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Bends, twists and drags with known answers, on grids and on irregular samplings, beside mesh
-// methods of CGAL.
+// Bends, twists and drags with known results, on grids and on irregular samplings, compared with
+// mesh methods of CGAL.
 
 #include <pcs/deform_point_set.h>
 #include <pcs/neighborhood/Proximity_graph.h>
@@ -42,11 +42,11 @@ struct Result
   std::vector<Vec3> points;
   std::size_t iterations = 0;
   double seconds = no_value;
-  double solving = no_value; ///< of these, passes without neighbours, samples and factors
+  double solving = no_value; ///< part of `seconds`: passes without neighbours, samples and factors
   std::string status;
 };
 
-/// Points in, points out, on one thread; the best of three runs.
+/// Time from input points to output points, on one thread; the minimum of three runs.
 Result deform(const Deformation_case& c, std::size_t number_of_samples)
 {
   std::vector<Point> rest;
@@ -107,7 +107,7 @@ public:
            const Result& result)
   {
     const auto m = pcs_bench::measure(c, edges, result.points);
-    // Irregular samplings are compared with the same method on the grid.
+    // Reference for irregular samplings: the same method on the grid.
     double& on_grid = m_position_on_grid.emplace(c.name + method, m.position_error).first->second;
     m_table.add({c.name,
                  sampling,
@@ -198,7 +198,7 @@ void run_case(Report& report,
   }
 }
 
-/// Links between the two sheets, away from the end where they are joined. [count]
+/// Counts links between the two sheets, except near the end where they are joined.
 std::size_t count_crossing_links(const pcs_bench::Sheets_case& c,
                                  const pcs::neighborhood::Proximity_graph& graph)
 {
@@ -210,7 +210,7 @@ std::size_t count_crossing_links(const pcs_bench::Sheets_case& c,
   return result / 2;
 }
 
-/// Two sheets that must not hold each other: how far the lower one follows, relative to its length.
+/// Two sheets without interaction: measures the motion of the lower sheet relative to its length.
 pcs_bench::Table compare_sheets()
 {
   pcs_bench::Table table({"jitter / h",
@@ -244,7 +244,7 @@ pcs_bench::Table compare_sheets()
   return table;
 }
 
-/// Fields alone, on the neighbour graph of T2's bar.
+/// Compares the rotation fields alone, on the neighbour graph of T2's bar.
 pcs_bench::Table compare_fields()
 {
   pcs_bench::Table table({"turns", "reference", "field", "RMS difference deg"});
@@ -275,7 +275,7 @@ int main(int argc, char** argv)
   app.add_flag("--peers",
                options.has_peers,
                "compare with CGAL::Surface_mesh_deformation as well; takes minutes");
-  app.add_option("--csv", csv, "write the first table to this file"); // ./run bench gives it to all
+  app.add_option("--csv", csv, "write the first table to this file"); // passed by ./run bench
   CLI11_PARSE(app, argc, argv);
 
   try {

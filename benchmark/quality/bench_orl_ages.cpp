@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Virtual trees of two ages, scanned independently: how many points find their branch, and their
-// place on it.
+// Virtual trees of two ages, scanned independently: fractions of points assigned to the correct
+// branch and to the correct position on it.
 
 #include <support/material_places.h>
 

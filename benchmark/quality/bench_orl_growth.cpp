@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Growth of the same tree: how many branches are matched to themselves after pruning, turning and
-// shifting.
+// Growth of the same tree: fraction of branches that are matched to themselves after pruning,
+// turning and shifting.
 
 #include <pcs/IO/read_txtskl.h>
 #include <pcs/Orl_shape_space.h>

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Plants seen at three times: the middle predicted from the ends, against linear morphing and
-// against no change.
+// Plants scanned at three times: predicts the middle one from the other two, and compares with
+// linear morphing and with no change.
 
 #include <support/growth_series.h>
 #include <support/material_places.h>
@@ -54,8 +54,8 @@ void tomato(const std::string& data)
            false});
 }
 
-/// Axes of four plants on up to eleven days of March; radii are not known. Each day between its
-/// neighbours.
+/// Axes of four plants on up to eleven days of March, without radii. Each day is predicted from the
+/// days before and after it.
 void axes_of_plants(const std::string& data)
 {
   const std::pair<std::string, std::vector<int>> plants[] = {
@@ -80,7 +80,7 @@ void axes_of_plants(const std::string& data)
   }
 }
 
-/// The files are called young, medium and adult; all orders are tried.
+/// Reads the files young, medium and adult, and tests all orders.
 void european(const std::string& data)
 {
   const std::string names[] = {"young", "medium", "adult"};
@@ -106,7 +106,7 @@ Seen_plant scanned(const Tree& tree, int seed, double turn)
   return result;
 }
 
-/// Growing trees, and three trees of one kind that have nothing to do with each other.
+/// Growing trees, and triples of unrelated trees of one kind.
 void virtual_trees(int first_seed, int number)
 {
   const std::pair<std::string, pcs::Tree_habit> habits[] = {{"broadleaf", pcs::broadleaf_habit()},

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Families of trees: seconds, modes against known parameters, new trees against the inputs, seconds
-// per new tree.
+// Families of trees: seconds, correlation of modes with known parameters, agreement of new trees
+// with the inputs, seconds per new tree.
 
 #include <pcs/IO/read_txtskl.h>
 #include <pcs/IO/write_points.h>
@@ -130,7 +130,7 @@ void run_group(const std::vector<std::string>& files, const std::string& folder)
               number_alike);
 }
 
-/// Each tree is left out of the topology, too, and then matched to the middle of the others.
+/// Leaves each tree out of the topology, then matches it to the mean of the others.
 void run_left_out(const std::vector<std::string>& files)
 {
   std::vector<Tree> trees(files.size());
@@ -165,7 +165,7 @@ void run_left_out(const std::vector<std::string>& files)
     std::printf("%4zu %9.3f\n", k, error[k]);
 }
 
-/// Trees of two parameters, and how well the plane of the first two modes tells these.
+/// Trees of two known parameters: correlation of these with the first two modes.
 void run_parameters(std::size_t n, std::uint64_t seed)
 {
   using namespace orl_test;
@@ -211,7 +211,7 @@ void run_speed(std::size_t number_of_points, std::size_t number_of_trees)
     pcs::Tree_habit habit = pcs::fruit_habit();
     habit.number_of_orders = 3;
     pcs::grow_tree(tree, habit.scaled(0.9 + 0.1 * i), np::random_seed(2));
-    // evenly along the branches, so that all have their share
+    // Uniform along the branches, so that every branch has points.
     std::vector<Point> scan;
     pcs::internal::Random_stream random(3, i);
     std::vector<std::pair<std::size_t, std::size_t>> all;

@@ -41,7 +41,7 @@ struct Variant
   Session_options options;
 };
 
-/// All steps as in the dissertation.
+/// All steps as published [Aiteanu 2022].
 Session_options text()
 {
   Session_options o;
@@ -106,7 +106,7 @@ struct Scene
 {
   Tree truth;
   pcs::Virtual_scan<Kernel> scan;
-  double query_seconds = 0; ///< of tree and 25 nearest neighbours of all points, one thread
+  double query_seconds = 0; ///< tree and 25 nearest neighbours of all points, one thread
 };
 
 Scene make_scene(const std::string& preset, unsigned seed, std::size_t stations, double degrees)

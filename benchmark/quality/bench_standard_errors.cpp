@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Calibration of the standard errors of skeletons: how often the true value of a virtual tree lies
+// Calibration of the standard errors of skeletons: fraction of virtual trees whose true value lies
 // within two standard errors. Each seed gives another tree, scanner and number of leaves.
 
 #include "support/Table.h"
@@ -46,7 +46,7 @@ const std::array<const char*, number_of_values> names = {"height",
                                                          "volume, above 5 cm"};
 using Values = std::array<double, number_of_values>;
 
-/// The values of a tree that is known.
+/// Known values of a virtual tree.
 Values true_values(const Tree& tree, const std::vector<std::size_t>& hits)
 {
   constexpr std::array<double, number_of_classes - 1> bounds = {0.005, 0.01, 0.02, 0.05};
@@ -96,7 +96,7 @@ Values values_of(const pcs::Skeleton_errors& e)
   return v;
 }
 
-/// The scanner and the leaves of a seed.
+/// Scanner and leaves of a seed.
 pcs::Virtual_scanner scanner_of(std::uint64_t seed)
 {
   std::mt19937_64 random(seed);

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Largest jumps of displacement between neighbouring points: compact weights against the
-// dissertation's.
+// Largest jumps of displacement between neighbouring points: compact weights compared with the
+// published ones [Aiteanu 2022].
 
 #include <pcs/Point_set_deformation.h>
 #include <pcs/neighborhood/Proximity_graph.h>
@@ -42,7 +42,7 @@ constexpr Variant variants[] = {
      pcs::Sample_search::breadth_first_hops,
      pcs::Sample_weights::inverse_square}};
 
-/// The model with its head turned.
+/// Turns the head of the model.
 std::vector<Vec3> turn_head(const std::vector<Vec3>& rest,
                             const pcs_bench::Ends& ends,
                             std::size_t samples,
@@ -55,7 +55,7 @@ std::vector<Vec3> turn_head(const std::vector<Vec3>& rest,
       pcs::parameters::number_of_samples(samples)
           .sample_search(variant.search)
           .sample_weights(variant.weights)
-          .do_preserve_volume(false); // all variants alike, and the full solve stays short
+          .do_preserve_volume(false); // equal for all variants; the full solve remains short
   pcs::Point_set_deformation session(points, np);
   session.add_handle(ends.low);
   const auto head = session.add_handle(ends.high);
@@ -73,8 +73,8 @@ std::vector<Vec3> turn_head(const std::vector<Vec3>& rest,
 struct Jumps
 {
   double largest = 0, permille = 0,
-         rms = 0;        ///< between free points; one edge in 1000 exceeds `permille`
-  double at_handles = 0; ///< largest between a free point and one of a handle
+         rms = 0;        ///< over free points; one edge in 1000 exceeds `permille`
+  double at_handles = 0; ///< largest jump between a free point and a point of a handle
 
   Jumps(const std::vector<Vec3>& rest,
         const std::vector<Vec3>& deformed,
@@ -120,7 +120,7 @@ int main(int argc, char** argv)
                  "folder with the scans (default: build/data); those missing are generated")
       ->check(CLI::ExistingDirectory);
   app.add_option("--only", only, "only these models")->check(CLI::IsMember({"bunny", "dragon"}));
-  app.add_option("--csv", csv, "write the table to this file"); // ./run bench gives it to all
+  app.add_option("--csv", csv, "write the table to this file"); // passed by ./run bench
   CLI11_PARSE(app, argc, argv);
 
   pcs_bench::Table table({"model",
@@ -145,7 +145,7 @@ int main(int argc, char** argv)
         low = low.cwiseMin(p);
         high = high.cwiseMax(p);
       }
-      // The same deformation solved at every point: the jumps that belong to the shape.
+      // Jumps of the same deformation solved at every point, which result from the shape alone.
       const std::vector<Vec3> full = turn_head(rest, ends, rest.size(), variants[0]);
       const Jumps of_full(rest, full, graph, ends);
       const std::string label = name + (model.is_generated ? "*" : "");

@@ -41,7 +41,7 @@ void read_tree(const std::string& path, Tree& tree, std::vector<std::size_t>& hi
     std::cerr << "evaluate_skeleton: warning: " << path << ": " << sentence << '\n';
 }
 
-/// The points, without those that a virtual scan labels as ghosts and outliers.
+/// The points of a scan, without those that a virtual scan labels as ghosts and outliers.
 std::vector<Kernel::Point_3> read_wood(const std::string& path)
 {
   const pcs::IO::Point_table table = pcs::IO::read_points(path);

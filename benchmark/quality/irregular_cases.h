@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Bars and tubes sampled the way scans are: random, blue noise, graded, noisy, shuffled; and the
-// robustness cases.
+// Bars and tubes with samplings similar to scans (random, blue noise, graded, noisy, shuffled), and
+// the robustness cases.
 
 #ifndef PCS_BENCHMARK_QUALITY_IRREGULAR_CASES_H
 #define PCS_BENCHMARK_QUALITY_IRREGULAR_CASES_H
@@ -27,7 +27,7 @@ using pcs_test::Deformation_case;
 using pcs_test::Triangle;
 using pcs_test::Vec3;
 
-/// SplitMix64: the same numbers on every platform, unlike the distributions of <random>.
+/// SplitMix64. Gives the same numbers on every platform, unlike the distributions of <random>.
 class Random
 {
 public:
@@ -40,10 +40,10 @@ public:
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return z ^ (z >> 31);
   }
-  /// In [0, 1).
+  /// Uniform in [0, 1).
   double uniform() { return double(bits() >> 11) * 0x1p-53; }
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
-  /// Standard normal (Box and Muller).
+  /// Standard normal distribution (Box and Muller).
   double normal()
   {
     const double r = std::sqrt(-2 * std::log(1 - uniform()));
@@ -88,7 +88,7 @@ inline const char* name_of(Sampling_kind kind)
   return "";
 }
 
-/// Points anywhere on the triangles of a case, evenly by area.
+/// Random points on the triangles of a case, uniform by area.
 class Surface_sampler
 {
 public:
@@ -103,7 +103,7 @@ public:
 
   double area() const { return m_area; }
 
-  /// A point and the unit normal there.
+  /// A point and its unit normal.
   std::pair<Vec3, Vec3> operator()(Random& random) const
   {
     const auto found = std::upper_bound(m_sum.begin(), m_sum.end(), m_area * random.uniform());
@@ -130,7 +130,7 @@ private:
   double m_area = 0;
 };
 
-/// Accepts points that keep a distance from all accepted before.
+/// Accepts points that keep a minimum distance from all points accepted before.
 class Dart_board
 {
 public:
@@ -162,8 +162,8 @@ private:
   std::unordered_map<std::int64_t, std::vector<Vec3>> m_cells;
 };
 
-/// The shape of `grid`, a case of a bar or tube along z, with as many points placed in another way.
-/// No triangles.
+/// Resamples the shape of `grid`, a case of a bar or tube along z, by the same number of points.
+/// The result has no triangles.
 inline Deformation_case resample(const Deformation_case& grid, Sampling_kind kind)
 {
   if (kind == Sampling_kind::grid)
@@ -187,7 +187,7 @@ inline Deformation_case resample(const Deformation_case& grid, Sampling_kind kin
         i = place[i];
     return c;
   }
-  // The clamps are regions of space; their limits are those of the grid's own handles.
+  // The clamps are regions of space, bounded by the handles of the grid.
   double low = 0, high = grid.length;
   for (const auto i : grid.handles[0])
     low = std::max(low, grid.points[i].z());
@@ -196,7 +196,8 @@ inline Deformation_case resample(const Deformation_case& grid, Sampling_kind kin
   const Surface_sampler sampler(grid);
   const std::size_t n = grid.points.size();
   const double spacing = std::sqrt(sampler.area() / double(n));
-  // Disks thrown until no more fit are 0.83 spacings apart; at 0.76 that takes few enough throws.
+  // Random disks that fill the surface are 0.83 spacings apart; a distance of 0.76 spacings needs
+  // only moderately many attempts.
   const bool is_blue = kind == Sampling_kind::blue_noise || kind == Sampling_kind::scan_noise;
   Dart_board board(0.76 * spacing);
   c.points.clear();
@@ -232,8 +233,9 @@ inline Deformation_case rough_bar_bend_120()
   return c;
 }
 
-/// T6: two parallel sheets 1.5 spacings apart, joined along one end. The lower one is held at both
-/// ends, the free end of the upper one is lifted: exactly, the lower sheet does not move.
+/// T6: two parallel sheets 1.5 spacings apart, joined along one end. The lower one is fixed at both
+/// ends, the free end of the upper one is lifted. In the exact solution the lower sheet does not
+/// move.
 struct Sheets_case : Deformation_case
 {
   std::vector<char> is_lower; ///< per point

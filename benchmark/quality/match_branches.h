@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Which branch of the result is which true branch, and whether it hangs where it should.
+// Matches the branches of the result to true branches, and checks their parents.
 
 #ifndef PCS_BENCHMARK_QUALITY_MATCH_BRANCHES_H
 #define PCS_BENCHMARK_QUALITY_MATCH_BRANCHES_H
@@ -19,8 +19,8 @@
 namespace pcs_bench {
 
 /*
-  The samples of each branch from its base on, without those at the base that lie inside the parent;
-  of a branch that lies in its parent altogether nothing remains. Samples must be in the order of
+  Samples of each branch from base to tip, without those at the base that lie inside the parent. A
+  branch that lies completely inside its parent has no samples. Samples must be in the order of
   `sample_axes()`: branch by branch, from base to tip.
 */
 class Free_samples
@@ -56,14 +56,13 @@ private:
   std::vector<std::vector<std::size_t>> m_samples;
 };
 
-/// A tree as the measures need it.
+/// View of a tree with its samples.
 struct Measured_tree
 {
   const std::vector<pcs::Tree_branch>& branches;
   const std::vector<Axis_segment>& segments;
   const std::vector<Axis_sample>& samples;
-  const std::vector<Segment_tree::Hit>&
-      hits; ///< for each sample its nearest point on the other tree
+  const std::vector<Segment_tree::Hit>& hits; ///< nearest point on the other tree, for each sample
 };
 
 inline Order_class& class_of_order(std::vector<Order_class>& classes, int order)
@@ -74,8 +73,8 @@ inline Order_class& class_of_order(std::vector<Order_class>& classes, int order)
   return classes[i];
 }
 
-/// For each branch of the result the true branch that most of its length follows; `npos`: a false
-/// branch.
+/// For each branch of the result, the true branch that most of its length follows, or `npos` for a
+/// false branch.
 inline std::vector<std::size_t> owners(const Measured_tree& truth,
                                        const Measured_tree& result,
                                        const Free_samples& samples,
@@ -83,7 +82,7 @@ inline std::vector<std::size_t> owners(const Measured_tree& truth,
 {
   std::vector<std::size_t> owner(result.branches.size(), pcs::npos);
   for (std::size_t b = 0; b < result.branches.size(); ++b) {
-    std::map<std::size_t, double> lengths; // a map: ties go to the lowest branch
+    std::map<std::size_t, double> lengths; // ordered: ties select the lowest branch
     double length = 0, matched = 0;
     for (const std::size_t i : samples[b]) {
       const Axis_sample& sample = result.samples[i];
@@ -145,7 +144,7 @@ match_branches(const Measured_tree& truth, const Measured_tree& result, double t
     const std::size_t parent = result.branches[b].parent;
     const std::size_t parent_owner = parent == pcs::npos ? pcs::npos : owner[parent];
     const std::size_t true_parent = truth.branches[owner[b]].parent;
-    // a branch may be found in several pieces, each hanging on the one before it
+    // A branch may be found in several pieces, each a child of the previous one.
     const bool is_correct = parent == pcs::npos
                                 ? true_parent == pcs::npos
                                 : parent_owner != pcs::npos &&

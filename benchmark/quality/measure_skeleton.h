@@ -31,8 +31,8 @@ inline std::vector<Segment_tree::Hit> nearest_axes(const std::vector<Axis_sample
   return hits;
 }
 
-/// `limit(true radius)` is the distance at which axes still agree; only samples with
-/// `is_counted(radius)` count.
+/// Agreement of two trees: `limit(true radius)` is the largest distance of agreeing axes. Only
+/// samples with `is_counted(radius)` are counted.
 template <class Limit, class Counted>
 Agreement agreement(double tolerance,
                     const Measured_tree& truth,
@@ -82,7 +82,7 @@ struct Radius_errors
   }
 };
 
-/// The classes of radii, and the errors of the radii over all.
+/// Classes of radii, and the errors of all radii.
 class Size_classes
 {
 public:
@@ -176,11 +176,11 @@ double extent_along_z(const pcs::Tree_skeleton<Kernel>& tree)
 /*!
   \brief measures `result` against `truth`.
 
-  Precision is measured against all true axes, recall over those where the scan has points: what
-  nobody saw need not be found, but may be. Where a branch begins inside its parent, both trees are
-  measured to the parent's axis.
+  Precision is measured against all true axes, recall over those where the scan has points: axes
+  without points are not required, but allowed. Where a branch begins inside its parent, both trees
+  are measured to the parent's axis.
 
-  \param hits number of points on each node of `truth`; empty: all was seen
+  \param hits number of points on each node of `truth`; empty: the scan has points everywhere
   \throws pcs::Invalid_input when a tree has no axis, or `hits` has another size than `truth`
 */
 template <class Kernel>

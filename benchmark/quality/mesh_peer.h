@@ -26,7 +26,7 @@ struct Peer_result
   double seconds = 0;       ///< preprocessing and iterations [s]
 };
 
-/// Iterates from rest until `number_of_iterations` are done or `seconds` are over, but at least
+/// Iterates from rest until `number_of_iterations` are done or `seconds` have passed, at least
 /// once.
 template <CGAL::Deformation_algorithm_tag algorithm>
 Peer_result

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The accuracy of a skeleton as tables, and as JSON.
+// Prints the accuracy of a skeleton as tables and as JSON.
 
 #ifndef PCS_BENCHMARK_QUALITY_PRINT_ACCURACY_H
 #define PCS_BENCHMARK_QUALITY_PRINT_ACCURACY_H
@@ -132,7 +132,7 @@ inline nlohmann::json to_json(const Distances& d)
   return {{"mean", d.mean}, {"median", d.median}, {"rms", d.rms}, {"quantile_95", d.quantile_95}};
 }
 
-/// Values that do not exist become `null`.
+/// Missing values become `null`.
 inline nlohmann::json to_json(const Skeleton_accuracy& a)
 {
   nlohmann::json json;

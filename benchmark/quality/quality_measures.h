@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Measures of a deformed cloud over any edges, and how far its cross-sections have collapsed.
+// Measures of a deformed cloud over arbitrary edges, and of the collapse of its cross-sections.
 
 #ifndef PCS_BENCHMARK_QUALITY_QUALITY_MEASURES_H
 #define PCS_BENCHMARK_QUALITY_QUALITY_MEASURES_H
@@ -30,7 +30,7 @@ using pcs_test::Vec3;
 using Edges = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
-/// Links to the six nearest points, where there is no mesh. Points must be distinct.
+/// Links to the six nearest points, for clouds without a mesh. Points must be distinct.
 inline Edges neighbor_edges(const std::vector<Vec3>& points)
 {
   const auto graph = pcs::neighborhood::nearest_neighbor_graph<CGAL::Sequential_tag>(points, 6);
@@ -53,7 +53,7 @@ inline Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& covariance)
   return u * svd.matrixV().transpose();
 }
 
-/// As `pcs_test::measure()`, over the given edges instead of those of a mesh.
+/// Same as `pcs_test::measure()`, over the given edges instead of those of a mesh.
 inline Deformation_measures
 measure(const Deformation_case& c, const Edges& edges, const std::vector<Vec3>& deformed)
 {
@@ -114,10 +114,10 @@ measure(const Deformation_case& c, const Edges& edges, const std::vector<Vec3>& 
 }
 
 /*!
-  Smallest mean radius of a cross-section over its mean radius at rest, for bars and tubes along z;
-  1 is exact and 0 a collapse. Each of 24 slices between the clamps is turned back by the best
-  rotation of the whole slice, so that only its width counts. Free ends are not slices: for cases
-  with handles at both ends of z.
+  Smallest ratio of the mean radius of a cross-section to its mean radius at rest, for bars and
+  tubes along z. A ratio of 1 is exact and 0 is a collapse. Each of 24 slices between the clamps is
+  rotated back by the best rotation of the slice, so that only its width is measured. Cases need
+  handles at both ends of z, since free ends are not slices.
 */
 inline double smallest_section(const Deformation_case& c, const std::vector<Vec3>& deformed)
 {

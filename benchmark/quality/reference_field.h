@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The rotation field of the library against the harmonic map and against many small turns.
+// Compares the library's rotation field with the harmonic map and with many small turns.
 
 #ifndef PCS_BENCHMARK_QUALITY_REFERENCE_FIELD_H
 #define PCS_BENCHMARK_QUALITY_REFERENCE_FIELD_H
@@ -46,7 +46,7 @@ public:
                                                            m_rows.row_of_node,
                                                            m_rows.node_of_row,
                                                            std::vector<double>()));
-    // From 0 at the first handle to 1 at the second.
+    // Harmonic weights, from 0 at the first handle to 1 at the second.
     m_share.assign(c.points.size(), Vec1::Zero());
     std::vector<Vec1> rhs, work;
     const auto value = [&](std::size_t i) { return Vec1(double(m_constraints.handle_of_node[i])); };
@@ -71,7 +71,8 @@ public:
     return field;
   }
 
-  /// The harmonic map between handles less than 180 degrees apart: intrinsic steps until they end.
+  /// The harmonic map between handles less than 180 degrees apart, by intrinsic steps until
+  /// convergence.
   std::vector<pcs::Quaternion> harmonic_map() const
   {
     const pcs::Quaternion a = lifted(0);
@@ -101,13 +102,13 @@ public:
     return field;
   }
 
-  /// The first handle at rest; the second in small turns, each extended harmonically over the body
-  /// as it is by then.
+  /// Keeps the first handle at rest and turns the second in small steps. Each step is extended
+  /// harmonically over the current body.
   std::vector<pcs::Quaternion> many_small_turns() const
   {
     std::vector<pcs::Quaternion> field(m_share.size(), pcs::Quaternion::Identity());
     for (const Vec3& turn : m_case.transforms[1].turns()) {
-      const int steps = int(std::ceil(turn.norm() * 180 / pcs_test::pi)); // of one degree
+      const int steps = int(std::ceil(turn.norm() * 180 / pcs_test::pi)); // steps of one degree
       for (int step = 0; step < steps; ++step)
         for (std::size_t i = 0; i < field.size(); ++i)
           field[i] = (pcs::rotation_exp(m_share[i][0] / steps * turn) * field[i]).normalized();

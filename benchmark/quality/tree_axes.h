@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The axes of a tree as segments, samples of them, and weighted statistics.
+// Axes of a tree as segments, samples of them, and weighted statistics.
 
 #ifndef PCS_BENCHMARK_QUALITY_TREE_AXES_H
 #define PCS_BENCHMARK_QUALITY_TREE_AXES_H
@@ -30,9 +30,9 @@ Eigen::Vector3d to_vector(const Point& p)
 }
 
 /*
-  One segment for each edge of positive length, branch by branch, from base to tip. An edge from a
-  parent to the first node of a branch belongs to that branch and has its radius throughout. A
-  segment is seen if there is a point at one of its ends, or if `hits` is empty.
+  Returns one segment for each edge of positive length, branch by branch, from base to tip. An edge
+  from a parent to the first node of a branch belongs to that branch and has its radius along the
+  whole edge. A segment is seen if one of its ends has points, or if `hits` is empty.
 */
 template <class Kernel>
 std::vector<Axis_segment> axis_segments(const pcs::Tree_skeleton<Kernel>& tree,
@@ -63,7 +63,7 @@ std::vector<Axis_segment> axis_segments(const pcs::Tree_skeleton<Kernel>& tree,
 struct Axis_sample
 {
   Eigen::Vector3d point;
-  double radius = 0, length = 0, volume = 0; ///< volume: of the frustum
+  double radius = 0, length = 0, volume = 0; ///< volume of the frustum
   std::size_t branch = 0;
   bool is_seen = true;
 };
@@ -119,7 +119,7 @@ public:
     return m_weight > 0 ? std::sqrt(sum / m_weight) : no_value;
   }
 
-  /// The least value with at least the share `q` of the weight at or below it.
+  /// The least value for which at least the fraction `q` of the weight is at or below it.
   double quantile(double q) const
   {
     if (!(m_weight > 0))
@@ -142,8 +142,7 @@ private:
   double m_weight = 0;
 };
 
-/// Diameter of the trunk at a height, the first time its axis gets there; `no_value` if it does
-/// not.
+/// Diameter of the trunk where its axis first reaches a height; `no_value` if it does not.
 template <class Kernel>
 double diameter_at_height(const pcs::Tree_skeleton<Kernel>& tree, double z)
 {

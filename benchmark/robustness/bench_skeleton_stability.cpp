@@ -29,16 +29,16 @@ namespace np = pcs::parameters;
 
 namespace {
 
-/// What a user reads off a skeleton.
+/// Descriptors of a skeleton.
 struct Measures
 {
   double height = 0, diameter = 0, trunk = 0, length = 0, volume = 0, leaves = 0;
-  Kernel::Point_3 root{0, 0, 0}; ///< turned back
+  Kernel::Point_3 root{0, 0, 0}; ///< in the frame of the original scan
   std::size_t number_of_warnings = 0;
   bool has_root = false;
 };
 
-/// A copy of a scan, and the angle about the z-axis that it was rotated by [rad].
+/// A copy of a scan, and its rotation about the z-axis [rad].
 struct Copy
 {
   std::string name;
@@ -78,7 +78,7 @@ Kernel::Point_3 rotated(const Kernel::Point_3& p, double angle)
   return {c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z()};
 }
 
-/// The scan and its copies; displacements in metres.
+/// The scan and its copies; displacements are in metres.
 std::vector<Copy> copies_of(const Points& points)
 {
   std::vector<Copy> result{{"as it is", points}};
@@ -117,8 +117,8 @@ Measures measure(const Copy& copy)
   return m;
 }
 
-/// Largest difference of a copy from the scan as it is, as a fraction of the latter; 95 % of the
-/// points do not count.
+/// Largest difference of a copy from the unmodified scan, as a fraction of the value of the latter.
+/// The copy with 95 % of the points is excluded.
 double spread(const std::vector<Measures>& all, double Measures::*member)
 {
   double largest = 0;

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Axis pieces with radii in a tree of boxes: the nearest axis, and the nearest surface, of a point.
+// Axis pieces with radii in a tree of bounding boxes: finds the nearest axis and the nearest
+// surface of a point.
 
 #ifndef PCS_BENCHMARK_SUPPORT_SEGMENT_TREE_H
 #define PCS_BENCHMARK_SUPPORT_SEGMENT_TREE_H
@@ -18,12 +19,12 @@
 
 namespace pcs_bench {
 
-/// A straight piece of an axis; the radius changes linearly.
+/// Straight piece of an axis with a linearly changing radius.
 struct Axis_segment
 {
   Eigen::Vector3d from, to;
   double radius_from = 0, radius_to = 0;
-  std::size_t branch = 0; ///< of the tree it belongs to
+  std::size_t branch = 0; ///< index in its tree
   bool is_seen = true;    ///< whether the scan has a point here
 
   double length() const { return (to - from).norm(); }
@@ -57,7 +58,7 @@ public:
       build(0, m_order.size());
   }
 
-  /// The nearest point of all axes; the lowest segment of several at the same distance.
+  /// The nearest point of all axes; the lowest segment in case of ties.
   Hit nearest_axis(const Eigen::Vector3d& p) const
   {
     return search(
@@ -66,7 +67,7 @@ public:
         p);
   }
 
-  /// The nearest surface of all tubes around the axes, each measured across its axis.
+  /// The nearest surface of all tubes around the axes, each measured perpendicular to its axis.
   Hit nearest_surface(const Eigen::Vector3d& p) const
   {
     return search(
@@ -87,8 +88,8 @@ private:
   {
     Eigen::AlignedBox3d box;
     double min_radius = std::numeric_limits<double>::infinity(), max_radius = 0;
-    std::size_t begin = 0, end = 0; // of m_order, in a leaf
-    std::size_t right = 0;          // the left child follows its parent; 0 in a leaf
+    std::size_t begin = 0, end = 0; // range in m_order, for a leaf
+    std::size_t right = 0;          // the left child follows its parent; 0 for a leaf
   };
   static constexpr std::size_t leaf_size = 4;
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Rows of text: aligned Markdown on the terminal, CSV in a file.
+// Table of text, printed as aligned Markdown or written to a CSV file.
 
 #ifndef PCS_BENCHMARK_SUPPORT_TABLE_H
 #define PCS_BENCHMARK_SUPPORT_TABLE_H
@@ -18,7 +18,7 @@
 
 namespace pcs_bench {
 
-/// `value` with `digits` significant digits; "-" where there is no value.
+/// `value` with `digits` significant digits; "-" for a missing value.
 inline std::string number(double value, int digits = 3)
 {
   if (!std::isfinite(value))
@@ -71,7 +71,7 @@ public:
   }
 
 private:
-  /// No cell holds quotation marks.
+  /// Cells contain no quotation marks.
   static std::string quoted(const std::string& cell)
   {
     return cell.find(',') == std::string::npos ? cell : '"' + cell + '"';

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A tree taken apart into its branches, changed as by growth, and put together again; branches keep
-// their names.
+// Splits a tree into its branches, modifies them to imitate growth, and assembles them again.
+// Branches keep their names.
 
 #ifndef PCS_BENCHMARK_SUPPORT_GROWN_TREES_H
 #define PCS_BENCHMARK_SUPPORT_GROWN_TREES_H
@@ -27,14 +27,14 @@ using Kernel = CGAL::Simple_cartesian<double>;
 using Tree = pcs::Tree_skeleton<Kernel>;
 using Vec3 = Eigen::Vector3d;
 
-/// A branch, by longest paths.
+/// A branch of the decomposition by longest paths.
 struct Branch
 {
   std::size_t parent = pcs::npos;
-  double attachment = 0;    ///< share of the parent's length
+  double attachment = 0;    ///< parameter in [0, 1] on the parent
   std::vector<Vec3> points; ///< first and last are base and tip
   std::vector<double> radii;
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity(); ///< about the base, on top of the parent's
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity(); ///< about the base, relative to the parent's
   double scale = 1;
   bool is_kept = true;
 };
@@ -75,10 +75,10 @@ inline std::vector<Branch> take_apart(const Tree& graph)
 
 struct Growth
 {
-  double turn;    ///< deviation of the angle of turns about random axes [rad]
-  double noise;   ///< of attachments
-  double stretch; ///< of the logarithm of lengths
-  double pruned;  ///< probability that a branch is cut with all that hangs on it
+  double turn;    ///< standard deviation of the angle of turns about random axes [rad]
+  double noise;   ///< standard deviation of attachments
+  double stretch; ///< standard deviation of the logarithm of lengths
+  double pruned;  ///< probability that a branch and its descendants are cut
 };
 
 inline std::vector<Branch> grow(std::vector<Branch> branches, const Growth& growth, unsigned seed)
@@ -99,7 +99,7 @@ inline std::vector<Branch> grow(std::vector<Branch> branches, const Growth& grow
   return branches;
 }
 
-/// The graph; `names[v]` is the branch of vertex v.
+/// Assembles the graph; `names[v]` is the branch of vertex v.
 inline Tree put_together(const std::vector<Branch>& branches, std::vector<std::size_t>& names)
 {
   struct Placed
@@ -127,7 +127,7 @@ inline Tree put_together(const std::vector<Branch>& branches, std::vector<std::s
                   (1 - f) * line[k - 1].radius + f * line[k].radius,
                   pcs::npos};
   };
-  // places first, then a vertex for each and for each attachment
+  // Positions first, then a vertex for each position and each attachment.
   for (std::size_t b = 0; b < n; ++b) {
     const Branch& branch = branches[b];
     if (!branch.is_kept)

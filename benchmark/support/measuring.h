@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Repeated timing, the yardsticks that times are divided by, and the memory of this process.
+// Repeated timing, the reference computations that times are divided by, and the memory of this
+// process.
 
 #ifndef PCS_BENCHMARK_SUPPORT_MEASURING_H
 #define PCS_BENCHMARK_SUPPORT_MEASURING_H
@@ -32,7 +33,7 @@ private:
   std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
 };
 
-/// Seconds of the same thing done again and again.
+/// Times of repeated runs [s].
 class Timings
 {
 public:
@@ -65,14 +66,14 @@ Timings repeat(int repetitions, const F& f)
   return timings;
 }
 
-/// Keeps the compiler from dropping work whose result nobody reads.
+/// Prevents the compiler from removing computations with unused results.
 inline void keep(double value)
 {
   volatile double sink = value;
   static_cast<void>(sink);
 }
 
-/// What nanoflann asks of a point set.
+/// Point set interface required by nanoflann.
 struct Neighbor_adaptor
 {
   const std::vector<Vec3>& points;
@@ -89,8 +90,8 @@ struct Neighbor_adaptor
   }
 };
 
-/// The `count` nearest points of every point, itself included, by nanoflann as it comes, in input
-/// order: tree and queries.
+/// Queries the `count` nearest points of every point, itself included, in input order with
+/// nanoflann's default options. Includes building the tree.
 inline void query_neighbors(const std::vector<Vec3>& points, std::size_t count)
 {
   using Metric = nanoflann::L2_Simple_Adaptor<double, Neighbor_adaptor>;
@@ -107,9 +108,8 @@ inline void query_neighbors(const std::vector<Vec3>& points, std::size_t count)
   keep(sum);
 }
 
-/// Memory traffic of moving `n` points with normals and nothing else: reads two vectors per point
-/// and writes two, 96 bytes; with links, reads 16 bytes more, which is what the samples of a point
-/// and their weights take.
+/// Memory traffic of moving `n` points with normals: reads two vectors per point and writes two, 96
+/// bytes. With links it reads 16 bytes more, the size of the samples of a point and their weights.
 class Triad
 {
 public:

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The models of the dissertation's Table 2.1, read from a folder or replaced by shapes of the same
-// size.
+// Reads the models of table 2.1 [Aiteanu 2022] from a folder, or replaces them by shapes of the
+// same size.
 
 #ifndef PCS_BENCHMARK_SUPPORT_MODELS_H
 #define PCS_BENCHMARK_SUPPORT_MODELS_H
@@ -50,7 +50,7 @@ inline std::vector<Vec3> make_bumpy_figure(std::size_t n)
   return points;
 }
 
-/// The dissertation's "Plain": a wavy square of `side * side` points with jitter.
+/// Model "plain" [Aiteanu 2022]: a wavy square of `side * side` points with jitter.
 inline std::vector<Vec3> make_plain(std::size_t side)
 {
   constexpr double spacing = 0.001;
@@ -67,7 +67,7 @@ inline std::vector<Vec3> make_plain(std::size_t side)
   return points;
 }
 
-/// Where ./run keeps what it downloads, if it has been there.
+/// Folder of the files downloaded by ./run, empty if it does not exist.
 inline std::string default_data_folder()
 {
   return std::filesystem::is_directory("build/data") ? "build/data" : "";
@@ -78,7 +78,7 @@ inline Model load_model(const std::string& name, const std::string& folder)
 {
   struct Entry
   {
-    const char *name, *file, *other_file; ///< of a download by hand, and by ./run
+    const char *name, *file, *other_file; ///< of a manual download, and of ./run
     std::size_t size;
   };
   constexpr Entry entries[] = {
@@ -111,7 +111,8 @@ inline Model load_model(const std::string& name, const std::string& folder)
   throw std::invalid_argument("there is no model " + name);
 }
 
-/// The lowest and the highest points along y, as shares of all: what stays and what is moved.
+/// The lowest and the highest points along y, as fractions of all points: the fixed and the moved
+/// end.
 struct Ends
 {
   std::vector<std::uint32_t> low, high;

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What the networks that tell wood from leaves are trained on: evidence about points and axes of
-// virtual scans, with the truth.
+// Collects training data of the networks for leaf-wood separation: evidence about points and axes
+// of virtual scans, with the true labels.
 
 #include <pcs/core/errors.h>
 #include <pcs/generators/grow_tree.h>
@@ -39,7 +39,7 @@ using Tag = CGAL::Parallel_if_available_tag;
 
 enum class Label { leaf, wood, other };
 
-/// Rows of numbers in single precision: scan, weight, label, what the network of today says,
+/// Rows of numbers in single precision: scan, weight, label, output of the network in use,
 /// features.
 class Rows
 {
@@ -87,7 +87,7 @@ struct Evidence
   Rows surroundings, paths, axes;
 };
 
-/// Goes through the rounds in which leaves are left out, and writes what is decided by.
+/// Repeats the rounds of leaf removal, and writes the evidence of each decision.
 class Evidence_session
 {
 public:
@@ -146,7 +146,7 @@ private:
     });
   }
 
-  /// Some of the points that are not of thick wood, which is certain.
+  /// Adds a random subset of the points outside thick wood, since thick wood is certain.
   void add_points(std::size_t number_of_points)
   {
     const Leaf_options& rules = m_options.leaves;
@@ -192,7 +192,7 @@ private:
     }
   }
 
-  /// An axis is of wood if a fifth of its points are.
+  /// Labels an axis as wood if a fifth of its points are wood.
   void add_axes()
   {
     const std::vector<Axis_evidence> evidence = evidence_of_axes<Tag>(m_scan,
@@ -227,11 +227,12 @@ private:
   std::vector<Label> m_label; ///< of the points of the scan
 };
 
-/// The five presets in turn, from one to four stations, with few to many leaves, small and large.
+/// Cycles through the five presets, with one to four stations, and few to many leaves of different
+/// sizes.
 Scan_of_tree scan_with_leaves(unsigned seed)
 {
   pcs::internal::Random_stream random(seed, 0, 0);
-  const auto between = [&](double low, double high) { // evenly in the logarithm
+  const auto between = [&](double low, double high) { // uniform in the logarithm
     return low * std::pow(high / low, random.uniform());
   };
   const auto habits = pcs::tree_habits();

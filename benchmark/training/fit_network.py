@@ -4,8 +4,8 @@
 """Fits a Multilayer_perceptron (leaves/Multilayer_perceptron.h) to the rows of a file.
 
 Reads a file of collect_wood_evidence, and prints the network in the format of its header. Needs
-Debian's python3-sklearn. The last quarter of the scans is not used for fitting; the losses are
-measured on it.
+Debian's python3-sklearn. The last quarter of the scans is excluded from the fit and used to measure
+the losses.
 """
 
 import argparse
@@ -41,7 +41,7 @@ def main():
     options = parser.parse_args()
     train, test = read(options.file)
 
-    # rows are drawn by their weight, which MLPClassifier does not know
+    # rows are sampled by weight, since MLPClassifier has no weights
     random = np.random.default_rng(options.seed)
     share = np.minimum(train[:, 1], 10 * train[:, 1].mean())
     drawn = train[random.choice(len(train), len(train), p=share / share.sum())]
@@ -51,7 +51,7 @@ def main():
                             max_iter=60, random_state=options.seed)
     network.fit((features - mean) / deviation, drawn[:, 2])
 
-    weights = network.coefs_[0].T / deviation  # the features as they are
+    weights = network.coefs_[0].T / deviation  # for features without standardization
     offsets = network.intercepts_[0] - weights @ mean
     output = network.coefs_[1][:, 0]
     last = network.intercepts_[1][0]
