@@ -157,8 +157,8 @@ void read_tree(const TreeGraph& graph,
   const std::vector<std::size_t> levels = levels_of_branches(result.tree);
   const std::size_t most = *std::max_element(levels.begin(), levels.end());
   if (most > most_levels_of_branches)
-    throw Invalid_input(caller + ": branches hang on branches " + std::to_string(most) +
-                        " times, at most " + std::to_string(most_levels_of_branches) +
+    throw Invalid_input(caller + ": the tree has " + std::to_string(most) +
+                        " levels of branches; at most " + std::to_string(most_levels_of_branches) +
                         " are supported");
   result.fingerprint = hash_of_nothing;
   for (std::size_t v = 0; v < result.tree.size(); ++v) {
