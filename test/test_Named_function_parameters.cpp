@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Chains of named parameters: ours, CGAL's, mixed, in any order.
+// Chains of named parameters of pcs and CGAL, in any order.
 
 #include <pcs/Named_function_parameters.h>
 

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Sessions: handles come and go, motions are absolute, shapes can be restored and accepted.
+// Sessions: handles are added and removed, motions are absolute, shapes can be restored and
+// accepted.
 
 #include <pcs/Point_set_deformation.h>
 #include <support/deform_cloud.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The traits that users may check themselves.
+// Tests of the public traits.
 
 #include <pcs/concepts.h>
 

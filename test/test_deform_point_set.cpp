@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The function with every kernel and every way to store points.
+// Tests deform_point_set() with every kernel and every kind of point storage.
 
 #include <pcs/deform_point_set.h>
 #include <support/archetypes.h>

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Memory that runs out at any allocation leaves the points untouched, and frames of a drag ask for
-// none.
+// A failed allocation leaves the points unchanged, and frames of a drag do not allocate memory.
 
 #include <pcs/Point_set_deformation.h>
 #include <pcs/deform_point_set.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Frames of a drag that start from the frame before.
+// Frames of a drag that start from the previous frame.
 
 #include <pcs/Point_set_deformation.h>
 #include <support/deform_cloud.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Laws of deform_point_set(): what rigid motions, scales, shifts, permutations and threads do to
+// Laws of deform_point_set(): effect of rigid motions, scales, shifts, permutations and threads on
 // the result.
 
 #include <support/deform_cloud.h>

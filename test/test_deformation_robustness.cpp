@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Hostile clouds, handles and parameters: a defined result or an error that names the culprit,
+// Degenerate clouds, handles and parameters: a defined result or an error that names the cause,
 // never a NaN.
 
 #include <support/deform_cloud.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What handles do that are scaled: bodies between them get thicker, and longer where there is room.
+// Scaled handles: bodies between them become thicker, and longer where the handles leave room.
 
 #include <pcs/core/Similarity.h>
 #include <support/deform_cloud.h>

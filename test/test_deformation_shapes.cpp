@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Known deformations of bars, tubes, plates and sheets, judged against their closed forms.
+// Compares deformations of bars, tubes, plates and sheets with closed forms.
 
 #include <support/deform_cloud.h>
 #include <support/deformation_cases.h>

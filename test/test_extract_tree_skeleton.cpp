@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// extract_tree_skeleton() on virtual scans: accuracy and laws.
+// Accuracy and laws of extract_tree_skeleton() on virtual scans.
 
 #include <pcs/Tree_skeletonization.h>
 #include <pcs/extract_tree_skeleton.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// make_branch_surface(): closed, outward, of the volume of the wood.
+// Branch surfaces are closed, oriented outward, and have the volume of the wood.
 
 #include <pcs/core/Tree_measures.h>
 #include <pcs/generators/grow_tree.h>

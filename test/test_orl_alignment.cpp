@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Trees that stand turned about the vertical, and frames that noise of single edges does not turn.
+// Trees that are rotated about the vertical, and frames that are robust to noise of single edges.
 
 #include <pcs/IO/read_correspondences.h>
 #include <pcs/IO/write_correspondences.h>

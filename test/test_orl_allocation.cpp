@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A tree of the space and its points are written again and again without any allocation.
+// Repeated evaluation of a tree of the space and its points does not allocate memory.
 
 #include <pcs/Orl_shape_space.h>
 #include <support/allocations.h>

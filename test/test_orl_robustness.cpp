@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Trees and scans of odd shapes: long, wide, flat, without radii, in one place.
+// Trees and scans of degenerate shapes: long, wide, flat, without radii, coincident.
 
 #include <pcs/orl_geodesic.h>
 #include <pcs/shape_space/model/Rooted_tree.h>

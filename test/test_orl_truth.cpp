@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Correspondences against the truth of virtual trees, and predictions against plants that were
-// seen.
+// Compares correspondences with the truth of virtual trees, and predictions with scanned plants.
 
 #include <support/growth_series.h>
 #include <support/material_places.h>

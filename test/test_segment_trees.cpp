@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// segment_trees(): stands of virtual trees whose crowns touch, with and without ground, and clouds
-// without a stem.
+// Tests segment_trees() on stands of virtual trees with touching crowns, with and without ground,
+// and on clouds without a stem.
 
 #include <pcs/core/errors.h>
 #include <pcs/extract_tree_skeleton.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// extract_tree_skeleton() on odd clouds: each has a defined result.
+// extract_tree_skeleton() has a defined result for every degenerate cloud.
 
 #include <pcs/extract_tree_skeleton.h>
 #include <pcs/generators/tree_fixtures.h>

@@ -1,8 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Skeletons and surfaces of random degenerate clouds: a valid tree, or a clear answer; never a
-// crash, a NaN, an endless loop. PCS_FUZZ_FIRST and PCS_FUZZ_COUNT choose other seeds, and more of
-// them.
+// Skeletons and surfaces of random degenerate clouds: a valid tree or a clear result, never a
+// crash, a NaN or an endless loop. PCS_FUZZ_FIRST and PCS_FUZZ_COUNT select the seeds.
 
 #include <pcs/extract_tree_skeleton.h>
 #include <pcs/make_branch_surface.h>

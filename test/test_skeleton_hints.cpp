@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Hints to extract_tree_skeleton(): scanner positions, a given skeleton; and stopping it anywhere.
+// Hints to extract_tree_skeleton(), namely scanner positions and a given skeleton, and cancellation
+// at every stage.
 
 #include <pcs/extract_tree_skeleton.h>
 #include <pcs/generators/scan_tree.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Spread of the figures of a skeleton among resampled copies of its scan.
+// Spread of the descriptors of a skeleton among resampled copies of its scan.
 
 #include <pcs/extract_tree_skeleton.h>
 #include <support/exceptions.h>

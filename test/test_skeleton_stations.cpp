@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Errors of the registration of stations are taken out of the skeleton.
+// Registration errors of stations are corrected in the skeleton.
 
 #include <pcs/Tree_skeletonization.h>
 #include <pcs/core/Tree_measures.h>

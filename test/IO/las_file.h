@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A LAS file made byte by byte from the specification, without any code of the reader.
+// Builds a LAS file byte by byte from the specification, independent of the reader.
 
 #ifndef PCS_TEST_IO_LAS_FILE_H
 #define PCS_TEST_IO_LAS_FILE_H

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Files for one test case, in a folder that disappears with it, and checks of what is wrong with
-// them.
+// Files for one test case, in a folder that is removed at its end, and checks of error messages.
 
 #ifndef PCS_TEST_IO_TEMPORARY_FILES_H
 #define PCS_TEST_IO_TEMPORARY_FILES_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Tests of reading tables of cylinders, of pcs and of other programs.
+// Tests of reading cylinder tables, written by pcs and by other programs.
 
 #include "temporary_files.h"
 #include <pcs/IO/read_cylinders.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Tests of reading whole files and chunks, whatever their format.
+// Tests of reading whole files and chunks, in all formats.
 
 #include "las_file.h"
 #include "temporary_files.h"

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Tests of writing tables of branches and of the sizes of a tree.
+// Tests of writing tables of branches and of the measures of a tree.
 
 #include "temporary_files.h"
 #include <pcs/IO/write_tree_tables.h>

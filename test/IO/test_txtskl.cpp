@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Tests of reading skeletons that are listed layer by layer.
+// Tests of reading skeletons that are listed level by level.
 
 #include "temporary_files.h"
 #include <pcs/IO/read_txtskl.h>

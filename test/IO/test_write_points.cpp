@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Tests of writing PLY, text and OFF, and of what is left behind when writing fails.
+// Tests of writing PLY, text and OFF, and of the files that remain after a failure.
 
 #include "temporary_files.h"
 #include <pcs/IO/Point_reader.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Tests of the measures of skeletons, against values computed by hand.
+// Compares the measures of skeletons with values computed by hand.
 
 #include "quality/measure_skeleton.h"
 #include <pcs/IO/read_tree_csv.h>

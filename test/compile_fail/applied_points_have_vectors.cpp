@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Only the points of the object itself carry vectors.
+// Only the points of the deformed object have vectors; other points must not have any.
 
 #include <pcs/deform_point_set.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Branches emerge in one of the listed orders.
+// The option `branch_emergence` is a value of an enumeration.
 
 #include <pcs/Orl_shape_space.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A surface is made of a Tree_skeleton.
+// The tree of a branch surface must be a Tree_skeleton.
 
 #include <pcs/make_branch_surface.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Changes count from a limit on.
+// The limits of changes must be of type Change_limits.
 
 #include <pcs/compare_trees.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Whether branches are joined must be a bool.
+// The option to join branches must be a bool.
 
 #include <pcs/make_branch_surface.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Whether stations are registered must be a bool.
+// The option to register stations must be a bool.
 
 #include <pcs/extract_tree_skeleton.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Whether ground is removed must be a bool.
+// The option to remove ground must be a bool.
 
 #include <pcs/extract_tree_skeleton.h>
 

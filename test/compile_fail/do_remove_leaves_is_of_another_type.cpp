@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Whether leaves are removed must be a bool or a Leaf_removal.
+// The option to remove leaves must be a bool or a Leaf_removal.
 
 #include <pcs/extract_tree_skeleton.h>
 

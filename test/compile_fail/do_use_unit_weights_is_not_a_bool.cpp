@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Unit weights are used or not.
+// The option `do_use_unit_weights` must be a bool.
 
 #include <pcs/Orl_shape_space.h>
 

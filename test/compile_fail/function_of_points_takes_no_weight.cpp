@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Attributes are interpolated with a weight.
+// The function that interpolates attributes must accept a weight.
 
 #include <pcs/Orl_shape_space.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Attributes of many scans are interpolated with weights.
+// The function that interpolates attributes of several scans must accept weights.
 
 #include <pcs/Orl_shape_space.h>
 

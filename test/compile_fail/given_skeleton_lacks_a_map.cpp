@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A given skeleton of another type needs a map to its positions.
+// A given skeleton of another graph type needs a position map.
 
 #include <pcs/extract_tree_skeleton.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A handle is a range of the numbers of its points.
+// A handle is a range of point indices.
 
 #include <pcs/Point_set_deformation.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Growth is monotone or not.
+// The option `is_monotone` must be a bool.
 
 #include <pcs/fit_growth_path.h>
 

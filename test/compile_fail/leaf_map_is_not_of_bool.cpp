@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The map that tells leaves must store bool.
+// The map of leaf points must store bool.
 
 #include <pcs/extract_tree_skeleton.h>
 

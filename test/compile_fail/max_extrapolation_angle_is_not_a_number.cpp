@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Edges rotate by an angle at most.
+// The largest angle of extrapolated edges must be a number.
 
 #include <pcs/Orl_shape_space.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Distances are measured by one of the listed metrics.
+// The option `metric` is a value of an enumeration.
 
 #include <pcs/Orl_shape_space.h>
 

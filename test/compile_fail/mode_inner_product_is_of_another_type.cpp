@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Modes have one of the listed inner products.
+// The option `mode_inner_product` is a value of an enumeration.
 
 #include <pcs/find_modes.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A scan is resampled a whole number of times.
+// The number of resamples must be an integer.
 
 #include <pcs/extract_tree_skeleton.h>
 

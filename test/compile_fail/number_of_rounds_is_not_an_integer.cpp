@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Trees are matched a whole number of times.
+// The number of matching rounds must be an integer.
 
 #include <pcs/Orl_shape_space.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The point map must accept an element of the points as key.
+// The point map must accept elements of the point range as keys.
 
 #include <pcs/deform_point_set.h>
 

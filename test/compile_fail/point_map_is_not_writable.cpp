@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The point map must be writable; that of constant points is not.
+// The point map must be writable; the map of constant points is not.
 
 #include <pcs/deform_point_set.h>
 

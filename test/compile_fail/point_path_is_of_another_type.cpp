@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Points follow one of the listed paths.
+// The option `point_path` is a value of an enumeration.
 
 #include <pcs/Orl_shape_space.h>
 

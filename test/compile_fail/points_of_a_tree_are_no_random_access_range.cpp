@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Points are written in parallel.
+// Points are written in parallel, so their range must be random access.
 
 #include <pcs/Orl_shape_space.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Points come from a tree that was added.
+// The option `points_of` must be the handle of an added tree.
 
 #include <pcs/Orl_shape_space.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A region of interest is a range of the numbers of its points.
+// A region of interest is a range of point indices.
 
 #include <pcs/deform_point_set.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The named parameter `sample_weights` is one of an enumeration.
+// The named parameter `sample_weights` is a value of an enumeration.
 
 #include <pcs/deform_point_set.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Random trees have options.
+// The options of random trees must be Tree_sampling_options.
 
 #include <pcs/sample_tree.h>
 

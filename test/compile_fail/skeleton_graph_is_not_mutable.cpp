@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A skeleton is written to a graph that takes vertices and edges.
+// The graph of a skeleton must allow adding vertices and edges.
 
 #include <pcs/extract_tree_skeleton.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A graph of another type needs maps for positions and radii.
+// A skeleton of another graph type needs maps for positions and radii.
 
 #include <pcs/extract_tree_skeleton.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Progress is reported to a function.
+// The progress callback must be a function.
 
 #include <pcs/Orl_shape_space.h>
 

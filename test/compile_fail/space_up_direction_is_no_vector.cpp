@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The vertical has three coordinates.
+// The vertical direction must be a vector.
 
 #include <pcs/Orl_shape_space.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The option `transport_options` of a shape space has a type of its own.
+// The option `transport_options` of a shape space has its own type.
 
 #include <pcs/Orl_shape_space.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A graph of another type needs maps.
+// A tree of another graph type needs maps.
 
 #include <pcs/orl_geodesic.h>
 

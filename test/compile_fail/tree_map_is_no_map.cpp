@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The trees of points are written to a property map, not to a container.
+// The tree indices of points are written to a property map, not to a container.
 
 #include <pcs/segment_trees.h>
 

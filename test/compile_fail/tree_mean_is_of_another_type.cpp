@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// There are two kinds of means.
+// The option `tree_mean` is a value of an enumeration.
 
 #include <pcs/mean_tree.h>
 

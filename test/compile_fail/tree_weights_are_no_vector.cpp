@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Each tree has a weight.
+// The tree weights must be a vector of numbers.
 
 #include <pcs/mean_tree.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The vertical must be a vector.
+// The vertical direction must be a vector.
 
 #include <pcs/extract_tree_skeleton.h>
 

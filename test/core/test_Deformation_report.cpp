@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Reports and errors can be printed and understood.
+// Tests of printing reports and errors.
 
 #include <pcs/core/Deformation_report.h>
 #include <pcs/core/errors.h>

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Similarities remember their turns, compose like matrices, and refuse what is none.
+// Similarities keep their turns, compose like matrices, and reject matrices that are no
+// similarities.
 
 #include <pcs/core/Similarity.h>
 #include <support/exceptions.h>

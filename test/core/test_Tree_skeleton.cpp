@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Tests of the type of tree skeletons.
+// Tests of the skeleton type.
 
 #include <pcs/core/Tree_skeleton.h>
 #include <support/trees.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Checks of values of named parameters, and how these are read.
+// Tests of checking and reading the values of named parameters.
 
 #include <pcs/core/parameters/check_value.h>
 #include <pcs/core/parameters/read_parameter.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Memory that was freed is used again without asking the system for its pages.
+// Freed memory is reused without new page requests to the system.
 
 #include <pcs/core/keep_memory.h>
 

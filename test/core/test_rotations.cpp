@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Rotation vectors, quaternions, and the best rotation of a bundle.
+// Tests of rotation vectors, quaternions, and the best-fit rotation of a set of vectors.
 
 #include <pcs/core/rotations.h>
 #include <support/point_clouds.h>

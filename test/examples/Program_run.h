@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Runs the program deform_point_set on files of one test case, in a folder that disappears with it.
+// Runs the program deform_point_set on the files of one test case, in a folder that is removed at
+// its end.
 
 #ifndef PCS_TEST_EXAMPLES_PROGRAM_RUN_H
 #define PCS_TEST_EXAMPLES_PROGRAM_RUN_H

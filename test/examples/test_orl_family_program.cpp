@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The program orl_geodesic for families: means, modes, new trees, growth, changes, saved spaces,
-// and bad input.
+// Tests the program orl_geodesic for families: means, modes, new trees, growth, changes, saved
+// spaces, and invalid input.
 
 #include <pcs/IO/read_swc.h>
 #include <pcs/IO/write_swc.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The program deform_point_set on valid input: motions, selections, files, reports.
+// Tests the program deform_point_set with valid input: motions, selections, files, reports.
 
 #include <boost/test/unit_test.hpp>
 

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The program deform_point_set on invalid input: exit code 1, a message that helps, no file
-// touched.
+// Tests the program deform_point_set with invalid input: exit code 1, a helpful message, no file is
+// changed.
 
 #include <boost/test/unit_test.hpp>
 

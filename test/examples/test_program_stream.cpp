@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The program deform_point_set from file to file: the same as in memory, or close to it.
+// Tests the program deform_point_set from file to file: results equal or close to those in memory.
 
 #include <boost/test/unit_test.hpp>
 

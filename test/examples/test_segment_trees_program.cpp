@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The program segment_trees: files of trees, labels and report agree, and bad input is refused.
+// Tests the program segment_trees: consistent tree files, labels and report, and rejection of
+// invalid input.
 
 #include <pcs/IO/points/Point_table.h>
 #include <pcs/IO/read_points.h>

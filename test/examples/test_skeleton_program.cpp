@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The program extract_tree_skeleton: its files agree with each other, bad input is refused, a batch
-// goes on.
+// Tests the program extract_tree_skeleton: consistent output files, rejection of invalid input,
+// continuation of a batch.
 
 #include <pcs/IO/read_swc.h>
 

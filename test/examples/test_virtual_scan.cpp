@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The program virtual_scan: its files agree with each other, and bad input is refused.
+// Tests the program virtual_scan: consistent output files, and rejection of invalid input.
 
 #include <pcs/IO/read_swc.h>
 #include <pcs/IO/read_tree_csv.h>

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Any bytes are a good point file or an IO_error; a good one survives being written and read again.
+// Arbitrary bytes are a valid point file or an IO_error. A valid file is unchanged by writing and
+// reading.
 
 #include <pcs/IO/Point_reader.h>
 #include <pcs/IO/read_points.h>

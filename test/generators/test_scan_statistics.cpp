@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Tests of the virtual scanner against the statistics that it promises.
+// Tests of the statistics of the virtual scanner against its documentation.
 
 #include <pcs/generators/grow_tree.h>
 #include <pcs/generators/scan_tree.h>

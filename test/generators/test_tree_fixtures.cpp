@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Tests of the simple trees, and of scans of them against their equations.
+// Tests of the simple trees, and of scans of them against closed-form equations.
 
 #include <pcs/generators/scan_tree.h>
 #include <pcs/generators/tree_fixtures.h>

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Writes one number from all tasks of a loop, or from both of two tasks: the thread sanitizer must
-// say so.
+// Writes one number from all tasks of a loop, or from two tasks. The thread sanitizer must report
+// it.
 
 #include <pcs/internal/parallel.h>
 

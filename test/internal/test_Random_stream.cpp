@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Tests of the seeded random numbers.
+// Tests of seeded random numbers.
 
 #include <pcs/internal/Random_stream.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Seconds of a stage are added at its end, unless they are discarded.
+// A stage adds its seconds at its end, unless they are discarded.
 
 #include <pcs/internal/Stage_timer.h>
 

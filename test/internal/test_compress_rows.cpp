@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Compressed rows contain every entry once, by row, in the order of the entries.
+// Compressed rows contain every entry once, sorted by row, in the order of the entries.
 
 #include <pcs/internal/Random_stream.h>
 #include <pcs/internal/compress_rows.h>

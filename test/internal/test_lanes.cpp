@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Short vectors as plain arrays, for compilers without vectors of their own, and the kernels on
-// them.
+// Short vectors as plain arrays, for compilers without vector types, and the kernels that use them.
 
 #define PCS_NO_VECTOR_EXTENSIONS
 #define PCS_NO_RUNTIME_DISPATCH

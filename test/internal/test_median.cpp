@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Medians by selection are those of the sorted values.
+// Medians by selection are equal to those of sorted values.
 
 #include <pcs/internal/Random_stream.h>
 #include <pcs/internal/median.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Loops, sums and sorting give the same bits for every number of threads.
+// Loops, sums and sorting give bit-identical results for every number of threads.
 
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/thread_tasks.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Progress only grows, and a request to stop is remembered.
+// Progress never decreases, and a request to stop is kept.
 
 #include <pcs/internal/progress.h>
 

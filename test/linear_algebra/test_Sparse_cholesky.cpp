@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The sparse factor against dense algebra.
+// Compares the sparse factor with dense algebra.
 
 #include <pcs/linear_algebra/Sparse_cholesky.h>
 #include <support/point_clouds.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The assembled Laplacian against the dense sum.
+// Compares the assembled Laplacian with a dense sum.
 
 #include <pcs/linear_algebra/graph_laplacian.h>
 #include <support/point_clouds.h>

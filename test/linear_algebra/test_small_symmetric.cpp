@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Small symmetric matrices: the residual of their eigenvectors, singular systems, matrices that are
-// not finite.
+// Tests small symmetric matrices: residuals of eigenvectors, singular systems, non-finite matrices.
 
 #include <pcs/linear_algebra/small_symmetric.h>
 #include <support/point_clouds.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The k nearest points against brute force.
+// Compares the k nearest points with a brute-force search.
 
 #include <pcs/neighborhood/Nearest_neighbors.h>
 #include <support/point_clouds.h>

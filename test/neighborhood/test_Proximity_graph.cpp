@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The neighbour graph against brute force, and its components.
+// Compares the neighbour graph with a brute-force search, and tests its components.
 
 #include <pcs/neighborhood/Proximity_graph.h>
 #include <support/point_clouds.h>

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Outliers hang on one point; the points of a body, sparse or dense, are none.
+// Outliers are connected to the rest by one point; points of sparse or dense bodies are not
+// outliers.
 
 #include <pcs/neighborhood/detach_outliers.h>
 #include <support/point_clouds.h>

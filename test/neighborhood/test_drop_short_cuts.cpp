@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Links between sheets go, links of volumes, lines and clumps of outliers stay.
+// Links between sheets are removed; links of volumes, lines and groups of outliers remain.
 
 #include <pcs/neighborhood/drop_short_cuts.h>
 #include <support/point_clouds.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The octree order: a permutation that depends on the positions only, whatever the positions are.
+// The octree order is a permutation that depends on the positions only, for all positions.
 
 #include <pcs/neighborhood/spatial_order.h>
 #include <support/point_clouds.h>

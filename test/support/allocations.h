@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A test executable with support/allocations.cpp counts its allocations, and one of them may fail.
+// Counts the allocations of a test executable with support/allocations.cpp, and lets one of them
+// fail.
 
 #ifndef PCS_TEST_SUPPORT_ALLOCATIONS_H
 #define PCS_TEST_SUPPORT_ALLOCATIONS_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Models with nothing to spare: what compiles with them compiles with every model.
+// Minimal models of the concepts: code that compiles with them compiles with every model.
 
 #ifndef PCS_TEST_SUPPORT_ARCHETYPES_H
 #define PCS_TEST_SUPPORT_ARCHETYPES_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// One function for every edit that a test wants.
+// Runs one edit of a test.
 
 #include <support/deform_cloud.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// One function for every edit that a test wants: compiled once, options as plain data.
+// Runs one edit of a test. It is compiled once, with options as plain data.
 
 #ifndef PCS_TEST_SUPPORT_DEFORM_CLOUD_H
 #define PCS_TEST_SUPPORT_DEFORM_CLOUD_H

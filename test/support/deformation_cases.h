@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Bars, tubes, plates and sheets with known deformations, and the measures that judge a result.
+// Bars, tubes, plates and sheets with known deformations, and the measures of a result.
 
 #ifndef PCS_TEST_SUPPORT_DEFORMATION_CASES_H
 #define PCS_TEST_SUPPORT_DEFORMATION_CASES_H

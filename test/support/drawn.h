@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Random vectors that are the same with all compilers.
+// Random vectors that are equal for all compilers.
 
 #ifndef PCS_TEST_SUPPORT_DRAWN_H
 #define PCS_TEST_SUPPORT_DRAWN_H

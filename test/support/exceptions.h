@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Checks that an error says what it is about.
+// Checks the message of an error.
 
 #ifndef PCS_TEST_SUPPORT_EXCEPTIONS_H
 #define PCS_TEST_SUPPORT_EXCEPTIONS_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A tree with nothing to spare: what compiles with it compiles with every model of the concepts of
+// A minimal tree graph: code that compiles with it compiles with every model of the concepts of
 // Boost.Graph.
 
 #ifndef PCS_TEST_SUPPORT_GRAPH_ARCHETYPES_H

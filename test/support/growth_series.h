@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A plant seen at three times: how well the middle is predicted from the ends, by the space of
-// trees and by simpler means.
+// Plants scanned at three times: error of predicting the middle one from the others, in the space
+// of trees and by simpler methods.
 
 #ifndef PCS_TEST_SUPPORT_GROWTH_SERIES_H
 #define PCS_TEST_SUPPORT_GROWTH_SERIES_H

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Points of two scans of a virtual tree at two ages: whether partners lie on the same branch, and
-// on the same wood.
+// Points of two scans of a virtual tree at two ages: compares the branches and the wood of
+// corresponding points.
 
 #ifndef PCS_TEST_SUPPORT_MATERIAL_PLACES_H
 #define PCS_TEST_SUPPORT_MATERIAL_PLACES_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Clouds in spatial order with their neighbour graph: what the stages of a deformation start from.
+// Clouds in spatial order with their neighbour graph, as input for the stages of a deformation.
 
 #ifndef PCS_TEST_SUPPORT_NETWORKS_H
 #define PCS_TEST_SUPPORT_NETWORKS_H

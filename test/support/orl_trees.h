@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Random trees of wiggly branches with known names, their growth, and points on their tubes.
+// Random trees of curved branches with known names, their growth, and points on their tubes.
 
 #ifndef PCS_TEST_SUPPORT_ORL_TREES_H
 #define PCS_TEST_SUPPORT_ORL_TREES_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Small clouds with a seed, and brute-force answers about them.
+// Small clouds with a seed, and brute-force reference results for them.
 
 #ifndef PCS_TEST_SUPPORT_POINT_CLOUDS_H
 #define PCS_TEST_SUPPORT_POINT_CLOUDS_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Random small clouds of unpleasant shapes with random handles and parameters.
+// Random small degenerate clouds with random handles and parameters.
 
 #ifndef PCS_TEST_SUPPORT_RANDOM_EDITS_H
 #define PCS_TEST_SUPPORT_RANDOM_EDITS_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Trees as the shape space takes them in, for tests of its stages.
+// Input trees of the shape space, for tests of its stages.
 
 #ifndef PCS_TEST_SUPPORT_ROOTED_TREES_H
 #define PCS_TEST_SUPPORT_ROOTED_TREES_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Runs a piece of work on a given number of threads, so that results can be compared.
+// Runs a function on a given number of threads, to compare the results.
 
 #ifndef PCS_TEST_SUPPORT_THREADS_H
 #define PCS_TEST_SUPPORT_THREADS_H

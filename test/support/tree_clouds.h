@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Clouds for tests of tree skeletons, and what every skeleton must be.
+// Clouds for tests of tree skeletons, and the invariants of every skeleton.
 
 #ifndef PCS_TEST_SUPPORT_TREE_CLOUDS_H
 #define PCS_TEST_SUPPORT_TREE_CLOUDS_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Small tree skeletons, written as rows, for tests.
+// Small tree skeletons for tests, given as rows.
 
 #ifndef PCS_TEST_SUPPORT_TREES_H
 #define PCS_TEST_SUPPORT_TREES_H

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Virtual trees of one kind that differ by two known parameters, and each a little by itself.
+// Virtual trees of one kind with two known parameters and small individual variations.
 
 #ifndef PCS_TEST_SUPPORT_TREES_OF_PARAMETERS_H
 #define PCS_TEST_SUPPORT_TREES_OF_PARAMETERS_H

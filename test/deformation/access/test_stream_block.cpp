@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Writing past the caches: the values that `write()` gives where memory allows it, nothing
-// elsewhere.
+// Streaming stores write the values of `write()` where the memory permits, and nothing elsewhere.
 
 #include <pcs/Named_function_parameters.h>
 #include <pcs/deformation/access/Point_access.h>

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Which samples move a point: against brute force, and how smoothly the weights change.
+// Compares the samples of each point with a brute-force search, and tests the smoothness of the
+// weights.
 
 #include <pcs/deformation/body/Sample_links.h>
 #include <pcs/deformation/body/octree_samples.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Regions against Dijkstra's algorithm, and the graph of the samples.
+// Compares sample regions with Dijkstra's algorithm, and tests the graph of the samples.
 
 #include <pcs/deformation/body/Sample_regions.h>
 #include <pcs/deformation/body/octree_samples.h>

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A cell in the plane: lengths of its sides, open sides, and neighbours that only touch it.
+// Tests a Voronoi cell in the plane: lengths of its sides, open sides, and neighbours without a
+// common side.
 
 #include <pcs/deformation/body/Voronoi_cell.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Orders that keep neighbours together, and orders that do not.
+// Tests whether point orders keep neighbours together.
 
 #include <pcs/deformation/body/coherent_order.h>
 #include <pcs/neighborhood/spatial_order.h>

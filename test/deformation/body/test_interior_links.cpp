@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Springs through the inside: where there is an inside, and nowhere else.
+// Interior springs exist exactly where a body has an inside.
 
 #include <pcs/deformation/body/interior_links.h>
 #include <support/networks.h>

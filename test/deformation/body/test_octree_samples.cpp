@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Samples: as many as asked for, distinct, spread evenly, more where there are more points.
+// Samples have the requested number, are distinct, and follow the density of the points.
 
 #include <pcs/deformation/body/octree_samples.h>
 #include <support/networks.h>

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Weights from Voronoi cells: linear functions are harmonic, components stay, both halves of an
-// edge agree.
+// Voronoi weights: linear functions are harmonic, components are preserved, edges are symmetric.
 
 #include <pcs/deformation/body/voronoi_graph.h>
 #include <support/networks.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Nodes on the borders of handles: prescribed, symmetric, and where the border really is.
+// Nodes on the borders of handles are prescribed, symmetric, and at the true border.
 
 #include <pcs/deformation/body/octree_samples.h>
 #include <pcs/deformation/handles/add_boundary_nodes.h>

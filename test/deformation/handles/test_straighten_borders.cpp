@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The border of a handle: nothing on grids; on irregular points along the outermost of them.
+// Borders of handles are unchanged on grids, and follow the outermost points on irregular
+// samplings.
 
 #include <pcs/deformation/body/voronoi_graph.h>
 #include <pcs/deformation/handles/straighten_borders.h>

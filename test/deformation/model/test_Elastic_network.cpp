@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Weights of the surface edges.
+// Tests of the weights of surface edges.
 
 #include <pcs/deformation/model/Elastic_network.h>
 #include <support/networks.h>

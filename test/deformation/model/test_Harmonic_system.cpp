@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Harmonic functions against closed forms and dense algebra.
+// Compares harmonic functions with closed forms and dense algebra.
 
 #include <pcs/deformation/model/Harmonic_system.h>
 #include <support/networks.h>

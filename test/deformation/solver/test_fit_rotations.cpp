@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Energies and covariances of edges, and the rotations that fit them: the kernels against the
-// formulas, one by one.
+// Compares the kernels for edge energies, edge covariances and best-fit rotations with the
+// formulas.
 
 #include <pcs/core/rotations.h>
 #include <pcs/deformation/solver/fit_rotations.h>

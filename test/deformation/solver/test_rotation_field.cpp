@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The rotation field: the dissertation's own system, evenness along a path, turns beyond 180
-// degrees.
+// Tests the rotation field: the published system [Aiteanu 2022], uniform steps along a path, turns
+// beyond 180 degrees.
 
 #include <pcs/deformation/solver/rotation_field.h>
 #include <support/networks.h>

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Blending the samples' maps: the plain formula in double precision, rigid motions, both kernels.
+// Compares the blending of sample maps with the plain formula in double precision, for rigid
+// motions and both kernels.
 
 #include <pcs/core/Similarity.h>
 #include <pcs/core/rotations.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Borders of handles against a search through all edges, and the bands around them against
+// Compares the borders of handles with a search over all edges, and the bands around them with
 // Bellman's equations.
 
 #include <pcs/deformation/handles/Border_finder.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The smallest program of a user of pcs: lifts one end of a sheet.
+// Minimal program with pcs: lifts one end of a sheet.
 
 #include <pcs/deform_point_set.h>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The topology of many trees holds each branch of each tree once, in whatever order they come.
+// The topology of many trees contains each branch of each tree once, in every order of the trees.
 
 #include <pcs/internal/progress.h>
 #include <pcs/shape_space/family/Shared_topology_builder.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Axes that were shortened find back to where their points end; whole ones stay.
+// Shortened axes are extended to the end of their points; complete axes remain unchanged.
 
 #include <pcs/shape_space/input/extend_axes.h>
 #include <support/orl_trees.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The matching of least energy: equal trees cost nothing, what has no partner costs its length.
+// The matching of minimal energy: equal trees have no cost, an unmatched branch costs its length.
 
 #include <pcs/internal/progress.h>
 #include <pcs/shape_space/matching/Branch_matching.h>

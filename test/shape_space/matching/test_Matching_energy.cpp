@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What a pair of branches costs: nothing if they are alike, and by formulas where they are
-// straight.
+// The cost of a pair of branches is zero for equal branches, and has closed forms for straight
+// ones.
 
 #include <pcs/shape_space/matching/Matching_energy.h>
 #include <support/rooted_trees.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The common topology of two trees holds each of their branches once, with counterparts of all
+// The common topology of two trees contains each of their branches once, with counterparts of all
 // nodes.
 
 #include <pcs/internal/progress.h>

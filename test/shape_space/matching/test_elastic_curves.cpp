@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Elastic matching of curves whose correspondence is known.
+// Elastic matching of curves with known correspondence.
 
 #include <pcs/shape_space/matching/elastic_curves.h>
 #include <support/drawn.h>

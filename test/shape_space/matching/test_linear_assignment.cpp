@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Assignment against all permutations.
+// Compares the assignment with all permutations.
 
 #include <pcs/shape_space/matching/linear_assignment.h>
 

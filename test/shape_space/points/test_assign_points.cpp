@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Points on forks of two tubes, whose branch is known.
+// Assigns points on forks of two tubes with known branches.
 
 #include <pcs/shape_space/points/assign_points.h>
 

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// How trees vary together: known covariances are found, one block has one vote, and what a tree
-// lacks is what the others let expect.
+// Covariance of trees: known covariances are found, blocks have equal weights, and missing
+// coordinates are predicted from the other trees.
 
 #include <pcs/shape_space/statistics/Tree_covariance.h>
 

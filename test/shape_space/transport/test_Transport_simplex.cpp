@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Transport against an independent solver, and recovery of a known correspondence.
+// Compares transport with an independent solver, and tests the recovery of a known correspondence.
 
 #include <pcs/shape_space/points/point_correspondences.h>
 #include <support/drawn.h>

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Ovals of axes: found from half of the sections, carried along bends, small where nothing tells
-// them.
+// Oval cross-sections of axes: found from half of the sections, transported along bends, small
+// where data are missing.
 
 #include <pcs/extract_tree_skeleton.h>
 #include <pcs/skeleton/axes/Axis_oval.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Where axes begin and end: wood does not grow thicker towards its tip, nor thin at once.
+// Ends of axes: wood does not thicken towards the tip or thin abruptly.
 
 #include <pcs/skeleton/axes/chain_ends.h>
 #include <support/axes.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Chains beside an axis that is there: what is left over along a trunk is not a second trunk.
+// Chains beside a fitted axis: unexplained points along a trunk are not a second trunk.
 
 #include <pcs/skeleton/axes/fit_axes.h>
 #include <pcs/skeleton/scan/prepare_scan.h>

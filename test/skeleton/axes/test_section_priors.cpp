@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Radii by counting points: right where all of them can be seen, raised where something hides an
-// axis, and never too sure.
+// Radii from point counts: correct under full visibility, increased for occluded axes, never
+// overconfident.
 
 #include <pcs/skeleton/axes/section_priors.h>
 #include <support/axes.h>

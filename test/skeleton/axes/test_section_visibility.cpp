@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Radii by the width of points that lie on one side of a thin branch.
+// Radii from the width of points on one side of a thin branch.
 
 #include <pcs/skeleton/axes/section_visibility.h>
 #include <support/axes.h>

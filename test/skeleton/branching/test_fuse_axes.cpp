@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Pieces of one branch become one axis; stubs go.
+// Pieces of one branch are joined to one axis; stubs are removed.
 
 #include <pcs/skeleton/branching/fuse_axes.h>
 #include <pcs/skeleton/branching/prune_stubs.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Which axis sits on which, which branch goes on at a fork, and what a second look makes of it.
+// Parents of axes, the continuation at a fork, and corrections in a second pass.
 
 #include <pcs/skeleton/branching/group_branches.h>
 #include <pcs/skeleton/branching/join_axes.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Walls and roofs go, with what hangs on them; the ground and what is round stay.
+// Walls and roofs are removed with attached objects; the ground and round objects remain.
 
 #include <pcs/skeleton/clutter/mark_walls.h>
 #include <pcs/skeleton/graph/Neighbor_graph.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// A thick limb whose inner part has few points: it is continued to its trunk, or counted.
+// A thick limb with few points near its base is continued to the trunk, or counted as open.
 
 #include <pcs/core/Skeleton_report.h>
 #include <pcs/skeleton/continuation/follow_thick_ends.h>

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The places of a scan, the links between them, and the shortest paths over these, against plain
-// ways to find them.
+// Compares merged points, links and shortest paths of a scan with brute-force results.
 
 #include <pcs/skeleton/graph/Neighbor_graph.h>
 #include <pcs/skeleton/graph/shortest_paths.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The foot of a tree, and the layers of points above it.
+// Tests the foot of a tree, and the geodesic level sets above it.
 
 #include <pcs/skeleton/graph/Neighbor_graph.h>
 #include <pcs/skeleton/layers/cut_layers.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Arcs of one section become one node, and what are sections of their own do not.
+// Arcs of one cross-section are merged to one node; separate sections are not merged.
 
 #include <pcs/skeleton/layers/merge_ring_arcs.h>
 #include <pcs/skeleton/model/Layer_tree.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Thin wood is a line, thick wood is hollow, and leaves are neither.
+// Thin wood is linear, thick wood is a hollow section, and leaves are neither.
 
 #include <pcs/skeleton/axes/reassign_points.h>
 #include <pcs/skeleton/graph/Neighbor_graph.h>

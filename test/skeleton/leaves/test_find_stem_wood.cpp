@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Wood of the stem by the points that it supports.
+// Stem wood is identified from the number of points that it supports.
 
 #include <pcs/skeleton/leaves/find_stem_wood.h>
 

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Densities and sides by place and direction; which axes of two points are believed.
+// Densities and visible sides by position and direction, and the acceptance of axes with two
+// points.
 
 #include <pcs/internal/Random_stream.h>
 #include <pcs/internal/median.h>

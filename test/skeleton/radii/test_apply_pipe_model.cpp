@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// What branches have together is bounded by the section that carries them; other stems are counted.
+// The total area of branches is bounded by their supporting section; other stems are counted.
 
 #include <pcs/skeleton/radii/apply_pipe_model.h>
 #include <pcs/skeleton/result/count_other_stems.h>

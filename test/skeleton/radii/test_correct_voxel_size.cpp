@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Points at the centers of voxels are noticed, and branches get the radius that they had without.
+// Voxel-center points are detected, and the radii of branches are corrected for them.
 
 #include <pcs/core/Skeleton_report.h>
 #include <pcs/extract_tree_skeleton.h>

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Radii along a skeleton that is given: its places stay, points and what was found tell the rest.
+// Radii along a given skeleton: its positions remain, radii are estimated from points and found
+// axes.
 
 #include <pcs/skeleton/model/Branch_tree.h>
 #include <pcs/skeleton/model/Given_skeleton.h>

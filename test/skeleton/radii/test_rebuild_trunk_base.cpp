@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Trunks that are no cylinders: buttresses at the foot, whorls of limbs. Nearly equal clouds give
-// nearly equal trunks.
+// Trunks that are not cylindrical: buttresses at the foot, whorls of limbs. Nearly equal clouds
+// result in nearly equal trunks.
 
 #include <pcs/extract_tree_skeleton.h>
 #include <pcs/skeleton/branching/root_axis.h>

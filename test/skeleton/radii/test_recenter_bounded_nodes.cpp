@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Axes whose radii were bounded go back to their points.
+// Axes with bounded radii are recentered on their points.
 
 #include <pcs/skeleton/radii/recenter_bounded_nodes.h>
 #include <support/axes.h>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Stations that were moved are brought back, and nothing moves without a reason.
+// Displaced stations are registered, and stations at their true positions do not move.
 
 #include <pcs/skeleton/model/Axis_set.h>
 #include <pcs/skeleton/model/Scan.h>

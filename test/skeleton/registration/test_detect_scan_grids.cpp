@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Stations are found by the grids of their beams, and only where there are such.
+// Stations are located from their angular beam grids, and only if grids exist.
 
 #include <pcs/generators/grow_tree.h>
 #include <pcs/generators/scan_tree.h>

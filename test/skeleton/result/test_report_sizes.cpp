@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The diameter at breast height: that of a taper at the place, with the bark around it smoothed.
+// Diameter at breast height: that of the tapered trunk at this height, with smoothed bark.
 
 #include <pcs/skeleton/result/report_sizes.h>
 #include <support/axes.h>

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Rounding of coordinates: the step is found for decimals and for 32-bit floats, and exact
-// coordinates have none.
+// The coordinate step is detected for decimals and for 32-bit floats; exact coordinates have none.
 
 #include <pcs/skeleton/scan/measure_coordinate_step.h>
 

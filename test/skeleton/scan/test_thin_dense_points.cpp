@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Merging of the points of dense scans: the number of points no longer grows with the density, the
-// radius remains, and every input point keeps its position and label.
+// Merging of points of dense scans: the number of points does not grow with the density, the radius
+// is preserved, and every input point keeps its position and label.
 
 #include <pcs/skeleton/scan/prepare_scan.h>
 #include <pcs/skeleton/scan/thin_dense_points.h>

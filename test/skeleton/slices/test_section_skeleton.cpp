@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The pieces of a skeletonization: banded systems, circles and ellipses, curvatures, axes and their
+// Components of a slice skeleton: banded systems, circles and ellipses, curvatures, axes and their
 // fit.
 
 #include <pcs/Tree_skeletonization.h>
