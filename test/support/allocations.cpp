@@ -8,8 +8,8 @@
 #include <new>
 
 #if defined(__GNUC__) && !defined(__clang__)
-// GCC 12 takes an inlined operator delete for a call of free() on memory of the operator new that
-// it replaces.
+// GCC 12 treats an inlined operator delete as a call of free() on memory of the replaced operator
+// new.
 #pragma GCC diagnostic ignored "-Wmismatched-new-delete"
 #endif
 
@@ -24,7 +24,7 @@ void* allocate(std::size_t size, std::size_t alignment)
     has_failed = true;
     throw std::bad_alloc();
   }
-  const std::size_t rounded = (size + alignment) / alignment * alignment; // and never nothing
+  const std::size_t rounded = (size + alignment) / alignment * alignment; // at least one byte
   void* result = std::aligned_alloc(alignment, rounded);
   if (!result)
     throw std::bad_alloc();

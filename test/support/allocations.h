@@ -10,7 +10,7 @@
 
 namespace pcs_test {
 
-// Threads may share them.
+// shared between threads
 inline std::atomic<long> number_of_allocations{0};
 inline std::atomic<long> allocations_left{-1}; ///< before one fails; negative: none fails
 inline std::atomic<bool> has_failed{false};

@@ -13,7 +13,7 @@
 
 namespace pcs_test {
 
-/// Three coordinates and no more: no default constructor, no comparison, no assignment of a
+/// Point with three coordinates only: no default constructor, no comparison, no assignment of a
 /// coordinate.
 template <class FT_>
 class Triple_archetype
@@ -29,7 +29,7 @@ private:
   FT m_x, m_y, m_z;
 };
 
-/// A key that can be copied, and only that.
+/// A key that can only be copied.
 class Key_archetype
 {
 public:
@@ -40,8 +40,8 @@ private:
   std::size_t m_index;
 };
 
-/// Reads by value, writes through `put`; not default constructible, not assignable, no
-/// `operator[]`.
+/// Property map that reads by value and writes through `put`. It is not default constructible, not
+/// assignable, and has no `operator[]`.
 template <class Value>
 class Map_archetype
 {
@@ -68,7 +68,7 @@ private:
   std::vector<Value>& m_values;
 };
 
-/// A range that makes its keys on the fly: its iterators return them by value.
+/// A range of generated keys: its iterators return them by value.
 class Range_archetype
 {
 public:

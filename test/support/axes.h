@@ -14,7 +14,7 @@
 
 namespace pcs_test {
 
-/// A straight axis of equal steps, with radii that change evenly.
+/// A straight axis of equal steps, with linearly changing radii.
 inline pcs::skeleton::Axis straight_axis(const pcs::skeleton::Vec3& from,
                                          const pcs::skeleton::Vec3& to,
                                          std::size_t steps,
@@ -32,7 +32,7 @@ inline pcs::skeleton::Axis straight_axis(const pcs::skeleton::Vec3& from,
   return axis;
 }
 
-/// Adds a measured branch on the node `seat`, or the trunk; returns its number.
+/// Adds a measured branch on the node `seat`, or the trunk; returns its index.
 inline pcs::skeleton::Index add_branch(pcs::skeleton::Branch_tree& tree,
                                        pcs::skeleton::Index seat,
                                        const pcs::skeleton::Axis& axis)

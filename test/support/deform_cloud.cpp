@@ -79,7 +79,7 @@ deform(const Points& points, const Handles& handles, const Options& options, con
                                    np.region_of_interest(std::cref(*options.region_of_interest)))
                         : dispatch(elements, handles, options, np);
   } catch (...) {
-    // The promise that nothing was changed is checked here, once for all tests of errors.
+    // Checks that the points are unchanged, for all tests of errors.
     collect();
     if (result.points.size() != points.size())
       throw std::logic_error("deform_point_set() threw and changed the size");

@@ -49,10 +49,10 @@ Deformed deform(const Points& points,
                 const Options& options = {},
                 const Points& normals = {});
 
-/// The normals that `deform()` makes up.
+/// The arbitrary normals of `deform()`.
 Points arbitrary_normals(std::size_t n);
 
-/// The points were not touched: same bits.
+/// The points are bit-identical.
 inline bool is_untouched(const Deformed& result, const Points& points)
 {
   return result.points == points && result.normals == arbitrary_normals(points.size());
@@ -68,7 +68,7 @@ inline bool is_finite(const Deformed& result)
   return is_finite(result.points) && is_finite(result.normals);
 }
 
-/// Two handles: what `is_fixed` accepts stays, what `is_moved` accepts is moved.
+/// Two handles: points accepted by `is_fixed` are fixed, those accepted by `is_moved` are moved.
 template <class Fixed, class Moved>
 Handles two_handles(const Points& points,
                     const Fixed& is_fixed,
@@ -78,13 +78,13 @@ Handles two_handles(const Points& points,
   return {{select(points, is_fixed), pcs::Similarity(), 0}, {select(points, is_moved), motion, 0}};
 }
 
-/// A bar along z with 45 degrees of twist and some bending and lifting: a general edit.
+/// A general edit: a bar along z with 45 degrees of twist, some bending and lifting.
 struct Bar_edit
 {
   Points points;
   Handles handles;
 
-  /// `size` and `offset` are applied to the bar, to the handles, and to their motion.
+  /// `size` and `offset` are applied to the bar, the handles, and their motion.
   explicit Bar_edit(int width = 6,
                     int length = 24,
                     double size = 1,

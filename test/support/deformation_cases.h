@@ -30,8 +30,8 @@ using Vec3 = Eigen::Vector3d;
 using Triangle = std::array<std::uint32_t, 3>;
 constexpr double pi = 3.14159265358979323846;
 
-/// A shape with two or more handles; `exact` and `exact_rotation` give the closed-form deformation
-/// where there is one.
+/// A shape with two or more handles. `exact` and `exact_rotation` are the closed-form deformation,
+/// if one exists.
 struct Deformation_case
 {
   std::string name;
@@ -214,7 +214,7 @@ inline Deformation_case bar_720()
   return c;
 }
 
-/// Figures of the design's tables, over mesh edges with a free end.
+/// Measures of a deformation over the edges of a mesh, with a free end.
 struct Deformation_measures
 {
   double rms_edge = 0, largest_edge = 0; ///< |l'/l - 1| [-]

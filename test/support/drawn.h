@@ -7,8 +7,8 @@
 
 namespace pcs_test {
 
-/// Three draws, the third coordinate first. As arguments of one call they come in an order that
-/// compilers choose.
+/// Draws three values, the third coordinate first. The order of arguments of one call depends on
+/// the compiler.
 template <class Vector, class Draw>
 Vector drawn(const Draw& draw)
 {

@@ -15,8 +15,7 @@
 
 namespace pcs_test {
 
-/// A model of `VertexListGraph` and `IncidenceGraph`, and of no other concept; descriptors are no
-/// integers.
+/// A model of `VertexListGraph` and `IncidenceGraph` only; descriptors are not integers.
 class Tree_archetype
 {
 public:
@@ -85,7 +84,7 @@ private:
   std::vector<std::vector<Edge>> m_out;
 };
 
-/// Reads a value of a vertex, and no more.
+/// Reads a value of a vertex only.
 template <class Value>
 class Vertex_map_archetype
 {

@@ -26,14 +26,14 @@
 
 namespace orl_test {
 
-/// A skeleton and points about it.
+/// A skeleton and points of its plant.
 struct Seen_plant
 {
   Tree tree;
   std::vector<Point> scan;
 };
 
-/// Lines `v x y z` and `e i j`. The root is the lowest node of one edge; radii are not known.
+/// Reads lines `v x y z` and `e i j`. The root is the lowest node with one edge; radii are unknown.
 inline Tree read_plant_graph(const std::string& path)
 {
   std::ifstream file(path);
@@ -77,8 +77,8 @@ inline Tree read_plant_graph(const std::string& path)
   return tree;
 }
 
-/// A scan with its graph, thinned evenly in the order of the file. Graphs of some days end before
-/// the tips of leaves: all are drawn out.
+/// Reads a scan with its graph, thinned uniformly in file order. Graphs of some days end before the
+/// tips of leaves, so all axes are extended.
 inline Seen_plant
 read_plant(const std::string& scan, const std::string& graph, std::size_t most_points)
 {
@@ -118,7 +118,7 @@ inline Seen_plant read_axes(const std::string& path, std::size_t number_of_point
   return result;
 }
 
-/// A skeleton that stands on the origin, with points on its tubes.
+/// A skeleton shifted to the origin, with points on its tubes.
 inline Seen_plant read_model(const std::string& path, std::size_t number_of_points, unsigned seed)
 {
   Tree tree;
@@ -126,7 +126,7 @@ inline Seen_plant read_model(const std::string& path, std::size_t number_of_poin
   const Vec3 root = to_eigen(tree[tree[boost::graph_bundle].root].point);
   Seen_plant result;
   result.tree = moved(tree, Eigen::Matrix3d::Identity(), -root);
-  Tree wood = result.tree; // edges that only lead to a branch are not part of it
+  Tree wood = result.tree; // without the edges that connect a branch to its parent
   remove_edge_if(
       [&](const auto& e) { return wood[source(e, wood)].branch != wood[target(e, wood)].branch; },
       wood);
@@ -142,7 +142,7 @@ inline std::vector<Vec3> to_eigen(const std::vector<Point>& points)
   return result;
 }
 
-/// Mean of the mean distances to the nearest point, both ways.
+/// Mean of the mean distances to the nearest point, in both directions.
 inline double chamfer(const std::vector<Vec3>& a, const std::vector<Vec3>& b)
 {
   double result = 0;
@@ -159,7 +159,7 @@ inline double chamfer(const std::vector<Vec3>& a, const std::vector<Vec3>& b)
   return result;
 }
 
-/// Every point of each scan on the way to the nearest point of the other.
+/// Moves every point of each scan linearly towards the nearest point of the other.
 inline std::vector<Vec3>
 morph_linearly(const std::vector<Vec3>& a, const std::vector<Vec3>& b, double lambda)
 {
@@ -200,8 +200,8 @@ inline std::vector<Vec3> thinned(const std::vector<Vec3>& points, std::size_t mo
   return result;
 }
 
-/// The first point in each cell of a grid: neither dense places nor points that stand twice count
-/// more than others.
+/// Keeps the first point in each cell of a grid, so that dense regions and duplicate points have no
+/// larger weight.
 inline std::vector<Vec3> evened(const std::vector<Vec3>& points, double cell)
 {
   std::set<std::array<long, 3>> taken;
@@ -215,8 +215,8 @@ inline std::vector<Vec3> evened(const std::vector<Vec3>& points, double cell)
   return result;
 }
 
-/// Nearest points both ways lay `points` on `target`, again and again from a pose that is near; if
-/// `up` is not null, by turns about it only.
+/// Aligns `points` with `target` by iterating nearest points in both directions, from an initial
+/// pose. Rotates only about `up` if it is not null.
 inline Pose improve_pose(Pose pose,
                          const std::vector<Vec3>& points,
                          const std::vector<Vec3>& target,
@@ -259,9 +259,9 @@ inline Pose improve_pose(Pose pose,
   return pose;
 }
 
-/// The pose that lays `points` on `target`: from all turns about `up`, and unless plants are known
-/// to stand upright from tilts of 30 degrees as well, with both centers in one place. The best of
-/// the improved ones; where the search begins does not depend on how `points` lie.
+/// Finds the pose that aligns `points` with `target`. Initial poses have coincident centers and all
+/// turns about `up`, and tilts of 30 degrees unless plants are known to be upright. The best
+/// refined pose is returned; the initial poses do not depend on the pose of `points`.
 inline Pose align(const std::vector<Vec3>& points,
                   const std::vector<Vec3>& target,
                   const Vec3& up,
@@ -316,22 +316,22 @@ struct Series
   bool is_upright = false;
 };
 
-/// Chamfer distances to what was seen in the middle. [L]
+/// Chamfer distances to the scan of the middle time. [L]
 struct Prediction
 {
   double geodesic;
-  double in_order; ///< the same with branches that are born in order
+  double in_order; ///< the same, with branches that emerge in order
   double linear, first, last;
-  double attainable;     ///< of two halves of what was seen
-  double unexplained;    ///< share of the smaller end that is not found in the other [-]
-  bool is_grown_at_tips; ///< as the matching found
-  double turn;           ///< likewise [rad]
+  double attainable;     ///< of two halves of the middle scan
+  double unexplained;    ///< fraction of the smaller end that is not matched [-]
+  bool is_grown_at_tips; ///< from the matching
+  double turn;           ///< from the matching [rad]
 };
 
-/// Pots are put down anew every day: the ends are aligned before, by their points for linear
-/// morphing and by the space itself for the geodesic, and each prediction before it is measured.
-/// Scans are dense in some places and the points of a prediction stand twice in some: all clouds
-/// are evened first. All alike.
+/// Predicts the middle scan. Pots are repositioned every day, so the ends are aligned first, by
+/// their points for linear morphing and by the space for the geodesic. Each prediction is aligned
+/// before it is measured. Densities differ and predictions contain duplicates, so all clouds are
+/// resampled uniformly first.
 inline Prediction predict(const Series& series)
 {
   const std::vector<Vec3> one = to_eigen(series.first.scan), seen = to_eigen(series.middle.scan),

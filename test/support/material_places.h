@@ -16,7 +16,7 @@
 
 namespace orl_test {
 
-/// Points on wood, with the nodes that they were measured at.
+/// Points on wood, with the nodes at which they were measured.
 struct Labelled_scan
 {
   std::vector<Point> points;
@@ -38,7 +38,7 @@ inline Labelled_scan scan_wood(const Tree& tree, int seed, double coarser)
   return result;
 }
 
-/// Places along the axes of branches.
+/// Positions along the axes of branches.
 class Branch_places
 {
 public:
@@ -91,20 +91,20 @@ private:
   std::vector<std::size_t> m_next, m_previous;
 };
 
-/// Shares of the points of the young tree. Its wood stays where it is, so the truth is the distance
-/// from the base of the branch; a branch that stretches evenly would keep the share of its length
-/// instead.
+/// Fractions of the points of the young tree. Its wood keeps its position, so the true position is
+/// the distance from the base of the branch. For uniform stretching, the fraction of the length
+/// would be preserved instead.
 struct Material_accuracy
 {
   std::size_t number_of_points = 0;
   double right_branch = 0; ///< [-]
   double same_wood =
-      0; ///< on the right branch, and at most one radius of it along from the same wood [-]
+      0; ///< on the correct branch, and at most one radius along it from the same wood [-]
   double attainable =
-      0; ///< the old tree has a point there at all: twigs are thinner than points are apart [-]
-  double same_share = 0; ///< likewise, from the same share of its length [-]
+      0; ///< the old tree has a point there; the point spacing may exceed twig radii [-]
+  double same_share = 0; ///< same, at equal fractions of the length [-]
   double mean_radii =
-      0; ///< mean distance along from the same wood on the right branch, in radii [-]
+      0; ///< mean distance along the correct branch from the same wood, in radii [-]
   double seconds = 0;
 };
 
@@ -124,7 +124,7 @@ measure_ages(const Tree& old_tree, double age, int seed, double coarser, const N
   const Branch_places places_1(young_tree), places_2(old_tree);
   const auto& branches_1 = young_tree[boost::graph_bundle].branches;
   const auto& branches_2 = old_tree[boost::graph_bundle].branches;
-  // each point has one partner or more, the first one counts
+  // Each point has one or more partners; the first one is used.
   std::vector<std::size_t> partner(one.points.size(), pcs::npos);
   for (const auto& pair : space.correspondences().pairs)
     if (pair.point[0] != pcs::Orl_correspondences::no_point &&
@@ -132,7 +132,7 @@ measure_ages(const Tree& old_tree, double age, int seed, double coarser, const N
       partner[pair.point[0]] = pair.point[1];
   result.number_of_points = partner.size();
   std::map<std::size_t, std::vector<double>>
-      seen; // places of the points of the old tree, by branch
+      seen; // positions of the points of the old tree, by branch
   for (std::size_t j = 0; j < two.points.size(); ++j)
     seen[branches_2[old_tree[two.node[j]].branch].id].push_back(
         places_2.arc(two.node[j], two.points[j]));
@@ -148,7 +148,7 @@ measure_ages(const Tree& old_tree, double age, int seed, double coarser, const N
       const auto it = std::lower_bound(arcs.begin(), arcs.end(), arc_1 - r);
       result.attainable += it != arcs.end() && *it <= arc_1 + r ? 1 : 0;
     } else
-      result.attainable += 1; // a tip on its way: its radius in the old tree is not known
+      result.attainable += 1; // a growing tip, whose radius in the old tree is unknown
     if (partner[i] == pcs::npos)
       continue;
     const std::size_t b = two.node[partner[i]];
@@ -156,7 +156,8 @@ measure_ages(const Tree& old_tree, double age, int seed, double coarser, const N
       continue;
     result.right_branch += 1;
     const double arc_2 = places_2.arc(b, two.points[partner[i]]);
-    // the old radius where the wood is: the node of the old tree, or where the partner lies
+    // Old radius at the position of the wood: of the node of the old tree, or of the partner's
+    // node.
     const double radius = old_tree[old_nodes[a] != pcs::npos ? old_nodes[a] : b].radius;
     const double share = places_1.length(a) > 0 ? arc_1 / places_1.length(a) : 0;
     result.same_wood += std::abs(arc_1 - arc_2) <= radius ? 1 : 0;

@@ -18,13 +18,13 @@
 
 namespace pcs_test {
 
-/// The cloud in spatial order.
+/// Sorts a cloud spatially.
 inline Points in_spatial_order(const Points& points)
 {
   return permuted(points, pcs::neighborhood::spatial_order<CGAL::Sequential_tag>(points));
 }
 
-/// A cloud, ordered, with its weighted neighbour graph.
+/// A cloud in spatial order with its weighted neighbour graph.
 inline pcs::deformation::Elastic_network network_of(const Points& points, std::size_t k = 6)
 {
   pcs::deformation::Elastic_network network;

@@ -36,7 +36,7 @@ inline Point to_cgal(const Vec3& p)
   return Point(p.x(), p.y(), p.z());
 }
 
-/// A branch about its own base; `at` is the node of the parent that carries it.
+/// A branch relative to its base; `at` is its node of the parent.
 struct Branch
 {
   std::size_t parent = pcs::npos, at = 0;
@@ -44,7 +44,8 @@ struct Branch
   std::vector<double> radii;
 };
 
-/// Branch 0 is the trunk. Lengths fall from order to order, so that trunks stay trunks.
+/// Branch 0 is the trunk. Lengths decrease from order to order, so that the trunk remains the
+/// trunk.
 inline std::vector<Branch> random_branches(unsigned seed, int children = 6, int orders = 3)
 {
   std::mt19937 random(seed);
@@ -94,7 +95,7 @@ inline std::vector<Branch> random_branches(unsigned seed, int children = 6, int 
   return result;
 }
 
-/// Turns of each branch about its base, in the axes of the parent's turned ones.
+/// Rotates each branch about its base, in the rotated axes of its parent.
 using Turns = std::vector<Eigen::Matrix3d>;
 
 /// Assembles the graph; `tip[b]` is the vertex at the tip of branch b, `npos` if it was cut.
@@ -147,8 +148,8 @@ inline Tree random_tree(unsigned seed, int children = 6, int orders = 3)
   return make_tree(random_branches(seed, children, orders));
 }
 
-/// `place(u, v, s, off)` at random shares `s` of edges, at `off` from their axes, evenly over the
-/// tubes of all edges that have a length.
+/// Samples points uniformly over the tubes of all edges with a positive length. Calls `place(u, v,
+/// s, off)` for random parameters `s` along edges, at `off` from their axes.
 template <class Place>
 std::vector<Point> sample_tubes(const Tree& tree, std::size_t n, unsigned seed, const Place& place)
 {
@@ -183,7 +184,7 @@ std::vector<Point> sample_tubes(const Tree& tree, std::size_t n, unsigned seed, 
   return result;
 }
 
-/// Every tube is as long as its edge.
+/// Samples tubes that are as long as their edges.
 inline std::vector<Point> tube_points(const Tree& tree, std::size_t n, unsigned seed)
 {
   return sample_tubes(tree, n, seed, [&](std::size_t u, std::size_t v, double s, const Vec3& off) {
@@ -192,8 +193,8 @@ inline std::vector<Point> tube_points(const Tree& tree, std::size_t n, unsigned 
   });
 }
 
-/// Where one edge goes on as another, both tubes end at the plane that halves the angle between
-/// them: the surface is whole on the outer side of bends, and overlaps on the inner side.
+/// Samples tubes that end at the bisecting plane of consecutive edges. The surface is closed on the
+/// outer side of bends, and overlaps on the inner side.
 inline std::vector<Point> whole_tube_points(const Tree& tree, std::size_t n, unsigned seed)
 {
   std::vector<std::vector<Vec3>> into(num_vertices(tree)), out_of(num_vertices(tree));
@@ -205,7 +206,7 @@ inline std::vector<Point> whole_tube_points(const Tree& tree, std::size_t n, uns
       out_of[u].push_back(into[v].back());
     }
   }
-  // how far the tube reaches beyond an end of its edge, at `off` from the axis
+  // Extension of the tube beyond an end of its edge, at `off` from the axis.
   const auto reach = [&](std::size_t v, const Vec3& direction, const Vec3& off) {
     if (into[v].size() != 1 || out_of[v].size() != 1)
       return 0.0;
@@ -222,7 +223,7 @@ inline std::vector<Point> whole_tube_points(const Tree& tree, std::size_t n, uns
   });
 }
 
-/// The tree turned and moved.
+/// The rotated and shifted tree.
 inline Tree moved(const Tree& tree, const Eigen::Matrix3d& r, const Vec3& shift, double scale = 1)
 {
   Tree result = tree;

@@ -20,7 +20,7 @@ namespace pcs_test {
 using Vec3 = Eigen::Vector3d;
 using Points = std::vector<Vec3>;
 
-/// Uniform in [-1, 1]; the same on every platform, unlike std::uniform_real_distribution.
+/// Uniform in [-1, 1]; equal on every platform, unlike std::uniform_real_distribution.
 inline double uniform(std::mt19937& random)
 {
   return 2 * (static_cast<double>(random()) / 4294967296) - 1;
@@ -142,7 +142,7 @@ inline double largest_distance(const Points& a, const Points& b)
   double largest = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     const double d = (a[i] - b[i]).norm();
-    largest = d <= largest ? largest : d; // a NaN stays
+    largest = d <= largest ? largest : d; // keeps a NaN
   }
   return largest;
 }

@@ -25,7 +25,7 @@ struct Random_edit
 
 inline Points random_shape(std::mt19937& random)
 {
-  const std::size_t most = random() % 4 == 0 ? 600 : 40; // of its own, as operands have no order
+  const std::size_t most = random() % 4 == 0 ? 600 : 40; // operands are unordered
   const std::size_t n = 1 + random() % most;
   Points points = random_points(n, static_cast<unsigned>(random()));
   switch (random() % 9) {
@@ -45,7 +45,7 @@ inline Points random_shape(std::mt19937& random)
     for (Vec3& p : points)
       p += 1e3 * std::floor(2.99 * std::abs(p.x())) * Vec3(1, 1, 0);
     break;
-  case 4: // a geometric sequence, as far as squares of lengths are numbers
+  case 4: // a geometric sequence, limited by the range of squared lengths
     for (std::size_t i = 0; i < n; ++i)
       points[i] *= std::ldexp(1.0, -static_cast<int>(i % 400));
     break;
@@ -134,7 +134,7 @@ inline Random_edit random_edit(unsigned seed)
   return edit;
 }
 
-/// What is wrong with the result of an edit; empty if nothing is. An error is a defined answer.
+/// Describes the error of an edit; empty if there is none. A thrown error is a defined result.
 inline std::string fault_of(const Random_edit& edit)
 {
   try {

@@ -17,7 +17,7 @@
 
 namespace pcs_test {
 
-/// A straight branch of some nodes; `parent`: the branch that carries it, `at`: its node there.
+/// A straight branch of some nodes; `parent` is its parent branch, `at` the node there.
 struct Stick
 {
   std::size_t parent, at;
@@ -35,7 +35,7 @@ inline pcs::shape_space::Rooted_tree rooted(const orl_test::Tree& tree)
                                             "test");
 }
 
-/// The trunk first.
+/// Assembles the branches, trunk first.
 inline orl_test::Tree tree_of_sticks(const std::vector<Stick>& sticks)
 {
   std::vector<orl_test::Branch> branches;
@@ -57,7 +57,7 @@ inline pcs::shape_space::Rooted_tree rooted(const std::vector<Stick>& sticks)
   return rooted(tree_of_sticks(sticks));
 }
 
-/// A tree as it stands elsewhere, in another unit.
+/// A shifted tree in another unit.
 inline orl_test::Tree elsewhere(const orl_test::Tree& tree)
 {
   const Eigen::AngleAxisd turn(0.7, Eigen::Vector3d(0.48, 0.6, 0.64));

@@ -14,8 +14,8 @@
 
 namespace pcs_test {
 
-/// Without TBB the work simply runs. More threads than cores are really started: races do not wait
-/// for cores.
+/// Without TBB, runs the function directly. More threads than cores are possible, since races also
+/// occur then.
 template <class Work>
 void with_threads(int number_of_threads, const Work& work)
 {

@@ -48,7 +48,7 @@ inline const Small_scan& small_scan()
   return scan;
 }
 
-/// `n` points spread evenly over a cylinder without lids.
+/// `n` points uniform over a cylinder without caps.
 inline std::vector<Tree_point> cylinder(std::size_t n,
                                         double radius,
                                         double height,
@@ -74,7 +74,7 @@ inline void append(std::vector<Tree_point>& points, const std::vector<Tree_point
   points.insert(points.end(), others.begin(), others.end());
 }
 
-/// A point `deviation` away per axis, normally distributed.
+/// Adds a normally distributed displacement with a standard deviation of `deviation` per axis.
 class Jitter
 {
 public:
@@ -96,8 +96,8 @@ private:
   std::normal_distribution<double> m_normal;
 };
 
-/// What is wrong with a skeleton; empty if nothing is. One root, one parent for all others, finite
-/// numbers, branches that hold every node once.
+/// Describes the violated invariant of a skeleton; empty if it is valid. Checks one root, one
+/// parent of all other nodes, finite numbers, and branches that contain every node once.
 inline std::string fault_of(const Tree& tree)
 {
   const pcs::Tree_bundle& bundle = tree[boost::graph_bundle];

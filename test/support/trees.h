@@ -12,7 +12,7 @@
 
 namespace pcs_test {
 
-/// A kernel with nothing to spare: points, vectors and numbers, no predicates and no constructions.
+/// A minimal kernel: points, vectors and numbers, without predicates and constructions.
 struct Kernel_archetype
 {
   using FT = double;
@@ -40,15 +40,15 @@ struct Kernel_archetype
   };
 };
 
-/// A node as it stands in a table: its parent (`npos`: root), its branch, position and radius.
+/// Node as a table row: its parent (`npos`: root), branch, position and radius.
 struct Row
 {
   std::size_t parent, branch;
   double x, y, z, radius;
 };
 
-/// The tree of these rows, with round sections; orders and parents of the branches follow from the
-/// rows.
+/// The tree of these rows, with circular sections. Orders and parents of the branches are derived
+/// from the rows.
 template <class Kernel>
 pcs::Tree_skeleton<Kernel> make_tree(const std::vector<Row>& rows)
 {
@@ -78,8 +78,8 @@ pcs::Tree_skeleton<Kernel> make_tree(const std::vector<Row>& rows)
   return tree;
 }
 
-/// A trunk of 3 nodes with a branch of 3 nodes at its middle, and a twig of 2 nodes at that
-/// branch's middle.
+/// A trunk of 3 nodes with a branch of 3 nodes at its middle, and a twig of 2 nodes at the middle
+/// of that branch.
 template <class Kernel>
 pcs::Tree_skeleton<Kernel> make_small_tree()
 {

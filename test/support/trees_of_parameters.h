@@ -19,20 +19,20 @@
 
 namespace orl_test {
 
-/// The parameter besides the age.
+/// The second parameter, besides the age.
 enum class Second_parameter {
-  crown_angle, ///< between branches and what they grow from: +-0.3 rad
-  tropism      ///< how far branches bend up: +-0.04 per `Tree_habit::bend_length`
+  crown_angle, ///< between branches and their parents: +-0.3 rad
+  tropism      ///< upward bending of branches: +-0.04 per `Tree_habit::bend_length`
 };
 
 struct Trees_of_parameters
 {
   std::vector<pcs::Tree_skeleton<CGAL::Simple_cartesian<double>>> trees;
-  Eigen::MatrixXd known; ///< age, by the share of the height, and the other, per tree
+  Eigen::MatrixXd known; ///< per tree: age as a fraction of the height, and the other parameter
 };
 
-/// Of each tree 5 % of the branches are lost; the others are turned by 0.05 rad about each axis,
-/// and 5 % longer or shorter.
+/// In each tree, 5 % of the branches are removed. The others are rotated by 0.05 rad about each
+/// axis, and their lengths vary by 5 %.
 inline Trees_of_parameters
 grow_trees(pcs::Tree_habit habit, Second_parameter second, std::uint64_t seed, int n)
 {
@@ -81,7 +81,7 @@ grow_trees(pcs::Tree_habit habit, Second_parameter second, std::uint64_t seed, i
   return result;
 }
 
-/// Multiple correlation of a parameter with scores that are uncorrelated and of unit variance.
+/// Multiple correlation of a parameter with uncorrelated scores of unit variance.
 inline double correlation(const Eigen::MatrixXd& scores, const Eigen::VectorXd& parameter)
 {
   const Eigen::VectorXd truth = parameter.array() - parameter.mean();
