@@ -28,8 +28,8 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846, radius = 0.1, noise = 0.002;
 
-/// Points within `arc` of a side of a pipe, bent with a radius of 3 in the plane x z, that is an
-/// oval of `coefficients`.
+/// Points of a pipe with the oval cross-section `coefficients`, within the angle `arc` of one side.
+/// A bent pipe has a radius of curvature of 3 in the x-z plane.
 struct Oval_pipe
 {
   Axis axis;
@@ -65,7 +65,7 @@ struct Oval_pipe
     }
   }
 
-  /// A fit of circles, and after each of `rounds` with the oval known so far.
+  /// Fits circles, then refits in each of `rounds` with the oval estimated so far.
   Axis_fit fit(Axis_oval& oval, int rounds, const Oval_options& rules = {}) const
   {
     Axis_fit fit(axis, Fit_model::of(0.02, noise));
@@ -87,7 +87,7 @@ struct Oval_pipe
   }
 };
 
-/// Mean of the radii, without the ends.
+/// Mean radius of an axis without its ends.
 double mean_radius(const Axis& axis)
 {
   double sum = 0;
@@ -141,7 +141,7 @@ BOOST_AUTO_TEST_CASE(few_points_and_narrow_arcs_tell_nothing)
   }
 }
 
-// Many rounds do not add up what is hardly known.
+// Poorly constrained ovals do not accumulate over many rounds.
 BOOST_AUTO_TEST_CASE(what_is_usual_counts_in_every_round)
 {
   const Oval_pipe pipe(Vec2(0, 0), 0.3 * pi, false, 300);
@@ -166,7 +166,8 @@ BOOST_AUTO_TEST_CASE(ovals_are_bounded_and_stay_as_they_are_if_they_are_right)
 
 BOOST_AUTO_TEST_SUITE_END()
 
-// From one side, the whole way: circles would be 6 % too large or too small.
+// The trunk is seen from one side along its whole length: circles would be 6 % too large or too
+// small.
 BOOST_AUTO_TEST_SUITE(oval_trunks)
 
 BOOST_AUTO_TEST_CASE(a_trunk_that_is_seen_from_one_side_has_its_diameter)

@@ -87,7 +87,7 @@ BOOST_AUTO_TEST_CASE(only_a_tip_that_collapses_is_left_out)
   const std::size_t trunk = axis.size();
   BOOST_TEST(size_without_collapse(rules, axis) == trunk);
   BOOST_TEST(size_without_collapse(rules, {}) == 0u);
-  // it turns into a limb beside it: from 7 cm to 2 cm in 15 cm
+  // The chain continues into a limb beside it: from 7 cm to 2 cm in 15 cm.
   const Axis limb = pcs_test::straight_axis(Vec3(0.02, 0, 2),
                                             Vec3(0.17, 0, 2.02),
                                             10,
@@ -98,7 +98,7 @@ BOOST_AUTO_TEST_CASE(only_a_tip_that_collapses_is_left_out)
   const std::size_t left = size_without_collapse(rules, turned);
   BOOST_TEST(left >= trunk);
   BOOST_TEST(left <= trunk + 3);
-  // wood that thins out on a longer way stays
+  // Wood that tapers over a longer distance remains.
   const Axis taper =
       pcs_test::straight_axis(Vec3(0, 0, 2.1), Vec3(0, 0, 4), 20, 0.68 * radius, 0.1 * radius);
   axis.insert(axis.end(), taper.begin(), taper.end());

@@ -24,7 +24,7 @@ namespace {
 constexpr double pi = 3.14159265358979323846, spacing = 0.01, radius = 0.1;
 constexpr Index number_of_layers = 60, layers_between_limbs = 12;
 
-/// The scan of points whose nodes `tree` tells in their order; it has all the rest then.
+/// Prepares a scan of points with the nodes given by `tree` in input order, and completes `tree`.
 void scan_of(const std::vector<Vec3>& points, Scan& scan, Layer_tree& tree)
 {
   prepare_scan<CGAL::Sequential_tag>(points, Vec3::UnitZ(), scan);
@@ -36,8 +36,8 @@ void scan_of(const std::vector<Vec3>& points, Scan& scan, Layer_tree& tree)
   internal::collect_nodes<CGAL::Sequential_tag>(scan, tree);
 }
 
-/// A trunk in layers of two arcs each, as paths on both sides of it give them, with limbs that
-/// leave the smaller arc.
+/// A trunk in level sets of two arcs each, as a result of paths on both sides, with limbs at the
+/// smaller arc.
 struct Two_arcs
 {
   Scan scan;
@@ -62,7 +62,7 @@ struct Two_arcs
   }
 
 private:
-  /// To the node that was added last.
+  /// Adds a point to the last node.
   void add(std::vector<Vec3>& points, const Vec3& p)
   {
     points.push_back(p);
@@ -81,12 +81,12 @@ private:
   }
 };
 
-/// Tubes whose layers are known.
+/// Tubes with known level sets.
 class Layered_tubes
 {
 public:
-  /// Adds an arc of a tube from angle `a0` to `a1`, with its layers above `below`. Returns the last
-  /// of those.
+  /// Adds an arc of a tube from angle `a0` to `a1`, with its level sets above `below`. Returns the
+  /// last of these.
   Index add(Index below, const Vec3& base, const Vec3& step, double r, double a0, double a1)
   {
     const double length = step.norm(), thickness = layer_thickness * spacing;
@@ -104,13 +104,13 @@ public:
     }
     return below;
   }
-  /// The scan of what was added, whose layers are then `tree`.
+  /// Prepares the scan of the added points, and moves their level sets to `tree`.
   void finish(Scan& scan, Layer_tree& tree)
   {
     tree = std::move(m_tree);
     scan_of(m_points, scan, tree);
   }
-  /// Standard deviation of the distances from the axes of what is added from now on [L].
+  /// Sets the standard deviation of the distances from the axes of points added later [L].
   void set_noise(double noise) { m_noise = noise; }
 
 private:
@@ -129,8 +129,8 @@ axes_of(const Scan& scan, const Layer_tree& tree, const Axis_options& rules = Ax
 
 BOOST_AUTO_TEST_SUITE(axes_of_chains)
 
-// Paths run along two sides of a limb, each into a twig of its own; both chains are fitted without
-// seeing each other.
+// Paths run along two sides of a limb, each into a separate twig. Both chains are fitted
+// independently.
 BOOST_AUTO_TEST_CASE(two_chains_of_one_wave_do_not_keep_the_same_wood)
 {
   Layered_tubes tubes;
@@ -161,7 +161,7 @@ BOOST_AUTO_TEST_CASE(two_chains_of_one_wave_do_not_keep_the_same_wood)
   BOOST_TEST(kept > length + 0.5 * limb);
 }
 
-// Before anything is known, noise is taken for 0.3 spacings.
+// The initial estimate of the noise is 0.3 spacings.
 BOOST_AUTO_TEST_CASE(the_first_axis_is_fitted_with_the_noise_that_it_shows)
 {
   constexpr double thin = 0.9 * spacing;
@@ -201,7 +201,7 @@ BOOST_AUTO_TEST_CASE(limbs_on_an_arc_of_a_trunk_are_no_second_trunk)
     BOOST_TEST(length_of(set.axes[a].axis) < 0.1 * height);
 }
 
-// Paths over a scan pass from branch to branch where these touch.
+// Paths over a scan cross from branch to branch where these touch.
 BOOST_AUTO_TEST_CASE(a_chain_goes_straight_on_rather_than_to_the_longer_branch)
 {
   Scan scan;

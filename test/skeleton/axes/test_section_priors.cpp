@@ -21,8 +21,8 @@ namespace {
 constexpr double pi = 3.14159265358979323846, spacing = 0.01, length = 1;
 constexpr std::size_t number_of_nodes = 41;
 
-/// A cylinder along z of radius `radius`, on which there is `share` of the points that the density
-/// makes expect.
+/// A cylinder along z of radius `radius`, with the fraction `share` of the number of points
+/// expected from the density.
 struct Cylinder
 {
   Scan scan;
@@ -114,12 +114,12 @@ BOOST_AUTO_TEST_CASE(an_axis_between_twigs_is_not_sure_of_its_radius)
     BOOST_TEST(std::abs(deviation(r, 0.5 * r) - 0.25 * r) < 1e-12);
     BOOST_TEST(std::abs(deviation(r, 2.5 * r) - 1.25 * r) < 1e-12);
     BOOST_TEST(std::abs(deviation(r, 5 * r) - 0.625 * r) < 1e-12);
-    BOOST_TEST(std::abs(deviation(r, 100 * r) - 0.5 * r) < 1e-12); // pulled down, and firmly
+    BOOST_TEST(std::abs(deviation(r, 100 * r) - 0.5 * r) < 1e-12); // strong prior
   }
 }
 
-// Line from the radius of the lower third to half of it, for what is thicker; the more points, the
-// less it says.
+// Expects a linear taper from the radius of the lower third to half of it. The prior is weaker
+// where more points are available.
 BOOST_AUTO_TEST_CASE(axes_are_expected_to_taper_until_points_can_be_counted)
 {
   for (const double share : {0.005, 1.0}) {
@@ -127,10 +127,9 @@ BOOST_AUTO_TEST_CASE(axes_are_expected_to_taper_until_points_can_be_counted)
     cylinder.set.density = 0;
     Axis& axis = cylinder.fit.axis();
     for (std::size_t k = 20; k < 30; ++k)
-      axis[k].radius = 0.1 * thick; // thinner than the line: nothing is known
+      axis[k].radius = 0.1 * thick; // thinner than the line: unknown
     const std::vector<double> visible(axis.size(), 1);
-    for (const double whole :
-         {length, 2 * length}) { // all that the paths follow, or its lower half
+    for (const double whole : {length, 2 * length}) { // the complete path, or its lower half
       const std::vector<Radius_prior> priors =
           taper_priors(cylinder.view(), visible, cylinder.fit, whole);
       for (std::size_t k = 0; k < axis.size(); ++k) {
@@ -167,7 +166,7 @@ BOOST_AUTO_TEST_CASE(sections_are_drawn_to_a_taper_by_a_length_and_without_a_den
       BOOST_REQUIRE(cylinder.fit.iterate(1));
       const double change = cylinder.fit.axis()[38].radius - before;
       if (density > 0)
-        BOOST_TEST(change < -0.03 * thick); // counts are low
+        BOOST_TEST(change < -0.03 * thick); // counts are too low
       else if (has_length)
         BOOST_TEST(change < -0.001 * thick);
       else

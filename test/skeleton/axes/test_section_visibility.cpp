@@ -21,7 +21,7 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846, spacing = 0.006, noise = 0.002, radius = 0.006;
 
-/// A twig along z as one station in the direction of x sees it, its ranges with noise.
+/// A twig along z, seen by one station in the direction of x, with range noise.
 struct Seen_twig
 {
   Scan scan;
@@ -30,7 +30,7 @@ struct Seen_twig
   std::vector<Vec3> points;
   std::size_t number_of_segments = 30;
 
-  /// `is_round`: seen from all sides.
+  /// `is_round`: the twig is seen from all sides.
   explicit Seen_twig(bool is_round, std::size_t count = 400)
   {
     scan.spacing = spacing;
@@ -47,10 +47,10 @@ struct Seen_twig
 
   double length() const { return double(number_of_segments) * 2 * spacing; }
 
-  /// Its points on an axis of another radius, on which they lie in front as well.
+  /// Fits the points with an axis of another radius; the points are on its front side.
   Axis_fit fit(double other) const { return fit(other, other); }
 
-  /// ... on one of radii that change evenly along it.
+  /// Same, with a linearly changing radius.
   Axis_fit fit(double other, double last) const
   {
     const double behind = other > radius ? radius - other : 0;
@@ -71,8 +71,7 @@ struct Seen_twig
     return priors;
   }
 
-  /// The radius in the middle after iterations with the prior of a density that is three times too
-  /// low.
+  /// The middle radius after iterations with a prior from a density that is three times too low.
   double fitted_radius(bool has_width) const
   {
     Axis_fit fit = this->fit(3 * radius);

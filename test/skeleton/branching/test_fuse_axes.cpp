@@ -43,7 +43,7 @@ BOOST_AUTO_TEST_CASE(pieces_on_both_sides_of_a_gap_become_one)
 {
   Axis_set set =
       set_of({straight({0, 0, 0}, {0, 0, 0.5}, 0.01), straight({0, 0, 0.55}, {0, 0, 1}, 0.01)});
-  set.axes[0].parent = 1; // no axis may sit on itself
+  set.axes[0].parent = 1; // an axis cannot be its own parent
   BOOST_TEST(fuse(set) == 1u);
   BOOST_TEST_REQUIRE(set.axes.size() == 1u);
   BOOST_TEST(set.axes[0].parent == none);
@@ -60,7 +60,7 @@ BOOST_AUTO_TEST_CASE(pieces_on_both_sides_of_a_gap_become_one)
 
 BOOST_AUTO_TEST_CASE(a_piece_that_was_found_from_its_tip_is_turned_round)
 {
-  // both begin where something crosses; the longer one tells the direction
+  // Both begin at a crossing object; the longer one determines the direction.
   Axis_set set =
       set_of({straight({0, 0, 0.5}, {0, 0, 0.2}, 0.01), straight({0, 0, 0.52}, {0, 0, 1.5}, 0.01)});
   BOOST_TEST(fuse(set) == 1u);
@@ -89,9 +89,9 @@ BOOST_AUTO_TEST_CASE(what_was_fused_by_its_bases_comes_apart_where_nothing_reach
   BOOST_TEST(set.axes[0].meeting == 11u);
   std::vector<Joint> joints(2);
   joints[0].parent = 1;
-  BOOST_TEST(split_unreachable_axes(scan, 0.1, joints, 1, set) == 0u); // something reaches it
+  BOOST_TEST(split_unreachable_axes(scan, 0.1, joints, 1, set) == 0u); // reachable
   BOOST_TEST(split_unreachable_axes(scan, 0.1, {Joint(), Joint()}, 0, set) == 0u);
-  BOOST_TEST(split_unreachable_axes(scan, 0.02, {Joint(), Joint()}, 1, set) == 0u); // too far away
+  BOOST_TEST(split_unreachable_axes(scan, 0.02, {Joint(), Joint()}, 1, set) == 0u); // unreachable
   BOOST_TEST(split_unreachable_axes(scan, 0.1, {Joint(), Joint()}, 1, set) == 1u);
   BOOST_TEST_REQUIRE(set.axes.size() == 3u);
   for (const std::size_t a : {0u, 2u}) {
@@ -114,7 +114,7 @@ BOOST_AUTO_TEST_CASE(pieces_that_bend_or_miss_stay_apart)
   const Axis below = straight({0, 0, 0}, {0, 0, 0.5}, 0.01);
   for (const Axis& other : {straight({0, 0, 0.52}, {0.5, 0, 0.6}, 0.01), // a bend
                             straight({0.1, 0, 0.55}, {0.1, 0, 1}, 0.01), // beside the line
-                            straight({0, 0, 0.9}, {0, 0, 1.4}, 0.01)}) { // far away
+                            straight({0, 0, 0.9}, {0, 0, 1.4}, 0.01)}) { // too distant
     Axis_set set = set_of({below, other});
     BOOST_TEST(fuse(set) == 0u);
     BOOST_TEST(set.axes.size() == 2u);

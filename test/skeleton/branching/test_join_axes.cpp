@@ -40,7 +40,7 @@ Branch_tree tree_of(const Axis_set& set)
   return branch_tree(set, join(set), 0, spacing);
 }
 
-/// A stem, and a stick beside it that nothing else may carry.
+/// A stem, and a stick beside it that has no other possible parent.
 const Axis stem = straight({0, 0, 0}, {0, 0, 2}, 0.05, 0.04);
 
 } // namespace
@@ -59,7 +59,7 @@ BOOST_AUTO_TEST_CASE(a_branch_sits_where_it_points_back_to)
 
 BOOST_AUTO_TEST_CASE(the_thick_end_of_a_branch_is_its_base)
 {
-  // one bridge between two stems, found from its tip
+  // A bridge between two stems, traced from its tip.
   const Axis other = straight({0.6, 0, 0}, {0.6, 0, 2}, 0.05, 0.04);
   const Axis_set set =
       set_of({stem, other, straight({0.53, 0, 1.4}, {0.07, 0, 1.3}, 0.004, 0.012)});
@@ -82,8 +82,8 @@ BOOST_AUTO_TEST_CASE(of_two_branches_as_near_the_thicker_one_is_the_parent)
 
 BOOST_AUTO_TEST_CASE(a_branch_leaves_its_parent_towards_the_tip)
 {
-  // two branches cross in front of the base: it leaves one at 40 degrees and would turn back on the
-  // other
+  // Two branches cross in front of the base of a third one. It leaves one of them at 40 degrees,
+  // and would need a reversal from the other.
   const Axis_set set = set_of({straight({0, 0, -0.5}, {0, 0, 0}, 0.05, 0.04),
                                straight({0, 0, 0}, {0.5, 0.006, 0.5}, 0.01, 0.01),
                                straight({0.5, -0.006, 0}, {0, -0.006, 0.5}, 0.01, 0.01),
@@ -93,7 +93,7 @@ BOOST_AUTO_TEST_CASE(a_branch_leaves_its_parent_towards_the_tip)
 
 BOOST_AUTO_TEST_CASE(at_a_fork_the_straight_branch_goes_on)
 {
-  // the stem was fitted around the fork; what goes on straight is thinner and shorter
+  // The stem was fitted around the fork; its straight continuation is thinner and shorter.
   Axis bent = straight({0, 0, 0}, {0, 0, 1}, 0.03, 0.03);
   const Axis side = straight({0.03, 0, 1.03}, {1, 0, 2}, 0.02, 0.01);
   bent.insert(bent.end(), side.begin(), side.end());
@@ -110,7 +110,7 @@ BOOST_AUTO_TEST_SUITE(regrouped_axes)
 
 BOOST_AUTO_TEST_CASE(branches_that_were_mixed_up_at_a_crossing_find_their_own_parents)
 {
-  // two branches of one stem cross; the first fit went over from one to the other
+  // Two branches of one stem cross; the first fit switches from one to the other.
   const Vec3 a0(0.06, 0, 0.4), b0(0.06, 0, 1.4), x(0.5, 0, 0.9), a1(0.95, 0, 1.4), b1(0.95, 0, 0.4);
   Axis mixed = straight(a0, x, 0.012, 0.01);
   const Axis rest = straight(x, b1, 0.01, 0.005);
@@ -131,7 +131,7 @@ BOOST_AUTO_TEST_CASE(branches_that_were_mixed_up_at_a_crossing_find_their_own_pa
     BOOST_TEST_REQUIRE(set.axis_of_point[i] < set.axes.size());
     BOOST_TEST(set.segment_of_point[i] + 1 < set.axes[set.axis_of_point[i]].axis.size());
   }
-  // the part beyond the crossing is an axis of its own now, whose base is the crossing
+  // The part beyond the crossing is a separate axis with its base at the crossing.
   const auto ends_at = [&](const Vec3& p) {
     for (Index a = 0; a < set.axes.size(); ++a)
       if ((set.axes[a].axis.back().point - p).norm() < 1e-9)

@@ -29,7 +29,7 @@ double relief(double x, double y)
   return slope * x + 0.1 * std::sin(1.5 * y);
 }
 
-/// A hill with a pole on it, or the pole alone with twigs.
+/// A hill with a pole, or the pole alone with twigs.
 std::vector<Vec3> hill(bool has_ground)
 {
   std::mt19937 random(1);
@@ -67,7 +67,7 @@ struct Found
     terrain = pcs::skeleton::find_terrain(scan, Vec3::UnitZ(), {}, is_used);
   }
 
-  /// Above the terrain, in the unit of the input.
+  /// Height above the terrain, in the unit of the input.
   double height(const Vec3& p) const
   {
     return scan.frame.unit * terrain->height(scan.frame.to_local(p));
@@ -100,14 +100,15 @@ BOOST_AUTO_TEST_CASE(the_slope_goes_on_beyond_the_border)
   BOOST_TEST(std::abs(found.height(Vec3(5, 0, slope * 5))) < 0.25);
 }
 
-// Within the disc the surface is as around it, whatever the scan has there.
+// Within the disc, the surface is interpolated from its surroundings, independent of the points
+// inside.
 BOOST_AUTO_TEST_CASE(a_bridge_hides_what_is_in_the_middle)
 {
   Found found(true);
   BOOST_REQUIRE(found.terrain);
   const double unit = found.scan.frame.unit;
   Terrain bridged = *found.terrain;
-  const Vec3 top(0, pi / 3, relief(0, pi / 3)); // of a wave
+  const Vec3 top(0, pi / 3, relief(0, pi / 3)); // crest of a wave
   bridged.bridge(found.scan.frame.to_local(top), 1 / unit);
   const Vec3 outside = found.scan.frame.to_local(Vec3(-2.5, -2, 0));
   BOOST_TEST(bridged.height(outside) == found.terrain->height(outside));

@@ -26,14 +26,14 @@ using namespace pcs::skeleton;
 
 namespace {
 
-/// Things of some points each; what became of them can be asked.
+/// Objects of several points each, with queries about the remaining points.
 class Yard
 {
 public:
   Scan scan;
   std::vector<std::uint8_t> is_used;
 
-  /// Adds a rectangle from a corner along two sides; returns the number of the thing.
+  /// Adds a rectangle from a corner along two sides; returns the index of the object.
   int add_face(const Vec3& corner, const Vec3& a, const Vec3& b)
   {
     std::normal_distribution<double> normal(0, 0.002);
@@ -54,7 +54,7 @@ public:
     }
     return finish();
   }
-  /// Points at random in a ball.
+  /// Random points in a ball.
   int add_crown(const Vec3& middle, double radius)
   {
     for (int k = 0; k < 8000; ++k) {
@@ -76,7 +76,7 @@ public:
     return walls_and_roofs(scan, faces(), Vec3::UnitZ(), Wall_options(), is_used);
   }
 
-  /// Share of the points of a thing that are still used.
+  /// Fraction of the points of an object that are still used.
   double used(int thing) const
   {
     const std::size_t begin = thing > 0 ? m_end[std::size_t(thing) - 1] : 0;
@@ -103,7 +103,7 @@ private:
 
   std::mt19937 m_random{11};
   std::vector<Vec3> m_points;
-  std::vector<std::size_t> m_end; ///< of each thing
+  std::vector<std::size_t> m_end; ///< of each object
 };
 
 } // namespace
@@ -128,7 +128,7 @@ BOOST_AUTO_TEST_CASE(a_wall_goes_and_the_stem_before_it_stays)
     BOOST_TEST(marked == before - yard.number_of_used());
     BOOST_TEST(yard.used(wall) < 0.01);
     BOOST_TEST(yard.used(stem) == 1);
-    BOOST_TEST(mark_faces(yard.scan, faces, yard.is_used) == 0u); // they are gone already
+    BOOST_TEST(mark_faces(yard.scan, faces, yard.is_used) == 0u); // already removed
   }
 }
 
@@ -161,7 +161,7 @@ BOOST_AUTO_TEST_CASE(a_roof_beside_walls_goes_and_the_ground_stays)
     if (has_wall) {
       BOOST_TEST(yard.used(wall) < 0.01);
       BOOST_TEST(yard.used(roof) < 0.01);
-    } else // what is level may be a slope
+    } else // horizontal faces may be slopes
       BOOST_TEST(yard.used(roof) == 1);
   }
 }
@@ -194,7 +194,7 @@ BOOST_AUTO_TEST_CASE(points_that_are_not_used_make_no_faces)
   yard.add_face(Vec3(-2, 0, 0), Vec3(4, 0, 0), Vec3(0, 0, 3));
   yard.prepare();
   BOOST_TEST(!yard.faces().empty());
-  for (std::size_t i = 20; i < yard.is_used.size(); ++i) // a few are too few
+  for (std::size_t i = 20; i < yard.is_used.size(); ++i) // too few points remain for a wall
     yard.is_used[i] = 0;
   BOOST_TEST(yard.faces().empty());
   std::fill(yard.is_used.begin(), yard.is_used.end(), 0);

@@ -23,7 +23,7 @@ using namespace pcs::skeleton;
 namespace {
 
 constexpr double pi = 3.14159265358979323846, trunk_radius = 0.1, limb_radius = 0.04;
-constexpr double inner = 0.8, outer = 1.6; ///< ends of the part with few points, and of the limb
+constexpr double inner = 0.8, outer = 1.6; ///< ends of the sparse part and of the limb
 
 /// A trunk and a limb. The axis of the limb begins at `inner`, where its points become dense.
 class Limb
@@ -33,7 +33,7 @@ public:
   Axis_set set;
   std::vector<Index> root; ///< lowest points
 
-  /// `number_of_points`: on the inner part of the limb; `depth`: they lie up to this many radii
+  /// `number_of_points` is the number on the inner part of the limb. They lie up to `depth` radii
   /// below its surface.
   Limb(std::size_t number_of_points, double depth)
   {
@@ -114,7 +114,7 @@ BOOST_AUTO_TEST_SUITE(thick_ends)
 
 BOOST_AUTO_TEST_CASE(a_thick_limb_with_few_points_is_continued_to_its_trunk)
 {
-  // 400 points per square metre: five centimetres apart, on a radius of four
+  // 400 points per square metre, five centimetres apart, on a radius of four.
   Limb limb(70, 0);
   const Followed_ends found = limb.follow();
   BOOST_TEST(found.number_of_ends == 1u);

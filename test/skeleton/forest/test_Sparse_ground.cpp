@@ -28,7 +28,8 @@ double relief(double x, double y)
   return slope * x + 0.3 * std::sin(0.4 * y);
 }
 
-/// Trees and shrubs on a slope of 20 x 20 m, with some points of the ground per square metre.
+/// Trees and shrubs on a slope of 20 x 20 m, with a given density of ground points per square
+/// metre.
 struct Slope
 {
   Scan scan;

@@ -37,8 +37,7 @@ using pcs::skeleton::none;
 using pcs::skeleton::Scan;
 using pcs::skeleton::Vec3;
 
-/// Sheets of `count` points each, one above the other, so far apart that only gaps are closed
-/// between them.
+/// Sheets of `count` points each, stacked at a distance that only gap closing bridges.
 struct Sheets
 {
   Scan scan;
@@ -69,7 +68,7 @@ std::vector<std::pair<Index, Index>> sorted(const Links& links)
   return pairs;
 }
 
-/// The least point of the part of each point; `none` if it is not used.
+/// The smallest point index in the component of each point; `none` for unused points.
 std::vector<Index> least_of_parts(const std::vector<Index>& part)
 {
   std::vector<Index> least(part.size(), none), result(part.size(), none);
@@ -102,7 +101,7 @@ void check_paths(const Scan& scan, const Neighbor_graph& graph, const std::vecto
       std::numeric_limits<double>::infinity(),
       0.0,
       boost::default_dijkstra_visitor());
-  BOOST_TEST((found.distance == distance)); // to the last bit
+  BOOST_TEST((found.distance == distance)); // bit-identical
   std::size_t wrong = 0, reached = 0;
   for (Index i = 0; i < scan.size(); ++i) {
     const Index from = found.predecessor[i];
@@ -150,7 +149,7 @@ BOOST_AUTO_TEST_CASE(parts_are_those_of_boost)
 {
   const Sheets s(3, 25000, 40);
   Links links = pcs::skeleton::neighbor_links<Any_tag>(s.scan, s.is_used, {});
-  BOOST_TEST(links.size() > 3u * (1 << 17)); // of several blocks
+  BOOST_TEST(links.size() > 3u * (1 << 17)); // several blocks
   const Neighbor_graph graph = pcs::skeleton::graph_of(s.scan.size(), links);
   std::vector<Index> component(s.scan.size());
   boost::connected_components(
@@ -169,7 +168,7 @@ BOOST_AUTO_TEST_CASE(parts_are_those_of_boost)
     BOOST_TEST((size == parts.size));
   };
   check(pcs::skeleton::connected_parts<Any_tag>(s.is_used, links));
-  std::shuffle(links.begin(), links.end(), std::mt19937(1)); // in no order at all
+  std::shuffle(links.begin(), links.end(), std::mt19937(1)); // random order
   check(pcs::skeleton::connected_parts<Any_tag>(s.is_used, links));
 }
 
@@ -194,7 +193,7 @@ BOOST_AUTO_TEST_CASE(links_and_gaps_make_one_graph)
 
 BOOST_AUTO_TEST_CASE(shortest_paths_are_those_of_boost)
 {
-  // sheets are 20 units, some 40 spacings, apart: to cross such a gap costs hundreds of spacings
+  // Sheets are 20 units, about 40 spacings, apart; the cost of such a gap is hundreds of spacings.
   const Sheets s(5, 2000, 20);
   pcs::skeleton::Link_rule rule;
   rule.gap = 60;
@@ -219,8 +218,8 @@ BOOST_AUTO_TEST_CASE(shortest_paths_are_those_of_boost)
 
 BOOST_AUTO_TEST_CASE(gaps_are_closed_by_the_shortest_links)
 {
-  // few large parts, and many small ones: in the first case only points that have others about
-  // search
+  // Few large components, and many small ones. In the first case, only points with neighbours of
+  // other components are searched.
   for (const auto& [number, size] : {std::make_pair(4, 600), std::make_pair(30, 25)}) {
     const Sheets s(number, size, 20);
     for (const double gap : {30.0, 60.0}) {
@@ -228,7 +227,7 @@ BOOST_AUTO_TEST_CASE(gaps_are_closed_by_the_shortest_links)
       rule.gap = gap;
       const Links links = pcs::skeleton::neighbor_links<Any_tag>(s.scan, s.is_used, rule);
       const auto parts = pcs::skeleton::connected_parts<Any_tag>(s.is_used, links);
-      // Kruskal's tree of the parts over all pairs of points
+      // Minimum spanning tree of the components by Kruskal's algorithm, over all pairs of points.
       std::vector<std::pair<double, Link>> pairs;
       const double widest = gap * s.scan.spacing;
       for (Index i = 0; i < s.scan.size(); ++i)
@@ -270,13 +269,13 @@ BOOST_AUTO_TEST_CASE(copies_of_a_point_are_one_place)
     p.z() *= 3;
     for (int k = i == 4000 ? 20000 : copies(random); k > 0;
          --k)                                      // one of them more than blocks are long
-      points.push_back(p + Vec3(1e-12 * k, 0, 0)); // far below the grid
+      points.push_back(p + Vec3(1e-12 * k, 0, 0)); // far below the cell size
   }
   std::shuffle(points.begin(), points.end(), random);
   const auto frame = pcs::skeleton::find_scan_frame<Any_tag>(points, Vec3::UnitZ());
   const auto found = pcs::skeleton::internal::distinct_places<Any_tag>(points, frame);
   BOOST_TEST(found.places.size() > 7990u);
-  BOOST_TEST(found.places.size() <= 8100u); // some lie at the border of two cells of the grid
+  BOOST_TEST(found.places.size() <= 8100u); // some lie at the border of two cells
   BOOST_REQUIRE(found.chosen.size() == found.places.size());
   std::vector<Index> least(found.places.size(), none);
   std::size_t wrong = 0;

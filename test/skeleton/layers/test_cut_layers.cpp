@@ -27,7 +27,7 @@ namespace {
 using pcs::skeleton::Index;
 using pcs::skeleton::Vec3;
 
-/// Points at random on an upright cylinder, `spacing` apart on the mean.
+/// Random points on an upright cylinder with a mean spacing of `spacing`.
 void add_stem(const Vec3& base,
               double radius,
               double height,
@@ -87,7 +87,7 @@ BOOST_AUTO_TEST_CASE(the_root_is_what_most_points_stand_on)
   std::mt19937 random(1);
   std::vector<Vec3> points;
   add_stem(Vec3(0, 0, 0), 0.1, 4, 0.015, random, points);
-  for (int k = 0; k < 60; ++k) // a shrub, its stems side by side
+  for (int k = 0; k < 60; ++k) // a shrub with adjacent stems
     add_stem(Vec3(0.3 + 0.03 * (k % 10), 0.03 * (k / 10), 0), 0.012, 0.7, 0.012, random, points);
   for (int k = 0; k < 20; ++k) // one of its twigs touches the trunk
     points.push_back(Vec3(0.1 + 0.01 * k, 0, 0.6));
@@ -106,7 +106,7 @@ BOOST_AUTO_TEST_CASE(a_twig_that_hangs_below_the_foot_is_no_root)
     add_stem(Vec3(0, 0, 0), 0.1, 4, 0.015, random, points);
     for (int k = 0; k < 200; ++k) // a branch to one side at the top of the stem
       points.push_back(Vec3(0.1 + 0.005 * k, 0, 3.95));
-    for (int k = 0; k < 800; ++k) // and a twig that hangs down from it
+    for (int k = 0; k < 800; ++k) // a twig that hangs down from it
       points.push_back(Vec3(1.1, 0.0002 * (k % 20), 3.95 - (3.95 + depth) / 800 * k));
     const Linked_scan s(points);
     BOOST_TEST(s.root.size() > 20u);
@@ -122,11 +122,10 @@ BOOST_AUTO_TEST_CASE(low_branches_of_a_thin_stem_are_no_root)
   std::vector<Vec3> points;
   for (int k = 0; k < 800; ++k) // the stem
     points.push_back(Vec3(0, 0.0002 * (k % 20), 0.005 * k));
-  for (int k = 0; k < 700;
-       ++k) // a branch with most of the wood, which comes down from the tip, ...
+  for (int k = 0; k < 700; ++k) // a branch with most of the wood, hanging from the tip
     points.push_back(Vec3(0.9 / 700 * k, 0.0002 * (k % 20), 4 - 0.005 * k));
   add_stem(Vec3(0.2, 0, 2.9), 0.05, 0.6, 0.01, random, points);
-  for (int k = 0; k < 4; ++k) // ... to a broom that is as wide as a trunk
+  for (int k = 0; k < 4; ++k) // dense tuft of twigs, as wide as a trunk
     add_stem(Vec3(0.9 + 0.05 * k, 0, 0.5), 0.004, 0.3, 0.005, random, points);
   for (int k = 0; k < 60; ++k)
     points.push_back(Vec3(0.9 + 0.0025 * k, 0, 0.5));
@@ -141,15 +140,15 @@ BOOST_AUTO_TEST_CASE(a_foot_that_is_cut_off_is_the_root_and_no_twig_that_hangs_b
   std::mt19937 random(5);
   std::vector<Vec3> points, ring;
   add_stem(Vec3(0, 0, 0), 0.1, 1, 0.015, random, ring);
-  add_stem(Vec3(0, 0, 1.4), 0.09, 3, 0.015, random, ring); // something hides what is between them
+  add_stem(Vec3(0, 0, 1.4), 0.09, 3, 0.015, random, ring); // the part between them is occluded
   for (const Vec3& p : ring)
     if (p.x() > 0) // one station sees half of it
       points.push_back(p);
   for (int k = 0; k < 200; ++k) // a branch of the upper part
     points.push_back(Vec3(0.09 + 0.004 * k, 0, 2));
-  for (int k = 0; k < 200; ++k) // and a twig that hangs down from it, as low as the foot
+  for (int k = 0; k < 200; ++k) // a twig that hangs down from it, as low as the foot
     points.push_back(Vec3(0.89, 0.0002 * (k % 20), 2 - 0.0098 * k));
-  for (int k = 0; k < 20; ++k) // with a branch of its own
+  for (int k = 0; k < 20; ++k) // a branch of this twig
     points.push_back(Vec3(0.89 + 0.01 * k, 0, 0.1));
   const Linked_scan s(points);
   BOOST_TEST(s.root.size() > 10u);
@@ -204,19 +203,19 @@ BOOST_AUTO_TEST_CASE(joined_layers_and_thin_ones_are_one_tree)
     std::mt19937 random(seed);
     std::vector<Vec3> both, points;
     add_stem(Vec3(0, 0, 0), 0.15, 1, 0.008, random, points);
-    add_stem(Vec3(0, 0, 1), 0.15, 1, 0.008, random, both); // one side is seen well, ...
+    add_stem(Vec3(0, 0, 1), 0.15, 1, 0.008, random, both); // dense points on one side
     for (const Vec3& p : both)
       if (p.x() < 0)
         points.push_back(p);
     both.clear();
-    add_stem(Vec3(0, 0, 1), 0.15, 1, 0.03, random, both); // ... the other one is not
+    add_stem(Vec3(0, 0, 1), 0.15, 1, 0.03, random, both); // sparse points on the other side
     for (const Vec3& p : both)
       if (p.x() >= 0)
         points.push_back(p);
     const pcs::skeleton::Layer_tree tree = Linked_scan(points).layers();
     BOOST_REQUIRE(tree.size() > 0u);
     for (Index v = 1; v < tree.size(); ++v)
-      BOOST_TEST(tree.parent[v] < v); // none is larger
+      BOOST_TEST(tree.parent[v] < v); // parents have smaller indices
   }
 }
 

@@ -24,7 +24,7 @@ namespace {
 
 constexpr double spacing = 0.01, pi = CGAL_PI;
 
-/// Layers put on top of each other by hand.
+/// Level sets constructed explicitly, one above the other.
 struct Layers
 {
   Scan scan;
@@ -32,7 +32,7 @@ struct Layers
 
   Layers() { scan.spacing = spacing; }
 
-  /// Adds an arc of a circle in a layer, from one angle to another; returns its node.
+  /// Adds an arc of a circle in a level set, from one angle to another; returns its node.
   Index add_arc(Index parent, int layer, const Vec3& center, double radius, double from, double to)
   {
     const auto node = static_cast<Index>(tree.parent.size());
@@ -48,7 +48,7 @@ struct Layers
     return node;
   }
 
-  /// Adds whole rings on the node `below`, or on nothing; returns the last one.
+  /// Adds complete rings above the node `below`, or as a root; returns the last one.
   Index add_stem(Index below, int first, int last, const Vec3& center, double radius)
   {
     for (int layer = first; layer < last; ++layer)
@@ -56,7 +56,7 @@ struct Layers
     return below;
   }
 
-  /// Adds layers of a stem that is seen from two sides, with slits between.
+  /// Adds level sets of a stem that is seen from two sides, with slits between the arcs.
   void add_halves(Index below, int first, int last, double radius)
   {
     Index left = below, right = below;
@@ -116,7 +116,7 @@ BOOST_AUTO_TEST_CASE(two_stems_stay_two)
   BOOST_TEST(fork.tree.size() == 18u);
   BOOST_TEST(fork.tree.node_of_point == node, boost::test_tools::per_element());
 
-  Layers neighbors; // that touch, each on its own foot
+  Layers neighbors; // touching stems, each with a separate foot
   neighbors.add_stem(none, 0, 12, Vec3(0.1, 0, 0), 0.1);
   neighbors.add_stem(none, 0, 12, Vec3(-0.1, 0, 0), 0.1);
   neighbors.merge();
@@ -162,7 +162,7 @@ BOOST_AUTO_TEST_CASE(thick_rings_are_followed_to_their_end_and_thin_twigs_are_no
 BOOST_AUTO_TEST_CASE(no_layers_stay_none)
 {
   Layers empty;
-  empty.scan.points.push_back(Vec3::Zero()); // that no path leads to
+  empty.scan.points.push_back(Vec3::Zero()); // without any path to it
   empty.tree.node_of_point.push_back(none);
   empty.merge();
   BOOST_TEST(empty.tree.size() == 0u);

@@ -47,7 +47,7 @@ void add_twig(Points& points, const Vec3& base, std::size_t count, std::mt19937&
   }
 }
 
-/// Leaves of 6 cm anywhere in a box of 1 m.
+/// Random leaves of 6 cm in a box of 1 m.
 void add_leaves(Points& points, std::size_t count, std::mt19937& random)
 {
   std::uniform_real_distribution<double> share(-0.5, 0.5);
@@ -61,7 +61,7 @@ void add_leaves(Points& points, std::size_t count, std::mt19937& random)
   }
 }
 
-/// The scan of points, and where each of them is in it.
+/// A scan of points, and the index of each point in it.
 struct Prepared
 {
   Scan scan;
@@ -89,7 +89,7 @@ struct Prepared
                            {static_cast<Index>(lowest - scan.points.begin())});
   }
 
-  /// Shares of the twigs and of the other points that a flag is set for.
+  /// Fractions of the twig points and of the other points for which a flag is set.
   std::pair<double, double> shares(const Flags& flags) const
   {
     double twig[2] = {0, 0}, other[2] = {0, 0};
@@ -110,7 +110,7 @@ Prepared twigs_in_leaves()
   return Prepared(points, wood);
 }
 
-/// The same, but with leaves that hang on the twigs.
+/// Same, with leaves attached to the twigs.
 Prepared twigs_with_leaves()
 {
   std::mt19937 random(7);
@@ -168,7 +168,7 @@ Points pipe(std::size_t count, double from, double to)
   return points;
 }
 
-/// The same points, moved along z into rings of some width.
+/// Moves points along z into rings of a given width.
 Points in_rings(Points points, double distance, double width)
 {
   for (Vec3& p : points) {
@@ -190,7 +190,7 @@ BOOST_AUTO_TEST_CASE(twigs_are_lines_and_leaves_around_them_are_not)
       p.shares(points_on_lines<CGAL::Sequential_tag>(p.scan, p.is_used, none_is_sure, {}));
   BOOST_CHECK_GT(twigs, 0.6);
   BOOST_CHECK_LT(leaves, 0.35);
-  // what is sure is not tried, but helps
+  // Points of known class are not classified, but support others.
   const Flags all_are_sure(p.scan.size(), 1);
   BOOST_CHECK_EQUAL(
       p.shares(points_on_lines<CGAL::Sequential_tag>(p.scan, p.is_used, all_are_sure, {})).first,
@@ -220,7 +220,7 @@ BOOST_AUTO_TEST_CASE(surroundings_tell_twigs_from_leaves)
 
 BOOST_AUTO_TEST_CASE(paths_carry_those_that_lead_through_them)
 {
-  // a path of four points with a corner, a second tip at its corner, and a point without a path
+  // A path of four points with a corner, a second tip at its corner, and a point without a path.
   Scan scan;
   scan.points =
       {Vec3(0, 0, 0), Vec3(0, 0, 1), Vec3(0, 0, 2), Vec3(1, 0, 2), Vec3(0, 1, 2), Vec3(9, 9, 9)};
@@ -242,7 +242,7 @@ BOOST_AUTO_TEST_CASE(paths_carry_those_that_lead_through_them)
   BOOST_CHECK_EQUAL(found[3].downstream, 0);
   BOOST_CHECK_CLOSE(found[2].downstream, -1.5, 1e-6);
   BOOST_CHECK_CLOSE(found[1].downstream, (1 + share * -3) / (1 + 2 * share), 1e-6);
-  // steps along z, and then one along x that counts most
+  // Steps along z, then a step along x, which dominates.
   BOOST_CHECK_EQUAL(found[0].straightness, 1);
   BOOST_CHECK_CLOSE(found[2].straightness, 1, 1e-9);
   const double along_z = share * (1 + share);
@@ -300,7 +300,7 @@ BOOST_AUTO_TEST_CASE(paths_tell_twigs_from_leaves_better)
                                                                                 wood_score);
   BOOST_CHECK(by_paths ==
               wood_score_of_paths<Any_tag>(p.scan, p.is_used, none_is_thick, p.paths, wood_score));
-  // of the twigs, what as many leaves pass for
+  // Fraction of twig points found at the same fraction of false leaf points.
   const auto found_at = [&](const std::vector<float>& values, double leaves) {
     std::vector<float> others;
     for (std::size_t i = 0; i < values.size(); ++i)
@@ -362,7 +362,7 @@ BOOST_AUTO_TEST_CASE(a_spread_is_that_of_the_points)
 
 BOOST_AUTO_TEST_CASE(evidence_of_an_axis)
 {
-  // two axes end to end along z, one with points beside it; every fourth point is left out
+  // Two axes end to end along z, one with points beside it; every fourth point is unused.
   Points points;
   for (int k = 0; k < 40; ++k)
     points.emplace_back(0.01 * (k % 2 == 0 ? 1 : -1), 0, 0.025 * k);
@@ -392,9 +392,7 @@ BOOST_AUTO_TEST_CASE(evidence_of_an_axis)
   BOOST_CHECK_CLOSE(e.length, 1 / spacing, 1e-6);
   BOOST_CHECK_CLOSE(e.length_in_breast_heights, 0.5, 1e-6);
   BOOST_CHECK_CLOSE(e.residual, 0.005 / spacing, 1e-3);
-  BOOST_CHECK_CLOSE(e.mean_likeness,
-                    (8 * 6 - 22 * 1) / 30.0,
-                    1e-6); // what is surer than 6 counts 6
+  BOOST_CHECK_CLOSE(e.mean_likeness, (8 * 6 - 22 * 1) / 30.0, 1e-6); // scores are limited to 6
   BOOST_CHECK_EQUAL(e.high_likeness, 9);
   BOOST_CHECK_EQUAL(e.parent_length, 0);
   BOOST_CHECK_EQUAL(e.carried, double(points.size()));
@@ -416,7 +414,7 @@ BOOST_AUTO_TEST_CASE(axes_of_twigs_are_of_wood_and_stubs_in_leaves_are_not)
 {
   std::mt19937 random(8);
   std::uniform_real_distribution<double> share(-0.5, 0.5);
-  // a trunk, a twig on it, and a leaf on each side of the twig, the second of which carries a twig
+  // A trunk, a twig on it, and a leaf on each side of the twig. The second leaf supports a twig.
   Points points = pipe(600, 0.05, 0.05);
   std::vector<std::size_t> first = {0, points.size()};
   const auto turned = [](const Vec3& p) { return Vec3(0.05 + p.z(), p.x(), 0.5 + p.y()); };
@@ -460,7 +458,7 @@ BOOST_AUTO_TEST_CASE(axes_of_twigs_are_of_wood_and_stubs_in_leaves_are_not)
       const Index i = p.scan.point_of_input[q];
       set.axis_of_point[i] = static_cast<Index>(a);
       set.segment_of_point[i] = nearest_place(set.axes[a].axis, p.scan.points[i]).segment;
-      wood_score[i] = a == 0 ? 3 : 0; // not known, but that of the trunk
+      wood_score[i] = a == 0 ? 3 : 0; // unknown, except for the trunk
     }
   const auto evidence =
       evidence_of_axes<Any_tag>(p.scan, set, p.is_used, p.paths, wood_score, 1.3 / unit);
@@ -479,15 +477,15 @@ BOOST_AUTO_TEST_CASE(axes_of_twigs_are_of_wood_and_stubs_in_leaves_are_not)
                                                      limit_of_point);
   };
   const double infinity = std::numeric_limits<double>::infinity();
-  // the second leaf carries a twig
+  // The second leaf supports a twig.
   const Flags found = wood_at(least, infinity);
   for (std::size_t i = 0; i < p.scan.size(); ++i)
     BOOST_CHECK_EQUAL(found[i] != 0, set.axis_of_point[i] != 2);
-  // the first axis is of wood whatever it looks like
+  // The first axis is always wood.
   const Flags one = wood_at(1e9, infinity);
   for (std::size_t i = 0; i < p.scan.size(); ++i)
     BOOST_CHECK_EQUAL(one[i] != 0, set.axis_of_point[i] == 0);
-  // points that no axis explains speak for themselves
+  // Points that no axis explains are classified by their own evidence.
   for (std::size_t i = 0; i < p.scan.size(); ++i)
     if (set.axis_of_point[i] == 0) {
       set.axis_of_point[i] = none;
@@ -568,7 +566,7 @@ BOOST_AUTO_TEST_CASE(leaves_are_left_out_only_where_there_are_many)
   const Prepared bare(points, wood);
   const Found_wood of_bare = find(bare, axes_of(bare), false);
   BOOST_CHECK(of_bare.is_wood.empty());
-  // what points look like is known all the same
+  // The appearance of points is still classified.
   BOOST_REQUIRE_EQUAL(of_bare.wood_score.size(), bare.scan.size());
   Flags looks_like_wood(bare.scan.size());
   for (std::size_t i = 0; i < bare.scan.size(); ++i)
@@ -580,10 +578,10 @@ BOOST_AUTO_TEST_CASE(leaves_are_left_out_only_where_there_are_many)
   const Flags found = find(leafy, axes_of(leafy), false).is_wood;
   BOOST_REQUIRE(!found.empty());
   BOOST_CHECK_GT(leafy.shares(found).first, 2 * leafy.shares(found).second);
-  // without a stem it is no tree
+  // Without a stem it is not a tree.
   BOOST_CHECK(find(leafy, leafy.set, false).is_wood.empty());
   BOOST_CHECK(find(leafy, leafy.set, false).wood_score.empty());
-  // where axes explain all points, nothing is looked for
+  // Nothing is searched if axes explain all points.
   Axis_set all = axes_of(leafy);
   all.axis_of_point.assign(leafy.scan.size(), 0);
   BOOST_CHECK(find(leafy, all, false).is_wood.empty());
@@ -623,7 +621,7 @@ BOOST_AUTO_TEST_CASE(a_few_leaves_are_noticed_on_much_wood)
   const std::size_t wood = points.size();
   for (const bool is_flat : {true, false}) {
     points.resize(wood);
-    for (int k = 0; k < 6; ++k) // one on each twig, or as many pieces of bark
+    for (int k = 0; k < 6; ++k) // one on each twig, or the same number of pieces of bark
       for (int i = 0; i < 30; ++i) {
         const double x = 0.06 * share(random), z = 0.06 * share(random);
         points.push_back(
@@ -651,9 +649,9 @@ BOOST_AUTO_TEST_CASE(points_of_surfaces_have_dimension_two_and_rows_one)
   BOOST_CHECK_CLOSE(dimension_of(even), 2.0, 5.0);
   BOOST_CHECK_GT(dimension_of(pipe(3000, 0, 0.1)), 2.5);
   BOOST_CHECK_CLOSE(dimension_of(in_rings(even, 0.2, 0)), 1.0, 5.0);
-  // rings as wide as the space between them are surfaces again
+  // Rings as wide as their gaps have the dimension of surfaces.
   BOOST_CHECK_GT(dimension_of(in_rings(pipe(30000, 0.1, 0.1), 0.1, 0.05)), 1.9);
-  // some part alone, and none at all
+  // Each component alone, and an empty selection.
   Points both = even;
   for (const Vec3& p : in_rings(even, 0.2, 0))
     both.push_back(p + Vec3(1, 0, 0));
@@ -687,7 +685,7 @@ BOOST_AUTO_TEST_CASE(in_rows_leaves_are_not_told_from_wood)
     };
     BOOST_CHECK_EQUAL(find(false).is_in_rows, is_in_rows);
     BOOST_CHECK_EQUAL(find(false).is_wood.empty(), is_in_rows);
-    // the caller knows better
+    // The option of the caller takes precedence.
     BOOST_CHECK(!find(true).is_in_rows);
     BOOST_CHECK(!find(true).is_wood.empty());
   }
@@ -726,7 +724,7 @@ BOOST_AUTO_TEST_CASE(leaves_on_a_surface_are_no_leaves)
   const Prepared p(points, wood);
   Axis_set set = one_axis(p.scan, 0.1 / p.scan.frame.unit, 1);
   Flags is_leaf(p.scan.size(), 0);
-  std::size_t count = 0; // a tenth of the surface, and all that is away from it
+  std::size_t count = 0; // a tenth of the surface, and all points far from it
   for (std::size_t i = 0; i < p.scan.size(); ++i) {
     is_leaf[i] = !p.is_twig[i] || i % 10 == 0;
     count += p.is_twig[i] && i % 10 == 0;

@@ -15,8 +15,8 @@ namespace test_find_stem_wood {
 using pcs::skeleton::Index;
 using pcs::skeleton::none;
 
-/// A stem of two components of two points each, below two crowns of eight points each; the last
-/// point of all is unreached.
+/// A stem of two components of two points each, below two crowns of eight points each. The last
+/// point is unreached.
 pcs::skeleton::Layer_tree forked_tree()
 {
   pcs::skeleton::Layer_tree tree;
@@ -40,7 +40,7 @@ BOOST_AUTO_TEST_CASE(the_stem_supports_most_points)
       pcs::skeleton::points_of_stem(forked_tree(), sure, {0.8, 2});
   for (std::size_t i = 0; i < 21; ++i)
     BOOST_TEST(bool(is_stem[i]) == (i < 4), "point " << i);
-  // each crown supports 8 of 20 points
+  // Each crown supports 8 of 20 points.
   const std::vector<std::uint8_t> more =
       pcs::skeleton::points_of_stem(forked_tree(), sure, {0.4, 2});
   for (std::size_t i = 0; i < 21; ++i)

@@ -28,7 +28,7 @@ namespace {
 
 const Vec3 station(10, 0, 0);
 
-/// What one station sees of a thin branch.
+/// Point density of a thin branch as seen by one station.
 double true_density(const Vec3& place, const Vec3& along)
 {
   const Vec3 view = place - station;
@@ -46,7 +46,7 @@ Vec3 random_direction(pcs::internal::Random_stream& random)
   return d.normalized();
 }
 
-/// Every tenth one is far too low.
+/// Samples of the density, of which every tenth one is far too low.
 std::vector<Density_sample> samples_of(std::size_t n, const Eigen::Matrix3d& rotation)
 {
   pcs::internal::Random_stream random(5, 1);
@@ -179,7 +179,7 @@ BOOST_AUTO_TEST_CASE(predictions_stay_within_the_samples)
 
 BOOST_AUTO_TEST_CASE(a_trunk_says_nothing_of_the_crown)
 {
-  // a trunk that is bent a little; whatever its sides look like there, it goes on as at its end
+  // A slightly bent trunk is extrapolated along the direction of its end, independent of its sides.
   pcs::internal::Random_stream random(8, 1);
   std::vector<Density_sample> samples;
   for (int k = 0; k < 150; ++k) {

@@ -21,7 +21,7 @@ namespace {
 
 constexpr double stem_radius = 0.1;
 
-/// Adds a branch of 20 equal steps on a node; returns its number.
+/// Adds a branch of 20 equal steps on a node; returns its index.
 Index add(Branch_tree& tree,
           Index seat,
           const Vec3& from,
@@ -45,7 +45,7 @@ Branch_tree crown(std::size_t number_of_branches, double radius)
   return tree;
 }
 
-/// All nodes proven, or those of the stem alone.
+/// Marks all nodes as proven, or those of the stem alone.
 std::vector<std::uint8_t> proof(const Branch_tree& tree, bool is_all)
 {
   std::vector<std::uint8_t> is_proven(tree.nodes.size(), is_all);
@@ -120,13 +120,13 @@ BOOST_AUTO_TEST_CASE(stems_that_stand_beside_the_root_are_counted)
   Fitted_axis stem;
   for (const Index v : tree.branches[0].nodes)
     stem.axis.push_back(tree.nodes[v]);
-  axes.axes.assign(2, stem); // the second one out of reach
+  axes.axes.assign(2, stem); // the second one is out of reach
   const std::vector<Joint> joints(2);
   const auto count = [&] { return count_other_stems(axes, joints, 0, tree, Stem_options()); };
   BOOST_TEST(count() == 1u);
   axes.axes.pop_back();
   BOOST_TEST(count() == 0u);
-  // a hanging twig becomes thinner downwards, the stem of another tree thicker
+  // A hanging twig becomes thinner downwards, the stem of another tree thicker.
   add(tree, 15, Vec3(0, 0, 3), Vec3(1, 0, 0.3), 0.02, 0.003);
   BOOST_TEST(count() == 0u);
   add(tree, 15, Vec3(0, 0, 3), Vec3(-1, 0, 0.1), 0.02, 0.08);

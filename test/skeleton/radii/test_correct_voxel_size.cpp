@@ -29,7 +29,7 @@ using Cloud = std::vector<Point>;
 
 namespace {
 
-/// A trunk that leans and carries two limbs of half its radius, densely covered.
+/// A leaning trunk with two limbs of half its radius, densely sampled.
 Cloud small_tree(double radius)
 {
   const Vector trunk(0.2, 0.1, 1);
@@ -40,7 +40,7 @@ Cloud small_tree(double radius)
   return points;
 }
 
-/// The centers of the voxels that hold points, each once.
+/// The centers of all voxels with points.
 Cloud centers_of_voxels(const Cloud& points, double size)
 {
   const auto center = [&](double x) { return size * (std::floor(x / size) + 0.5); };
@@ -76,7 +76,7 @@ Cloud rings(double radius, double height, double step)
 {
   const double pi = CGAL_PI;
   const int count = static_cast<int>(2 * pi * radius / step);
-  const double chord = 2 * radius * std::sin(pi / count); // as far apart as the rings are
+  const double chord = 2 * radius * std::sin(pi / count); // equal to the distance of the rings
   Cloud points;
   for (double z = 0; z < height; z += chord)
     for (int k = 0; k < count; ++k)
@@ -103,8 +103,8 @@ BOOST_AUTO_TEST_CASE(other_points_lie_on_no_grid)
 {
   const Cloud points = small_tree(0.05);
   BOOST_CHECK_EQUAL(step_of(points), 0);
-  BOOST_CHECK_EQUAL(step_of(rings(0.05, 1, 0.005)), 0);            // even, but on the surface
-  BOOST_CHECK_EQUAL(step_of(centers_of_voxels(points, 0.001)), 0); // finer than they are dense
+  BOOST_CHECK_EQUAL(step_of(rings(0.05, 1, 0.005)), 0);            // regular, but on the surface
+  BOOST_CHECK_EQUAL(step_of(centers_of_voxels(points, 0.001)), 0); // finer than their spacing
   BOOST_CHECK_EQUAL(step_of(pcs_test::small_scan().scan.points), 0);
   BOOST_CHECK_EQUAL(step_of(Cloud(3, Point(1, 2, 3))), 0);
   Cloud line;
@@ -130,7 +130,7 @@ BOOST_AUTO_TEST_CASE(radii_are_smaller_by_what_voxels_add)
   correct_voxel_size(1, Voxel_size_options(), tree);
   BOOST_CHECK_CLOSE(tree.nodes[2].radius, 1.0, 1e-9);
   BOOST_CHECK_CLOSE(tree.nodes[3].radius, 10.0, 1e-9);
-  for (std::size_t k = 0; k < 2; ++k) // never next to nothing
+  for (std::size_t k = 0; k < 2; ++k) // radii remain well above zero
     BOOST_CHECK_CLOSE(tree.nodes[k].radius, 0.6 * found.nodes[k].radius, 1e-9);
   for (const Branch_node& node : tree.nodes)
     BOOST_CHECK_CLOSE(node.major_radius * node.minor_radius, node.radius * node.radius, 1e-9);
@@ -147,7 +147,7 @@ BOOST_AUTO_TEST_CASE(a_tree_of_voxels_has_the_volume_of_its_scan)
     {
       pcs_test::check_is_a_tree(tree);
       BOOST_CHECK_CLOSE(report.voxel_size, size, 0.01);
-      BOOST_CHECK_LT(std::abs(report.total.volume / volume - 1), 0.03); // 14 % at 2 cm without
+      BOOST_CHECK_LT(std::abs(report.total.volume / volume - 1), 0.03); // uncorrected: 14 % at 2 cm
       const auto sentences = pcs::warnings(report);
       BOOST_REQUIRE_EQUAL(sentences.size(), 1u);
       BOOST_CHECK_NE(sentences[0].find("voxel centers of size"), std::string::npos);

@@ -31,7 +31,7 @@ namespace {
 
 constexpr double stem_radius = 0.1, branch_radius = 0.03;
 
-/// Adds points at random on a tube without ends.
+/// Adds random points on a tube without ends.
 void add_tube(const Vec3& from, const Vec3& to, double radius, std::vector<Vec3>& points)
 {
   std::mt19937 random(3);
@@ -45,7 +45,7 @@ void add_tube(const Vec3& from, const Vec3& to, double radius, std::vector<Vec3>
   }
 }
 
-/// A stem upwards and a branch to one side, whose given nodes are on their axes.
+/// A vertical stem and a branch to one side, with given nodes on their axes.
 struct Measured
 {
   Scan scan;
@@ -70,11 +70,11 @@ struct Measured
     tree = measure_given(scan, is_used, given, found, Given_skeleton_options());
   }
 
-  /// In the coordinates of the input.
+  /// Position in the coordinates of the input.
   Vec3 place(const Vec3& local) const { return scan.frame.to_input(local); }
   double radius(const Branch_node& node) const { return scan.frame.unit * node.radius; }
 
-  /// A tree of one branch from one place to another.
+  /// A tree of one straight branch between two points.
   Branch_tree found_branch(const Vec3& from, const Vec3& to, double radius_of_branch) const
   {
     Branch_tree found;
@@ -86,7 +86,7 @@ struct Measured
     return found;
   }
 
-  /// The largest difference of the radii of the stem from one, as a share of that.
+  /// The largest relative deviation of the radii of the stem from `wanted`.
   double worst_of_stem(double wanted) const
   {
     double worst = 0;
@@ -128,7 +128,7 @@ BOOST_AUTO_TEST_CASE(places_stay_and_radii_are_those_of_the_points_around)
     BOOST_TEST(std::any_of(m.tree.nodes.begin(), m.tree.nodes.end(), [&](const Branch_node& node) {
       return (m.place(node.point) - p).norm() < 1e-6;
     }));
-  for (std::size_t i = 0; i < m.scan.size(); ++i) { // a point is on the edge that it is near to
+  for (std::size_t i = 0; i < m.scan.size(); ++i) { // points belong to their nearest edge
     const Vec3 p = m.place(m.scan.points[i]);
     if (std::abs(p.x()) > 0.2) {
       BOOST_TEST_REQUIRE(m.tree.node_of_point[i] != none);
@@ -150,7 +150,7 @@ BOOST_AUTO_TEST_CASE(the_base_of_a_branch_is_as_thick_as_what_leaves_the_parent)
   BOOST_TEST((m.place(m.tree.nodes[nodes[0]].point) - Vec3(0, 0, 1)).norm() < 1e-6);
   const Branch_node& first = m.tree.nodes[nodes[3]]; // outside
   BOOST_TEST(first.is_measured);
-  for (int k = 0; k < 3; ++k) { // what is near them is the stem
+  for (int k = 0; k < 3; ++k) { // their nearest points belong to the stem
     BOOST_TEST(m.tree.nodes[nodes[k]].radius == first.radius);
     BOOST_TEST(!m.tree.nodes[nodes[k]].is_measured);
   }

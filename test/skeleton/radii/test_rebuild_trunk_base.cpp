@@ -34,7 +34,7 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// A trunk that tapers, with walls that run out from it below `top`.
+/// A tapered trunk with buttresses below `top`.
 struct Buttressed_trunk
 {
   double height = 14, radius = 0.3, top = 2.6, reach = 0.7;
@@ -69,7 +69,7 @@ struct Buttressed_trunk
     return sum;
   }
 
-  /// Points at about `step` from each other.
+  /// Points with a spacing of about `step`.
   Cloud points(double step, double noise) const
   {
     std::mt19937 random(3);
@@ -94,7 +94,7 @@ struct Buttressed_trunk
   }
 };
 
-/// Tubes that rise from the axis of a trunk, seen outside of it.
+/// Tubes that rise from the axis of a trunk, sampled outside of it.
 void add_limbs(int count,
                double z,
                double inner,
@@ -141,7 +141,7 @@ std::vector<Trunk> trunks_of_copies(const Cloud& cloud, unsigned copies)
   return trunks;
 }
 
-/// One branch of `n` measured nodes upwards.
+/// One upward branch of `n` measured nodes.
 template <class Radius, class Error>
 pcs::skeleton::Branch_tree
 standing_branch(pcs::skeleton::Index n, double step, const Radius& radius_at, const Error& error_at)
@@ -167,7 +167,7 @@ standing_branch(pcs::skeleton::Index n, double step, const Radius& radius_at, co
 
 BOOST_AUTO_TEST_SUITE(trunk_base)
 
-// Chance pieces of a foot have all of the root.
+// Spurious pieces of a foot contain all root points.
 BOOST_AUTO_TEST_CASE(the_root_is_of_the_trunk_and_not_of_a_piece_beside_it)
 {
   using namespace pcs::skeleton;
@@ -229,7 +229,7 @@ BOOST_AUTO_TEST_CASE(a_filled_foot_does_not_bound_what_is_proven_above)
     Scan scan;
     scan.spacing = 0.1 * radius;
     Support_options rules;
-    rules.pipes.slack = 0; // no limit of that kind
+    rules.pipes.slack = 0; // without this limit
     bound_radii(scan, support, density, rules, tree);
     return tree;
   };
@@ -238,7 +238,7 @@ BOOST_AUTO_TEST_CASE(a_filled_foot_does_not_bound_what_is_proven_above)
     BOOST_TEST(foot.nodes[k].radius == radius);
     BOOST_TEST(bush.nodes[k].radius < 0.5 * radius);
   }
-  // a few thin sections do not bound a hollow trunk, either, of which no section is proven
+  // Few thin sections do not bound a hollow trunk without proven sections.
   const Branch_tree hollow = bounded(0, 0.2);
   for (Index k = 4; k < 60; ++k)
     BOOST_TEST(hollow.nodes[k].radius == radius);
@@ -248,7 +248,7 @@ BOOST_AUTO_TEST_CASE(half_a_trunk_that_is_hidden_is_proven_by_precise_radii)
 {
   using namespace pcs::skeleton;
   constexpr double step = 0.1, radius = 0.1, density = 1000;
-  // of a limb behind a thin piece of a trunk, with a third of the points
+  // Radius of a limb behind a thin piece of a trunk, with a third of the points.
   const auto limb_radius = [&](double trunk, double error) {
     const auto radius_at = [&](Index k) { return k < 20 ? trunk : k < 40 ? 0.1 * radius : radius; };
     Branch_tree tree = standing_branch(60, step, radius_at, [&](Index k) {
@@ -266,13 +266,13 @@ BOOST_AUTO_TEST_CASE(half_a_trunk_that_is_hidden_is_proven_by_precise_radii)
   };
   BOOST_TEST(limb_radius(1.2 * radius, 0.02) == radius);
   BOOST_TEST(limb_radius(1.2 * radius, 0.06) < 0.5 * radius);
-  BOOST_TEST(limb_radius(0.5 * radius, 0.02) < 0.5 * radius); // nothing is as thick below
+  BOOST_TEST(limb_radius(0.5 * radius, 0.02) < 0.5 * radius); // no section below is as thick
 }
 
 BOOST_AUTO_TEST_CASE(an_outline_has_the_area_of_its_circle)
 {
   pcs::skeleton::internal::Outline outline;
-  for (int i = 0; i < 700; ++i) { // a quarter is not seen
+  for (int i = 0; i < 700; ++i) { // a quarter is occluded
     const double angle = 1.5 * pi * i / 700;
     outline.add(2 * std::cos(angle), 2 * std::sin(angle));
   }

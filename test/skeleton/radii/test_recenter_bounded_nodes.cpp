@@ -23,8 +23,8 @@ constexpr double radius = 0.01, fitted = 0.03, noise = 0.001;
 
 /*!
   A branch along x about the line z = 0, seen from below over an arc of +-`half_arc` radians. Its
-  axis lies higher, where a circle of radius `fitted` through the lowest points has its center; its
-  radius was bounded. A twig sits on it.
+  axis lies higher, at the center of a circle of radius `fitted` through the lowest points, and its
+  radius was bounded. A twig is attached to it.
 */
 struct Bounded_branch
 {
@@ -65,7 +65,7 @@ BOOST_AUTO_TEST_CASE(an_axis_behind_its_points_goes_to_them)
   const std::size_t moved =
       recenter_bounded_nodes(b.scan, b.before, noise, Recentering_options(), b.tree);
   BOOST_TEST(moved == 20u);         // all but the root
-  for (Index v = 4; v <= 20; ++v) { // the root stays, which turns the direction of the first ones
+  for (Index v = 4; v <= 20; ++v) { // the fixed root changes the direction of the first nodes
     BOOST_TEST(std::abs(b.tree.nodes[v].point.z()) < 0.1 * radius);
     BOOST_TEST(std::abs(b.tree.nodes[v].point.y()) < 1e-9);
     BOOST_TEST(b.tree.nodes[v].radius == radius);

@@ -28,15 +28,15 @@ namespace {
 
 constexpr double noise = 0.002, radius = 0.05;
 
-/// Branches in all directions, each seen by stations around them from their own sides.
+/// Branches in all directions, each seen by the surrounding stations from different sides.
 struct Scene
 {
   Scan scan;
   Axis_set axes;
   std::vector<Index> station;
-  std::vector<Rigid_motion> moved; ///< what was done to the points of each station
+  std::vector<Rigid_motion> moved; ///< motion applied to the points of each station
 
-  /// `share` of the points of each station are kept; they were moved by `motions`.
+  /// Keeps the fraction `share` of the points of each station, and moves them by `motions`.
   Scene(const std::vector<Rigid_motion>& motions, const std::vector<double>& share) : moved(motions)
   {
     std::mt19937 random(7);
@@ -77,8 +77,8 @@ struct Scene
                                                 Station_alignment_options());
   }
 
-  /// Root mean square of how much farther from where they were points of two stations are than
-  /// those of the first one, after the motions `back`.
+  /// RMS displacement of the points of all other stations relative to the first one, after the
+  /// motions `back`.
   double apart(const std::vector<Rigid_motion>& back) const
   {
     double sum = 0;
@@ -119,7 +119,7 @@ BOOST_AUTO_TEST_CASE(known_motions_are_found_again)
   const double before = scene.apart(std::vector<Rigid_motion>(3));
   BOOST_TEST(before > 2 * noise);
   BOOST_TEST(scene.apart(found.motions) < 0.1 * before);
-  BOOST_TEST(found.error < 0.1 * found.size); // and it is known that they are found
+  BOOST_TEST(found.error < 0.1 * found.size); // the estimated error confirms it
 }
 
 BOOST_AUTO_TEST_CASE(stations_that_agree_stay_where_they_are)
@@ -170,7 +170,7 @@ BOOST_AUTO_TEST_CASE(nothing_moves_where_nothing_can_tell)
   };
   BOOST_TEST(stays(Scene({some_motions[0]}, {1}), 1)); // there is no other station
   BOOST_TEST(stays(Scene(some_motions, {0, 0, 0}), 3));
-  Scene thin(some_motions, all); // for its noise
+  Scene thin(some_motions, all); // too few points for its noise
   thin.axes.noise = radius;
   BOOST_TEST(stays(thin, 3));
   Scene unknown(some_motions, all);

@@ -46,7 +46,7 @@ struct Found
   {
   }
 
-  /// How far the station is from the nearest one that was found [m].
+  /// Distance of the station from the nearest detected one [m].
   double away(const Vec3& station) const
   {
     double best = std::numeric_limits<double>::infinity();
@@ -158,7 +158,7 @@ BOOST_AUTO_TEST_CASE(thinned_and_rounded_scans_keep_their_grids)
   std::mt19937 random(1);
   for (const Vec3& p : positions(scan))
     if (random() % 3 == 0) {
-      const Vec3 q = 2000 * p; // half millimetres
+      const Vec3 q = 2000 * p; // in half millimetres
       points.push_back(Vec3(std::round(q.x()), std::round(q.y()), std::round(q.z())) / 2000);
     }
   BOOST_CHECK_EQUAL(Found(points).grids.size(), 2u);
@@ -170,7 +170,7 @@ BOOST_AUTO_TEST_CASE(other_clouds_have_no_stations)
   std::vector<Vec3> stem, jittered, voxels, few;
   for (const auto& p : jitter(pcs_test::cylinder(20000, 0.1, 3)))
     stem.push_back(vec3(p));
-  pcs_test::Jitter wide(0.02); // in all directions: nothing is left of the beams
+  pcs_test::Jitter wide(0.02); // in all directions: no beam grid remains
   for (const auto& p : wide(scan_from(4, 0.1 * degree).points))
     jittered.push_back(vec3(p));
   for (const Vec3& p : stem)

@@ -38,7 +38,7 @@ BOOST_AUTO_TEST_SUITE(sizes_of_trees)
 
 BOOST_AUTO_TEST_CASE(a_taper_has_the_diameter_of_the_place)
 {
-  // of many nodes, of two, leaning, and with its tip just above
+  // Trunks of many nodes, of two nodes, leaning, and with the tip just above breast height.
   for (const std::size_t steps : {200u, 7u, 1u})
     for (const Vec3& tip : {Vec3(0, 0, 4), Vec3(3, 0, 4), Vec3(0, 0, 1.35), Vec3(0, 0, 1.31)}) {
       const double share = 1.3 / tip.z();
@@ -62,7 +62,7 @@ BOOST_AUTO_TEST_CASE(bark_is_smoothed_and_what_is_far_does_not_count)
       tree.nodes[k].radius = 1;
   BOOST_TEST(std::abs(diameter_of(tree) - d) < 1e-9);
   for (std::size_t k = 110; k <= 150; ++k)
-    tree.nodes[k].radius = k < 125 ? 1 : 0.01; // a line would be negative up there
+    tree.nodes[k].radius = k < 125 ? 1 : 0.01; // extrapolation of a line would be negative
   BOOST_TEST(diameter_of(tree) >= 0.02);
 }
 
@@ -73,7 +73,7 @@ BOOST_AUTO_TEST_CASE(branches_of_the_trunk_do_not_count)
                        12,
                        pcs_test::straight_axis(Vec3(0.2, 0, 1.2), Vec3(1, 0, 1.6), 8, 0.3, 0.3));
   BOOST_TEST(std::abs(diameter_of(tree) - 0.2) < 1e-9);
-  // a trunk that is lost below: the thickest branch there
+  // A trunk that is missing below: the thickest branch at this height is used.
   Branch_tree low = trunk_to(Vec3(0, 0, 1), 10, 0.1, 0.1);
   for (const double r : {0.03, 0.05, 0.04})
     pcs_test::add_branch(low,
@@ -87,7 +87,7 @@ BOOST_AUTO_TEST_CASE(a_tree_that_forks_below_breast_height_has_several_stems)
 {
   Branch_tree tree = trunk_to(Vec3(0, 0, 0.8), 8, 0.15, 0.15);
   const double radii[] = {0.08, 0.1, 0.09, 0.05};
-  for (const double r : radii) // the last is a limb
+  for (const double r : radii) // the last one is a limb
     pcs_test::add_branch(tree,
                          8,
                          pcs_test::straight_axis(Vec3(r, 0, 0.8), Vec3(10 * r, 0, 6), 20, r, r));
@@ -98,7 +98,7 @@ BOOST_AUTO_TEST_CASE(a_tree_that_forks_below_breast_height_has_several_stems)
   BOOST_TEST(std::abs(report.stem_diameters[1] - 0.18) < 1e-9);
   BOOST_TEST(std::abs(report.stem_diameters[2] - 0.16) < 1e-9);
   BOOST_TEST(report.diameter_at_breast_height == report.stem_diameters[0]);
-  // a single trunk has one stem, whatever thick branch hangs down to breast height
+  // A single trunk has one stem, even if a thick branch hangs down to breast height.
   pcs::Skeleton_report single;
   report_sizes(trunk_to(Vec3(0, 0, 4), 40, 0.1, 0.1), 1, Vec3::UnitZ(), 1.3, single);
   BOOST_TEST(single.stem_diameters.size() == 1u);
@@ -133,7 +133,7 @@ BOOST_AUTO_TEST_CASE(implausible_results_say_so)
   pcs::Skeleton_report report = plausible_tree();
   BOOST_TEST(pcs::warnings(report).empty());
   report.root_elevation = 1;
-  BOOST_TEST(pcs::warnings(report).empty()); // a tenth of what is seen is usual on slopes
+  BOOST_TEST(pcs::warnings(report).empty()); // occlusion of a tenth is usual on slopes
   report.root_elevation = 4.6;
   BOOST_TEST(warns_of(report, "the root is 4.6 above the lowest points"));
   report = plausible_tree();
@@ -146,7 +146,7 @@ BOOST_AUTO_TEST_CASE(implausible_results_say_so)
   BOOST_TEST(warns_of(report, "rounded to steps of 0.5; branches"));
   report.is_single_precision = true;
   BOOST_TEST(warns_of(report, "32-bit floating-point"));
-  report.voxel_size = 0.5; // is the cause then
+  report.voxel_size = 0.5; // reported as the cause
   BOOST_TEST(!warns_of(report, "32-bit floating-point"));
 }
 
@@ -159,7 +159,7 @@ BOOST_AUTO_TEST_CASE(reach_is_the_way_to_the_farthest_node)
   }
 }
 
-// A trunk that winds over a ball is long for its diameter, and so is what fills the ball.
+// A trunk that winds over a ball is too long for its diameter, as is a path that fills the ball.
 BOOST_AUTO_TEST_CASE(wood_that_fills_the_space_is_doubted_and_no_tree)
 {
   pcs::Skeleton_report report;

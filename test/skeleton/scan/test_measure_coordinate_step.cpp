@@ -63,7 +63,7 @@ BOOST_AUTO_TEST_CASE(single_precision_far_from_the_origin_is_named)
   const auto points = rounded(cylinder(30000, Vec3(592783, 5715588.3, 248)),
                               [](double x) { return double(float(x)); });
   const Coordinate_step found = measure_coordinate_step(points);
-  BOOST_TEST(found.step == 0.5); // of numbers from 2^22 to 2^23
+  BOOST_TEST(found.step == 0.5); // numbers from 2^22 to 2^23
   BOOST_TEST(found.is_single_precision);
 }
 

@@ -62,7 +62,7 @@ double mean_radius(const Scan& scan)
 
 BOOST_AUTO_TEST_SUITE(dense_points)
 
-// the spacing is 0.8 and 0.4 times the noise
+// The spacing is 0.8 and 0.4 times the noise.
 BOOST_AUTO_TEST_CASE(denser_scans_have_the_same_points_and_the_same_radius)
 {
   Scan dense, denser;
@@ -82,7 +82,7 @@ BOOST_AUTO_TEST_CASE(coarse_scans_are_not_thinned)
   BOOST_TEST(scan.cell_side == 0);
 }
 
-// a coarse scan twice, the second time with other rounding
+// A coarse scan twice, the second time with different rounding.
 BOOST_AUTO_TEST_CASE(copies_do_not_make_a_scan_dense)
 {
   std::vector<Vec3> points = cylinder(4000);
@@ -107,7 +107,7 @@ BOOST_AUTO_TEST_CASE(every_input_point_keeps_its_position_and_label)
     differ += merged >= 0 && merged != is_wood[i];
     merged = is_wood[i];
     moved += (scan.frame.to_input(scan.position_of_input(i)) - points[i]).norm() > 1e-6;
-    // a cell is merged at most with the fullest of its neighbours, and that with its own
+    // A cell is merged at most with the fullest of its neighbours, and this one with its own.
     moved += (scan.position_of_input(i) - scan.points[scan.point_of_input[i]]).norm() >
              6 * scan.cell_side;
   }
@@ -115,7 +115,7 @@ BOOST_AUTO_TEST_CASE(every_input_point_keeps_its_position_and_label)
   BOOST_TEST(moved == 0u);
 }
 
-// a single point within a dense cloud is no wood, and is kept as an outlier
+// A single point within a dense cloud is not wood, and is kept as an outlier.
 BOOST_AUTO_TEST_CASE(single_points_beside_dense_wood_are_outliers)
 {
   std::vector<Vec3> points = cylinder(200000);

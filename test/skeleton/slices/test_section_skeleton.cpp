@@ -30,7 +30,7 @@ using pcs::skeleton::Vec2;
 using pcs::skeleton::Vec3;
 constexpr double pi = 3.14159265358979323846;
 
-/// Points on an arc of an ellipse, turned by 0.5 and moved.
+/// Points on an arc of an ellipse, rotated by 0.5 rad and shifted.
 std::vector<Vec2> arc(double a, double b, double turn, std::size_t n, double noise)
 {
   std::mt19937 random(3);
@@ -220,8 +220,8 @@ BOOST_AUTO_TEST_CASE(a_wrong_start_finds_the_axis_of_half_a_tube)
   }
 }
 
-// Seven points about a twig that is much thinner than the noise: without the curvature of the
-// distances the steps swing from one side of the points to the other.
+// Seven points of a twig that is much thinner than the noise. Without the curvature of the
+// distances, the steps oscillate between the sides of the points.
 BOOST_AUTO_TEST_CASE(fits_of_thin_twigs_settle)
 {
   constexpr double noise = 0.003;
@@ -248,8 +248,8 @@ BOOST_AUTO_TEST_CASE(fits_of_thin_twigs_settle)
   }
 }
 
-// The front of a twig: an axis in the middle of its points stays there unless the fit knows on
-// which side they lie.
+// The front of a twig. An axis in the middle of its points remains there unless the fit has the
+// side on which the points lie.
 BOOST_AUTO_TEST_CASE(the_side_of_the_points_finds_the_axis_behind_them)
 {
   namespace sk = pcs::skeleton;
@@ -293,7 +293,7 @@ BOOST_AUTO_TEST_CASE(a_radius_at_its_lowest_value_does_not_change)
     axis[k].radius = 0.01;
   }
   pcs::skeleton::Axis_fit fit(axis, pcs::skeleton::Fit_model::of(spacing, noise));
-  const std::vector<Vec3> points = tube(1e-4, 0.5, 200); // thinner than any axis may be
+  const std::vector<Vec3> points = tube(1e-4, 0.5, 200); // thinner than the minimum radius of axes
   fit.set_points(points, std::vector<pcs::skeleton::Index>(points.size(), 0));
   fit.project();
   for (int k = 0; k < 10; ++k)
@@ -306,8 +306,8 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(section_counts)
 
-// A branch of radius 0.03 from the axis of a stem of radius 0.1; what lies on the stem is the
-// stem's.
+// A branch of radius 0.03 from the axis of a stem of radius 0.1. Points on the stem belong to the
+// stem.
 BOOST_AUTO_TEST_CASE(radii_are_counted_where_the_parent_hides_a_part)
 {
   namespace sk = pcs::skeleton;
@@ -388,7 +388,7 @@ BOOST_AUTO_TEST_CASE(the_way_of_the_dissertation_runs_from_end_to_end)
     farthest = std::max(farthest, tree[v].point.x());
     thinnest = std::min(thinnest, tree[v].radius);
   }
-  BOOST_CHECK_GT(farthest, 0.5); // the sparse part is there
+  BOOST_CHECK_GT(farthest, 0.5); // the sparse part is included
   BOOST_CHECK_LT(thinnest, 0.05);
 }
 
