@@ -47,7 +47,7 @@ Lane_vectors numbers(double first)
   return v;
 }
 
-/// What element `i` holds once the second block of zeros has been written.
+/// Expected value of element `i` after the second block of zeros has been written.
 template <class Triple>
 Triple expected(std::size_t i, double first)
 {
@@ -84,7 +84,7 @@ bool can_stream(Range& range, const Parameters& np)
   return Point_access<Range, Parameters>(range, np).can_stream();
 }
 
-/// Counts what is put: that must not be passed by.
+/// Property map that counts its calls of put(), which streaming must not bypass.
 struct Counting_map
 {
   using key_type = Point;
@@ -153,7 +153,7 @@ BOOST_AUTO_TEST_CASE(what_does_not_lie_in_a_row_is_left_alone)
   for (const Pair& p : chunks)
     BOOST_TEST((p == zeros));
 
-  // Eight bytes off what the instruction wants.
+  // Misaligned by eight bytes for the instruction.
   std::vector<Point> points(n + 1, Point(0, 0, 0));
   auto odd = boost::make_iterator_range(points.begin() + 1, points.end());
   BOOST_TEST(!stream_second_block(odd, parameters::all_default()));
@@ -167,7 +167,7 @@ BOOST_AUTO_TEST_CASE(what_are_not_three_doubles_in_memory_is_left_alone)
   std::vector<Float_point> floats(n, Float_point(0, 0, 0));
   BOOST_TEST(!stream_second_block(floats, parameters::all_default()));
   std::vector<Eigen::Vector3d> vectors(n,
-                                       Eigen::Vector3d::Zero()); // copies by a function of its own
+                                       Eigen::Vector3d::Zero()); // has its own copy function
   BOOST_TEST(!stream_second_block(vectors, parameters::all_default()));
   std::vector<Point> points(n, Point(0, 0, 0));
   int count = 0;
@@ -182,7 +182,7 @@ BOOST_AUTO_TEST_CASE(only_what_no_cache_keeps_is_streamed)
   BOOST_TEST(!can_stream(points, parameters::all_default()));
   points.resize(size + 1, zeros.first);
   BOOST_TEST(can_stream(points, parameters::all_default()) == pcs::internal::has_streaming_stores);
-  // Who declines every block must not promise to take them: their memory would not be asked for.
+  // A range that rejects every block must report that it cannot stream.
   std::vector<Coloured> coloured(size, Coloured(zeros.first, zeros.second, 0));
   BOOST_TEST(!can_stream(coloured, coloured_maps));
 }

@@ -56,7 +56,7 @@ struct Sampled
   }
 };
 
-/// Weights are in [0, 1], sum to one; samples differ; unused places come last.
+/// Weights are in [0, 1] and sum to one, samples are distinct, and unused entries are last.
 void check_rows(const Sample_links& links, std::size_t n)
 {
   BOOST_REQUIRE(links.sample.size() == n * links.k);
@@ -155,7 +155,7 @@ BOOST_AUTO_TEST_CASE(the_nearest_of_the_two_rings_move_a_point)
               error = std::max(error, std::abs(weights[t] - double(links.weight[i * k + b])));
           }
         }
-        // whole steps of 16 bits; the nearest sample takes what rounding leaves
+        // 16-bit integers; the nearest sample takes the rounding error
         BOOST_TEST(error < 0.51 * double(k) / 65535);
       }
 }
@@ -186,7 +186,8 @@ BOOST_AUTO_TEST_CASE(no_sample_with_fewer_hops_is_left_out)
       for (const auto& h : hops)
         all.push_back(h[i]);
       std::sort(all.begin(), all.end());
-      // k + 1 samples arrive first; the farthest of them in space only ends the support
+      // The first k + 1 samples are candidates; the spatially farthest of them only limits the
+      // support.
       for (std::size_t b = 0; b < k; ++b)
         faults += hops[links.sample[i * k + b]][i] > all[k] ? 1 : 0;
     }
@@ -204,13 +205,13 @@ BOOST_AUTO_TEST_CASE(a_sample_is_moved_by_itself_alone_or_nearly_so)
   }
   const auto compact = s.by_regions(6, Sample_weights::compact);
   for (std::size_t t = 0; t < s.samples.size(); ++t)
-    BOOST_TEST(compact.sample[s.samples[t] * 6] == t); // the nearest comes first
+    BOOST_TEST(compact.sample[s.samples[t] * 6] == t); // the nearest sample is first
 }
 
 BOOST_AUTO_TEST_CASE(compact_weights_are_continuous_and_the_texts_jump)
 {
-  // A cloud of four times the density: between neighbours, a continuous function changes by a
-  // quarter.
+  // For a cloud of four times the density, a continuous function changes by a quarter between
+  // neighbours.
   double compact[2], inverse[2];
   for (int level = 0; level < 2; ++level) {
     const int n = level == 0 ? 60 : 240;

@@ -20,7 +20,7 @@ using pcs_test::Points;
 using pcs_test::Vec3;
 using Tag = CGAL::Sequential_tag;
 
-/// Steps of an edge as documented: its length in 64ths of the mean, at least one, at most 4096.
+/// Documented length of an edge in integer steps: its length in 64ths of the mean, from 1 to 4096.
 std::uint64_t steps(double length, double scale)
 {
   return static_cast<std::uint64_t>(std::min(4096.0, std::max(1.0, std::round(scale * length))));
@@ -63,7 +63,7 @@ void check_against_dijkstra(const Points& unordered, std::size_t count)
   for (std::size_t s = 0; s < samples.size(); ++s) {
     const auto distance = distances_from(samples[s], points, graph, scale);
     for (std::size_t i = 0; i < points.size(); ++i)
-      if (distance[i] < best[i]) { // ties stay with the smaller number
+      if (distance[i] < best[i]) { // ties select the smaller index
         best[i] = distance[i];
         expected[i] = static_cast<std::uint32_t>(s);
       }
@@ -116,14 +116,14 @@ BOOST_AUTO_TEST_SUITE(Sample_regions)
 BOOST_AUTO_TEST_CASE(regions_are_those_of_dijkstra)
 {
   check_against_dijkstra(pcs_test::random_points(1500, 1), 40);
-  check_against_dijkstra(pcs_test::plate(40, 40, 0.1), 60); // ties everywhere
+  check_against_dijkstra(pcs_test::plate(40, 40, 0.1), 60); // many ties
   check_against_dijkstra(pcs_test::sheets(30, 20, 5, true), 50);
 }
 
 BOOST_AUTO_TEST_CASE(edges_longer_than_the_largest_step_still_lead_on)
 {
   Points points = pcs_test::random_points(1000, 2);
-  for (int i = 1; i < 10; ++i) // further and further out: thousands of mean edges
+  for (int i = 1; i < 10; ++i) // increasing distances: thousands of mean edges
     points.push_back(Vec3(10.0 * i * i * i, 0, 0));
   check_against_dijkstra(points, 20);
 }

@@ -69,10 +69,10 @@ BOOST_AUTO_TEST_CASE(the_order_of_the_neighbors_does_not_matter)
 BOOST_AUTO_TEST_CASE(far_neighbors_and_those_at_a_corner_have_no_side)
 {
   std::vector<Vec2> points = ring(4, 1);
-  const Vec2 diagonal = points[0] + points[1]; // its bisector runs through a corner
+  const Vec2 diagonal = points[0] + points[1]; // its bisector passes through a corner
   points.push_back(diagonal);
   points.emplace_back(5, 5);
-  points.push_back(points[2]); // twice the same
+  points.push_back(points[2]); // a duplicate
   const auto length = sides(points);
   BOOST_TEST(length.size() == 4u);
   for (const auto& [index, l] : length)
@@ -81,7 +81,7 @@ BOOST_AUTO_TEST_CASE(far_neighbors_and_those_at_a_corner_have_no_side)
 
 BOOST_AUTO_TEST_CASE(beside_an_open_side_half_a_side_remains)
 {
-  // The border of a sheet: nothing below.
+  // The border of a sheet, without neighbours below.
   const std::vector<Vec2> points{{1, 0}, {0, 1}, {-1, 0}};
   const auto length = sides(points);
   BOOST_TEST(std::abs(length.at(0) - 0.5) < 1e-12);

@@ -109,7 +109,7 @@ BOOST_AUTO_TEST_CASE(links_are_symmetric_positive_and_join_opposite_sides)
     BOOST_REQUIRE((weight.at({pair.second, pair.first}) == w));
     BOOST_REQUIRE((std::isfinite(w) && w > 0));
     const Vec3 d = network.rest[pair.first] - network.rest[pair.second];
-    BOOST_REQUIRE(d.norm() > 0.5); // never along the surface
+    BOOST_REQUIRE(d.norm() > 0.5); // not along the surface
   }
 }
 
@@ -156,18 +156,17 @@ BOOST_AUTO_TEST_CASE(degenerate_clouds_get_none_and_no_harm)
   BOOST_TEST(links_of(line).size() == 0u);
   BOOST_TEST(links_of(Points{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}).size() == 0u);
   BOOST_TEST(links_of(Points{Vec3(0, 0, 0)}).size() == 0u);
-  for (const double w :
-       links_of(random).weight) // a filled cube has no surface: whatever, but finite
+  for (const double w : links_of(random).weight) // a filled cube has no surface: any finite weights
     BOOST_REQUIRE((std::isfinite(w) && w > 0));
   Points outlier = pcs_test::box(6, 6, 18, 1. / 6);
-  outlier.push_back(Vec3(1e6, 1e6, 1e6)); // the rays must not walk there step by step
+  outlier.push_back(Vec3(1e6, 1e6, 1e6)); // the rays must not traverse this distance step by step
   static_cast<void>(links_of(outlier));
 }
 
 BOOST_AUTO_TEST_CASE(rounding_does_not_choose_the_links)
 {
-  // On a regular box rays from the edges pass equally near to two nodes; a shifted or scaled copy,
-  // whose coordinates are rounded differently, must make the same choice.
+  // On a regular box, rays from the edges pass two nodes at equal distances. A shifted or scaled
+  // copy has differently rounded coordinates and must give the same choice.
   const Points points = pcs_test::box(6, 6, 24, 1. / 6);
   const auto network = pcs_test::network_of(points);
   const auto expected = links_of(network);

@@ -16,7 +16,7 @@ namespace {
 using pcs_test::Points;
 using pcs_test::Vec3;
 
-/// The number of samples is right, and they increase.
+/// Checks the number of samples and their ascending order.
 std::vector<std::uint32_t> checked_samples(const Points& ordered, std::size_t count)
 {
   auto samples = pcs::deformation::octree_samples(ordered, count);
@@ -109,7 +109,7 @@ BOOST_AUTO_TEST_CASE(a_shifted_grid_has_the_shifted_samples)
   const Points a = pcs_test::in_spatial_order(pcs_test::box(9, 9, 31, 1. / 9));
   Points shifted;
   for (const Vec3& p : a)
-    shifted.push_back((p + shift) - shift); // with the rounding that a shift brings
+    shifted.push_back((p + shift) - shift); // with the rounding errors of a shift
   const Points b = pcs_test::in_spatial_order(shifted);
   for (const std::size_t count : {50u, 200u, 700u})
     BOOST_TEST(pcs_test::largest_distance(pcs_test::permuted(a, checked_samples(a, count)),

@@ -37,8 +37,8 @@ Weighted_graph weights(const Points& points)
   return pcs::deformation::voronoi_graph<Tag>(points, proximity(points));
 }
 
-/// Uniform random points on a square of side `size`, one for each unit of area; as a cylinder of
-/// radius `radius`, if positive.
+/// Uniform random points on a square of side `size`, one per unit of area, or on a cylinder of
+/// radius `radius` if this is positive.
 Points random_sheet(double size, double radius = 0, unsigned seed = 1)
 {
   std::mt19937 random(seed);
@@ -165,7 +165,7 @@ BOOST_AUTO_TEST_CASE(halves_of_an_edge_agree)
 
 BOOST_AUTO_TEST_CASE(gaps_are_not_bridged)
 {
-  // A sheet with a slit, joined at one end: nothing crosses it away from that end.
+  // A sheet with a slit, joined at one end. No link crosses the slit far from that end.
   Points points;
   std::mt19937 random(5);
   std::uniform_real_distribution<double> jitter(-0.2, 0.2);

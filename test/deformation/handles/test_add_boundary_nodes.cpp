@@ -17,7 +17,7 @@ using pcs_test::Points;
 using pcs_test::Vec3;
 using Tag = CGAL::Sequential_tag;
 
-/// A plate with two handles, at its ends, and samples.
+/// A plate with two handles at its ends, and samples.
 struct Plate
 {
   Points sites;
@@ -65,7 +65,7 @@ struct Plate
   }
 };
 
-/// Largest error of the harmonic x-coordinate at the free nodes, as a share of the length.
+/// Largest error of the harmonic x-coordinate at the free nodes, relative to the length.
 double linear_error(const Elastic_network& network, const Node_constraints& constraints)
 {
   const pcs_test::Harmonic system(network.surface, constraints);

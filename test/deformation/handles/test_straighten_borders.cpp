@@ -58,7 +58,7 @@ BOOST_AUTO_TEST_CASE(on_a_grid_the_border_stays)
   Node_constraints constraints = hold(network.rest, 10);
   Elastic_network result;
   pcs::deformation::straighten_borders(network, constraints, result);
-  for (std::size_t b = network.size(); b < result.size(); ++b) // only where the plate itself ends
+  for (std::size_t b = network.size(); b < result.size(); ++b) // only at the ends of the plate
     BOOST_TEST((result.rest[b].y() < 1.5 || result.rest[b].y() > 27.5));
   constraints = hold(network.rest, 100);
   Elastic_network untouched;
@@ -87,7 +87,7 @@ BOOST_AUTO_TEST_CASE(the_border_runs_along_the_outermost_points)
   BOOST_TEST_REQUIRE(result.size() > n);
   BOOST_TEST_REQUIRE(constraints.handle_of_node.size() == result.size());
 
-  // Where fields are held: on average at the new nodes, nearer to the limit than the handle's own
+  // Mean position of the prescribed border: the new nodes are nearer to the limit than the handle's
   // points.
   double held = 0, count = 0, straight = 0, straight_count = 0;
   for (std::uint32_t i = 0; i < n; ++i) {
@@ -123,8 +123,8 @@ BOOST_AUTO_TEST_CASE(edges_keep_their_slope_and_stay_symmetric)
           result.surface.weight[std::size_t(back - result.surface.neighbor.data())] ==
           result.surface.weight[e]);
     }
-  // A new node lies on an edge to its handle, whose weight it takes over at the length that is
-  // left.
+  // A new node lies on an edge to its handle. It has the weight of this edge for the remaining
+  // length.
   for (std::size_t b = network.size(); b < result.size(); ++b) {
     BOOST_TEST_REQUIRE(result.surface.degree(b) == 1u);
     const std::uint32_t i = *result.surface.begin(b);

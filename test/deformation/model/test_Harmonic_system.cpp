@@ -65,7 +65,7 @@ BOOST_AUTO_TEST_CASE(ranks_of_the_nodes_order_any_choice_of_rows)
   BOOST_TEST(network.rank.empty());
   Node_constraints c;
   c.softness_weight = {0};
-  c.handle_of_node.assign(32, free_node); // two nodes came later
+  c.handle_of_node.assign(32, free_node); // two nodes were added later
   c.handle_of_node[4] = 0;
   const pcs::deformation::Free_rows rows(c);
   auto rank = pcs::deformation::rank_of_rows(network.surface_rank, rows);
@@ -100,7 +100,7 @@ BOOST_AUTO_TEST_CASE(soft_handles_lie_between_free_and_exact)
     c.handle_of_node[0] = 0;
     c.handle_of_node[10] = 1;
     const double end = solve(graph, c, {Vec3::Zero(), Vec3::Ones()})[10].x();
-    // a chain of ten unit springs against one of the weight, on a node of degree one
+    // A chain of ten unit springs in series with one of the weight, on a node of degree one.
     BOOST_TEST(end == weight / (weight + 0.1), boost::test_tools::tolerance(1e-9));
     BOOST_TEST(end > before);
     before = end;

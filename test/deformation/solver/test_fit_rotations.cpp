@@ -68,7 +68,7 @@ struct Fit
   }
 };
 
-/// A graph of `n` nodes, each linked to a few others, in memory of just its size.
+/// A graph of `n` nodes, each linked to a few others, in memory of exactly its size.
 struct Random_graph
 {
   std::size_t n;
@@ -139,7 +139,7 @@ BOOST_AUTO_TEST_CASE(fits_are_steps_of_newton)
   std::vector<Fit> fits;
   for (std::size_t k = 0; k < Rotation_fits::size; ++k) {
     const Quaternion present = random_rotation(random, 3);
-    // Near to a rotation, far from one, or next to nothing.
+    // Near a rotation, far from a rotation, and nearly zero.
     const Matrix noise = random_matrix(random);
     const Matrix exact =
         present.toRotationMatrix() * Vec3(3, 2, k % 4 == 1 ? 0 : 1).asDiagonal().toDenseMatrix();
@@ -149,8 +149,8 @@ BOOST_AUTO_TEST_CASE(fits_are_steps_of_newton)
                     random_rotation(random, 2)});
   }
   fits[5].covariance.setZero();
-  fits[6].covariance = -fits[6].present.toRotationMatrix(); // turned inside out
-  // A saddle whose Hessian has a positive determinant: no step of Newton.
+  fits[6].covariance = -fits[6].present.toRotationMatrix(); // reflected
+  // A saddle whose Hessian has a positive determinant, where a Newton step is invalid.
   Matrix saddle = Vec3(-3, 2, 1).asDiagonal();
   saddle(2, 1) = 0.3;
   saddle(1, 2) = -0.3;
@@ -168,7 +168,7 @@ BOOST_AUTO_TEST_CASE(fits_are_steps_of_newton)
     const auto at = [k](const Rotation_fits& r) {
       return Vec3(r.deviation[0][k], r.deviation[1][k], r.deviation[2][k]);
     };
-    // At half a turn either sign will do.
+    // At half a turn either sign is valid.
     const double difference =
         std::min((at(results[0]) - expected).norm(), (at(results[0]) + expected).norm());
     BOOST_TEST(difference < 1e-12);

@@ -77,8 +77,8 @@ Eigen::Matrix4d right_product(const Quaternion& r)
   return m;
 }
 
-/// Equation (2.1) taken literally: minimise sum w_ij |q_i q_ij - q_j|^2 over the free frames,
-/// handles given.
+/// Literal form of equation (2.1): minimises sum w_ij |q_i q_ij - q_j|^2 over the free frames, with
+/// given handles.
 std::vector<Quaternion> solve_frames(const Weighted_graph& graph,
                                      const Node_constraints& constraints,
                                      const std::vector<Quaternion>& rest,
@@ -177,7 +177,7 @@ BOOST_AUTO_TEST_CASE(about_two_axes_the_field_follows_the_geodesic)
 
 BOOST_AUTO_TEST_CASE(several_large_turns_one_after_another_change_evenly)
 {
-  // 400 degrees about z, then 90 about x: each step along the path turns by about the same angle.
+  // 400 degrees about z, then 90 about x: each step along the path has nearly the same angle.
   const auto graph = pcs_test::path_graph(101);
   const Similarity both = turn(Vec3(90 * degree, 0, 0)) * turn(Vec3(0, 0, 400 * degree));
   const auto q =
@@ -224,11 +224,11 @@ BOOST_AUTO_TEST_CASE(a_soft_handle_turns_its_node_part_of_the_way)
   const auto graph = pcs_test::path_graph(11);
   for (const auto& transforms :
        {std::vector<Similarity>{Similarity(), turn(Vec3(0, 0, 1))},              // one axis
-        std::vector<Similarity>{turn(Vec3(1e-3, 0, 0)), turn(Vec3(0, 0, 1))}}) { // two
+        std::vector<Similarity>{turn(Vec3(1e-3, 0, 0)), turn(Vec3(0, 0, 1))}}) { // two axes
     auto c = path_constraints(11);
     c.softness_weight = {0, 0.1};
     const auto q = field(Rotation_field::geodesic, graph, c, transforms);
-    // ten unit springs against a tenth of the degree, which is one: half way
+    // Ten unit springs and a weight of a tenth of the degree 1: half of the rotation.
     BOOST_TEST(angle_between(q[10], q[0]) == 0.5, boost::test_tools::tolerance(0.02));
   }
 }

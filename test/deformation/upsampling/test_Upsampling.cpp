@@ -37,7 +37,7 @@ Affine_map affine(const Eigen::Matrix3d& a, const Vec3& t)
   return map;
 }
 
-/// What the upsampling calls; what is not given must not be called.
+/// Output functions of the upsampling; the default functions must not be called.
 struct Writer
 {
   using Write = std::function<void(std::size_t, const Vec3&, const Vec3&, const Eigen::Matrix3d&)>;
@@ -83,13 +83,13 @@ struct Setup
       rest.set_normals([&](std::size_t i) { return normals[i]; });
   }
 
-  /// The points and samples, which move by `maps`.
+  /// Points and samples, which are moved by `maps`.
   pcs::deformation::Upsampling::Input input(const std::vector<Affine_map>& maps) const
   {
     return {rest, sample_points, maps};
   }
 
-  /// Maps that turn and shift by up to `size`, differently for every sample.
+  /// Maps that rotate and shift by up to `size`, independently for every sample.
   std::vector<Affine_map> random_maps(double size, unsigned seed) const
   {
     std::mt19937 random(seed);
@@ -101,7 +101,7 @@ struct Setup
     return maps;
   }
 
-  /// How blocks move: all by the samples, unless told otherwise.
+  /// Motion of the blocks: by default all are blended from the samples.
   struct Motions
   {
     std::vector<std::uint8_t> is_blended;
@@ -141,7 +141,7 @@ struct Setup
   }
 };
 
-/// A handle that turns, scales and shifts.
+/// A handle that rotates, scales and shifts.
 pcs::Similarity some_motion(std::size_t h)
 {
   return pcs::rotation(Vec3(1, double(h), 2), 0.4, Vec3(0.1, 0, 0)) *
@@ -183,8 +183,8 @@ BOOST_AUTO_TEST_CASE(points_normals_and_gradients_follow_the_plain_formula)
       normal_error =
           std::max(normal_error, (n[i] - s.normals[i].norm() * expected.normalized()).norm());
     }
-    // Weights are kept in 16 bits: up to five of them off by half a step of 1/65535 each, times the
-    // difference of neighbouring maps, which is up to four sizes here.
+    // Weights have 16 bits: up to five of them have an error of half a step of 1/65535 each. The
+    // error is multiplied by the difference of neighbouring maps, here up to four sizes.
     BOOST_TEST(error < 2.5 / 65535 * 4 * size);
     BOOST_TEST(gradient_error < 2.5 / 65535 * 4 * size);
     BOOST_TEST(normal_error < 1e-3 * size);
@@ -219,7 +219,7 @@ BOOST_AUTO_TEST_CASE(points_around_handles_are_drawn_to_where_these_take_them)
   const Points without = p, normals_without = n;
   const std::vector<Eigen::Matrix3d> gradients_without = s.gradients;
   const pcs::Similarity motions[] = {some_motion(0), some_motion(1)};
-  // The first handle draws the first half of every third block, the second one the point after.
+  // The first handle prescribes the first half of every third block, the second one the next point.
   const auto share = [](std::size_t i) { return i % 24 < 4 ? 0.25 * double(i % 24 + 1) : 0.0; };
   std::vector<std::uint32_t> first(1, 0);
   std::vector<Block_fade> entries;
@@ -283,7 +283,7 @@ BOOST_AUTO_TEST_CASE(blocks_move_with_the_handle_that_holds_them)
   blocks.is_written = {1, 0, 1};
   for (std::size_t b = 0; b < blocks.holder.size(); ++b)
     blocks.holder[b] = static_cast<std::int32_t>(b % 5) + pcs::deformation::still_block;
-  for (std::size_t b = 0; b < blocks.holder.size(); ++b) // no matter where there is a holder
+  for (std::size_t b = 0; b < blocks.holder.size(); ++b) // irrelevant for blocks of one handle
     if (blocks.holder[b] != pcs::deformation::mixed_block)
       blocks.is_blended[b] = 0;
   Points p, n;
@@ -300,7 +300,7 @@ BOOST_AUTO_TEST_CASE(blocks_move_with_the_handle_that_holds_them)
     BOOST_TEST((p[i] - m(s.points[i])).norm() < 1e-15);
     BOOST_TEST((n[i] - m.rotation() * s.normals[i]).norm() < 1e-15);
     BOOST_TEST((s.gradients[i] - m.scale() * m.rotation()).norm() < 1e-15);
-    if (h == 2) // who rests keeps all bits
+    if (h == 2) // points of a resting handle are bit-identical
       BOOST_TEST((p[i] == s.points[i] && n[i] == s.normals[i]));
   }
 }
@@ -359,7 +359,7 @@ BOOST_AUTO_TEST_CASE(points_are_announced_before_they_are_written)
   const auto maps = s.random_maps(1, 2);
   s.upsampling.apply<CGAL::Sequential_tag, false>(s.input(maps), {}, Setup::Motions(s), writer);
   BOOST_TEST(*std::max_element(announced.begin(), announced.end()) == 1);
-  BOOST_TEST(late < n / 5); // the first blocks and the last, which is not whole
+  BOOST_TEST(late < n / 5); // the first blocks, and the incomplete last one
 }
 
 BOOST_AUTO_TEST_CASE(sizes_around_the_block_are_right)

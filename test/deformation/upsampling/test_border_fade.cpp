@@ -24,7 +24,7 @@ using pcs_test::Points;
 using pcs_test::Vec3;
 using Tag = CGAL::Sequential_tag;
 
-/// A cloud of several blocks of the finder, with two handles, and four samples' spacings.
+/// A cloud of several search blocks, with two handles, and the spacings of four samples.
 struct Cloud
 {
   Points sites = pcs_test::in_spatial_order(pcs_test::plate(60, 40, 0.5));
@@ -91,8 +91,8 @@ BOOST_AUTO_TEST_CASE(one_site_and_none_have_no_borders)
   BOOST_TEST(Border_finder(one).find<Tag>(one, inside).empty());
 }
 
-/// What the fades of a site, one after the other, leave of each handle, by handle; the last is what
-/// is left of the samples.
+/// Weights of the handles after all fades of a site, in order of the handles; the last value is the
+/// weight of the samples.
 std::array<double, 3> parts(const std::vector<Border_fade>& fades, std::size_t site)
 {
   std::array<double, 3> part{0, 0, 1};
@@ -105,8 +105,7 @@ std::array<double, 3> parts(const std::vector<Border_fade>& fades, std::size_t s
   return part;
 }
 
-/// Sweeps until nothing changes: distances of all sites to one handle, in spacings; infinite beyond
-/// 1.
+/// Iterates to convergence: distances of all sites to one handle, in spacings; infinite beyond 1.
 std::vector<double> distances(const Cloud& cloud, Node_constraint handle)
 {
   const auto rate = [&](std::size_t i) { return 1 / cloud.spacing[cloud.sample_of_site[i]]; };
@@ -157,7 +156,7 @@ BOOST_AUTO_TEST_CASE(shares_are_those_of_the_distance_to_the_handle)
     largest_error = std::max(largest_error, std::abs(fades[count].weight - std::pow(1 - d, 2)));
     ++count;
   }
-  BOOST_TEST(count == fades.size()); // the bands of the two handles do not meet
+  BOOST_TEST(count == fades.size()); // the bands of the two handles do not overlap
   BOOST_TEST(count > 200u);
   BOOST_TEST(largest_error < 1e-12);
 }
@@ -179,8 +178,8 @@ BOOST_AUTO_TEST_CASE(between_two_handles_the_shares_pass_from_one_to_the_other)
     far += part[2] > 0.3 ? 1 : 0;
     BOOST_TEST(part[0] + part[1] + part[2] == 1, boost::test_tools::tolerance(1e-12));
     BOOST_TEST(*std::min_element(part.begin(), part.end()) >= 0);
-    // All of a handle at its border, and never less than what the handle would get if the other's
-    // part were its.
+    // The weight of a handle is one at its border, and at least its weight with both handles
+    // merged.
     BOOST_TEST(part[0] + part[1] >= std::pow(1 - std::min(a, b), 2) - 1e-12);
     BOOST_TEST(part[a < b ? 0 : 1] >= part[a < b ? 1 : 0]);
     for (auto j = cloud.graph.begin(i); j != cloud.graph.end(i); ++j) {
@@ -194,8 +193,7 @@ BOOST_AUTO_TEST_CASE(between_two_handles_the_shares_pass_from_one_to_the_other)
   }
   BOOST_TEST(shared > 100u);
   BOOST_TEST(far > 10u);
-  // With one handle the slope is 2. The nearest handle only, as if the other were not there, jumps
-  // in the middle.
+  // With one handle the slope is 2. Using only the nearest handle causes a jump in the middle.
   BOOST_TEST(steepest < 2.5);
 }
 
