@@ -46,7 +46,7 @@ struct Family
   {
     return builder.paths()[t].paths[branch.path[t]];
   }
-  /// Of all branches of a tree.
+  /// Total length of all branches of a tree.
   double length(std::size_t t)
   {
     double sum = 0;
@@ -68,7 +68,7 @@ private:
 const Stick trunk{pcs::npos, 0, Vec3(0, 0, 4), 8};
 const Stick low{0, 3, Vec3(1, 0, 0.5)}, high{0, 6, Vec3(0, 0.8, 0.3)};
 
-/// Trees of one kind, with some branches less.
+/// Trees of one kind, each without some of the branches.
 std::vector<Rooted_tree> random_family()
 {
   std::vector<Rooted_tree> trees;
@@ -171,7 +171,7 @@ BOOST_AUTO_TEST_CASE(of_a_further_tree_what_the_family_has_is_found)
   BOOST_TEST(std::abs(project(trees[0], branches) - 1) < 1e-9);
   const Rooted_tree more = rooted({trunk, low, high});
   BOOST_TEST(std::abs(project(more, branches) - (1 - high.way.norm() / more.weights[0])) < 1e-9);
-  BOOST_TEST(branches.size() == 2u); // it adds none
+  BOOST_TEST(branches.size() == 2u); // no branch is added
   BOOST_TEST(project(rooted({trunk}), branches) == 1);
   BOOST_TEST(!branches[1].has(0));
 

@@ -16,7 +16,7 @@ using pcs::shape_space::extend_axes;
 
 namespace {
 
-/// Every tip goes back by a share of its last edge.
+/// Shortens the last edge of every tip by a fraction.
 Tree shortened(Tree tree, double share)
 {
   for (std::size_t v = 0; v < num_vertices(tree); ++v)

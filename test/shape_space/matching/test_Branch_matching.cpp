@@ -43,7 +43,7 @@ double cost_of(const Rooted_tree& one, const Rooted_tree& two)
   return matching.run(progress)->cost;
 }
 
-/// Calls `visit` for a pair of branches and for all that hang on it.
+/// Calls `visit` for a pair of branches and for all its descendants.
 template <class Match, class Visit>
 void for_each_pair(const Match& match, const Visit& visit)
 {
@@ -73,7 +73,7 @@ BOOST_AUTO_TEST_CASE(each_branch_of_equal_trees_is_its_own_partner_at_no_cost)
     BOOST_TEST(match.path_1 == match.path_2);
     BOOST_TEST((match.rotation - Eigen::Matrix3d::Identity()).norm() < 1e-6);
   });
-  BOOST_TEST(count == 1u + 6 + 36); // all branches that the tree was made of
+  BOOST_TEST(count == 1u + 6 + 36); // all branches of the tree
 }
 
 BOOST_AUTO_TEST_CASE(what_has_no_partner_costs_its_length)
@@ -83,7 +83,7 @@ BOOST_AUTO_TEST_CASE(what_has_no_partner_costs_its_length)
   BOOST_TEST(std::abs(cost_of(more, less) - single) < 1e-9);
   BOOST_TEST(std::abs(cost_of(less, more) - single) < 1e-9);
   BOOST_TEST(cost_of(more, more) < 1e-9);
-  // no pair costs more than both branches alone
+  // No pair costs more than both branches unmatched.
   const Rooted_tree one = rooted(orl_test::random_tree(2)), two = rooted(orl_test::random_tree(3));
   Matching matching = matching_of(one, two);
   pcs::internal::Progress progress;
@@ -107,7 +107,7 @@ BOOST_AUTO_TEST_CASE(the_cost_does_not_change_with_place_stand_and_unit)
   BOOST_TEST(cost > 0.1);
   const double there = cost_of(rooted(pcs_test::elsewhere(a)), rooted(pcs_test::elsewhere(b)));
   BOOST_TEST(std::abs(there - cost) < 1e-6 * cost);
-  // the unit and the place of one of them do not matter either
+  // The unit and the position of one tree do not change the result.
   const double moved =
       cost_of(rooted(a),
               rooted(orl_test::moved(b, Eigen::Matrix3d::Identity(), Vec3(1, 2, 3), 0.1)));

@@ -39,14 +39,14 @@ Matching_energy energy_of(const Rooted_tree& one,
   return Matching_energy(one, two, weights, paths, grows_at_tips, CGAL::Sequential_tag());
 }
 
-/// The number of the path that leaves the trunk, of a tree with one branch.
+/// The index of the path that leaves the trunk, of a tree with one branch.
 std::size_t branch_of(const Matching_energy& energy, int t)
 {
   const Branch_path& trunk = energy.path(t, energy.paths(t).paths_of[0].front());
   return energy.paths(t).paths_of[trunk.children.front().start].front();
 }
 
-/// A trunk of length 2 with a branch of a given length at its middle, at an angle from it.
+/// A trunk of length 2 with a branch of a given length and angle at its middle.
 Rooted_tree with_branch(double length, double angle)
 {
   const Vec3 way(length * std::sin(angle), 0, length * std::cos(angle));
@@ -95,11 +95,11 @@ BOOST_AUTO_TEST_CASE(straight_branches_cost_what_angle_lengths_and_turn_tell)
       };
       BOOST_TEST(std::abs(cost(one, two) - (a + b - 2 * mean * std::cos(angle))) < 1e-9);
       BOOST_TEST(std::abs(cost(one, two) - cost(two, one)) < 1e-9);
-      weights.is_published = false; // lengths have a term of their own
+      weights.is_published = false; // lengths have a separate term
       BOOST_TEST(std::abs(cost(one, two) - 2 * mean * (1 - std::cos(angle))) < 1e-9);
       BOOST_TEST(std::abs(cost(one, two) - cost(two, one)) < 1e-9);
     }
-  // a branch that turns by itself pays for the turn, and for its length
+  // A branch that turns alone costs the turn and the length difference.
   for (const double angle : {0.3, 0.9}) {
     const Rooted_tree one = with_branch(0.5, 0.8), two = with_branch(0.8, 0.8 + angle);
     const double a = 0.5 / 2, b = 0.8 / 2, mean = std::sqrt(a * b);
@@ -146,7 +146,7 @@ BOOST_AUTO_TEST_CASE(energies_do_not_change_with_place_stand_and_unit)
   const auto cost = [](const Matching_energy& energy, std::size_t p, std::size_t q) {
     Matching_energy::Child_cost_cache prices;
     const double any = std::numeric_limits<double>::infinity();
-    // to the axes of tree 1, which turn with it
+    // relative to the axes of tree 1, which turn with the tree
     return energy.quick_cost_of_paths(p, q, as_it_stands, any, prices);
   };
   double greatest = 0;
@@ -156,7 +156,7 @@ BOOST_AUTO_TEST_CASE(energies_do_not_change_with_place_stand_and_unit)
       greatest = std::max(greatest, cost(here, p, q));
     }
   BOOST_TEST(greatest > 0.1);
-  // and attachments are compared in either order
+  // Attachments are compared symmetrically.
   BOOST_TEST(here.position_term(0.3, 0.5, 0.2, 0.7, 1) > 0);
   BOOST_TEST(here.position_term(0.3, 0.5, 0.2, 0.7, 1) ==
              here.position_term(0.5, 0.3, 0.7, 0.2, 1));
@@ -172,8 +172,8 @@ BOOST_AUTO_TEST_CASE(what_grew_on_at_the_tip_costs_as_if_it_were_single)
   const auto trial = tips.match_curves(0, tips.paths(1).paths_of[0].front(), as_it_stands);
   BOOST_TEST(trial.cost < 1e-12);
   BOOST_TEST(trial.last[0] == 4u);
-  BOOST_TEST(trial.last[1] == 4u); // as far from the base
-  // the longer half of the trunk and what it carries, in units of the longest path
+  BOOST_TEST(trial.last[1] == 4u); // at the same distance from the base
+  // Cost of the longer half of the trunk and its branch, in units of the longest path.
   BOOST_TEST(std::abs(tips.rest_cost(0, trial.path_2, trial.last) -
                       weights.unmatched * (1 + 0.3) / 2) < 1e-9);
   const Matching_energy along = energy_of(one, two, weights, false);

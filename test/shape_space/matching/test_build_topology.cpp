@@ -28,7 +28,7 @@ using pcs_test::Stick;
 
 namespace {
 
-/// Two trees and what they have in common.
+/// Two trees and their common topology.
 struct Matched_trees
 {
   std::array<Rooted_tree, 2> tree;
@@ -49,7 +49,7 @@ struct Matched_trees
   {
     return common.paths[t].paths[branch.path[t]];
   }
-  /// Of all branches that the tree has.
+  /// Total length of the existing branches of a tree.
   double length(std::size_t t) const
   {
     double sum = 0;
@@ -111,7 +111,7 @@ BOOST_AUTO_TEST_CASE(each_tree_is_there_as_a_whole_and_once)
       BOOST_TEST(node.front() == 0);
       BOOST_TEST(node.back() == 1);
       BOOST_TEST(increases(node));
-      // it hangs on a branch that the tree has, where the tree has it
+      // Its parent is an existing branch, at the original position.
       if (b == 0)
         continue;
       const Common_branch& parent = m.common.branches[branch.parent];
@@ -164,10 +164,10 @@ BOOST_AUTO_TEST_CASE(of_forks_that_cross_the_heavier_ones_correspond)
   BOOST_TEST(places(heaviest_chain({})) == (Values{0, 0, 1, 1}));
   BOOST_TEST(places(heaviest_chain({{{0.7, 0.8}, 1}, {{0.3, 0.2}, 1}})) ==
              (Values{0, 0, 0.3, 0.2, 0.7, 0.8, 1, 1}));
-  for (const double first : {1.0, 3.0}) // the second one is behind in one tree only
+  for (const double first : {1.0, 3.0}) // the order of the two differs between the trees
     BOOST_TEST(places(heaviest_chain({{{0.4, 0.6}, first}, {{0.6, 0.4}, 2}})) ==
                (first > 2 ? Values{0, 0, 0.4, 0.6, 1, 1} : Values{0, 0, 0.6, 0.4, 1, 1}));
-  // many light ones are worth more than one that crosses them all
+  // Many small weights exceed one that crosses all of them.
   BOOST_TEST(places(heaviest_chain({{{0.3, 0.3}, 1}, {{0.5, 0.5}, 1}, {{0.25, 0.55}, 1.5}})) ==
              (Values{0, 0, 0.3, 0.3, 0.5, 0.5, 1, 1}));
   BOOST_TEST(places(heaviest_chain({{{0.1, 0.9}, 9}})) == (Values{0, 0, 1, 1})); // too steep
@@ -188,7 +188,7 @@ BOOST_AUTO_TEST_CASE(a_warp_leads_there_and_back_through_its_anchors)
     BOOST_TEST(std::abs(warp.backward(b) - k / 100.0) < 1e-9);
     last = b;
   }
-  // numbers of nodes are shares of what is between them
+  // Parameters of nodes are fractions of the intervals between anchors.
   const std::vector<double> node{0, 0.2, 0.6, 1};
   for (const auto& [s, number] : std::vector<std::pair<double, double>>{{0, 0},
                                                                         {0.1, 0.5},

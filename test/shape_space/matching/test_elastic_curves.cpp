@@ -19,7 +19,7 @@ using namespace pcs::shape_space;
 
 namespace {
 
-/// A curve with tangents turning by `bend(t)` in a plane, t being the share of its length.
+/// A plane curve with tangents at the angle `bend(t)`, where t is the fraction of its length.
 template <class Bend>
 Sampled_curve make_curve(std::size_t n, double length, const Bend& bend)
 {
@@ -39,7 +39,7 @@ double energy(Elastic_matcher& matcher, const Sampled_curve& a, const Sampled_cu
          2 * std::sqrt(a.length * b.length) * matcher(a, b, Eigen::Matrix3d::Identity());
 }
 
-/// A curve whose tangents turn at random, in space.
+/// A space curve with random turns of its tangents.
 Sampled_curve random_curve(std::mt19937& random, std::size_t n)
 {
   std::normal_distribution<double> normal;
@@ -63,7 +63,7 @@ double agreement(const Sampled_curve& one, const Eigen::Matrix3Xd& two, std::siz
       .dot((1 - f) * two.col(j) + f * two.col(j + 1));
 }
 
-/// The largest M of paths through the grid, cell by cell.
+/// The largest M over all paths through the grid, by dynamic programming.
 double largest_agreement(const Sampled_curve& one, const Eigen::Matrix3Xd& two, int largest_step)
 {
   const auto n = static_cast<std::size_t>(two.cols());
@@ -105,7 +105,7 @@ BOOST_AUTO_TEST_CASE(no_path_through_the_grid_agrees_better)
         const double found = matcher(one, two, r);
         const Eigen::Matrix3Xd turned = r * two.tangents;
         BOOST_TEST(std::abs(found - largest_agreement(one, turned, largest_step)) < 1e-8);
-        // and it is what the correspondence gives
+        // It is also the value of the correspondence.
         const std::vector<double> gamma = matcher.gamma();
         const double steps = static_cast<double>(n - 1);
         double along = 0;
@@ -119,7 +119,8 @@ BOOST_AUTO_TEST_CASE(no_path_through_the_grid_agrees_better)
 
 BOOST_AUTO_TEST_CASE(rounding_does_not_choose_between_ways_that_agree_alike)
 {
-  // along straight pieces many ways are equal, to rounding, which a turn of both curves changes
+  // Along straight pieces, many paths are equal up to rounding, which a rotation of both curves
+  // changes.
   const auto bent = [](double at) {
     return make_curve(25, 3, [at](double t) { return t < at ? 0.2 : 1.4; });
   };
@@ -178,7 +179,7 @@ BOOST_AUTO_TEST_CASE(the_energy_stays_between_its_bounds)
 
 BOOST_AUTO_TEST_CASE(a_known_warp_is_found)
 {
-  // the bends of curve 2 come later: place t of curve 1 is at t^1.5 or so of curve 2
+  // The bends of curve 2 are later: parameter t of curve 1 corresponds to about t^1.5 on curve 2.
   const auto warp = [](double t) { return 0.5 * t + 0.5 * t * t; };
   const auto bend = [](double t) { return 2.5 * std::sin(4 * t); };
   const std::size_t n = 65;

@@ -106,7 +106,7 @@ BOOST_AUTO_TEST_CASE(it_stops_when_it_is_known_to_cost_too_much)
     BOOST_TEST(!dear.solve(least - 1e-9));
     BOOST_TEST(dear.bound() <= least + 1e-12);
     BOOST_TEST(cheap.solve(least + 1e-9));
-    // what is known by then is true of other problems, too
+    // The dual prices are valid start values for other problems.
     pcs::shape_space::Assignment again(6, 6, gain, dear.prices());
     BOOST_TEST(again.solve());
     BOOST_TEST(std::abs(again.bound() - least) < 1e-12);

@@ -52,7 +52,7 @@ BOOST_AUTO_TEST_CASE(points_at_forks_go_to_the_branch_they_lie_on)
       const Vec3 axis = t.to - t.from, e1 = axis.unitOrthogonal(), e2 = axis.normalized().cross(e1);
       const double a = 2 * pi * uniform(random), s = uniform(random);
       if (uniform(random) > t.from_radius / trunk_radius)
-        continue; // as dense on all tubes
+        continue; // equal density on all tubes
       const Vec3 radial = std::cos(a) * e1 + std::sin(a) * e2;
       const Vec3 p = t.from + s * axis + t.from_radius * radial;
       bool is_inside = false;
@@ -63,7 +63,7 @@ BOOST_AUTO_TEST_CASE(points_at_forks_go_to_the_branch_they_lie_on)
         continue;
       points.push_back(p + 0.02 * t.from_radius * normal(random) * radial);
       label.push_back(t.branch);
-      // two radii of the trunk from the place where the surfaces meet
+      // two radii of the trunk from the intersection of the surfaces
       const double reach = trunk_radius / std::sin(angle);
       is_near.push_back((p - Vec3(0, 0, 2) - reach * side).norm() < 2 * trunk_radius);
     }

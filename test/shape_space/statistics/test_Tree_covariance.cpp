@@ -26,9 +26,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr Index block_size = 7; ///< numbers of a branch of one edge
+constexpr Index block_size = 7; ///< number of coordinates of a branch of one edge
 
-/// Trees with given numbers, one column per tree.
+/// Trees with given coordinates, one column per tree.
 struct Sample
 {
   Orl_layout layout;
@@ -85,7 +85,7 @@ MatrixXd random_matrix(Index rows, Index columns, unsigned seed)
   return result;
 }
 
-/// Trees that differ by one score each, in all of their numbers.
+/// Trees on a line: all coordinates depend on one score each.
 MatrixXd on_a_line(const VectorXd& score)
 {
   constexpr Index size = 40 * block_size;
@@ -93,14 +93,14 @@ MatrixXd on_a_line(const VectorXd& score)
   return (way * score.transpose()).colwise() + from;
 }
 
-/// Trees of random numbers with a covariance between them.
+/// Trees of random coordinates with a given covariance.
 MatrixXd random_numbers(Index blocks, const MatrixXd& root_of_covariance)
 {
   return random_matrix(blocks * block_size, root_of_covariance.cols(), 3) *
          root_of_covariance.transpose();
 }
 
-/// Deviations from the mean of all trees, with the trace n.
+/// Deviations from the mean of all trees, with trace n.
 MatrixXd centered(const MatrixXd& covariance)
 {
   const Index n = covariance.rows();
@@ -118,7 +118,7 @@ BOOST_AUTO_TEST_SUITE(covariance_of_trees)
 
 BOOST_AUTO_TEST_CASE(known_covariances_are_found)
 {
-  // trees that lie on a line
+  // Trees on a line.
   Sample line(on_a_line(scores));
   const Tree_covariance found = line.covariance();
   BOOST_TEST((found.covariance() - centered(deviation * deviation.transpose())).norm() < 1e-3);
@@ -128,7 +128,7 @@ BOOST_AUTO_TEST_CASE(known_covariances_are_found)
     const MatrixXd z = found.deviations().middleRows(line.features.first(b), block_size);
     BOOST_TEST(std::abs(found.variance(b) - z.squaredNorm() / 4) < 1e-9 * z.squaredNorm());
   }
-  // trees of which two are alike
+  // Trees, two of which are similar.
   MatrixXd root = MatrixXd::Identity(5, 5);
   root(1, 0) = 1;
   const MatrixXd expected = centered(root * root.transpose());
@@ -144,7 +144,7 @@ BOOST_AUTO_TEST_CASE(one_block_has_one_vote)
   BOOST_TEST(std::abs(a.trace() - 6) < 1e-9);
   BOOST_TEST((a - a.transpose()).norm() < 1e-9);
   BOOST_TEST(Eigen::SelfAdjointEigenSolver<MatrixXd>(a).eigenvalues()(0) > -1e-9);
-  sample.block(7) *= 1000; // however much it varies
+  sample.block(7) *= 1000; // independent of its variance
   const Tree_covariance after = sample.covariance();
   BOOST_TEST((after.covariance() - a).norm() < 1e-9);
   BOOST_TEST(std::abs(after.variance(7) / before.variance(7) - 1e6) < 1);
@@ -191,7 +191,7 @@ BOOST_AUTO_TEST_CASE(a_branch_that_a_tree_lacks_is_what_the_others_let_expect)
   BOOST_TEST((found.deviations() - wanted).norm() < 0.01 * wanted.norm());
   BOOST_TEST((found.mean() - all.rowwise().mean()).norm() < 0.01 * wanted.norm());
   BOOST_TEST((found.covariance() - centered(deviation * deviation.transpose())).norm() < 0.05);
-  // whatever stands in its place
+  // The values of missing branches have no effect.
   const Tree_covariance other = hide(1e6);
   BOOST_TEST((other.covariance() == found.covariance()));
   BOOST_TEST((other.deviations() == found.deviations()));
@@ -207,7 +207,7 @@ BOOST_AUTO_TEST_CASE(equal_trees_and_branches_of_one_tree_do_not_vary)
   BOOST_TEST((equal.mean() - sample.values.col(0)).norm() < 1e-12);
   sample.block(2) += random_matrix(block_size, 3, 6);
   sample.block(5) += random_matrix(block_size, 3, 7);
-  sample.has[0][5] = sample.has[2][5] = 0; // one tree alone has it
+  sample.has[0][5] = sample.has[2][5] = 0; // only one tree has it
   const Tree_covariance found = sample.covariance();
   for (std::size_t b = 0; b < 40; ++b)
     BOOST_TEST((found.variance(b) > 0) == (b == 2));

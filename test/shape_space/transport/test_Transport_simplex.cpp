@@ -157,7 +157,7 @@ BOOST_AUTO_TEST_CASE(it_costs_as_little_as_another_solver_says)
 
 BOOST_AUTO_TEST_CASE(equal_masses_and_costs_come_to_an_end)
 {
-  Transport_problem problem; // everything degenerate
+  Transport_problem problem; // completely degenerate
   const std::size_t n = 60;
   for (std::uint32_t i = 0; i < n; ++i) {
     problem.supplies.push_back(1.0 / n);
@@ -223,7 +223,7 @@ BOOST_AUTO_TEST_CASE(points_beside_the_surface_do_not_draw_it_to_themselves)
     ++partners[problem.arcs[k].source];
   for (std::size_t i = 600; i < one.size(); ++i) {
     BOOST_TEST(partners[i] >= 1u);
-    BOOST_TEST(partners[i] <= 2u); // 10 to 16 where they stand for all that is near
+    BOOST_TEST(partners[i] <= 2u); // 10 to 16 with the weight of their surroundings
   }
 }
 
@@ -236,7 +236,7 @@ BOOST_AUTO_TEST_CASE(points_in_one_place_cost_no_more_pivots_than_one)
     const Distinct_positions places_1(one), places_2(two);
     const Transport_plan plan = match_places(places_1, places_2, Transport_options(), problem);
     BOOST_TEST(plan.is_complete);
-    BOOST_TEST(problem.arcs.size() <= 16 * (301 + 401)); // no more neighbours than asked for
+    BOOST_TEST(problem.arcs.size() <= 16 * (301 + 401)); // not more neighbours than requested
     return plan.number_of_pivots;
   };
   one.push_back(Vec3(1, 0, 3));
@@ -247,7 +247,7 @@ BOOST_AUTO_TEST_CASE(points_in_one_place_cost_no_more_pivots_than_one)
     two.insert(two.begin() + (k % 400), two.back());
   }
   BOOST_TEST(alone > 0u);
-  BOOST_TEST(pivots() <= 2 * alone); // the order of the places is another one
+  BOOST_TEST(pivots() <= 2 * alone); // the order of the positions differs
 }
 
 BOOST_AUTO_TEST_CASE(points_in_one_place_share_its_partners)
@@ -273,8 +273,8 @@ BOOST_AUTO_TEST_CASE(points_in_one_place_share_its_partners)
     BOOST_TEST(std::count(partners_1.begin(), partners_1.end(), 0) == 0);
     BOOST_TEST(std::count(partners_2.begin(), partners_2.end(), 0) == 0);
     BOOST_TEST(found.pairs.size() <= one.size() + two.size() - 1);
-    // as one surface element the 200 draw no others to themselves; as 200 points they do, but
-    // nobody gets many
+    // As one surface element, the 200 points attract no others. With equal weights they do, but
+    // each has few partners.
     const auto most = *std::max_element(partners_1.begin() + 300, partners_1.end());
     BOOST_TEST(most <= 3u);
   }
@@ -372,7 +372,7 @@ BOOST_AUTO_TEST_CASE(a_gap_of_one_scan_does_not_shift_what_is_around_it)
   two.erase(std::remove_if(two.begin(), two.end(), [](const Vec3& p) { return p.x() > 0.5; }),
             two.end());
   const double spacing = mean_spacing(one);
-  const auto mean_distance = [&](const Transport_options& options) { // on the side without gap
+  const auto mean_distance = [&](const Transport_options& options) { // on the side without a gap
     Transport_problem problem;
     const Transport_plan plan =
         match_places(Distinct_positions(one), Distinct_positions(two), options, problem);
@@ -426,7 +426,7 @@ BOOST_AUTO_TEST_CASE(nothing_goes_beyond_the_reach)
 {
   std::mt19937 random(14);
   const std::vector<Vec3> one = cylinder(random, 500), two = cylinder(random, 400);
-  std::vector<double> nearest; // both ways
+  std::vector<double> nearest; // in both directions
   for (const auto& [from, to] : {std::make_pair(&one, &two), std::make_pair(&two, &one)}) {
     const pcs::neighborhood::Nearest_neighbors search(*to);
     std::vector<pcs::neighborhood::Nearest_neighbors::Neighbor> found;
@@ -512,13 +512,13 @@ BOOST_AUTO_TEST_CASE(few_candidates_do_not_leave_what_could_be_carried)
   };
   const double of_all = remaining(400), of_few = remaining(2);
   BOOST_TEST_MESSAGE("remaining of all candidates " << of_all << ", of two " << of_few);
-  BOOST_TEST(of_few < of_all + 0.04); // 0.066 more without arcs between what is left
+  BOOST_TEST(of_few < of_all + 0.04); // 0.066 more without arcs between the remaining points
 }
 
 BOOST_AUTO_TEST_CASE(the_usual_distance_has_the_spacing_as_a_limit)
 {
   const std::vector<double> areas(10, 2);
-  std::vector<double> squared(10, 0); // most points are the same
+  std::vector<double> squared(10, 0); // most distances are zero
   squared[8] = 0.28;
   squared[9] = 1.125;
   BOOST_TEST(pcs::shape_space::internal::usual_distance(squared, areas) == std::sqrt(2. / 16));
@@ -532,7 +532,7 @@ BOOST_AUTO_TEST_SUITE(point_recovery)
 
 BOOST_AUTO_TEST_CASE(the_correspondence_survives_rotation_and_anisotropic_scale)
 {
-  // the same points about an edge that is turned and stretched; noise in mean spacings
+  // The same points about an edge that is rotated and stretched; noise is in mean spacings.
   for (const std::size_t n : {std::size_t(500), std::size_t(3000)})
     for (const auto& [noise, share] :
          {std::make_pair(0.0, 1.0), std::make_pair(0.1, 0.98), std::make_pair(0.3, 0.78)}) {
