@@ -26,7 +26,8 @@ using Pair = std::pair<int, double>;
 using First = CGAL::First_of_pair_property_map<Pair>;
 using Second = CGAL::Second_of_pair_property_map<Pair>;
 
-/// What a function of pcs sees of a chain: "samples tolerance has-point-map has-normal-map".
+/// Values that a function of pcs reads from a chain: "samples tolerance has-point-map
+/// has-normal-map".
 template <class NamedParameters>
 std::string seen(const NamedParameters& chain)
 {

@@ -41,7 +41,7 @@ using pcs_test::message_has;
 
 namespace {
 
-/// Any coordinates on the layout of the space.
+/// Random coordinates on the layout of the space.
 Orl_coordinates random_coordinates(const Orl_layout& layout, std::mt19937& random)
 {
   std::normal_distribution<double> normal;
@@ -50,7 +50,7 @@ Orl_coordinates random_coordinates(const Orl_layout& layout, std::mt19937& rando
   x.root = pcs_test::drawn<Vec3>([&] { return normal(random); });
   for (std::size_t e = 0; e < layout.number_of_edges(); ++e) {
     pcs::Quaternion q(normal(random), normal(random), normal(random), normal(random));
-    q.normalize(); // of either sign
+    q.normalize(); // the sign is arbitrary
     x.orientation.push_back(q);
     x.length.push_back(uniform(random) < 0.1 ? 0 : uniform(random));
     x.radius.push_back(0.1 * uniform(random));
@@ -173,14 +173,15 @@ BOOST_AUTO_TEST_CASE(branches_born_in_order_make_a_shortest_path_of_constant_spe
   for (const double end : {0., 1.})
     BOOST_TEST(space.distance(space.tree(end == 0 ? 0 : 1), space.geodesic(0, 1, end, in_order)) ==
                0);
-  // the same way back
+  // The reverse path is equal.
   BOOST_TEST(space.distance(space.geodesic(0, 1, 0.3, in_order),
                             space.geodesic(1, 0, 0.7, in_order)) <= 1e-12 * d);
 }
 
 BOOST_AUTO_TEST_CASE(wood_that_is_born_in_order_stays_and_branches_wait_for_their_parent)
 {
-  // the trunk grows from 1 to 3, a branch of 0.8 sits at 2, a twig of 0.3 on its middle
+  // The trunk grows from 1 to 3, with a branch of 0.8 at 2, and a twig of 0.3 at the middle of the
+  // branch.
   const auto rows = [](bool is_old) {
     std::vector<pcs_test::Row> r{{pcs::npos, 0, 0, 0, 0, 0.1}, {0, 0, 0, 0, 1, 0.1}};
     if (is_old)
@@ -214,7 +215,7 @@ BOOST_AUTO_TEST_CASE(wood_that_is_born_in_order_stays_and_branches_wait_for_thei
       top = std::max(top, p.z());
       side = std::max(side, p.x());
       twig = std::max(twig, p.y());
-      // on the axes of the old tree
+      // All nodes lie on the axes of the old tree.
       BOOST_TEST(std::min({p.head<2>().norm(),
                            std::hypot(p.y(), p.z() - 2),
                            std::hypot(p.x() - 0.4, p.z() - 2)}) < 1e-9);
@@ -223,13 +224,13 @@ BOOST_AUTO_TEST_CASE(wood_that_is_born_in_order_stays_and_branches_wait_for_thei
     BOOST_TEST((side > 0) == (top > 2 + 1e-12));
     BOOST_TEST((twig > 0) == (side > 0.4 + 1e-12));
     if (top > 2)
-      BOOST_TEST(std::abs(side - 0.8 * (top - 2)) < 1e-9); // in the time the trunk has for 1
+      BOOST_TEST(std::abs(side - 0.8 * (top - 2)) < 1e-9); // grows while the trunk grows by 1
     const double now = 1 + (side > 0 ? 1 : 0) + (twig > 0 ? 1 : 0);
     BOOST_TEST(now >= number_of_branches);
     number_of_branches = now;
   }
   BOOST_TEST(number_of_branches == 3);
-  // together: the branch is there from the beginning
+  // Simultaneous growth: the branch exists from the beginning.
   pcs::Tree_skeleton<Kernel> tree;
   space.skeleton(space.geodesic(0, 1, 0.1), tree);
   double side = 0;
@@ -254,7 +255,7 @@ BOOST_AUTO_TEST_CASE(the_ends_of_the_path_are_the_inputs)
     std::size_t number_seen = 0;
     BOOST_TEST(worst_end_error(space, tree, end, scans[end], number_seen) < 1e-12 * 1e3);
     BOOST_TEST(number_seen == scans[end].size());
-    // every node of the input is a node of the output
+    // Every node of the input is a node of the output.
     Tree out;
     space.skeleton(tree, out);
     const Tree& in = end == 0 ? a : b;
@@ -271,7 +272,7 @@ BOOST_AUTO_TEST_CASE(the_report_tells_what_had_no_room_in_the_other_scan)
 {
   const Tree tree = random_tree(3);
   const std::vector<Point> scan = tube_points(tree, 6000, 5);
-  std::vector<Point> side; // what is seen from one side
+  std::vector<Point> side; // points that are visible from one side
   for (const Point& p : tube_points(tree, 6000, 6))
     if (p.x() > 0)
       side.push_back(p);
@@ -301,7 +302,7 @@ BOOST_AUTO_TEST_CASE(at_the_origin_the_ends_are_exact_to_the_last_digits)
   space.add(b, scans[1]);
   space.build();
   for (int end = 0; end < 2; ++end) {
-    std::size_t number_seen = 0; // the worst is no better than the root of the mean square
+    std::size_t number_seen = 0; // the largest error bounds the root mean square
     BOOST_TEST(worst_end_error(space, space.geodesic(0, 1, end), end, scans[end], number_seen) <=
                1e-12 * 10);
     BOOST_TEST(number_seen == scans[end].size());
@@ -351,7 +352,7 @@ BOOST_AUTO_TEST_CASE(turning_and_moving_both_trees_turns_and_moves_the_path)
         if (!(std::sqrt(CGAL::squared_distance(move(points[k]), moved_points[k])) <=
               10 * tolerance * scale))
           ++number_off;
-      // such rounding of the input may give a point another partner of two that cost the same
+      // Rounding of the input may change the partner of a point if two partners have equal costs.
       BOOST_TEST(number_off <= (seed < 9 ? 0 : points.size() / 500));
     }
   }
@@ -412,7 +413,7 @@ BOOST_AUTO_TEST_CASE(a_tree_turned_as_a_whole_is_as_far_away_as_it_was_turned)
   space.add_skeleton(b);
   space.build(np::do_use_unit_weights(true));
   BOOST_TEST(std::abs(space.distance(0, 1) - angle) < 1e-6);
-  // control: in the axes of the input nearly every edge pays for it
+  // Control: relative to the axes of the input, nearly every edge contributes.
   Space world;
   world.add_skeleton(a);
   world.add_skeleton(b);
@@ -431,7 +432,7 @@ BOOST_AUTO_TEST_CASE(a_branch_that_is_turned_keeps_its_lengths_and_costs_its_ang
     const double angle = degrees * CGAL_PI / 180;
     turns[2] = Eigen::AngleAxisd(angle, Vec3(1, 0.3, 0.2).normalized()).toRotationMatrix();
     const Tree b = make_tree(branches, turns, all, tip_b);
-    // what corresponds is known here, so it is not asked for
+    // The correspondence is known, and is not computed.
     Space space = make_space(a, a);
     pcs::Orl_correspondences known = space.correspondences();
     Space turned;
@@ -446,7 +447,7 @@ BOOST_AUTO_TEST_CASE(a_branch_that_is_turned_keeps_its_lengths_and_costs_its_ang
       const auto end = turned.tree(0), middle = turned.geodesic(0, 1, 0.5);
       double worst = 0;
       std::size_t number_turned =
-          0; // angles between all other edges and what they grow from are as before
+          0; // angles between all other edges and their parents are unchanged
       for (std::size_t e = 0; e < turned.family().layout.number_of_edges(); ++e) {
         worst =
             std::max(worst, std::abs(end.coordinates().length[e] - middle.coordinates().length[e]));
@@ -457,8 +458,8 @@ BOOST_AUTO_TEST_CASE(a_branch_that_is_turned_keeps_its_lengths_and_costs_its_ang
       }
       BOOST_TEST(worst < 1e-12);
       BOOST_TEST(number_turned == 1u);
-      // control: linear interpolation of a vector across the axis would shorten it to cos(angle /
-      // 2)
+      // Control: linear interpolation of a vector across the axis would shorten it to cos(angle /
+      // 2).
       const Vec3 across = turns[2].transpose() * Vec3(0.3, -1, 0);
       BOOST_TEST(std::abs((0.5 * (across + turns[2] * across)).norm() / across.norm() -
                           std::cos(0.5 * angle)) < 1e-12);
@@ -468,8 +469,7 @@ BOOST_AUTO_TEST_CASE(a_branch_that_is_turned_keeps_its_lengths_and_costs_its_ang
 
 BOOST_AUTO_TEST_CASE(noise_of_an_axis_does_not_turn_what_is_behind_it)
 {
-  // wiggles that have nothing to do with each other, then the same straight end: half-way it is
-  // upright, too
+  // Unrelated perturbations, followed by the same straight end. Half-way, the end is upright, too.
   const auto wiggly = [](unsigned seed) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal;
@@ -508,8 +508,8 @@ BOOST_AUTO_TEST_CASE(noise_of_an_axis_does_not_turn_what_is_behind_it)
     return result;
   };
   BOOST_TEST(mean_tilt(Orl_orientation::gauge_fixed) <
-             0.15); // 0.10; 0.54 if each edge referred to the one before
-  // control: there it does
+             0.15); // 0.10; 0.54 if each edge referred to the previous one
+  // Control: edges refer to the previous one.
   BOOST_TEST(mean_tilt(Orl_orientation::transported) > 0.4);
 }
 
@@ -528,7 +528,8 @@ BOOST_AUTO_TEST_CASE(beyond_the_ends_lengths_and_radii_stay_positive)
     space.skeleton(tree, out);
     for (const auto e : boost::make_iterator_range(edges(out))) {
       const auto u = source(e, out), v = target(e, out);
-      // a first node lies on the axis behind u, where the parent may be thinner than at u
+      // The first node of a branch lies on the axis behind u, where the parent may be thinner than
+      // at u.
       if (out[v].radius > out[u].radius * (1 + 1e-12))
         is_right = false;
     }
@@ -614,7 +615,7 @@ BOOST_AUTO_TEST_CASE(growth_at_tips_is_believed_where_it_explains_clearly_more)
 
 BOOST_AUTO_TEST_CASE(a_bud_that_grew_to_four_times_its_length_is_still_the_same)
 {
-  // where it stands and points as it did, and nothing else can have become of it
+  // Its position and direction are unchanged, and no other match is possible.
   const std::vector<Branch> grown = random_branches(5, 3, 2);
   std::vector<Branch> young = grown;
   for (Vec3& p : young[2].points)
@@ -753,7 +754,7 @@ BOOST_AUTO_TEST_CASE(the_way_back_between_trees_of_the_same_lengths_is_as_long)
 
 BOOST_AUTO_TEST_CASE(the_way_back_between_copies_that_stand_differently_is_as_long)
 {
-  // no length tells which comes first
+  // Lengths do not determine the order.
   Tree star;
   add_vertex(star);
   for (const Vec3& p : {Vec3(0, 0, 1),
@@ -929,7 +930,8 @@ BOOST_AUTO_TEST_CASE(points_stay_at_the_surface_and_evenly_spread)
 
 BOOST_AUTO_TEST_CASE(sections_keep_their_size_where_virtual_edges_shrink_them)
 {
-  // a straight branch, and itself turned about its axis by a quarter in the pairing of its points
+  // A straight branch, and the same branch rotated about its axis by a quarter turn in the pairing
+  // of its points.
   std::vector<Branch> branches(1);
   for (int k = 0; k <= 1; ++k) {
     branches[0].points.push_back(Vec3(0, 0, 10 * k));
@@ -978,7 +980,7 @@ BOOST_AUTO_TEST_CASE(normals_follow_their_edges)
   });
   BOOST_TEST(*std::max_element(error.begin(), error.end()) < 1e-12);
 
-  // on the text's virtual edges, too, and where one scan has no points
+  // Published virtual edges [Aiteanu 2022], and a scan without points.
   Space half;
   half.add(a, scan_a, maps);
   half.add(b, std::vector<Oriented>(), maps);
@@ -1033,7 +1035,7 @@ BOOST_AUTO_TEST_CASE(broken_trees_are_refused_with_a_reason)
   bad = good;
   bad[2].radius = -1;
   refuse(bad, "radius of node 2");
-  // finite, but squares of them are not
+  // finite, but their squares are not
   bad = good;
   bad[2].radius = 1e300;
   refuse(bad, "radius of node 2");
@@ -1060,7 +1062,7 @@ BOOST_AUTO_TEST_CASE(broken_trees_are_refused_with_a_reason)
                     pcs::Invalid_input);
   BOOST_TEST(space.distance(0, 1) < 1e-9);
   Matching_weights weights;
-  weights.half_cost_distance = std::numeric_limits<double>::infinity(); // could not be saved
+  weights.half_cost_distance = std::numeric_limits<double>::infinity(); // cannot be saved
   BOOST_CHECK_EXCEPTION(space.build(np::matching_weights(weights)),
                         pcs::Invalid_input,
                         message_has("half_cost_distance"));
@@ -1176,7 +1178,7 @@ BOOST_AUTO_TEST_CASE(cancelling_leaves_outputs_and_the_space_as_they_were)
       BOOST_TEST(num_vertices(out) == 1u);
       BOOST_TEST((points == std::vector<Point>{Point(7, 7, 7)}));
     } else
-      BOOST_TEST(stop == calls); // the last call comes when all is done
+      BOOST_TEST(stop == calls); // the last call is at completion
   }
 }
 

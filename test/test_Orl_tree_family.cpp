@@ -52,8 +52,8 @@ using pcs_test::message_has;
 
 namespace {
 
-/// Trees like each other: branches of one tree, turned, stretched, some cut; trunks lean and differ
-/// in height, too.
+/// Similar trees: the branches of one tree are rotated and stretched, and some are cut. Trunks
+/// differ in direction and height, too.
 std::vector<Tree>
 relatives(std::size_t n, unsigned seed, double sigma = 0.15, double cut = 0.15, int orders = 3)
 {
@@ -134,7 +134,7 @@ BOOST_AUTO_TEST_SUITE(orl_topology)
 
 BOOST_AUTO_TEST_CASE(branches_of_relatives_are_the_same_branches)
 {
-  // the original tree has 1 + 5 + 25 branches; wrong matches would add more
+  // The original tree has 1 + 5 + 25 branches; wrong matches would add more.
   const Family space(8);
   const std::size_t n = space.family().layout.branches.size();
   BOOST_TEST(n >= 31u);
@@ -157,11 +157,12 @@ BOOST_AUTO_TEST_CASE(trees_of_the_space_are_the_inputs)
             CGAL::squared_distance(tree[source(e, tree)].point, tree[target(e, tree)].point));
       return sum;
     };
-    // axes are straight between nodes, and branches begin on them
+    // Axes are straight between nodes, and branches begin on them.
     BOOST_TEST(std::abs(total_length(space.tree(h).coordinates()) / length(trees[h]) - 1) < 0.03);
     for (std::size_t b = 0; b < space.family().layout.branches.size(); ++b)
       if (space.has_branch(h, b)) {
-        // tips are where they were, up to what the straight axes of the parents shift
+        // Tips are at their original positions, up to the shift by the straight axes of the
+        // parents.
         const Point tip = trees[h][space.tip_of_branch(h, b)].point;
         double least = 1e300;
         for (std::size_t v = 0; v < num_vertices(back); ++v)
@@ -223,7 +224,7 @@ BOOST_AUTO_TEST_CASE(the_order_of_the_trees_does_not_matter)
     for (const Tree_mean kind : {Tree_mean::median, Tree_mean::frechet}) {
       const pcs::Orl_tree m = pcs::mean_tree(space, np::tree_mean(kind)),
                           p = pcs::mean_tree(permuted, np::tree_mean(kind));
-      // roots of both are in the axes of their first tree, which is at the same place here
+      // Roots of both means are in the axes of their first tree, which has the same position here.
       BOOST_TEST(
           distance(m.coordinates(), p.coordinates(), space.family().weights, Orl_metric::sum) <
           1e-6 * total_length(m.coordinates()));
@@ -238,7 +239,7 @@ BOOST_AUTO_TEST_CASE(odd_groups_have_a_topology)
   const auto b = add_vertex(pcs::Tree_node<Kernel>(), line);
   line[b].point = Point(0, 0, 2);
   add_edge(a, b, line);
-  // all alike, all a single branch, and no branch in common but the trunk
+  // Equal trees, trees of a single branch, and trees with only the trunk in common.
   for (const std::vector<Tree>& trees :
        {std::vector<Tree>(4, line),
         std::vector<Tree>(3, relatives(1, 8)[0]),
@@ -269,7 +270,7 @@ BOOST_AUTO_TEST_CASE(a_further_tree_finds_its_place)
   const pcs::Orl_tree placed = space.embed(last, np::default_values(), &share);
   BOOST_TEST(share > 0.95);
   BOOST_TEST(share <= 1 + 1e-9);
-  // an added tree comes back
+  // An added tree is reproduced.
   const pcs::Orl_tree own = space.embed(trees[2]);
   BOOST_TEST(space.distance(own, space.tree(2)) < 0.1 * space.distance(own, space.tree(3)));
   const auto modes = pcs::find_modes(space, 3);
@@ -360,7 +361,7 @@ BOOST_AUTO_TEST_CASE(an_L1_rotation_may_be_a_data_point_or_the_middle_of_an_arc)
   BOOST_TEST(angle_between(mean({turn(0), turn(1)}, {1, 1}), turn(0.5)) < 1e-9);
   BOOST_TEST(angle_between(mean({turn(0), turn(1)}, {1, 3}), turn(1)) < 1e-9);
   BOOST_TEST(angle_between(mean({turn(0.3)}, {1}), turn(0.3)) < 1e-12);
-  // heavier than the pull of all others, off the middle
+  // The weight exceeds the pull of all others, which are not symmetric.
   const Quaternion a = pcs::rotation_exp(Vec3(0.5, 0, 0)), b = pcs::rotation_exp(Vec3(0, 0.6, 0));
   BOOST_TEST(angle_between(mean({a, b, turn(0.1)}, {1, 1, 2.1}), turn(0.1)) < 1e-12);
 }
@@ -441,7 +442,7 @@ BOOST_AUTO_TEST_CASE(all_modes_give_the_inputs_back)
     const double size = total_length(tree.coordinates());
     const pcs::Orl_tree same = pcs::reconstruct_tree(space, modes, tree, 5);
     BOOST_TEST(space.distance(same, tree) < 1e-9 * size);
-    Tree one, two; // branches that the tree lacks do not come with a length of rounding
+    Tree one, two; // missing branches do not get lengths from rounding errors
     space.skeleton(tree, one);
     space.skeleton(same, two);
     BOOST_TEST(num_vertices(one) == num_vertices(two));
@@ -537,7 +538,7 @@ BOOST_AUTO_TEST_CASE(trees_far_out_on_a_mode_are_trees)
 
 BOOST_AUTO_TEST_CASE(two_known_modes_are_found)
 {
-  // trees at random places of a plane through a mean
+  // Trees at random positions of a plane through a mean.
   const Family base(5);
   const Orl_coordinates mean =
       pcs::mean_tree(base, np::tree_mean(Tree_mean::frechet)).coordinates();
@@ -578,8 +579,8 @@ BOOST_AUTO_TEST_CASE(two_known_modes_are_found)
 
 BOOST_AUTO_TEST_CASE(age_and_crown_angle_of_trees_with_different_branches_are_found)
 {
-  // branches are born one after the other and grow from then on, some are lost, and all differ a
-  // little by themselves
+  // Branches emerge one after the other and grow from then on. Some are lost, and all have small
+  // individual variations.
   for (const unsigned seed : {31u, 131u, 231u, 331u}) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal;
@@ -614,7 +615,7 @@ BOOST_AUTO_TEST_CASE(age_and_crown_angle_of_trees_with_different_branches_are_fo
       trees.push_back(make_tree(branches, turns, is_kept, tip));
       counts.insert(num_vertices(trees.back()));
     }
-    BOOST_TEST(counts.size() > 6u); // they are different trees
+    BOOST_TEST(counts.size() > 6u); // the trees differ
     const Space space = make_space(trees);
     const auto modes = pcs::find_modes(space, 2);
     BOOST_REQUIRE(modes.size() == 2u);
@@ -640,7 +641,7 @@ BOOST_AUTO_TEST_CASE(parameters_of_grown_trees_are_found)
                  other = correlation(modes.scores, family.known.col(1));
     BOOST_TEST(age > 0.95, age);
     BOOST_TEST(other > 0.95, other);
-    // the metric takes branches that are lost for the second parameter
+    // The metric confuses lost branches with the second parameter.
     const auto plain =
         pcs::find_modes(space, 2, np::mode_inner_product(Mode_inner_product::metric));
     BOOST_TEST(correlation(plain.scores, family.known.col(1)) < other);
@@ -658,7 +659,7 @@ BOOST_AUTO_TEST_CASE(left_out_trees_are_nearer_with_more_modes)
   for (std::size_t k = 0; k < 5; ++k)
     BOOST_TEST(modes.left_out_error(k + 1) < modes.left_out_error(k) * (1 + 1e-12));
   BOOST_TEST(modes.left_out_error(5) < 0.999 * modes.left_out_error(0));
-  // against the definition, for one tree and two modes
+  // Comparison with the definition, for one tree and two modes.
   const Family others(7);
   std::vector<Orl_coordinates> x;
   std::vector<const Orl_coordinates*> pointers;
@@ -678,13 +679,13 @@ BOOST_AUTO_TEST_CASE(left_out_trees_are_nearer_with_more_modes)
                                     rest,
                                     x[0])
                        .distance;
-  BOOST_TEST(std::abs(d - modes.left_out[0][2]) < 1e-4 * d); // covariances are iterated
+  BOOST_TEST(std::abs(d - modes.left_out[0][2]) < 1e-4 * d); // covariances are computed iteratively
 }
 
 BOOST_AUTO_TEST_CASE(a_tree_without_part_in_the_topology_is_nearer_with_more_modes)
 {
-  // lengths and angles of the branches follow two parameters, so that the other trees know
-  // something
+  // Lengths and angles of the branches follow two parameters, so that the other trees contain
+  // information about each tree.
   std::mt19937 random(12);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -739,7 +740,7 @@ BOOST_AUTO_TEST_CASE(new_trees_are_different_and_within_the_inputs)
     BOOST_TEST(report.range_violation < 0.1); // orders of few branches have narrow ranges
     const Tree_descriptors f = pcs::measure_shape(space, tree);
     BOOST_TEST(range_violation(f, inputs) == report.range_violation);
-    // whatever `range_violation()` says
+    // Independent of `range_violation()`.
     for (const auto& get : {+[](const Tree_descriptors& x) { return x.length; },
                             +[](const Tree_descriptors& x) { return x.height; },
                             +[](const Tree_descriptors& x) { return x.crown_width; },
@@ -774,8 +775,7 @@ BOOST_AUTO_TEST_CASE(new_trees_are_different_and_within_the_inputs)
 
 BOOST_AUTO_TEST_CASE(new_trees_of_a_few_are_within_them_by_order)
 {
-  // three trees have narrow ranges, and many of them: numbers, mean angles and their deviations of
-  // each order
+  // Three trees have many narrow ranges: numbers, mean angles and their deviations for each order.
   for (const unsigned seed : {14u, 15u, 16u}) {
     const Space space = make_space(relatives(3, seed, 0.3, 0.3, 4));
     const auto distribution = pcs::learn_distribution(space);
@@ -826,7 +826,7 @@ BOOST_AUTO_TEST_CASE(moments_are_limited_by_the_least_change)
   pcs::shape_space::internal::limit_moments(mean, deviation, angles);
   for (std::size_t i = 0; i < 4; ++i)
     BOOST_TEST(std::abs(angles[i] - inside[i]) < 1e-12);
-  std::vector<double> steep{-0.0, 0, 0, 3.0}; // the least ones stop at 0
+  std::vector<double> steep{-0.0, 0, 0, 3.0}; // the smallest values are limited to 0
   pcs::shape_space::internal::limit_moments(mean, deviation, steep);
   double m = 0;
   for (const double a : steep) {
@@ -839,8 +839,8 @@ BOOST_AUTO_TEST_CASE(moments_are_limited_by_the_least_change)
 
 BOOST_AUTO_TEST_CASE(branches_keep_their_slant)
 {
-  // trees whose branches all stand at one slant, turned about a trunk that is upright: so do those
-  // of new trees
+  // The branches of the input trees have equal slants and random azimuths about an upright trunk.
+  // The slants of new trees are equal to these.
   std::mt19937 random(8);
   std::normal_distribution<double> normal;
   std::vector<Tree> trees;
@@ -852,7 +852,7 @@ BOOST_AUTO_TEST_CASE(branches_keep_their_slant)
     branches[0].radii.assign(11, 0.2);
     for (std::size_t b = 1; b < 9; ++b) {
       const double azimuth = 2.4 * static_cast<double>(b) + 0.3 * normal(random);
-      // shorter than what is left of the trunk
+      // Shorter than the remaining part of the trunk.
       const Vec3 d =
           (0.125 * static_cast<double>(9 - b)) * Vec3(std::cos(azimuth), std::sin(azimuth), 0.5);
       branches[b].parent = 0;
@@ -875,7 +875,8 @@ BOOST_AUTO_TEST_CASE(branches_keep_their_slant)
           to_eigen(drawn[target(e, drawn)].point) - to_eigen(drawn[source(e, drawn)].point);
       const double slant = std::atan2(v.head<2>().norm(), v.z());
       if (v.norm() > 0 && slant > 0.3) {
-        // the direction of growth is that of the middle of the trees, not quite that of the trunk
+        // The direction of growth is that of the mean tree, which differs slightly from that of the
+        // trunk.
         BOOST_TEST(std::abs(slant - std::atan2(1, 0.5)) < 0.15);
         spread = std::max(spread, v.head<2>().norm());
       }
@@ -897,7 +898,7 @@ BOOST_AUTO_TEST_CASE(a_seed_gives_a_family_and_a_tree_does_not_depend_on_the_oth
 
 BOOST_AUTO_TEST_CASE(moments_of_new_trees_are_those_of_the_inputs)
 {
-  const Space space = make_space(relatives(12, 21, 0.15, 0)); // all branches everywhere
+  const Space space = make_space(relatives(12, 21, 0.15, 0)); // all trees have all branches
   const auto distribution = pcs::learn_distribution(space);
   Tree_sampling_options free;
   free.do_keep_in_range = false;
@@ -905,7 +906,8 @@ BOOST_AUTO_TEST_CASE(moments_of_new_trees_are_those_of_the_inputs)
   const auto figures = [&](std::size_t e, const Orl_coordinates& x) {
     return std::log(x.length[e]);
   };
-  // logarithms of lengths: the means are those of the inputs, and so are variances on average
+  // Logarithms of lengths: the means are equal to those of the inputs, and the variances are equal
+  // on average.
   const std::size_t n = space.family().layout.number_of_edges(), m = 4000;
   std::vector<double> mean(n, 0), square(n, 0), input_mean(n, 0), input_square(n, 0);
   for (std::size_t i = 0; i < m; ++i) {
@@ -963,7 +965,7 @@ BOOST_AUTO_TEST_CASE(limits_hold_when_asked_for)
   for (std::uint64_t i = 0; i < 10; ++i) {
     const Orl_coordinates x =
         pcs::sample_tree(space, distribution, 2, i, np::sampling_options(options)).coordinates();
-    // what leaves the trunk and what is left at its tip
+    // Branches at the trunk, and the remaining part at its tip.
     double sum = std::pow(x.radius[layout.branches[0].number_of_edges - 1], 2);
     for (std::size_t b = 1; b < layout.branches.size(); ++b)
       if (layout.branches[b].parent == 0)
@@ -982,7 +984,7 @@ BOOST_AUTO_TEST_CASE(points_follow_their_branches_in_one_order)
     space.add(tree, scans.back());
   }
   space.build(np::points_of(std::size_t(2)));
-  // every scan comes back where it has the branches: its own points, or partners of them
+  // Every scan is reproduced on existing branches: by its own points, or by their partners.
   for (std::size_t h = 0; h < 4; ++h) {
     std::vector<Point> again;
     const pcs::Orl_tree tree = space.tree(h);
@@ -1001,11 +1003,11 @@ BOOST_AUTO_TEST_CASE(points_follow_their_branches_in_one_order)
       ++used[from[i][1]];
       worst = std::max(worst, std::sqrt(CGAL::squared_distance(again[i], scans[h][from[i][1]])));
     }
-    BOOST_TEST(worst < 1e-5); // partners are kept in single precision
+    BOOST_TEST(worst < 1e-5); // partners are stored in single precision
     BOOST_TEST(std::count(used.begin(), used.end(), 0u) <
                static_cast<std::ptrdiff_t>(used.size() / 4));
   }
-  // the mean has part of all scans, each as much as is asked for
+  // The mean contains points of all scans, in proportion to the given weights.
   const std::vector<double> weights{1, 2, 3, 2};
   const pcs::Orl_tree mean =
       pcs::mean_tree(space, np::tree_weights(weights).tree_mean(Tree_mean::frechet));
@@ -1025,7 +1027,7 @@ BOOST_AUTO_TEST_CASE(points_follow_their_branches_in_one_order)
     }
   }
   BOOST_TEST(number_of_all > total.size() / 5);
-  // the tree whose scan is used gets it back
+  // The tree of the given scan gets its own points.
   std::vector<Point> points;
   const pcs::Orl_tree own = space.tree(2);
   BOOST_TEST(space.points(own, points) == own.number_of_points());
@@ -1043,7 +1045,7 @@ BOOST_AUTO_TEST_CASE(points_follow_their_branches_in_one_order)
     number_of_own += source[i] == 2;
   }
   BOOST_TEST(number_of_own == scans[2].size());
-  // points of a new tree lie about its axes, as far as its radii say
+  // Points of a new tree lie near its axes, within their radii.
   const pcs::Orl_tree drawn = pcs::sample_tree(space, 3);
   space.points(drawn, points);
   Tree skeleton;
@@ -1113,8 +1115,8 @@ BOOST_AUTO_TEST_SUITE(orl_growth)
 
 BOOST_AUTO_TEST_CASE(archetypes_of_graph_range_key_map_and_value)
 {
-  // a graph without properties, a scan that makes its keys, maps that read by value: all that is
-  // asked for
+  // Minimal requirements: a graph without properties, a scan of generated keys, maps that read by
+  // value.
   using Graph = boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS>;
   using Bare_point = pcs_test::Triple_archetype<double>;
   std::vector<std::vector<Bare_point>> nodes(3), scans(3);
@@ -1171,7 +1173,7 @@ BOOST_AUTO_TEST_CASE(the_path_goes_through_all_trees_smoothly)
     for (std::size_t v = 0; v < num_vertices(a); ++v)
       BOOST_TEST(CGAL::squared_distance(a[v].point, b[v].point) < 1e-16);
   }
-  // the speed is the same on both sides of an inner tree
+  // The speed is continuous at an inner tree.
   const double h = 1e-5;
   const auto at = [&](double t) { return pcs::tree_at_time(space, path, t); };
   const Orl_coordinates l = at(1 - h).coordinates(), m = at(1).coordinates(),
@@ -1267,7 +1269,7 @@ BOOST_AUTO_TEST_CASE(changes_are_named)
         BOOST_TEST(c.angle > 0.05);
     }
   }
-  // seen the other way
+  // The opposite order.
   std::size_t number_lost = 0, number_shorter = 0, number_thinner = 0, number_new = 0;
   for (const Branch_change& c : pcs::find_branch_changes(space, 1, 0)) {
     number_lost += c.is_lost;
@@ -1364,7 +1366,7 @@ BOOST_AUTO_TEST_CASE(a_space_is_saved_and_restored)
     BOOST_CHECK_THROW(other.build(), pcs::Invalid_input);
     BOOST_CHECK_THROW(other.add_skeleton(trees[0]), pcs::Invalid_input);
 
-    // half a file is refused
+    // A truncated file is rejected.
     std::string text;
     {
       std::ifstream in(path);
@@ -1374,7 +1376,7 @@ BOOST_AUTO_TEST_CASE(a_space_is_saved_and_restored)
     BOOST_CHECK_THROW(pcs::IO::read_shape_space(path), pcs::IO_error);
     std::filesystem::remove(path);
 
-    // and so are numbers that do not make sense
+    // Invalid values are rejected.
     const pcs::Orl_space_data good = space.data();
     const auto refuse = [&](const auto& spoil) {
       pcs::Orl_space_data bad = good;

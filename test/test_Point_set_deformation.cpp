@@ -39,11 +39,11 @@ using Session = pcs::Point_set_deformation<Points, decltype(parameters(0))>;
 
 const int both_resolutions[] = {1000000, 150};
 
-/// A bar with a session and two handles, the upper one number 1.
+/// A bar with a session and two handles; handle 1 is the upper one.
 struct Bar_session
 {
   Bar_edit edit;
-  Points points = edit.points; ///< what the session writes to
+  Points points = edit.points; ///< points that the session writes
   Session session;
 
   explicit Bar_session(int samples) : session(points, parameters(samples))
@@ -52,7 +52,7 @@ struct Bar_session
     session.add_handle(edit.handles[1].indices);
   }
 
-  /// The result of a fresh session with the given motion.
+  /// The result of a new session with the given motion.
   static Points fresh(int samples, const pcs::Similarity& motion)
   {
     Bar_session s(samples);
@@ -104,7 +104,7 @@ BOOST_AUTO_TEST_CASE(a_result_depends_on_the_motions_only_and_not_on_the_way)
 {
   for (const int samples : both_resolutions) {
     Bar_session s(samples);
-    for (int step = 1; step <= 5; ++step) { // somewhere else first
+    for (int step = 1; step <= 5; ++step) { // other motions first
       s.session.set_rotation(1, Vec3(1, 2, 3), step);
       s.session.deform();
     }
@@ -148,7 +148,7 @@ BOOST_AUTO_TEST_CASE(rotation_translation_and_scale_combine)
   const auto& found = s.session.transformation(1);
   for (const Vec3& x : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 2, 3)})
     BOOST_TEST((found(x) - expected(x)).norm() < 1e-13);
-  // setting one again replaces it
+  // Setting a handle again replaces it.
   s.session.set_translation(1, Vec3(0, 0, 0));
   s.session.set_scale(1, 1);
   s.session.set_rotation(1, Vec3(0, 0, 1), 0);
@@ -166,8 +166,8 @@ BOOST_AUTO_TEST_CASE(two_turns_of_twist_arrive_as_two_turns_and_undo_exactly)
     const Vec3 axis(0, 0, 1), center(.5, .5, 0);
     session.set_rotation(top, axis, 4 * pi, center);
     const auto report = session.deform();
-    BOOST_TEST(report.energy > 0.1); // it did something, although 720 degrees end where they began
-    // The turn grows evenly with the height: follow one side of the bar.
+    BOOST_TEST(report.energy > 0.1); // not zero, although 720 degrees are the identity
+    // The rotation increases linearly with the height: follows one side of the bar.
     double turned = 0, before = 0;
     std::vector<std::pair<double, std::size_t>> side;
     for (std::size_t i = 0; i < points.size(); ++i)
@@ -199,7 +199,7 @@ BOOST_AUTO_TEST_CASE(reset_brings_back_the_rest_shape)
     BOOST_TEST((s.session.transformation(1)(Vec3(1, 2, 3)) == Vec3(1, 2, 3)));
     s.session.deform();
     BOOST_TEST(pcs_test::largest_distance(s.points, s.edit.points) < 1e-12);
-    // handles and factors stay usable
+    // Handles and factors remain usable.
     s.session.set_transformation(1, bend());
     s.session.deform();
     BOOST_TEST((s.points == Bar_session::fresh(samples, bend())));
@@ -249,7 +249,7 @@ BOOST_AUTO_TEST_CASE(a_snapshot_of_another_session_is_refused)
   BOOST_CHECK_EXCEPTION(a.session.restore(b.session.snapshot()),
                         Invalid_input,
                         message_has("restore"));
-  Bar_session c(150); // with as many samples
+  Bar_session c(150); // with the same number of samples
   BOOST_CHECK_THROW(a.session.restore(c.session.snapshot()), Invalid_input);
 }
 
@@ -260,7 +260,7 @@ BOOST_AUTO_TEST_CASE(a_snapshot_holds_what_was_solved)
     s.session.set_transformation(1, bend());
     s.session.deform();
     const Points bent = s.points;
-    // Motions that nobody has solved for are not part of it.
+    // A snapshot excludes motions that are not solved yet.
     s.session.set_rotation(1, Vec3(0, 0, 1), 2);
     s.session.restore(s.session.snapshot());
     BOOST_TEST((s.points == bent));
@@ -304,7 +304,7 @@ BOOST_AUTO_TEST_CASE(points_are_carried_by_a_shape_and_its_handles_only)
     s.session.preprocess();
     BOOST_CHECK_EXCEPTION(s.session.apply(other), Invalid_input, message_has("call it first"));
     BOOST_TEST((other == s.edit.points));
-    // The constraints are still those of another handle than the shape's.
+    // The constraints contain a handle that the shape was not solved with.
     const auto between =
         pcs_test::select(s.edit.points, [](const Vec3& p) { return p.z() > 2.4 && p.z() < 2.6; });
     const auto added = s.session.add_handle(between);
@@ -413,7 +413,7 @@ BOOST_AUTO_TEST_CASE(handles_that_do_not_move_keep_every_bit_of_an_accepted_shap
     Bar_session s(samples);
     s.session.set_transformation(1, bend());
     s.session.deform();
-    for (Vec3& p : s.points) // what the map gives is accepted, whoever wrote it
+    for (Vec3& p : s.points) // accepts the values of the map, independent of their origin
       p *= 1.1;
     s.session.accept();
     const Points accepted = s.points;
@@ -449,7 +449,7 @@ BOOST_AUTO_TEST_CASE(points_of_a_removed_handle_are_free_again)
     s.session.remove_handle(handle);
     s.session.deform();
     BOOST_TEST(pcs_test::largest_distance(s.points, Bar_session::fresh(samples, bend())) < 1e-9);
-    // all handles removed: back to rest
+    // After removal of all handles, the points are at rest.
     s.session.remove_handle(0);
     s.session.remove_handle(1);
     BOOST_TEST(s.session.deform().status == Status::nothing_to_do);
@@ -497,7 +497,7 @@ BOOST_AUTO_TEST_CASE(a_place_that_is_partly_outside_a_region_stays)
 
 BOOST_AUTO_TEST_CASE(parts_without_a_sample_follow_their_handles)
 {
-  // A small cube beside the bar, too small for a sample.
+  // A small cube beside the bar, without any sample.
   Points rest = Bar_edit().points;
   const std::size_t n = rest.size();
   for (int k = 0; k < 8; ++k)
@@ -515,7 +515,7 @@ BOOST_AUTO_TEST_CASE(parts_without_a_sample_follow_their_handles)
     session.deform();
     for (const std::size_t k : {0u, 1u, 2u})
       BOOST_TEST(is_moved(points, k, shift));
-    const auto other = session.add_handle(handle(1)); // stays at rest
+    const auto other = session.add_handle(handle(1)); // remains at rest
     session.deform();
     BOOST_TEST(is_moved(points, 0, shift));
     BOOST_TEST(is_moved(points, 1, none));
@@ -556,7 +556,7 @@ BOOST_AUTO_TEST_CASE(a_refused_handle_changes_nothing)
   BOOST_CHECK_EXCEPTION(s.session.add_handle(negative), Invalid_input, message_has("-1"));
   const std::vector<std::size_t> taken{s.edit.handles[0].indices[0], 300};
   BOOST_CHECK_THROW(s.session.add_handle(taken), Invalid_input);
-  BOOST_TEST(s.session.add_handle(std::vector<int>{300}) == 2u); // 300 is still free, 2 too
+  BOOST_TEST(s.session.add_handle(std::vector<int>{300}) == 2u); // 300 and 2 are unused
 }
 
 BOOST_AUTO_TEST_CASE(factors_are_made_once_per_set_of_handles)
@@ -568,7 +568,7 @@ BOOST_AUTO_TEST_CASE(factors_are_made_once_per_set_of_handles)
   BOOST_TEST(report.number_of_points == s.points.size());
   BOOST_TEST(report.number_of_samples == 150u);
   report = s.session.deform();
-  BOOST_TEST(report.seconds.neighbors == 0); // nothing of this was done again
+  BOOST_TEST(report.seconds.neighbors == 0); // no stage is repeated
   BOOST_TEST(report.seconds.sampling == 0);
   BOOST_TEST(report.seconds.factorization == 0);
 }
@@ -590,7 +590,7 @@ BOOST_AUTO_TEST_CASE(any_sequence_of_calls_ends_like_a_fresh_session)
     Session session(points, parameters(samples));
     std::vector<Handle> handles;
     std::vector<char> is_taken(rest.size(), 0);
-    bool is_solved = true; // with the present handles; or at rest
+    bool is_solved = true; // for the current handles, or at rest
     bool is_at_rest = true;
     for (int step = 0; step < 120; ++step) {
       const auto kind = random() % 10;
@@ -704,7 +704,7 @@ BOOST_AUTO_TEST_CASE(a_cancelled_deformation_can_be_repeated)
 
 BOOST_AUTO_TEST_CASE(the_region_and_the_rest_of_the_cloud_may_be_worked_on_in_turn)
 {
-  // Two regions, two sessions on the same points, one after the other.
+  // Two regions in two successive sessions on the same points.
   const Bar_edit edit;
   Points points = edit.points;
   const auto region = [&](double low, double high) {
@@ -771,7 +771,7 @@ BOOST_AUTO_TEST_CASE(vectors_and_tensors_follow_the_gradient)
     pcs::Point_set_deformation<std::vector<Splat>, decltype(np)> session(splats, np);
     session.add_handle(edit.handles[0].indices);
     const auto top = session.add_handle(edit.handles[1].indices);
-    // a rigid motion of everything
+    // A rigid motion of all points.
     const auto motion = pcs::rotation(Vec3(1, 2, 3), 1.0, Vec3(0, 0, 0));
     session.set_transformation(0, motion);
     session.set_transformation(top, motion);
@@ -782,7 +782,7 @@ BOOST_AUTO_TEST_CASE(vectors_and_tensors_follow_the_gradient)
                        (s.vector - motion.rotation() * Vec3(0, 0, .01)).norm() +
                            (s.covariance - 1e-4 * Eigen::Matrix3d::Identity()).norm());
     BOOST_TEST(worst < 1e-10);
-    // a stretch along z: vectors grow with it, and so do covariances, squared
+    // A stretch along z: vectors scale linearly, and covariances quadratically.
     session.reset();
     session.set_translation(top, Vec3(0, 0, 1));
     session.deform();
@@ -803,7 +803,7 @@ BOOST_AUTO_TEST_CASE(vectors_and_tensors_follow_the_gradient)
     BOOST_TEST(in_the_middle > 100u);
     BOOST_TEST_MESSAGE("stretch in the middle, " << samples << " samples: " << smallest << " to "
                                                  << largest);
-    // 4.75 / 3.75 = 1.27 on average. Measured: 1.270 to 1.274, with samples 1.22 to 1.40.
+    // The mean is 4.75 / 3.75 = 1.27. Measured: 1.270 to 1.274, with samples 1.22 to 1.40.
     BOOST_TEST(smallest > (samples == 400 ? 1.18 : 1.25));
     BOOST_TEST(largest < (samples == 400 ? 1.45 : 1.29));
     session.reset();
@@ -817,7 +817,7 @@ BOOST_AUTO_TEST_CASE(between_near_handles_other_points_move_like_those_of_the_se
   const Points rest = pcs_test::plate(80, 40, 1);
   Points points = rest;
   Session session(points,
-                  parameters(60)); // samples 7 to 8 apart: both handles draw what is between
+                  parameters(60)); // samples 7 to 8 apart: both handles move points between them
   std::vector<std::size_t> left, right;
   for (std::size_t i = 0; i < rest.size(); ++i)
     if (std::abs(rest[i].x() - 40) >= 4)
@@ -833,7 +833,7 @@ BOOST_AUTO_TEST_CASE(between_near_handles_other_points_move_like_those_of_the_se
 BOOST_AUTO_TEST_CASE(other_points_follow_the_points_around_them)
 {
   const Bar_edit edit(12, 48);
-  // every second point makes the session, all points are carried
+  // The session has every second point; the deformation is applied to all points.
   Points half;
   std::vector<std::size_t> fixed, moved;
   for (std::size_t i = 0; i < edit.points.size(); i += 2) {
@@ -862,7 +862,7 @@ BOOST_AUTO_TEST_CASE(other_points_follow_the_points_around_them)
     BOOST_TEST_MESSAGE("carried points, " << samples << " samples: members off by " << at_members
                                           << ", neighbours differ by " << jump);
     BOOST_TEST(at_members < 1e-6);
-    BOOST_TEST(jump < 0.15); // a spacing is 0.083, turned by up to a radian
+    BOOST_TEST(jump < 0.15); // a spacing is 0.083, rotated by up to 1 rad
     Points again = edit.points;
     session.apply(again);
     BOOST_TEST((again == others));

@@ -31,7 +31,7 @@ struct Nothing
 {
 };
 
-/// A map that only reads.
+/// A read-only property map.
 struct Const_map
 {
   using key_type = Point;

@@ -41,7 +41,7 @@ struct Reference
   pcs::Similarity motion = edit.handles[1].transformation;
   pcs_test::Deformed expected;
 
-  /// With coordinates that a kernel with numbers of type `FT` can hold.
+  /// The points with coordinates that numbers of type `FT` represent.
   template <class FT>
   static const Reference& of()
   {
@@ -61,7 +61,7 @@ struct Reference
     expected = pcs_test::deform(edit.points, edit.handles, options, normals);
   }
 
-  /// Largest distance to the expected points, where `at(i)` gives point i.
+  /// Largest distance to the expected points; `at(i)` returns point i.
   template <class At>
   double error(const At& at) const
   {
@@ -99,7 +99,7 @@ std::vector<Triple> converted(const Points& points)
   return result;
 }
 
-/// Rounding of the results.
+/// Rounding error of the results.
 template <class K>
 constexpr double tolerance = std::is_same_v<typename K::FT, float> ? 1e-6 : 1e-12;
 
@@ -153,7 +153,7 @@ BOOST_AUTO_TEST_CASE(a_chain_of_cgal_serves_as_well)
                         r.moved,
                         r.motion,
                         CGAL::parameters::point_map(CGAL::Nth_of_tuple_property_map<1, Element>()));
-  // fewer points than the default number of samples: full resolution
+  // Fewer points than the default number of samples: full resolution.
   pcs_test::Options options;
   const auto expected = pcs_test::deform(r.edit.points, r.edit.handles, options);
   for (std::size_t i = 0; i < elements.size(); ++i) {
@@ -200,7 +200,7 @@ BOOST_AUTO_TEST_CASE(archetypes_of_range_key_map_and_value)
   BOOST_TEST(r.error([&](std::size_t i) { return points[i]; }) < 1e-12);
   BOOST_TEST(r.normal_error([&](std::size_t i) { return normals[i]; }) < 1e-12);
 
-  // handles and region of interest as single pass ranges of another integer type
+  // Handles and region of interest as single pass ranges of another integer type.
   points = converted<Point>(r.edit.points);
   normals = converted<Point>(pcs_test::arbitrary_normals(points.size()));
   const auto n = static_cast<short>(points.size());
@@ -238,7 +238,7 @@ BOOST_AUTO_TEST_CASE(handles_may_be_any_range_of_integers)
   };
   check(std::set<std::size_t>(r.fixed.begin(), r.fixed.end()),
         std::deque<int>(r.moved.begin(), r.moved.end()));
-  // no fixed points: all follow
+  // Without fixed points, all points follow.
   Points points = r.edit.points;
   pcs::deform_point_set(points, std::vector<unsigned char>(), r.moved, r.motion, np);
   for (std::size_t i = 0; i < points.size(); ++i)

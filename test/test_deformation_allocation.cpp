@@ -15,8 +15,8 @@
 
 namespace {
 
-/// Lets one allocation fail, from the first to the last. Returns how many failures were tried.
-/// Sequential: TBB itself does not survive them.
+/// Fails one allocation at a time, from the first to the last. Returns the number of failures.
+/// Sequential, since TBB does not survive failures.
 int fail_everywhere(int number_of_samples)
 {
   const auto rest = pcs_test::box(4, 4, 10, 0.25);
@@ -47,7 +47,7 @@ int fail_everywhere(int number_of_samples)
     ++failures;
     if (has_thrown)
       BOOST_REQUIRE((points == rest));
-    // else somebody could do without; the result must then be whole
+    // Otherwise the allocation was optional, and the result must be complete.
     else
       BOOST_REQUIRE((points[last] - motion(rest[last])).norm() < 1e-12);
   }
@@ -71,8 +71,8 @@ BOOST_AUTO_TEST_CASE(frames_allocate_nothing)
   const auto rest = pcs_test::box(6, 6, 24, 0.125);
   for (const int samples : {100, 100000}) {
     auto points = rest;
-    // With a tolerance of zero all frames make as many passes: memory for these comes with the
-    // first.
+    // With a tolerance of zero, all frames have the same number of passes, whose memory is
+    // allocated by the first frame.
     const auto np =
         pcs::parameters::number_of_samples(samples).tolerance(0).number_of_iterations(8);
     pcs::Point_set_deformation<decltype(points), decltype(np), CGAL::Sequential_tag> session(points,

@@ -32,7 +32,7 @@ Options with_samples(long long count)
   return options;
 }
 
-/// Full resolution, and a few samples.
+/// Numbers of samples: full resolution, and few samples.
 const long long both_resolutions[] = {100000, 150};
 
 double largest_normal_error(const Points& normals, const Points& expected)
@@ -148,7 +148,7 @@ BOOST_AUTO_TEST_CASE(a_larger_cloud_is_deformed_likewise)
 {
   const Bar_edit edit;
   for (const auto samples : both_resolutions) {
-    // Weights of samples are kept in 16 bits: now and then one of them is rounded the other way.
+    // Weights of samples have 16 bits, and a few are rounded differently.
     const double tolerance = samples < 1000 ? 2e-6 : 1e-9,
                  for_normals = samples < 1000 ? 1e-5 : 1e-9;
     const auto expected = deform(edit.points, edit.handles, with_samples(samples));
@@ -171,9 +171,9 @@ BOOST_AUTO_TEST_CASE(a_larger_cloud_is_deformed_likewise)
 
 BOOST_AUTO_TEST_CASE(a_cloud_far_from_the_origin_is_deformed_likewise)
 {
-  // A grid: ties among neighbours are systematic, and must not be decided by rounding.
+  // On a grid, ties among neighbours are systematic, and must be independent of rounding.
   for (const auto samples : both_resolutions)
-    for (const int width : {6, 7}) { // spacings 1/6 and 1/7: not representable
+    for (const int width : {6, 7}) { // spacings 1/6 and 1/7 are not representable
       const Bar_edit edit(width, 4 * width);
       const auto expected = deform(edit.points, edit.handles, with_samples(samples));
       for (const Vec3& offset : {Vec3(5e6, -5e6, 100), Vec3(4.5e5, 5.2e6, 17.3)}) {
@@ -233,8 +233,8 @@ BOOST_AUTO_TEST_CASE(the_order_of_the_handles_does_not_matter)
 
 BOOST_AUTO_TEST_CASE(a_rotated_edit_gives_the_rotated_result)
 {
-  // Random points: the samples of a rotated cloud differ, so only full resolution obeys to the last
-  // digits.
+  // Random points: the samples of a rotated cloud differ, so only full resolution is accurate to
+  // the last digits.
   Points points = pcs_test::sphere(900);
   for (Vec3& p : points)
     p.z() *= 2;
@@ -317,7 +317,7 @@ BOOST_AUTO_TEST_CASE(components_that_no_handle_reaches_keep_their_bits)
   }
 }
 
-// Typical lengths are those of the whole cloud, hence not to the last digit.
+// Typical lengths depend on the whole cloud, so the last digits differ.
 BOOST_AUTO_TEST_CASE(another_component_does_not_change_the_result)
 {
   const Bar_edit edit;
@@ -345,7 +345,7 @@ BOOST_AUTO_TEST_CASE(normals_keep_their_lengths)
 
 BOOST_AUTO_TEST_CASE(normals_follow_the_surface)
 {
-  // The normal of the side x = 0 stays at right angles to the edges around it.
+  // The normal of the side x = 0 remains perpendicular to the edges around it.
   const Bar_edit edit(10, 40);
   Points normals(edit.points.size(), Vec3(-1, 0, 0));
   for (const auto samples : {100000ll, 600ll}) {
@@ -364,7 +364,7 @@ BOOST_AUTO_TEST_CASE(normals_follow_the_surface)
         const Vec3 tangent = (result.points[b->second] - result.points[a->second]).normalized();
         worst = std::max(worst, std::abs(tangent.dot(result.normals[i])));
       }
-    // Measured: 0.030 and 0.066. The surface curves within a spacing, so it is not zero.
+    // Measured: 0.030 and 0.066. They are not zero, since the surface curves within a spacing.
     BOOST_TEST_MESSAGE("largest cosine " << worst);
     BOOST_TEST(worst < 0.08);
   }

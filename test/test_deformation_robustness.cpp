@@ -44,7 +44,7 @@ std::vector<std::size_t> all_of(const Points& points)
   return pcs_test::select(points, [](const Vec3&) { return true; });
 }
 
-/// Handles at the first and the last point, the last one moved.
+/// Handles at the first and the last point; the last one is moved.
 Handles at_both_ends(const Points& points, const Similarity& motion)
 {
   return {{{0}, {}, 0}, {{points.size() - 1}, motion, 0}};
@@ -57,7 +57,7 @@ Options with_samples(long long count)
   return options;
 }
 
-/// The handles reached their targets and everything is finite.
+/// Checks that the handles reach their targets and all points are finite.
 void check(const Points& points, const Handles& handles, const Options& options)
 {
   const auto result = deform(points, handles, options);
@@ -112,7 +112,7 @@ BOOST_AUTO_TEST_CASE(collinear_points_are_deformed)
   for (int i = 0; i < 200; ++i)
     points.push_back(i * Vec3(.1, .2, .3));
   check_at_all_resolutions(points, at_both_ends(points, some_motion()));
-  // a rotation about the line is not determined by the points, but must not harm them
+  // The points do not determine a rotation about the line, but it must be harmless.
   const auto about_itself = pcs::rotation(Vec3(.1, .2, .3), 2.0, Vec3(0, 0, 0));
   const auto result = deform(points, at_both_ends(points, about_itself));
   BOOST_TEST(pcs_test::largest_distance(result.points, points) < 1e-9);
@@ -145,9 +145,10 @@ BOOST_AUTO_TEST_CASE(half_of_the_points_may_be_duplicates)
     double largest = 0;
     for (std::size_t i = 0; i < n; ++i) {
       largest = std::max(largest, (result.points[i] - single.points[i]).norm());
-      BOOST_REQUIRE((result.points[i] == result.points[n + i])); // copies stay copies
+      BOOST_REQUIRE((result.points[i] == result.points[n + i])); // duplicates remain equal
     }
-    // With samples, duplicates change which eight points are blended together, in single precision.
+    // With samples, duplicates change the blocks of eight points that are blended in single
+    // precision.
     BOOST_TEST(largest < (samples == 150 ? 1e-6 : 1e-12));
   }
 }
@@ -174,8 +175,8 @@ BOOST_AUTO_TEST_CASE(a_far_outlier_does_not_spoil_the_rest)
       auto result = deform(points, edit.handles, with_samples(samples));
       BOOST_TEST(is_finite(result));
       result.points.pop_back();
-      // The links of the outlier hang on a corner of the bar; a spacing is 1/6, double precision
-      // keeps 1e-7 of 1e9.
+      // The outlier is linked to a corner of the bar. A spacing is 1/6, and double precision
+      // resolves 1e-7 at 1e9.
       BOOST_TEST(pcs_test::largest_distance(result.points, expected.points) < 0.1,
                  "outlier at " << distance << ", " << samples << " samples: "
                                << pcs_test::largest_distance(result.points, expected.points));
@@ -221,7 +222,7 @@ BOOST_AUTO_TEST_CASE(extents_beyond_the_representable_are_refused)
         deform(Points{Vec3(0, 0, 0), Vec3(size, 0, 0), Vec3(0, size, 0)}, {{{0}, {}, 0}}),
         Invalid_input,
         message_has("extent"));
-  // the difference of two numbers may overflow although both are finite
+  // The difference of two finite numbers may overflow.
   BOOST_CHECK_THROW(deform(Points{Vec3(-1.5e308, 0, 0), Vec3(1.5e308, 0, 0)}, {{{0}, {}, 0}}),
                     Invalid_input);
 }
@@ -255,7 +256,7 @@ BOOST_AUTO_TEST_CASE(a_point_in_two_handles_is_named)
                         Invalid_input,
                         message_has("point 5", "handle 0"));
   Points points = edit.points;
-  points.push_back(points[5]); // or another point at the same place
+  points.push_back(points[5]); // or a coincident point
   BOOST_CHECK_EXCEPTION(deform(points, {{{3, 5}, {}, 0}, {{points.size() - 1}, some_motion(), 0}}),
                         Invalid_input,
                         message_has("same place"));
@@ -321,7 +322,7 @@ BOOST_AUTO_TEST_CASE(every_softness_gives_a_finite_result)
       handles[1].softness = softness;
       const auto result = deform(edit.points, handles, with_samples(samples));
       BOOST_TEST(is_finite(result), "softness " << softness);
-      for (auto& handle : handles) // nothing exact anywhere
+      for (auto& handle : handles) // no exact handles
         handle.softness = softness;
       BOOST_TEST(is_finite(deform(edit.points, handles, with_samples(samples))),
                  "softness " << softness << " of all handles");
@@ -337,7 +338,7 @@ BOOST_AUTO_TEST_CASE(every_softness_gives_a_finite_result)
 
 BOOST_AUTO_TEST_CASE(a_small_soft_handle_is_held_on_every_level)
 {
-  // Of 1000 samples and more, there are coarser networks, in which no node is in the handle.
+  // For 1000 samples or more, the handle contains no node of the coarser networks.
   const Points points = pcs_test::box(20, 20, 40, 0.1);
   for (const std::size_t i : {0u, 77u, 301u})
     for (const long long samples : {1000, 1000000}) {
@@ -352,7 +353,7 @@ BOOST_AUTO_TEST_CASE(a_small_soft_handle_is_held_on_every_level)
 
 BOOST_AUTO_TEST_CASE(small_exact_handles_are_held_on_every_level)
 {
-  // The same with exact ones, which are nodes of no network but have some on their border.
+  // Same with exact handles, which contain no nodes but have some on their border.
   const Points points = pcs_test::box(20, 20, 40, 0.1);
   const Vec3 shift(1, 2, 3);
   for (const std::size_t i : {0u, 77u, 301u})
@@ -441,7 +442,7 @@ BOOST_AUTO_TEST_CASE(one_handle_of_one_point_moves_everything_rigidly)
 BOOST_AUTO_TEST_CASE(handles_need_not_be_contiguous)
 {
   const Bar_edit edit;
-  // one handle is both ends, the other a ring in the middle, the third a single point
+  // One handle contains both ends, the second a ring in the middle, the third a single point.
   Handles handles(3);
   for (std::size_t i = 0; i < edit.points.size(); ++i) {
     const double z = edit.points[i].z();
@@ -638,7 +639,7 @@ BOOST_AUTO_TEST_CASE(an_exception_of_the_callback_passes_through)
           throw std::range_error("enough");
         return true;
       };
-      // deform() of the tests checks that nothing was changed
+      // deform() of the tests checks that the points are unchanged.
       BOOST_CHECK_THROW(deform(edit.points, edit.handles, options), std::range_error);
     }
   }
@@ -688,7 +689,7 @@ BOOST_AUTO_TEST_CASE(a_soft_handle_holds_a_body_of_one_sample)
   BOOST_TEST((result.points[0] - shift(edit.points[0])).norm() < 1e-9);
 }
 
-// The border of an exact handle may lie next to the only sample, which a stiff spring draws away.
+// The border of an exact handle may lie next to the only sample, which a stiff spring attracts.
 BOOST_AUTO_TEST_CASE(few_samples_throw_no_point_away)
 {
   const Bar_edit edit;

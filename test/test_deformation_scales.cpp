@@ -21,7 +21,7 @@ using pcs_test::Options;
 using pcs_test::Points;
 using pcs_test::Vec3;
 
-/// Random points on a tube along z. `half`: only one side of it.
+/// Random points on a tube along z, or on one side of it if `half` is set.
 Points tube(double length, double radius, bool is_half = false)
 {
   std::mt19937 random(11);
@@ -56,7 +56,7 @@ double mean_radius(const Points& rest, const Points& now, double low, double hig
   return sum / count;
 }
 
-/// How far the middles of sections leave the z axis.
+/// Largest distance of the section centers from the z axis.
 double largest_bow(const Points& rest, const Points& now, double length)
 {
   double largest = 0;
@@ -81,7 +81,7 @@ BOOST_AUTO_TEST_SUITE(deformation_scales)
 
 BOOST_AUTO_TEST_CASE(a_scaled_end_makes_a_rod_thicker_and_no_longer)
 {
-  // A rod that grew in length as well would have to buckle between its ends.
+  // A rod that became longer as well would buckle between its ends.
   const double length = 6, radius = .1;
   const Points points = tube(length, radius);
   for (const double factor : {2.0, 0.5})
@@ -106,14 +106,14 @@ BOOST_AUTO_TEST_CASE(a_scaled_end_makes_a_rod_thicker_and_no_longer)
 
 BOOST_AUTO_TEST_CASE(a_body_with_room_grows_in_length)
 {
-  // Scaled about the other end: a cone, on which lengths grow like radii.
+  // Scaling about the other end gives a cone whose lengths grow with its radii.
   const double length = 4;
   const Points points = tube(length, .5);
   const auto handles = ends(points, length, pcs::scaling(2, Vec3::Zero()));
   const auto result = deform(points, handles);
   BOOST_TEST(largest_bow(points, result.points, length) < .02 * length);
-  // With scale 2^(z / length), z goes to length (2^(z / length) - 1) / log 2, and all of it to 2
-  // length: nearly so.
+  // With scale 2^(z / length), z is mapped to length (2^(z / length) - 1) / log 2, and the whole
+  // length nearly to 2 length.
   double previous = 0;
   for (int k = 1; k < 9; ++k) {
     double sum = 0, count = 0;
@@ -152,7 +152,7 @@ BOOST_AUTO_TEST_CASE(an_open_shell_does_not_buckle_at_once)
   const Points points = tube(length, .5, true);
   const auto handles = ends(points, length, pcs::scaling(2, Vec3(0, .3, .975 * length)));
   const auto result = deform(points, handles);
-  double largest = 0; // scaled about an axis, points stay in planes that hold it
+  double largest = 0; // for a scaling about an axis, points remain in planes that contain it
   for (std::size_t i = 0; i < points.size(); ++i)
     largest = std::max(largest, std::abs(result.points[i].z() - points[i].z()));
   BOOST_TEST(largest < .1 * length);

@@ -31,7 +31,7 @@ Handles handles_of(const Deformation_case& c)
   return handles;
 }
 
-/// Deforms, prints and measures.
+/// Deforms a case, prints and returns its measures.
 Deformation_measures run(const Deformation_case& c, const Options& options)
 {
   const Deformed result = deform(c.points, handles_of(c), options);
@@ -60,9 +60,9 @@ Options at_1000_samples()
 
 } // namespace
 
-// The limits at full resolution are the goals of the project. The analytic shapes have, by the same
-// measures: T1 13.9 degrees of frame error (a best-fit rotation is biased by shear), T5 32; all
-// others nearly none.
+// The limits at full resolution are the goals of the project. By the same measures, the analytic
+// shapes have 13.9 degrees of frame error in T1 (a best-fit rotation is biased by shear) and 32 in
+// T5; all others have nearly none.
 BOOST_AUTO_TEST_SUITE(deformation_shapes)
 
 BOOST_AUTO_TEST_CASE(a_bar_twisted_by_135_degrees)
@@ -112,14 +112,14 @@ BOOST_AUTO_TEST_CASE(what_coarse_samples_find_of_a_drag_is_where_the_passes_star
     const auto report = deform(drag.points, handles_of(drag), options).report;
     return report.initial_energy / report.energy;
   };
-  BOOST_TEST(share_at_start(800) > 25); // too few for coarser ones: the field of the handles
+  BOOST_TEST(share_at_start(800) > 25); // no coarser levels: starts from the handle field
   BOOST_TEST(share_at_start(2000) < 12);
 }
 
 BOOST_AUTO_TEST_CASE(a_thousand_samples_come_near)
 {
-  // Regression guards, not goals. Measured when this was written: T1 14.5 deg, .0048 L, volume
-  // .997; T2 2.1 deg, .0035 L; T3 1.3 deg, .0012 L; T4 rms .021; T5 33.6 deg, .0072 L, volume 1.00.
+  // Regression guards, not goals. Measured: T1 14.5 deg, .0048 L, volume .997; T2 2.1 deg, .0035 L;
+  // T3 1.3 deg, .0012 L; T4 rms .021; T5 33.6 deg, .0072 L, volume 1.00.
   auto m = run(pcs_test::bar_135(), at_1000_samples());
   BOOST_TEST(m.frame_error <= 15.5);
   BOOST_TEST(m.position_error <= .0055);
@@ -171,14 +171,14 @@ BOOST_AUTO_TEST_SUITE(deformation_sheets)
 
 namespace {
 
-/// The upper sheet's far end is lifted; returns how far the far part of the lower sheet moves.
+/// Lifts the far end of the upper sheet, and returns the motion of the far part of the lower sheet.
 double
 motion_of_the_other_sheet(double gap, bool is_folded, const Options& options, bool& is_upper_moved)
 {
   const int nx = 40, ny = 20;
   const Points points = pcs_test::sheets(nx, ny, gap, is_folded);
   const auto is_lower = [=](const Vec3& p) { return p.z() < gap / 2; };
-  // The fold, or one end of each sheet, is held.
+  // Fixes the fold, or one end of each sheet.
   const auto fixed = pcs_test::select(points, [=](const Vec3& p) { return p.x() < 1.5; });
   const auto lifted =
       pcs_test::select(points, [=](const Vec3& p) { return p.x() > nx - 1.5 && !is_lower(p); });
@@ -188,7 +188,7 @@ motion_of_the_other_sheet(double gap, bool is_folded, const Options& options, bo
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double d = (result.points[i] - points[i]).norm();
     if (is_lower(points[i])) {
-      if (points[i].x() >= 10) // nearer to the fold few samples may reach around it
+      if (points[i].x() >= 10) // near the fold, few samples may link both sheets
         largest = std::max(largest, d);
     } else
       upper = std::max(upper, d);
@@ -212,9 +212,9 @@ BOOST_AUTO_TEST_CASE(a_sheet_near_by_does_not_follow)
                                   << " samples")
         {
           BOOST_TEST(is_upper_moved);
-          // Eight points that are blended together may belong to both sheets: single precision of
-          // the motion. With samples further apart than the sheets, the fold reaches one sample
-          // further.
+          // The eight points of a block may belong to both sheets, so the motion has single
+          // precision. With samples further apart than the sheets, the fold has an effect over one
+          // more sample.
           BOOST_TEST(d < (is_folded && samples == 200 ? 0.03 : 2e-4));
         }
       }
@@ -267,7 +267,7 @@ BOOST_AUTO_TEST_CASE(a_stretched_strip_narrows_like_its_material)
 
 BOOST_AUTO_TEST_CASE(a_stiffer_body_bends_less)
 {
-  // A dragged plate: the stiffer, the less bending and the more stretch.
+  // A dragged plate: a larger stiffness reduces bending and increases stretch.
   const Points points = pcs_test::plate(40, 8, 1);
   const auto handles = pcs_test::two_handles(
       points,
@@ -299,7 +299,7 @@ BOOST_AUTO_TEST_CASE(a_stiffer_body_bends_less)
 
 BOOST_AUTO_TEST_CASE(denser_points_make_a_plate_no_softer)
 {
-  // A wavy plate, compressed and lifted; every third point of one sampling is a point of the other.
+  // A wavy plate, compressed and lifted. Every third point of one sampling is a point of the other.
   const auto bend = [](int cells) {
     const double pi = 3.14159265358979323846;
     Points points;
@@ -330,9 +330,9 @@ BOOST_AUTO_TEST_CASE(denser_points_make_a_plate_no_softer)
   BOOST_TEST(difference < 0.006);
 }
 
-// A bottle whose lip is turned about its own middle: the field of the handles turns all of the
-// body, the least energy bends the neck. The springs through the inside must follow: held back,
-// they take a hundred passes.
+// A bottle whose lip is rotated about its center. The field of the handles rotates the whole body,
+// the minimum of the energy bends the neck. The springs through the inside must follow, since
+// damping them requires a hundred passes.
 BOOST_AUTO_TEST_CASE(a_few_passes_come_near_the_least_energy)
 {
   Points points;
@@ -375,7 +375,7 @@ BOOST_AUTO_TEST_CASE(interior_springs_keep_volume)
   BOOST_TEST(with > without + 0.02);
 }
 
-// Above 20,000 nodes, only the coarser levels have the springs.
+// Above 20,000 nodes, only the coarser levels have interior springs.
 BOOST_AUTO_TEST_CASE(interior_springs_keep_volume_at_full_resolution)
 {
   pcs_test::Deformation_case c;
@@ -384,7 +384,7 @@ BOOST_AUTO_TEST_CASE(interior_springs_keep_volume_at_full_resolution)
   const auto m = run(c, at_full_resolution());
   BOOST_TEST(m.volume_ratio > 0.97);
   BOOST_TEST(m.position_error < 0.008);
-  // Without passes, the field of the handles alone counts.
+  // Without passes, the result depends only on the field of the handles.
   Options options = at_full_resolution();
   options.number_of_iterations = 0;
   const Points with = deform(c.points, handles_of(c), options).points;
@@ -416,7 +416,7 @@ BOOST_AUTO_TEST_CASE(few_samples_tear_nothing_between_handles)
             steepest = std::max(steepest, ((moved[j] - points[j]) - (moved[i] - points[i])).norm());
       BOOST_TEST_MESSAGE("gap " << gap << (is_turned ? ", turned" : ", lifted") << ": steepest "
                                 << steepest);
-      // A straight plate is as steep as 1 everywhere.
+      // The gradient of a straight plate is 1 everywhere.
       BOOST_TEST(steepest < 2.5);
     }
 }
@@ -436,7 +436,7 @@ BOOST_AUTO_TEST_CASE(the_variants_of_the_dissertation_run_and_differ)
     BOOST_TEST(pcs_test::is_finite(result));
     const double d = pcs_test::largest_distance(result.points, standard.points);
     BOOST_TEST(d > 1e-6);
-    BOOST_TEST(d < 0.2); // ... a variant of the same shape
+    BOOST_TEST(d < 0.2); // a variant of the same shape
   }
 }
 

@@ -58,8 +58,8 @@ bool are_equal(const Tree& a, const Tree& b)
   return true;
 }
 
-/// Largest distance from a node of `a` to the nearest node of `b`, and their radii, for those
-/// within `share` of all.
+/// Largest distance from a node of `a` to the nearest node of `b`, and largest difference of their
+/// radii, for the fraction `share` of the nodes.
 double distance_between(const Tree& a, const Tree& b, double share)
 {
   std::vector<double> distances;
@@ -75,7 +75,7 @@ double distance_between(const Tree& a, const Tree& b, double share)
   return distances[static_cast<std::size_t>(share * double(distances.size() - 1))];
 }
 
-/// Length of the pieces of `tree` whose middle is further than 2.5 cm from all pieces of `truth`.
+/// Length of the pieces of `tree` whose midpoint is further than 2.5 cm from all pieces of `truth`.
 double astray(const Tree& tree, const Tree& truth)
 {
   double sum = 0;
@@ -156,7 +156,7 @@ BOOST_AUTO_TEST_CASE(the_branches_of_a_virtual_tree_are_found)
   BOOST_CHECK_CLOSE(report.total.length, seen_length, 15.0);
   BOOST_CHECK_CLOSE(length_of(tree), report.total.length, 0.1);
   BOOST_CHECK_EQUAL(report.by_order.at(0).number_of_branches, 1u);
-  // nearly all nodes lie within 1 cm of a true axis
+  // Nearly all nodes lie within 1 cm of a true axis.
   std::vector<double> distances;
   for (std::size_t v = 0; v < num_vertices(tree); ++v) {
     double best = std::numeric_limits<double>::infinity();
@@ -195,7 +195,7 @@ BOOST_AUTO_TEST_CASE(points_know_their_branch_and_distance)
       measured += dense.at(p);
       BOOST_CHECK_SMALL(residual.at(p), 0.03);
       BOOST_CHECK(!leaf.at(p));
-      // the axis of the cylinder is the z-axis
+      // The axis of the cylinder is the z-axis.
       const Kernel::Vector_3 across(p.x(), p.y(), 0);
       BOOST_CHECK_GT(normal.at(p) * across, 0.95 * std::sqrt(across.squared_length()));
       BOOST_CHECK_CLOSE(normal.at(p).squared_length(), 1.0, 1e-9);
@@ -237,12 +237,12 @@ BOOST_AUTO_TEST_CASE(leaves_are_found_where_there_are_any)
   BOOST_CHECK_EQUAL(all, found.number_of_leaf_points);
   BOOST_CHECK_GT(10 * right, 7 * leaves);
   BOOST_CHECK_LT(5 * wrong, wood);
-  BOOST_CHECK_CLOSE(found.height, kept.height, 5.0); // where the leaves end
+  BOOST_CHECK_CLOSE(found.height, kept.height, 5.0); // upper end of the leaves
   BOOST_CHECK_EQUAL(kept.number_of_leaf_points, 0u);
   BOOST_CHECK_LT(found.number_of_branches, kept.number_of_branches / 2);
   const double truth = length_of(s.truth);
   BOOST_CHECK_LT(std::abs(length_of(with) - truth), 0.5 * std::abs(length_of(without) - truth));
-  // wood alone is left alone, unless the caller insists
+  // Scans of wood only are unchanged, unless the caller requests removal.
   Tree bare;
   BOOST_CHECK_EQUAL(pcs::extract_tree_skeleton(s.scan.points, bare).number_of_leaf_points, 0u);
   const auto always = pcs::parameters::do_remove_leaves(true);
@@ -253,7 +253,7 @@ BOOST_AUTO_TEST_CASE(leaves_are_found_where_there_are_any)
 
 BOOST_AUTO_TEST_CASE(residuals_are_those_of_the_surface_that_is_written)
 {
-  // leaves, so that radii are bounded after the fit
+  // With leaves, radii are bounded after the fit.
   pcs::Virtual_scanner scanner;
   scanner.angular_step = 0.15 * CGAL_PI / 180;
   scanner.leaves_per_length = 20;
@@ -267,7 +267,7 @@ BOOST_AUTO_TEST_CASE(residuals_are_those_of_the_surface_that_is_written)
       tree,
       pcs::parameters::point_branch_map(boost::make_assoc_property_map(branch))
           .point_residual_map(boost::make_assoc_property_map(residual))
-          .do_register_stations(false)); // else the residuals are those of moved points
+          .do_register_stations(false)); // otherwise the residuals refer to registered points
   struct Edge
   {
     Point from, to;
@@ -300,7 +300,7 @@ BOOST_AUTO_TEST_CASE(residuals_are_those_of_the_surface_that_is_written)
     deviations.push_back(std::abs(expected));
   }
   BOOST_TEST(number > 4000u);
-  BOOST_TEST(number_equal > number * 95 / 100); // others have a nearer edge farther on
+  BOOST_TEST(number_equal > number * 95 / 100); // for the others, an edge farther on is nearer
   std::nth_element(deviations.begin(), deviations.begin() + long(number / 2), deviations.end());
   BOOST_CHECK_CLOSE(report.residual, deviations[number / 2], 2.0);
 }
@@ -318,13 +318,13 @@ BOOST_AUTO_TEST_CASE(a_scan_without_noise_has_right_radii)
   pcs::Virtual_scan<Kernel> scan;
   pcs::scan_tree(truth, scan, scanner, pcs::parameters::random_seed(1));
   pcs::extract_tree_skeleton(scan.points, tree);
-  // radii of 5 to 10 mm: nine in ten were within 90 % where points were believed to have no noise
+  // Radii of 5 to 10 mm. Without a noise model, nine in ten were within 90 %.
   std::vector<double> errors;
   for (const auto v : boost::make_iterator_range(vertices(truth))) {
     const double radius = truth[v].radius;
     if (radius < 0.005 || radius > 0.01 || scan.hits[v] == 0)
       continue;
-    double nearest = 1e-4, error = -1; // of nodes within a centimetre
+    double nearest = 1e-4, error = -1; // over nodes within a centimetre
     for (const auto w : boost::make_iterator_range(vertices(tree))) {
       const double d = CGAL::squared_distance(tree[w].point, truth[v].point);
       if (d < nearest) {
@@ -348,7 +348,7 @@ BOOST_AUTO_TEST_SUITE(tree_skeleton_strays)
 BOOST_AUTO_TEST_CASE(what_strays_from_wood_is_no_branch_and_no_leaf)
 {
   double away = 0, away_with_stray = 0, length = 0, length_with_stray = 0;
-  // of one tree it may be more, by chance
+  // In single trees the length may increase by chance.
   for (const unsigned seed : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u}) {
     Tree truth;
     pcs::grow_tree(truth, pcs::fruit_habit(), pcs::parameters::random_seed(seed));
@@ -377,7 +377,7 @@ BOOST_AUTO_TEST_CASE(what_strays_from_wood_is_no_branch_and_no_leaf)
     BOOST_CHECK_CLOSE(found.height, kept.height, 2.0);
     length += length_of(tree);
     length_with_stray += length_of(with_stray);
-    // there are no leaves: its points are used, but may belong to no branch
+    // There are no leaves: all points are used, but may belong to no branch.
     BOOST_CHECK_EQUAL(found.number_of_leaf_points, 0u);
     BOOST_CHECK_EQUAL(found.number_of_outliers, kept.number_of_outliers);
     std::size_t without_branch = 0;
@@ -406,8 +406,7 @@ BOOST_AUTO_TEST_CASE(trees_in_rows_keep_their_wood)
   scanner.angular_step = 0.04 * CGAL_PI / 180;
   pcs::Virtual_scan<Kernel> scan;
   pcs::scan_tree(s.truth, scan, scanner, pcs::parameters::random_seed(7));
-  std::vector<Point>
-      rows; // 7 mm wide, as of a scanner that moves by 6 cm from one profile to the next
+  std::vector<Point> rows; // 7 mm wide, similar to a scanner that moves by 6 cm between profiles
   for (const Point& p : scan.points) {
     const double place = (p.z() + 0.3 * p.x()) / 0.06;
     if (std::abs(place - std::round(place)) * 0.06 < 0.0035)
@@ -421,7 +420,7 @@ BOOST_AUTO_TEST_CASE(trees_in_rows_keep_their_wood)
   BOOST_CHECK_EQUAL(pcs::warnings(report).size(), pcs::warnings(kept).size() + 1);
   BOOST_CHECK_EQUAL(report.number_of_leaf_points, 0u);
   BOOST_CHECK(are_equal(tree, bare));
-  // who wants leaves to go gets that, and loses most of the tree
+  // Forced leaf removal removes most of the tree.
   Tree lost;
   const auto always =
       pcs::extract_tree_skeleton(rows, lost, pcs::parameters::do_remove_leaves(true));
@@ -448,7 +447,7 @@ BOOST_AUTO_TEST_CASE(points_that_the_caller_calls_wood_are_no_leaves)
   BOOST_CHECK_EQUAL(pcs::extract_tree_skeleton(scan.points, tree, pcs::parameters::wood_map(map))
                         .number_of_leaf_points,
                     leaves);
-  // unless the caller wants more leaves to be found among it
+  // Unless the caller requests additional leaf detection.
   const auto np = pcs::parameters::wood_map(map).do_remove_leaves(pcs::Leaf_removal::where_found);
   BOOST_CHECK_GT(pcs::extract_tree_skeleton(scan.points, tree, np).number_of_leaf_points,
                  2 * leaves);
@@ -491,7 +490,7 @@ BOOST_AUTO_TEST_CASE(any_mutable_graph_takes_the_result)
   };
   using Graph = boost::adjacency_list<boost::listS, boost::listS, boost::directedS, Vertex>;
   Graph graph;
-  add_vertex(graph); // replaced
+  add_vertex(graph); // replaced by the result
   const auto report =
       pcs::extract_tree_skeleton(cylinder(4000, 0.1, 1),
                                  graph,
@@ -568,12 +567,12 @@ BOOST_AUTO_TEST_CASE(the_order_of_the_points_does_not_matter)
   BOOST_CHECK(are_equal(a, b));
 }
 
-// What is turned, scaled or shuffled is the same scan.
+// Rotated, scaled or shuffled scans are equivalent.
 constexpr double rounding = 1e-9;
 
-// Coordinates far from the origin are rounded. Positions along an axis are hardly determined, so
-// that moves nodes along it, and now and then a twig differs: 98 of 100 nodes must have one of the
-// other tree, of its radius, within two thirds of the distance of the points, 1.4 cm here.
+// Coordinates far from the origin are rounded. Positions along an axis are poorly constrained, so
+// rounding moves nodes along it and sometimes changes a twig. Of 100 nodes, 98 must match a node of
+// the other tree with equal radius within two thirds of the point spacing, 1.4 cm here.
 constexpr double share_of_nodes = 0.98, largest_distance = 0.009;
 
 BOOST_AUTO_TEST_CASE(a_translation_moves_the_tree)
@@ -592,8 +591,8 @@ BOOST_AUTO_TEST_CASE(a_translation_moves_the_tree)
     BOOST_CHECK_SMALL(distance_between(b, a, share), distance);
   };
   check(false, share_of_nodes, largest_distance);
-  // stations are moved by a few hundredths of a millimetre more or less, which moves nodes along
-  // their axes
+  // Registrations of stations differ by a few hundredths of a millimetre, which moves nodes along
+  // their axes.
   check(true, 0.9, 0.014);
 }
 

@@ -41,7 +41,7 @@ BOOST_AUTO_TEST_SUITE(make_branch_surface)
 
 namespace {
 
-/// Every edge once in each direction.
+/// Checks that every edge exists once in each direction.
 void check_is_closed(const std::vector<std::array<std::size_t, 3>>& triangles)
 {
   std::map<std::pair<std::size_t, std::size_t>, int> edges;
@@ -95,10 +95,10 @@ namespace PMP = CGAL::Polygon_mesh_processing;
 struct Judged_surface
 {
   pcs::Branch_surface_report report;
-  double volume = 0, crossing_share = 0; ///< of the triangles that run through others
+  double volume = 0, crossing_share = 0; ///< fraction of triangles that intersect others
 };
 
-/// A surface that bounds a volume, looks outwards, and is a manifold.
+/// Checks that a surface bounds a volume, is oriented outward, and is a manifold.
 Judged_surface judge(const Exact_tree& tree)
 {
   std::vector<Exact::Point_3> points;
@@ -138,8 +138,8 @@ BOOST_AUTO_TEST_CASE(single_branches_do_not_run_through_themselves)
   }
 }
 
-// Stems with a kink at the fork, branches as thick as their parents: solid, but rings near a kink
-// run through each other, and necks are narrower than the wood.
+// Stems with a kink at the fork and branches as thick as their parents are solid. Rings near a kink
+// intersect each other, and necks are narrower than the wood.
 BOOST_AUTO_TEST_CASE(forks_are_one_solid)
 {
   for (const Exact_tree& tree : {pcs::make_fork_tree<Exact>(1, 0.1, 0.04, 1.0),
@@ -157,14 +157,14 @@ BOOST_AUTO_TEST_CASE(forks_are_one_solid)
 BOOST_AUTO_TEST_CASE(grown_trees_are_one_solid)
 {
   for (const auto& [name, habit] : pcs::tree_habits()) {
-    if (name == "conifer") // 20 m: too long for this test
+    if (name == "conifer") // 20 m: takes too long
       continue;
     Exact_tree tree;
     pcs::grow_tree(tree, habit, pcs::parameters::random_seed(3));
     const Judged_surface surface = judge(tree);
     BOOST_TEST_CONTEXT(name)
     {
-      BOOST_TEST(surface.crossing_share < 0.06); // crowns touch themselves
+      BOOST_TEST(surface.crossing_share < 0.06); // crowns intersect themselves
       BOOST_CHECK_CLOSE(surface.volume, pcs::measure_tree(tree).union_volume, 4.0);
       BOOST_TEST(double(surface.report.number_of_separate) <
                  0.03 * double(surface.report.number_of_joined));
@@ -186,7 +186,7 @@ BOOST_AUTO_TEST_CASE(a_coarser_surface_has_fewer_triangles)
   }
 }
 
-// The quad of the post that a twig leaves is thousands of times as long as the twig is wide.
+// The quad of the post at the base of a twig is thousands of times as long as the twig is wide.
 BOOST_AUTO_TEST_CASE(hair_on_a_thick_post_is_sewn_in)
 {
   for (int k = 0; k < 24; ++k) {
@@ -229,7 +229,7 @@ BOOST_AUTO_TEST_CASE(branches_may_be_tubes_of_their_own)
 
 BOOST_AUTO_TEST_CASE(leaves_begin_on_the_bark)
 {
-  // a thin branch along z, whose root is not the first vertex
+  // A thin branch along z, whose root is not the first vertex.
   Tree tree;
   for (const double z : {0.5, 1.0, 0.0}) {
     const auto v = add_vertex(tree);
@@ -272,7 +272,7 @@ BOOST_AUTO_TEST_CASE(leaves_grow_on_fine_branches)
   for (std::size_t k = 0; k < count; ++k)
     BOOST_CHECK_CLOSE((points[4 * k + 2] - points[4 * k]).squared_length(), 0.05 * 0.05, 1e-6);
   pcs::make_leaf_surface(tree, others, triangles, np);
-  BOOST_TEST((others == points)); // the same seed
+  BOOST_TEST((others == points)); // equal seeds
   pcs::make_leaf_surface(tree, others, triangles, np.random_seed(4));
   BOOST_TEST((others != points));
   BOOST_TEST(pcs::make_leaf_surface(Tree(), others, triangles) == 0u);

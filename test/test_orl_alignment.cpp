@@ -34,7 +34,7 @@ Eigen::Matrix3d about(const Vec3& axis, double angle)
   return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
 }
 
-/// The tree after some growth: branches cut and turned.
+/// The tree after some growth: branches are cut and rotated.
 Tree grown(const std::vector<Branch>& branches, double turn, unsigned seed)
 {
   std::mt19937 random(seed);
@@ -72,7 +72,7 @@ double worst_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b)
   return result;
 }
 
-/// A short edge at the beginning of a branch, tilted by `tilt` against the rest.
+/// Adds a short edge at the beginning of a branch, tilted by `tilt` relative to the rest.
 void tilt_base(std::vector<Branch>& branches,
                std::size_t b,
                double length,
@@ -120,7 +120,7 @@ BOOST_FIXTURE_TEST_CASE(a_tree_that_was_turned_is_itself, Nodes)
           BOOST_TEST(report.unexplained_fraction < 1e-6);
           for (const pcs::Branch_match& m : space.matches())
             BOOST_TEST(m.tip[0] == m.tip[1]);
-          // half-way it is the same tree, and half of the turn is done
+          // Half-way, the tree is equal, rotated by half of the angle.
           const std::vector<Vec3> first = of(space, 0);
           for (const double lambda : {0.5, 1.0}) {
             std::vector<Vec3> turned = first;
@@ -148,7 +148,7 @@ BOOST_AUTO_TEST_CASE(a_grown_tree_is_found_however_it_stands)
       turned.add_skeleton(moved(b, about(Vec3::UnitZ(), angle), Vec3::Zero()));
       const auto report = turned.build(turns);
       BOOST_TEST(std::abs(std::remainder(report.yaw + angle, 2 * CGAL_PI)) <
-                 0.3); // trunks and branches were turned, too
+                 0.3); // trunks and branches were rotated, too
       const auto expected = still.matches(), found = turned.matches();
       for (const pcs::Branch_match& m : expected) {
         all += 1;
@@ -195,14 +195,14 @@ BOOST_AUTO_TEST_CASE(the_ends_of_a_path_with_a_turn_are_the_inputs)
     const pcs::Orl_tree tree = space.tree(end);
     std::vector<Point> points;
     space.points(tree, points);
-    std::vector<double> error(points.size(), 0); // one each: points may be visited concurrently
+    std::vector<double> error(points.size(), 0); // separate: points may be visited concurrently
     space.for_each_point(tree, [&](std::size_t i, std::size_t k, std::size_t l, double) {
       if (const std::size_t own = end == 0 ? k : l; own != pcs::npos)
         error[i] = std::sqrt(CGAL::squared_distance(points[i], scans[end][own]));
     });
     BOOST_TEST(*std::max_element(error.begin(), error.end()) < 1e-12 * 50);
   }
-  // and it survives a file
+  // The alignment is preserved in a file.
   const std::string path =
       (std::filesystem::temp_directory_path() / ("pcs_turn_" + std::to_string(::getpid()) + ".txt"))
           .string();
@@ -214,7 +214,7 @@ BOOST_AUTO_TEST_CASE(the_ends_of_a_path_with_a_turn_are_the_inputs)
   std::filesystem::remove(path);
   const pcs::Orl_report report = again.build_from(kept);
   BOOST_TEST(std::abs(report.yaw - space.build(turns).yaw) < 1e-12);
-  BOOST_TEST(std::isnan(report.unexplained_fraction)); // the file does not tell
+  BOOST_TEST(std::isnan(report.unexplained_fraction)); // not stored in the file
   std::vector<Point> one, two;
   space.points(space.geodesic(0, 1, 0.7), one);
   again.points(again.geodesic(0, 1, 0.7), two);
@@ -258,7 +258,7 @@ BOOST_AUTO_TEST_CASE(looking_for_turns_can_be_stopped)
   };
   const int as_given = count(0, Orl_alignment::as_given),
             all = count(0, Orl_alignment::rotate_about_up);
-  BOOST_TEST(all > as_given + 10); // starts, looks, and the matchings of the best
+  BOOST_TEST(all > as_given + 10); // initial angles, evaluations, and the best matchings
   for (const int stop : {as_given, as_given + 4, as_given + 8})
     BOOST_TEST(count(stop, Orl_alignment::rotate_about_up) == stop);
 }
@@ -285,8 +285,8 @@ BOOST_AUTO_TEST_SUITE(orl_frames)
 
 BOOST_FIXTURE_TEST_CASE(short_edges_at_bases_turn_nothing, Nodes)
 {
-  // both trees are the same, but for short edges at bases that point anywhere and noise of all
-  // nodes
+  // Both trees are equal, except for short edges with random directions at bases, and noise of all
+  // nodes.
   for (const bool is_trunk : {true, false}) {
     double turn = 0, residual = 0;
     const unsigned number = 20;
@@ -320,8 +320,8 @@ BOOST_FIXTURE_TEST_CASE(short_edges_at_bases_turn_nothing, Nodes)
       residual += off.norm() / (expected.colwise() - expected.rowwise().mean()).norm() / number;
     }
     BOOST_TEST_MESSAGE("turn " << turn << ", residual " << residual);
-    BOOST_TEST(turn < 0.12);     // where each edge had a twist of its own, 0.4
-    BOOST_TEST(residual < 0.12); // and 0.09, 0.26 with short edges at all bases
+    BOOST_TEST(turn < 0.12);     // 0.4 with an independent twist of each edge
+    BOOST_TEST(residual < 0.12); // 0.09 then, 0.26 with short edges at all bases
   }
 }
 

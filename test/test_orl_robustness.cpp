@@ -50,7 +50,7 @@ Tree path(std::size_t n, double bend)
   return tree;
 }
 
-/// `n` branches from the middle of a trunk.
+/// `n` branches at the middle of a trunk.
 Tree star(std::size_t n, double turn)
 {
   Tree tree = path(3, 0);
@@ -64,7 +64,7 @@ Tree star(std::size_t n, double turn)
   return tree;
 }
 
-/// A tube of six edges, each bent by `bend` against the one before.
+/// A tube of six edges, each bent by `bend` relative to the previous one.
 Tree bent_tube(double bend, double radius)
 {
   Tree tree;
@@ -89,7 +89,7 @@ Tree forked_end(double rest, double side)
   return tree;
 }
 
-/// Builds, and looks at a few places on the path.
+/// Builds a space, and evaluates a few trees on the path.
 pcs::Orl_report morph(const Tree& a,
                       const std::vector<Point>& scan_a,
                       const Tree& b,
@@ -119,8 +119,8 @@ pcs::Orl_report morph(const Tree& a,
   return report;
 }
 
-/// A branch that leaves the trunk level and bends up at each of its edges; further on it carries a
-/// twig.
+/// A branch that leaves the trunk horizontally and bends up at each of its edges. Its outer part
+/// supports a twig.
 Tree curled(double bend)
 {
   Tree tree;
@@ -138,8 +138,8 @@ Tree curled(double bend)
   return tree;
 }
 
-/// A trunk, a branch, a twig on it and another one on that, each turned by `turn` against what
-/// carries it, about one axis.
+/// A trunk, a branch, a twig and a twig of second order, each rotated by `turn` relative to its
+/// parent about one axis.
 Tree chained(double turn)
 {
   Tree tree;
@@ -157,7 +157,7 @@ Tree chained(double turn)
   return tree;
 }
 
-/// A stem without radii, with a blade on it that is turned about its axis and lies beside it.
+/// A stem without radii, and a blade that is rotated about its axis and lies beside it.
 Tree with_blade(double turn, double width, double beside, unsigned seed, std::vector<Point>& scan)
 {
   Tree tree;
@@ -173,15 +173,15 @@ Tree with_blade(double turn, double width, double beside, unsigned seed, std::ve
   }
   const Vec3 along(0, std::cos(turn), std::sin(turn)), across(0, -std::sin(turn), std::cos(turn));
   for (int k = 0; k < 3000; ++k) {
-    const Vec3 axis(2.6 + 1.4 * uniform(random), 0, 2); // not near the stem
+    const Vec3 axis(2.6 + 1.4 * uniform(random), 0, 2); // far from the stem
     const double u = width * uniform(random), v = beside + 0.01 * uniform(random);
     scan.push_back(to_cgal(axis + u * along + v * across));
   }
   return tree;
 }
 
-/// A trunk that leans a little, differently for each `seed`, with a twig near its top. If
-/// `is_folded`, it turns back by a twentieth of an edge after every fourth node, and goes on.
+/// A slightly leaning trunk, with another direction for each `seed` and a twig near its top. If
+/// `is_folded`, it reverses by a twentieth of an edge after every fourth node.
 Tree leaning(unsigned seed, bool is_folded)
 {
   std::mt19937 random(seed);
@@ -209,7 +209,7 @@ Orl_geometry in_space(const Space& space, const Orl_coordinates& x)
   return result;
 }
 
-/// Height of the lowest node over the root, in the direction of growth.
+/// Height of the lowest node above the root, in the direction of growth.
 double depth(const Space& space, const Orl_coordinates& x)
 {
   double least = 0;
@@ -240,10 +240,10 @@ BOOST_AUTO_TEST_CASE(turns_do_not_add_up_along_branches)
         const double worst =
             farthest(in_space(space, tree.coordinates()), in_space(space, lambda < 0 ? x : y));
         BOOST_TEST(worst <= most + 1e-9);
-        BOOST_TEST(worst > 0.15); // they do turn
+        BOOST_TEST(worst > 0.15); // edges rotate
       }
   }
-  // control: three branches on each other, each of which alone turns by no more than it may
+  // Control: three consecutive branches, each of which rotates within its limit.
   const Space space = make_space(chained(0), chained(0.5));
   const Orl_coordinates x = space.tree(0).coordinates(), y = space.tree(1).coordinates();
   for (const double lambda : {-1.5, 2.5}) {
@@ -270,7 +270,7 @@ BOOST_AUTO_TEST_CASE(nothing_grows_into_the_ground)
       Orl_coordinates alone;
       coordinates_at(space.family().layout, x, y, lambda, 0.25 * CGAL_PI, alone);
       number_below += depth(space, alone) < floor - 1e-3 ? 1 : 0;
-      // a branch is there if it is there at the end, and branches hang together
+      // A branch exists if it exists at the end, and branches are connected.
       const Orl_coordinates& end = lambda < 0 ? x : y;
       bool is_there = true;
       for (std::size_t e = 0; e < z.length.size(); ++e)
@@ -323,7 +323,7 @@ BOOST_AUTO_TEST_CASE(sections_keep_their_area_and_branches_hang_together)
   space.add(b, tube_points(b, 20000, 2));
   space.build();
   const auto& layout = space.family().layout;
-  // squared distances from the axis over squared radii: shares of the area of sections, sorted
+  // Squared distances from the axis over squared radii, as sorted area fractions of sections.
   const auto areas_at = [&](double lambda) {
     const auto tree = space.geodesic(0, 1, lambda);
     std::vector<Point> points;
@@ -353,7 +353,7 @@ BOOST_AUTO_TEST_CASE(sections_keep_their_area_and_branches_hang_together)
     const std::vector<double> areas = areas_at(lambda);
     BOOST_TEST(areas[areas.size() / 50] > 0.95);
     BOOST_TEST(areas[areas.size() - areas.size() / 50] < 1.05);
-    // the first node of every branch lies on its parent
+    // The first node of every branch lies on its parent.
     const auto tree = space.geodesic(0, 1, lambda);
     Tree skeleton;
     space.skeleton(tree, skeleton);
@@ -392,7 +392,8 @@ BOOST_AUTO_TEST_CASE(a_path_of_fifty_thousand_nodes)
 
 BOOST_AUTO_TEST_CASE(a_branch_on_every_node_of_a_chain_of_branches)
 {
-  // every branch leaves its parent after the first edge: orders as deep as the tree has branches
+  // Every branch leaves its parent after the first edge, so that the number of orders is the number
+  // of branches.
   const auto chain = [](std::size_t n) {
     Tree tree;
     std::size_t last = add_node(tree, pcs::npos, Vec3(0, 0, 0), 0.1);
@@ -411,7 +412,7 @@ BOOST_AUTO_TEST_CASE(a_branch_on_every_node_of_a_chain_of_branches)
   morph(chain(300), {}, chain(250), {});
 }
 
-/// Every branch leaves its parent after the first edge, and goes on farther than what it carries.
+/// Every branch leaves its parent after the first edge, and is longer than its own branch.
 Tree nested(std::size_t n)
 {
   Tree tree;
@@ -453,7 +454,7 @@ BOOST_AUTO_TEST_SUITE(orl_large)
 
 BOOST_AUTO_TEST_CASE(a_star_of_thirteen_hundred_branches)
 {
-  // more than are assigned at a time, and all about as heavy
+  // More branches than one assignment supports, all with similar weights.
   const Tree a = star(1300, 0), b = star(1200, 0.05);
   const Space space = make_space(a, b);
   std::size_t number_matched = 0, number_near = 0;
@@ -461,7 +462,7 @@ BOOST_AUTO_TEST_CASE(a_star_of_thirteen_hundred_branches)
     if (m.tip[0] != pcs::npos && m.tip[1] != pcs::npos && m.parent != pcs::npos) {
       ++number_matched;
       const Vec3 apart = to_eigen(a[m.tip[0]].point) - to_eigen(b[m.tip[1]].point);
-      number_near += apart.norm() < 0.2 ? 1 : 0; // of a ring of radius 1
+      number_near += apart.norm() < 0.2 ? 1 : 0; // on a ring of radius 1
     }
   BOOST_TEST(number_matched > 1150u);
   BOOST_TEST(number_near > 9 * number_matched / 10);
@@ -508,7 +509,7 @@ BOOST_AUTO_TEST_CASE(points_that_one_scan_lacks_have_no_partners_far_away)
 {
   const Tree tree =
       path(2,
-           0); // 5 high, of which the second scan sees the lowest twentieth, and maybe the highest
+           0); // 5 high; the second scan contains the lowest twentieth, and optionally the highest
   const std::vector<Point> scan = tube_points(tree, 20000, 1);
   for (const bool is_top_seen : {false, true}) {
     std::vector<Point> low;
@@ -526,7 +527,7 @@ BOOST_AUTO_TEST_CASE(points_that_one_scan_lacks_have_no_partners_far_away)
                            if (first != pcs::npos && second != pcs::npos)
                              distance[i] = std::abs(scan[first].z() - low[second].z());
                          });
-    // a window of 2,000 points is half as high
+    // A window of 2,000 points has half this height.
     BOOST_TEST(*std::max_element(distance.begin(), distance.end()) < 0.6);
   }
 }
@@ -582,7 +583,7 @@ BOOST_AUTO_TEST_CASE(trees_without_radii)
 BOOST_AUTO_TEST_CASE(edges_without_length_change_nothing)
 {
   const Tree a = random_tree(57, 3, 2), b = random_tree(58, 3, 2);
-  // every node twice, one behind the other
+  // Duplicates every node; the second one follows the first.
   Tree doubled(2 * num_vertices(a));
   for (std::size_t v = 0; v < num_vertices(a); ++v) {
     doubled[2 * v] = doubled[2 * v + 1] = a[v];
@@ -597,8 +598,8 @@ BOOST_AUTO_TEST_CASE(edges_without_length_change_nothing)
 
 BOOST_AUTO_TEST_CASE(nodes_that_stand_twice_say_nothing_of_the_branches_there)
 {
-  // thick trunk, thin branches: these do not begin as thick as the trunk because its nodes stand
-  // twice
+  // A thick trunk with thin branches. Duplicate nodes of the trunk do not give its radius to the
+  // bases of the branches.
   const auto tree = [](bool is_doubled) {
     Tree result;
     const auto add = [&](const Point& p, double radius, std::size_t parent) {
@@ -629,7 +630,8 @@ BOOST_AUTO_TEST_CASE(nodes_that_stand_twice_say_nothing_of_the_branches_there)
 
 BOOST_AUTO_TEST_CASE(branches_may_begin_on_an_axis_that_lies_on_another_one)
 {
-  // the third begins near the second, which begins near the first, but not near the first
+  // The third begins near the second, which begins near the first, but the third does not begin
+  // near the first.
   Tree tree;
   const std::size_t root = add_node(tree, pcs::npos, Vec3(0, 0, 0), 0.1);
   add_node(tree, root, Vec3(0, 0, 3), 0.1);
@@ -691,7 +693,7 @@ BOOST_AUTO_TEST_CASE(a_place_on_the_path_that_is_no_number_is_refused_and_a_far_
                           message_has("not finite"));
   for (const double lambda : {-1e6, 1e6})
     BOOST_TEST(in_space(space, space.geodesic(0, 1, lambda).coordinates()).node[3].allFinite());
-  // nor do coordinates overflow in silence
+  // Overflow of coordinates is reported.
   for (const double lambda : {-1e308, -1e300, 1e300, 1e308})
     try {
       for (const Vec3& p : in_space(space, space.geodesic(0, 1, lambda).coordinates()).node)
@@ -726,7 +728,7 @@ BOOST_AUTO_TEST_CASE(archetypes_of_graph_maps_range_and_key)
     for (const auto e : boost::make_iterator_range(edges(tree)))
       list.emplace_back(source(e, tree), target(e, tree));
     std::vector<Point> node_points;
-    std::vector<float> radii; // as precise as here
+    std::vector<float> radii; // same precision as the input
     std::vector<std::size_t> indices;
     Tree rounded = tree;
     for (std::size_t v = 0; v < num_vertices(tree); ++v) {
@@ -770,7 +772,7 @@ BOOST_AUTO_TEST_CASE(archetypes_of_graph_maps_range_and_key)
   for (std::size_t i = 0; i < out.size(); ++i)
     is_same = is_same && Point(out[i].x(), out[i].y(), out[i].z()) == expected[i];
   BOOST_TEST(is_same);
-  // the same through the function
+  // The same through the function.
   std::vector<std::size_t> order[2];
   std::vector<Triple> nodes[2], places[2];
   std::vector<float> radii[2];
@@ -836,14 +838,15 @@ BOOST_AUTO_TEST_CASE(blades_of_leaves_stay_thin)
       }
     BOOST_TEST(n > 2000);
     BOOST_TEST(std::sqrt(off / n) < 0.04);
-    BOOST_TEST(widest > 0.9 * 0.65 * std::cos(0.5 * more)); // places in sections are mixed linearly
+    BOOST_TEST(widest > 0.9 * 0.65 * std::cos(0.5 * more)); // linear within sections
     BOOST_TEST(widest < 0.7);
   }
 }
 
 BOOST_AUTO_TEST_CASE(what_is_behind_a_fold_stays_where_it_is)
 {
-  // what is in the same place in both trees, but for noise and folds, is there all the way
+  // Parts with equal positions in both trees, except for noise and folds, keep their position along
+  // the whole path.
   for (unsigned seed = 1; seed <= 20; ++seed) {
     const Space space = make_space(leaning(2 * seed, seed % 2 == 0), leaning(2 * seed + 1, true));
     const Orl_geometry a = in_space(space, space.geodesic(0, 1, 0).coordinates()),
@@ -872,8 +875,8 @@ BOOST_AUTO_TEST_CASE(the_end_of_a_trunk_is_the_end_whatever_twig_is_longest)
   BOOST_TEST(number_found == 1);
 }
 
-// A node of one tree may fall on the place of a node of the other, to rounding: that edge has no
-// direction of its own.
+// A node of one tree may coincide with a node of the other up to rounding. The edge between them
+// has no direction.
 BOOST_AUTO_TEST_CASE(nodes_in_one_place_of_the_other_tree_are_no_harm)
 {
   const Tree one = star(1, 0), two = star(1, 0.3);
@@ -887,7 +890,7 @@ BOOST_AUTO_TEST_CASE(nodes_in_one_place_of_the_other_tree_are_no_harm)
     const std::vector<double> own = branch.nodes[0];
     BOOST_REQUIRE(own.size() == 3u);
     branch.nodes = {{{0, 1e-16, own[1], std::nextafter(own[1], 1), 1}, {0, 0.1, own[1], 0.8, 1}}};
-    branch.attachment = {branch.attachment[0] * 2, branch.attachment[1] * 2}; // of nodes before
+    branch.attachment = {branch.attachment[0] * 2, branch.attachment[1] * 2}; // of old nodes
   }
   const auto report = space.build_from(correspondences);
   BOOST_TEST(std::isfinite(report.distance));
@@ -897,7 +900,7 @@ BOOST_AUTO_TEST_CASE(nodes_in_one_place_of_the_other_tree_are_no_harm)
     Vec3 high = Vec3::Zero();
     for (std::size_t v = 0; v < num_vertices(tree); ++v) {
       BOOST_TEST(to_eigen(tree[v].point).allFinite());
-      BOOST_TEST((v < 5 || std::abs(tree[v].point.z() - 2.5) < 0.01)); // both branches are level
+      BOOST_TEST((v < 5 || std::abs(tree[v].point.z() - 2.5) < 0.01)); // both are horizontal
       high = high.cwiseMax(to_eigen(tree[v].point));
     }
     BOOST_TEST(high.z() == 5, boost::test_tools::tolerance(1e-6));
@@ -925,7 +928,7 @@ BOOST_AUTO_TEST_CASE(surfaces_do_not_tear_where_bends_grow)
       axis.push_back(to_eigen(skeleton[v].point));
     }
     BOOST_TEST_REQUIRE(axis.size() >= 7u);
-    // sections keep their size: the distance from the line of some edge is about the radius
+    // Sections keep their size: the distance from the line of the nearest edge is about the radius.
     double worst = 0;
     for (const Point& p : points) {
       double least = 1;
@@ -936,7 +939,7 @@ BOOST_AUTO_TEST_CASE(surfaces_do_not_tear_where_bends_grow)
       worst = std::max(worst, least);
     }
     BOOST_TEST(worst < 0.1 * radius);
-    // no gap on the outer side of bends, where both tubes meet
+    // No gap on the outer side of bends between the two tubes.
     for (std::size_t k = 1; k + 1 < axis.size(); ++k) {
       const Vec3 d = (axis[k] - axis[k - 1]).normalized(), e = (axis[k + 1] - axis[k]).normalized();
       if ((d - e).norm() < 0.1)

@@ -37,7 +37,7 @@ BOOST_AUTO_TEST_CASE(points_of_a_younger_tree_find_their_branch)
 
 BOOST_AUTO_TEST_CASE(branches_that_grew_at_their_tips_keep_their_beginning)
 {
-  // at half the age most of the wood of the old tree is not there yet
+  // At half the age, most of the wood of the old tree does not exist yet.
   Tree tree;
   pcs::grow_tree(tree, pcs::fruit_habit(), pcs::parameters::random_seed(21));
   const auto measure = [&](pcs::Branch_growth growth) {
@@ -60,7 +60,7 @@ BOOST_AUTO_TEST_CASE(branches_that_grew_at_their_tips_keep_their_beginning)
 
 BOOST_AUTO_TEST_CASE(a_tree_that_did_not_grow_keeps_its_wood)
 {
-  // two scans of one tree; a radius of a twig is a few of the distances between points
+  // Two scans of one tree; the radius of a twig is a few point spacings.
   Tree tree;
   pcs::grow_tree(tree, pcs::fruit_habit(), pcs::parameters::random_seed(12));
   const auto m = measure_ages(tree, 1, 12, 4, pcs::parameters::default_values());
@@ -73,8 +73,8 @@ BOOST_AUTO_TEST_CASE(a_tree_that_did_not_grow_keeps_its_wood)
 
 BOOST_AUTO_TEST_CASE(the_trunk_of_a_growing_tree_goes_on_as_the_trunk)
 {
-  // the trunk of the young tree and one of its last twigs are as long; many paths of the old tree
-  // begin alike
+  // The trunk of the young tree has the length of one of its last twigs. Many paths of the old tree
+  // have a common beginning.
   Tree tree;
   pcs::grow_tree(tree, pcs::forked_habit(), pcs::parameters::random_seed(1));
   std::vector<std::size_t> old_nodes;
@@ -88,7 +88,7 @@ BOOST_AUTO_TEST_CASE(the_trunk_of_a_growing_tree_goes_on_as_the_trunk)
     const auto report = space.build(pcs::parameters::alignment(
         is_turned ? pcs::Orl_alignment::rotate_about_up : pcs::Orl_alignment::as_given));
     BOOST_TEST(report.is_grown_at_tips);
-    BOOST_TEST(std::abs(report.yaw + (is_turned ? 2 : 0)) < 1e-6); // wood does not turn
+    BOOST_TEST(std::abs(report.yaw + (is_turned ? 2 : 0)) < 1e-6); // wood does not rotate
     std::size_t before = space.matches()[0].tip[0];
     while (old_nodes[before] == pcs::npos)
       before = pcs::parent_node<Kernel>(before, young);

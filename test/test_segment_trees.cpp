@@ -38,9 +38,9 @@ using Labels = std::vector<std::size_t>;
 
 namespace {
 
-constexpr std::size_t no_tree = 1000; // the truth about ground
+constexpr std::size_t no_tree = 1000; // true label of the ground
 
-/// Trees that touch, on a level floor or on a slope.
+/// Touching trees, on a level floor or on a slope.
 struct Stand
 {
   Cloud points;
@@ -97,7 +97,7 @@ segment(const Cloud& points, Labels& trees, double breast_height = pcs::default_
           .breast_height(breast_height));
 }
 
-/// The tree of the report whose foot is nearest.
+/// The tree of the report with the nearest foot.
 std::size_t
 nearest_tree(const pcs::Segmentation_report& report, const Point& foot, double& distance)
 {
@@ -114,8 +114,8 @@ nearest_tree(const pcs::Segmentation_report& report, const Point& foot, double& 
   return best;
 }
 
-/// The share of the points of trees that are given to their tree, and that of the others that are
-/// given to one.
+/// Fractions of the tree points that are assigned to their tree, and of the other points that are
+/// assigned to a tree.
 std::pair<double, double>
 shares(const Stand& stand, const Labels& trees, const pcs::Segmentation_report& report)
 {
@@ -133,7 +133,7 @@ shares(const Stand& stand, const Labels& trees, const pcs::Segmentation_report& 
   return {right[0] / all[0], all[1] > 0 ? right[1] / all[1] : 0};
 }
 
-/// From a height on; `top` is the share of the radius that is left at the top.
+/// Pole above a height; `top` is the ratio of the radii at the top and at the base.
 Cloud pole(double height, double length = 3, double top = 0.7)
 {
   Cloud points = cylinder(6000, 0.05, length);
@@ -170,7 +170,7 @@ Cloud crook()
   return points;
 }
 
-/// Of the points of trees near their feet, those that are given to a tree.
+/// Fraction of the tree points near the feet that are assigned to a tree.
 double share_of_feet(const Stand& stand, const Labels& trees)
 {
   std::size_t all = 0, given = 0;
@@ -410,7 +410,7 @@ BOOST_AUTO_TEST_CASE(poles_side_by_side_are_trees_of_their_own_and_a_stool_is_on
   BOOST_TEST(count(1.0) == 2u);
   BOOST_TEST(count(0.2) == 1u);
 
-  // the branch of a shrub begins above the ground, away from the foot
+  // The branch of a shrub begins above the ground, far from the foot.
   const auto count_leaning = [](double distance) {
     Cloud points = level_floor();
     append(points, pole(0));
@@ -457,7 +457,7 @@ BOOST_AUTO_TEST_CASE(a_tree_of_few_points_is_found_among_dense_ones)
 BOOST_AUTO_TEST_CASE(dense_points_keep_their_tree)
 {
   Cloud points = pole(0);
-  // its arm touches the pole of few points
+  // Its arm touches the sparse pole.
   for (const Point& p : Jitter(0.001)(cylinder(4000, 0.03, 0.9)))
     points.emplace_back(p.z(), p.x(), 1.5 + p.y());
   const std::size_t number_of_dense = points.size();

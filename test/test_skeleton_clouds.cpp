@@ -36,8 +36,8 @@ using Cloud = std::vector<Point>;
 
 namespace {
 
-/// `n` points of a rectangle that stands on the middle of its lower side, or lies if `up` is
-/// horizontal.
+/// `n` points of a rectangle that is upright on the middle of its lower side, or horizontal if `up`
+/// is horizontal.
 Cloud sheet(std::size_t n, double width, const Vector& across, const Vector& up, double noise)
 {
   std::mt19937 random(5);
@@ -50,7 +50,7 @@ Cloud sheet(std::size_t n, double width, const Vector& across, const Vector& up,
   return Jitter(noise)(points);
 }
 
-/// The branches of the result, by their number of points, for the points of one body.
+/// The branches of the result by number of points, for the points of one body.
 std::map<std::size_t, std::size_t>
 votes(const std::vector<std::size_t>& branch, std::size_t begin, std::size_t end)
 {
@@ -124,8 +124,8 @@ BOOST_AUTO_TEST_CASE(duplicates_change_nothing)
     BOOST_TEST((a[v].point == b[v].point && a[v].radius == b[v].radius));
 }
 
-// The same scan with other digits, or fired twice: no point has a new neighbour at the distance of
-// the others.
+// The same scan with different digits, or with repeated points. No point gets a new neighbour at
+// the distance of the others.
 BOOST_AUTO_TEST_CASE(points_at_random_on_a_line_are_no_copies)
 {
   for (const std::size_t n : {200u, 500u, 2000u})
@@ -146,7 +146,7 @@ BOOST_AUTO_TEST_CASE(copies_of_points_change_little)
   Tree once;
   const auto expected = pcs::extract_tree_skeleton(points, once);
   for (const double deviation : {1e-6, 1e-4, 1e-3})
-    for (const std::size_t every : {1u, 2u}) { // which points are there twice
+    for (const std::size_t every : {1u, 2u}) { // every or every second point is repeated
       pcs_test::Jitter jitter(deviation);
       Cloud twice = points;
       for (std::size_t i = 0; i < points.size(); i += every)
@@ -203,7 +203,7 @@ BOOST_AUTO_TEST_CASE(georeferenced_points_lose_no_digits)
   BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.2, 1.0);
   for (std::size_t v = 0; v < num_vertices(tree); ++v) {
     const Point p = tree[v].point - far;
-    BOOST_CHECK_SMALL(std::hypot(p.x(), p.y()), 0.002); // the noise
+    BOOST_CHECK_SMALL(std::hypot(p.x(), p.y()), 0.002); // equal to the noise
   }
 }
 
@@ -260,7 +260,7 @@ BOOST_AUTO_TEST_CASE(a_hoop_is_a_few_long_branches)
 
 BOOST_AUTO_TEST_CASE(a_stem_below_an_occlusion_is_the_foot)
 {
-  // 3 % of the points are below a gap of 0.6 m
+  // 3 % of the points are below a gap of 0.6 m.
   Cloud points = cylinder(160, 0.1, 1.2);
   append(points, cylinder(3600, 0.1, 3.2, Point(0, 0, 1.8)));
   append(points, cylinder(1200, 0.05, 2, Point(0, 0, 3), Vector(1, 0, 0.5)));
@@ -270,7 +270,7 @@ BOOST_AUTO_TEST_CASE(a_stem_below_an_occlusion_is_the_foot)
   BOOST_TEST(tree[0].point.z() < 0.15);
   BOOST_CHECK_CLOSE(report.height, 5.0, 3.0);
   BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.2, 10.0);
-  // a pole beside the tree, which begins lower, is no foot
+  // A pole beside the tree with a lower base is not a foot.
   Cloud beside = cylinder(3600, 0.1, 4);
   append(beside, cylinder(160, 0.03, 1.2, Point(1, 0, -0.8)));
   const auto other = pcs::extract_tree_skeleton(beside, tree);
@@ -295,7 +295,7 @@ BOOST_AUTO_TEST_CASE(a_lamp_post_is_a_trunk)
   BOOST_CHECK_CLOSE(report.height, 6.1, 5.0);
   BOOST_CHECK_GT(votes(branch, 0, 9000)[0], 8800u); // the post is the trunk
   const auto arm = votes(branch, 9000, 9900);
-  BOOST_CHECK_GT(arm.at(winner(arm)), 800u); // the arm is one thing, the trunk's end or a branch
+  BOOST_CHECK_GT(arm.at(winner(arm)), 800u); // the arm is a single branch, or the end of the trunk
 }
 
 BOOST_AUTO_TEST_CASE(the_stems_of_a_bush_are_branches)
@@ -328,7 +328,7 @@ BOOST_AUTO_TEST_CASE(the_stems_of_a_bush_are_branches)
   BOOST_CHECK_CLOSE(report.total.length, stems * 1.5, 10.0);
 }
 
-// Nothing says that these are no trees.
+// Bodies that are not recognized as different from trees.
 BOOST_AUTO_TEST_CASE(bodies_give_some_tree_that_stays_within_them)
 {
   std::normal_distribution<double> normal;
@@ -356,10 +356,10 @@ BOOST_AUTO_TEST_CASE(bodies_give_some_tree_that_stays_within_them)
       doubted += !pcs::warnings(report).empty();
     }
   }
-  BOOST_CHECK_GE(doubted, 5); // one of thirty spheres looks like a trunk
+  BOOST_CHECK_GE(doubted, 5); // one of thirty spheres resembles a trunk
 }
 
-// A trunk of ten diameters is no cause for doubt, one of two is.
+// A trunk of ten diameters gives no warning, one of two diameters does.
 BOOST_AUTO_TEST_CASE(a_stump_is_doubted_but_no_stem)
 {
   Tree stump, stem;
@@ -380,20 +380,20 @@ BOOST_AUTO_TEST_CASE(of_two_trees_the_thicker_one_is_taken)
   BOOST_CHECK_GT(report.number_of_unreached_points + report.number_of_unexplained_points, 2500u);
   BOOST_CHECK_GE(report.number_of_unreached_branches, 1u);
   BOOST_CHECK_EQUAL(report.number_of_other_stems, 1u);
-  BOOST_CHECK_EQUAL(pcs::warnings(report).size(), 2u); // the stem, and its points
+  BOOST_CHECK_EQUAL(pcs::warnings(report).size(), 2u); // for the stem, and for its points
   Tree second;
   const auto chosen =
       pcs::extract_tree_skeleton(points, second, pcs::parameters::root_position(Point(5, 0, 0)));
   BOOST_CHECK_CLOSE(chosen.diameter_at_breast_height, 0.1, 5.0);
-  // one tree gives no warning
+  // A single tree gives no warning.
   Tree alone;
   const auto quiet = pcs::extract_tree_skeleton(cylinder(8000, 0.1, 2), alone);
   BOOST_CHECK_EQUAL(quiet.number_of_other_stems, 0u);
   BOOST_CHECK(pcs::warnings(quiet).empty());
 }
 
-// A limb of the one touches the top of the other: all hangs together, and a stem comes down from
-// above.
+// A limb of one tree touches the top of the other. All points are connected, and one stem is traced
+// downwards.
 BOOST_AUTO_TEST_CASE(a_tree_that_touches_another_one_is_reported)
 {
   Cloud points = cylinder(8000, 0.1, 3);
@@ -408,7 +408,7 @@ BOOST_AUTO_TEST_CASE(a_tree_that_touches_another_one_is_reported)
 
 namespace {
 
-/// Two crossing bodies are two axes; `body` tells which of them a point lies on, -1: on none.
+/// Two crossing bodies result in two axes; `body` is the index of a point's body, -1 for none.
 void check_are_apart(const Cloud& points,
                      const std::vector<int>& body,
                      const std::vector<Kernel::Segment_3>& axes)
@@ -468,7 +468,7 @@ BOOST_AUTO_TEST_CASE(crossing_sticks_stay_apart)
   append(points, cylinder(n, 0.02, 2, b.source(), b.to_vector()));
   std::vector<int> body(2 * n, 0);
   std::fill(body.begin() + n, body.end(), 1);
-  // one of them hangs on the other, in halves
+  // One of them is a child of the other, in two halves.
   Tree tree;
   std::vector<std::size_t> branch;
   points = Jitter(0.001)(points);
@@ -495,8 +495,7 @@ BOOST_AUTO_TEST_CASE(ground_is_left_out)
   BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.2, 3.0);
 }
 
-// Relief and slopes rise above the foot, and the points of ground are farther from each other than
-// those of the tree.
+// Relief and slopes rise above the foot, and ground points have a larger spacing than tree points.
 BOOST_AUTO_TEST_CASE(ground_is_followed_up_slopes)
 {
   Tree bare, tree;
@@ -594,7 +593,7 @@ BOOST_AUTO_TEST_CASE(shrubs_on_the_ground_are_no_trunk)
   BOOST_CHECK_CLOSE(report.diameter_at_breast_height, 0.2, 3.0);
 }
 
-// A roof alone has the shape of a terrain, with little of the stem below it.
+// A roof alone has the shape of a terrain, with a short piece of the stem below it.
 BOOST_AUTO_TEST_CASE(a_roof_is_no_ground)
 {
   Cloud points = cylinder(6000, 0.15, 9, Point(-1.5, 0, 0));
@@ -702,7 +701,7 @@ BOOST_AUTO_TEST_CASE(spheres_are_doubted)
       }
 }
 
-// A wall with a ledge and posts beside it, and a roof: none of their points is left to be wood.
+// A wall with a ledge and posts beside it, and a roof. None of their points is used as wood.
 BOOST_AUTO_TEST_CASE(walls_beside_the_tree_are_left_out)
 {
   Tree bare, tree;
@@ -738,7 +737,8 @@ BOOST_AUTO_TEST_CASE(walls_beside_the_tree_are_left_out)
   }
 }
 
-// Where chance puts a ring of leaves that looks hollow, one in five is: of 100 other seeds 16.
+// Random rings of leaves that resemble a hollow section occur in one of five seeds: in 16 of 100
+// other seeds.
 BOOST_AUTO_TEST_CASE(a_bush_of_leaves_is_mostly_not_wood)
 {
   constexpr double radius = 0.06, height = 4, crown = 0.9;
@@ -755,7 +755,7 @@ BOOST_AUTO_TEST_CASE(a_bush_of_leaves_is_mostly_not_wood)
     Tree tree;
     const auto report = pcs::extract_tree_skeleton(points, tree);
     check_is_a_tree(tree);
-    // without bounds the crown alone has forty times the volume of the stem
+    // Without bounds, the volume of the crown alone is forty times that of the stem.
     bool is_bounded = report.total.volume < 5 * CGAL_PI * radius * radius * height;
     for (std::size_t v = 0; v < num_vertices(tree); ++v)
       is_bounded = is_bounded && tree[v].radius < 1.6 * radius;

@@ -28,7 +28,7 @@ using Cloud = std::vector<Point>;
 
 namespace {
 
-/// Everything random about one round.
+/// All random parameters of one round.
 class Round
 {
 public:
@@ -39,7 +39,7 @@ public:
   std::size_t below(std::size_t n) { return m_random() % n; }
   bool one_in(std::size_t n) { return below(n) == 0; }
 
-  /// One to four bodies, quantised, repeated, shifted, scaled or spoilt by outliers.
+  /// One to four bodies: quantised, repeated, shifted, scaled or with outliers.
   Cloud cloud()
   {
     Cloud points;
@@ -92,10 +92,10 @@ private:
       case 2: // parallelogram
         points.push_back(base + t * a + s * b);
         break;
-      case 3: // one place
+      case 3: // coincident points
         points.push_back(base);
         break;
-      case 4: // dust
+      case 4: // random points
         points.push_back(base + thin * Vector(normal(), normal(), normal()));
         break;
       case 5: // upright tube
@@ -108,7 +108,7 @@ private:
       case 7: // hoop
         points.push_back(base + Vector(std::cos(angle), std::sin(angle), 0));
         break;
-      default: // two places far from each other
+      default: // two distant positions
         points.push_back(base + (i % 2 == 0 ? 1e-3 : 100.0) * a + 1e-3 * t * b);
       }
     }
@@ -124,7 +124,7 @@ unsigned number_from(const char* name, unsigned otherwise)
   return text == nullptr ? otherwise : static_cast<unsigned>(std::strtoul(text, nullptr, 10));
 }
 
-/// Whether all edges are closed, and no vertex is missing or infinite.
+/// Checks that all edges are closed, and that no vertex is missing or infinite.
 std::string fault_of(const std::vector<Point>& points,
                      const std::vector<std::array<std::size_t, 3>>& triangles)
 {

@@ -53,7 +53,7 @@ BOOST_AUTO_TEST_CASE(scanner_positions_take_the_beam_out_of_thin_radii)
   BOOST_TEST(before > 0.001);
   BOOST_TEST(std::abs(after) < 0.6 * before);
   BOOST_TEST(none[v].radius == plain[v].radius);
-  // a thick branch hardly changes
+  // A thick branch hardly changes.
   Tree trunk, same;
   const Cloud thick = cylinder(4000, 0.2, 2);
   pcs::extract_tree_skeleton(thick, trunk);
@@ -65,7 +65,7 @@ BOOST_AUTO_TEST_CASE(scanner_positions_take_the_beam_out_of_thin_radii)
 
 BOOST_AUTO_TEST_CASE(a_given_skeleton_is_measured_where_it_is)
 {
-  // a stem and a branch, and a graph of someone else along them, a little off the axis
+  // A stem and a branch, and an external graph along them with a small offset from the axis.
   Cloud points = cylinder(6000, 0.1, 2);
   append(points, cylinder(1500, 0.03, 1, Point(0.1, 0, 1.2), Vector(1, 0, 0)));
   struct Vertex
@@ -105,7 +105,7 @@ BOOST_AUTO_TEST_CASE(a_given_skeleton_is_measured_where_it_is)
   BOOST_TEST(report.number_of_branches == 2u);
   BOOST_CHECK_CLOSE(report.total.length, 2 + 1.1, 1e-6);
   for (std::size_t w = 0; w < num_vertices(tree); ++w) {
-    BOOST_CHECK_SMALL(tree[w].point.y() - 0.01, 1e-12); // positions stay
+    BOOST_CHECK_SMALL(tree[w].point.y() - 0.01, 1e-12); // positions remain
     BOOST_CHECK_CLOSE(tree[w].radius, tree[w].branch == 0 ? 0.1 : 0.03, 12.0);
   }
   std::size_t right = 0;
@@ -113,7 +113,7 @@ BOOST_AUTO_TEST_CASE(a_given_skeleton_is_measured_where_it_is)
     right += branch.at(points[i]) == (i < 6000 ? 0u : 1u);
   BOOST_TEST(right > points.size() * 95 / 100);
 
-  // a ready-made skeleton needs no map; its own result gives the same radii again
+  // A Tree_skeleton needs no map; its own result gives the same radii again.
   Tree found, again;
   pcs::extract_tree_skeleton(points, found);
   pcs::extract_tree_skeleton(points, again, pcs::parameters::given_skeleton(found));
@@ -123,7 +123,7 @@ BOOST_AUTO_TEST_CASE(a_given_skeleton_is_measured_where_it_is)
 
 BOOST_AUTO_TEST_CASE(a_given_skeleton_measures_neither_ground_nor_noise)
 {
-  // the own skeleton of a tree, with ground around it
+  // The skeleton of a tree, given again for the tree with ground around it.
   const auto& scan = pcs_test::small_scan().scan;
   Cloud points = scan.points;
   const std::size_t number_of_tree = points.size();
@@ -162,7 +162,7 @@ BOOST_AUTO_TEST_CASE(a_true_skeleton_gives_the_volume_of_dense_and_sparse_scans)
     volume += CGAL_PI / 3 * std::sqrt(CGAL::squared_distance(a.point, b.point)) *
               (r * r + r * b.radius + b.radius * b.radius);
   }
-  // the points of each edge alone say a sixth and half too much
+  // Estimates from the points of each edge alone are too large by a sixth and by a half.
   for (const auto& [degrees, most] : {std::make_pair(0.1, 0.05), std::make_pair(0.3, 0.12)}) {
     pcs::Virtual_scanner scanner;
     scanner.angular_step = degrees * CGAL_PI / 180;
@@ -179,7 +179,7 @@ BOOST_AUTO_TEST_CASE(a_true_skeleton_gives_the_volume_of_dense_and_sparse_scans)
 
 BOOST_AUTO_TEST_CASE(given_branches_without_points_taper)
 {
-  // a stem of 2 m, and an arm of 1 m that the scan does not show
+  // A stem of 2 m, and an arm of 1 m without points.
   const Cloud points = cylinder(6000, 0.1, 2);
   Tree given, tree;
   for (int k = 0; k <= 10; ++k) {
@@ -255,7 +255,7 @@ BOOST_AUTO_TEST_CASE(hints_that_make_no_sense_are_refused)
   broken[1].point = Point(0, 0, bad);
   BOOST_CHECK_THROW(pcs::extract_tree_skeleton(points, tree, given_skeleton(broken)),
                     pcs::Invalid_input);
-  // they belong to another scan
+  // The positions belong to another scan.
   const std::vector<Point> elsewhere{Point(448576, 5411234, 312)};
   BOOST_CHECK_EXCEPTION(pcs::extract_tree_skeleton(points, tree, scanner_positions(elsewhere)),
                         pcs::Invalid_input,
@@ -265,7 +265,7 @@ BOOST_AUTO_TEST_CASE(hints_that_make_no_sense_are_refused)
   broken[1].point = Point(0, 0, 1e101);
   BOOST_CHECK_THROW(pcs::extract_tree_skeleton(points, tree, given_skeleton(broken)),
                     pcs::Invalid_input);
-  for (const double scale : {0.0, 1.0}) { // no length; far away
+  for (const double scale : {0.0, 1.0}) { // zero length; distant
     Tree moved = broken;
     for (std::size_t v = 0; v < num_vertices(moved); ++v)
       moved[v].point = Point(50 * scale, 0, scale * double(v));
@@ -288,12 +288,12 @@ BOOST_AUTO_TEST_CASE(hints_that_make_no_sense_are_refused)
                           pcs_test::message_has("slice_options"));
   }
   BOOST_TEST(num_vertices(tree) == 0u);
-  // a little below the lowest points is no mistake
+  // A position slightly below the lowest points is valid.
   pcs::extract_tree_skeleton(points, tree, root_position(Point(0, 0, -0.5)));
   BOOST_TEST(num_vertices(tree) > 1u);
 }
 
-// Every call of the callback of every way of working.
+// Stops at every call of the callback, for every method.
 BOOST_AUTO_TEST_CASE(stopping_anywhere_leaves_nothing_half_done)
 {
   const Cloud points = cylinder(1500, 0.1, 2);
@@ -328,7 +328,7 @@ BOOST_AUTO_TEST_CASE(stopping_anywhere_leaves_nothing_half_done)
   check(given_skeleton(given));
 }
 
-// One session that is stopped before each step that changes what the next ones start from.
+// One session is stopped before each step that changes the input of the next steps.
 BOOST_AUTO_TEST_CASE(a_stopped_session_goes_on_as_if_it_had_not_been)
 {
   Cloud points = pcs_test::small_scan().scan.points;

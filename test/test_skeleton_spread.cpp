@@ -27,7 +27,7 @@ using Vector = pcs_test::Tree_vector;
 using Cloud = std::vector<Point>;
 namespace np = pcs::parameters;
 
-// a stem with a branch, densely sampled
+// A densely sampled stem with a branch.
 Cloud clear_tree()
 {
   Cloud points = cylinder(6000, 0.1, 3);
@@ -74,7 +74,7 @@ BOOST_AUTO_TEST_CASE(a_clear_tree_has_a_small_spread_and_no_warning)
 
 BOOST_AUTO_TEST_CASE(figures_that_depend_on_chance_are_named)
 {
-  // two equal stems: which one is the tree depends on single points
+  // Two equal stems: the choice of the tree depends on single points.
   Cloud points = cylinder(1500, 0.1, 3);
   append(points, cylinder(1500, 0.1, 3, Point(3, 0, 0), Vector(0, 0, 1)));
   Tree tree;
@@ -107,7 +107,7 @@ BOOST_AUTO_TEST_CASE(standard_errors_have_a_part_by_chance_and_a_shared_part)
   BOOST_TEST(by_chance == 3, boost::test_tools::tolerance(1e-9)); // sqrt(0.9 / 0.1)
   BOOST_TEST_REQUIRE(shared.volume_by_size.size() == 5u);
   BOOST_TEST(shared.volume_by_size[4] > 0.3);
-  report.spread.fraction = 0.04; // thinned copies vary more than the scan, but not by chance
+  report.spread.fraction = 0.04; // thinned copies vary more than the scan, but not randomly
   const double thinned =
       std::sqrt(std::pow(pcs::standard_errors(report).height, 2) - std::pow(shared.height, 2));
   BOOST_TEST(thinned == 1, boost::test_tools::tolerance(1e-9));

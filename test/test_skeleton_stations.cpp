@@ -36,7 +36,7 @@ using pcs::parameters::do_register_stations;
 
 namespace {
 
-/// A point, and the station that has measured it.
+/// A point, and the index of its station.
 using Element = std::pair<Point, int>;
 
 using Point_map = CGAL::First_of_pair_property_map<Element>;
@@ -82,7 +82,8 @@ const pcs::Virtual_scan<Kernel>& exact_scan()
   return scan;
 }
 
-/// The stations with known errors. A jitter of all coordinates leaves nothing of the beams [m].
+/// The scan with known errors of the stations. A jitter [m] of all coordinates removes the beam
+/// grid.
 std::vector<Element> shifted_scan(double jitter)
 {
   std::vector<Element> points = elements(exact_scan());
@@ -95,8 +96,8 @@ std::vector<Element> shifted_scan(double jitter)
   return points;
 }
 
-/// The largest error of what stations were moved by [m]; `number_of` has their numbers among the
-/// shifts. The middle is free.
+/// The largest error of the station shifts [m]; `number_of` has the indices of the stations in the
+/// true shifts. The mean is arbitrary.
 double error_of(const std::vector<pcs::Scan_station>& stations,
                 const std::vector<std::size_t>& number_of)
 {
@@ -189,7 +190,7 @@ BOOST_AUTO_TEST_CASE(stations_of_the_caller_need_no_beams)
   BOOST_REQUIRE_EQUAL(report.stations.size(), 4u);
   for (std::size_t k = 0; k < 4; ++k) {
     BOOST_CHECK_EQUAL(report.stations[k].label, static_cast<long long>(k));
-    BOOST_CHECK_EQUAL(report.stations[k].azimuth_step, 0); // not looked for
+    BOOST_CHECK_EQUAL(report.stations[k].azimuth_step, 0); // not computed
   }
   BOOST_CHECK_LT(error_of(report.stations, in_order), 0.0015);
 }
@@ -249,7 +250,7 @@ BOOST_AUTO_TEST_CASE(labels_of_a_thousand_values_are_no_stations)
     points[i].second = static_cast<int>(i % 1000);
   Tree tree;
   const auto report = extract(points, tree, pcs::parameters::station_map(Station_map()));
-  BOOST_REQUIRE_EQUAL(report.stations.size(), 4u); // those of the beams
+  BOOST_REQUIRE_EQUAL(report.stations.size(), 4u); // from the beam grids
   BOOST_CHECK_GT(report.stations[0].azimuth_step, 0);
 }
 
