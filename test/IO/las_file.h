@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <string>
 
-//! lengths of the point records 0 to 10 in the LAS 1.4 specification (R15), tables 7 to 17
+//! Lengths of the point records 0 to 10 in the LAS 1.4 specification (R15), tables 7 to 17.
 constexpr std::array<std::uint16_t, 11> las_record_lengths =
     {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
 
@@ -29,7 +29,7 @@ struct Las_file
   std::size_t header_size() const { return minor < 3 ? 227 : minor == 3 ? 235 : 375; }
   std::size_t record_length() const { return las_record_lengths[format] + number_of_extra_bytes; }
 
-  //! three points; byte k of the record of point i behind the coordinates is (i + 1) * (k + 1)
+  //! Three points; byte k after the coordinates in the record of point i is (i + 1) * (k + 1).
   std::string bytes() const
   {
     const std::size_t first_point = header_size() + vlrs.size();
@@ -85,7 +85,7 @@ struct Las_file
   }
 };
 
-//! a descriptor of one extra dimension
+//! A descriptor of one extra dimension.
 inline std::string
 extra_bytes_descriptor(const std::string& name, std::uint8_t type, std::uint8_t options = 0)
 {

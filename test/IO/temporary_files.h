@@ -38,7 +38,7 @@ struct Temporary_files
 
   std::string path(const std::string& name) const { return (folder / name).string(); }
 
-  //! makes a file with this content and returns its path
+  //! Writes a file with this content and returns its path.
   std::string file(const std::string& name, const std::string& content) const
   {
     std::ofstream(path(name), std::ios::binary) << content;
@@ -61,7 +61,7 @@ struct Temporary_files
     return pcs::IO::read_points(file(name, content));
   }
 
-  //! the message of the error that reading must give, or a text that says that there was none
+  //! Returns the message of the expected read error, or a text that reports its absence.
   std::string error(const std::string& name, const std::string& content) const
   {
     const std::string path = file(name, content);
@@ -74,7 +74,7 @@ struct Temporary_files
     return "no error";
   }
 
-  //! checks that reading fails with a message that contains `expected`
+  //! Checks that reading fails with a message that contains `expected`.
   void
   refuses(const std::string& name, const std::string& content, const std::string& expected) const
   {
@@ -86,7 +86,7 @@ struct Temporary_files
   std::filesystem::path folder;
 };
 
-//! appends the bytes of a value, little endian unless `is_big_endian`
+//! Appends the bytes of a value, little endian unless `is_big_endian`.
 template <class T>
 void put(std::string& bytes, T value, bool is_big_endian = false)
 {
@@ -97,7 +97,7 @@ void put(std::string& bytes, T value, bool is_big_endian = false)
       is_big_endian != pcs::IO::internal::is_big_endian_machine());
 }
 
-//! overwrites bytes with a little endian value
+//! Overwrites bytes by a little endian value.
 template <class T>
 void patch(std::string& bytes, std::size_t at, T value)
 {
@@ -106,7 +106,7 @@ void patch(std::string& bytes, std::size_t at, T value)
                            pcs::IO::internal::is_big_endian_machine());
 }
 
-//! whether two tables have the same properties, values and positions, bit for bit
+//! Checks whether two tables have bit-identical properties, values and positions.
 inline bool are_equal(const pcs::IO::Point_table& a, const pcs::IO::Point_table& b)
 {
   if (a.points() != b.points() || a.property_names() != b.property_names())

@@ -50,11 +50,11 @@ struct Cylinder_files : Temporary_files
     }
     BOOST_TEST(message.find(expected) != std::string::npos,
                "expected '" << expected << "' in '" << message << "'");
-    BOOST_TEST(num_vertices(tree) == 8u); // untouched
+    BOOST_TEST(num_vertices(tree) == 8u); // unchanged
   }
 };
 
-//! the length of all edges and the volume of the frusta around those within branches
+//! The length of all edges, and the volume of the frusta around those within branches.
 std::pair<double, double> sizes(const Tree& tree)
 {
   double length = 0, volume = 0;
@@ -69,8 +69,8 @@ std::pair<double, double> sizes(const Tree& tree)
   return {length, volume};
 }
 
-//! checks the tree of three cylinders that the tests of other programs contain: a trunk of two
-//! cylinders, and a branch that begins at the end of the first
+//! Checks the tree of three cylinders of the tests of other programs: a trunk of two cylinders, and
+//! a branch that begins at the end of the first.
 void check_fork(const Tree& tree)
 {
   BOOST_TEST_REQUIRE(num_vertices(tree) == 5u);
@@ -126,7 +126,7 @@ BOOST_AUTO_TEST_CASE(own_tables_keep_branches_lengths_and_positions)
   BOOST_TEST(sizes(copy).second == sizes(tree).second, boost::test_tools::tolerance(0.1));
   BOOST_TEST(
       (copy[copy[boost::graph_bundle].root].point == tree[tree[boost::graph_bundle].root].point));
-  // every tip is found again, on a branch of the same order
+  // Every tip is reproduced, on a branch of the same order.
   for (std::size_t v = 0; v < num_vertices(tree); ++v) {
     if (out_degree(v, tree) > 0)
       continue;
@@ -179,7 +179,7 @@ BOOST_AUTO_TEST_CASE(tables_of_rtwig_are_read)
       "\"1\",NA,0.25,1,1,2,3,0,0,2,1,1\r\n"
       "\"2\",1,0.125,1,1,2,4,0,0,2,2,1\r\n"
       "\"3\",1,0.0625,2,1,2,4,5,0,0,3,2\r\n";
-  check_fork(read_table(text)); // axes of any length
+  check_fork(read_table(text)); // axes of arbitrary lengths
 }
 
 BOOST_AUTO_TEST_CASE(branches_are_determined_if_the_table_has_none)
@@ -187,14 +187,14 @@ BOOST_AUTO_TEST_CASE(branches_are_determined_if_the_table_has_none)
   const std::string text = "start_1;start_2;start_3;end_1;end_2;end_3;radius;parent\n"
                            "1;2;3;1;2;4;0.25;0\n1;2;4;3;2;4;0.0625;1\n1;2;4;1;2;5;0.125;1\n";
   check_fork(read_table(text)); // the thickest cylinder continues
-  // a branch of SimpleForest with all that grows on it has one number
+  // A branch of SimpleForest and its descendants have one number.
   check_fork(read_table(header + "1,2,3,0,0,1,1,0.25,0,5\n1,2,4,1,0,0,2,0.0625,1,5\n"
                                  "1,2,4,0,0,1,1,0.125,1,5\n"));
 }
 
 BOOST_AUTO_TEST_CASE(branches_begin_at_the_nearer_end_of_their_parent)
 {
-  // the second branch leaves the root, as a child of the first cylinder and without a parent
+  // The second branch starts at the root, as a child of the first cylinder and without a parent.
   for (const std::string parent : {"1", "0"}) {
     const Tree tree = read_table(header + "0,0,0,0,0,1,4,0.5,0,1\n0,0,0.25,1,0,0,2,0.1," + parent +
                                  ",2\n0,0,3,1,0,0,2,0.1,1,3\n");

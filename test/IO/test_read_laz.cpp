@@ -19,7 +19,7 @@ BOOST_FIXTURE_TEST_SUITE(read_laz, Temporary_files)
 
 #ifdef PCS_WITH_LASZIP
 
-//! compresses a LAS file of three points with LASzip
+//! Compresses a LAS file of three points with LASzip.
 void compress(const std::string& from, const std::string& to)
 {
   laszip_POINTER reader = nullptr, writer = nullptr;
@@ -68,7 +68,7 @@ BOOST_AUTO_TEST_CASE(all_point_formats_have_the_values_of_the_las_file)
       const pcs::IO::Point_table table = pcs::IO::read_points(path("a.laz"));
       BOOST_TEST(are_equal(table, expected), "point format " << format);
       BOOST_TEST(table.has_property("id") == (number_of_extra_bytes > 0));
-      // without the record that describes the compression
+      // Without the record that describes the compression.
       pcs::IO::write_points(path("b.las"), table);
       BOOST_TEST(are_equal(pcs::IO::read_points(path("b.las")), expected));
       BOOST_TEST(content("b.las").find("laszip encoded") == std::string::npos);

@@ -30,7 +30,7 @@ std::string header(const std::string& body, const std::string& storage = "ascii"
 const std::string xyz = "property double x\nproperty double y\nproperty double z\n";
 const std::string one_vertex = "element vertex 1\n" + xyz;
 
-//! one vertex with a value of each type, lists among them, behind a face element
+//! One vertex with a value of each type, including lists, after a face element.
 std::string binary_file(bool is_big)
 {
   std::string bytes = header("element face 2\nproperty list uchar int vertex_indices\n"

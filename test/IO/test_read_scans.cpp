@@ -26,7 +26,7 @@ BOOST_FIXTURE_TEST_SUITE(read_scans, Temporary_files)
 
 // ---- PCD
 
-//! the header of a file of `n` points with x, y, z, an integer and a packed colour
+//! The header of a file of `n` points with x, y, z, an integer and a packed colour.
 std::string pcd_header(const std::string& encoding, int n)
 {
   return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z id rgb\n"
@@ -35,7 +35,7 @@ std::string pcd_header(const std::string& encoding, int n)
          "\nDATA " + encoding + "\n";
 }
 
-//! the bytes of two points, point by point or field by field
+//! The bytes of two points, point by point or field by field.
 std::string pcd_points(bool is_by_field, float first_x = 1)
 {
   std::string bytes;
@@ -63,7 +63,7 @@ std::string pcd_points(bool is_by_field, float first_x = 1)
   return bytes;
 }
 
-//! LZF data without repetitions
+//! LZF data without repetitions.
 std::string lzf(const std::string& bytes)
 {
   std::string result;
@@ -96,7 +96,7 @@ BOOST_AUTO_TEST_CASE(all_encodings_of_pcd_give_the_same_points)
     BOOST_TEST(int(table.property<std::uint8_t>("red")[0]) == 0x10);
     BOOST_TEST(int(table.property<std::uint8_t>("green")[0]) == 0x20);
     BOOST_TEST(int(table.property<std::uint8_t>("blue")[0]) == 0x30);
-    BOOST_TEST(are_equal(read("a.txt", bytes), table)); // by its first bytes
+    BOOST_TEST(are_equal(read("a.txt", bytes), table)); // identified by its first bytes
   }
 }
 
@@ -160,13 +160,13 @@ BOOST_AUTO_TEST_CASE(lzf_repetitions_are_bounded)
     return pcs::IO::internal::decompress_lzf(from, to) && to == expected;
   };
   BOOST_TEST(decompresses({0, 'a', 1 << 5, 0}, Bytes(4, 'a')));        // overlapping
-  BOOST_TEST(decompresses({0, 'a', 7 << 5, 255, 0}, Bytes(265, 'a'))); // the longest
+  BOOST_TEST(decompresses({0, 'a', 7 << 5, 255, 0}, Bytes(265, 'a'))); // the longest repetition
   BOOST_TEST(decompresses({1, 'a', 'b', 1 << 5, 1}, {'a', 'b', 'a', 'b', 'a'}));
   BOOST_TEST(!decompresses({0, 'a', 1 << 5, 1}, Bytes(4, 'a'))); // before the beginning
   BOOST_TEST(!decompresses({0, 'a', 2 << 5, 0}, Bytes(4, 'a'))); // too long
   BOOST_TEST(!decompresses({0, 'a'}, Bytes(2, 'a')));            // too short
-  BOOST_TEST(!decompresses({1, 'a'}, Bytes(2, 'a')));            // cut in a run
-  BOOST_TEST(!decompresses({0, 'a', 1 << 5}, Bytes(4, 'a')));    // cut in a repetition
+  BOOST_TEST(!decompresses({1, 'a'}, Bytes(2, 'a')));            // truncated within a run
+  BOOST_TEST(!decompresses({0, 'a', 1 << 5}, Bytes(4, 'a')));    // truncated within a repetition
   BOOST_TEST(!decompresses({0, 'a', 7 << 5}, Bytes(10, 'a')));
 }
 

@@ -60,7 +60,7 @@ BOOST_AUTO_TEST_CASE(a_comment_before_the_first_row_may_name_the_columns)
     BOOST_TEST((table.points() == std::vector<Point_3>{Point_3(1, 2, 3)}));
     BOOST_TEST((table.property_names() == std::vector<std::string>{"wood"}));
   }
-  for (const char* text : {"# X Y Z wood\n# another\n1 2 3 1\n", // the last one decides
+  for (const char* text : {"# X Y Z wood\n# another\n1 2 3 1\n", // the last header line is used
                            "# X Y Z\n1 2 3 1\n",
                            "# X Y Z 7\n1 2 3 1\n",
                            "# a b c d\n1 2 3 1\n",
@@ -276,7 +276,7 @@ BOOST_AUTO_TEST_CASE(lines_longer_than_the_buffer_are_read)
 BOOST_AUTO_TEST_CASE(the_locale_of_the_program_does_not_matter)
 {
   const std::string old = std::setlocale(LC_ALL, nullptr);
-  for (const char* locale : {"de_DE.UTF-8", "fr_FR.UTF-8"}) // without effect where not installed
+  for (const char* locale : {"de_DE.UTF-8", "fr_FR.UTF-8"}) // no effect if not installed
     std::setlocale(LC_ALL, locale);
   BOOST_TEST((read("a.xyz", "1.5 2.5 3.5\n").points()[0] == Point_3(1.5, 2.5, 3.5)));
   std::setlocale(LC_ALL, old.c_str());

@@ -48,7 +48,7 @@ struct Swc_files : Temporary_files
     }
     BOOST_TEST(message.find(expected) != std::string::npos,
                "expected '" << expected << "' in '" << message << "'");
-    BOOST_TEST(num_vertices(tree) == 8u); // untouched
+    BOOST_TEST(num_vertices(tree) == 8u); // unchanged
   }
 };
 
@@ -78,8 +78,8 @@ BOOST_AUTO_TEST_CASE(a_tree_comes_back_bit_by_bit)
 
 BOOST_AUTO_TEST_CASE(types_tell_branches_where_they_are_orders)
 {
-  // node, parent, type: node 2 continues the trunk, though 3 is thicker; parents stand behind their
-  // children
+  // Node, parent, type: node 2 continues the trunk, although 3 is thicker. Parents are after their
+  // children.
   const auto branches = [&](const std::string& types) {
     const char* const rows[] = {"3 ", "2 ", "1 ", "4 "};
     const char* const places[] = {" 1 0 1 0.3 1\n",
@@ -92,21 +92,21 @@ BOOST_AUTO_TEST_CASE(types_tell_branches_where_they_are_orders)
     Tree tree;
     pcs::IO::read_swc<Kernel>(file("a.swc", content), tree);
     const auto& found = tree[boost::graph_bundle].branches;
-    return std::array<bool, 3>{tree[1].branch == tree[2].branch, // the trunk goes to node 2
+    return std::array<bool, 3>{tree[1].branch == tree[2].branch, // the trunk continues to node 2
                                tree[0].branch == tree[2].branch,
                                found[tree[3].branch].order > found[tree[0].branch].order};
   };
   using Answer = std::array<bool, 3>;
   BOOST_TEST((branches("6 5 5 6 ") == Answer{true, false, false}));
   BOOST_TEST((branches("6 5 5 7 ") == Answer{true, false, true}));
-  // no orders: the thickest child continues
+  // Without orders, the thickest child continues.
   for (const char* const types : {"5 5 5 5 ", "0 0 0 0 ", "7 5 5 7 ", "6 5 6 6 ", "3 3 1 3 "})
     BOOST_TEST((branches(types) == Answer{false, true, false}));
 }
 
 BOOST_AUTO_TEST_CASE(ids_are_those_of_the_file)
 {
-  // not whole as doubles; behind a byte order mark
+  // Ids that doubles do not represent exactly, after a byte order mark.
   Tree tree;
   std::vector<std::int64_t> ids = {1};
   const std::string large = "900719925474099";
@@ -198,7 +198,7 @@ BOOST_AUTO_TEST_CASE(further_columns_and_comments_behind_data_are_ignored)
 
 BOOST_AUTO_TEST_CASE(one_of_several_trees_is_read)
 {
-  // trees of 2, 3 and 2 nodes, whose rows alternate
+  // Trees of 2, 3 and 2 nodes with alternating rows.
   const std::string content = "10 0 0 0 0 1 -1\n21 0 5 0 1 1 20\n11 0 0 0 1 1 10\n"
                               "20 0 5 0 0 2 -1\n31 0 9 0 1 1 30\n22 0 5 0 2 1 21\n"
                               "30 0 9 0 0 3 -1\n";
@@ -231,7 +231,7 @@ BOOST_AUTO_TEST_CASE(one_of_several_trees_is_read)
     BOOST_TEST(message.find("there is no tree " + std::to_string(number) +
                             ": the file has 3 trees") != std::string::npos,
                message);
-    BOOST_TEST(tree[1].radius == 3); // untouched
+    BOOST_TEST(tree[1].radius == 3); // unchanged
   }
   const pcs::IO::Tree_selection selection = pcs::IO::read_swc<Kernel>(name, tree);
   BOOST_TEST_REQUIRE(warnings(selection).size() == 1u);

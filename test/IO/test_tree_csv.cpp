@@ -39,7 +39,7 @@ struct Csv_files : Temporary_files
     }
     BOOST_TEST(message.find(expected) != std::string::npos,
                "expected '" << expected << "' in '" << message << "'");
-    BOOST_TEST(num_vertices(tree) == 8u); // untouched
+    BOOST_TEST(num_vertices(tree) == 8u); // unchanged
     BOOST_TEST(hits.size() == 1u);
   }
 };

@@ -29,7 +29,7 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-using Values = std::map<std::string, std::string>; // by the names of the columns
+using Values = std::map<std::string, std::string>; // by column name
 
 struct Table_files : Temporary_files
 {
@@ -65,8 +65,8 @@ void check(const Values& row, const std::string& name, double expected)
              name << " is " << row.at(name) << ", expected " << expected);
 }
 
-//! a trunk of radius 0.2 and length 4; half way a branch of radius 0.1 along (1, 0, 1), and at its
-//! tip a branch of radius 0.05 along y, whose first edge has the length 0
+//! A trunk of radius 0.2 and length 4. It has a branch of radius 0.1 along (1, 0, 1) at its middle,
+//! and a branch of radius 0.05 along y at its tip, whose first edge has the length 0.
 Tree make_fork()
 {
   return pcs_test::make_tree<Kernel>({{pcs::npos, 0, 0, 0, 0, 0.2},

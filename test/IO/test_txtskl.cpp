@@ -60,7 +60,7 @@ BOOST_AUTO_TEST_CASE(branches_hang_on_the_points_of_their_fathers)
   BOOST_TEST(tree[4].radius == 0.02);
   for (const auto& [u, v] : {std::make_pair(0, 1), {1, 2}, {1, 3}, {3, 4}, {2, 5}})
     BOOST_TEST(edge(static_cast<std::size_t>(u), static_cast<std::size_t>(v), tree).second);
-  // line ends of other systems, and no end of the last line
+  // Line ends of other systems, and no end of the last line.
   std::string other;
   for (const char c : good)
     other += c == '\n' ? std::string("\r\n") : std::string(1, c);

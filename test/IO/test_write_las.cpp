@@ -61,7 +61,7 @@ BOOST_AUTO_TEST_CASE(everything_but_the_renewed_header_fields_survives)
     pcs::IO::write_points(path("b.las"), read("a.las", before));
     std::string after = content("b.las");
     BOOST_REQUIRE(after.size() == before.size());
-    // counts by return and the bounding box were zero in the handmade file
+    // The constructed file has no counts by return and no bounding box.
     const auto clear = [&](std::size_t from, std::size_t to) {
       after.replace(from, to - from, before, from, to - from);
     };
@@ -78,7 +78,7 @@ BOOST_AUTO_TEST_CASE(the_header_describes_the_points)
   Las_file las;
   std::string bytes = las.bytes();
   bytes[227 + 14] = bytes[227 + 20 + 14] = 1; // two first returns
-  bytes[227 + 40 + 14] = 2;                   // and a second one
+  bytes[227 + 40 + 14] = 2;                   // and one second return
   pcs::IO::write_points(path("b.las"), read("a.las", bytes));
   const std::string after = content("b.las");
   const auto* data = reinterpret_cast<const unsigned char*>(after.data());
@@ -105,7 +105,7 @@ BOOST_AUTO_TEST_CASE(new_properties_become_described_extra_bytes)
   table.add_property<std::int8_t>("branch", {-1, 0, 1});
   pcs::IO::write_points(path("b.las"), table);
   BOOST_TEST(are_equal(pcs::IO::read_points(path("b.las")), table));
-  table.remove_property("tree_id"); // its bytes stay and are zero
+  table.remove_property("tree_id"); // its bytes remain and are zero
   pcs::IO::write_points(path("b.las"), table);
   const Point_table again = pcs::IO::read_points(path("b.las"));
   BOOST_TEST(again.property<std::uint32_t>("tree_id")[1] == 0u);
@@ -184,7 +184,7 @@ BOOST_AUTO_TEST_CASE(values_that_do_not_fit_their_bits_are_refused)
   Point_table table = read("a.las", Las_file().bytes());
   table.replace_property<std::uint8_t>("return_number", {1, 2, 8});
   BOOST_CHECK_THROW(pcs::IO::write_points(path("b.las"), table), Invalid_input);
-  table.replace_property<double>("return_number", {1, 2, 3}); // another type is fine if it fits
+  table.replace_property<double>("return_number", {1, 2, 3}); // other types are valid, too
   pcs::IO::write_points(path("b.las"), table);
   BOOST_TEST(int(pcs::IO::read_points(path("b.las")).property<std::uint8_t>("return_number")[2]) ==
              3);

@@ -113,18 +113,18 @@ BOOST_AUTO_TEST_CASE(coordinates_become_double_unless_asked_otherwise)
   options.ply_encoding = Ply_encoding::ascii;
   pcs::IO::write_points(path("b.ply"), table, options);
   BOOST_TEST(content("b.ply") == header + "0.1 2 3\n");
-  table.points()[0] = Point_3(0, 2.5, 3); // no integer
+  table.points()[0] = Point_3(0, 2.5, 3); // not an integer
   BOOST_CHECK_THROW(pcs::IO::write_points(path("b.ply"), table, options), Invalid_input);
-  table.points()[0] = Point_3(1e300, 2, 3); // no float
+  table.points()[0] = Point_3(1e300, 2, 3); // exceeds the range of a float
   BOOST_CHECK_THROW(pcs::IO::write_points(path("b.ply"), table, options), Invalid_input);
 }
 
 BOOST_AUTO_TEST_CASE(text_gives_back_positions_and_names)
 {
   Point_table table = all_types();
-  table.remove_property("g"); // a double does not hold all 64 bits
+  table.remove_property("g"); // a double does not represent all 64 bits
   table.remove_property("h");
-  table.remove_property("i"); // shortest text of a float is another double
+  table.remove_property("i"); // the shortest text of a float is a different double
   for (const char* name : {"a.csv", "a.xyz", "a.txt"}) {
     pcs::IO::write_points(path(name), table);
     const Point_table again = pcs::IO::read_points(path(name));
@@ -219,7 +219,7 @@ BOOST_AUTO_TEST_CASE(points_that_a_reader_would_refuse_are_not_written)
   BOOST_CHECK_THROW(pcs::IO::write_points(path("a.xyz"), table), Invalid_input);
   table = one_point();
   table.add_property<int>("label", {1});
-  table.points().push_back(Point_3(1, 2, 3)); // but no label
+  table.points().push_back(Point_3(1, 2, 3)); // without a label
   BOOST_CHECK_THROW(pcs::IO::write_points(path("a.xyz"), table), Invalid_input);
   table = one_point();
   table.add_property<int>("two words", {1});
@@ -245,7 +245,7 @@ BOOST_AUTO_TEST_CASE(a_program_that_is_killed_leaves_nothing_behind)
 {
   const int nameless = ::open(folder.c_str(), O_TMPFILE | O_WRONLY, 0666);
   if (nameless < 0)
-    return; // the file system has no such files
+    return; // not supported by the file system
   ::close(nameless);
   const pid_t child = ::fork();
   if (child == 0) {
@@ -269,7 +269,7 @@ BOOST_AUTO_TEST_CASE(files_have_the_usual_permissions)
   const auto mode = [&] { return std::filesystem::status(path("a.xyz")).permissions(); };
   BOOST_TEST((mode() == perms(0640)));
   std::filesystem::permissions(path("a.xyz"), perms(0604));
-  pcs::IO::write_points(path("a.xyz"), one_point()); // a file that is replaced keeps its own
+  pcs::IO::write_points(path("a.xyz"), one_point()); // a replaced file keeps its permissions
   BOOST_TEST((mode() == perms(0604)));
 }
 
@@ -310,7 +310,7 @@ BOOST_AUTO_TEST_CASE(bad_targets_are_errors)
 BOOST_AUTO_TEST_CASE(the_output_may_be_the_input)
 {
   std::string text;
-  for (int i = 0; i < 100000; ++i) // far more than the buffers hold
+  for (int i = 0; i < 100000; ++i) // far more than the buffer size
     text += std::to_string(i) + " 2 3\n";
   Point_reader reader(file("a.xyz", text));
   Point_writer writer(path("a.xyz"), reader.schema());

@@ -26,8 +26,8 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 const auto near = boost::test_tools::tolerance(1e-9);
 
-/// A trunk of radius 0.1 from z = 0 to 2 with a branch of radius 0.03 and length 1 at z = 1, along
-/// x.
+/// A trunk of radius 0.1 from z = 0 to 2, with a branch of radius 0.03 and length 1 along x at z =
+/// 1.
 Tree make_cross()
 {
   return pcs_test::make_tree<Kernel>({{pcs::npos, 0, 0, 0, 0, 0.1},
@@ -104,7 +104,7 @@ BOOST_AUTO_TEST_CASE(thinning_straight_branches_changes_nothing_but_the_nodes)
 BOOST_AUTO_TEST_CASE(a_shift_is_measured_both_ways)
 {
   const Tree truth = make_cross();
-  // across both axes: every sample is 15 mm away
+  // Across both axes: every sample is 15 mm away.
   const auto a =
       pcs_bench::measure_skeleton<Kernel>(truth, {}, shifted(truth, Kernel::Vector_3(0, 0.015, 0)));
   BOOST_TEST(a.at_distance[0].f1() == 0);
@@ -112,7 +112,7 @@ BOOST_AUTO_TEST_CASE(a_shift_is_measured_both_ways)
   BOOST_TEST(a.to_truth.mean == 0.015, near);
   BOOST_TEST(a.to_result.median == 0.015, near);
   BOOST_TEST(a.to_result.rms == 0.015, near);
-  // a quarter of the radius is 25 mm on the trunk, and 7.5 mm on the branch
+  // A quarter of the radius is 25 mm on the trunk, and 7.5 mm on the branch.
   BOOST_TEST(a.at_radius[0].recall == 2.0 / 3, near);
   BOOST_TEST(a.at_radius[0].precision == 2.0 / 3, near);
   BOOST_TEST(a.at_radius[1].recall == 1, near); // 15 mm is half the radius of the branch
@@ -125,7 +125,7 @@ BOOST_AUTO_TEST_CASE(a_removed_branch_costs_recall_and_an_added_one_precision)
   const Tree trunk = pcs_test::make_tree<Kernel>(
       {{pcs::npos, 0, 0, 0, 0, 0.1}, {0, 0, 0, 0, 1, 0.1}, {1, 0, 0, 0, 2, 0.1}});
   const auto a = pcs_bench::measure_skeleton<Kernel>(truth, {}, trunk);
-  // of the 100 samples of the branch, at 5, 15, 25 ... mm, one or two are near the trunk's axis
+  // Of the 100 samples of the branch, at 5, 15, 25 ... mm, one or two are near the trunk's axis.
   BOOST_TEST(a.at_distance[0].precision == 1);
   BOOST_TEST(a.at_distance[0].recall == 2.01 / 3, near);
   BOOST_TEST(a.at_distance[1].recall == 2.03 / 3, near); // the third lies at 25 mm
@@ -135,7 +135,7 @@ BOOST_AUTO_TEST_CASE(a_removed_branch_costs_recall_and_an_added_one_precision)
   BOOST_TEST(a.order_classes[0].number_of_missed_branches == 0u);
   BOOST_TEST(a.order_classes[1].number_of_true_branches == 1u);
   BOOST_TEST(a.order_classes[1].number_of_missed_branches == 1u);
-  // the mean distance of the branch's samples to the trunk is 0.5
+  // The mean distance of the branch's samples to the trunk is 0.5.
   BOOST_TEST(a.to_result.mean == 0.5 / 3, near);
 
   const auto b = pcs_bench::measure_skeleton<Kernel>(trunk, {}, truth);
@@ -187,7 +187,7 @@ BOOST_AUTO_TEST_CASE(the_volume_is_that_of_frusta)
 
 BOOST_AUTO_TEST_CASE(a_wrong_parent_is_found)
 {
-  // two branches side by side, and a twig that hangs on the wrong one
+  // Two adjacent branches, and a twig that is a child of the wrong one.
   const std::vector<Row> rows = {{pcs::npos, 0, 0, 0, 0, 0.1},
                                  {0, 0, 0, 0, 1, 0.1},
                                  {1, 0, 0, 0, 2, 0.1},
@@ -202,7 +202,7 @@ BOOST_AUTO_TEST_CASE(a_wrong_parent_is_found)
   wrong[7] = {6, 3, 1, 0.25, 1.25, 0.01};
   const auto a = pcs_bench::measure_skeleton<Kernel>(truth, {}, pcs_test::make_tree<Kernel>(wrong));
   BOOST_TEST_REQUIRE(a.order_classes.size() == 3u);
-  BOOST_TEST(a.order_classes[2].number_of_matched_branches == 0u); // most of it is the false link
+  BOOST_TEST(a.order_classes[2].number_of_matched_branches == 0u); // mostly the wrong link
   wrong[7] = {6, 3, 1, 0.05, 1.9, 0.01};
   wrong[8] = {7, 3, 1, 0.5, 1.5, 0.01};
   wrong.push_back({8, 3, 1, 0.02, 1.02, 0.01});
@@ -285,7 +285,7 @@ BOOST_AUTO_TEST_CASE(the_totals_of_the_virtual_scans_come_out)
     const char* name;
     double volume, length, seen, dbh;
   };
-  // as the README beside the files states them
+  // Values of the README of the files.
   for (const Expected& e : {Expected{"beech", 1.9634, 1348.2, 1336.9, 0.417},
                             Expected{"sparse", 0.2706, 176.1, 169.8, 0.219}}) {
     Tree tree;

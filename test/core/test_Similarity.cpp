@@ -201,7 +201,7 @@ BOOST_AUTO_TEST_CASE(matrices_of_similarities_are_accepted)
     BOOST_TEST(pcs::Similarity::from_matrix(affine(size * Eigen::Matrix3d::Identity())).scale() ==
                    size,
                boost::test_tools::tolerance(1e-12));
-  // half a turn: either sense will do
+  // Half a turn: both directions are valid.
   const Eigen::Matrix3d half = Vec3(-1, -1, 1).asDiagonal();
   const auto s = pcs::Similarity::from_matrix(affine(half));
   BOOST_TEST((s.rotation() - half).norm() < 1e-12);

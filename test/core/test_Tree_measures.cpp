@@ -32,7 +32,7 @@ BOOST_AUTO_TEST_CASE(a_cone_has_the_volume_of_a_cone)
 
 BOOST_AUTO_TEST_CASE(the_base_of_a_branch_inside_its_parent_counts_once)
 {
-  // a branch at right angles to a trunk of radius 0.25: a quarter of its length is inside
+  // A branch perpendicular to a trunk of radius 0.25: a quarter of its length is inside.
   const auto m = pcs::measure_tree(pcs_test::make_tree<Kernel>({{pcs::npos, 0, 0, 0, 0, 0.25},
                                                                 {0, 0, 0, 0, 1, 0.25},
                                                                 {1, 0, 0, 0, 2, 0.25},
@@ -45,7 +45,7 @@ BOOST_AUTO_TEST_CASE(the_base_of_a_branch_inside_its_parent_counts_once)
 
 BOOST_AUTO_TEST_CASE(the_edge_to_a_branch_has_the_radius_of_the_branch)
 {
-  // no node of its own at the joint
+  // Without a separate node at the joint.
   const auto m = pcs::measure_tree(pcs_test::make_tree<Kernel>(
       {{pcs::npos, 0, 0, 0, 0, 0.25}, {0, 0, 0, 0, 1, 0.25}, {0, 1, 1, 0, 0, 0.1}}));
   BOOST_TEST(m.volume == pi * (0.0625 + 0.01));

@@ -22,7 +22,7 @@ double distance_on_cover(const Quaternion& a, const Quaternion& b)
   return (a.coeffs() - b.coeffs()).norm();
 }
 
-/// The best rotation, by singular values.
+/// The best-fit rotation by singular value decomposition.
 Eigen::Matrix3d polar(const Eigen::Matrix3d& m)
 {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -66,7 +66,7 @@ BOOST_AUTO_TEST_CASE(log_inverts_exp_up_to_half_a_turn)
     for (int repetition = 0; repetition < 10; ++repetition) {
       const Vec3 u = angle * pcs_test::random_direction(random);
       BOOST_TEST((pcs::rotation_log(pcs::rotation_exp(u)) - u).norm() <= 1e-14 + 1e-14 * angle);
-      // the shorter way round, whichever sign the quaternion has
+      // The shorter rotation, for both signs of the quaternion.
       const Quaternion q = pcs::rotation_exp(u);
       const Quaternion minus(-q.w(), -q.x(), -q.y(), -q.z());
       BOOST_TEST((pcs::rotation_log(minus) - u).norm() <= 1e-14 + 1e-14 * angle);
@@ -126,7 +126,7 @@ BOOST_AUTO_TEST_CASE(rodrigues_parameters_are_rotation_vectors_but_for_the_tange
     const Vec3 axis = pcs_test::random_direction(random);
     const Quaternion q = pcs::rotation_exp(angle * axis);
     for (const double length :
-         {1.0, -1.0, 1e-100, -7.0}) { // of the quaternion, on either half of the cover
+         {1.0, -1.0, 1e-100, -7.0}) { // of the quaternion, on both halves of the cover
       const Vec3 u = pcs::rodrigues_from_rotation(Quaternion(length * q.coeffs()));
       BOOST_TEST((u - 4 * std::tan(angle / 4) * axis).norm() <= 1e-14 * angle + 1e-300);
       BOOST_TEST(distance_on_cover(pcs::rotation_from_rodrigues(u), q) < 1e-15);
@@ -197,11 +197,11 @@ BOOST_AUTO_TEST_CASE(every_bundle_gives_a_rotation)
     for (int iterations = 0; iterations < 4; ++iterations)
       BOOST_TEST(is_rotation(pcs::improve_rotation(m, Quaternion::Identity(), iterations)));
   };
-  check(-Eigen::Matrix3d::Identity());              // turned inside out
+  check(-Eigen::Matrix3d::Identity());              // point reflection
   check(Vec3(1, -1, -1).asDiagonal());              // half a turn: no torque
   check(Vec3(1, 1, -1).asDiagonal());               // a reflection
-  check(Vec3(1, 0, 0) * Vec3(0, 1, 0).transpose()); // at right angles: no stiffness
-  check(1e-300 * Eigen::Matrix3d::Random().eval()); // next to nothing
+  check(Vec3(1, 0, 0) * Vec3(0, 1, 0).transpose()); // perpendicular: no stiffness
+  check(1e-300 * Eigen::Matrix3d::Random().eval()); // nearly zero
   check(Vec3(1, 1e-160, 1e-300).asDiagonal());
   for (int repetition = 0; repetition < 1000; ++repetition) {
     const Vec3 a = pcs_test::random_vector(random), b = pcs_test::random_vector(random);
