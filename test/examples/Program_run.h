@@ -32,8 +32,8 @@ using Table = pcs::IO::Point_table;
 
 constexpr std::size_t number_of_pillar_points = 2000, number_of_far_points = 100;
 
-/// A pillar of radius 1 and height 10 with its foot at (1000.1, -20.3, 5.7), then a lump that
-/// nothing connects to it. `status` is the tenth of the height, 0 to 9; 10 in the lump.
+/// A pillar of radius 1 and height 10 with its foot at (1000.1, -20.3, 5.7), followed by a
+/// disconnected lump. `status` is the tenth of the height, 0 to 9, and 10 in the lump.
 inline Table make_cloud()
 {
   std::vector<Table::Point_3> points;
@@ -61,7 +61,7 @@ inline Table make_cloud()
   }
   Table table(points);
   table.add_property("nx", nx);
-  table.add_property("status", status); // between the normals on purpose
+  table.add_property("status", status); // intentionally between the normals
   table.add_property("ny", ny);
   table.add_property("nz", nz);
   table.add_property("tenth", tenth);
@@ -107,7 +107,7 @@ struct Program_run
     return std::size_t(std::distance(std::filesystem::directory_iterator(folder), {}));
   }
 
-  /// Runs in the folder; returns the exit code, or 1000 + the signal that killed it.
+  /// Runs in the folder. Returns the exit code, or 1000 + the signal that terminated it.
   int run(const std::string& arguments)
   {
     const std::string command = "cd '" + folder.string() + "' && '" + program + "' " + arguments +
@@ -123,7 +123,7 @@ struct Program_run
     return code > 128 ? 1000 + code - 128 : code;
   }
 
-  /// Runs an edit on in.ply that must succeed; returns the output and keeps the report.
+  /// Runs an edit on in.ply that must succeed. Returns the output and keeps the report.
   Table deform(const Json& edit, const std::string& more = "")
   {
     write("edit.json", edit.dump());
@@ -147,7 +147,7 @@ struct Deform_run : Program_run
   Deform_run() : Program_run("deform_point_set") {}
 };
 
-/// Handles as JSON, so that cases read like edit files.
+/// Handles as JSON, similar to edit files.
 inline Json edit_of(const std::vector<Json>& handles)
 {
   return Json{{"handles", handles}};

@@ -27,7 +27,7 @@ struct Three_trees : Program_run
   {
     using namespace orl_test;
     for (unsigned k = 0; k < 3; ++k) {
-      // one tree at three ages, the second of them with a wider crown
+      // One tree at three ages, the second of them with a wider crown.
       orl_test::Tree tree = moved(random_tree(71, 4, 2),
                                   Eigen::Matrix3d::Identity(),
                                   Vec3(0, 0, 0),
@@ -86,7 +86,7 @@ BOOST_AUTO_TEST_CASE(a_mean_mixes_points_and_properties)
   for (const double v : mean.property_as_double("height")) {
     BOOST_TEST(v >= 0);
     BOOST_TEST(v <= 2);
-    number_mixed += std::abs(v - 1) < 1e-3; // of 0, 1 and 2
+    number_mixed += std::abs(v - 1) < 1e-3; // between 0, 1 and 2
   }
   BOOST_TEST(number_mixed > mean.number_of_points() * 8 / 10);
   for (const double v : mean.property_as_double("red"))
@@ -95,7 +95,7 @@ BOOST_AUTO_TEST_CASE(a_mean_mixes_points_and_properties)
     BOOST_TEST(v == 7);
   const double middle = (length("a.swc") + length("b.swc") + length("c.swc")) / 3;
   BOOST_TEST(std::abs(length("out/mean.swc") / middle - 1) <
-             0.02); // of all; weights are another tree
+             0.02); // mean of all; the weights select one tree
   BOOST_TEST(std::abs(length("out/weighted_mean.swc") / length("b.swc") - 1) < 0.02);
   BOOST_TEST(exists("out/mean_surface.ply"));
   BOOST_TEST(exists("out/weighted_mean_surface.ply"));
@@ -109,7 +109,7 @@ BOOST_AUTO_TEST_CASE(modes_and_new_trees_are_written)
   BOOST_TEST(modes["modes"].size() == 2u);
   BOOST_TEST(modes["modes"][0]["scores"].size() == 3u);
   BOOST_TEST(modes["outlier_scores"].size() == 3u);
-  // the size is what differs most
+  // The size has the largest variance.
   const double small = length("out/mode_1_minus.swc"), large = length("out/mode_1_plus.swc");
   BOOST_TEST(std::max(small, large) > 1.3 * std::min(small, large));
   for (const char* name : {"out/mode_2_minus.swc", "out/mode_2_plus.swc", "out/sample_0002.swc"})
@@ -124,7 +124,7 @@ BOOST_AUTO_TEST_CASE(modes_and_new_trees_are_written)
   succeeds(skeletons + "--modes 5 --output many");
   BOOST_TEST(err.find("no more than 2 mode(s)") != std::string::npos, err);
   succeeds(skeletons + "--modes 2 --mode-inner-product metric --output metric --report three.json");
-  // of more than two trees there are no figures of pairs
+  // For more than two trees there are no values of pairs.
   BOOST_TEST(out.find("3 trees, ") != std::string::npos, out);
   BOOST_TEST(out.find("distance") == std::string::npos, out);
   const Json three = Json::parse(content("three.json"));
@@ -139,7 +139,7 @@ BOOST_AUTO_TEST_CASE(modes_and_new_trees_are_written)
   BOOST_TEST(three.contains("fraction_of_changed_matches"));
   BOOST_TEST(Json::parse(content("metric/modes.json"))["measure"] == "metric");
   BOOST_TEST(content("metric/mode_1_plus.swc") != content("out/mode_1_plus.swc"));
-  // a seed is a family
+  // A seed determines the trees.
   succeeds(skeletons + "--sample 2 --seed 5 --output again");
   BOOST_TEST(content("out/sample_0001.swc") == content("again/sample_0001.swc"));
   succeeds(skeletons + "--sample 2 --seed 6 --output other");
@@ -171,7 +171,7 @@ BOOST_AUTO_TEST_CASE(trees_that_were_put_down_anew_are_turned_back_on_request)
     pcs::IO::read_swc<orl_test::Kernel>(path(name + ".swc"), tree);
     const Eigen::Matrix3d turn =
         Eigen::AngleAxisd(1.3 * k, orl_test::Vec3::UnitY()).toRotationMatrix();
-    // y is up, so that another axis cannot be taken for it
+    // y is the vertical, to distinguish it from the other axes.
     const Eigen::Matrix3d upright =
         Eigen::Quaterniond::FromTwoVectors(orl_test::Vec3::UnitZ(), orl_test::Vec3::UnitY())
             .toRotationMatrix();
@@ -215,7 +215,7 @@ BOOST_AUTO_TEST_CASE(trees_that_were_put_down_anew_are_turned_back_on_request)
   const Json turns = Json::parse(content("r.json"))["yaws_degrees"];
   BOOST_TEST_REQUIRE(turns.size() == 3u);
   BOOST_TEST(turns[0].get<double>() == 0);
-  for (const std::size_t k : {1u, 2u}) // all others refer to the one before, which was turned back
+  for (const std::size_t k : {1u, 2u}) // relative to the previous tree, which was rotated back
     BOOST_TEST(std::abs(std::remainder(turns[k].get<double>() + 1.3 * double(k) * 180 / CGAL_PI,
                                        360)) < 0.2);
 }

@@ -102,7 +102,7 @@ BOOST_AUTO_TEST_CASE(axes_are_drawn_out_to_the_points_on_request)
 
 BOOST_AUTO_TEST_CASE(one_tree_of_a_skeleton_file_is_used)
 {
-  // a copy of the first tree between two smaller ones
+  // A copy of the first tree between two smaller ones.
   const std::string forest = "900001 0 5 0 0 0.1 -1\n900002 0 5 0 1 0.1 900001\n" +
                              content("a.swc") + "900003 0 9 0 0 0.1 -1\n";
   write("forest.swc", forest);
@@ -116,7 +116,7 @@ BOOST_AUTO_TEST_CASE(one_tree_of_a_skeleton_file_is_used)
   BOOST_TEST(content("a.swc.out/lambda_0.500.swc") == content("forest.swc.out/lambda_0.500.swc"));
   succeeds(pair("forest.swc") + "--quiet");
   BOOST_TEST(err == "");
-  // b.swc has a single tree, so the number is for the other file; or each file has a number
+  // b.swc has a single tree, so the number refers to the other file; or each file has a number.
   write("stick.swc", "1 0 5 0 0 0.1 -1\n2 0 5 0 1 0.1 1\n");
   succeeds(pair("stick.swc"));
   for (const std::string numbers : {"--root-number 2", "--root-number 2,1"}) {
@@ -142,7 +142,7 @@ BOOST_AUTO_TEST_CASE(every_place_on_the_path_has_points_and_a_skeleton)
   }
   BOOST_TEST(number_in("out") == 8u);
 
-  // ids of tips in the files of the skeletons
+  // Ids of tips in the skeleton files.
   std::istringstream lines(content("m.csv"));
   std::string line;
   std::getline(lines, line);
@@ -193,7 +193,7 @@ BOOST_AUTO_TEST_CASE(values_that_are_no_numbers_have_no_part_in_the_points_betwe
     const Table points = pcs::IO::read_points(path("out/lambda_" + place + ".ply"));
     std::size_t from_first = 0;
     for (const double v : points.property_as_double("value")) {
-      BOOST_TEST((v == 3 || std::isnan(v))); // of points that only the second scan has
+      BOOST_TEST((v == 3 || std::isnan(v))); // for points of the second scan only
       from_first += v == 3 ? 1 : 0;
     }
     BOOST_TEST(from_first >= 2000u);
@@ -245,7 +245,7 @@ BOOST_AUTO_TEST_CASE(skeletons_alone_give_skeletons_alone)
 
 BOOST_AUTO_TEST_CASE(skeletons_may_be_tables)
 {
-  // a byte order mark, columns in another order, ids that are no numbers of rows
+  // A byte order mark, columns in another order, ids that differ from row numbers.
   write("a.CSV",
         "\xEF\xBB\xBF"
         "parent,id,branch,order,x,y,z,r,a,b\n-1,7,0,0,0,0,0,0.2,0.2,0.2\n"
@@ -268,7 +268,7 @@ BOOST_AUTO_TEST_CASE(points_in_other_coordinates_than_the_skeleton_are_refused)
           "same coordinates");
   BOOST_TEST(err.find("far.ply") != std::string::npos);
   BOOST_TEST(!exists("out"));
-  // outliers are none
+  // Outliers do not count.
   std::copy(far.begin(), far.begin() + 500, some.begin());
   pcs::IO::write_points(path("some.ply"), some);
   succeeds("--tree some.ply --skeleton a.swc --tree b.ply --skeleton b.swc --output out");
@@ -317,7 +317,7 @@ BOOST_AUTO_TEST_CASE(options_change_the_result)
   succeeds(trees + "--lambda 1.5 --output plain --max-extrapolation-degrees 90");
   succeeds(trees + "--lambda 1.5 --output other --max-extrapolation-degrees 0 --limit-radii");
   BOOST_TEST(content("other/lambda_1.500.ply") != content("plain/lambda_1.500.ply"));
-  // a trunk that all its branches grow on
+  // A trunk that supports all branches.
   auto branches = orl_test::random_branches(61, 4, 2);
   branches.resize(1);
   pcs::IO::write_swc(path("trunk.swc"), orl_test::make_tree(branches));
@@ -356,7 +356,7 @@ BOOST_AUTO_TEST_CASE(branches_of_trees_that_grew_at_their_tips_are_born_in_order
   pcs::IO::write_swc(path("young.swc"), pcs::tree_at_age<orl_test::Kernel>(tree, 0.5));
   const std::string grown =
       "--skeleton young.swc --skeleton old.swc --lambda 0.5 --correspondences grown.txt --output ";
-  for (const std::string run : {"first", "again"}) { // as found, and as kept
+  for (const std::string run : {"first", "again"}) { // as computed, and as stored
     succeeds(grown + run);
     succeeds(grown + run + "_in_order --sequential-emergence");
     succeeds(grown + run + "_together --simultaneous-emergence");
@@ -399,13 +399,13 @@ BOOST_AUTO_TEST_CASE(correspondences_are_kept)
   succeeds(trees + "--lambda 0.3 --output two --correspondences c.txt");
   BOOST_TEST(content("one/lambda_0.300.ply") == content("two/lambda_0.300.ply"));
   BOOST_TEST(content("c.txt") == kept);
-  // nothing is said of a matching that was done before, nor asked of it
+  // A stored matching has no matching report, and needs no matching options.
   succeeds(trees + "--output two --correspondences c.txt --report stored.json");
   const Json stored = Json::parse(content("stored.json"));
   BOOST_TEST(!stored.contains("matching_energy"));
   BOOST_TEST(stored["number_of_points"] == Json::parse(content("fresh.json"))["number_of_points"]);
   BOOST_TEST(stored["distance"] == Json::parse(content("fresh.json"))["distance"]);
-  // the same may be asked for again, and nothing else
+  // The same options are accepted again, other options are not.
   succeeds(trees + "--lambda 0.3 --output two --correspondences c.txt --align yaw --up z "
                    "--transport exact");
   BOOST_TEST(content("one/lambda_0.300.ply") == content("two/lambda_0.300.ply"));
@@ -415,7 +415,7 @@ BOOST_AUTO_TEST_CASE(correspondences_are_kept)
   BOOST_TEST(err.find("c.txt") != std::string::npos);
   succeeds(trees + "--output two --correspondences d.txt --align none --published-energy");
   succeeds(trees + "--output two --correspondences d.txt --published-energy");
-  // points may be left out, or have other properties, but not be others
+  // Points may be omitted or have other properties, but must not be different.
   succeeds("--skeleton a.swc --skeleton b.swc --lambda 0.3 --output bare --correspondences c.txt");
   BOOST_TEST(content("one/lambda_0.300.swc") == content("bare/lambda_0.300.swc"));
   BOOST_TEST(number_in("bare") == 1u);
@@ -433,7 +433,7 @@ BOOST_AUTO_TEST_CASE(correspondences_are_kept)
   refuses("--tree b.ply --skeleton b.swc --tree a.ply --skeleton a.swc --output three "
           "--correspondences c.txt",
           "other trees");
-  // a file that was cut, or changed
+  // A truncated file, or a modified one.
   for (std::size_t k = 1; k < 20; ++k) {
     write("c.txt", kept.substr(0, kept.size() * k / 20));
     BOOST_TEST(run(trees + "--output three --correspondences c.txt") == 1);
@@ -447,7 +447,7 @@ BOOST_AUTO_TEST_CASE(correspondences_are_kept)
 
 BOOST_AUTO_TEST_CASE(results_that_cannot_be_written_are_found_before_the_work)
 {
-  // the trees are not even read: the second is none
+  // The trees are not read: the second is not a skeleton.
   const std::string no_trees = "--skeleton a.swc --skeleton b.ply --output ";
   write("file", "old");
   refuses(no_trees + "file", "file: is a file, expected a folder");
@@ -462,7 +462,7 @@ BOOST_AUTO_TEST_CASE(results_that_cannot_be_written_are_found_before_the_work)
     refuses(of_file + " missing/x",
             "missing/x: cannot be opened for writing: No such file or directory");
     refuses(of_file + " ''", option + " has an empty value");
-    if (option != "--correspondences") // a folder there is read
+    if (option != "--correspondences") // a folder is read in this case
       refuses(of_file + " taken", "taken: is a directory, expected a file name");
   }
   refuses(no_trees + "out --mean --report out/mean.swc", "out/mean.swc is named twice");

@@ -53,7 +53,7 @@ Vec3 centroid(const Table& table, const std::vector<std::size_t>& indices)
   return sum / double(indices.size());
 }
 
-/// Largest distance of the points from where `motion` takes them.
+/// Largest distance of the points from their positions under `motion`.
 template <class Motion>
 double error_of(const Table& before,
                 const Table& after,
@@ -79,9 +79,9 @@ Eigen::Matrix3d turn(const Vec3& axis, double degrees)
 }
 
 const Json fixed_foot = parse(R"({"select": {"property": "status", "equals": 0}, "fixed": true})");
-constexpr double rounding = 1e-9; // coordinates of 1e3 in double precision, with room
+constexpr double rounding = 1e-9; // coordinates of 1e3 in double precision, with a margin
 
-/// Number of points that the report gives for the last handle, which `select` stands for.
+/// Number of points of the last handle in the report, for the selection `select`.
 std::size_t selected(Deform_run& program, const std::string& select)
 {
   program.deform(edit_of({{{"select", parse(select)}, {"fixed", true}}}));
@@ -128,7 +128,7 @@ BOOST_FIXTURE_TEST_CASE(every_selector_and_every_motion_reaches_its_target, Defo
   BOOST_TEST(error_of(input, result, {700, 701, 702, 703}, [](const Vec3& p) {
                return Vec3(p + Vec3(0, 0.25, 0));
              }) < rounding);
-  BOOST_TEST(largest_motion(input, result, with_status(input, 3)) > 0.01); // the others followed
+  BOOST_TEST(largest_motion(input, result, with_status(input, 3)) > 0.01); // the others follow
 }
 
 BOOST_FIXTURE_TEST_CASE(center_defaults_to_the_centroid, Deform_run)
@@ -153,7 +153,7 @@ BOOST_FIXTURE_TEST_CASE(two_full_turns_twist_what_lies_between, Deform_run)
       deform(edit_of({fixed_foot, parse(R"({"select": {"property": "status", "equals": 9},
     "rotate": {"axis": [0, 0, 1], "degrees": 720}})")}));
   BOOST_TEST(largest_motion(input, result, with_status(input, 9)) < rounding);
-  // a quarter of the way is half a turn, which takes a point to the other side
+  // A quarter of the rotation is half a turn, which moves a point to the other side.
   BOOST_TEST(largest_motion(input, result, with_status(input, 3)) > 1.5);
 }
 
@@ -189,7 +189,7 @@ BOOST_FIXTURE_TEST_CASE(the_default_edit_holds_the_foot_and_turns_the_head, Defo
 {
   Table pillar(std::vector<Table::Point_3>(input.points().begin(),
                                            input.points().begin() + number_of_pillar_points));
-  pillar.points().emplace_back(0, 0, -1e4); // an outlier must not decide what the foot is
+  pillar.points().emplace_back(0, 0, -1e4); // an outlier must not determine the foot
   pcs::IO::write_points(path("pillar.xyz"), pillar);
   BOOST_TEST_REQUIRE(
       run("--input pillar.xyz --default-edit --output out.xyz --report report.json") == 0);
@@ -228,9 +228,9 @@ BOOST_FIXTURE_TEST_CASE(properties_are_compared_in_their_own_type, Deform_run)
 {
   BOOST_TEST(selected(*this, R"({"property": "status", "equals": 2})") == 200);
   BOOST_TEST(selected(*this, R"({"property": "status", "equals": 2.0})") == 200);
-  BOOST_TEST(selected(*this, R"({"property": "tenth", "equals": 0.3})") == 200); // 0.3 is no float
+  BOOST_TEST(selected(*this, R"({"property": "tenth", "equals": 0.3})") == 200); // 0.3: not a float
   BOOST_TEST(selected(*this, R"({"property": "signed_id", "equals": -7})") == 1);
-  // neighbours in 64 bits that are the same number in double
+  // Adjacent 64-bit integers that are equal as doubles.
   BOOST_TEST(selected(*this, R"({"property": "large", "equals": 9223372036854775800})") == 1);
   BOOST_TEST(selected(*this, R"({"property": "time", "equals": 1000000000})") == 1);
   for (const char* none : {R"("status", "equals": 2.5)",
@@ -261,7 +261,7 @@ BOOST_FIXTURE_TEST_CASE(order_and_properties_are_kept_with_their_types, Deform_r
   BOOST_TEST((result.schema().properties == input.schema().properties));
   for (const char* name : {"status", "tenth", "signed_id", "large", "time"})
     BOOST_TEST((result.property_values(name) == input.property_values(name)), name);
-  BOOST_TEST(number_of_files() == 4); // in, edit, out, report: nothing temporary is left
+  BOOST_TEST(number_of_files() == 4); // in, edit, out, report: no temporary files
 }
 
 BOOST_FIXTURE_TEST_CASE(the_output_may_be_the_input, Deform_run)
@@ -279,7 +279,7 @@ BOOST_FIXTURE_TEST_CASE(every_format_is_read_and_written, Deform_run)
   write("edit.json",
         R"({"handles": [{"select": {"indices": [0, 1]}, "fixed": true},
                         {"select": {"indices": [1999]}, "translate": [1, 0, 0]}]})");
-  pcs::IO::write_points(path("in.off"), input.points()); // OFF has no place for the properties
+  pcs::IO::write_points(path("in.off"), input.points()); // OFF has no properties
   std::string last = "in.ply";
   for (const std::string next : {"1.csv", "2.txt", "3.las", "4.ply"}) {
     BOOST_TEST_REQUIRE(run("--input " + last + " --edit edit.json --output " + next) == 0, err);
@@ -287,7 +287,7 @@ BOOST_FIXTURE_TEST_CASE(every_format_is_read_and_written, Deform_run)
   }
   const Table result = pcs::IO::read_points(path("4.ply"));
   BOOST_TEST((position(result, 1999) - position(input, 1999) - Vec3(4, 0, 0)).norm() <
-             1e-3); // the grid of LAS
+             1e-3); // the coordinate step of LAS
   BOOST_TEST(result.has_property("status"));
   BOOST_TEST_REQUIRE(run("--input in.off --edit edit.json --output out.off") == 0, err);
   BOOST_TEST(pcs::IO::read_points(path("out.off")).points()[0] == input.points()[0]);
@@ -385,7 +385,7 @@ BOOST_FIXTURE_TEST_CASE(the_summary_names_counts_and_files_and_quiet_prints_noth
                            "out.ply",
                            "report.json"})
     BOOST_TEST(out.find(word) != std::string::npos, word << " is missing in\n" << out);
-  BOOST_TEST(err == ""); // no progress where there is no terminal
+  BOOST_TEST(err == ""); // no progress without a terminal
   deform(edit_of({fixed_foot}), "--quiet");
   BOOST_TEST(out == "");
   BOOST_TEST(err == "");

@@ -19,8 +19,8 @@ namespace {
 const std::string arguments =
     "--input in.ply --edit edit.json --output out.ply --report report.json";
 
-/// Runs `arguments`, which must fail and say so in one or two lines with these words, and must
-/// leave files alone.
+/// Runs `arguments`, which must fail with these words in a message of one or two lines. Files must
+/// be unchanged.
 void refuses(Deform_run& program,
              const std::string& args,
              const std::vector<std::string>& words,
@@ -48,7 +48,7 @@ void refuses_edit(Deform_run& program, const std::string& edit, std::vector<std:
   refuses(program, arguments, words, edit.substr(0, 200));
 }
 
-/// The same for a handle that stands at /handles/1 behind a valid one.
+/// Same, for a handle at /handles/1 after a valid one.
 void refuses_handle(Deform_run& program,
                     const std::string& handle,
                     const std::vector<std::string>& words)
@@ -214,7 +214,7 @@ BOOST_FIXTURE_TEST_CASE(one_place_in_two_handles_is_refused, Deform_run)
                  {"/handles/1: ", "point 1999", "same place"});
 }
 
-// only that it neither crashes nor claims an internal error
+// Checks only that there is no crash and no internal error.
 BOOST_FIXTURE_TEST_CASE(mutated_edits_end_with_success_or_one_message, Deform_run)
 {
   pcs::IO::write_points(
@@ -232,7 +232,7 @@ BOOST_FIXTURE_TEST_CASE(mutated_edits_end_with_success_or_one_message, Deform_ru
     const std::size_t at = random() % mutated.size();
     if (k % 2)
       mutated.replace(at, 1 + random() % 3, pieces[random() % pieces.size()]);
-    else { // a number for a number, so that more of them get past the parser
+    else { // replaces a number by a number, so that more edits pass the parser
       const std::size_t digit = mutated.find_first_of("0123456789", at);
       if (digit != std::string::npos)
         mutated.replace(digit, 1, pieces[random() % 4]);
@@ -304,7 +304,7 @@ BOOST_FIXTURE_TEST_CASE(clouds_that_cannot_be_deformed_are_refused, Deform_run)
         refuses(*this, "--input in.xyz --output out.ply " + edit, {word}, edit + " on " + text);
       };
   for (const std::string edit : {"--default-edit", "--edit edit.json"}) {
-    const std::string by = edit == "--default-edit" ? "in.xyz" : ""; // else it may be the edit
+    const std::string by = edit == "--default-edit" ? "in.xyz" : ""; // or the edit
     refuses_cloud("", edit, "in.xyz: the file is empty");
     refuses_cloud("# nothing\n", edit, "in.xyz");
     refuses_cloud("1 2 3\n", edit, by);

@@ -24,7 +24,7 @@ const std::string edit_text = R"({"handles": [
   {"select": {"property": "status", "equals": 9}, "rotate": {"axis": [1, 0, 1], "degrees": 40},
    "translate": [1, 0, 0]}]})";
 
-/// Runs the edit on a file in memory and as a stream, and compares the outputs byte for byte.
+/// Runs the edit on a file in memory and as a stream, and compares the outputs byte by byte.
 void is_same_as_in_memory(Deform_run& program,
                           const std::string& in,
                           const std::string& out,
@@ -42,7 +42,7 @@ void is_same_as_in_memory(Deform_run& program,
 constexpr std::size_t number_of_large_points = 60000;
 constexpr double object_size = 10; // the height [L]
 
-/// The pillar of `Program_run` with more points; its numbers do not follow the height.
+/// The pillar of `Program_run` with more points, whose order does not follow the height.
 Table large_cloud()
 {
   const std::size_t n = number_of_large_points;
@@ -124,7 +124,7 @@ BOOST_FIXTURE_TEST_CASE(a_stream_writes_what_it_reads, Deform_run)
   const std::string arguments = "--input in.ply --edit edit.json --output in.ply --stream";
   BOOST_TEST_REQUIRE(run(arguments + " --chunk-points 100") == 0, err);
   BOOST_TEST((content("in.ply") == content("out.ply")));
-  BOOST_TEST(number_of_files() == 3); // in, edit, out: nothing temporary is left
+  BOOST_TEST(number_of_files() == 3); // in, edit, out: no temporary files
 }
 
 BOOST_FIXTURE_TEST_CASE(an_invalid_normal_leaves_all_normals_in_a_stream, Deform_run)
@@ -164,11 +164,11 @@ BOOST_FIXTURE_TEST_CASE(a_large_file_is_close_to_the_memory_mode, Large_run)
     }
   }
   BOOST_TEST(number_of_changed_fixed_points == 0);
-  BOOST_TEST(handle_error < 1e-9); // coordinates of 1e3 in double precision, with room
+  BOOST_TEST(handle_error < 1e-9); // coordinates of 1e3 in double precision, with a margin
   BOOST_TEST_MESSAGE("largest distance " << error << ", of normals " << normal_error << ", mean "
                                          << std::sqrt(squared_normal_error));
   BOOST_TEST(error < 0.012 * object_size);
-  // The crease beside the turned handle is not sampled alike: a few hundred normals there differ by
+  // The crease at the rotated handle has different samples: a few hundred normals there differ by
   // more than 0.1.
   BOOST_TEST(normal_error < 0.3);
   BOOST_TEST(squared_normal_error < 0.04 * 0.04);
@@ -217,7 +217,7 @@ BOOST_AUTO_TEST_SUITE_END()
 
 BOOST_AUTO_TEST_SUITE(stream_errors)
 
-/// The messages must not depend on the mode, and no file may be touched.
+/// Checks that messages are independent of the mode, and that files are unchanged.
 BOOST_FIXTURE_TEST_CASE(errors_are_those_of_the_memory_mode, Deform_run)
 {
   write("out.ply", "an old file");
@@ -270,7 +270,7 @@ BOOST_FIXTURE_TEST_CASE(files_and_numbers_are_checked, Deform_run)
   refuses("--input in.xyz --output out.ply --stream --chunk-points 1", "in.xyz");
   write("in.xyz", "# nothing\n");
   refuses("--input in.xyz --output out.ply --stream", "");
-  std::filesystem::resize_file(path("in.ply"), 1000); // shorter than its header says
+  std::filesystem::resize_file(path("in.ply"), 1000); // shorter than in its header
   refuses(files + "--stream", "in.ply");
 }
 

@@ -33,7 +33,7 @@ using Kernel = CGAL::Simple_cartesian<double>;
 
 namespace {
 
-/// Two trees beside each other, with a property of the points.
+/// Two adjacent trees, with a property of the points.
 struct Stand_run : Program_run
 {
   Stand_run() : Program_run("segment_trees")

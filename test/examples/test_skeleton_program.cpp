@@ -30,7 +30,7 @@ using Tree = pcs::Tree_skeleton<Kernel>;
 
 namespace {
 
-/// Far from the origin, as maps have it: only doubles hold millimetres there.
+/// Far from the origin, similar to map coordinates: only doubles resolve millimetres there.
 constexpr double far_x = 5e5, far_y = 5e6;
 
 /// A stem of radius 0.1 and height 2.5 with a branch of radius 0.03 to the side, as text with 17
@@ -88,7 +88,8 @@ struct Skeleton_run : Program_run
 {
   Skeleton_run() : Program_run("extract_tree_skeleton") { write("tree.xyz", fork_text()); }
 
-  /// Without resampled copies, which take several times as long, unless the arguments ask for them.
+  /// Runs without resampled copies, which take several times as long, unless the arguments contain
+  /// them.
   int run(const std::string& arguments)
   {
     const bool has_copies = arguments.find("--resamples") != std::string::npos;
@@ -155,7 +156,7 @@ BOOST_AUTO_TEST_CASE(all_results_agree)
        {"reading", "neighbors", "paths", "axes", "joints", "sections", "mesh", "writing"})
     BOOST_TEST(json["seconds"][stage].get<double>() >= 0);
 
-  // SWC: ids from 1, parents first, one root, original coordinates in full
+  // SWC: ids from 1, parents first, one root, original coordinates without loss.
   const std::vector<Row> rows = rows_of(content("t.swc"));
   BOOST_TEST_REQUIRE(rows.size() == json["nodes"].get<std::size_t>());
   for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -171,7 +172,7 @@ BOOST_AUTO_TEST_CASE(all_results_agree)
   pcs::IO::read_swc<Kernel>(path("t.swc"), tree);
   BOOST_TEST(num_vertices(tree) == rows.size());
 
-  // cylinders: lengths and volumes are those of the report
+  // Cylinders: lengths and volumes are those of the report.
   std::istringstream table(content("c.csv"));
   std::string line;
   std::getline(table, line);
@@ -192,7 +193,7 @@ BOOST_AUTO_TEST_CASE(all_results_agree)
   }
   BOOST_TEST(std::abs(total - length) < 1e-9 * length);
 
-  // tables of branches and of the tree: litres and metres
+  // Tables of branches and of the tree, in litres and metres.
   std::istringstream sizes(content("s.csv"));
   std::getline(sizes, line);
   BOOST_TEST(line.rfind("TotalVolume,TrunkVolume,BranchVolume,TreeHeight", 0) == 0u);
@@ -203,7 +204,7 @@ BOOST_AUTO_TEST_CASE(all_results_agree)
   BOOST_TEST(branches.rfind("order,parent,volume,area,length,angle", 0) == 0u);
   BOOST_TEST(std::count(branches.begin(), branches.end(), '\n') == 3);
 
-  // the points keep their order, and name branches that exist
+  // The points keep their order, and have the ids of existing branches.
   const Table points = pcs::IO::read_points(path("p.ply"));
   const Table scan = pcs::IO::read_points(path("tree.xyz"));
   BOOST_TEST_REQUIRE(points.number_of_points() == scan.number_of_points());
@@ -217,7 +218,7 @@ BOOST_AUTO_TEST_CASE(all_results_agree)
   BOOST_TEST(points.has_property("dense"));
   BOOST_TEST(points.has_property("residual"));
 
-  // mesh and edges: the numbers in the headers, and the coordinates
+  // Mesh and edges: the numbers in the headers, and the coordinates.
   const std::string mesh = content("m.ply"), edges = content("e.ply");
   BOOST_TEST(mesh.find("element vertex " + std::to_string(json["mesh"]["vertices"].get<long>())) !=
              std::string::npos);
@@ -233,7 +234,7 @@ BOOST_AUTO_TEST_CASE(all_results_agree)
   BOOST_TEST(edges.find("element vertex " + std::to_string(rows.size())) != std::string::npos);
   BOOST_TEST(edges.find("element edge " + std::to_string(rows.size() - 1)) != std::string::npos);
 
-  // the other format of a mesh has the same triangles
+  // The other mesh format has the same triangles.
   BOOST_TEST_REQUIRE(run("--quiet --input tree.xyz --swc t2.swc --mesh m.obj") == 0);
   BOOST_TEST(out == "");
   BOOST_TEST(content("t2.swc") == content("t.swc"));
@@ -271,7 +272,7 @@ BOOST_AUTO_TEST_CASE(options_change_what_they_say)
   const Json beam = report_of("--swc b.swc --scanner 500010 5000000 1 --beam-milliradians 5");
   BOOST_TEST(beam["total"]["volume"].get<double>() < 0.99 * plain["total"]["volume"].get<double>());
 
-  // along a given skeleton: its nodes, the radii of the scan
+  // Along a given skeleton: its nodes, and the radii of the scan.
   write("given.swc",
         "1 0 500000 5000000 0 9 -1\n2 0 500000 5000000 1.5 9 1\n3 0 500000 5000000 2.5 9 2\n"
         "4 0 500001.3 5000000 1.5 9 2\n");
@@ -279,7 +280,7 @@ BOOST_AUTO_TEST_CASE(options_change_what_they_say)
   BOOST_TEST(given["branches"] == 2);
   BOOST_TEST(std::abs(given["diameter_at_breast_height"].get<double>() - 0.2) < 0.004);
   BOOST_TEST(std::abs(given["total"]["length"].get<double>() - 3.8) < 1e-6);
-  // the largest of two trees, and the same tree as a table of cylinders
+  // The largest of two trees, and the same tree as a table of cylinders.
   write("two.swc", "9 0 0 0 0 1 -1 # another tree\n" + content("given.swc"));
   const Json largest = report_of("--swc c.swc --skeleton two.swc");
   BOOST_TEST(content("c.swc") == content("b.swc"));
@@ -295,7 +296,7 @@ BOOST_AUTO_TEST_CASE(options_change_what_they_say)
   BOOST_TEST(table["branches"] == 2);
   BOOST_TEST(std::abs(table["total"]["length"].get<double>() - 3.8) < 1e-6);
 
-  // a property tells what is wood
+  // A property that classifies wood.
   std::istringstream in(fork_text());
   std::ostringstream labelled;
   labelled << "x y z is_branch\n";
@@ -310,7 +311,7 @@ BOOST_AUTO_TEST_CASE(options_change_what_they_say)
   BOOST_TEST(wood["points"]["leaves"] == 1500);
 }
 
-/// The points of the fork with more columns: `names`, and what `values(is_branch)` gives.
+/// The points of the fork with additional columns `names` and their values `values(is_branch)`.
 template <class Values>
 std::string fork_table(const std::string& names, Values values)
 {
@@ -346,7 +347,7 @@ BOOST_AUTO_TEST_CASE(wood_labels_of_other_programs_need_a_value)
   const int all = run("--input labels.csv --wood label --wood-value 2,4 --swc b.swc");
   BOOST_REQUIRE_MESSAGE(all == 0, err);
   BOOST_TEST(err.find("warning: labels.csv: all points are wood") != std::string::npos, err);
-  // a property with the name that is used by default is no exception
+  // The default property has the same checks.
   write("wood.csv", fork_table("wood", [](bool is_branch) { return is_branch ? "1" : "2"; }));
   refuses("--input wood.csv --swc old.swc", "1 (1500 points), 2 (6000 points)");
 }
@@ -357,7 +358,7 @@ BOOST_AUTO_TEST_CASE(rays_without_return_are_left_out)
                         const std::string& alpha_of_rays,
                         const std::string& time = "time") {
     std::string table = fork_table("alpha," + time, [&](bool) { return alpha + ",3"; });
-    for (int i = 0; i < 50; ++i) // ends of rays that met nothing, high above
+    for (int i = 0; i < 50; ++i) // ends of rays without a return, far above
       table +=
           std::to_string(far_x + i) + ',' + std::to_string(far_y) + ",40," + alpha_of_rays + ",3\n";
     return table;
@@ -371,12 +372,12 @@ BOOST_AUTO_TEST_CASE(rays_without_return_are_left_out)
   code = run("--quiet --input tree.xyz --swc b.swc");
   BOOST_REQUIRE_MESSAGE(code == 0, err);
   BOOST_TEST(content("a.swc") == content("b.swc"));
-  // an alpha of 0 throughout says nothing about rays
+  // A constant alpha of 0 contains no information about rays.
   write("colours.csv", cloud("0", "0"));
   code = run("--quiet --input colours.csv --swc c.swc --report c.json");
   BOOST_REQUIRE_MESSAGE(code == 0, err);
   BOOST_TEST(Json::parse(content("c.json"))["points"]["all"] == 7550);
-  // colours with transparent points, but without times, are no ray cloud
+  // Colours with transparent points, but without times, are not a ray cloud.
   write("clear.csv", cloud("255", "0", "intensity"));
   code = run("--quiet --input clear.csv --swc c.swc --report c.json");
   BOOST_REQUIRE_MESSAGE(code == 0, err);
@@ -385,7 +386,7 @@ BOOST_AUTO_TEST_CASE(rays_without_return_are_left_out)
 
 BOOST_AUTO_TEST_CASE(flight_lines_are_no_stations)
 {
-  // a different line every second point: as stations, the halves of each branch would be registered
+  // Alternating lines of stations: the halves of each branch would be registered.
   auto lines = [k = 0](bool) mutable { return k++ % 2 ? "7" : "8"; };
   write("lines.csv", fork_table("point_source_id", lines));
   int code = run("--quiet --input lines.csv --swc a.swc --report a.json");
@@ -472,7 +473,7 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
   refuses("--input tree.xyz --swc old.swc --mesh ''", "--mesh has an empty value");
   refuses("--input tree.xyz --folder out --swc old.swc", "leave old.swc out");
   refuses("--input tree.xyz folder/tree.ply --folder out", "the same name");
-  // Spelled otherwise, or made by another scan of the batch.
+  // Different spellings of one file, or an output of another scan of the batch.
   refuses("--input tree.xyz --swc old.swc --points folder/../tree.xyz", "the same file");
   std::filesystem::create_symlink("tree.xyz", path("link.xyz"));
   refuses("--input link.xyz --swc old.swc --points tree.xyz", "the same file");
@@ -508,7 +509,7 @@ BOOST_AUTO_TEST_CASE(a_batch_goes_on_and_resumes)
   BOOST_TEST(!exists("out/bad_mesh.ply"));
   BOOST_TEST(content("out/good.swc") == content("out/tree.swc"));
 
-  // again: only what failed; one of them is mended, and the last line was torn
+  // Second run: only the failed scans. One of them is repaired, and the last line is truncated.
   write("bad.xyz", fork_text());
   write("out/batch.jsonl", content("out/batch.jsonl") + "{\"input\": \"half");
   const auto time = std::filesystem::last_write_time(path("out/tree.swc"));
@@ -522,14 +523,14 @@ BOOST_AUTO_TEST_CASE(a_batch_goes_on_and_resumes)
   BOOST_TEST(whole == 6u);
   BOOST_TEST(torn == 1u);
 
-  // a result that is gone is made again
+  // A missing result is computed again.
   std::filesystem::remove(path("out/good.swc"));
   std::filesystem::remove(path("missing.ply"));
   write("missing.xyz", fork_text());
   BOOST_TEST(run("--quiet --input tree.xyz bad.xyz good.xyz --folder out") == 0, err);
   BOOST_TEST(exists("out/good.swc"));
 
-  // so is one that is wanted for the first time, and what is older than its scan
+  // The same holds for new results, and for results older than their scan.
   BOOST_TEST(run("--quiet --input good.xyz --folder out --also edges") == 0, err);
   BOOST_TEST(exists("out/good_edges.ply"));
   std::filesystem::last_write_time(path("good.xyz"),
@@ -547,11 +548,11 @@ BOOST_AUTO_TEST_CASE(a_batch_replaces_what_is_out_of_date)
   BOOST_TEST_REQUIRE(run("--quiet " + batch + "--also mesh") == 0, err);
   const std::string swc = content("out/tree.swc"), mesh = content("out/tree_mesh.ply");
   BOOST_TEST(run(batch) == 0, err);
-  BOOST_TEST(log().size() == 1u); // all there
+  BOOST_TEST(log().size() == 1u); // all exist
   BOOST_TEST(out.find("1 of 1 scans have a skeleton, 1 of them from previous runs") !=
              std::string::npos);
 
-  // other options, of the mesh and of the tree
+  // Other options of the mesh and of the tree.
   BOOST_TEST(run(batch + "--also mesh --separate") == 0, err);
   BOOST_TEST(log().size() == 2u);
   BOOST_TEST(content("out/tree_mesh.ply") != mesh);
@@ -562,13 +563,13 @@ BOOST_AUTO_TEST_CASE(a_batch_replaces_what_is_out_of_date)
   BOOST_TEST(run(batch + "--breast-height 1") == 0, err);
   BOOST_TEST(log().size() == 3u);
 
-  // stopped between a result and its line
+  // Stopped between a result and its line.
   write("out/tree.swc", swc + "# of other options\n");
   BOOST_TEST(run(batch + "--breast-height 1") == 0, err);
   BOOST_TEST(log().size() == 4u);
   BOOST_TEST(content("out/tree.swc") == swc);
 
-  // another scan of the same name
+  // Another scan with the same name.
   std::filesystem::create_directory(path("other"));
   write("other/tree.xyz", "1 2 3\n");
   BOOST_TEST(run("--input other/tree.xyz --folder out") == 1);
@@ -576,7 +577,7 @@ BOOST_AUTO_TEST_CASE(a_batch_replaces_what_is_out_of_date)
   BOOST_TEST(content("out/tree.swc") == swc);
   BOOST_TEST(log().size() == 5u);
 
-  // the scan was replaced by an older one, and then by one without a tree
+  // The scan was replaced by an older one, and then by one without a tree.
   const auto now = std::filesystem::last_write_time(path("tree.xyz"));
   write("tree.xyz", fork_text() + "0.1 0 0.2\n");
   std::filesystem::last_write_time(path("tree.xyz"), now - std::chrono::hours(1));
@@ -586,14 +587,14 @@ BOOST_AUTO_TEST_CASE(a_batch_replaces_what_is_out_of_date)
   BOOST_TEST(run(batch + "--breast-height 1") == 1);
   BOOST_TEST(!exists("out/tree.swc"));
 
-  // nothing goes when the scan is away
+  // Results are kept if the scan is missing.
   write("tree.xyz", fork_text());
   BOOST_TEST(run(batch) == 0, err);
   std::filesystem::remove(path("tree.xyz"));
   BOOST_TEST(run(batch) == 1);
   BOOST_TEST(content("out/tree.swc") == swc);
 
-  // what is no line of this program is passed over
+  // Invalid lines are skipped.
   write("tree.xyz", fork_text());
   write("out/batch.jsonl",
         "[]\n{\"status\": 3}\n{\"status\": \"converged\", \"input\": \"tree.xyz\"}\n"
