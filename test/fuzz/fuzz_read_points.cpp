@@ -21,7 +21,7 @@ namespace {
 
 std::string folder()
 {
-  // a folder in memory is much faster than one on a disk
+  // A folder in memory is much faster than one on a disk.
   const std::filesystem::path base = std::filesystem::is_directory("/dev/shm")
                                          ? std::filesystem::path("/dev/shm")
                                          : std::filesystem::temp_directory_path();
@@ -58,7 +58,7 @@ void check(bool ok)
     std::abort();
 }
 
-// the format may refuse the data, but if it writes a file, the file holds the same points
+// The format may reject the data. A written file must contain the same points.
 void check_written(const pcs::IO::Point_table& table, const std::string& path)
 {
   try {
@@ -79,7 +79,7 @@ void check_written(const pcs::IO::Point_table& table, const std::string& path)
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
   static const std::string path = folder();
-  const std::string input = path + "/input.xyz"; // anything without a magic word is text
+  const std::string input = path + "/input.xyz"; // data without a magic word is text
   std::ofstream(input, std::ios::binary)
       .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
   const std::optional<pcs::IO::Point_table> whole = read_whole(input);

@@ -42,7 +42,7 @@ BOOST_AUTO_TEST_CASE(pruning_takes_what_hangs_on_the_branch_and_keeps_ids)
   BOOST_TEST(num_vertices(bare) == 3u);
   BOOST_TEST(bare[boost::graph_bundle].branches.size() == 1u);
 
-  // what is behind the pruned branch moves up, its id does not change
+  // Later branches move up; their ids do not change.
   Tree more = tree;
   more[boost::graph_bundle].branches.push_back({0, 1, 3});
   pcs::Tree_node<Kernel> node = more[2];
@@ -57,7 +57,7 @@ BOOST_AUTO_TEST_CASE(pruning_takes_what_hangs_on_the_branch_and_keeps_ids)
   BOOST_TEST(pruned[boost::graph_bundle].branches[1].parent == 0u);
   BOOST_TEST((pruned[4].point == Point_3(-1, 0, 2)));
   BOOST_TEST(pcs::parent_node(4, pruned) == 3u);
-  BOOST_CHECK_THROW(pcs::prune_branch(pruned, 1), pcs::Invalid_input); // it is gone
+  BOOST_CHECK_THROW(pcs::prune_branch(pruned, 1), pcs::Invalid_input); // already removed
 }
 
 BOOST_AUTO_TEST_CASE(turning_carries_the_subtree_and_changes_no_length)
@@ -83,7 +83,7 @@ BOOST_AUTO_TEST_CASE(lengthening_scales_the_branch_and_moves_its_twigs)
   BOOST_TEST(is_near(tree[4].point, Point_3(1, 0, 1.5)));
   BOOST_TEST(is_near(tree[5].point, Point_3(2, 0, 2)));
   BOOST_TEST(is_near(tree[6].point, Point_3(1, 0, 1.5)));
-  BOOST_TEST(is_near(tree[7].point, Point_3(1, 0.4, 1.5))); // its length stays
+  BOOST_TEST(is_near(tree[7].point, Point_3(1, 0.4, 1.5))); // its length is preserved
   BOOST_TEST(tree[5].radius == 0.03);
 }
 

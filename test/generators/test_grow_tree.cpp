@@ -119,7 +119,7 @@ BOOST_AUTO_TEST_CASE(a_seed_gives_one_tree_and_another_seed_another_one)
 
 BOOST_AUTO_TEST_CASE(presets_look_like_their_names)
 {
-  // conifer: nothing is higher than the tip of the trunk, and the trunk is straight
+  // Conifer: the tip of the trunk is the highest point, and the trunk is straight.
   Tree tree = grown(pcs::conifer_habit());
   auto nodes = pcs::nodes_by_branch(tree);
   const auto top = tree[nodes[0].back()].point;
@@ -127,7 +127,7 @@ BOOST_AUTO_TEST_CASE(presets_look_like_their_names)
     BOOST_TEST(tree[v].point.z() <= top.z() + 0.3);
   BOOST_TEST(top.z() > 0.97 * pcs::conifer_habit().height);
 
-  // forked: a second stem nearly as thick as the first
+  // Forked: a second stem is nearly as thick as the first.
   tree = grown(pcs::forked_habit());
   nodes = pcs::nodes_by_branch(tree);
   double thickest = 0;
@@ -137,7 +137,7 @@ BOOST_AUTO_TEST_CASE(presets_look_like_their_names)
   }
   BOOST_TEST(thickest > 0.75);
 
-  // weeping: most twigs end below their bases; broadleaf: most end above
+  // Weeping: most twigs end below their bases. Broadleaf: most end above.
   for (const bool is_weeping : {true, false}) {
     tree = grown(is_weeping ? pcs::weeping_habit() : pcs::broadleaf_habit());
     nodes = pcs::nodes_by_branch(tree);
@@ -217,7 +217,7 @@ BOOST_AUTO_TEST_CASE(senseless_habits_are_refused_and_name_the_value)
   refuses([&](auto& h) { h.largest_step = h.smallest_step = 1e-7; }, "more than 10000000 nodes");
 }
 
-// With any compiler: in what order the arguments of a call are drawn is theirs.
+// Independent of the compiler, which determines the order of arguments of a call.
 BOOST_AUTO_TEST_CASE(a_seed_is_one_tree_everywhere)
 {
   const Tree tree = grown(pcs::fruit_habit());

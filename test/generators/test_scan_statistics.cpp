@@ -27,7 +27,7 @@ namespace np = pcs::parameters;
 
 namespace {
 
-/// No error but those that a test switches on.
+/// A scanner without errors; tests set single errors.
 pcs::Virtual_scanner perfect()
 {
   pcs::Virtual_scanner s;
@@ -48,7 +48,7 @@ struct Moments
   std::size_t n = 0;
 };
 
-/// Of the distance from the z-axis less `radius`.
+/// Moments of the distance from the z-axis minus `radius`.
 Moments radial_error(const Scan& scan, double radius, double top)
 {
   Moments m;
@@ -95,9 +95,9 @@ BOOST_AUTO_TEST_CASE(noise_on_the_trunk_is_as_specified_and_the_radius_has_no_bi
   scanner.range_noise = 0.003;
   pcs::scan_tree(trunk, scan, scanner, np::random_seed(5));
   const Moments noisy = radial_error(scan, 0.2, 3);
-  // Across the stem the cosine of the angle of incidence is 1 - s^2, s even in [0, 1]: mean square
-  // 2/3. At 10 m the noise is 1.2 times as large. What moves along the surface adds (noise sin)^2 /
-  // 2r outwards.
+  // Across the stem, the cosine of the angle of incidence is 1 - s^2 with s uniform in [0, 1],
+  // whose mean square is 2/3. At 10 m the noise is 1.2 times as large. Displacement along the
+  // surface adds (noise sin)^2 / 2r outwards.
   const double sigma = 0.003 * (1 + 9.8 / 50);
   BOOST_TEST(noisy.deviation == sigma * std::sqrt(2.0 / 3), boost::test_tools::tolerance(0.03));
   const double expected = sigma * sigma / 3 / (2 * 0.2);
@@ -114,7 +114,7 @@ BOOST_AUTO_TEST_CASE(bark_changes_the_surface_and_not_the_mean_radius)
   Scan scan;
   pcs::scan_tree(trunk, scan, scanner);
   const Moments bark = radial_error(scan, 0.2, 3);
-  // three sines of a third of the depth each; bumps hide some of the hollows
+  // Three sines of a third of the depth each; bumps occlude some of the hollows.
   BOOST_TEST(bark.deviation > 0.0012);
   BOOST_TEST(bark.deviation < 0.0018);
   BOOST_TEST(std::abs(bark.mean) < 0.0004);
@@ -153,7 +153,7 @@ BOOST_AUTO_TEST_CASE(the_share_of_outliers_is_exact_and_they_fill_the_box)
   scanner.outlier_share = 0.01;
   Scan scan;
   const auto report = pcs::scan_tree(tree, scan, scanner);
-  BOOST_TEST(report.number_of_ghosts == 0u); // no beam has a width
+  BOOST_TEST(report.number_of_ghosts == 0u); // beams have no width
   BOOST_TEST(double(report.number_of_outliers) ==
              std::round(0.01 * double(report.number_of_wood_points)));
   double low = 1e9, high = -1e9, mean = 0;
@@ -179,7 +179,7 @@ BOOST_AUTO_TEST_CASE(density_falls_with_the_square_of_the_distance)
     pcs::scan_tree(trunk, scan, scanner);
     n[i] = scan.points.size();
   }
-  // width and height in beams at 5 m: 0.2 / 5 / 0.001 and 1 / 5 / 0.001
+  // Width and height in beams at 5 m: 0.2 / 5 / 0.001 and 1 / 5 / 0.001.
   BOOST_TEST(double(n[0]) == 40.0 * 200, boost::test_tools::tolerance(0.03));
   BOOST_TEST(double(n[0]) / double(n[1]) == 4, boost::test_tools::tolerance(0.04));
 }
@@ -200,8 +200,8 @@ BOOST_AUTO_TEST_CASE(no_point_lies_behind_a_nearer_surface)
     const Eigen::Vector3d ray = p - o;
     const double length = ray.norm();
     for (std::size_t v = 1; v < num_vertices(tree); ++v) {
-      // the nearest point of the ray to the middle of an edge, and that of the edge to it; a core
-      // of half the radius is surely inside the wood
+      // The point of the ray nearest to the middle of an edge, and the point of the edge nearest to
+      // it. A core of half the radius is certainly inside the wood.
       const std::size_t parent = pcs::parent_node(v, tree);
       const Eigen::Vector3d a = vector(tree[parent].point), b = vector(tree[v].point);
       const Eigen::Vector3d middle = 0.5 * (a + b);
@@ -220,7 +220,7 @@ BOOST_AUTO_TEST_CASE(a_nearer_stem_casts_a_shadow)
   const Tree trunk = pcs::make_cylinder_tree<Kernel>(2, 0.1);
   pcs::Virtual_scanner scanner = perfect();
   scanner.positions = {{8, 0, 1}};
-  scanner.posts = {{4, 0, 0.1, 5}}; // twice as near, so twice as wide as the trunk
+  scanner.posts = {{4, 0, 0.1, 5}}; // half the distance, so twice the apparent width of the trunk
   Scan scan;
   const auto report = pcs::scan_tree(trunk, scan, scanner);
   BOOST_TEST(report.number_of_wood_points == 0u);
@@ -239,7 +239,7 @@ BOOST_AUTO_TEST_CASE(fewer_stations_hide_more_branches)
     Scan scan;
     const auto report = pcs::scan_tree(tree, scan, scanner);
     BOOST_TEST(report.number_of_hidden_nodes < last_nodes, n << " stations");
-    if (n <= 4) // what is hidden from 8 as well is few, and chance
+    if (n <= 4) // few branches are hidden from 8 stations, and their number is random
       BOOST_TEST(number_of_hidden_branches(tree, scan) < last, n << " stations");
     last = number_of_hidden_branches(tree, scan);
     last_nodes = report.number_of_hidden_nodes;
@@ -260,9 +260,9 @@ BOOST_AUTO_TEST_CASE(wide_beams_thicken_twigs_and_make_ghosts)
     radius[is_wide] = radial_error(scan, 0, 2).mean;
   }
   BOOST_TEST(radius[0] == 0.004, boost::test_tools::tolerance(0.02));
-  // Rays beside the middle are w = 3 mm |cos(roll)| off, at 10 m. A beam whose middle passes at y
-  // from the axis, r < y < r + w, gives a point with the chance 1/2, at the distance sqrt(y^2 + r^2
-  // - (y - w)^2): on average over y and roll 4.36 mm.
+  // Rays beside the middle are w = 3 mm |cos(roll)| off, at 10 m. A beam whose middle passes the
+  // axis at the distance y, r < y < r + w, gives a point with the probability 1/2. Its distance is
+  // sqrt(y^2 + r^2 - (y - w)^2), which is 4.36 mm on average over y and roll.
   BOOST_TEST(radius[1] == 0.00436, boost::test_tools::tolerance(0.01));
 
   Tree tree;

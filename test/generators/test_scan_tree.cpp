@@ -122,7 +122,7 @@ BOOST_AUTO_TEST_CASE(a_point_lies_on_the_node_of_its_label)
     if (scan.node[i] < 0)
       continue;
     const auto& node = tree[std::size_t(scan.node[i])];
-    // half a step along the branch, and its thickness
+    // Half a step along the branch, and its thickness.
     const double reach = std::hypot(0.5 * 0.07, 1.3 * node.major_radius) + 0.01;
     BOOST_TEST(std::sqrt(CGAL::squared_distance(scan.points[i], node.point)) < reach);
   }
@@ -149,7 +149,7 @@ BOOST_AUTO_TEST_CASE(far_from_the_origin_the_scan_is_the_same)
     far[v].point = far[v].point + shift;
   const Scan a = scanned(tree, coarse());
   const Scan b = scanned(far, coarse());
-  // coordinates of the far tree are rounded to 1e-9: a ray in thousands may miss an edge by that
+  // Coordinates of the far tree are rounded to 1e-9. One ray in thousands may miss an edge by that.
   const double n = double(a.points.size());
   BOOST_TEST(std::abs(double(b.points.size()) - n) < 0.002 * n);
   BOOST_TEST(double(b.hits[0]) == double(a.hits[0]), boost::test_tools::tolerance(0.05));
@@ -171,7 +171,7 @@ BOOST_AUTO_TEST_CASE(stations_stand_where_they_were_asked_to)
     BOOST_TEST(std::hypot(s.x(), s.y()) == 6, boost::test_tools::tolerance(0.151));
     BOOST_TEST(s.z() == 1.6);
   }
-  // nobody stood behind the trunk
+  // The rear side of the trunk is not visible from any station.
   for (std::size_t i = 0; i < scan.points.size(); ++i)
     if (scan.node[i] >= 0 && tree[std::size_t(scan.node[i])].branch == 0) {
       const Vector_3 out = scan.points[i] - tree[std::size_t(scan.node[i])].point;
@@ -209,7 +209,7 @@ BOOST_AUTO_TEST_CASE(ground_leaves_and_posts_are_labelled)
       BOOST_TEST(std::abs(p.z()) < 0.0401);
     }
   }
-  // leaves hide wood
+  // Leaves occlude wood.
   scanner.leaves_per_length = 0;
   Scan bare;
   BOOST_TEST(pcs::scan_tree(tree, bare, scanner).number_of_wood_points >
@@ -291,8 +291,8 @@ BOOST_AUTO_TEST_CASE(any_kernel_will_do)
 
 BOOST_AUTO_TEST_CASE(a_tree_without_nodes_at_the_joints_is_whole)
 {
-  // the branch begins 0.6 away from the node that carries it; a point half way is labelled with its
-  // first node
+  // The branch begins 0.6 away from its parent node. A point half way has the label of the first
+  // node of the branch.
   const Tree tree = pcs_test::make_tree<Kernel>({{pcs::npos, 0, 0, 0, 0, 0.1},
                                                  {0, 0, 0, 0, 1, 0.1},
                                                  {1, 0, 0, 0, 2, 0.1},

@@ -40,7 +40,7 @@ BOOST_AUTO_TEST_CASE(at_the_age_1_nothing_has_changed)
 
 BOOST_AUTO_TEST_CASE(a_straight_trunk_is_as_long_as_computed_by_hand)
 {
-  // growth slows down evenly: at half the age the length is 1 - 0.25 = 0.75
+  // Growth decreases linearly: at half the age the length is 1 - 0.25 = 0.75.
   const Tree tree = pcs_test::make_tree<Kernel>(
       {{pcs::npos, 0, 0, 0, 0, 0.3}, {0, 0, 0, 0, 1, 0.2}, {1, 0, 0, 0, 2, 0.1}});
   std::vector<std::size_t> old;
@@ -48,7 +48,7 @@ BOOST_AUTO_TEST_CASE(a_straight_trunk_is_as_long_as_computed_by_hand)
   BOOST_TEST_REQUIRE(num_vertices(young) == 3u);
   BOOST_TEST(young[2].point.z() == 1.5, boost::test_tools::tolerance(1e-12));
   BOOST_TEST(old[2] == pcs::npos);
-  // the root is as old as the tree: half of what it gains on the tip's radius of 0.1
+  // The root has the age of the tree: half of the increase over the tip's radius of 0.1.
   BOOST_TEST(young[0].radius == 0.2, boost::test_tools::tolerance(1e-12));
   BOOST_TEST(young[2].radius == 0.1, boost::test_tools::tolerance(1e-12));
 }
@@ -72,7 +72,7 @@ BOOST_AUTO_TEST_CASE(axes_are_beginnings_of_the_older_ones_and_ids_stay)
       for (std::size_t i = 0; i < young_nodes[b].size(); ++i) {
         const std::size_t v = young_nodes[b][i];
         if (old[v] == pcs::npos) {
-          BOOST_TEST(i + 1 == young_nodes[b].size()); // only a tip is new
+          BOOST_TEST(i + 1 == young_nodes[b].size()); // only tips are new
           continue;
         }
         BOOST_TEST(old[v] == of_old[i]);

@@ -24,7 +24,7 @@ using Vector_3 = Kernel::Vector_3;
 
 namespace {
 
-/// A scanner without any error.
+/// A scanner without errors.
 pcs::Virtual_scanner perfect()
 {
   pcs::Virtual_scanner s;
@@ -35,8 +35,8 @@ pcs::Virtual_scanner perfect()
   return s;
 }
 
-/// Checks that all points but few lie within `tolerance` of where `distance` is 0, on average
-/// closer, and unbiased.
+/// Checks that nearly all points lie within `tolerance` of the zero set of `distance`, with a
+/// smaller mean distance and without bias.
 void check_surface(const Tree& tree,
                    double tolerance,
                    const std::function<double(const Point_3&)>& distance)
@@ -60,10 +60,10 @@ BOOST_AUTO_TEST_SUITE(tree_fixtures)
 
 BOOST_AUTO_TEST_CASE(a_cylinder_is_scanned_as_a_cylinder)
 {
-  // 96 sides: the polygon is 0.027 % outside and inside
+  // 96 sides: the polygon deviates by 0.027 % outside and inside.
   check_surface(pcs::make_cylinder_tree<Kernel>(3, 0.2), 0.2 * 6e-4, [](const Point_3& p) {
     if (p.z() > 3 - 1e-4)
-      return 0.0; // its end is closed
+      return 0.0; // closed end
     return std::hypot(p.x(), p.y()) - 0.2;
   });
 }
@@ -78,7 +78,7 @@ BOOST_AUTO_TEST_CASE(a_cone_is_scanned_as_a_cone)
 BOOST_AUTO_TEST_CASE(a_torus_arc_is_scanned_as_a_torus)
 {
   const double bend = 1.5, angle = 1.2;
-  // the chords of 64 steps are 0.066 mm off the circle
+  // The chords of 64 steps deviate by 0.066 mm from the circle.
   check_surface(pcs::make_torus_arc_tree<Kernel>(bend, 0.1, angle), 0.2e-3, [&](const Point_3& p) {
     if (std::atan2(p.z(), bend - p.x()) > angle - 1e-3)
       return 0.0;

@@ -16,7 +16,7 @@ BOOST_AUTO_TEST_SUITE(Random_stream_numbers)
 
 BOOST_AUTO_TEST_CASE(the_bits_are_those_of_splitmix64)
 {
-  // the first outputs for the state 0, as published with the algorithm
+  // The first outputs for the state 0, as published with the algorithm.
   BOOST_TEST(pcs::internal::mix_bits(0) == 0xe220a8397b1dcdafu);
   BOOST_TEST(pcs::internal::mix_bits(0x9e3779b97f4a7c15u) == 0x6e789e6aa1b965f4u);
 }

@@ -15,11 +15,11 @@ namespace test_compress_rows {
 
 namespace {
 
-/// The rows of entries whose rows are `row_of`.
+/// The rows of entries with the row indices `row_of`.
 struct Rows
 {
   std::vector<std::size_t> sizes; ///< arguments of `resize`
-  std::vector<std::size_t> entry; ///< numbers of the entries, by position
+  std::vector<std::size_t> entry; ///< indices of the entries, by position
   std::vector<std::uint32_t> first;
 
   Rows(std::size_t number_of_rows, const std::vector<std::size_t>& row_of)

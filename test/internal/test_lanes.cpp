@@ -119,7 +119,7 @@ BOOST_AUTO_TEST_CASE(points_and_normals_are_blended)
 BOOST_AUTO_TEST_CASE(rotations_are_fitted_to_edges)
 {
   using namespace pcs::deformation;
-  // Edges that a rotation explains give it, from another one, within a few steps.
+  // Edges that fit a rotation exactly give it within a few steps, from another initial rotation.
   const pcs::Quaternion r = pcs::rotation_exp({.2, -.3, .4});
   const Eigen::Vector3d rest[] = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {1, 1, 3}};
   Eigen::Vector3d position[4];

@@ -25,7 +25,7 @@ using Any_tag = CGAL::Parallel_if_available_tag;
 #if PCS_HAS_TBB
 using Tags = boost::mpl::list<CGAL::Sequential_tag, Any_tag>;
 #else
-using Tags = boost::mpl::list<CGAL::Sequential_tag>; // both are the same
+using Tags = boost::mpl::list<CGAL::Sequential_tag>; // both tags are equal
 #endif
 namespace internal = pcs::internal;
 
@@ -138,7 +138,7 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(an_exception_in_a_loop_reaches_the_caller, Tag, Ta
                     std::range_error);
 }
 
-// What runs instead of oneTBB under the thread sanitizer.
+// Replacement of oneTBB under the thread sanitizer.
 BOOST_AUTO_TEST_CASE(tasks_run_in_two_threads_and_end_before_an_exception_leaves)
 {
   for (const std::size_t n : {0u, 1u, 2u, 7u}) {

@@ -26,7 +26,7 @@ namespace {
 
 using Cholesky = pcs::linear_algebra::Sparse_cholesky;
 
-/// Sparse, symmetric, diagonally dominant.
+/// A sparse, symmetric, diagonally dominant matrix.
 Eigen::MatrixXd random_spd(Eigen::Index n, unsigned seed)
 {
   std::mt19937 random(seed);
@@ -46,8 +46,8 @@ Eigen::MatrixXd random_spd(Eigen::Index n, unsigned seed)
   return a;
 }
 
-/// Laplacian of a square grid, one corner held: supernodes of several columns, fill between distant
-/// ones.
+/// Laplacian of a square grid with one fixed corner: supernodes of several columns, and fill
+/// between distant ones.
 Eigen::MatrixXd grid_laplacian(Eigen::Index side)
 {
   const Eigen::Index n = side * side;
@@ -137,7 +137,7 @@ BOOST_AUTO_TEST_CASE(matrices_that_are_not_positive_definite_are_refused)
 
 BOOST_AUTO_TEST_CASE(a_singular_laplacian_is_refused_in_spite_of_rounding)
 {
-  // A path without a prescribed node: exactly singular, but its last pivot is rounding.
+  // A path without a prescribed node: exactly singular, but its last pivot is a rounding error.
   for (unsigned seed = 0; seed < 50; ++seed) {
     std::mt19937 random(seed);
     const Eigen::Index n = 40;
@@ -223,7 +223,7 @@ BOOST_AUTO_TEST_CASE(the_factor_of_a_grid_has_few_zeros_and_keeps_columns_togeth
 
 BOOST_AUTO_TEST_CASE(subtrees_of_a_large_factor_are_solved_side_by_side_with_the_same_bits)
 {
-  // A grid of 160 x 160 with its diagonals, and many small ones beside it.
+  // A grid of 160 x 160 with its diagonals, and many small ones.
   const auto grids = [](int side, int number_of_small_ones) {
     std::vector<Eigen::Triplet<double>> entries;
     int first = 0;
@@ -273,7 +273,7 @@ BOOST_AUTO_TEST_CASE(subtrees_of_a_large_factor_are_solved_side_by_side_with_the
     factor.solve(b, work);
     factor.solve<CGAL::Parallel_if_available_tag>(parallel, parallel_work);
     BOOST_TEST((b == parallel));
-    factor.solve<CGAL::Parallel_if_available_tag>(again, work); // with what it left there
+    factor.solve<CGAL::Parallel_if_available_tag>(again, work); // reuses the work arrays
     BOOST_TEST((b == again));
     for (std::size_t i = 0; i < n; ++i)
       x.row(Eigen::Index(i)) = b[i].transpose();

@@ -91,7 +91,7 @@ BOOST_AUTO_TEST_CASE(solves_definite_and_singular_systems)
     const Matrix root = random_symmetric<5>(random, 5);
     Matrix a = root * root;
     const bool is_singular = k % 2 == 1;
-    if (is_singular) { // the last unknown does not occur
+    if (is_singular) { // the last unknown has zero coefficients
       a.row(4).setZero();
       a.col(4).setZero();
     }

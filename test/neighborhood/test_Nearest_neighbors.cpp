@@ -87,8 +87,8 @@ BOOST_AUTO_TEST_CASE(nothing_is_nearer_than_the_radius)
   BOOST_TEST(nearest.nearest_if(points[3], 2, any).index == 3u);
 }
 
-// Many copies of one point cannot be told apart by cuts; points at 1e-12 beside points at 1e3 need
-// many.
+// Cuts do not separate many copies of one point. Points at 1e-12 beside points at 1e3 need many
+// cuts.
 BOOST_AUTO_TEST_CASE(copies_and_unlike_scales_are_found)
 {
   Points points(1000, Vec3(1, 2, 3));

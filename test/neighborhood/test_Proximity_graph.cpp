@@ -40,7 +40,7 @@ void check_shape(const Proximity_graph& g, std::size_t n)
   BOOST_TEST(faults == 0u, "rows increase, hold no loops, and every edge is there twice");
 }
 
-/// Squared distances of all others to point i, in order.
+/// Squared distances of all other points to point i, sorted.
 std::vector<std::pair<double, std::size_t>> others(const Points& points, std::size_t i)
 {
   std::vector<std::pair<double, std::size_t>> result;
@@ -51,9 +51,9 @@ std::vector<std::pair<double, std::size_t>> others(const Points& points, std::si
   return result;
 }
 
-/// Every edge is wanted by one of its ends, and every end has what it wants. With `ties` the choice
-/// among points at the same distance is free, but points strictly nearer than the k-th must be
-/// there.
+/// Checks that every edge is selected by one of its ends, and that all selected edges exist. With
+/// `ties` the choice among points at equal distances is free, but points strictly nearer than the
+/// k-th are required.
 void check_against_brute_force(const Points& points, std::size_t k)
 {
   const auto g = nearest_neighbor_graph<Any_tag>(points, k);
@@ -97,7 +97,8 @@ BOOST_AUTO_TEST_CASE(rows_hold_all_equals_on_grids)
 {
   const auto g = nearest_neighbor_graph<Any_tag>(pcs_test::plate(12, 12, 0.1), 6);
   check_shape(g, 169);
-  // Six nearest of a grid point: four at h and two of the four at sqrt(2) h. With ties, all eight.
+  // The six nearest points of a grid point: four at h and two of the four at sqrt(2) h. With ties,
+  // all eight.
   BOOST_TEST(g.degree(6 * 13 + 6) == 8u);
   check_against_brute_force(pcs_test::plate(12, 12, 0.1), 6);
   check_against_brute_force(pcs_test::box(5, 5, 9, 1. / 3), 6);
@@ -131,7 +132,7 @@ BOOST_AUTO_TEST_CASE(an_outlier_is_linked_and_links_back)
 
 BOOST_AUTO_TEST_CASE(a_hub_may_have_more_links_back_than_k)
 {
-  // 30 rays from one centre: for the inner point of every ray the centre is a nearest one.
+  // 30 rays from one center, which is a nearest point of the inner point of every ray.
   Points points{Vec3(0, 0, 0)};
   for (const Vec3& p : pcs_test::sphere(30))
     for (const double radius : {1.0, 3.0, 5.5})
@@ -190,7 +191,7 @@ BOOST_AUTO_TEST_CASE(components_are_those_of_repeated_merging)
     const auto component =
         connected_components(pcs::neighborhood::graph_from_edges(n, edges), count);
     BOOST_TEST(count == std::set<std::uint32_t>(expected.begin(), expected.end()).size());
-    // Numbered by their smallest vertex.
+    // Components are numbered by their smallest vertex.
     std::vector<std::uint32_t> roots(expected);
     std::sort(roots.begin(), roots.end());
     roots.erase(std::unique(roots.begin(), roots.end()), roots.end());

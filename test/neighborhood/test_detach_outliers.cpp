@@ -57,7 +57,7 @@ BOOST_AUTO_TEST_CASE(each_is_found_and_keeps_its_shortest_link)
     BOOST_TEST(found[o].point == n + o);
     BOOST_REQUIRE(graph.degree(n + o) == 1u);
     BOOST_TEST(*graph.begin(n + o) == found[o].host);
-    if (o < 3) // at 1e9, which point of the plate is nearest is below rounding
+    if (o < 3) // at 1e9, the nearest point of the plate is below the rounding error
       BOOST_TEST(found[o].host == host[o]);
   }
   std::size_t count = 0;

@@ -25,7 +25,7 @@ bool is_permutation_of_indices(std::vector<std::uint32_t> order, std::size_t n)
   return order.size() == n;
 }
 
-/// Exact duplicates follow one another, the smaller index first.
+/// Checks that exact duplicates are adjacent, in order of their indices.
 bool duplicates_are_consecutive(const Points& points, const std::vector<std::uint32_t>& order)
 {
   std::vector<std::uint32_t> sorted = order;
@@ -43,7 +43,7 @@ bool duplicates_are_consecutive(const Points& points, const std::vector<std::uin
   return number_of_places == number_of_runs;
 }
 
-/// All that is promised, for one cloud.
+/// Checks all documented properties for one cloud.
 void check(const Points& points)
 {
   const auto order = pcs::neighborhood::spatial_order<Any_tag>(points);
