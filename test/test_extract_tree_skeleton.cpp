@@ -58,8 +58,8 @@ bool are_equal(const Tree& a, const Tree& b)
   return true;
 }
 
-/// Largest distance from a node of `a` to the nearest node of `b`, and largest difference of their
-/// radii, for the fraction `share` of the nodes.
+/// Largest distance in position and radius from a node of `a` to the nearest node of `b`, for the
+/// fraction `share` of the nodes.
 double distance_between(const Tree& a, const Tree& b, double share)
 {
   std::vector<double> distances;

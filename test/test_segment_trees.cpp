@@ -133,7 +133,7 @@ shares(const Stand& stand, const Labels& trees, const pcs::Segmentation_report& 
   return {right[0] / all[0], all[1] > 0 ? right[1] / all[1] : 0};
 }
 
-/// Pole above a height; `top` is the ratio of the radii at the top and at the base.
+/// A pole with its base at `height`; `top` is the ratio of the radii at the top and at the base.
 Cloud pole(double height, double length = 3, double top = 0.7)
 {
   Cloud points = cylinder(6000, 0.05, length);

@@ -328,7 +328,7 @@ BOOST_AUTO_TEST_CASE(the_stems_of_a_bush_are_branches)
   BOOST_CHECK_CLOSE(report.total.length, stems * 1.5, 10.0);
 }
 
-// Bodies that are not recognized as different from trees.
+// The extraction does not distinguish these bodies from trees.
 BOOST_AUTO_TEST_CASE(bodies_give_some_tree_that_stays_within_them)
 {
   std::normal_distribution<double> normal;

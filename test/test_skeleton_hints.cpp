@@ -123,7 +123,7 @@ BOOST_AUTO_TEST_CASE(a_given_skeleton_is_measured_where_it_is)
 
 BOOST_AUTO_TEST_CASE(a_given_skeleton_measures_neither_ground_nor_noise)
 {
-  // The skeleton of a tree, given again for the tree with ground around it.
+  // The skeleton of a tree with ground around it, given as input again.
   const auto& scan = pcs_test::small_scan().scan;
   Cloud points = scan.points;
   const std::size_t number_of_tree = points.size();

@@ -386,7 +386,8 @@ BOOST_AUTO_TEST_CASE(rays_without_return_are_left_out)
 
 BOOST_AUTO_TEST_CASE(flight_lines_are_no_stations)
 {
-  // Alternating lines of stations: the halves of each branch would be registered.
+  // The line alternates from point to point. As stations, the halves of each branch would be
+  // registered.
   auto lines = [k = 0](bool) mutable { return k++ % 2 ? "7" : "8"; };
   write("lines.csv", fork_table("point_source_id", lines));
   int code = run("--quiet --input lines.csv --swc a.swc --report a.json");

@@ -95,7 +95,7 @@ inline std::vector<Branch> random_branches(unsigned seed, int children = 6, int 
   return result;
 }
 
-/// Rotates each branch about its base, in the rotated axes of its parent.
+/// Rotation of each branch about its base, in the rotated axes of its parent.
 using Turns = std::vector<Eigen::Matrix3d>;
 
 /// Assembles the graph; `tip[b]` is the vertex at the tip of branch b, `npos` if it was cut.

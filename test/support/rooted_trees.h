@@ -57,7 +57,7 @@ inline pcs::shape_space::Rooted_tree rooted(const std::vector<Stick>& sticks)
   return rooted(tree_of_sticks(sticks));
 }
 
-/// A shifted tree in another unit.
+/// The rotated and shifted tree in another unit.
 inline orl_test::Tree elsewhere(const orl_test::Tree& tree)
 {
   const Eigen::AngleAxisd turn(0.7, Eigen::Vector3d(0.48, 0.6, 0.64));

@@ -130,7 +130,7 @@ BOOST_AUTO_TEST_CASE(radii_are_smaller_by_what_voxels_add)
   correct_voxel_size(1, Voxel_size_options(), tree);
   BOOST_CHECK_CLOSE(tree.nodes[2].radius, 1.0, 1e-9);
   BOOST_CHECK_CLOSE(tree.nodes[3].radius, 10.0, 1e-9);
-  for (std::size_t k = 0; k < 2; ++k) // radii remain well above zero
+  for (std::size_t k = 0; k < 2; ++k) // limited to a factor of 0.6
     BOOST_CHECK_CLOSE(tree.nodes[k].radius, 0.6 * found.nodes[k].radius, 1e-9);
   for (const Branch_node& node : tree.nodes)
     BOOST_CHECK_CLOSE(node.major_radius * node.minor_radius, node.radius * node.radius, 1e-9);
