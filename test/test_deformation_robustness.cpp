@@ -613,7 +613,7 @@ BOOST_AUTO_TEST_CASE(cancelling_at_any_time_leaves_every_bit)
     Options options = with_samples(samples);
     options.callback = [&](double) { return ++total > 0; };
     deform(edit.points, edit.handles, options);
-    for (int stop = 1; stop < total; ++stop) { // the last call reports the end
+    for (int stop = 1; stop <= total; ++stop) { // the last call comes before points are written
       int calls = 0;
       options.callback = [&](double) { return ++calls < stop; };
       const auto result = deform(edit.points, edit.handles, options);
@@ -632,7 +632,7 @@ BOOST_AUTO_TEST_CASE(an_exception_of_the_callback_passes_through)
     Options options = with_samples(samples);
     options.callback = [&](double) { return ++total > 0; };
     deform(edit.points, edit.handles, options);
-    for (int stop = 1; stop < total; ++stop) {
+    for (int stop = 1; stop <= total; ++stop) {
       int calls = 0;
       options.callback = [&](double) -> bool {
         if (++calls == stop)

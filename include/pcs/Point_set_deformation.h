@@ -140,7 +140,8 @@ public:
         coincide with one of them, remain bitwise unchanged.
         \nptype range of integers (copied; use `std::cref` for large ones)
         \npdefault all points
-      \np{callback} called on this thread with a value that grows from 0 to 1; `false` stops
+      \np{callback} called on this thread with a value that grows from 0 to 1; `false` stops, and no
+        point is written. The call with 1 comes before the points are written.
         \nptype `std::function<bool(double)>`
         \npdefault none
     \npend
@@ -285,7 +286,8 @@ public:
     Solves for the current motions of the handles, from rest, and writes points and normals. Points
     that are not connected to a handle, points outside the region of interest, and points of handles
     that have not moved are not written. Nothing is written if the status of the report is
-    `cancelled` or `numerical_failure`.
+    `cancelled` or `numerical_failure`. If `put()` of a map throws, the exception passes through,
+    and some points are written already; `reset()` writes all of them at rest.
 
     \param start `Solver_start::cold`: the result depends on the rest shape and the motions only.
            `Solver_start::warm`, for the frames of a drag: one to three iterations that continue
@@ -308,7 +310,6 @@ public:
     if (status != Status::cancelled && status != Status::numerical_failure) {
       m_shape_motions = m_motion;
       write_points();
-      progress.finish();
     }
     return m_session->report();
   }

@@ -256,6 +256,8 @@ Elastic_result solve_samples(Session_state<Tag>& s,
   if (!is_warm ||
       !s.solver.solve_further(s.next_transforms, options, progress, highest_energy, result))
     result = solve_levels(s, options, progress);
+  if (!progress(1)) // the last call: afterwards, points are written
+    result.status = Status::cancelled;
   s.has_solution = result.status != Status::cancelled;
   s.last_energy = result.energy;
   return result;
@@ -496,7 +498,7 @@ Status Session<ConcurrencyTag>::solve(const Elastic_options& options,
   internal::start_report(s);
   const bool is_regular = constrain(options.stiffness);
   if (s.handles.empty())
-    return s.report.status = internal::solve_nothing(s);
+    return s.report.status = progress(1) ? internal::solve_nothing(s) : Status::cancelled;
   if (!is_regular)
     return s.report.status = Status::numerical_failure;
   const pcs::internal::Stage_timer timer(s.report.seconds.solving);
