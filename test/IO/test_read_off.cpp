@@ -26,7 +26,9 @@ BOOST_AUTO_TEST_CASE(points_are_read_and_faces_are_skipped)
     const Point_table table = read("a.off", text);
     BOOST_REQUIRE(table.number_of_points() == 3u);
     BOOST_TEST((table.points()[2] == Point_3(0, 1.5, 0)));
+    BOOST_TEST(table.schema().warnings.size() == 1u);
   }
+  BOOST_TEST(read("a.off", "OFF\n1 0 0\n1 2 3\n").schema().warnings.empty());
 }
 
 BOOST_AUTO_TEST_CASE(normals_and_colors_become_properties)

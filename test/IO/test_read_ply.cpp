@@ -120,6 +120,22 @@ BOOST_AUTO_TEST_CASE(faces_and_lists_may_stand_in_front_of_the_points)
                "3 0 1 0\n2 0.5 0.5 1 2 3 9\n0 4 5 6 8\n");
   BOOST_TEST((table.points()[1] == Point_3(4, 5, 6)));
   BOOST_TEST((table.property<std::uint8_t>("label") == std::vector<std::uint8_t>{9, 8}));
+  BOOST_TEST((table.schema().warnings ==
+              std::vector<std::string>{
+                  "the list 'w' of the vertices is left out",
+                  "the vertices of the mesh are read as points, its 1 faces are left out"}));
+}
+
+BOOST_AUTO_TEST_CASE(other_elements_are_named)
+{
+  const Point_table table =
+      read("a.ply",
+           header(one_vertex + "element camera 1\nproperty float f\nelement face 0\n"
+                               "property list uchar int i\n") +
+               "1 2 3\n35\n");
+  BOOST_TEST((table.schema().warnings ==
+              std::vector<std::string>{"the element 'camera' with 1 rows is left out"}));
+  BOOST_TEST(read("b.ply", header(one_vertex) + "1 2 3\n").schema().warnings.empty());
 }
 
 BOOST_AUTO_TEST_CASE(windows_line_ends_are_legal)

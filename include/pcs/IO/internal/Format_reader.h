@@ -59,6 +59,13 @@ protected:
     m_layout.push_back(name, type);
     m_schema.properties.push_back({name, type});
   }
+  //! adds a warning if the file is a mesh, because only its vertices are read
+  void warn_of_faces(std::uint64_t number_of_faces)
+  {
+    if (number_of_faces > 0)
+      m_schema.warnings.push_back("the vertices of the mesh are read as points, its " +
+                                  std::to_string(number_of_faces) + " faces are left out");
+  }
   //! resizes the block to at most `max_rows` rows
   void start_block(Row_block& block, std::size_t max_rows) const
   {

@@ -48,6 +48,7 @@ public:
     if (trim(line).empty())
       line = next_line();
     read_counts(line);
+    warn_of_faces(m_number_of_faces);
     for (const char* name : {"x", "y", "z"})
       add_property(name, Scalar_type::float64);
     if (keyword.find('N') != std::string::npos)

@@ -83,9 +83,25 @@ private:
       if (!m_schema.has(name))
         m_file.fail_at_line("the element 'vertex' has no scalar property '" + std::string(name) +
                             "'");
+    warn_of_omissions();
     // text is converted to the native byte order when it is parsed
     if (!is_ascii())
       m_layout.is_big_endian = m_header.storage == Ply_storage::big_endian;
+  }
+
+  //! warns of other elements and of lists, which are not read
+  void warn_of_omissions()
+  {
+    for (const Ply_property& p : vertex().properties)
+      if (p.count_type && vertex().count > 0)
+        m_schema.warnings.push_back("the list " + in_quotes(p.name) +
+                                    " of the vertices is left out");
+    for (const Ply_element& element : m_header.elements)
+      if (element.name == "face")
+        warn_of_faces(element.count);
+      else if (element.name != "vertex" && element.count > 0)
+        m_schema.warnings.push_back("the element " + in_quotes(element.name) + " with " +
+                                    std::to_string(element.count) + " rows is left out");
   }
 
   //! checks that no count exceeds the size of the file, before memory is allocated

@@ -48,9 +48,7 @@ public:
     if (number_of_columns == 6)
       for (const char* name : {"red", "green", "blue"})
         add_property(name, Scalar_type::float64);
-    if (number_of_faces > 0)
-      m_schema.warnings.push_back("the vertices of the mesh are read as points, its " +
-                                  std::to_string(number_of_faces) + " faces are left out");
+    warn_of_faces(number_of_faces);
     m_number_of_points = m_rows_left = number_of_vertices;
   }
 
