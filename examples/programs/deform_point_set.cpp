@@ -107,6 +107,7 @@ void run(const Options& options)
   } catch (const pcs::Invalid_input& e) {
     throw pcs::IO_error(options.input, e.what());
   }
+  warn_of_unreached_points(run);
   for (const std::string& warning : run.warnings)
     std::cerr << "deform_point_set: warning: " << options.input << ": " << warning << '\n';
   run.seconds_total = total.seconds();

@@ -59,6 +59,17 @@ struct Run_report
   double seconds_read = 0, seconds_write = 0, seconds_total = 0;
 };
 
+/// Adds a warning if parts of the input are not connected to any handle.
+inline void warn_of_unreached_points(Run_report& run)
+{
+  const pcs::Deformation_report& r = run.deformation;
+  if (r.number_of_unreached_points > 0)
+    run.warnings.push_back(std::to_string(r.number_of_unreached_points) + " points in " +
+                           std::to_string(r.number_of_unreached_components) +
+                           " part(s) are not connected to any handle and stay unchanged; more "
+                           "--neighbors connect parts that touch");
+}
+
 inline nlohmann::ordered_json to_json(const Run_report& run, const Options& options)
 {
   const pcs::Deformation_report& r = run.deformation;
@@ -114,9 +125,6 @@ inline void print_summary(std::ostream& out, const Run_report& run, const Option
   if (options.is_streamed)
     out << "            " << r.number_of_points << " of them kept, in " << run.number_of_chunks
         << " chunks\n";
-  if (r.number_of_unreached_points > 0)
-    out << "            " << r.number_of_unreached_points
-        << " of them not connected to any handle: unchanged\n";
   out << "samples     " << r.number_of_samples << '\n'
       << "iterations  " << r.number_of_iterations << '\n'
       << "status      " << r.status << '\n';
