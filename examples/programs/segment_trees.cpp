@@ -210,7 +210,8 @@ void run(const Options& options)
   if (report_file)
     report_file->commit(json);
   for (const std::string warning : json["warnings"])
-    std::cerr << "segment_trees: warning: " << options.input << ": " << warning << '\n';
+    if (!options.is_quiet)
+      std::cerr << "segment_trees: warning: " << options.input << ": " << warning << '\n';
   if (!options.is_quiet)
     std::cout << "trees " << report.trees.size() << ", unassigned points "
               << report.number_of_unassigned_points << " of " << report.number_of_points

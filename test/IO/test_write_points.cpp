@@ -343,6 +343,16 @@ BOOST_AUTO_TEST_CASE(ranges_of_points_are_written)
   BOOST_TEST(pcs::IO::read_points(path("a.ply")).number_of_points() == 0u);
 }
 
+BOOST_AUTO_TEST_CASE(names_that_a_header_cannot_hold_are_refused)
+{
+  for (const char* name : {"#a", "//a", "%a", "1", "a b", "a,b"}) {
+    Point_table table(std::vector<Point_3>{{1, 2, 3}});
+    table.add_property(name, std::vector<float>{4});
+    BOOST_CHECK_THROW(pcs::IO::write_points(path("a.txt"), table), IO_error);
+    BOOST_TEST(!std::filesystem::exists(path("a.txt")));
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()
 
 } // namespace test_write_points

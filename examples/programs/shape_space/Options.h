@@ -161,8 +161,8 @@ inline void declare_family(CLI::App& app, Options& o)
 inline void declare(CLI::App& app, Options& o)
 {
   app.footer(
-      R"(Give --tree and --skeleton once for each tree, at least twice. Points: PLY, LAS, OFF or
-text. Skeletons: SWC; CSV; tables of cylinders (.csv or .txt, of extract_tree_skeleton, TreeQSM,
+      R"(Give --tree and --skeleton once for each tree, at least twice. Points: PLY, LAS, OFF, PCD,
+PTX, OBJ or text. Skeletons: SWC; CSV; tables of cylinders (.csv or .txt, of extract_tree_skeleton, TreeQSM,
 SimpleForest, aRchi, rTwig); .txtskl with layers of branches. Without --skeleton, skeletons are
 extracted from the points; without --tree, only skeletons are made.
 

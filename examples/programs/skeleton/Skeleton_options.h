@@ -91,7 +91,7 @@ row number, 0: none), volume [litres], area [m^2], length [m], angle to the pare
 of the base [m], azimuth and zenith [degrees], diameter [m]. Tree table: one row with the names of
 TreeQSM's treedata, in the same units. The units assume a scan in metres.
 Points: the scan with `branch` (-1: none), `dense` (1: the section was measured there), `residual`,
-and `leaf` (1: removed as a leaf).
+`leaf` (1: removed as a leaf), and outward normals nx, ny, nz.
 
 Several scans with --folder DIR: each gives DIR/NAME.swc, the results of --also (DIR/NAME_mesh.ply,
 DIR/NAME_cylinders.csv, DIR/NAME_branches.csv, DIR/NAME_tree.csv, DIR/NAME_edges.ply,

@@ -50,7 +50,7 @@ private:
       double value = 0;
       const bool is_number = parse_number(field.name, value) != Parse_result::not_a_number;
       if (is_number || field.name.find_first_of(" \t\r\n,;\"#") != std::string::npos ||
-          field.name.substr(0, 2) == "//")
+          field.name[0] == '%' || field.name.substr(0, 2) == "//")
         m_file.fail("the header of a text file cannot hold the property name '" + field.name + "'");
       line += field.name + m_separator;
     }
