@@ -59,7 +59,7 @@ struct Surroundings
 
 namespace internal {
 
-// Trained on scans of 40 virtual trees with leaves, see doc/design/leaf_wood_separation.md.
+// Trained on scans of 40 virtual trees with leaves, see doc/design/leaf_wood_separation.
 // clang-format off
 constexpr Multilayer_perceptron<Surroundings::number_of_features, 12> likeness_of_surroundings = {
 {

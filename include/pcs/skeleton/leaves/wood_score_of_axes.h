@@ -66,7 +66,7 @@ namespace internal {
 
 constexpr double surest = 6; ///< larger log-odds are clipped
 
-// Trained on scans of 75 virtual trees with leaves, see doc/design/leaf_wood_separation.md.
+// Trained on scans of 75 virtual trees with leaves, see doc/design/leaf_wood_separation.
 // clang-format off
 constexpr Multilayer_perceptron<Axis_evidence::number_of_features, 12> likeness_by_axis = {
 {

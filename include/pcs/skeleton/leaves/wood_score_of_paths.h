@@ -138,7 +138,7 @@ namespace internal {
 constexpr double largest_likeness = 4;  ///< larger log-odds are clipped
 constexpr double likeness_of_thick = 3; ///< of points of thick wood
 
-// Trained on scans of 60 virtual trees with leaves, see doc/design/leaf_wood_separation.md.
+// Trained on scans of 60 virtual trees with leaves, see doc/design/leaf_wood_separation.
 // clang-format off
 constexpr Multilayer_perceptron<Wood_evidence::number_of_features, 12> likeness_by_evidence = {
 {
