@@ -47,22 +47,22 @@ namespace pcs {
   \ingroup PkgPcsShapeSpaceRef
   \brief A shape space of two trees or more, with the points of their scans.
 
-  The class implements chapter 4 of \cite aiteanu2022. Branches are matched by elastic curves, and
-  all trees are given a common topology. The coordinates of a tree are the orientations, radii and
-  lengths (ORL) of the edges of this topology. Distances are defined by (4.7), and geodesics
-  interpolate the coordinates. Points are matched by optimal transport along corresponding edges,
-  and move with their edges.
+  The class implements chapter 4 of \cite aiteanu2022. Branches are matched by an elastic energy of
+  their curves, and all trees are represented on a common topology. The coordinates of a tree are
+  the orientations, radii and lengths (ORL) of the edges of this topology. Distances are defined by
+  (4.7), and geodesics interpolate the coordinates. Points are matched by optimal transport along
+  corresponding edges, and move with their edges.
 
   `add()` copies a tree of any Boost.Graph type and its scan, `build()` finds the correspondences,
   and `geodesic()` computes trees of the space, which are written by `skeleton()` and `points()`.
   Functions for means, modes of variation, random trees, growth and comparison take a built space:
   `mean_tree()`, `find_modes()`, `sample_tree()`, `fit_growth_path()`, `compare_trees.h`.
 
-  Two trees are represented exactly. In a space of more than two trees, corresponding branches have
-  the same number of nodes, and axes are simplified with a tolerance of 1 % of the branch length.
-  The points of each branch are taken from one scan, so that points have the same order in all
-  trees. Optimal transport finds the corresponding point in every other scan of the branch. The
-  order in which the trees are added does not matter, except for rounding.
+  A space of two trees represents them exactly. In a space of more than two trees, corresponding
+  branches have the same number of nodes, and axes are simplified with a tolerance of 1 % of the
+  branch length. Each branch takes its points from one scan, so that the points have the same order
+  in all trees. Optimal transport finds the corresponding points in the other scans of the branch.
+  The order in which the trees are added does not matter, except for rounding.
 
   \tparam Kernel a kernel of CGAL; computations are in double precision about a local origin
   \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or
@@ -72,8 +72,8 @@ namespace pcs {
   a built space, and throw `pcs::Invalid_input` otherwise.
   \par Determinism
   Results are bitwise identical for every number of threads and for the sequential tag. The order of
-  vertices and edges in the graphs does not matter, except for exact copies of branches. `const`
-  functions may run concurrently.
+  vertices and edges in the graphs has an effect only if branches are exact copies of each other.
+  `const` functions may run concurrently.
 */
 template <class Kernel = CGAL::Simple_cartesian<double>,
           class ConcurrencyTag = CGAL::Parallel_if_available_tag>
@@ -83,7 +83,7 @@ public:
   using FT = typename Kernel::FT;
   using Point_3 = typename Kernel::Point_3;
   using Vector_3 = typename Kernel::Vector_3;
-  //! number of an added tree, from 0
+  //! index of an added tree, in the order of addition
   using Handle = std::size_t;
 
   Orl_shape_space() = default;
@@ -175,12 +175,12 @@ public:
         \nptype `bool`
         \npdefault `false`: rotations are multiplied by the length of the edge, so that distances
             are lengths
-      \np{number_of_rounds} for more than two trees: number of rounds, in each of which all trees
-          are matched to the reference tree, which has median coordinates
+      \np{number_of_rounds} for more than two trees: number of matching rounds. Each one matches all
+          trees to a reference tree with median coordinates
         \nptype an integer, `>= 1`
         \npdefault `3`
-      \np{points_of} for more than two trees: tree whose scan provides the points of all branches
-          that this tree has
+      \np{points_of} for more than two trees: a tree. The points of all branches that it has are
+          taken from its scan
         \nptype `Handle`
         \npdefault none: for each branch, the tree with the most points on it
       \np{callback} progress in [0, 1]; `false` cancels
@@ -189,9 +189,9 @@ public:
     \return a report; with `Status::cancelled` the space is unchanged
     \throws pcs::Invalid_input unless at least two trees were added
     \par Complexity
-    The time for branches is about proportional to the number of pairs of branches on the same
-    level; for more than two trees, this holds per tree and round. The time for points is
-    \f$O(n \log n)\f$ in practice.
+    For two trees, the time for matching branches is about proportional to the number of pairs of
+    branches on the same level. For more trees, each tree takes this time in each round. The time
+    for points is \f$O(n \log n)\f$ in practice.
   */
   template <class NamedParameters = parameters::Default_named_parameters>
   Orl_report build(const NamedParameters& np = NamedParameters())
@@ -362,18 +362,18 @@ public:
     \brief returns the tree at `lambda` on the geodesic from `a` (0) to `b` (1), or beyond its ends.
 
     Beyond the ends, lengths and radii remain positive. Edges rotate by at most
-    `max_extrapolation_angle`, both relative to their parent edge and in space. Branches that would
-    extend below the base of the tree (against the direction of growth) are extrapolated less,
-    unless they already do so at one of the ends.
+    `max_extrapolation_angle`, both relative to their parent edge and in space. The extrapolation of
+    a branch is reduced if the branch would extend below the base of the tree (against the direction
+    of growth). This does not apply to branches that extend below the base at one of the ends.
 
     \npbegin
       \np{max_extrapolation_angle} largest rotation of an edge beyond an end of the path [rad]
         \nptype `double`, `>= 0`; there is no limit if it is pi or more
         \npdefault `pi / 4`
-      \np{do_limit_radii} whether no branch is thicker than its parent at its base
+      \np{do_limit_radii} whether the base radius of a branch is limited to the radius of its parent
         \nptype `bool`
         \npdefault `false`, since real trees violate this rule
-      \np{branch_emergence} how branches emerge that only one of the trees has
+      \np{branch_emergence} how the branches that only one of the trees has emerge
         \nptype `Branch_emergence`
         \npdefault `simultaneous`: coordinates are linear; `sequential` suits trees that grow at
             their tips
@@ -390,7 +390,7 @@ public:
     return result;
   }
 
-  //! writes the tree of the function above to `result`, whose memory is reused
+  //! computes the same tree, and reuses the memory of `result`
   template <class NamedParameters = parameters::Default_named_parameters>
   void geodesic(Handle a,
                 Handle b,
@@ -408,7 +408,7 @@ public:
       state.scan_weights[a] += 1 - weight;
       state.scan_weights[b] += weight;
     }
-    // from the lower to the higher handle, so that the path is identical in both directions
+    // always from the lower to the higher handle, so that both directions give identical trees
     const double t = a <= b ? lambda : 1 - lambda;
     interpolate(family().x[std::min(a, b)], family().x[std::max(a, b)], t, np, state);
     state.lambda = a != b ? t : a == 1 ? 1 : 0;
@@ -455,9 +455,9 @@ public:
   /*!
     \brief writes the points of a tree of the space.
 
-    Points are sorted by edge; points of branches that the tree lacks are left out. In a space of
-    two trees, the points at `lambda` 0 and 1 are the points of the scans, each repeated once per
-    correspondence. If both trees have a branch but only one scan has points on it, these points
+    Points are sorted by edge. Points of branches that the tree lacks are left out. In a space of
+    two trees, the points at `lambda` 0 and 1 are the points of the scans; each of them appears once
+    per correspondence. If both trees have a branch but only one scan has points on it, these points
     are present along the whole path.
 
     \param result a random access range; a container with `resize()` is resized to
@@ -470,7 +470,7 @@ public:
       \np{normal_map} where a normal is written, if all scans have normals
         \nptype model of `WritablePropertyMap`, value: `Kernel::Vector_3`
         \npdefault none
-      \np{point_path} how points of two trees are interpolated; not permitted for more trees
+      \np{point_path} how points are interpolated; only in a space of two trees
         \nptype `Point_path`
         \npdefault `cylindrical`; `virtual_edges` is the published one
     \npend
@@ -561,11 +561,11 @@ public:
   }
 
   /*!
-    \brief calls `f(i, h, k, w)` for every point of a tree and each of its source points, in a space
-        of more than two trees.
+    \brief calls `f(i, h, k, w)` for every point of a tree and each of its source points. The space
+        must have more than two trees.
 
-    Source `k` is the index of a point of the scan of tree `h`, and `w` in (0, 1] is its weight;
-    the weights of a point `i` add up to 1. Attributes are interpolated by
+    A source is point `k` of the scan of tree `h`. Its weight `w` is in (0, 1], and the weights of
+    all sources of point `i` add up to 1. Attributes are interpolated by
     `result[i] += w * scan[h][k]`. `f` may be called concurrently, but not for the same `i`.
   */
   template <class F>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Reads a tree skeleton from a file that lists branches layer by layer.
+// Reads a tree skeleton from a file that lists the branches by order.
 
 #ifndef PCS_IO_READ_TXTSKL_H
 #define PCS_IO_READ_TXTSKL_H
@@ -92,7 +92,8 @@ private:
            static_cast<std::size_t>(point) < m_above.nodes[static_cast<std::size_t>(father)].size();
   }
 
-  /// Adds a node behind `previous`; `npos`: the root. Returns its index.
+  /// Adds a child of node `previous`, or the root if `previous` is `npos`. Returns the index of the
+  /// new node.
   std::size_t read_node(std::size_t branch, std::size_t previous)
   {
     using FT = typename Kernel::FT;
@@ -124,11 +125,12 @@ private:
   \ingroup PkgPcsIORef
   \brief reads a tree skeleton from a `.txtskl` file.
 
-  The first line is the number of layers. A layer is a line `Layer <index>`, the number of its
-  branches, and for each of these a line `<father branch> <father point>` (counted from 0 in the
-  layer above; `-1 -1` for the trunk), the number of points, and one line `x y z radius` per point.
-  Every branch has a separate first node; the edge that leads to it has the length 0 if the file
-  repeats the father point.
+  The first line is the number of layers. A layer contains the branches of one order. It begins with
+  a line `Layer <index>` and the number of its branches. Each branch has a line
+  `<father branch> <father point>`, the number of its points, and one line `x y z radius` per point.
+  Father branch and father point are indices in the previous layer, counted from 0; they are `-1 -1`
+  for the trunk. Every branch has a separate first node. The edge that leads to it has the length 0
+  if the file repeats the father point.
 
   \tparam Kernel a kernel of CGAL
   \param path name of the file

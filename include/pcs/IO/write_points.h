@@ -24,10 +24,11 @@ namespace IO {
   \ingroup PkgPcsIORef
   \brief writes a table with all its properties.
 
-  The rules are those of `Point_writer`. The file is complete or absent, and may be the one from
-  which the table was read. LAS: points from a LAS file keep scale and offset if their coordinates
-  can be represented, otherwise the offset is updated. Other points get the finest power of ten as
-  scale that gives at most 5e8 steps along the longest side of their bounding box.
+  The conditions are those of `Point_writer`. If writing fails, no incomplete file is left. The
+  table may be written to the file from which it was read. In LAS files, points from a LAS file keep
+  their scale and offset. If their coordinates cannot be represented with this offset, it is
+  replaced. For other points, the scale is the smallest power of ten for which the longest side of
+  the bounding box has at most 5e8 steps.
 
   \param path name of the file; its extension determines the format unless `options.format` is set
   \param table the points

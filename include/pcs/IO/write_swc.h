@@ -81,8 +81,8 @@ void write_swc(const std::string& path,
   \tparam PointMap a readable property map from vertices to points with `x()`, `y()`, `z()`
   \tparam RadiusMap a readable property map from vertices to numbers
   \throws pcs::IO_error when the file cannot be written
-  \throws pcs::Invalid_input when the graph is not a tree below `root`, a number is not finite, or a
-          radius is negative
+  \throws pcs::Invalid_input when the graph is not a tree with the root `root`, a number is not
+          finite, or a radius is negative
   \par Complexity
   Linear in the number of nodes.
 */
@@ -100,8 +100,8 @@ void write_swc(const std::string& path,
   \ingroup PkgPcsIORef
   \brief writes a tree skeleton to an SWC file.
 
-  The format is the same, except that the type of a node is 5 plus the order of its branch, or 0 if
-  it has no branch. SWC leaves the types from 5 to its users.
+  The format is the same, except that the type of a node is 5 plus the order of its branch. Types
+  from 5 on are user-defined in SWC. The type is 0 for nodes without a branch.
 */
 template <class Kernel>
 void write_swc(const std::string& path, const Tree_skeleton<Kernel>& tree)

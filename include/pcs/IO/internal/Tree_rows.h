@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Conversion between the rows of a file, each a node with the id of its parent, and a tree.
+// Converts between a tree and the rows of a file. A row has a node and the id of its parent.
 
 #ifndef PCS_IO_INTERNAL_TREE_ROWS_H
 #define PCS_IO_INTERNAL_TREE_ROWS_H
@@ -30,17 +30,17 @@ namespace IO {
 
 /*!
   \ingroup PkgPcsIORef
-  \brief The trees of a skeleton file, of which one is read.
+  \brief Counts of the trees of a skeleton file, of which one is read.
 */
 struct Tree_selection
 {
   std::size_t number_of_trees = 0;         //!< of the file [count]
-  std::size_t number_of_nodes = 0;         //!< or cylinders, of all trees of the file [count]
+  std::size_t number_of_nodes = 0;         //!< nodes or cylinders of all trees [count]
   std::size_t number_of_omitted_nodes = 0; //!< nodes or cylinders of the other trees [count]
 };
 
 //! \ingroup PkgPcsIORef
-//! returns a sentence if trees of the file were left out
+//! returns a warning if trees of the file were left out
 inline std::vector<std::string> warnings(const Tree_selection& selection)
 {
   if (selection.number_of_trees < 2)
@@ -94,7 +94,8 @@ inline double required_length(const Input_file& file, std::string_view word, con
 enum class Roots { one, several };
 
 /*
-  The parents of all rows as indices, `npos` for roots. Every row descends from a root.
+  The indices of the parents of all rows; `npos` for roots. The constructor throws unless every row
+  descends from a root.
 */
 class Tree_links
 {
@@ -141,7 +142,7 @@ public:
   const std::vector<std::size_t>& parents() const { return m_parents; }
 
   /*
-    Returns the root of every row. Linear, as every parent is followed once.
+    Returns the root of every row. Linear in the number of rows.
   */
   std::vector<std::size_t> root_of_rows() const
   {
@@ -164,7 +165,7 @@ private:
     throw IO_error(m_path, "line " + std::to_string(row.line) + ": " + what);
   }
 
-  //! follows the parents of every node up to a node that was checked before
+  //! throws if parents form a cycle; follows them from each node to a node that was checked before
   void refuse_cycles(const std::vector<Tree_row>& rows) const
   {
     std::vector<std::size_t> walk_of(rows.size(), npos);
@@ -184,7 +185,7 @@ private:
 
 /*
   Returns the rows of one tree, in the order of the file. Trees are numbered from 1 by decreasing
-  number of rows, trees of the same size in the order of their roots.
+  number of rows. Trees of the same size are numbered in the order of their roots.
 */
 inline std::vector<std::size_t> rows_of_tree(const std::string& path,
                                              const Tree_links& links,
@@ -213,8 +214,8 @@ inline std::vector<std::size_t> rows_of_tree(const std::string& path,
 }
 
 /*
-  The nodes of a graph in the order of the file: in the order of their numbers if parents precede
-  their children, otherwise in the order of a traversal from the root.
+  Returns the nodes of a graph in the order in which they are written. This is the order of their
+  numbers if parents then precede their children, otherwise that of a breadth-first traversal.
 */
 template <class Graph>
 std::vector<std::size_t> writing_order(const Graph& graph, std::size_t root, const char* caller)

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The format of a file by its first bytes or its extension.
+// Detects the format of a file from its first bytes or its extension.
 
 #ifndef PCS_IO_INTERNAL_FILE_FORMAT_H
 #define PCS_IO_INTERNAL_FILE_FORMAT_H
@@ -33,7 +33,7 @@ inline std::string extension_of(const std::string& path)
   return text;
 }
 
-//! returns how to convert files that pcs does not read, or an empty string
+//! returns an instruction for converting unsupported files with this extension; empty: none
 inline std::string conversion_of(const std::string& extension)
 {
   struct Conversion
@@ -63,7 +63,7 @@ inline std::string conversion_of(const std::string& extension)
   return {};
 }
 
-//! returns the format of a file extension; throws if there is none
+//! returns the format that the extension of a file indicates; throws if it is unknown
 inline File_format format_by_extension(const std::string& path)
 {
   const std::string extension = extension_of(path);
@@ -96,7 +96,7 @@ inline File_format format_by_extension(const std::string& path)
                      "or obj");
 }
 
-//! opens the file and returns the format by its first bytes, otherwise by the extension
+//! returns the format that the first bytes of a file indicate, otherwise that of its extension
 inline File_format format_by_content(const std::string& path)
 {
   Input_file file(path);

@@ -85,13 +85,13 @@ Parse_result parse_number(std::string_view word, T& value)
   if (wide_result != Parse_result::ok)
     return wide_result;
   if constexpr (std::is_same_v<T, float>) {
-    // values too small for a float are rounded to zero, too large values are errors
+    // values too small for a float are rounded to zero; too large values are refused
     if (std::abs(wide) > 1)
       return Parse_result::out_of_range;
     value = static_cast<float>(wide);
     return Parse_result::ok;
   } else {
-    // both bounds are exact in double, also for 64 bit integers
+    // double represents both bounds exactly, even those of 64-bit integers
     const double end = std::ldexp(1.0, std::numeric_limits<T>::digits);
     if (!(wide >= static_cast<double>(std::numeric_limits<T>::min()) && wide < end))
       return Parse_result::out_of_range;
@@ -113,7 +113,7 @@ inline Parse_result parse_to_bytes(std::string_view word, Scalar_type type, unsi
   });
 }
 
-//! appends the shortest text from which the same value is read
+//! appends a number with the fewest digits that preserve its value
 template <class T>
 void append_number(std::string& text, T value)
 {
@@ -123,7 +123,7 @@ void append_number(std::string& text, T value)
   text.append(digits.data(), result.ptr);
 }
 
-//! quotes a word for a message, shortened to less than a line of a terminal
+//! quotes a word for a message, shortened to 40 characters
 inline std::string in_quotes(std::string_view word)
 {
   std::string text = "'";

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Slant and azimuth chart: edge directions as numbers for averages and random draws.
+// Chart of edge directions by slant and azimuth, for averages and random trees.
 
 #ifndef PCS_SHAPE_SPACE_STATISTICS_DIRECTION_CHART_H
 #define PCS_SHAPE_SPACE_STATISTICS_DIRECTION_CHART_H
@@ -19,18 +19,18 @@ namespace pcs {
 namespace shape_space {
 
 /*!
-  Represents the direction of each edge by two numbers, which are 0 in the mean of the trees.
-  Usually they are the slant, which is the angle to the direction of growth, and the azimuth about
-  this direction relative to the parent. So a branch that rotates about the trunk moves its
-  children. A branch that is lowered need not move them, as branches grow upwards by themselves. The
-  fraction of the slant of their parent that branches follow is estimated from the trees for each
-  order. Upright edges have no azimuth; their numbers are inclinations to two sides. In orders whose
-  branches clearly move rigidly with their parents, the numbers are inclinations relative to the
-  parents.
+  Represents the direction of each edge by two coordinates, which are 0 in the mean of the trees.
+  Usually they are slant and azimuth. The slant is the angle to the direction of growth. The azimuth
+  is the angle about the direction of growth, relative to the parent. If a branch rotates about the
+  trunk, its children therefore rotate with it. If the slant of a branch changes, the slant of its
+  children changes by a fraction of this angle, because branches grow upwards by themselves. This
+  fraction is estimated from the trees for each branch order. Upright edges have no azimuth; their
+  coordinates are inclinations along two horizontal axes. In orders whose branches clearly rotate
+  rigidly with their parents, the coordinates are inclinations relative to the parents.
 
-  Rotations relative to the parent alone would accumulate: trees with rotations of branches as large
-  as in the inputs would not grow upwards. Frames are not twisted about the direction of growth, so
-  branches that hang down continue to do so.
+  With rotations relative to the parent only, deviations would accumulate along the branches: random
+  trees with rotations as large as in the inputs would not grow upwards. Frames are rotated by slant
+  and azimuth only, without twist, so branches that hang down continue to do so.
 */
 class Direction_chart
 {
@@ -39,8 +39,8 @@ public:
 
   Direction_chart() = default;
 
-  /// `middle[e]`: frames of the mean tree; `frame[t][e]`: frames of the trees; `has[t][b]`: whether
-  /// tree `t` has branch `b`; `weight[e]`: weights of the edges.
+  /// `middle[e]`: frame of edge `e` of the mean tree; `frame[t][e]`: the same for tree `t`;
+  /// `has[t][b]`: whether tree `t` has branch `b`; `weight[e]`: weight of the edge in averages.
   Direction_chart(const Orl_layout& layout,
                   const Vec3& up,
                   const std::vector<Quaternion>& middle,
@@ -75,7 +75,8 @@ public:
     place_middle();
   }
 
-  /// Returns the numbers of tree `t` of the constructor; 0 for branches that the tree lacks.
+  /// Returns the coordinates of the edges of tree `t`, one of the trees of the constructor. They
+  /// are 0 for branches that the tree lacks.
   std::vector<Pair>
   log(const std::vector<Vec3>& direction, const std::vector<char>& has, std::size_t t) const
   {
@@ -101,7 +102,8 @@ public:
     return z;
   }
 
-  /// Returns frames of the edges with their directions as z axes.
+  /// Returns the frames of the edges from their coordinates. The z axis of a frame is the direction
+  /// of the edge.
   std::vector<Quaternion> exp(const std::vector<Pair>& z) const
   {
     std::vector<Polar> polar(z.size());
@@ -119,8 +121,8 @@ public:
     return frame;
   }
 
-  /// Returns the factor from the second number of an edge to the angle by which the edge rotates.
-  /// The factor of the first number is 1. [-]
+  /// Returns the angle by which an edge rotates per unit of its second coordinate. For the first
+  /// coordinate, this factor is 1. [-]
   double reach(std::size_t b, std::size_t e) const
   {
     return m_is_upright[e] || m_is_rigid[m_order[b]] ? 1 : std::sin(m_middle[e][0]);
@@ -152,7 +154,8 @@ private:
            std::sin(p.slant) * (std::cos(p.azimuth) * m_side + std::sin(p.azimuth) * m_other);
   }
 
-  /// Returns the frame of an edge that has the same rotation to its parent as in the mean tree.
+  /// Returns the frame of an edge whose rotation relative to its parent edge is that of the mean
+  /// tree.
   Quaternion start_of(const std::vector<Quaternion>& frame, std::size_t e) const
   {
     const std::size_t p = m_layout.parent_edge[e];
@@ -170,7 +173,8 @@ private:
     return across > 0 ? Pair(d.head<2>() * (std::atan2(across, d.z()) / across))
                       : Pair(d.z() < 0 ? pi : 0, 0);
   }
-  /// Returns the frame in the mean tree, rotated about the direction of growth and up or down.
+  /// Returns the frame of the mean tree, rotated about the direction of growth to the azimuth of
+  /// `p`, and upwards or downwards to its slant.
   Quaternion free_frame(std::size_t e, const Polar& p) const
   {
     const Polar& middle = m_polar[e];
@@ -220,7 +224,8 @@ private:
     }
   }
 
-  /// Finds the upright edges, and for each branch the edge to which its azimuths refer.
+  /// Finds the upright edges, and for each branch its anchor, the edge to which its azimuths are
+  /// relative.
   void find_kinds(const std::vector<std::vector<Polar>>& polar,
                   const std::vector<std::vector<char>>& has)
   {
@@ -243,7 +248,8 @@ private:
     }
   }
 
-  /// Finds the yaw of each tree for which the branches on the trunks agree, and subtracts it.
+  /// Estimates the yaw of each tree, for which the azimuths of the branches on the trunks agree
+  /// best. Subtracts it from the azimuths.
   void align_azimuths(std::vector<std::vector<Polar>>& polar,
                       const std::vector<std::vector<char>>& has,
                       const std::vector<double>& weight)
@@ -298,7 +304,8 @@ private:
     });
   }
 
-  /// Computes frames of the mean tree with the same twist as the frames of the constructor.
+  /// Computes the frames of the mean tree. Their twist is that of the mean frames of the
+  /// constructor.
   void place_middle()
   {
     m_frame.resize(m_middle.size());
@@ -317,7 +324,7 @@ private:
     });
   }
 
-  /// Centers the inclinations of a rigid order.
+  /// Makes the mean inclinations of a rigid order 0.
   void center_order(const std::vector<std::vector<Vec3>>& direction,
                     const std::vector<std::vector<char>>& has,
                     std::size_t order)
@@ -341,8 +348,8 @@ private:
     }
   }
 
-  /// Estimates, for each order, the fraction of the slant of their parents that branches follow, by
-  /// least squares over their edges.
+  /// Estimates, for each order, by which fraction of a slant change of the parent the slant of its
+  /// branches changes. Least squares over all edges of the order.
   void find_following(const std::vector<std::vector<Polar>>& polar,
                       const std::vector<std::vector<char>>& has,
                       const std::vector<double>& weight)
@@ -364,9 +371,9 @@ private:
                                           : 0);
   }
 
-  /// Finds the orders whose directions are predicted much better by rigid rotation with their
-  /// parents than by slant and azimuth of the parents. The branches on the trunk, which is upright,
-  /// are excluded.
+  /// Finds the orders whose branches rotate rigidly with their parents: this predicts their
+  /// directions much better than slant and azimuth do. Branches on the trunk, which is upright, are
+  /// excluded.
   void find_rigid_orders(const std::vector<std::vector<Vec3>>& direction,
                          const std::vector<std::vector<char>>& has,
                          const std::vector<double>& weight)

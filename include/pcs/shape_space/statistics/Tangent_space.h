@@ -18,10 +18,12 @@ namespace pcs {
 namespace shape_space {
 
 /*!
-  The tangent space at a tree. A vector has three coordinates per edge for its rotation, one for its
-  length and one for its radius, then per branch the radius at the base and the attachment, each
-  multiplied by its weight in the metric. Its norm is the distance `Orl_metric::square` from the
-  base, except for the position of the root, which is not part of the shape.
+  The tangent space of the shape space at a tree, the base point. A tangent vector has five
+  coordinates per edge: three for its rotation, one for its length and one for its radius. They are
+  followed by two coordinates per branch: the radius at its base and its attachment. Each coordinate
+  is the difference from the base point, multiplied by its weight in the metric. The norm of a
+  tangent vector is the distance `Orl_metric::square` from the base point. It does not include the
+  position of the root, which is not part of the shape.
 */
 class Tangent_space
 {
@@ -58,9 +60,11 @@ public:
   }
 
   /*!
-    Returns the tree at the end of a tangent vector. Rotations are limited to pi, attachments to the
-    parent, and lengths to values of at least 0; values within rounding of 0 become 0. Lengths of
-    the trunk, and radii of edges that have length, keep a fraction of their values at the base.
+    Returns the tree whose tangent vector is `z` (exponential map). Rotations are limited to pi,
+    attachments to the extent of the parent, and lengths to at least 0. Lengths within rounding of 0
+    become 0. On the trunk they become a hundredth of the length of the base point instead. Negative
+    radii become a hundredth of the radius of the base point, or 0 if the edge or branch has no
+    length.
   */
   Orl_coordinates exp(const Eigen::VectorXd& z) const
   {
@@ -102,12 +106,12 @@ public:
   }
 
 private:
-  static constexpr double rounding = 1e-9, least_fraction = 0.01; // of the value at the base
+  static constexpr double rounding = 1e-9, least_fraction = 0.01; // of the value of the base point
 
   static double radius_at(double base, double step, bool is_there)
   {
     const double radius = base + step;
-    if (radius >= -rounding * base) // 0 if it is 0 in an input
+    if (radius >= -rounding * base) // may be 0, as in an input
       return std::max(0.0, radius);
     return is_there ? least_fraction * base : 0;
   }

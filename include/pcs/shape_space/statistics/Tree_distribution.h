@@ -22,38 +22,43 @@ namespace pcs {
 namespace shape_space {
 
 /*!
-  A Gaussian distribution of trees, and for each branch a probability to exist if its parent exists.
-  Lengths and radii are represented by logarithms, so that they stay positive, and directions by a
-  `Direction_chart`, so that branches keep their slant.
+  A Gaussian distribution of trees. Each branch has a probability to exist if its parent exists.
+  Lengths and radii are represented by logarithms, so that they remain positive. Directions are
+  represented by a `Direction_chart`, so that the slants of random branches vary as in the inputs.
 
   The coordinates of an edge are two angles of direction [rad] and the logarithms of length and
   radius relative to the mean tree [-]. The coordinates of a branch are the logarithm of the radius
-  at its base [-] and the difference of its attachment [edges of the parent]. Tree `t` of `n` has
-  the deviations `D_tb` of branch `b`; they are zero if the tree lacks the branch. `m_b` trees have
-  branch `b`. With independent normal numbers `g`, `h`, `k` of unit variance, a random tree deviates
-  by
+  at its base [-] and the difference of its attachment [edges of the parent], also relative to the
+  mean tree. `D_tb` is the vector of the coordinates of branch `b` and its edges in tree `t` of `n`;
+  it is zero if the tree lacks the branch. `m_b` is the number of trees with branch `b`. With
+  independent normal random numbers `g`, `h`, `k` of unit variance, the coordinates of branch `b` of
+  a random tree are
 
       z_b = sqrt((1 - a) / (m_b - 1)) sum_t g_t D_tb
           + sqrt(a / (m_b + 1)) (sum_t h_tb D_tb + sqrt(2) sum_{i=1..6} k_ib P_i)
 
-  where `P_i` changes the whole branch by one standard deviation of branches of its order, in one of
-  the six kinds of coordinates (`m_b - 1` is at least 1 in the first denominator). So with
+  There are six kinds of coordinates: four of edges and two of branches. `P_i` changes kind `i` of a
+  whole branch by the standard deviation of this kind over the branches of the same order. In the
+  first denominator, `m_b - 1` is replaced by 1 if it is 0. With
   `S_b = sum_t D_tb D_tb^T / (m_b - 1)` and `P = sum_i P_i P_i^T`, the covariances are
 
       (1 - a) S_b + a ((m_b - 1) S_b + 2 P) / (m_b + 1)               within a branch,
       (1 - a) sum_t D_tb D_tc^T / sqrt((m_b - 1) (m_c - 1))           between two branches,
 
-  apart from the truncation of normal numbers and the factor `spread` of `z` (`draw()`).
+  These covariances do not include the truncation of the normal numbers and the factor `spread` of
+  `z`, which `draw()` applies.
 
-  The shrinkage `a` [-] minimises the expected squared error of the covariances between branches
-  (O. Ledoit, M. Wolf 2003; J. Schaefer, K. Strimmer 2005; their target has blocks here): over all
-  pairs `i`, `j` of coordinates of different branches, in units of length [L],
+  The shrinkage `a` [-] minimises the expected squared error of the covariances between branches (O.
+  Ledoit, M. Wolf 2003; J. Schaefer, K. Strimmer 2005). The target of the shrinkage is
+  block-diagonal, with one block per branch. The sums are over all pairs `i`, `j` of coordinates of
+  different branches, converted to lengths [L]:
 
       a = sum V_ij / sum s_ij^2,   s_ij = sum_t z_ti z_tj / n,                         in [0, 1]
       V_ij = (sum_t (z_ti z_tj)^2 / n - s_ij^2) / (n - 1),
 
-  or 0.5 for fewer than three trees. Branch `b` with the parent `p` exists with the probability
-  `m_b / m_p` if `p` exists. O(n^2 coordinates), and O(n coordinates) for each tree that is drawn.
+  For fewer than three trees, `a` is 0.5. Branch `b` with the parent `p` exists with the probability
+  `m_b / m_p` if `p` exists. Time: O(n^2) times the number of coordinates. Each random tree takes
+  O(n) times the number of coordinates.
 */
 class Tree_distribution
 {
@@ -86,8 +91,8 @@ public:
       estimate_shrinkage();
   }
 
-  /// Draws the tree number `index` of a sequence; it depends on nothing but the seed, the index and
-  /// the options.
+  /// Draws tree `index` of a sequence of random trees. The result depends only on the seed, the
+  /// index and the options.
   Orl_coordinates
   draw(std::uint64_t seed, std::uint64_t index, const Tree_sampling_options& o) const
   {
@@ -133,12 +138,12 @@ public:
     return x;
   }
 
-  /// Returns the weight of the covariance in which branches vary independently. [-]
+  /// Returns the shrinkage: the weight of the covariance without correlations of branches. [-]
   double shrinkage() const { return m_shrinkage; }
 
 private:
-  /// Returns the first row of a branch: each branch has four coordinates per edge, then two of its
-  /// own.
+  /// Returns the index of the first coordinate of a branch. The four coordinates of each of its
+  /// edges are followed by its own two.
   Eigen::Index first(std::size_t b) const
   {
     return static_cast<Eigen::Index>(4 * m_layout.branches[b].first_edge + 2 * b);
@@ -148,15 +153,16 @@ private:
     return static_cast<Eigen::Index>(4 * m_layout.branches[b].number_of_edges + 2);
   }
 
-  /// Draws which branches exist, order by order. If the number of branches of an order is out of
-  /// the range of the inputs, the branches with log-odds nearest to 0 change.
+  /// Draws which branches exist, order by order. If the number of branches of an order is outside
+  /// its range in the inputs, it is moved to this range. Branches with log-odds nearest to 0 are
+  /// then added or removed.
   template <class Uniform>
   std::vector<char> draw_presence(const Tree_sampling_options& o, const Uniform& uniform) const
   {
     const std::size_t m = m_layout.branches.size();
     std::vector<char> result(m, 1);
     std::vector<double> odds(m,
-                             0); // log-odds of the probability minus log-odds of the drawn number
+                             0); // log-odds of the probability minus those of a uniform number
     for (std::size_t b = 0; b < m; ++b)
       if (const std::size_t parent = m_layout.branches[b].parent; parent != none) {
         const double chance = m_count[b] / m_count[parent], drawn = uniform();
@@ -197,10 +203,10 @@ private:
       z += normal() / divisor * m_deviations.col(t);
     for (std::size_t b = 0; b < m_layout.branches.size(); ++b) {
       const double members = m_count[b] - 1;
-      // all branches together: unknown values are 0 and reduce the variance
+      // correlated part; trees without the branch contribute 0, which the factor compensates
       z.segment(first(b), size(b)) *=
           std::sqrt((1 - shrinkage)) * divisor / std::sqrt(std::max(1.0, members));
-      // the branch alone
+      // independent part
       const double own = std::sqrt(shrinkage / (members + prior));
       for (std::size_t t = 0; t < n; ++t)
         if (m_has[t][b] && members > 0)
@@ -217,7 +223,8 @@ private:
     return z;
   }
 
-  /// Returns the logarithm of a ratio, limited below. Unknown radii are 0 and stay 0. [-]
+  /// Returns the logarithm of a ratio, which is limited to at least 1e-6. If `middle` is 0 (unknown
+  /// radius), returns 0. [-]
   static double log_ratio(double value, double middle)
   {
     constexpr double least = 1e-6;
@@ -241,7 +248,7 @@ private:
     }
   }
 
-  /// Finds, for each branch, the interval of the attachments of its children in the inputs.
+  /// Finds the lowest and highest attachment of the children of each branch in the inputs.
   void find_attachments(const std::vector<const Orl_coordinates*>& trees)
   {
     m_lowest_attachment.assign(m_order.size(), std::numeric_limits<double>::infinity());
@@ -256,8 +263,8 @@ private:
         }
   }
 
-  /// Computes the mean of the trees that have each branch: geometric means, and Frechet means of
-  /// orientations.
+  /// Computes the mean of each branch over the trees that have it: geometric means of lengths and
+  /// radii, the arithmetic mean of attachments, and Frechet means of orientations.
   template <class ConcurrencyTag>
   void find_middle(const std::vector<const Orl_coordinates*>& trees)
   {
@@ -298,8 +305,8 @@ private:
         8);
   }
 
-  /// Computes the deviations of tree t from the mean tree in column t; 0 for branches that it
-  /// lacks.
+  /// Computes the matrix of deviations from the mean tree. Column `t` belongs to tree `t`; it is 0
+  /// for branches that the tree lacks.
   void find_deviations(const std::vector<const Orl_coordinates*>& trees, const Vec3& up)
   {
     const std::size_t n = trees.size();
@@ -338,7 +345,7 @@ private:
     }
   }
 
-  /// Estimates the standard deviations of whole branches by order, from means over their edges.
+  /// Estimates for each order the standard deviations of the means of branches over their edges.
   void pool_variances()
   {
     const std::size_t orders = 1 + *std::max_element(m_order.begin(), m_order.end());
@@ -359,19 +366,19 @@ private:
       m_pool[k] = (m_pool[k] / std::max(1.0, weight[k])).cwiseSqrt();
   }
 
-  /// Estimates the shrinkage that minimises the expected error of the covariance, from products of
-  /// the data only.
+  /// Estimates the shrinkage that minimises the expected error of the covariance. Uses only `n x n`
+  /// matrices of products of trees, not the covariance itself.
   void estimate_shrinkage()
   {
-    // units: a rotation is multiplied by the length that it moves, a logarithm by the length or
-    // radius
+    // conversion to lengths: angles are multiplied by the length of the edge, logarithms by the
+    // mean length or radius, and attachments by the mean edge length
     const Eigen::Index trees = m_deviations.cols();
     const auto n = static_cast<double>(trees);
     double typical = 0;
     for (const double length : m_middle.length)
       typical += length / static_cast<double>(m_middle.length.size());
     Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(trees, trees);
-    double own_squares = 0, own_fourth = 0; // of products within branches
+    double own_squares = 0, own_fourth = 0; // sums over pairs of coordinates of the same branch
     for (std::size_t b = 0; b < m_layout.branches.size(); ++b) {
       Eigen::MatrixXd z = m_deviations.middleRows(first(b), size(b));
       const Orl_layout::Branch& branch = m_layout.branches[b];
@@ -395,9 +402,9 @@ private:
     m_shrinkage = squares > 0 ? std::min(1.0, std::max(0.0, noise / squares)) : 0;
   }
 
-  static constexpr double prior = 2; // additional members of each branch that vary like its order
-  // two numbers of direction, logarithms of length and radius, of the radius at the base,
-  // attachment
+  static constexpr double prior = 2; // additional trees with each branch; they vary like its order
+  // per edge: two of direction, logarithms of length and radius; per branch: logarithm of the base
+  // radius, attachment
   using Pool = Eigen::Matrix<double, 6, 1>;
 
   Orl_layout m_layout;

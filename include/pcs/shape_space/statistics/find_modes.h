@@ -29,12 +29,12 @@ namespace internal {
 
 struct Principal_scores
 {
-  Eigen::MatrixXd vectors; ///< n x k, of unit length
-  Eigen::VectorXd shares;  ///< k, of the trace
+  Eigen::MatrixXd vectors; ///< n x k, columns of unit length
+  Eigen::VectorXd shares;  ///< k, fractions of the trace
 };
 
-/// Returns the eigenvectors of a covariance of trees about their mean with eigenvalues above
-/// rounding, largest first.
+/// Returns the eigenvectors of the centered covariance matrix of the trees, by decreasing
+/// eigenvalue. Eigenvalues within rounding of 0 are left out.
 inline Principal_scores principal_scores(const Eigen::MatrixXd& covariance)
 {
   const Eigen::Index n = covariance.rows();
@@ -58,8 +58,8 @@ struct Mode_fit
   std::vector<double> distance;
 };
 
-/// Fits modes by weighted least squares over the blocks that the tree has. Modified Gram-Schmidt
-/// gives the distances for all numbers of modes.
+/// Fits the scores of a tree by weighted least squares over the blocks of features that the tree
+/// has. Modified Gram-Schmidt orthogonalization gives the distances for all numbers of modes.
 inline Mode_fit fit_modes(const Tree_features& features,
                           const Mode_features& modes,
                           const Eigen::VectorXd& values,
@@ -119,7 +119,8 @@ inline Mode_fit fit_modes(const Tree_features& features,
   return result;
 }
 
-/// Computes the modes in features from deviations of trees and their scores.
+/// Computes the modes in the space of features, by regression of the deviations of the trees on
+/// their scores.
 inline void set_features(const Tree_features& features,
                          const Tree_covariance& covariance,
                          const Eigen::MatrixXd& scores,
@@ -143,7 +144,7 @@ struct Mode_inputs
 {
   Eigen::MatrixXd tangents; ///< centered
   Eigen::VectorXd center;
-  Eigen::MatrixXd values;             ///< of the features
+  Eigen::MatrixXd values;             ///< features of the trees
   std::vector<std::vector<char>> has; ///< which branches each tree has
 };
 
@@ -253,13 +254,13 @@ inline std::vector<double> left_out_distances(const Tree_features& features,
   Finds the principal modes of variation: at most `most`, fewer if the trees differ in fewer
   directions. The sign of a mode is such that its largest coordinate is positive.
 
-  Scores are the principal components of the `Tree_covariance` of `Tree_features`, which compare
-  trees by the branches that they have. With the centered tangent vectors `z_t` and the scores
-  `s_tk` of `n` trees, a mode is the regression `u_k = sum_t s_tk z_t / (n - 1)` of tangent vectors
-  on scores, so lengths of branches that only some trees have also change with a mode. All modes
-  together reproduce all trees. If no branch differs between the trees that have it, trees differ
-  only by which branches they have; the modes are then the modes of `Mode_inner_product::metric`,
-  and `features.measure` has this value.
+  Scores are the principal components of the covariance (`Tree_covariance`) of the features of the
+  trees (`Tree_features`). The features compare each branch among the trees that have it. With the
+  centered tangent vectors `z_t` and the scores `s_tk` of `n` trees, a mode is the regression
+  `u_k = sum_t s_tk z_t / (n - 1)` of the tangent vectors on the scores. A mode therefore also
+  changes the lengths of branches that only some trees have. All modes together reproduce all trees.
+  If every branch is equal in all trees that have it, this covariance is zero. The modes are then
+  those of `Mode_inner_product::metric`, and `features.measure` has this value.
 */
 template <class ConcurrencyTag>
 Modes_of_variation find_modes(const Orl_layout& layout,
@@ -276,7 +277,7 @@ Modes_of_variation find_modes(const Orl_layout& layout,
   double size = 0;
   for (const double length : mean.length)
     size += length;
-  const double least = 1e-9 * size; // less is rounding of equal trees
+  const double least = 1e-9 * size; // smaller deviations are rounding
   const Tree_covariance covariance(features,
                                    in.values,
                                    in.has,
@@ -311,7 +312,8 @@ Modes_of_variation find_modes(const Orl_layout& layout,
   return result;
 }
 
-/// Returns the scores of the first `most` modes that fit the branches of a tree best.
+/// Returns the scores of the first `most` modes for a tree, by weighted least squares over its
+/// branches, and the distance of the tree from the space of these modes.
 inline Mode_coordinates project_on_modes(const Orl_layout& layout,
                                          const Orl_weights& weights,
                                          Orl_orientation orientation,

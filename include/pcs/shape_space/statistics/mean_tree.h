@@ -58,7 +58,7 @@ inline Vec3 l1_mean_position(const std::vector<Vec3>& p, const std::vector<doubl
   return mean;
 }
 
-/// Means of numbers, radii, rotations and positions of trees with weights.
+/// Weighted means or medians of numbers, radii, rotations and positions, one value per tree.
 class Weighted_mean
 {
 public:
@@ -81,8 +81,8 @@ public:
     return sum / m_total;
   }
 
-  /// Returns the mean radius. With negative weights, an edge or branch that exists keeps a fraction
-  /// of its least positive radius. [L]
+  /// Returns the mean radius [L]. If a weight is negative and the mean has the edge or branch, the
+  /// result is at least a hundredth of the least positive value.
   double radius(const std::vector<double>& values, bool is_present) const
   {
     constexpr double least_fraction = 0.01;
@@ -133,7 +133,7 @@ inline void set_mean_edge(const std::vector<const Orl_coordinates*>& trees,
   x.orientation[e] = mean.rotation(q);
 }
 
-/// Computes the mean base radius and attachment of branch `b`; lengths are known.
+/// Computes the mean base radius and attachment of branch `b`. The lengths of `x` must be set.
 inline void set_mean_base(const Orl_layout& layout,
                           const std::vector<const Orl_coordinates*>& trees,
                           const Weighted_mean& mean,
@@ -156,8 +156,9 @@ inline void set_mean_base(const Orl_layout& layout,
 
 /*!
   Computes the mean of trees with weights, coordinate by coordinate. `median` requires weights
-  `>= 0`; if medians form an interval, its middle is taken. With `frechet`, weights may be negative
-  if their sum is positive: lengths stay at least 0, radii at least a hundredth of the least radius.
+  `>= 0`. If all values of an interval are medians, its middle is taken. With `frechet`, weights may
+  be negative if their sum is positive. Lengths are then limited to at least 0, and radii to at
+  least a hundredth of the least positive radius of the trees.
 */
 template <class ConcurrencyTag>
 Orl_coordinates mean_tree(const Orl_layout& layout,

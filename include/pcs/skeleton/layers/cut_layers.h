@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Geodesic level sets of the path length, and the tree of their connected components.
+// Level sets of the geodesic distance from the root, and the tree of their components.
 
 #ifndef PCS_SKELETON_LAYERS_CUT_LAYERS_H
 #define PCS_SKELETON_LAYERS_CUT_LAYERS_H
@@ -57,7 +57,7 @@ inline void number_layer_parts(Point_sets& sets, const std::vector<Index>& layer
       tree.node_of_point[i] = number[part[sets.find(i)]];
 }
 
-/// Groups the points by node and computes centres and spreads.
+/// Groups the points by level-set component, and computes the center and spread of each.
 template <class ConcurrencyTag>
 void collect_nodes(const Scan& scan, Layer_tree& tree)
 {
@@ -87,8 +87,8 @@ void collect_nodes(const Scan& scan, Layer_tree& tree)
   });
 }
 
-/// Selects the parent of each node: the node from which most shortest paths reach its points. Ties
-/// go to the node with more points, then to the wider node.
+/// Selects the parent of each node: the node from which most of the shortest paths to its points
+/// arrive. In a tie, the node with more points is selected, then the node with the larger spread.
 template <class ConcurrencyTag>
 void vote_for_parents(const std::vector<Index>& predecessor, Layer_tree& tree)
 {
@@ -96,7 +96,7 @@ void vote_for_parents(const std::vector<Index>& predecessor, Layer_tree& tree)
     votes.clear();
     for (Index k = tree.first[v]; k < tree.first[v + 1]; ++k) {
       const Index from = tree.node_of_point[predecessor[tree.point[k]]];
-      if (from < v) // joined level sets may have points on both sides of a thin one
+      if (from < v) // a joined level set may have points below and above a thin one
         votes.push_back(from);
     }
     std::sort(votes.begin(), votes.end());
@@ -126,8 +126,8 @@ void vote_for_parents(const std::vector<Index>& predecessor, Layer_tree& tree)
 } // namespace internal
 
 /*!
-  Groups the points into level sets of the path length, and returns the tree of the connected
-  components of these sets. `links` are the edges of the graph in which `paths` were computed.
+  Cuts the points into level sets of the length of their shortest paths. Returns the tree of the
+  connected components of these level sets. `links` are the edges of the graph of `paths`.
 */
 template <class ConcurrencyTag>
 Layer_tree layer_tree(const Scan& scan, const Links& links, const Shortest_paths& paths)

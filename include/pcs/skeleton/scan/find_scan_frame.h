@@ -21,13 +21,13 @@
 namespace pcs {
 namespace skeleton {
 
-/// Asymmetry of the points below which they do not determine the yaw of the frame [-].
+/// Least horizontal asymmetry of the points that determines the yaw of the frame [-].
 constexpr double least_asymmetry = 1e-6;
 
 namespace internal {
 
-/// Computes four sums in integers, so that they do not depend on the order of the terms. `terms(i)`
-/// returns four numbers of absolute value at most 1.
+/// Computes four sums in fixed-point integers, so that the results do not depend on the order of
+/// the terms. `terms(i)` returns four numbers of absolute value at most 1.
 template <class ConcurrencyTag, class Terms>
 std::array<double, 4> exact_sums(std::size_t n, const Terms& terms)
 {
@@ -54,8 +54,8 @@ std::array<double, 4> exact_sums(std::size_t n, const Terms& terms)
 
 } // namespace internal
 
-/// Finds the frame of a scan, independent of the order of the points. `input` is finite and not
-/// empty, `up` a unit vector. O(n).
+/// Finds origin, unit of length and axes of a scan. They do not depend on the order of the points.
+/// `input` must be finite and not empty, and `up` a unit vector. O(n).
 template <class ConcurrencyTag>
 Scan_frame find_scan_frame(const std::vector<Vec3>& input, const Vec3& up)
 {
@@ -70,8 +70,8 @@ Scan_frame find_scan_frame(const std::vector<Vec3>& input, const Vec3& up)
   const double extent = (high - low).maxCoeff();
   const bool is_extended = extent > 0 && std::isfinite(extent);
   const auto place = [&](const Vec3& p) { return Vec3((p - low) / extent); };
-  // robust against distant points: weights decrease smoothly with the distance, so that rounding
-  // has little effect
+  // a weighted mean that is robust against outliers; weights decrease smoothly with the distance,
+  // so that rounding has little effect
   constexpr int rounds = 3;
   Vec3 center = Vec3::Zero();
   double reach = 0;
@@ -100,7 +100,7 @@ Scan_frame find_scan_frame(const std::vector<Vec3>& input, const Vec3& up)
   Terms sums{};
   if (is_extended)
     sums = internal::exact_sums<ConcurrencyTag>(n, [&](std::size_t i) {
-      // in typical distances, so that the integers resolve the small moments of slender trees
+      // in units of the median distance: fixed-point sums then resolve the moments of slender trees
       const Vec3 d = (place(input[i]) - center) / (reach > 0 ? reach : 1),
                  across = d - up.dot(d) * up;
       const double r2 = d.squaredNorm(), w = r2 / ((1 + r2) * (1 + r2));

@@ -28,15 +28,15 @@ namespace skeleton {
 /// Options for building branches from sections.
 struct Section_tree_options
 {
-  std::size_t neighbors = 12; ///< candidates for the joint of a section [count]
+  std::size_t neighbors = 12; ///< nearest sections to which a section may be joined [count]
   double longest = 25;        ///< largest length of a joint, in spacings [-]
   double turn_cost =
-      1; ///< cost of a turn, per length of the joint; 0: as published [Aiteanu 2022] [-]
-  double wider = 1.5;  ///< largest ratio of the radius to that of the parent [-]
+      1; ///< relative cost of a joint across the axes; 0: as published [Aiteanu 2022] [-]
+  double wider = 1.5;  ///< largest ratio of the radius of a section to that of its parent [-]
   double thinning = 1; ///< least distance of nodes, in diameters [-]
   double dense_radius = 0.25,
-         dense_offset = 2;   ///< largest distance of dense points, in radii plus spacings
-  double allometry = 0.4;    ///< exponent of importance for radii; 1/2 is da Vinci's rule [-]
+         dense_offset = 2;   ///< largest distance of dense points, sum of radii and spacings [-]
+  double allometry = 0.4;    ///< radius: this power of the length beyond; 1/2: da Vinci's rule [-]
   double twig_radius = 0.15; ///< radius of the thinnest twig, in spacings [-]
 };
 
@@ -79,7 +79,8 @@ private:
                                       boost::no_property,
                                       boost::property<boost::edge_weight_t, double>>;
 
-  /// Computes the shortest paths over the centres, from the section nearest to the root.
+  /// Connects the centers by shortest paths from the section nearest to the root. Sets the parents
+  /// of the sections and their order by path length.
   void span(const std::vector<Index>& root)
   {
     const std::size_t n = m_sections.size();
@@ -129,14 +130,15 @@ private:
     std::stable_sort(m_order.begin(), m_order.end(), [&](Index a, Index b) {
       return distance[a] < distance[b];
     });
-    // parents first, also for zero distances
+    // the start is first, even if other distances are zero, too
     std::stable_partition(m_order.begin(), m_order.end(), [&](Index a) { return a == start; });
     for (const Index i : m_order)
       if (i != start)
         m_parent[i] = predecessor[i];
   }
 
-  /// Removes tips inside their parents, and sections that are much wider than their parents.
+  /// Removes sections that are much wider than their parents, and tips with the center inside the
+  /// parent.
   void filter()
   {
     const std::size_t n = m_sections.size();
@@ -167,7 +169,8 @@ private:
     }
   }
 
-  /// Keeps forks, tips, and other nodes at least a diameter apart.
+  /// Makes nodes of the start, forks and tips, and of other sections that are at least `thinning`
+  /// diameters from the last node towards the root.
   void thin()
   {
     const std::size_t n = m_sections.size();
@@ -203,8 +206,8 @@ private:
     }
   }
 
-  /// Marks the points near the generalized cylinder of an edge as dense, and assigns them to its
-  /// upper node.
+  /// Marks the points near the generalized cylinder of an edge as dense, and assigns them to the
+  /// child node of the edge.
   void mark_dense()
   {
     std::vector<Index> near;
@@ -237,18 +240,20 @@ private:
     }
   }
 
-  /// Spanning trees over sparse points: level sets, and the dense nodes at which they begin.
+  /// Spanning trees over sparse points: their level-set components, and the dense nodes to which
+  /// the trees are attached.
   struct Sparse_trees
   {
     Layer_tree layers;
-    std::vector<double> importance; ///< length of all edges beyond each node [L]
+    std::vector<double> importance; ///< length of the edges from the parent of each node on [L]
     std::vector<Vec3> center;       ///< smoothed centers
-    std::vector<Index> top;         ///< the first node of the tree that contains each node
+    std::vector<Index> top;         ///< root of the spanning tree of each node
     std::vector<Index> joint;       ///< for each node in `top`: its dense parent node, or `none`
   };
 
-  /// Adds spanning trees over the remaining points, contracted to level sets. Radii follow from
-  /// importance and from the radius at the joint.
+  /// Adds spanning trees over the remaining points, contracted to level-set components. The radius
+  /// of a node is the radius at the joint times a power (`allometry`) of the importance of the node
+  /// relative to that of the root of its spanning tree.
   void add_sparse(const std::vector<Index>& root)
   {
     const std::size_t n = m_scan.size();
@@ -290,7 +295,7 @@ private:
     return sources.empty() ? root : sources;
   }
 
-  /// Returns the level sets of the remaining points alone.
+  /// Returns the level-set components of the remaining points, without the dense points.
   Layer_tree layers_of(const std::vector<std::uint8_t>& is_rest,
                        const Links& links,
                        const Shortest_paths& paths) const
@@ -349,7 +354,7 @@ private:
     }
   }
 
-  /// Adds the reachable level sets as nodes.
+  /// Adds nodes for the level-set components that are reachable.
   void add_nodes(const Sparse_trees& trees)
   {
     const Layer_tree& tree = trees.layers;

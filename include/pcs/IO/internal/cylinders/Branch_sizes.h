@@ -28,9 +28,9 @@ struct Branch_size
   int order = 0;
   std::size_t parent = npos; ///< index of the parent branch; `npos` for the trunk
   bool is_empty = true;      ///< no node of the tree belongs to the branch
-  double diameter = 0;       ///< of the first piece [L]
+  double diameter = 0;       ///< mean over the first piece [L]
   double volume = 0;         ///< of the frusta between the nodes [L^3]
-  double area = 0;           ///< of the cylinders between the nodes, without their ends [L^2]
+  double area = 0;           ///< lateral area of the cylinders between the nodes [L^2]
   double length = 0;         ///< [L]
   double height = 0;         ///< of the base above the root [L]
   double angle = 0;          ///< between the first piece and the parent branch [rad]
@@ -39,10 +39,11 @@ struct Branch_size
 };
 
 /*
-  Measures the branches of a tree. A piece is an edge inside a branch; the edge to the first node of
-  a branch belongs to no branch, as in the table of cylinders. Azimuths are measured around the up
-  direction, counter-clockwise seen from above, from the x axis, or from the y axis if up is along
-  x. Linear in the number of nodes.
+  Measures the branches of a tree. A piece is an edge between two nodes of the same branch. The edge
+  from the parent branch to the first node of a branch belongs to neither, as in the table of
+  cylinders. Azimuths are angles about the up direction, counter-clockwise as seen from above. The
+  azimuth of the x axis is 0; if up is nearly parallel to x, that of the y axis is 0. Linear in the
+  number of nodes.
 */
 template <class Kernel>
 class Branch_measurer
@@ -59,7 +60,7 @@ public:
                           "(): the up direction must be a finite vector, not null");
     for (double& x : m_up)
       x /= norm;
-    writing_order(tree, tree[boost::graph_bundle].root, caller); // refuses graphs that are no tree
+    writing_order(tree, tree[boost::graph_bundle].root, caller); // throws unless it is a tree
     for (std::size_t v = 0; v < num_vertices(tree); ++v) {
       for (const double x : position(v))
         finite_value(x, "a coordinate", v, caller);
@@ -121,7 +122,7 @@ private:
     return std::atan2(dot(d, left), dot(d, from));
   }
 
-  //! returns the position of the first node behind a piece of positive length, 0 if there is none
+  //! returns the index in `nodes` at which the first piece of positive length ends; 0: none
   std::size_t end_of_first_piece(const std::vector<std::size_t>& nodes) const
   {
     for (std::size_t i = 1; i < nodes.size(); ++i)
@@ -130,7 +131,7 @@ private:
     return 0;
   }
 
-  //! returns the direction of a branch at one of its nodes, null if it has no length
+  //! returns the direction of a branch at node `v`; null vector if the branch has no length
   Vector direction_at(std::size_t v) const
   {
     const std::size_t branch = m_tree[v].branch;

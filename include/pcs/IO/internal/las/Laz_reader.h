@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Reads the compressed points of a LAZ file with LASzip, where it is available.
+// Reads the compressed points of a LAZ file, if pcs is built with LASzip.
 
 #ifndef PCS_IO_INTERNAL_LAS_LAZ_READER_H
 #define PCS_IO_INTERNAL_LAS_LAZ_READER_H
@@ -20,7 +20,7 @@ namespace pcs {
 namespace IO {
 namespace internal {
 
-//! the programs that convert LAZ to LAS, for messages
+//! returns an instruction for messages: how to read a LAZ file, or convert it to LAS
 inline std::string laz_conversions()
 {
   return "build pcs with LASzip (package liblaszip-dev where there is one, CMake variable "
@@ -44,9 +44,9 @@ inline bool has_compressed_points(const std::string& path)
 #ifdef PCS_WITH_LASZIP
 
 /*
-  Header, records and counts are read as those of a LAS file. The record that describes the
-  compression is removed, so that the points can be written to a LAS file. LASzip detects damaged
-  data in some cases only; damaged points may be read as other points.
+  Reads header, variable-length records and counts like those of a LAS file. The record that
+  describes the compression is removed, so that the points can be written to a LAS file. LASzip does
+  not detect all damage: damaged data may be read as wrong points.
 */
 class Laz_reader : public Las_reader
 {

@@ -23,8 +23,8 @@ namespace IO {
 namespace internal {
 
 /*
-  Scalar properties of the element `vertex` become columns; lists and other elements are skipped,
-  but must be complete.
+  Scalar properties of the element `vertex` become columns. List properties and other elements are
+  skipped; a file in which they are incomplete is refused.
 */
 class Ply_reader : public Format_reader
 {
@@ -214,7 +214,7 @@ private:
     }
   }
 
-  //! reads one line; scalars go to `to` unless it is null
+  //! reads one line; stores the scalars at `to` unless it is null
   void parse_row(const Ply_element& element, unsigned char* to)
   {
     std::string_view line;

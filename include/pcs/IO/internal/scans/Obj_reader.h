@@ -21,7 +21,7 @@ namespace internal {
 
 /*
   The lines `v x y z`, `v x y z weight` and `v x y z red green blue` are points; all other lines are
-  skipped. The file is read twice, because the number of vertices is stated nowhere.
+  skipped. The file is read twice, because OBJ files do not store the number of vertices.
 */
 class Obj_reader : public Format_reader
 {

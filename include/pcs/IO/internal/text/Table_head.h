@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// The beginning of a table in a text file: separator, names and types of the columns.
+// Detects the separator, the columns and the first row of a table in a text file.
 
 #ifndef PCS_IO_INTERNAL_TEXT_TABLE_HEAD_H
 #define PCS_IO_INTERNAL_TEXT_TABLE_HEAD_H
@@ -35,10 +35,10 @@ inline std::string_view without_byte_order_mark(std::string_view line)
 }
 
 /*!
-  Reads the lines before the first row and the first rows. Before the first row, there may be the
-  number of points, lines of text, a line with the names of the columns and a line with their units.
-  The comment directly before the first row may contain the names as well (as in files of
-  CloudCompare). The rows may have one word more than there are names, as R writes row names.
+  Reads the head of a table and its first rows. The head may contain the number of points, lines of
+  text, a line with the names of the columns and a line with their units. The names may also be in
+  the last comment before the first row (as in files of CloudCompare). Rows may have one word more
+  than there are names, because R writes row names without a column name.
 */
 class Table_head
 {
@@ -46,8 +46,8 @@ public:
   struct Column
   {
     std::string name;
-    std::string text;            // a word that is not a number, in a column that is left out
-    std::uint64_t text_line = 0; // its line, 0 if there is none
+    std::string text;            // first word that is not a number; the column is then left out
+    std::uint64_t text_line = 0; // line of this word, 0: none
   };
 
   explicit Table_head(const std::string& path) : m_file(path)
@@ -77,7 +77,7 @@ public:
   char separator = ' ';
   bool has_names = false;
   bool has_decimal_commas = false;
-  std::uint64_t first_row = 0; // line, 0 if there are no rows
+  std::uint64_t first_row = 0; // line number, 0: no rows
   std::optional<std::uint64_t> number_of_points;
 
   bool is_comma_decimal() const { return separator != ','; }
@@ -127,7 +127,7 @@ private:
     return false;
   }
 
-  //! whether the line begins with numbers, or contains at least three
+  //! whether the line has at least two words, and begins with a number or contains three numbers
   bool is_row() const
   {
     const auto is_number = [&](std::string_view word) {
@@ -143,13 +143,13 @@ private:
     if (number_of_points || parse_plain(m_words[0], count) != Parse_result::ok)
       m_file.fail_at_line("expected at least three columns or the number of points, found " +
                           in_quotes(m_words[0]));
-    // x, y, z, two separators and a line break, which the last line may lack
+    // a row has at least 6 bytes: three digits, two separators, and a line break except at the end
     if (count > (m_file.remaining() + 1) / 6)
       m_file.fail_at_line("the file is too small for " + std::to_string(count) + " points");
     number_of_points = count;
   }
 
-  //! uses the line as names of the columns if the coordinates are among them
+  //! takes the names of the columns from the line if it contains names of the coordinates
   void read_names()
   {
     std::vector<std::string> names;
@@ -225,7 +225,7 @@ private:
                            in_quotes(m_names[i]) + " is named twice");
   }
 
-  //! uses the names in the comment before the first row if there is one for each column
+  //! takes the names from the comment before the first row if it has one for each column
   void use_comment()
   {
     std::string_view line = m_comment;
@@ -243,7 +243,7 @@ private:
       m_names = std::move(names);
   }
 
-  //! finds columns of text and decimal commas in the first rows
+  //! detects text columns and decimal commas in the first rows
   void inspect_rows()
   {
     std::uint64_t n = 0;
@@ -273,7 +273,7 @@ private:
   std::string m_comment; // the last comment before the first row
   std::vector<std::string> m_names;
   std::uint64_t m_names_line = 0;
-  std::string m_error; // why the first line of text does not name the columns
+  std::string m_error; // reason why the first line of text has no column names
 };
 
 } // namespace internal
