@@ -163,8 +163,9 @@ inline void declare(CLI::App& app, Options& o)
   app.footer(
       R"(Give --tree and --skeleton once for each tree, at least twice. Points: PLY, LAS, OFF, PCD,
 PTX, OBJ or text. Skeletons: SWC; CSV; tables of cylinders (.csv or .txt, of
-extract_tree_skeleton, TreeQSM, SimpleForest, aRchi, rTwig); .txtskl with layers of branches. Without --skeleton, skeletons are
-extracted from the points; without --tree, only skeletons are made.
+extract_tree_skeleton, TreeQSM, SimpleForest, aRchi, rTwig); .txtskl with layers of branches.
+Without --skeleton, skeletons are extracted from the points; without --tree, only skeletons are
+made.
 
 SWC rows: id, type, x, y, z, radius, parent (-1: a root). Further columns and comments behind #
 are ignored. Of a file with several roots, the tree with the most nodes is read, with a warning, or

@@ -153,9 +153,9 @@ void write_cylinders(const std::string& path, const Tree_skeleton<Kernel>& tree)
   or 0 for the trunk. `height` is that of the base above the root, `angle` that between the first
   piece of a branch and the piece of its parent at the base, `azimuth` that of the first piece from
   the x axis (the y axis if up is along x), counter-clockwise, and `diameter` that of the first
-  piece. `area` is that of the cylinders. `volume` is that of the frusta between the nodes, as in `Skeleton_report::total`; it is
-  slightly larger than that of the cylinders. In another unit than the metre, `volume` is 1000 times
-  the volume, and other values are in that unit. The file is complete or absent.
+  piece. `area` is that of the cylinders. `volume` is that of the frusta between the nodes, as in
+  `Skeleton_report::total`; it is slightly larger than that of the cylinders. In another
+  unit than the metre, `volume` is 1000 times the volume, and other values are in that unit. The file is complete or absent.
 
   \param path name of the file
   \param tree a tree with branches
