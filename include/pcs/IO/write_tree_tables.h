@@ -155,7 +155,8 @@ void write_cylinders(const std::string& path, const Tree_skeleton<Kernel>& tree)
   the x axis (the y axis if up is along x), counter-clockwise, and `diameter` that of the first
   piece. `area` is that of the cylinders. `volume` is that of the frusta between the nodes, as in
   `Skeleton_report::total`; it is slightly larger than that of the cylinders. In another
-  unit than the metre, `volume` is 1000 times the volume, and other values are in that unit. The file is complete or absent.
+  unit than the metre, `volume` is 1000 times the volume, and other values are in that unit. The
+  file is complete or absent.
 
   \param path name of the file
   \param tree a tree with branches
