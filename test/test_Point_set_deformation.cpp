@@ -11,10 +11,8 @@
 
 #include <boost/test/unit_test.hpp>
 
-#include <atomic>
 #include <limits>
 #include <numeric>
-#include <stdexcept>
 #include <thread>
 #include <type_traits>
 #include <utility>
@@ -68,25 +66,6 @@ std::vector<std::size_t> middle_of(const Points& bar)
 {
   return pcs_test::select(bar, [](const Vec3& p) { return p.z() > 1.9 && p.z() < 2.1; });
 }
-
-/// A map that throws once `put()` was called a given number of times.
-struct Failing_map
-{
-  using key_type = Vec3;
-  using value_type = Vec3;
-  using reference = const Vec3&;
-  using category = boost::read_write_property_map_tag;
-
-  std::atomic<int>* calls_left;
-
-  friend const Vec3& get(const Failing_map&, const Vec3& p) { return p; }
-  friend void put(const Failing_map& map, Vec3& p, const Vec3& value)
-  {
-    if (--*map.calls_left < 0)
-      throw std::range_error("full");
-    p = value;
-  }
-};
 
 pcs::Similarity bend()
 {
@@ -700,28 +679,6 @@ BOOST_AUTO_TEST_CASE(a_cancelled_construction_leaves_a_defined_object)
   BOOST_CHECK_THROW(session.accept(), Invalid_input);
   BOOST_CHECK_THROW(session.preprocess(), Invalid_input);
   BOOST_TEST((points == before));
-}
-
-BOOST_AUTO_TEST_CASE(points_can_be_reset_after_an_exception_of_their_map)
-{
-  for (const int samples : both_resolutions) {
-    const Bar_edit edit;
-    Points points = edit.points;
-    std::atomic<int> calls_left = 1000000;
-    const auto np = pcs::parameters::number_of_samples(samples).point_map(Failing_map{&calls_left});
-    pcs::Point_set_deformation<Points, decltype(np)> session(points, np);
-    session.add_handle(edit.handles[0].indices);
-    session.add_handle(edit.handles[1].indices);
-    session.set_transformation(1, bend());
-    calls_left = static_cast<int>(points.size() / 2);
-    BOOST_CHECK_THROW(session.deform(), std::range_error);
-    calls_left = 1000000;
-    session.reset();
-    BOOST_TEST((points == edit.points));
-    session.set_transformation(1, bend());
-    session.deform();
-    BOOST_TEST((points == Bar_session::fresh(samples, bend())));
-  }
 }
 
 BOOST_AUTO_TEST_CASE(a_cancelled_deformation_can_be_repeated)
