@@ -645,6 +645,63 @@ BOOST_AUTO_TEST_CASE(an_exception_of_the_callback_passes_through)
   }
 }
 
+/// Writes points, and throws instead of writing the last one that it may write.
+struct Failing_map
+{
+  using key_type = Vec3;
+  using value_type = Vec3;
+  using reference = const Vec3&;
+  using category = boost::lvalue_property_map_tag;
+
+  long* number_of_writes; ///< that remain; there is no limit if it is negative
+
+  friend const Vec3& get(const Failing_map&, const Vec3& p) { return p; }
+  friend void put(const Failing_map& map, Vec3& p, const Vec3& value)
+  {
+    if (--*map.number_of_writes == 0)
+      throw std::range_error("the map is full");
+    p = value;
+  }
+};
+
+BOOST_AUTO_TEST_CASE(reset_restores_all_points_after_an_exception_of_a_map)
+{
+  const Bar_edit edit;
+  for (const long long samples : {150, 1000000})
+    for (const long limit : {1, 10, 400}) {
+      Points points = edit.points;
+      long left = -1;
+      const auto np = pcs::parameters::point_map(Failing_map{&left}).number_of_samples(samples);
+      pcs::Point_set_deformation<Points, decltype(np), CGAL::Sequential_tag> session(points, np);
+      for (const auto& handle : edit.handles)
+        session.add_handle(handle.indices);
+      const auto move = [&] { session.set_translation(1, Vec3(.1, .2, .3)); };
+      const auto largest_distance = [&] {
+        double result = 0;
+        for (std::size_t i = 0; i < points.size(); ++i)
+          result = std::max(result, (points[i] - edit.points[i]).norm());
+        return result;
+      };
+      BOOST_TEST_CONTEXT(samples << " samples, write " << limit << " fails")
+      {
+        move();
+        left = limit;
+        BOOST_CHECK_THROW(session.deform(), std::range_error);
+        left = -1;
+        session.reset();
+        BOOST_TEST(largest_distance() < 1e-12);
+        move();
+        session.deform();
+        BOOST_TEST(largest_distance() > .3);
+        left = limit;
+        BOOST_CHECK_THROW(session.reset(), std::range_error);
+        left = -1;
+        session.reset();
+        BOOST_TEST(largest_distance() < 1e-12);
+      }
+    }
+}
+
 BOOST_AUTO_TEST_CASE(an_empty_callback_is_none)
 {
   const Bar_edit edit;

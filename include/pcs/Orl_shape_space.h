@@ -221,8 +221,8 @@ public:
                         const NamedParameters& np = NamedParameters())
   {
     const char* const caller = "pcs::Orl_shape_space::build_from()";
-    check_two_inputs(caller);
     const shape_space::Build_options options = shape_space::read_embedding_options(np, caller);
+    check_two_inputs(caller);
     return shape_space::build_space_from<ConcurrencyTag>(correspondences, options, caller, m_state);
   }
 
@@ -339,23 +339,19 @@ public:
                   const Orl_tree& b,
                   const NamedParameters& np = NamedParameters()) const
   {
+    const Orl_metric metric = shape_space::read_metric(np);
     check_tree(a, "pcs::Orl_shape_space::distance()");
     check_tree(b, "pcs::Orl_shape_space::distance()");
-    return shape_space::distance(a.coordinates(),
-                                 b.coordinates(),
-                                 family().weights,
-                                 shape_space::read_metric(np));
+    return shape_space::distance(a.coordinates(), b.coordinates(), family().weights, metric);
   }
   //! returns the distance between two added trees [L]
   template <class NamedParameters = parameters::Default_named_parameters>
   double distance(Handle a, Handle b, const NamedParameters& np = NamedParameters()) const
   {
+    const Orl_metric metric = shape_space::read_metric(np);
     check_handle(a, "pcs::Orl_shape_space::distance()");
     check_handle(b, "pcs::Orl_shape_space::distance()");
-    return shape_space::distance(family().x[a],
-                                 family().x[b],
-                                 family().weights,
-                                 shape_space::read_metric(np));
+    return shape_space::distance(family().x[a], family().x[b], family().weights, metric);
   }
 
   /*!
@@ -398,7 +394,9 @@ public:
                 Orl_tree& result,
                 const NamedParameters& np = NamedParameters()) const
   {
-    check_handle(std::max(a, b), "pcs::Orl_shape_space::geodesic()");
+    const char* const caller = "pcs::Orl_shape_space::geodesic()";
+    const shape_space::Path_options options = shape_space::read_path_options(np, caller);
+    check_handle(std::max(a, b), caller);
     if (a == b && std::isfinite(lambda))
       lambda = 0;
     shape_space::Tree_state& state = result.state();
@@ -410,7 +408,7 @@ public:
     }
     // always from the lower to the higher handle, so that both directions give identical trees
     const double t = a <= b ? lambda : 1 - lambda;
-    interpolate(family().x[std::min(a, b)], family().x[std::max(a, b)], t, np, state);
+    interpolate(family().x[std::min(a, b)], family().x[std::max(a, b)], t, options, state);
     state.lambda = a != b ? t : a == 1 ? 1 : 0;
   }
 
@@ -421,12 +419,14 @@ public:
                     double lambda,
                     const NamedParameters& np = NamedParameters()) const
   {
-    check_tree(a, "pcs::Orl_shape_space::geodesic()");
-    check_tree(b, "pcs::Orl_shape_space::geodesic()");
+    const char* const caller = "pcs::Orl_shape_space::geodesic()";
+    const shape_space::Path_options options = shape_space::read_path_options(np, caller);
+    check_tree(a, caller);
+    check_tree(b, caller);
     const double weight = std::min(1.0, std::max(0.0, lambda));
     shape_space::Tree_state result;
     shape_space::mix_scan_weights(family(), {&a.state(), &b.state()}, {1 - weight, weight}, result);
-    interpolate(a.coordinates(), b.coordinates(), lambda, np, result);
+    interpolate(a.coordinates(), b.coordinates(), lambda, options, result);
     result.lambda = (1 - lambda) * a.lambda() + lambda * b.lambda();
     return Orl_tree(std::move(result));
   }
@@ -483,8 +483,8 @@ public:
   points(const Orl_tree& t, PointRange& result, const NamedParameters& np = NamedParameters()) const
   {
     const char* const caller = "pcs::Orl_shape_space::points()";
-    check_tree(t, "pcs::Orl_shape_space::points()");
     const Point_path path = shape_space::read_point_path(np, m_state.is_pair(), caller);
+    check_tree(t, caller);
     constexpr bool is_range = is_random_access_range_v<PointRange>;
     static_assert(is_range,
                   "pcs::Orl_shape_space::points(): `result` must be a random access range");
@@ -636,15 +636,13 @@ private:
                          std::to_string(m_state.inputs.size()) + " trees were added, expected 2");
   }
 
-  template <class NamedParameters>
   void interpolate(const shape_space::Orl_coordinates& a,
                    const shape_space::Orl_coordinates& b,
                    double t,
-                   const NamedParameters& np,
+                   const shape_space::Path_options& options,
                    shape_space::Tree_state& result) const
   {
     const char* const caller = "pcs::Orl_shape_space::geodesic()";
-    const shape_space::Path_options options = shape_space::read_path_options(np, caller);
     pcs::internal::check(std::isfinite(t), caller, "`lambda` is not finite");
     shape_space::interpolate_trees(family(), a, b, t, options, caller, result);
   }

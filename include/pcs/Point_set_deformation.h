@@ -287,7 +287,7 @@ public:
     that are not connected to a handle, points outside the region of interest, and points of handles
     that have not moved are not written. Nothing is written if the status of the report is
     `cancelled` or `numerical_failure`. If `put()` of a map throws, the exception passes through,
-    and some points are written already.
+    and some points are written already; the next `deform()`, `restore()` or `reset()` writes all.
 
     \param start `Solver_start::cold`: the result depends on the rest shape and the motions only.
            `Solver_start::warm`, for the frames of a drag: one to three iterations that continue

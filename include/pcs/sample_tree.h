@@ -105,9 +105,9 @@ Orl_tree sample_tree(const Orl_shape_space<Kernel, ConcurrencyTag>& space,
                      Sample_report* report = nullptr)
 {
   const char* const caller = "pcs::sample_tree()";
+  const Tree_sampling_options options = shape_space::read_sampling_options(np, caller);
   const shape_space::Tree_family& family = space.family();
   shape_space::check_built(family, caller);
-  const Tree_sampling_options options = shape_space::read_sampling_options(np, caller);
   pcs::internal::check(from.distribution && from.descriptors.size() == space.number_of_trees(),
                        caller,
                        "the distribution is of another space");

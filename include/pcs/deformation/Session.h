@@ -102,13 +102,15 @@ public:
   /*!
     Writes, concurrently, all points that the deformation may move. It omits points outside the
     region of interest, points that are not connected to a handle, and points of handles that have
-    not moved. `output` is an `Output` of `Moved_point_writer`. Positions are in the caller's
-    coordinates. If `HasGradients`, the gradient is the linear part of the map of the point.
+    not moved. If `output` throws, the next call writes all points of this one again. `output` is an
+    `Output` of `Moved_point_writer`. Positions are in the caller's coordinates. If `HasGradients`,
+    the gradient is the linear part of the map of the point.
   */
   template <bool HasGradients, class Output>
   void write(Output& output)
   {
     write_points<HasGradients>(moved_points(), output);
+    finish_writing();
   }
 
   /*!
@@ -131,6 +133,7 @@ public:
 
 private:
   Moved_points<ConcurrencyTag> moved_points();
+  void finish_writing();
 
   std::unique_ptr<Session_state<ConcurrencyTag>> m_state;
 };

@@ -579,6 +579,12 @@ Moved_points<ConcurrencyTag> Session<ConcurrencyTag>::moved_points()
 }
 
 template <class ConcurrencyTag>
+void Session<ConcurrencyTag>::finish_writing()
+{
+  m_state->dirty_handles.finish(m_state->local_transforms);
+}
+
+template <class ConcurrencyTag>
 void Session<ConcurrencyTag>::carry(Vec3& point, Vec3& normal) const
 {
   const Session_state<ConcurrencyTag>& s = *m_state;

@@ -20,7 +20,8 @@ class Dirty_handles
 public:
   /*!
     Finds for each handle whether its points are written: whether it moves or has moved before.
-    Allocates nothing if the number of handles is unchanged.
+    Until `finish()`, all of these handles count as moved, since an output that throws leaves some
+    of their points displaced. Allocates nothing if the number of handles is unchanged.
 
     \param transforms of the handles, in local coordinates; the outside of the region of interest,
            which never moves, comes last if there is one
@@ -39,14 +40,18 @@ public:
     for (const Node_constraint h : followed)
       if (static_cast<std::size_t>(h) < count && m_is_displaced)
         m_was_moved[static_cast<std::size_t>(h)] = 1;
-    m_is_written = m_was_moved;
-    m_is_written.resize(transforms.size(), 0);
-    for (std::size_t h = 0; h < count; ++h) {
-      m_was_moved[h] = transforms[h].is_identity() ? 0 : 1;
-      m_is_written[h] = m_is_written[h] || m_was_moved[h] ? 1 : 0;
-    }
+    m_is_written.assign(transforms.size(), 0);
+    for (std::size_t h = 0; h < count; ++h)
+      m_is_written[h] = m_was_moved[h] = m_was_moved[h] || !transforms[h].is_identity() ? 1 : 0;
     m_is_displaced = m_is_displaced || !is_at_rest;
     return m_is_written;
+  }
+
+  /// Stores which handles are displaced after all points of `find()` were written.
+  void finish(const std::vector<Similarity>& transforms)
+  {
+    for (std::size_t h = 0; h < m_was_moved.size(); ++h)
+      m_was_moved[h] = transforms[h].is_identity() ? 0 : 1;
   }
 
   /// Makes the current shape the rest shape.
