@@ -90,15 +90,14 @@ pcs::Orl_correspondences read_stored(const Options& o)
 pcs::Orl_report
 build(Space& space, const Options& o, const std::optional<pcs::Orl_correspondences>& stored)
 {
-  using namespace pcs::shape_space;
   program::Progress_line line(!o.is_quiet);
-  Transport_options transport;
+  pcs::Transport_options transport;
   if (o.transport == "sinkhorn")
-    transport.method = Point_transport::sinkhorn;
-  const Orl_orientation orientation = o.orientation == "world-axes" ? Orl_orientation::world_axes
-                                      : o.orientation == "transported"
-                                          ? Orl_orientation::transported
-                                          : Orl_orientation::gauge_fixed;
+    transport.method = pcs::Point_transport::sinkhorn;
+  const pcs::Orl_orientation orientation =
+      o.orientation == "world-axes"    ? pcs::Orl_orientation::world_axes
+      : o.orientation == "transported" ? pcs::Orl_orientation::transported
+                                       : pcs::Orl_orientation::gauge_fixed;
   const std::function<bool(double)> callback = [&](double f) {
     line.show("correspondences", f);
     return true;
@@ -115,7 +114,7 @@ build(Space& space, const Options& o, const std::optional<pcs::Orl_correspondenc
   pcs::Orl_report report = space.build(
       form.matching_weights(weights_of(o))
           .transport_options(transport)
-          .alignment(may_turn ? Orl_alignment::rotate_about_up : Orl_alignment::as_given)
+          .alignment(may_turn ? pcs::Orl_alignment::rotate_about_up : pcs::Orl_alignment::as_given)
           .up_direction(program::up_direction<Kernel>(o.up))
           .callback(callback));
   if (!o.correspondences.empty()) {

@@ -11,6 +11,13 @@
 namespace pcs {
 
 //! \ingroup PkgPcsSkeletonRef
+//! height above the root of the diameter at breast height (DBH) [m]
+constexpr double default_breast_height = 1.3;
+//! \ingroup PkgPcsSkeletonRef
+//! divergence of the beam of common terrestrial scanners [rad]
+constexpr double default_beam_width = 0.0003;
+
+//! \ingroup PkgPcsSkeletonRef
 //! how branches are found
 enum class Skeleton_method {
   chains,  ///< axes are fitted to chains of geodesic level-set components

@@ -24,13 +24,6 @@
 
 namespace pcs {
 
-//! \ingroup PkgPcsSkeletonRef
-//! height above the root of the diameter at breast height (DBH) [m]
-constexpr double default_breast_height = 1.3;
-//! \ingroup PkgPcsSkeletonRef
-//! divergence of the beam of common terrestrial scanners [rad]
-constexpr double default_beam_width = 0.0003;
-
 namespace skeleton {
 
 /// The named parameters of a skeletonization or a segmentation, except for maps of points.
