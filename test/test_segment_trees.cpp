@@ -444,6 +444,8 @@ BOOST_AUTO_TEST_CASE(a_tree_of_few_points_is_found_among_dense_ones)
     {
       BOOST_TEST_REQUIRE(report.trees.size() == 4u);
       BOOST_TEST(std::abs(report.trees[0].radius - sparse.radius) < 0.1 * sparse.radius);
+      BOOST_TEST(std::abs(report.trees[0].diameter_at_breast_height - 2 * sparse.radius) <
+                 0.2 * sparse.radius);
       for (std::size_t t = 0; t < 3; ++t)
         BOOST_TEST(report.trees[t].radius >= report.trees[t + 1].radius);
       const auto first = trees.begin() + static_cast<std::ptrdiff_t>(number_of_dense);
@@ -452,6 +454,27 @@ BOOST_AUTO_TEST_CASE(a_tree_of_few_points_is_found_among_dense_ones)
       check_counts(report, trees);
     }
   }
+}
+
+BOOST_AUTO_TEST_CASE(plants_below_breast_height_are_no_trees_beside_a_tree)
+{
+  Cloud points = pole(0, 1);
+  Labels trees;
+  pcs::Segmentation_report report = segment(points, trees);
+  BOOST_TEST(report.trees.size() == 1u); // seedlings only
+  BOOST_TEST(report.number_of_low_plants == 0u);
+  BOOST_TEST(report.trees.at(0).diameter_at_breast_height == 0);
+
+  const std::size_t number_of_low_points = points.size();
+  for (const Point& p : pole(0, 3))
+    points.push_back(p + Vector(3, 0, 0));
+  report = segment(points, trees);
+  BOOST_TEST_REQUIRE(report.trees.size() == 1u);
+  BOOST_TEST(report.number_of_low_plants == 1u);
+  BOOST_TEST(report.trees[0].foot[0] > 2.9);
+  BOOST_TEST(std::abs(report.trees[0].diameter_at_breast_height - 0.087) < 0.005);
+  BOOST_TEST(report.number_of_unassigned_points >= number_of_low_points);
+  check_counts(report, trees);
 }
 
 BOOST_AUTO_TEST_CASE(dense_points_keep_their_tree)

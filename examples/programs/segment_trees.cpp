@@ -104,6 +104,7 @@ nlohmann::ordered_json to_json(const Options& options, const pcs::Segmentation_r
     nlohmann::ordered_json row = {{"tree", t},
                                   {"foot", tree.foot},
                                   {"radius", tree.radius},
+                                  {"diameter_at_breast_height", tree.diameter_at_breast_height},
                                   {"height", tree.height},
                                   {"points", tree.number_of_points}};
     if (!options.folder.empty() && tree.number_of_points >= options.min_points)
@@ -114,6 +115,7 @@ nlohmann::ordered_json to_json(const Options& options, const pcs::Segmentation_r
           {"status", to_string(r.status)},
           {"points", r.number_of_points},
           {"unassigned_points", r.number_of_unassigned_points},
+          {"low_plants", r.number_of_low_plants},
           {"trees", trees},
           {"warnings", pcs::warnings(r)},
           {"seconds", r.seconds}};

@@ -41,8 +41,9 @@ struct Segmented_tree
   //! base of the axis of its thickest stem, in coordinates of the input [L]
   std::array<double, 3> foot{};
   double radius = 0; ///< largest radius of that stem up to half the breast height [L]
-  std::size_t number_of_points = 0; ///< [count]
-  double height = 0;                ///< of its highest point above the foot [L]
+  double diameter_at_breast_height = 0; ///< of that stem; 0 if its axis ends below [L]
+  std::size_t number_of_points = 0;     ///< [count]
+  double height = 0;                    ///< of its highest point above the foot [L]
 };
 
 //! \ingroup PkgPcsSkeletonRef
@@ -55,8 +56,11 @@ struct Segmentation_report
   //! ground, walls, outliers, and points that are not connected to a tree [count]
   std::size_t number_of_unassigned_points = 0;
   std::vector<Segmented_tree> trees; ///< by decreasing radius
-  double breast_height = 0;          ///< as given [L]
-  double seconds = 0;                ///< wall-clock time [s]
+  //! plants lower than breast height, such as shrubs; they are not among the trees unless no tree is
+  //! higher [count]
+  std::size_t number_of_low_plants = 0;
+  double breast_height = 0; ///< as given [L]
+  double seconds = 0;       ///< wall-clock time [s]
 };
 
 namespace internal {
@@ -113,7 +117,9 @@ void write_trees(const std::vector<skeleton::Vec3>& input,
                  Segmentation_report& report)
 {
   for (const skeleton::Detected_tree& tree : stand.trees)
-    report.trees.push_back({{tree.foot.x(), tree.foot.y(), tree.foot.z()}, tree.radius});
+    report.trees.push_back(
+        {{tree.foot.x(), tree.foot.y(), tree.foot.z()}, tree.radius, 2 * tree.radius_at_breast});
+  report.number_of_low_plants = stand.number_of_low_plants;
   std::size_t i = 0;
   for (auto it = std::begin(points); it != std::end(points); ++it, ++i) {
     const skeleton::Index tree = stand.tree_of_input[i];
@@ -144,7 +150,8 @@ void write_trees(const std::vector<skeleton::Vec3>& input,
   that it most likely continues. The odds of distance, direction and radius are those by which
   `extract_tree_skeleton()` joins axes. A point without an axis is assigned to the tree whose foot
   has the smallest geodesic distance. Ground, walls and outliers remain unassigned, except for
-  ground points at the foot of a stem.
+  ground points at the foot of a stem. Plants lower than breast height are counted, but they are
+  trees only if no tree is higher.
 
   The scan is thinned to one point per voxel, with a voxel size of a 65th of the breast height. All
   points of a voxel are assigned to the tree of the point that represents it. Sparsely sampled trees

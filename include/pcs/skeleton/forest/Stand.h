@@ -17,14 +17,16 @@ namespace skeleton {
 /// A tree, in input coordinates.
 struct Detected_tree
 {
-  Vec3 foot = Vec3::Zero(); ///< lower end of the axis of its thickest stem
-  double radius = 0;        ///< largest radius in the lowest part of this stem [L]
+  Vec3 foot = Vec3::Zero();    ///< lower end of the axis of its thickest stem
+  double radius = 0;           ///< largest radius in the lowest part of this stem [L]
+  double radius_at_breast = 0; ///< its radius at breast height; 0 if its axis ends below [L]
 };
 
 struct Stand
 {
-  std::vector<Detected_tree> trees; ///< in descending order of radius
-  std::vector<Index> tree_of_input; ///< by input point; `none`: unassigned
+  std::vector<Detected_tree> trees;     ///< in descending order of radius
+  std::vector<Index> tree_of_input;     ///< by input point; `none`: unassigned
+  std::size_t number_of_low_plants = 0; ///< lower than breast height, and not among the trees
 };
 
 /*!

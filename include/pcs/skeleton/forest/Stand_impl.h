@@ -152,6 +152,7 @@ inline void add_sparse_trees(const Stand_state& coarse,
       continue;
     stem.foot = stand.frame.to_local(coarse.frame.to_input(stem.foot));
     stem.radius *= coarse.frame.unit / stand.frame.unit;
+    stem.radius_at_breast *= coarse.frame.unit / stand.frame.unit;
     stem.height *= coarse.frame.unit / stand.frame.unit;
     const auto own = std::find_if(stand.stems.begin(), stand.stems.end(), [&](const Found_stem& o) {
       const bool is_thicker = o.radius >= stem.radius;
@@ -172,6 +173,36 @@ inline void add_sparse_trees(const Stand_state& coarse,
         (stand.tree_of_input[i] == none || double(stand.spacing_of_input[i]) >= rules.sparse))
       stand.tree_of_input[i] = tree_of_coarse[c];
   }
+}
+
+/*!
+  Removes the trees that are lower than breast height, such as shrubs, and counts them. All trees
+  remain if none is higher, as in a stand of seedlings. O(points).
+*/
+inline void remove_low_plants(const std::vector<Vec3>& input,
+                              const Vec3& up,
+                              double breast_height,
+                              Stand& stand)
+{
+  std::vector<double> height(stand.trees.size(), 0);
+  for (std::size_t i = 0; i < input.size(); ++i) {
+    const Index tree = stand.tree_of_input[i];
+    if (tree != none)
+      height[tree] = std::max(height[tree], up.dot(input[i] - stand.trees[tree].foot));
+  }
+  std::vector<Detected_tree> trees;
+  std::vector<Index> number(stand.trees.size(), none);
+  for (std::size_t t = 0; t < height.size(); ++t)
+    if (height[t] >= breast_height) {
+      number[t] = static_cast<Index>(trees.size());
+      trees.push_back(stand.trees[t]);
+    }
+  if (trees.empty())
+    return;
+  stand.number_of_low_plants = stand.trees.size() - trees.size();
+  stand.trees = std::move(trees);
+  for (Index& tree : stand.tree_of_input)
+    tree = tree == none ? none : number[tree];
 }
 
 } // namespace internal
@@ -216,11 +247,14 @@ bool find_trees(const std::vector<Vec3>& input,
   std::vector<Index> place(thickest.size());
   for (const internal::Found_stem& stem : thickest) {
     place[stem.tree] = static_cast<Index>(result.trees.size());
-    result.trees.push_back({stand.frame.to_input(stem.foot), stand.frame.unit * stem.radius});
+    result.trees.push_back({stand.frame.to_input(stem.foot),
+                            stand.frame.unit * stem.radius,
+                            stand.frame.unit * stem.radius_at_breast});
   }
   for (Index& tree : stand.tree_of_input)
     tree = tree == none ? none : place[tree];
   result.tree_of_input = std::move(stand.tree_of_input);
+  internal::remove_low_plants(input, hints.up, hints.breast_height, result);
   forest = std::move(result);
   return true;
 }

@@ -94,8 +94,9 @@ struct Found_stem
 {
   Index axis, tree;
   Vec3 foot;
-  double radius;
-  double height; ///< of the foot above the ground
+  double radius;           ///< largest radius in the lowest part
+  double radius_at_breast; ///< radius at breast height; 0 if the axis ends below it
+  double height;           ///< of the foot above the ground
 };
 
 /// Returns whether a stem belongs to the tree of a stem of at least its radius. z points upwards.
@@ -234,6 +235,7 @@ private:
                          none,
                          foot->point,
                          radius_near(m_axes.axes[a].axis, foot->point),
+                         radius_at_breast(m_axes.axes[a].axis, foot->point),
                          ground.height(foot->point)});
     }
     std::stable_sort(found.begin(), found.end(), [](const Found_stem& a, const Found_stem& b) {
@@ -296,6 +298,18 @@ private:
       if (node.point.z() <= foot.z() + m_rules.root * m_breast_height)
         radius = std::max(radius, node.radius);
     return radius;
+  }
+
+  /// Returns the radius at breast height above the foot, or 0 if the axis ends below.
+  double radius_at_breast(const Axis& axis, const Vec3& foot) const
+  {
+    const double height = foot.z() + m_breast_height;
+    for (std::size_t k = 1; k < axis.size(); ++k) {
+      const double a = axis[k - 1].point.z(), b = axis[k].point.z();
+      if (std::min(a, b) <= height && height < std::max(a, b))
+        return axis[k - 1].radius + (axis[k].radius - axis[k - 1].radius) * (height - a) / (b - a);
+    }
+    return 0;
   }
 
   /// Returns the points in the lowest part of all stems, and assigns them to their trees.
