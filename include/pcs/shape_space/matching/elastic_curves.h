@@ -1,6 +1,23 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
 // Elastic matching of curves by square-root velocities and dynamic programming.
+//
+// With unit tangents u [-] and lengths L [L], a curve has the square-root velocity q = sqrt(L) u
+// (A. Srivastava, E. Klassen, S. H. Joshi, I. H. Jermyn, IEEE TPAMI 33, 2011). The squared distance
+// of two curves is minimised over the reparametrisations g of curve 2, which increase from 0 to 1
+// on [0, 1],
+//
+//   E(g) = int |q1 - sqrt(g') q2(g)|^2 = L1 + L2 - 2 sqrt(L1 L2) M(g),                        [L]
+//   M(g) = int sqrt(g') u1 . u2(g).                                                           [-]
+//
+// M is at most 1, so that (sqrt L1 - sqrt L2)^2 bounds the energy from below. M is maximised by
+// dynamic programming over a grid of n by n samples, with equal weights of all samples of curve 1,
+//
+//   B(i, j) = max_{a, b} (B(i-a, j-b) + sqrt(b/a) sum_{0 <= x < a} u1(i-a+x) . u2(j-b + x b/a)),
+//   B(0, 0) = 0,   M = B(n-1, n-1) / (n-1).
+//
+// Products are interpolated linearly between samples of curve 2. The steps a, b are coprime and at
+// most s, so that 1/s <= g' <= s.
 
 #ifndef PCS_SHAPE_SPACE_MATCHING_ELASTIC_CURVES_H
 #define PCS_SHAPE_SPACE_MATCHING_ELASTIC_CURVES_H
@@ -95,21 +112,9 @@ inline Slopes make_slopes(int largest)
 }
 
 /*!
-  Matches curve 2 to curve 1. With unit tangents `u` [-] and lengths `L` [L], the squared distance
-  of the square-root velocities `q = sqrt(L) u` under a reparametrisation `g` of [0, 1] is
+  Matches curve 2 to curve 1, as stated at the head of this file.
 
-      E(g) = int |q1 - sqrt(g') q2(g)|^2 = L1 + L2 - 2 sqrt(L1 L2) M(g),                     [L]
-      M(g) = int sqrt(g') u1 . u2(g)                                                         [-]
-
-  where `g` increases from 0 to 1. `M` is at most 1, so `(sqrt L1 - sqrt L2)^2` bounds the energy
-  from below for every grid. `M` is maximised by dynamic programming over a grid of `n` by `n`
-  samples,
-
-      B(i, j) = max_{a, b} (B(i-a, j-b) + sqrt(b/a) sum_{0 <= x < a} u1(i-a+x) . u2(j-b + x b/a))
-
-  with `B(0, 0) = 0` and `M = B(n-1, n-1) / (n-1)`. Products are interpolated linearly between
-  samples of curve 2. The steps `a`, `b` are coprime and at most `s = largest_step`, so that
-  `1/s <= g' <= s`. O(n^2 sum a), with the sum over all steps.
+  Costs O(n^2 sum a) for `n` samples, with the sum over all steps up to `s = largest_step`.
 */
 class Elastic_matcher
 {

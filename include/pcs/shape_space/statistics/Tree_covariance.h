@@ -1,6 +1,31 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
 // Covariance of trees of which some lack branches, by expectation maximisation.
+//
+// The values of block b of n trees are the rows of a matrix X_b [L] with one column per tree. Each
+// row is a draw from a Gaussian over the trees with covariance s_b S: the n x n matrix S [-] of
+// trace n is common to all blocks, the factor s_b [L^2] is not. For trees that have all blocks,
+// with the deviations Z_b [L] of the rows from their means, the M-estimator of D. E. Tyler (Annals
+// of Statistics 15, 1987) is a minimum over the matrices S on the n - 1 dimensions perpendicular to
+// the vector 1 of
+//
+//   sum_b ((n - 1) ln tr(Z_b S^-1 Z_b^T) + ln det S),
+//
+// in which all blocks have the same influence, whatever their variance. It is a fixed point, up to
+// its trace, of
+//
+//   S <- sum_b w_b (Z_b^T Z_b + U_b),   w_b = (k_b / n) / tr(Z_b (S + 0.02 I)^-1 Z_b^T)   [1/L^2]
+//
+// with the number k_b of trees that have the block; 0.02 is the least fraction of variance that no
+// block shares with others. Values that trees lack are replaced by their expectations (A. P.
+// Dempster, N. M. Laird, D. B. Rubin, J. of the Royal Statistical Society B 39, 1977): with the
+// trees K that have the block and the others, O,
+//
+//   Z_O = Z_K S_KK^-1 S_KO,   U_OO = c (S_OO - S_OK S_KK^-1 S_KO),                          [L^2]
+//   c = tr(Z_K S_KK^-1 Z_K^T) / max(1, k_b - 1),   mean = X_K S_KK^-1 1 / (1^T S_KK^-1 1)
+//
+// where 1e-6 is added to the diagonal of S. U_b is zero elsewhere; the mean of a block that all
+// trees have is the arithmetic mean.
 
 #ifndef PCS_SHAPE_SPACE_STATISTICS_TREE_COVARIANCE_H
 #define PCS_SHAPE_SPACE_STATISTICS_TREE_COVARIANCE_H
@@ -41,27 +66,11 @@ inline Eigen::MatrixXd inverse_of_symmetric(Eigen::MatrixXd a)
 } // namespace internal
 
 /*!
-  Covariance between `n` trees, of which some lack blocks of numbers.
+  Covariance between `n` trees, of which some lack blocks of numbers, as stated at the head of this
+  file.
 
-  The numbers of block `b` are the rows of a matrix [L] with one column per tree. Each row is a draw
-  from a Gaussian over the trees; its covariance is `S` [-], `n` by `n` and of trace `n`, up to a
-  factor for each block. `S` is a fixed point, up to its trace, of
-
-      S <- sum_b w_b (Z_b^T Z_b + U_b),   w_b = (k_b / n) / tr(Z_b (S + 0.02 I)^-1 Z_b^T)    [1/L^2]
-
-  with the deviations `Z_b` [L] from the mean of the block, and the number `k_b` of trees that have
-  it: the M-estimator of D. E. Tyler (1987), by which all blocks have the same influence,
-  whatever their variance. Values that trees lack are replaced by their expectations (A. P.
-  Dempster, N. M. Laird, D. B. Rubin 1977): with the trees `K` that have the block and the others,
-  `O`,
-
-      Z_O = Z_K S_KK^-1 S_KO,   U_OO = c (S_OO - S_OK S_KK^-1 S_KO),                         [L^2]
-      c = tr(Z_K S_KK^-1 Z_K^T) / max(1, k_b - 1),   mean = X_K S_KK^-1 1 / (1^T S_KK^-1 1)
-
-  where `X_b` are the values, and 1e-6 is added to the diagonal of `S`. `U_b` is zero elsewhere; the
-  mean of a block that all trees have is the arithmetic mean. Without a start, the first step has
-  `Z_O` and `U_b` zero and the inverse in `w_b` is `I`. Blocks that do not vary are left out. At
-  most 60 steps, each O(sum_b (k_b^3 + rows_b n^2)).
+  Without a start, the first step has `Z_O` and `U_b` zero and the inverse in `w_b` is `I`. Blocks
+  that do not vary are left out. At most 60 steps, each O(sum_b (k_b^3 + rows_b n^2)).
 */
 class Tree_covariance
 {

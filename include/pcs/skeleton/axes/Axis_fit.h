@@ -1,6 +1,30 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
 // Robust least-squares fit of a whole axis: positions and radii of all nodes to all points.
+//
+// The fit minimises the negative log-posterior over the centers c_k [L] and radii r_k [L] of the
+// nodes 0 <= k < n of an axis,
+//
+//   E(c, r) = 1/2 sum_i w_i e_i^2                                                            [-]
+//           + 1/2 sum_{0 < k < n-1} h_k / l (|c''_k|^2 / a_k^2 + r''_k^2 / b_k^2)
+//           + 1/2 sum_k (r_k - q_k)^2 / d_k^2
+//           + 1/2 sum_k |m_k - c_k - r_k f_k|^2 / g_k^2,
+//
+// by Gauss-Newton steps, before each of which the weights w_i are updated.
+//
+// - e_i = |p_i - c(i)| - r(i) [L]: residual of the point p_i, with center and radius at its
+//   projection; both are linear between adjacent nodes. Points before the base or beyond the tip
+//   are left out.
+// - w_i = s (1 - (e_i / (4.7 v t_i))^2)^2 / t_i^2 [1/L^2]: biweight (A. E. Beaton, J. W. Tukey,
+//   Technometrics 16, 1974), zero beyond 4.7 v t_i, with the deviation t_i = max(noise, bark r(i))
+//   [L], the widening v [-], and the stride s of the points in use [count].
+// - c''_k, r''_k [1/L]: divided differences over the three adjacent nodes, of mean distance h_k
+//   [L], with the length l = correlation [L] and the standard deviations
+//   a_k = min(axis_bend, thick_bend / r_k), b_k = (taper_offset + r_k) / taper_scale^2 [1/L].
+// - q_k, d_k [L]: radius and deviation of the Radius_prior.
+// - m_k [L], f_k [-], g_k [L]: middle, facing and deviation of the Center_prior.
+//
+// Other names are members of Fit_model.
 
 #ifndef PCS_SKELETON_AXES_AXIS_FIT_H
 #define PCS_SKELETON_AXES_AXIS_FIT_H
@@ -78,26 +102,7 @@ struct Center_prior
 constexpr double tukey_constant = 4.7, first_widening = 2.5;
 
 /*!
-  Fits the centers `c_k` [L] and radii `r_k` [L] of all nodes to the points by robust least squares.
-
-  Centers and radii are linear between adjacent nodes. A point `p_i` that projects onto a segment
-  has the residual `e_i = |p_i - c(i)| - r(i)` [L], with center and radius at its projection. Points
-  before the base or beyond the tip are ignored. Each iteration updates the weights and takes one
-  Gauss-Newton step for the negative log-posterior
-
-      E(c, r) = 1/2 sum_i w_i e_i^2                                                          [-]
-              + 1/2 sum_{0 < k < n-1} h_k / l (|c''_k|^2 / a_k^2 + r''_k^2 / b_k^2)
-              + 1/2 sum_k (r_k - q_k)^2 / d_k^2
-              + 1/2 sum_k |m_k - c_k - r_k f_k|^2 / g_k^2,
-
-  - `w_i = s (1 - (e_i / (4.7 v t_i))^2)^2 / t_i^2` [1/L^2]: Tukey's biweight, zero beyond
-    `4.7 v t_i`, with the deviation `t_i = max(noise, bark r(i))` [L], the widening `v` [-], and the
-    stride `s` of the points in use [count];
-  - `c''_k`, `r''_k` [1/L]: divided differences over the three adjacent nodes, of mean distance
-    `h_k` [L]; with the length `l = correlation` [L] and the standard deviations
-    `a_k = min(axis_bend, thick_bend / r_k)`, `b_k = (taper_offset + r_k) / taper_scale^2` [1/L];
-  - `q_k`, `d_k` [L]: radius and deviation of the `Radius_prior`;
-  - `m_k` [L], `f_k` [-], `g_k` [L]: middle, facing and deviation of the `Center_prior`.
+  Fits the centers and radii of all nodes of an axis to points, as stated at the head of this file.
 
   For points outside, the matrix includes the curvature of `|p_i - c|`. Steps are damped by
   100 / noise^2 along the axis and 0.005 / noise^2 in all directions, and are at most

@@ -1,6 +1,37 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
 // Priors of radii and positions of sections: point counts, widths, visibility and taper.
+//
+// A node of radius r [L] gets a radius q [L] with the deviation d [L], and a center with the
+// deviation g [L]. Axis_fit.h minimises the squared differences from them with the weights 1 / d^2
+// and 1 / g^2 [1/L^2]. Named factors are those of Chain_options; u is the spacing [L], s the noise
+// [L], N the number of points near the surface from two nodes before to two nodes behind [count].
+//
+// - Counting, where the point density D [1/L^2] is known and the visible length V [L] of these
+//   nodes exceeds `visible` times their length: the radius of a cylinder with N visible points,
+//
+//     q = F N / (2 pi D V),   d = prior_share r' + prior_offset u.
+//
+//   With M = prior_ratio q, r' is r up to M and max(q, M^2 / r) beyond. F is 1 unless
+//   r < blurred s; then it is exp(n / (n + hidden_nodes) median ln(r / q_1)), clamped to
+//   [1, most_hidden], over the n such nodes with points, q_1 being q for F = 1.
+// - Taper, where no density is known, at the distance z [L] from the base:
+//
+//     q = B (1 - (1 - taper_to) z / L),   d = taper_share B max(1, N / taper_count)
+//
+//   if z > taper_from L and r > q. B < thick u is the median radius near the base, L the length
+//   [L].
+// - Width, for one-sided sections with r < width_radius u:
+//
+//     q = sqrt(3) W,   d = width_share q + width_noise s
+//
+//   with the standard deviation W [L] of the points perpendicular to the axis and to their mean
+//   normal: positions across the beams of a scanner are uniform over a diameter. This prior is
+//   combined with one of the above: 1 / d^2 = sum_j 1 / d_j^2 and q = d^2 sum_j q_j / d_j^2.
+// - Center, for r < thick u: the mean of the points is expected at r f from the center, with the
+//   mean normal f [-] of the visibility field of deviation v [-], and
+//
+//     g = facing_share v r + facing_noise s.
 
 #ifndef PCS_SKELETON_AXES_SECTION_PRIORS_H
 #define PCS_SKELETON_AXES_SECTION_PRIORS_H
@@ -121,32 +152,9 @@ inline std::vector<Radius_prior> taper_priors(const Chain_view& view,
 }
 
 /*!
-  Sets the priors of `fit` from its current sections. `visible`: visible fraction of each section
-  [-]; `length`: as for `taper_priors()`, 0 for a piece that need not taper [L].
-
-  A node of radius `r` [L] gets a radius `q` with the deviation `d` [L], and a center with the
-  deviation `g` [L], for the terms of `Axis_fit`. Named factors are those of `Chain_options`; `u` is
-  the spacing [L], `s` the noise [L], `N` the number of points near the surface from two nodes
-  before to two nodes behind [count].
-
-  - Counting, where the point density `D` [1/L^2] is known and the visible length `V` [L] of these
-    nodes exceeds `visible` times their length: `q = F N / (2 pi D V)` and
-    `d = prior_share r' + prior_offset u`. With `M = prior_ratio q`, `r'` is `r` up to `M` and
-    `max(q, M^2 / r)` beyond. `F` is 1 unless `r < blurred s`; then it is
-    `exp(n / (n + hidden_nodes) median ln(r / q_1))`, clamped to [1, most_hidden], over the `n` such
-    nodes with points, `q_1` being `q` for `F = 1`.
-  - Taper, where no density is known: `q = B (1 - (1 - taper_to) z / L)` and
-    `d = taper_share B max(1, N / taper_count)` at the distance `z` [L] from the base, if
-    `z > taper_from L` and `r > q`. `B < thick u` is the median radius near the base, `L` the length
-    [L].
-  - Width, for one-sided sections with `r < width_radius u`: `q = sqrt(3) W` and
-    `d = width_share q + width_noise s`, with the standard deviation `W` [L] of the points
-    perpendicular to the axis and to their mean normal. This prior is combined with one of the
-    above: `1 / d^2 = sum_j 1 / d_j^2` and `q = d^2 sum_j q_j / d_j^2`.
-  - Center, for `r < thick u`: the mean of the points is expected at `r f`, with the mean normal `f`
-    [-] of the visibility field of deviation `v` [-], and `g = facing_share v r + facing_noise s`.
-
-  O(nodes + points).
+  Sets the priors of `fit` from its current sections, as stated at the head of this file. `visible`:
+  visible fraction of each section [-]; `length`: as for `taper_priors()`, 0 for a piece that need
+  not taper [L]. O(nodes + points).
 */
 inline void expect_sections(const Chain_view& view,
                             const std::vector<double>& visible,

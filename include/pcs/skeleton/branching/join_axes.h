@@ -1,6 +1,28 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
 // Choice of the parent of every axis by log-odds: one rooted tree of branches.
+//
+// For every axis except the roots, the cost of a joint is minimised over both ends of the axis, all
+// other axes, and seven positions on each of their segments in reach. A cost is a sum of log-odds
+// [-]; lower is more likely. The weights are those of Joint_options, estimated by a conditional
+// logit from scans of virtual trees (doc/design/skeletons/parents_of_branches.md).
+//
+// An end of a branch has the position x [L], the unit vector d into the branch and the radius r
+// [L]; its other end has the radius r' [L]. At a position x + v on an axis of radius R [L] and unit
+// tangent t, with the lateral offset a = |v - (v . d) d| [L], the gap g = max(0, |v| - R) [L] and
+// the spacing u [L], the joint costs
+//
+//   gap g / u max(1, g / (steep_gap u)) + overlap max(0, v . d - R) / u + tie (a + |v|) / u
+//   + angle (1 - max(t . d, lowest_cosine))
+//   + radius ln max(1, r / (free_share R))
+//   + lateral ln(1 + max(0, a - lateral_tolerance R) / u)
+//   - taper ln(r / r') + (reversal direction, if the end is the tip),                         [-]
+//
+// subject to g <= max(reach u, long_reach length). Radii in ratios are at least thinnest u;
+// direction [-] is the certainty of the base of the branch.
+//
+// Every axis takes its joint of least cost. Cycles are then resolved one axis at a time by the
+// least additional cost, which need not minimise the sum of all costs.
 
 #ifndef PCS_SKELETON_BRANCHING_JOIN_AXES_H
 #define PCS_SKELETON_BRANCHING_JOIN_AXES_H
@@ -90,27 +112,11 @@ inline Vec3 tangent(const Axis& axis, std::size_t segment)
 } // namespace internal
 
 /*!
-  Selects the parent of every axis except the roots by the costs of joints. A cost is a sum of
-  log-odds [-]; lower is more likely. Factors are those of `Joint_options`, `u` is the spacing [L].
+  Selects the parent of every axis except the roots by the costs of joints, as stated at the head of
+  this file.
 
-  An end of a branch has the position `x` [L], the unit vector `d` into the branch and the radius
-  `r` [L]; its other end has the radius `r'` [L]. At a position `x + v` on an axis of radius `R` [L]
-  and unit tangent `t`, with the lateral offset `a = |v - (v . d) d|` [L] and the gap
-  `g = max(0, |v| - R)` [L], the joint costs
-
-      gap g / u max(1, g / (steep_gap u)) + overlap max(0, v . d - R) / u + tie (a + |v|) / u
-      + angle (1 - max(t . d, lowest_cosine))
-      + radius ln max(1, r / (free_share R))
-      + lateral ln(1 + max(0, a - lateral_tolerance R) / u)
-      - taper ln(r / r') + (reversal direction, if the end is the tip),
-
-  subject to `g <= max(reach u, long_reach length)`. Radii in ratios are at least `thinnest u`;
-  `direction` [-] is the certainty of the base of the branch. Every pair of an end and an axis has
-  one option: the joint of least cost among seven positions on each segment in reach.
-
-  Every axis takes its option of least cost. Cycles are then resolved one axis at a time by the
-  least additional cost (`choose()`), which need not minimise the sum of all costs. At most
-  O(k^2) for each axis of k <= 400 options, after the search for near nodes.
+  Every pair of an end and an axis has one option: its joint of least cost. At most O(k^2) for each
+  axis of k <= 400 options, after the search for near nodes.
 */
 class Axis_joiner
 {
