@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace test_point_table {
+namespace test_Point_table {
 
 using pcs::Invalid_input;
 using pcs::IO::Point_table;
@@ -103,4 +103,4 @@ BOOST_AUTO_TEST_CASE(tables_with_other_properties_cannot_be_appended)
 
 BOOST_AUTO_TEST_SUITE_END()
 
-} // namespace test_point_table
+} // namespace test_Point_table
