@@ -70,6 +70,7 @@ set(skeleton_clutter graph/Neighbor_graph.h scan/Point_labels.h)
 set(skeleton_layers graph/Neighbor_graph.h graph/shortest_paths.h)
 set(skeleton_axes graph/Neighbor_graph.h layers/cut_layers.h)
 set(skeleton_continuation axes/Axis_fit.h axes/Chain_options.h axes/remove_axes.h)
+set(skeleton_radii axes/Axis_fit.h axes/Axis_oval.h)
 set(skeleton_leaves graph/Neighbor_graph.h graph/shortest_paths.h)
 set(skeleton_slices layers/cut_layers.h)
 set(skeleton_forest

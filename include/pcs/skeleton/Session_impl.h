@@ -444,6 +444,7 @@ void measure_sections(Session_state<Tag>& s)
   const pcs::internal::Stage_timer timer(s.report.seconds.sections);
   correct_widening(s);
   fit_section_ellipses<Tag>(s.scan, s.axes.noise, s.options.radii.sections, s.joined.tree);
+  fit_branch_ovals<Tag>(s.scan, s.axes.noise, s.options.radii.ovals, s.joined.tree);
   describe_tree(s);
 }
 

@@ -9,6 +9,7 @@
 
 #include <CGAL/Simple_cartesian.h>
 
+#include <boost/range/iterator_range.hpp>
 #include <boost/test/unit_test.hpp>
 
 #include <Eigen/Core>
@@ -187,6 +188,38 @@ BOOST_AUTO_TEST_CASE(a_trunk_that_is_seen_from_one_side_has_its_diameter)
     const auto report = pcs::extract_tree_skeleton(points, tree);
     BOOST_TEST(std::abs(report.diameter_at_breast_height - 0.2 * (1 - 0.05 * 1.3)) < 0.02 * 0.2);
     BOOST_TEST(pcs::warnings(report).empty());
+    // The sections are ellipses as scanned: 10 % longer along x than along y.
+    std::size_t number_of_nodes = 0;
+    for (const auto v : boost::make_iterator_range(vertices(tree))) {
+      const auto& node = tree[v];
+      if (node.branch != 0 || !node.is_measured || node.point.z() < 0.3 || node.point.z() > 2.7)
+        continue;
+      ++number_of_nodes;
+      BOOST_TEST(std::abs(node.major_radius / node.minor_radius - 1.05 / 0.95) < 0.04);
+      BOOST_TEST(std::abs(node.major_axis.x()) > 0.98);
+      BOOST_CHECK_CLOSE(node.major_radius * node.minor_radius, node.radius * node.radius, 1e-6);
+    }
+    BOOST_TEST(number_of_nodes > 5u);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_round_trunk_that_is_seen_from_one_side_remains_round)
+{
+  using Kernel = CGAL::Simple_cartesian<double>;
+  for (const unsigned seed : {3u, 4u, 5u}) {
+    std::vector<Kernel::Point_3> points;
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> share;
+    std::normal_distribution<double> error(0, noise);
+    while (points.size() < 6000) {
+      const double a = pi * (share(random) - 0.5), z = 3 * share(random);
+      const double r = radius * (1 - 0.05 * z) + error(random);
+      points.emplace_back(r * std::cos(a), r * std::sin(a), z);
+    }
+    pcs::Tree_skeleton<Kernel> tree;
+    pcs::extract_tree_skeleton(points, tree);
+    for (const auto v : boost::make_iterator_range(vertices(tree)))
+      BOOST_TEST(tree[v].major_radius <= 1.02 * tree[v].minor_radius, "at " << tree[v].point.z());
   }
 }
 

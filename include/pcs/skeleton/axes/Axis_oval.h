@@ -59,6 +59,17 @@ public:
 
   const Eigen::Vector2d& coefficients() const { return m_coefficients; }
 
+  /// Returns the standard error of the coefficients after `improve()`: the root of the trace of
+  /// their covariance. [-]
+  double error() const { return m_error; }
+
+  /// Returns the unit vector along the longest diameter of the sections of a segment.
+  Vec3 longest_direction(std::size_t segment) const
+  {
+    const double angle = 0.5 * std::atan2(m_coefficients.y(), m_coefficients.x());
+    return std::cos(angle) * m_first[segment] + std::sin(angle) * m_second[segment];
+  }
+
   /*!
     Updates the coefficients from the residuals of a fit by weighted least squares. The center and
     radius of every stretch are further unknowns, which are eliminated. On a single arc, a shift of
@@ -93,6 +104,7 @@ private:
 
   std::vector<Vec3> m_first, m_second; ///< frames of the segments
   Eigen::Vector2d m_coefficients = Eigen::Vector2d::Zero();
+  double m_error = 0;
 };
 
 inline void Axis_oval::improve(const Axis_fit& fit, double noise, const Oval_options& rules)
@@ -152,6 +164,8 @@ inline void Axis_oval::improve(const Axis_fit& fit, double noise, const Oval_opt
   Eigen::Vector2d change;
   if (linear_algebra::solve_symmetric(information, right, change))
     m_coefficients += change;
+  // trace of the inverse of a symmetric 2 x 2 matrix
+  m_error = std::sqrt(information.trace() / information.determinant());
   const double size = m_coefficients.norm();
   if (size > rules.largest)
     m_coefficients *= rules.largest / size;

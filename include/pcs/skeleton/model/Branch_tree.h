@@ -7,6 +7,7 @@
 
 #include <pcs/skeleton/model/Axis.h>
 
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -20,6 +21,14 @@ struct Branch_node : Axis_node
   Index branch = none;
   double major_radius = 0, minor_radius = 0; ///< of the section; 0: a circle [L]
   Vec3 major_axis = Vec3::Zero();
+
+  /// Makes the section an ellipse with the same area. `ratio` of the semi-axes is at least 1.
+  void set_ellipse(double ratio, const Vec3& longest_direction)
+  {
+    major_radius = radius * std::sqrt(ratio);
+    minor_radius = radius / std::sqrt(ratio);
+    major_axis = longest_direction;
+  }
 
   /// Scales the section without changing its shape.
   void resize(double new_radius)

@@ -87,11 +87,9 @@ void fit_section_ellipses(const Scan& scan,
     const double size = std::hypot(x(3), x(4)), error = std::sqrt(2 * variance / count);
     if (!std::isfinite(size) || size < rules.significance * error || size > 0.5 * node.radius)
       return;
-    const double ratio = (1 + size / node.radius) / (1 - size / node.radius);
-    node.major_radius = node.radius * std::sqrt(ratio);
-    node.minor_radius = node.radius / std::sqrt(ratio);
     const double angle = 0.5 * std::atan2(x(4), x(3));
-    node.major_axis = std::cos(angle) * e1 + std::sin(angle) * e2;
+    node.set_ellipse((1 + size / node.radius) / (1 - size / node.radius),
+                     std::cos(angle) * e1 + std::sin(angle) * e2);
   });
 }
 

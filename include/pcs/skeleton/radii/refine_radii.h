@@ -11,6 +11,7 @@
 #include <pcs/skeleton/radii/bound_radii.h>
 #include <pcs/skeleton/radii/correct_beam_divergence.h>
 #include <pcs/skeleton/radii/correct_voxel_size.h>
+#include <pcs/skeleton/radii/fit_branch_ovals.h>
 #include <pcs/skeleton/radii/fit_section_ellipses.h>
 #include <pcs/skeleton/radii/measure_given.h>
 #include <pcs/skeleton/radii/rebuild_trunk_base.h>
@@ -29,6 +30,7 @@ struct Radius_options
   Recentering_options recentering;
   Trunk_base_options trunk_base;
   Section_ellipse_options sections;
+  Branch_oval_options ovals;
   Given_skeleton_options given;
   Beam_divergence_options beam;
   Voxel_size_options voxels;
