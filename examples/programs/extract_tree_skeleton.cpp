@@ -249,7 +249,9 @@ void write_points_to(const std::string& path,
     check_output(path, table.schema());
 }
 
-void write_tables(const Skeleton_options& options, const Tree& tree)
+void write_tables(const Skeleton_options& options,
+                  const Tree& tree,
+                  const pcs::Skeleton_errors& errors)
 {
   const Kernel::Vector_3 up = up_direction<Kernel>(options.up);
   if (!options.cylinders.empty())
@@ -257,7 +259,7 @@ void write_tables(const Skeleton_options& options, const Tree& tree)
   if (!options.branches.empty())
     pcs::IO::write_branches(options.branches, tree, up);
   if (!options.tree_table.empty())
-    pcs::IO::write_tree_table(options.tree_table, tree, up, options.breast_height);
+    pcs::IO::write_tree_table(options.tree_table, tree, up, options.breast_height, errors);
   if (!options.edges.empty())
     pcs::IO::write_ply_edges(options.edges, tree);
 }
@@ -305,7 +307,7 @@ nlohmann::ordered_json work_on(const std::string& input, const Skeleton_options&
   if (!options.leaves.empty())
     json["leaves"] = write_leaves(options.leaves, tree);
   const double meshing = watch.lap();
-  write_tables(options, tree);
+  write_tables(options, tree, pcs::standard_errors(report));
   if (!options.points.empty())
     write_points_to(options.points, std::move(table), labels, true);
   pcs::IO::write_swc(options.swc, tree);

@@ -175,6 +175,25 @@ BOOST_AUTO_TEST_CASE(the_diameter_at_breast_height_is_interpolated)
   BOOST_TEST(rows("a.csv")[0].at("DBHqsm") == "NA");
 }
 
+BOOST_AUTO_TEST_CASE(standard_errors_have_the_units_of_their_values)
+{
+  const Tree tree = make_fork();
+  pcs::Skeleton_errors errors;
+  errors.height = 0.1;
+  errors.diameter_at_breast_height = 0.02;
+  errors.trunk_length = 0.3;
+  errors.length = 0.4;
+  errors.volume = 0.05;
+  pcs::IO::write_tree_table(path("a.csv"), tree, Vector_3(0, 0, 1), 1.3, errors);
+  const Values row = rows("a.csv")[0];
+  check(row, "TreeHeight_error", 0.1);
+  check(row, "DBHqsm_error", 0.02);
+  check(row, "TrunkLength_error", 0.3);
+  check(row, "TotalLength_error", 0.4);
+  check(row, "TotalVolume_error", 50);
+  BOOST_TEST(row.at("TrunkVolume_error") == "NA");
+}
+
 BOOST_AUTO_TEST_CASE(branches_without_length_are_rows_of_zeros)
 {
   const Tree tree = pcs_test::make_tree<Kernel>(

@@ -9,6 +9,7 @@
 #include <pcs/IO/internal/Tree_rows.h>
 #include <pcs/IO/internal/cylinders/Branch_sizes.h>
 #include <pcs/IO/internal/numbers.h>
+#include <pcs/core/Skeleton_report.h>
 #include <pcs/core/Tree_skeleton.h>
 #include <pcs/core/errors.h>
 #include <pcs/internal/constants.h>
@@ -200,12 +201,15 @@ void write_branches(const std::string& path,
   `TrunkArea, BranchArea, TotalArea` [m^2], `DBHqsm` [m]. Volumes and areas are those of
   `write_branches()`. `TreeHeight` is the height of the highest node above the lowest one, and
   `DBHqsm` the diameter of the trunk at the path length `breast_height` from the root, `NA` if the
-  trunk is shorter. The file is complete or absent.
+  trunk is shorter. Standard errors follow in the units of their values: `TotalVolume_error,
+  TrunkVolume_error, TreeHeight_error, TrunkLength_error, TotalLength_error, DBHqsm_error`; `NA` if
+  unknown. The file is complete or absent.
 
   \param path name of the file
   \param tree a tree with branches
   \param up the up direction, which is not null
   \param breast_height of `DBHqsm`, `> 0` [L]
+  \param errors result of `standard_errors()`; an error of 0 is unknown
   \throws pcs::IO_error when the file cannot be written
   \throws pcs::Invalid_input when the graph is not a tree below its root, or a number is not finite
 */
@@ -213,7 +217,8 @@ template <class Kernel>
 void write_tree_table(const std::string& path,
                       const Tree_skeleton<Kernel>& tree,
                       const typename Kernel::Vector_3& up = typename Kernel::Vector_3(0, 0, 1),
-                      double breast_height = 1.3)
+                      double breast_height = 1.3,
+                      const Skeleton_errors& errors = Skeleton_errors())
 {
   if (!(breast_height > 0) || !std::isfinite(breast_height))
     throw Invalid_input("pcs::IO::write_tree_table(): breast_height must be finite and positive");
@@ -240,7 +245,11 @@ void write_tree_table(const std::string& path,
   internal::Output_file file(path);
   std::string text = "TotalVolume,TrunkVolume,BranchVolume,TreeHeight,TrunkLength,BranchLength,"
                      "TotalLength,NumberBranches,MaxBranchOrder,TrunkArea,BranchArea,TotalArea,"
-                     "DBHqsm\n";
+                     "DBHqsm,TotalVolume_error,TrunkVolume_error,TreeHeight_error,"
+                     "TrunkLength_error,TotalLength_error,DBHqsm_error\n";
+  const auto known = [](double error) {
+    return error > 0 ? error : std::numeric_limits<double>::quiet_NaN();
+  };
   internal::append_row(text,
                        {internal::litres_per_cubic_metre * (of_trunk.volume + of_branches.volume),
                         internal::litres_per_cubic_metre * of_trunk.volume,
@@ -254,7 +263,13 @@ void write_tree_table(const std::string& path,
                         of_trunk.area,
                         of_branches.area,
                         of_trunk.area + of_branches.area,
-                        internal::diameter_at(measurer, measurer.nodes(trunk), breast_height)});
+                        internal::diameter_at(measurer, measurer.nodes(trunk), breast_height),
+                        internal::litres_per_cubic_metre * known(errors.volume),
+                        internal::litres_per_cubic_metre * known(errors.trunk_volume),
+                        known(errors.height),
+                        known(errors.trunk_length),
+                        known(errors.length),
+                        known(errors.diameter_at_breast_height)});
   file.write(text);
   file.commit();
 }
