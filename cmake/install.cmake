@@ -7,6 +7,24 @@ configure_package_config_file(cmake/pcsConfig.cmake.in ${PROJECT_BINARY_DIR}/pcs
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/pcsConfigVersion.cmake
   COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
 
+# for build systems other than CMake
+set(PCS_PC_REQUIRES "")
+set(PCS_PC_FLAGS "")
+set(PCS_PC_LIBRARIES "")
+if(PCS_USES_TBB)
+  set(PCS_PC_REQUIRES " tbb")
+  set(PCS_PC_FLAGS " -DCGAL_LINKED_WITH_TBB -DPCS_WITH_TBB=1")
+endif()
+if(PCS_USES_LASZIP)
+  string(APPEND PCS_PC_FLAGS " -DPCS_WITH_LASZIP=1")
+  set(PCS_PC_LIBRARIES " -llaszip")
+endif()
+configure_file(cmake/pcs.pc.in ${PROJECT_BINARY_DIR}/pcs.pc @ONLY)
+
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME dev)
+install(FILES ${PROJECT_BINARY_DIR}/pcs.pc DESTINATION ${CMAKE_INSTALL_DATADIR}/pkgconfig)
+install(FILES ${PROJECT_BINARY_DIR}/include/pcs/version.h
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pcs)
 install(TARGETS pcs EXPORT pcsTargets)
 install(EXPORT pcsTargets NAMESPACE pcs:: DESTINATION ${PCS_CMAKE_DIR})
 install(DIRECTORY include/pcs DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")

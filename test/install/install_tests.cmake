@@ -1,7 +1,13 @@
-# The three ways in which a user's project gets pcs. Each one builds and runs install/consumer.
+# The ways in which a user's project gets pcs. Each one builds and runs install/consumer.
 
 get_target_property(eigen_include_dir Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
-foreach(way find_package add_subdirectory copied_headers)
+set(ways find_package add_subdirectory copied_headers)
+find_program(PCS_DPKG dpkg)
+find_program(PCS_PKG_CONFIG pkg-config)
+if(PCS_DPKG AND PCS_PKG_CONFIG)
+  list(APPEND ways debian_package)
+endif()
+foreach(way IN LISTS ways)
   add_test(NAME install.${way} COMMAND ${CMAKE_COMMAND}
     -D WAY=${way}
     -D PCS_ROOT=${PROJECT_SOURCE_DIR}

@@ -27,6 +27,23 @@ if(WAY STREQUAL "find_package")
 elseif(WAY STREQUAL "add_subdirectory")
   build_and_run_consumer(-D PCS_ROOT=${PCS_ROOT} -D PCS_WITH_TBB=${PCS_WITH_TBB}
     -D PCS_LIBRARY=pcs::pcs)
+elseif(WAY STREQUAL "debian_package") # used by CMake, and by the compiler with pkg-config
+  run(cpack --config ${PCS_BUILD}/CPackConfig.cmake -B ${WORK_DIR})
+  file(GLOB packages ${WORK_DIR}/*.deb)
+  foreach(package IN LISTS packages)
+    run(dpkg -x ${package} ${WORK_DIR}/root)
+  endforeach()
+  if(EXISTS ${PCS_BUILD}/examples/programs/extract_tree_skeleton)
+    run(${WORK_DIR}/root/usr/bin/extract_tree_skeleton --version)
+  endif()
+  build_and_run_consumer(-D CMAKE_PREFIX_PATH=${WORK_DIR}/root/usr
+    -D PCS_LIBRARY=pcs::compiled_deformation)
+  set(ENV{PKG_CONFIG_PATH} ${WORK_DIR}/root/usr/share/pkgconfig)
+  execute_process(COMMAND pkg-config --cflags --libs pcs OUTPUT_VARIABLE flags
+    OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  separate_arguments(flags)
+  run(${CXX} -O0 ${CMAKE_CURRENT_LIST_DIR}/consumer/consumer.cpp -o ${WORK_DIR}/consumer ${flags})
+  run(${WORK_DIR}/consumer)
 else() # copied headers, the compiler alone, without oneTBB
   file(COPY ${PCS_ROOT}/include DESTINATION ${WORK_DIR})
   run(${CXX} -std=c++17 -O0 -I ${WORK_DIR}/include -isystem ${EIGEN_INCLUDE_DIR}

@@ -11,6 +11,11 @@
 #include <iostream>
 #include <vector>
 
+#if __has_include(<pcs/version.h>) // not in a copy of the headers
+#include <pcs/version.h>
+static_assert(PCS_VERSION_NUMBER >= 100, "0.1.0 or later");
+#endif
+
 using Kernel = CGAL::Simple_cartesian<double>;
 
 int main()

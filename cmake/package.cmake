@@ -1,0 +1,33 @@
+# Debian packages by CPack: pcs-dev (headers) and pcs-tools (the programs).
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME pcs)
+set(CPACK_PACKAGE_VENDOR "The pcs authors")
+set(CPACK_PACKAGE_CONTACT "The pcs authors")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+
+set(CPACK_COMPONENTS_ALL dev)
+set(CPACK_DEBIAN_DEV_PACKAGE_NAME pcs-dev)
+set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEV_PACKAGE_ARCHITECTURE all)
+set(pcs_depends libcgal-dev libeigen3-dev libnanoflann-dev)
+if(PCS_USES_TBB)
+  list(APPEND pcs_depends libtbb-dev)
+endif()
+if(PCS_USES_LASZIP)
+  list(APPEND pcs_depends liblaszip-dev)
+endif()
+list(JOIN pcs_depends ", " CPACK_DEBIAN_DEV_PACKAGE_DEPENDS)
+
+if(TARGET extract_tree_skeleton)
+  list(APPEND CPACK_COMPONENTS_ALL tools)
+  set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME pcs-tools)
+  set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION science)
+  set(CPACK_DEBIAN_TOOLS_PACKAGE_SHLIBDEPS ON)
+endif()
+
+include(CPack)
