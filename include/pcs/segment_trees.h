@@ -56,8 +56,8 @@ struct Segmentation_report
   //! ground, walls, outliers, and points that are not connected to a tree [count]
   std::size_t number_of_unassigned_points = 0;
   std::vector<Segmented_tree> trees; ///< by decreasing radius
-  //! plants lower than breast height, such as shrubs; they are not among the trees unless no tree is
-  //! higher [count]
+  //! plants lower than breast height, such as shrubs; they are not among the trees, unless no tree
+  //! is higher [count]
   std::size_t number_of_low_plants = 0;
   double breast_height = 0; ///< as given [L]
   double seconds = 0;       ///< wall-clock time [s]
