@@ -138,7 +138,8 @@ public:
         \npdefault `true`
       \np{region_of_interest} indices of the points that may move. All other points, and points that
         coincide with one of them, remain bitwise unchanged.
-        \nptype range of integers (copied; use `std::cref` for large ones)
+        \nptype range of integers, or of elements of `points` with `operator<` (copied; use
+            `std::cref` for large ones)
         \npdefault all points
       \np{callback} called on this thread with a value that grows from 0 to 1; `false` stops, and no
         point is written. The call with 1 comes before the points are written.
@@ -158,7 +159,9 @@ public:
       m_elastic = deformation::read_elastic_options(np, function);
       internal::read_callback(np, m_callback);
       auto coordinates = m_access.template points_of_session<ConcurrencyTag>(function);
-      const auto region = deformation::read_region(np, coordinates.size(), function);
+      const auto region = deformation::read_region(np, [&](const auto& range) {
+        return m_access.positions_of(range, coordinates.size(), function);
+      });
       internal::Progress progress(m_callback);
       m_session = std::make_unique<Session>(std::move(coordinates),
                                             sampling,
@@ -180,11 +183,13 @@ public:
 
   /*!
     Adds a handle, which remains at rest until a motion is set.
-    \param indices the indices of its points, in any order, not necessarily connected
+    \param indices the positions of its points in the range, or elements of the range, such as
+           vertex descriptors with `operator<`; in any order, not necessarily connected
     \param softness 0: its points reach their targets exactly. Otherwise springs pull them to their
            targets, with the stiffness of the edges of a point divided by this value. [-]
     \throws Invalid_input if `indices` is empty, or if an index is out of range, belongs to another
-            handle, or lies outside the region of interest; nothing is changed then
+            handle, or lies outside the region of interest, or an element is not one of the range;
+            nothing is changed then
   */
   template <class IndexRange>
   Handle add_handle(const IndexRange& indices, double softness = 0)
@@ -192,8 +197,7 @@ public:
     const char* function = "pcs::Point_set_deformation::add_handle()";
     deformation::check_ready(m_session, function);
     deformation::check_softness(softness, function);
-    const auto checked =
-        deformation::read_indices(indices, m_session->number_of_points(), function);
+    const auto checked = m_access.positions_of(indices, m_session->number_of_points(), function);
     const Handle handle = m_session->add_handle(checked, softness > 0 ? 1 / softness : 0, function);
     m_motion.emplace_back();
     return handle;
@@ -242,15 +246,15 @@ public:
     });
   }
 
-  /// Sets the whole motion from rest to a `Similarity`, or to a `CGAL::Aff_transformation_3` that
-  /// is a similarity. It replaces the rotation, and `set_rotation()` replaces it. A translation
-  /// that is set later is applied after it, a scale before it.
+  /// Sets the whole motion from rest to a `Similarity`, or to another transformation that
+  /// `to_similarity()` converts. It replaces the rotation, and `set_rotation()` replaces it. A
+  /// translation that is set later is applied after it, a scale before it.
   template <class Transformation>
   void set_transformation(Handle handle, const Transformation& transformation)
   {
     static_assert(is_similarity_like_v<Transformation>,
-                  "pcs: a transformation must be a pcs::Similarity or a "
-                  "CGAL::Aff_transformation_3");
+                  "pcs: a transformation must be a pcs::Similarity, a CGAL::Aff_transformation_3, "
+                  "or a transformation or 4 x 4 matrix of Eigen");
     if constexpr (is_similarity_like_v<Transformation>)
       change_motion(handle, "pcs::Point_set_deformation::set_transformation()", [&](Motion& m) {
         m = {Similarity(), to_similarity(transformation), Similarity()};

@@ -41,6 +41,25 @@ struct Is_handle_range<T, std::enable_if_t<!std::is_void_v<typename Iterator_of<
 {
 };
 
+template <class T, class = void>
+struct Is_container : std::false_type
+{
+};
+template <class T>
+struct Is_container<T, std::void_t<typename T::allocator_type>> : std::true_type
+{
+};
+
+/// Refuses temporary containers, whose deformed points would be lost.
+template <class PointRange>
+constexpr void check_is_kept()
+{
+  static_assert(std::is_lvalue_reference_v<PointRange> ||
+                    !Is_container<std::decay_t<PointRange>>::value,
+                "pcs::deform_point_set(): the points are a temporary container, whose deformed "
+                "points would be lost; pass a variable");
+}
+
 /// Whether `T` is a range of `Deformation_handle`.
 template <class T>
 constexpr bool is_handle_range_v = Is_handle_range<T>::value;
@@ -87,7 +106,8 @@ Deformation_report deform_once(PointRange& points, const NamedParameters& np, co
 
   \tparam ConcurrencyTag `CGAL::Sequential_tag`, `CGAL::Parallel_tag` or
       `CGAL::Parallel_if_available_tag`
-  \param points a model of `RandomAccessRange`, modified in place through `point_map`
+  \param points a model of `RandomAccessRange`, modified in place through `point_map`; it may be a
+      temporary view such as `mesh.vertices()`
   \param handles range of `Deformation_handle`, at least one
   \return a `Deformation_report`: status, counts, energies, seconds per stage
 */
@@ -95,10 +115,11 @@ template <class ConcurrencyTag = CGAL::Parallel_if_available_tag,
           class PointRange,
           class HandleRange,
           class NamedParameters = parameters::Default_named_parameters>
-Deformation_report deform_point_set(PointRange& points,
+Deformation_report deform_point_set(PointRange&& points,
                                     const HandleRange& handles,
                                     const NamedParameters& np = NamedParameters())
 {
+  internal::check_is_kept<PointRange&&>();
   constexpr bool is_ok = internal::is_handle_range_v<HandleRange>;
   static_assert(is_ok,
                 "pcs::deform_point_set(): `handles` must be a range of pcs::Deformation_handle; "
@@ -118,10 +139,10 @@ Deformation_report deform_point_set(PointRange& points,
   \ingroup PkgPcsDeformationRef
   \brief deforms `points` with the `fixed` points at rest and the `moved` points transformed.
 
-  \param fixed range of integers; may be empty
-  \param moved range of integers
-  \param transformation a `Similarity` (see `rotation()`, `translation()`, `scaling()`), or a
-         `CGAL::Aff_transformation_3` that is a rotation with uniform scale and translation
+  \param fixed range of positions in `points`, or of its elements; may be empty
+  \param moved range of positions in `points`, or of its elements
+  \param transformation a `Similarity` (see `rotation()`, `translation()`, `scaling()`), or another
+         transformation that `to_similarity()` converts
 */
 template <class ConcurrencyTag = CGAL::Parallel_if_available_tag,
           class PointRange,
@@ -129,16 +150,17 @@ template <class ConcurrencyTag = CGAL::Parallel_if_available_tag,
           class MovedRange,
           class Transformation,
           class NamedParameters = parameters::Default_named_parameters>
-Deformation_report deform_point_set(PointRange& points,
+Deformation_report deform_point_set(PointRange&& points,
                                     const FixedRange& fixed,
                                     const MovedRange& moved,
                                     const Transformation& transformation,
                                     const NamedParameters& np = NamedParameters())
 {
+  internal::check_is_kept<PointRange&&>();
   constexpr bool is_ok = is_similarity_like_v<Transformation>;
   static_assert(is_ok,
-                "pcs::deform_point_set(): a transformation must be a pcs::Similarity or a "
-                "CGAL::Aff_transformation_3");
+                "pcs::deform_point_set(): a transformation must be a pcs::Similarity, a "
+                "CGAL::Aff_transformation_3, or a transformation or 4 x 4 matrix of Eigen");
   if constexpr (is_ok) {
     const Similarity motion = to_similarity(transformation);
     return internal::deform_once<ConcurrencyTag>(points, np, [&](auto& session) {

@@ -251,6 +251,17 @@ BOOST_AUTO_TEST_CASE_TEMPLATE(transformations_of_cgal_are_accepted, Kernel, Kern
   BOOST_CHECK_THROW(pcs::to_similarity(shear), pcs::Invalid_input);
   const Transformation mirror(-1, o, o, o, o, 1, o, o, o, o, 1, o);
   BOOST_CHECK_THROW(pcs::to_similarity(mirror), pcs::Invalid_input);
+
+  Eigen::Isometry3d isometry(Eigen::AngleAxisd(0.5, Vec3::UnitX()));
+  isometry.pretranslate(Vec3(1, 2, 3));
+  const pcs::Similarity of_eigen = pcs::to_similarity(isometry);
+  BOOST_TEST((of_eigen(Vec3(4, 5, 6)) - isometry * Vec3(4, 5, 6)).norm() < 1e-12);
+  Eigen::Matrix4d matrix = isometry.matrix();
+  BOOST_TEST((pcs::to_similarity(matrix)(Vec3(4, 5, 6)) - isometry * Vec3(4, 5, 6)).norm() < 1e-12);
+  const Eigen::Affine3f single(isometry.cast<float>());
+  BOOST_TEST((pcs::to_similarity(single)(Vec3(4, 5, 6)) - isometry * Vec3(4, 5, 6)).norm() < 1e-5);
+  matrix(3, 0) = 0.1;
+  BOOST_CHECK_THROW(pcs::to_similarity(matrix), pcs::Invalid_input);
 }
 
 BOOST_AUTO_TEST_CASE_TEMPLATE(points_and_vectors_of_cgal_serve_as_centre_and_axis, Kernel, Kernels)

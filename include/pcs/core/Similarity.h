@@ -208,6 +208,20 @@ struct Has_matrix_access<T, std::void_t<decltype(std::declval<const T&>().m(0, 3
 {
 };
 
+/// Whether `T` is an `Eigen::Transform` in space, or a 4 x 4 or 3 x 4 matrix of Eigen.
+template <class T, class = void>
+struct Is_eigen_transformation : std::false_type
+{
+};
+template <class T>
+struct Is_eigen_transformation<T, std::void_t<decltype(std::declval<const T&>().matrix().eval())>>
+{
+  using Matrix = std::decay_t<decltype(std::declval<const T&>().matrix().eval())>;
+  static constexpr bool value =
+      int(Matrix::ColsAtCompileTime) == 4 &&
+      (int(Matrix::RowsAtCompileTime) == 4 || int(Matrix::RowsAtCompileTime) == 3);
+};
+
 template <class Vector_3>
 Eigen::Vector3d unit_axis(const Vector_3& axis, const char* function)
 {
@@ -226,22 +240,31 @@ Eigen::Vector3d unit_axis(const Vector_3& axis, const char* function)
 /// Whether `to_similarity()` accepts `T`.
 template <class T>
 constexpr bool is_similarity_like_v =
-    std::is_convertible_v<T, Similarity> || internal::Has_matrix_access<T>::value;
+    std::is_convertible_v<T, Similarity> || internal::Has_matrix_access<T>::value ||
+    internal::Is_eigen_transformation<T>::value;
 
 /*!
   \ingroup PkgPcsCoreRef
-  \brief converts a `Similarity` or a `CGAL::Aff_transformation_3` to a `Similarity`.
-  \throws Invalid_input if the transformation reflects, shears or scales unequally
+  \brief converts a `Similarity`, a `CGAL::Aff_transformation_3`, an `Eigen::Transform` such as
+      `Eigen::Isometry3d`, or a 4 x 4 matrix of Eigen to a `Similarity`.
+  \throws Invalid_input if the transformation reflects, shears or scales unequally, or if the last
+      row of a 4 x 4 matrix is not (0, 0, 0, 1)
 */
 template <class Transformation>
 Similarity to_similarity(const Transformation& t)
 {
   if constexpr (std::is_convertible_v<Transformation, Similarity>)
     return t;
-  else {
-    static_assert(
-        internal::Has_matrix_access<Transformation>::value,
-        "pcs: a transformation must be a pcs::Similarity or a CGAL::Aff_transformation_3");
+  else if constexpr (internal::Is_eigen_transformation<Transformation>::value) {
+    const auto m = t.matrix().template cast<double>().eval();
+    if constexpr (decltype(m)::RowsAtCompileTime == 4)
+      if (m.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
+        throw Invalid_input("pcs::to_similarity(): the last row of the matrix is not (0, 0, 0, 1)");
+    return Similarity::from_matrix(m.template topRows<3>());
+  } else {
+    static_assert(internal::Has_matrix_access<Transformation>::value,
+                  "pcs: a transformation must be a pcs::Similarity, a CGAL::Aff_transformation_3, "
+                  "or a transformation or 4 x 4 matrix of Eigen");
     Eigen::Matrix<double, 3, 4> m;
     for (int row = 0; row < 3; ++row)
       for (int column = 0; column < 4; ++column)

@@ -10,6 +10,8 @@
 #include <pcs/core/Similarity.h>
 #include <pcs/core/errors.h>
 #include <pcs/core/parameters/check_value.h>
+#include <pcs/deformation/access/Element_positions.h>
+#include <pcs/deformation/access/read_options.h>
 #include <pcs/deformation/access/stream_block.h>
 #include <pcs/deformation/model/Affine_map.h>
 #include <pcs/internal/lanes.h>
@@ -113,9 +115,23 @@ public:
   static constexpr bool is_ok = is_vector_map_ok && is_tensor_map_ok && is_range_ok &&
                                 is_point_ok && is_point_map_ok && is_normal_map_ok;
 
+  /// Whether elements of the range, such as vertex descriptors, can name the points of handles.
+  static constexpr bool has_keys = !std::is_same_v<Value, Point> && !std::is_integral_v<Value> &&
+                                   internal::Is_ordered<Value>::value;
+
+  /// Whether small keys are copied, since the iterators of a mesh with removed elements need O(n)
+  /// for a step.
+  static constexpr bool has_copied_keys = [] {
+    if constexpr (!is_ok || !has_keys || !std::is_trivially_copyable_v<Value>)
+      return false;
+    else // a map that writes into the element does not accept a constant one
+      return sizeof(Value) <= sizeof(void*) && is_read_write_map_v<Point_map, const Value&, Point>;
+  }();
+
   /// Whether only coordinates in memory are written.
   static constexpr bool is_memory = [] {
-    if constexpr (!is_ok || has_gradients || !pcs::internal::has_streaming_stores)
+    if constexpr (!is_ok || has_copied_keys || has_gradients ||
+                  !pcs::internal::has_streaming_stores)
       return false;
     else if constexpr (!has_size_of_triple<Point>() || !has_size_of_triple<Normal>())
       return false;
@@ -128,6 +144,8 @@ public:
   /// Keeps a reference to `points`, and copies of the maps.
   Point_access(PointRange& points, const NamedParameters& np) : m_points(&points)
   {
+    if constexpr (has_copied_keys)
+      m_keys.assign(std::begin(points), std::end(points));
     if constexpr (pcs::internal::is_given_v<NamedParameters, CGAL::internal_np::point_t>)
       m_point_map = std::make_unique<Point_map>(
           CGAL::parameters::get_parameter(np, CGAL::internal_np::point_map));
@@ -147,6 +165,21 @@ public:
   std::size_t size() const
   {
     return static_cast<std::size_t>(std::distance(std::begin(*m_points), std::end(*m_points)));
+  }
+
+  /// Returns the points that a handle or a region names by their positions or by elements of the
+  /// range, among the first `n` points. Throws like `read_indices()`, and if an element is not
+  /// found.
+  template <class Range>
+  std::vector<std::uint32_t>
+  positions_of(const Range& range, [[maybe_unused]] std::size_t n, const std::string& caller)
+  {
+    if constexpr (has_keys && internal::Is_range_of<Range, Value>::value) {
+      if (!m_positions)
+        m_positions = std::make_unique<Element_positions<Value>>(*m_points);
+      return m_positions->find(range, caller);
+    } else
+      return read_indices(range, n, caller);
   }
 
   Vec3 point(std::size_t i) const
@@ -313,8 +346,12 @@ private:
   template <class F>
   PCS_ALWAYS_INLINE decltype(auto) with_element(std::size_t i, const F& f) const
   {
-    const auto it = iterator(i);
-    return f(*it);
+    if constexpr (has_copied_keys)
+      return f(m_keys[i]);
+    else {
+      const auto it = iterator(i);
+      return f(*it);
+    }
   }
 
   template <class Map>
@@ -369,7 +406,14 @@ private:
       pcs::internal::prefetch(std::addressof(get(map, key)), 1);
   }
 
+  /// Replaces the sorted elements if `has_keys` is false.
+  struct Nothing
+  {
+  };
+
   PointRange* m_points;
+  std::vector<std::conditional_t<has_copied_keys, Value, Nothing>> m_keys;
+  std::unique_ptr<std::conditional_t<has_keys, Element_positions<Value>, Nothing>> m_positions;
   // pointers, because maps may be neither assignable nor default constructible
   std::unique_ptr<Point_map> m_point_map;
   std::unique_ptr<Normal_map> m_normal_map;

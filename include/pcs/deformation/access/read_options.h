@@ -73,7 +73,7 @@ read_indices(const IndexRange& indices, std::size_t n, const std::string& caller
 {
   static_assert(is_index_range_v<IndexRange>,
                 "pcs: a handle or a region of interest must be a range of integers, the numbers of "
-                "its points");
+                "its points, or a range of keys like the elements of `points`");
   std::vector<std::uint32_t> result;
   if constexpr (is_index_range_v<IndexRange>)
     for (const auto& i : indices) {
@@ -85,16 +85,15 @@ read_indices(const IndexRange& indices, std::size_t n, const std::string& caller
   return result;
 }
 
-/// Returns the indices of the region of interest, if one is given, among `n` points. Throws like
-/// `read_indices()`.
-template <class NamedParameters>
-std::optional<std::vector<std::uint32_t>> read_region([[maybe_unused]] const NamedParameters& np,
-                                                      [[maybe_unused]] std::size_t n,
-                                                      [[maybe_unused]] const std::string& caller)
+/// Returns `positions_of(region)` of the region of interest, if one is given.
+template <class NamedParameters, class Positions_of>
+std::optional<std::vector<std::uint32_t>>
+read_region([[maybe_unused]] const NamedParameters& np,
+            [[maybe_unused]] const Positions_of& positions_of)
 {
   using Tag = pcs::internal_np::region_of_interest_t;
   if constexpr (pcs::internal::is_given_v<NamedParameters, Tag>)
-    return read_indices(CGAL::parameters::get_parameter_reference(np, Tag()), n, caller);
+    return positions_of(CGAL::parameters::get_parameter_reference(np, Tag()));
   else
     return std::nullopt;
 }
