@@ -72,6 +72,40 @@ BOOST_AUTO_TEST_CASE(a_clear_tree_has_a_small_spread_and_no_warning)
     BOOST_TEST(sentence.find("resampled") == std::string::npos, sentence);
 }
 
+BOOST_AUTO_TEST_CASE(most_copies_decide_whether_there_are_leaves)
+{
+  using pcs::Leaf_removal;
+  using pcs::skeleton::majority_on_leaves;
+  for (const bool has_leaves : {false, true}) {
+    const Leaf_removal opposite = has_leaves ? Leaf_removal::never : Leaf_removal::always;
+    for (std::size_t opposed = 0; opposed <= 4; ++opposed) {
+      // 4 copies and the scan vote
+      const Leaf_removal expected = opposed >= 3 ? opposite : Leaf_removal::where_found;
+      BOOST_TEST(
+          (majority_on_leaves(4, has_leaves ? 4 - opposed : opposed, has_leaves) == expected));
+    }
+    BOOST_TEST((majority_on_leaves(0, 0, has_leaves) == Leaf_removal::where_found));
+    // a tie of one copy and the scan leaves the decision to the scan
+    BOOST_TEST(
+        (majority_on_leaves(1, has_leaves ? 0 : 1, has_leaves) == Leaf_removal::where_found));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_changed_decision_on_leaves_is_a_warning)
+{
+  Tree tree;
+  pcs::Skeleton_report report =
+      pcs::extract_tree_skeleton(clear_tree(), tree, np::number_of_resamples(2));
+  BOOST_TEST(!report.spread.is_leaf_removal_changed);
+  BOOST_TEST(report.spread.number_of_leafy_copies == 0u);
+  const std::size_t count = pcs::warnings(report).size();
+  report.spread.is_leaf_removal_changed = true;
+  report.spread.number_of_leafy_copies = 2;
+  const std::vector<std::string> sentences = pcs::warnings(report);
+  BOOST_TEST_REQUIRE(sentences.size() == count + 1);
+  BOOST_TEST(sentences.back().find("2 of 2 resampled copies have leaves") != std::string::npos);
+}
+
 BOOST_AUTO_TEST_CASE(figures_that_depend_on_chance_are_named)
 {
   // Two equal stems: the choice of the tree depends on single points.

@@ -150,7 +150,8 @@ public:
         \npdefault `default_breast_height`, for scans in metres
       \np{number_of_resamples} random subsets of the scan, with 90 % of the points but at most
           40,000, whose skeletons give the standard deviations in `Skeleton_report::spread`. Each
-          subset takes as long as a scan of its size
+          subset takes as long as a scan of its size. The majority of the scan and its subsets
+          decides whether there are leaves, if the subsets have at least half of the points
         \nptype integer, 0 to 100
         \npdefault 0: the spread is not estimated
       \np{wood_map} whether a point may belong to a branch; others (leaves) are not used
@@ -207,6 +208,7 @@ public:
       skeleton::check_input(input, options.hints, function);
       std::vector<std::uint8_t> is_wood = read_wood();
       options.hints.stations = read_stations();
+      m_hints = options.hints;
       if (options.number_of_resamples > 0) {
         m_resamples = {skeleton::resample_scan(input,
                                                is_wood,
@@ -288,6 +290,7 @@ public:
         m_callback(1);
       Skeleton_report report = m_session->report();
       report.spread = m_resamples.spread();
+      report.spread.is_leaf_removal_changed = m_is_leaf_removal_changed;
       if (report.spread.number_of_copies > 0)
         report.spread.fraction = skeleton::resampled_fraction(report.number_of_points);
       return report;
@@ -314,6 +317,8 @@ private:
 
   /// The fraction of the progress at which the stages end if resampled copies follow.
   static constexpr double end_of_stages = 0.5;
+  /// The fraction at which a second extraction may follow, see `estimate_spread()`.
+  static constexpr double end_of_copies = 0.8;
 
   template <class Stage>
   bool run(const Stage& stage)
@@ -325,14 +330,25 @@ private:
     return stage(progress);
   }
 
-  /// Extracts the skeletons of resampled copies, if there are any.
+  /// Extracts the skeletons of resampled copies, if there are any. If most of them contradict the
+  /// scan in whether there are leaves, extracts the skeleton of the scan again.
   bool estimate_spread()
   {
     if (m_resamples.is_done() || m_session->report().status != Status::converged)
       return true;
     internal::Progress progress(m_callback);
-    progress.stage(end_of_stages, 1);
-    return m_resamples.run(progress);
+    progress.stage(end_of_stages, end_of_copies);
+    if (!m_resamples.run(progress))
+      return false;
+    const Skeleton_report& r = m_session->report();
+    m_hints.leaf_removal =
+        m_resamples.vote_on_leaves(r.number_of_leaf_points > 0, r.number_of_points);
+    if (m_hints.leaf_removal == Leaf_removal::where_found)
+      return true;
+    m_is_leaf_removal_changed = true;
+    m_session = std::make_unique<Session>(read_points(), read_wood(), m_hints);
+    progress.stage(end_of_copies, 1);
+    return m_session->join(progress);
   }
 
   std::vector<skeleton::Vec3> read_points() const
@@ -532,6 +548,8 @@ private:
   std::function<bool(double)> m_callback;
   std::unique_ptr<Session> m_session;
   skeleton::Spread_estimator<ConcurrencyTag> m_resamples;
+  skeleton::Session_hints m_hints;
+  bool m_is_leaf_removal_changed = false;
 };
 
 } // namespace pcs

@@ -56,14 +56,18 @@ struct Skeleton_spread
 {
   std::size_t number_of_copies = 0;       ///< copies with a tree; 0: not estimated [count]
   std::size_t number_of_empty_copies = 0; ///< copies without a tree [count]
-  double fraction = 0;                    ///< expected fraction of the points in a copy [-]
-  double height = 0;                      ///< [L]
-  double diameter_at_breast_height = 0;   ///< [L]
-  double trunk_length = 0;                ///< [L]
-  double length = 0;                      ///< of all branches [L]
-  double volume = 0;                      ///< of all branches [L^3]
-  double trunk_volume = 0;                ///< [L^3]
-  std::vector<double> volume_by_size;     ///< of the classes in `Skeleton_report::by_size` [L^3]
+  std::size_t number_of_leafy_copies = 0; ///< copies with a tree from which leaves were removed
+  //! whether most of the copies contradicted the scan in whether there are leaves, so that the
+  //! skeleton was extracted again with their decision
+  bool is_leaf_removal_changed = false;
+  double fraction = 0;                  ///< expected fraction of the points in a copy [-]
+  double height = 0;                    ///< [L]
+  double diameter_at_breast_height = 0; ///< [L]
+  double trunk_length = 0;              ///< [L]
+  double length = 0;                    ///< of all branches [L]
+  double volume = 0;                    ///< of all branches [L^3]
+  double trunk_volume = 0;              ///< [L^3]
+  std::vector<double> volume_by_size;   ///< of the classes in `Skeleton_report::by_size` [L^3]
   double root = 0; ///< root mean square distance of the roots from their mean [L]
 };
 
@@ -292,6 +296,12 @@ inline void warn_of_spread(const Skeleton_report& r, std::vector<std::string>& s
   if (s.number_of_empty_copies > 0)
     sentences.push_back(std::to_string(s.number_of_empty_copies) +
                         " resampled copies of this scan show no tree");
+  if (s.is_leaf_removal_changed)
+    sentences.push_back("whether the scan has leaves is nearly undecided: " +
+                        std::to_string(s.number_of_leafy_copies) + " of " +
+                        std::to_string(s.number_of_copies) +
+                        " resampled copies have leaves, unlike the scan itself, and were followed "
+                        "(do_remove_leaves(true) or do_remove_leaves(false) decides)");
   if (s.number_of_copies < 2)
     return;
   add("height", s.height, r.height, max_height);

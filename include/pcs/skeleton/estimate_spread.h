@@ -85,9 +85,11 @@ struct Copied_figures
   std::vector<double> height, diameter, trunk, length, volume, trunk_volume;
   std::vector<std::vector<double>> by_size;
   std::vector<double> root[3];
+  std::size_t number_of_leafy_copies = 0;
 
   void add(const Skeleton_report& r, const Vec3& root_position)
   {
+    number_of_leafy_copies += r.number_of_leaf_points > 0;
     height.push_back(r.height);
     diameter.push_back(r.diameter_at_breast_height);
     trunk.push_back(r.by_order.empty() ? 0 : r.by_order.front().length);
@@ -105,6 +107,7 @@ struct Copied_figures
   {
     Skeleton_spread result;
     result.number_of_copies = height.size();
+    result.number_of_leafy_copies = number_of_leafy_copies;
     result.height = deviation(height);
     result.diameter_at_breast_height = deviation(diameter);
     result.trunk_length = deviation(trunk);
@@ -119,6 +122,22 @@ struct Copied_figures
 };
 
 } // namespace internal
+
+/*!
+  Returns how leaves are to be treated according to a vote of a scan and its copies: `always` or
+  `never` if the majority contradicts the scan, otherwise `where_found`.
+  \param has_leaves whether leaves were found in the scan
+*/
+inline Leaf_removal majority_on_leaves(std::size_t number_of_copies,
+                                       std::size_t number_of_leafy_copies,
+                                       bool has_leaves)
+{
+  const std::size_t opposed =
+      has_leaves ? number_of_copies - number_of_leafy_copies : number_of_leafy_copies;
+  if (2 * opposed <= number_of_copies + 1)
+    return Leaf_removal::where_found;
+  return has_leaves ? Leaf_removal::never : Leaf_removal::always;
+}
 
 /// Skeletons of resampled copies of a scan. A cancelled call continues with the same copy.
 template <class ConcurrencyTag>
@@ -153,6 +172,19 @@ public:
             session.scan().frame.to_input(tree.nodes[tree.branches.front().nodes.front()].point));
     }
     return true;
+  }
+
+  /// Returns the vote of the scan and its copies on leaves, see `majority_on_leaves()`. Copies vote
+  /// only if they have most of the points, since leaves are not recognized in thinned scans.
+  Leaf_removal vote_on_leaves(bool has_leaves, std::size_t number_of_points) const
+  {
+    constexpr double least_fraction = 0.5;
+    if (m_hints.leaf_removal != Leaf_removal::where_found ||
+        resampled_fraction(number_of_points) < least_fraction)
+      return Leaf_removal::where_found;
+    return majority_on_leaves(m_figures.height.size(),
+                              m_figures.number_of_leafy_copies,
+                              has_leaves);
   }
 
   /// Returns the deviations among the completed copies.
