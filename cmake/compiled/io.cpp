@@ -9,21 +9,21 @@ namespace IO {
 namespace internal {
 
 #define PCS_INSTANTIATE(format)                                                                    \
-  template std::unique_ptr<Format_reader> open_reader<format>(const std::string&);                 \
+  template std::unique_ptr<Format_reader> open_reader<format>(const std::string&, bool);           \
   template std::unique_ptr<Format_writer> open_writer<format>(const std::string&,                  \
                                                               const Point_schema&,                 \
                                                               const Write_options&);
 
 PCS_INSTANTIATE(File_format::las)
+PCS_INSTANTIATE(File_format::obj)
 PCS_INSTANTIATE(File_format::off)
 PCS_INSTANTIATE(File_format::ply)
 PCS_INSTANTIATE(File_format::text)
 
 #undef PCS_INSTANTIATE
 
-template std::unique_ptr<Format_reader> open_reader<File_format::pcd>(const std::string&);
-template std::unique_ptr<Format_reader> open_reader<File_format::ptx>(const std::string&);
-template std::unique_ptr<Format_reader> open_reader<File_format::obj>(const std::string&);
+template std::unique_ptr<Format_reader> open_reader<File_format::pcd>(const std::string&, bool);
+template std::unique_ptr<Format_reader> open_reader<File_format::ptx>(const std::string&, bool);
 
 } // namespace internal
 } // namespace IO

@@ -9,6 +9,7 @@
 #include <pcs/IO/internal/Row_block.h>
 #include <pcs/IO/internal/file_format.h>
 #include <pcs/IO/internal/open_format.h>
+#include <pcs/IO/points/Mesh_faces.h>
 #include <pcs/IO/points/Point_schema.h>
 #include <pcs/IO/points/Point_table.h>
 #include <pcs/core/errors.h>
@@ -37,7 +38,7 @@ namespace IO {
 
   - PLY: ascii and binary of both byte orders. Scalar properties of `vertex` are read in their own
     type (`int64` and `uint64` are an extension). Lists and other elements, such as faces, are
-    checked and discarded.
+    checked, and discarded unless `do_keep_faces` is set.
   - Text: columns separated by blanks, tabs, commas or semicolons, all read as `float64`. Lines
     that begin with `#`, `%` or `//` are comments. The columns are named by a line without numbers
     or by the comment before the first row; coordinates may have names such as `Easting`,
@@ -46,7 +47,7 @@ namespace IO {
     out with a sentence in `Point_schema::warnings`. Decimal commas are read unless commas separate
     columns.
   - OFF, NOFF, COFF, CNOFF: `nx`, `ny`, `nz` and `red`, `green`, `blue`, `alpha`; faces are
-    checked and discarded.
+    checked, and discarded unless `do_keep_faces` is set.
   - LAS 1.0 to 1.4, point formats 0 to 10, and LAZ where LASzip is available (CMake option
     `PCS_WITH_LASZIP`): every dimension is a property. Extra bytes are properties with the name in
     the file if it describes them, otherwise `extra_byte_0`, ...
@@ -56,22 +57,40 @@ namespace IO {
     out.
   - PTX: the matrix of each scan is applied; `scan` is its index. Points 0 0 0 have no return and
     are left out.
-  - OBJ: vertices, with a weight or colours; a warning states the number of faces.
+  - OBJ: vertices, with a weight or colours, and on request faces. Normals, textures and groups are
+    discarded.
 
   \par Memory
-  One chunk and buffers of less than 1 MB; a line of text may require up to 16 MB more.
+  One chunk, the faces if they are kept, and buffers of less than 1 MB; a line of text may require
+  up to 16 MB more.
 */
 class Point_reader
 {
 public:
-  //! opens the file and reads its header; throws `pcs::IO_error`
-  explicit Point_reader(const std::string& path) : m_format(open(path)) {}
+  /*!
+    \brief opens the file and reads its header; throws `pcs::IO_error`.
+
+    With `do_keep_faces`, the faces of PLY, OFF and OBJ files, and the lists and other elements of
+    PLY files, are kept in memory.
+  */
+  explicit Point_reader(const std::string& path, bool do_keep_faces = false)
+    : m_format(open(path, do_keep_faces))
+  {
+  }
 
   //! returns the number of points if it is known, as for all formats except text, PCD and PTX
   std::optional<std::uint64_t> number_of_points() const { return m_format->number_of_points(); }
 
   //! returns the properties of the points
   const Point_schema& schema() const { return m_format->schema(); }
+
+  /*!
+    \brief returns the faces of the mesh.
+
+    They are complete after the last points were read. Null unless `do_keep_faces` was set and the
+    file is PLY, OFF or OBJ with at most 2^32 vertices.
+  */
+  const std::shared_ptr<Mesh_faces>& faces() const { return m_format->faces(); }
 
   /*!
     \brief replaces `chunk` by the next points, at most `max_points` of them.
@@ -100,26 +119,26 @@ public:
   }
 
 private:
-  static std::unique_ptr<internal::Format_reader> open(const std::string& path)
+  static std::unique_ptr<internal::Format_reader> open(const std::string& path, bool do_keep_faces)
   {
     switch (internal::format_by_content(path)) {
     case File_format::ply:
-      return internal::open_reader<File_format::ply>(path);
+      return internal::open_reader<File_format::ply>(path, do_keep_faces);
     case File_format::las:
-      return internal::open_reader<File_format::las>(path);
+      return internal::open_reader<File_format::las>(path, do_keep_faces);
     case File_format::off:
-      return internal::open_reader<File_format::off>(path);
+      return internal::open_reader<File_format::off>(path, do_keep_faces);
     case File_format::pcd:
-      return internal::open_reader<File_format::pcd>(path);
+      return internal::open_reader<File_format::pcd>(path, do_keep_faces);
     case File_format::ptx:
-      return internal::open_reader<File_format::ptx>(path);
+      return internal::open_reader<File_format::ptx>(path, do_keep_faces);
     case File_format::obj:
-      return internal::open_reader<File_format::obj>(path);
+      return internal::open_reader<File_format::obj>(path, do_keep_faces);
     case File_format::text:
     case File_format::automatic:
       break;
     }
-    return internal::open_reader<File_format::text>(path);
+    return internal::open_reader<File_format::text>(path, do_keep_faces);
   }
 
   //! prepares a chunk and reuses its memory

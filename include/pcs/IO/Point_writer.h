@@ -32,9 +32,10 @@ namespace IO {
   the destructor removes the temporary file. Devices and pipes are written directly.
 
   Properties are written in the order and type of the schema; coordinates are doubles unless
-  `Write_options::keep_coordinate_types` is set. Faces of a file that was read are not written.
-  Text is read back as `float64` columns. OFF rejects properties that it cannot store. LAS rounds
-  coordinates to its grid and stores properties that its point format lacks as extra bytes.
+  `Write_options::keep_coordinate_types` is set. Faces are written if they are passed in
+  `Write_options::faces`, to PLY, OFF and OBJ. Text is read back as `float64` columns. OFF and OBJ
+  reject properties that they cannot store. LAS rounds coordinates to its grid and stores properties
+  that its point format lacks as extra bytes.
 
   Errors of the file system and of the format throw `pcs::IO_error`, data that do not match the
   schema throw `pcs::Invalid_input`. After either, `commit()` is not possible.
@@ -49,6 +50,10 @@ public:
     : m_schema(schema), m_expected(options.number_of_points)
   {
     check_schema();
+    if (options.faces) {
+      options.faces->check();
+      m_number_of_vertices = options.faces->number_of_vertices;
+    }
     m_format = open(path, options);
   }
 
@@ -80,6 +85,10 @@ public:
       throw Invalid_input("pcs::IO::Point_writer::commit(): " + std::to_string(m_count) +
                           " points were appended, " + std::to_string(*m_expected) +
                           " were announced");
+    if (m_number_of_vertices && m_count != *m_number_of_vertices)
+      throw Invalid_input("pcs::IO::Point_writer::commit(): " + std::to_string(m_count) +
+                          " points were appended, the faces belong to a mesh of " +
+                          std::to_string(*m_number_of_vertices) + " vertices");
     m_format->commit(m_count);
   }
 
@@ -102,6 +111,9 @@ private:
     const File_format format = options.format != File_format::automatic
                                    ? options.format
                                    : internal::format_by_extension(path);
+    if (options.faces && (format == File_format::las || format == File_format::text))
+      throw IO_error(path,
+                     "this format cannot hold faces; write ply, off or obj, or the points only");
     switch (format) {
     case File_format::las:
       return internal::open_writer<File_format::las>(path, m_schema, options);
@@ -109,10 +121,12 @@ private:
       return internal::open_writer<File_format::off>(path, m_schema, options);
     case File_format::text:
       return internal::open_writer<File_format::text>(path, m_schema, options);
+    case File_format::obj:
+      return internal::open_writer<File_format::obj>(path, m_schema, options);
     case File_format::pcd:
     case File_format::ptx:
-    case File_format::obj:
-      throw IO_error(path, "this format can only be read; write ply, las, off, xyz, txt or csv");
+      throw IO_error(path,
+                     "this format can only be read; write ply, las, off, obj, xyz, txt or csv");
     case File_format::ply:
     case File_format::automatic:
       break;
@@ -145,11 +159,15 @@ private:
     if (m_expected && chunk.number_of_points() > *m_expected - m_count)
       throw Invalid_input("pcs::IO::Point_writer::append(): more points than the announced " +
                           std::to_string(*m_expected));
+    if (m_number_of_vertices && chunk.number_of_points() > *m_number_of_vertices - m_count)
+      throw Invalid_input("pcs::IO::Point_writer::append(): more points than the " +
+                          std::to_string(*m_number_of_vertices) + " vertices of the faces");
     internal::check_finite(chunk);
   }
 
   Point_schema m_schema;
   std::optional<std::uint64_t> m_expected;
+  std::optional<std::uint64_t> m_number_of_vertices; // of the mesh to which faces belong
   std::unique_ptr<internal::Format_writer> m_format;
   std::uint64_t m_count = 0;
   bool m_is_usable = true;

@@ -6,6 +6,7 @@
 #define PCS_IO_READ_POINTS_H
 
 #include <pcs/IO/Point_reader.h>
+#include <pcs/IO/points/Mesh_faces.h>
 #include <pcs/IO/points/Point_table.h>
 #include <pcs/core/errors.h>
 
@@ -15,6 +16,7 @@
 #include <cstddef>
 #include <iterator>
 #include <limits>
+#include <memory>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -40,6 +42,23 @@ inline Point_table read_points(const std::string& path)
   Point_reader reader(path);
   Point_table table;
   reader.read(table, std::numeric_limits<std::size_t>::max());
+  return table;
+}
+
+/*!
+  \ingroup PkgPcsIORef
+  \brief reads all points of a file as the other overload, and the faces of a mesh.
+
+  \param path name of the file
+  \param faces receives faces, and lists and other elements of PLY; null if the file has none of
+         them. `Write_options::faces` writes them again.
+*/
+inline Point_table read_points(const std::string& path, std::shared_ptr<Mesh_faces>& faces)
+{
+  Point_reader reader(path, true);
+  Point_table table;
+  reader.read(table, std::numeric_limits<std::size_t>::max());
+  faces = reader.faces() && !reader.faces()->is_empty() ? reader.faces() : nullptr;
   return table;
 }
 

@@ -7,11 +7,14 @@
 
 #include <pcs/IO/internal/Input_file.h>
 #include <pcs/IO/internal/Row_block.h>
+#include <pcs/IO/points/Mesh_faces.h>
 #include <pcs/IO/points/Point_schema.h>
 #include <pcs/core/errors.h>
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -52,6 +55,8 @@ public:
   std::optional<std::uint64_t> number_of_points() const { return m_number_of_points; }
   //! returns a number of points that the size of the file makes plausible, to reserve memory
   virtual std::uint64_t largest_plausible_count() const { return m_number_of_points.value_or(0); }
+  //! returns the faces, complete after the last rows; null if they are not kept
+  const std::shared_ptr<Mesh_faces>& faces() const { return m_faces; }
 
 protected:
   void add_property(const std::string& name, Scalar_type type)
@@ -59,10 +64,18 @@ protected:
     m_layout.push_back(name, type);
     m_schema.properties.push_back({name, type});
   }
-  //! adds a warning if the file is a mesh, because only its vertices are read
+  //! keeps the faces, unless there are more vertices than 32-bit indices
+  void keep_faces(std::uint64_t number_of_vertices)
+  {
+    if (number_of_vertices > std::uint64_t(std::numeric_limits<std::uint32_t>::max()) + 1)
+      return;
+    m_faces = std::make_shared<Mesh_faces>();
+    m_faces->number_of_vertices = number_of_vertices;
+  }
+  //! adds a warning if the file is a mesh of which only the vertices are read
   void warn_of_faces(std::uint64_t number_of_faces)
   {
-    if (number_of_faces > 0)
+    if (number_of_faces > 0 && !m_faces)
       m_schema.warnings.push_back("the vertices of the mesh are read as points, its " +
                                   std::to_string(number_of_faces) + " faces are left out");
   }
@@ -77,7 +90,23 @@ protected:
   Point_schema m_schema;
   Row_layout m_layout;
   std::optional<std::uint64_t> m_number_of_points;
+  std::shared_ptr<Mesh_faces> m_faces; // null: faces are not kept
 };
+
+//! returns the message for the next face of a mesh if it is no polygon
+inline std::string polygon_expected(const Mesh_faces& faces, std::uint64_t number_of_vertices)
+{
+  return "face " + std::to_string(faces.number_of_faces()) + " has " +
+         std::to_string(number_of_vertices) +
+         " vertices, expected 3 or more; remove it, or read the points only";
+}
+
+//! returns the message for an index, counted from 0, that is not below the number of vertices
+inline std::string vertex_expected(const std::string& found, std::uint64_t number_of_vertices)
+{
+  return "expected the index of a vertex, from 0, in a mesh of " +
+         std::to_string(number_of_vertices) + " vertices, found " + found;
+}
 
 //! returns the first name that occurs twice, or an empty string
 inline std::string first_duplicate(const Point_schema& schema)

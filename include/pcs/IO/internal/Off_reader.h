@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Reads the vertices of an OFF file.
+// Reads the vertices and faces of an OFF file.
 
 #ifndef PCS_IO_INTERNAL_OFF_READER_H
 #define PCS_IO_INTERNAL_OFF_READER_H
@@ -30,13 +30,13 @@ inline bool is_off_keyword(std::string_view word)
 }
 
 /*
-  OFF, NOFF, COFF and CNOFF: position, normal, colour. Faces are skipped, but must be present.
+  OFF, NOFF, COFF and CNOFF: position, normal, colour. Faces are checked, and kept on request.
   Colours are uint8 if those of the first vertex are integers, otherwise double.
 */
 class Off_reader : public Format_reader
 {
 public:
-  explicit Off_reader(const std::string& path) : m_file(path)
+  explicit Off_reader(const std::string& path, bool do_keep_faces = false) : m_file(path)
   {
     m_schema.format = File_format::off;
     m_schema.properties.clear();
@@ -48,6 +48,8 @@ public:
     if (trim(line).empty())
       line = next_line();
     read_counts(line);
+    if (do_keep_faces)
+      keep_faces(m_number_of_vertices);
     warn_of_faces(m_number_of_faces);
     for (const char* name : {"x", "y", "z"})
       add_property(name, Scalar_type::float64);
@@ -152,24 +154,33 @@ private:
   void check_end()
   {
     for (std::uint64_t i = 0; i < m_number_of_faces; ++i)
-      check_face(next_line());
+      read_face(next_line());
+    if (m_have_faces_colors && m_faces)
+      m_faces->warnings.push_back("the colours of the faces are left out");
     std::string_view line;
     if (find_line(line))
       m_file.fail_at_line("expected the end of the file, found " + in_quotes(line));
   }
 
-  //! checks the indices of a face and any number of colour values
-  void check_face(std::string_view line) const
+  //! reads the indices of a face, before any number of colour values
+  void read_face(std::string_view line)
   {
     std::uint64_t degree = 0;
     if (parse_plain(next_word(line), degree) != Parse_result::ok)
       m_file.fail_at_line("expected the number of vertices of a face");
+    if (m_faces && degree < 3)
+      m_file.fail_at_line(polygon_expected(*m_faces, degree));
     for (std::uint64_t i = 0; i < degree; ++i) {
       const std::string_view word = next_word(line);
       std::uint64_t vertex = 0;
       if (parse_plain(word, vertex) != Parse_result::ok || vertex >= m_number_of_vertices)
-        m_file.fail_at_line("expected the index of a vertex, found " + in_quotes(word));
+        m_file.fail_at_line(vertex_expected(in_quotes(word), m_number_of_vertices));
+      if (m_faces)
+        m_faces->vertices.push_back(static_cast<std::uint32_t>(vertex));
     }
+    if (m_faces)
+      m_faces->ends.push_back(m_faces->vertices.size());
+    m_have_faces_colors = m_have_faces_colors || !trim(line).empty();
   }
 
   void expect_no_more(std::string_view line) const
@@ -182,6 +193,7 @@ private:
   std::string_view m_line; // the next vertex
   std::uint64_t m_number_of_vertices = 0, m_number_of_faces = 0;
   std::uint64_t m_rows_left = 0;
+  bool m_have_faces_colors = false;
   bool m_is_end_checked = false;
 };
 

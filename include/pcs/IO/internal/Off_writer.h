@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Writes points as the vertices of an OFF file.
+// Writes points as the vertices of an OFF file, with the faces of a mesh.
 
 #ifndef PCS_IO_INTERNAL_OFF_WRITER_H
 #define PCS_IO_INTERNAL_OFF_WRITER_H
@@ -24,7 +24,7 @@ class Off_writer : public Format_writer
 {
 public:
   Off_writer(const std::string& path, const Point_schema& schema, const Write_options& options)
-    : Format_writer(path), m_is_count_known(options.number_of_points.has_value())
+    : Format_writer(path, options.faces), m_is_count_known(options.number_of_points.has_value())
   {
     const bool has_normals = schema.has("nx") && schema.has("ny") && schema.has("nz");
     const bool has_color = schema.has("red") && schema.has("green") && schema.has("blue");
@@ -38,12 +38,12 @@ public:
         add_color(schema, name);
     if (has_color && schema.has("alpha"))
       add_color(schema, "alpha");
-    check_all_written(schema);
+    check_all_written(schema, "OFF");
 
     m_file.write(std::string(has_color ? "C" : "") + (has_normals ? "N" : "") + "OFF\n");
     m_count_position = m_file.position();
     m_file.write(count_in_header(options.number_of_points.value_or(0), m_is_count_known));
-    m_file.write(" 0 0\n");
+    m_file.write(" " + std::to_string(m_faces ? m_faces->number_of_faces() : 0) + " 0\n");
   }
 
 private:
@@ -56,21 +56,11 @@ private:
     m_layout.push_back(name, type);
   }
 
-  void check_all_written(const Point_schema& schema) const
-  {
-    for (const Property_description& p : schema.properties) {
-      bool is_written = false;
-      for (const Field& field : m_layout.fields)
-        is_written = is_written || field.name == p.name;
-      if (!is_written)
-        m_file.fail("OFF cannot store the property '" + p.name + "'; remove it first");
-    }
-  }
-
   void write_rows(const Row_block& block) override { write_rows_as_text(block, ' ', true); }
 
   void finish(std::uint64_t number_of_points) override
   {
+    write_faces_as_text([](std::string& text, std::uint64_t n) { append_number(text, n); }, 0);
     if (m_is_count_known)
       return;
     const std::string count = count_in_header(number_of_points, false);

@@ -91,9 +91,8 @@ inline File_format format_by_extension(const std::string& path)
   throw IO_error(path,
                  (extension.empty() ? std::string("a name without extension")
                                     : "unknown format '" + extension + "'") +
-                     ", expected ply, las, off, xyz, txt, csv, asc, pts or pwn, or for input also "
-                     "laz, pcd, ptx "
-                     "or obj");
+                     ", expected ply, las, off, obj, xyz, txt, csv, asc, pts or pwn, or for input "
+                     "also laz, pcd or ptx");
 }
 
 //! returns the format that the first bytes of a file indicate, otherwise that of its extension

@@ -17,9 +17,9 @@ namespace pcs {
 namespace IO {
 namespace internal {
 
-//! opens a file of this format and reads its header
+//! opens a file of this format and reads its header; `do_keep_faces` matters for meshes only
 template <File_format format>
-std::unique_ptr<Format_reader> open_reader(const std::string& path);
+std::unique_ptr<Format_reader> open_reader(const std::string& path, bool do_keep_faces);
 
 //! opens a temporary file of this format and writes its header
 template <File_format format>

@@ -15,6 +15,7 @@
 #include <pcs/IO/internal/ply/Ply_reader.h>
 #include <pcs/IO/internal/ply/Ply_writer.h>
 #include <pcs/IO/internal/scans/Obj_reader.h>
+#include <pcs/IO/internal/scans/Obj_writer.h>
 #include <pcs/IO/internal/scans/Pcd_reader.h>
 #include <pcs/IO/internal/scans/Ptx_reader.h>
 #include <pcs/IO/internal/text/Text_reader.h>
@@ -42,20 +43,21 @@ inline std::unique_ptr<Format_reader> open_las_reader(const std::string& path)
 }
 
 template <File_format format>
-std::unique_ptr<Format_reader> open_reader(const std::string& path)
+std::unique_ptr<Format_reader> open_reader(const std::string& path,
+                                           [[maybe_unused]] bool do_keep_faces)
 {
   if constexpr (format == File_format::las)
     return open_las_reader(path);
   else if constexpr (format == File_format::off)
-    return std::make_unique<Off_reader>(path);
+    return std::make_unique<Off_reader>(path, do_keep_faces);
   else if constexpr (format == File_format::ply)
-    return std::make_unique<Ply_reader>(path);
+    return std::make_unique<Ply_reader>(path, do_keep_faces);
   else if constexpr (format == File_format::pcd)
     return std::make_unique<Pcd_reader>(path);
   else if constexpr (format == File_format::ptx)
     return std::make_unique<Ptx_reader>(path);
   else if constexpr (format == File_format::obj)
-    return std::make_unique<Obj_reader>(path);
+    return std::make_unique<Obj_reader>(path, do_keep_faces);
   else
     return std::make_unique<Text_reader>(path);
 }
@@ -74,6 +76,8 @@ open_writer(const std::string& path, const Point_schema& schema, const Write_opt
     return std::make_unique<Off_writer>(path, schema, options);
   else if constexpr (format == File_format::ply)
     return std::make_unique<Ply_writer>(path, schema, options);
+  else if constexpr (format == File_format::obj)
+    return std::make_unique<Obj_writer>(path, schema, options);
   else
     return std::make_unique<Text_writer>(path, schema, options);
 }

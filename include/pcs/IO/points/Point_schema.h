@@ -29,7 +29,7 @@ enum class File_format : std::uint8_t {
   las,       //!< LAS 1.0 to 1.4, and reading LAZ where LASzip is available
   pcd,       //!< ascii, binary, binary_compressed; reading only
   ptx,       //!< one or several scans with their poses; reading only
-  obj        //!< the vertices; reading only
+  obj        //!< the vertices and faces
 };
 
 /*!

@@ -5,10 +5,12 @@
 #ifndef PCS_IO_POINTS_WRITE_OPTIONS_H
 #define PCS_IO_POINTS_WRITE_OPTIONS_H
 
+#include <pcs/IO/points/Mesh_faces.h>
 #include <pcs/IO/points/Point_schema.h>
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 namespace pcs {
@@ -51,6 +53,9 @@ struct Write_options
   //! By default those of the LAS file that was read; `write_points()` computes them otherwise.
   std::optional<std::array<double, 3>> las_scale;
   std::optional<std::array<double, 3>> las_offset;
+
+  //! PLY, OFF, OBJ: faces whose indices refer to the points in the order in which they are written
+  std::shared_ptr<const Mesh_faces> faces;
 };
 
 } // namespace IO

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Reads the vertices of a PLY file.
+// Reads the vertices of a PLY file, and on request its faces, lists and other elements.
 
 #ifndef PCS_IO_INTERNAL_PLY_PLY_READER_H
 #define PCS_IO_INTERNAL_PLY_PLY_READER_H
@@ -8,12 +8,14 @@
 #include <pcs/IO/internal/Format_reader.h>
 #include <pcs/IO/internal/Input_file.h>
 #include <pcs/IO/internal/numbers.h>
+#include <pcs/IO/internal/ply/Ply_mesh.h>
 #include <pcs/IO/internal/ply/ply_header.h>
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -24,22 +26,26 @@ namespace internal {
 
 /*
   Scalar properties of the element `vertex` become columns. List properties and other elements are
-  skipped; a file in which they are incomplete is refused.
+  skipped, or kept on request; a file in which they are incomplete is refused.
 */
 class Ply_reader : public Format_reader
 {
 public:
-  explicit Ply_reader(const std::string& path)
+  explicit Ply_reader(const std::string& path, bool do_keep_faces = false)
     : m_file(path), m_header(Ply_header_parser(m_file).parse())
   {
     while (m_vertex < m_header.elements.size() && m_header.elements[m_vertex].name != "vertex")
       ++m_vertex;
     if (m_vertex == m_header.elements.size())
       m_file.fail_at_line("expected an element 'vertex' in the header");
+    if (do_keep_faces)
+      keep_faces(vertex().count);
+    if (m_faces)
+      m_mesh.emplace(m_header.elements, m_faces);
     make_schema();
     check_sizes();
     for (std::size_t e = 0; e < m_vertex; ++e)
-      skip_element(m_header.elements[e]);
+      read_element(m_header.elements[e]);
     m_rows_left = vertex().count;
     m_number_of_points = vertex().count;
   }
@@ -92,6 +98,8 @@ private:
   //! warns of other elements and of lists, which are not read
   void warn_of_omissions()
   {
+    if (m_faces)
+      return;
     for (const Ply_property& p : vertex().properties)
       if (p.count_type && vertex().count > 0)
         m_schema.warnings.push_back("the list " + in_quotes(p.name) +
@@ -125,7 +133,9 @@ private:
   void check_end()
   {
     for (std::size_t e = m_vertex + 1; e < m_header.elements.size(); ++e)
-      skip_element(m_header.elements[e]);
+      read_element(m_header.elements[e]);
+    if (m_mesh)
+      m_mesh->finish();
     if (is_ascii())
       expect_end_of_text(m_file);
     else if (m_file.remaining() > 0)
@@ -150,7 +160,7 @@ private:
       block.locations.push_back(m_file.position());
       for (const Ply_property& p : vertex().properties)
         if (p.count_type) {
-          skip_list(p);
+          read_binary_list(vertex(), p);
         } else {
           m_file.read(to, size_of(p.type));
           to += size_of(p.type);
@@ -158,21 +168,42 @@ private:
     }
   }
 
-  void skip_list(const Ply_property& p)
+  bool do_swap() const
+  {
+    return (m_header.storage == Ply_storage::big_endian) != is_big_endian_machine();
+  }
+
+  void read_binary_list(const Ply_element& element, const Ply_property& p)
   {
     const std::uint64_t start = m_file.position();
     std::array<unsigned char, 8> bytes{};
     m_file.read(bytes.data(), size_of(*p.count_type));
-    const bool do_swap = (m_header.storage == Ply_storage::big_endian) != is_big_endian_machine();
     const std::uint64_t count = dispatch(*p.count_type, [&](auto tag) {
-      const auto value = load<typename decltype(tag)::type>(bytes.data(), do_swap);
+      const auto value = load<typename decltype(tag)::type>(bytes.data(), do_swap());
       if (value < 0)
         fail_list(start, p);
       return static_cast<std::uint64_t>(value);
     });
     if (count > m_file.remaining() / size_of(p.type))
       fail_list(start, p);
-    m_file.skip(count * size_of(p.type));
+    if (!m_mesh) {
+      m_file.skip(count * size_of(p.type));
+      return;
+    }
+    begin_list(element, p, count, start);
+    for (std::uint64_t i = 0; i < count; ++i)
+      read_entry(element, p, start);
+    end_list(p);
+  }
+
+  //! reads a scalar or an entry of a list that is kept; `start` is the position for an error
+  void read_entry(const Ply_element& element, const Ply_property& p, std::uint64_t start)
+  {
+    std::array<unsigned char, 8> bytes{};
+    m_file.read(bytes.data(), size_of(p.type));
+    if (do_swap())
+      std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size_of(p.type)));
+    keep_value(element, p, bytes.data(), start);
   }
 
   [[noreturn]] void fail_list(std::uint64_t start, const Ply_property& p) const
@@ -182,12 +213,13 @@ private:
                             "' has a negative length or more entries than the file can hold");
   }
 
-  void skip_element(const Ply_element& element)
+  //! reads an element besides the vertices
+  void read_element(const Ply_element& element)
   {
     const std::uint64_t row = element.smallest_row(m_header.storage);
     if (row == 0)
       return;
-    if (!is_ascii() && !element.has_lists()) {
+    if (!is_ascii() && !element.has_lists() && !m_mesh) {
       if (element.count > m_file.remaining() / row)
         m_file.fail_at_end();
       m_file.skip(element.count * row);
@@ -199,9 +231,52 @@ private:
       else
         for (const Ply_property& p : element.properties)
           if (p.count_type)
-            skip_list(p);
+            read_binary_list(element, p);
+          else if (m_mesh)
+            read_entry(element, p, m_file.position());
           else
             m_file.skip(size_of(p.type));
+  }
+
+  // ---- faces, lists and other elements, if they are kept ----
+
+  //! adds the length of a list, which begins at the byte or line `location`
+  void begin_list(const Ply_element& element,
+                  const Ply_property& p,
+                  std::uint64_t length,
+                  std::uint64_t location)
+  {
+    if (m_mesh->is_corner_list(p)) {
+      if (length < 3)
+        fail_at(location, polygon_expected(m_mesh->faces(), length));
+    } else if (!m_mesh->add_length(element, p, length))
+      fail_at(location,
+              "the list " + in_quotes(p.name) + " has " + std::to_string(length) +
+                  " entries, more than its type " + name_of(*p.count_type) + " can count");
+  }
+
+  void keep_value(const Ply_element& element,
+                  const Ply_property& p,
+                  const unsigned char* value,
+                  std::uint64_t location)
+  {
+    if (!m_mesh->is_corner_list(p))
+      m_mesh->add_value(element, p.type, value);
+    else if (!m_mesh->add_corner(p.type, value))
+      fail_at(location,
+              "face " + std::to_string(m_mesh->faces().number_of_faces()) + ": " +
+                  vertex_expected(dispatch(p.type,
+                                           [&](auto tag) {
+                                             return std::to_string(
+                                                 load<typename decltype(tag)::type>(value, false));
+                                           }),
+                                  vertex().count));
+  }
+
+  void end_list(const Ply_property& p)
+  {
+    if (m_mesh->is_corner_list(p))
+      m_mesh->end_face();
   }
 
   // ---- ascii ----
@@ -222,24 +297,39 @@ private:
       if (!m_file.read_line(line))
         m_file.fail_at_end();
     } while (trim(line).empty());
-    std::array<unsigned char, 8> unused{};
-    for (const Ply_property& p : element.properties) {
+    std::array<unsigned char, 8> value{};
+    for (const Ply_property& p : element.properties)
       if (p.count_type) {
-        std::uint64_t count = 0;
-        parse_word(next_word(line),
-                   p.name,
-                   Scalar_type::uint64,
-                   reinterpret_cast<unsigned char*>(&count));
-        for (std::uint64_t i = 0; i < count; ++i)
-          parse_word(next_word(line), p.name, p.type, unused.data());
+        parse_list(line, element, p);
+      } else if (to != nullptr) {
+        parse_word(next_word(line), p.name, p.type, to);
+        to += size_of(p.type);
       } else {
-        parse_word(next_word(line), p.name, p.type, to != nullptr ? to : unused.data());
-        if (to != nullptr)
-          to += size_of(p.type);
+        parse_word(next_word(line), p.name, p.type, value.data());
+        if (m_mesh)
+          m_mesh->add_value(element, p.type, value.data());
       }
-    }
     if (!trim(line).empty())
       m_file.fail_at_line("expected the end of the line, found " + in_quotes(trim(line)));
+  }
+
+  void parse_list(std::string_view& line, const Ply_element& element, const Ply_property& p)
+  {
+    std::uint64_t count = 0;
+    parse_word(next_word(line),
+               p.name,
+               Scalar_type::uint64,
+               reinterpret_cast<unsigned char*>(&count));
+    if (m_mesh)
+      begin_list(element, p, count, m_file.line_number());
+    std::array<unsigned char, 8> value{};
+    for (std::uint64_t i = 0; i < count; ++i) {
+      parse_word(next_word(line), p.name, p.type, value.data());
+      if (m_mesh)
+        keep_value(element, p, value.data(), m_file.line_number());
+    }
+    if (m_mesh)
+      end_list(p);
   }
 
   void parse_word(std::string_view word,
@@ -254,7 +344,8 @@ private:
 
   Input_file m_file;
   Ply_header m_header;
-  std::size_t m_vertex = 0; // index of the element `vertex`
+  std::size_t m_vertex = 0;       // index of the element `vertex`
+  std::optional<Ply_mesh> m_mesh; // set if faces are kept; refers to the header
   std::uint64_t m_rows_left = 0;
   bool m_is_end_checked = false;
 };

@@ -7,6 +7,7 @@
 
 #include <pcs/IO/internal/Input_file.h>
 #include <pcs/IO/internal/numbers.h>
+#include <pcs/IO/points/Mesh_faces.h>
 #include <pcs/IO/points/Scalar_type.h>
 
 #include <cstddef>
@@ -24,12 +25,7 @@ namespace internal {
 
 enum class Ply_storage { ascii, little_endian, big_endian };
 
-struct Ply_property
-{
-  std::string name;
-  Scalar_type type = Scalar_type::float64;
-  std::optional<Scalar_type> count_type; // set for a list
-};
+using Ply_property = Element_property;
 
 struct Ply_element
 {
