@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
 // Program: deforms a point file by the handles and motions of a JSON file, and keeps all
-// properties.
+// properties, and the faces of a mesh.
 
 #include "common/Progress_line.h"
 #include "common/Report_file.h"
@@ -12,11 +12,14 @@
 #include "deformation/Normals.h"
 #include "deformation/Run_report.h"
 #include "deformation/Streamed_deformation.h"
+#include "deformation/adapt_faces.h"
 #include "deformation/apply_edit.h"
 #include "deformation/default_edit.h"
 #include "deformation/read_edit.h"
 #include "deformation/run_session.h"
+#include <pcs/IO/points/Mesh_faces.h>
 #include <pcs/IO/points/Point_table.h>
+#include <pcs/IO/points/Write_options.h>
 #include <pcs/IO/read_points.h>
 #include <pcs/IO/write_points.h>
 #include <pcs/core/Similarity.h>
@@ -26,6 +29,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iostream>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -71,19 +75,24 @@ void deform_table(pcs::IO::Point_table& table,
 void run_in_memory(const Options& options, std::optional<Edit> edit, Run_report& run)
 {
   const Stopwatch reading;
-  pcs::IO::Point_table table = pcs::IO::read_points(options.input);
+  std::shared_ptr<pcs::IO::Mesh_faces> faces;
+  pcs::IO::Point_table table = options.is_points_only ? pcs::IO::read_points(options.input)
+                                                      : pcs::IO::read_points(options.input, faces);
   run.seconds_read = reading.seconds();
   run.number_of_points = table.number_of_points();
   run.warnings = table.schema().warnings;
   run.number_of_neighbors = options.number_of_neighbors;
   check_output(options.output, table.schema());
+  adapt_faces(faces, options.output, run);
   if (!edit)
     edit = default_edit(table.points());
   run.edit = edit->source;
   deform_table(table, *edit, options, run);
 
   const Stopwatch writing;
-  pcs::IO::write_points(options.output, table);
+  pcs::IO::Write_options write_options;
+  write_options.faces = faces;
+  pcs::IO::write_points(options.output, table, write_options);
   run.seconds_write = writing.seconds();
 }
 

@@ -29,7 +29,7 @@ struct Options
   std::int64_t number_of_neighbors = pcs::default_number_of_neighbors;
   std::int64_t number_of_kept_points = 1000000; // with --stream
   std::int64_t chunk_size = 262144;             // with --stream [count]
-  bool is_default_edit = false, is_streamed = false, is_quiet = false;
+  bool is_default_edit = false, is_streamed = false, is_points_only = false, is_quiet = false;
 };
 
 inline const char* edit_help()
@@ -47,10 +47,12 @@ Scale comes first, then rotation, then translation. The center is the fixed poin
 rotation and scale; without it that is the centroid of the selected points. The matrix
 must be made of a rotation, one scale and a translation. Bounds are inclusive.
 
-Files: PLY, LAS, OFF, or text (xyz, txt, csv, asc, pts, pwn). The input may also be
-PCD, PTX, OBJ, or LAZ if built with LASzip. Order and properties of the points are kept,
-normals nx, ny, nz are rotated; faces and lists are not kept. PLY is written in binary, with
-coordinates in double precision.
+Files: PLY, LAS, OFF, OBJ, or text (xyz, txt, csv, asc, pts, pwn). The input may also be
+PCD, PTX, or LAZ if built with LASzip. Order and properties of the points are kept,
+normals nx, ny, nz are rotated. PLY is written in binary, with coordinates in double precision.
+The faces of a mesh in PLY, OFF or OBJ are kept in these formats; PLY to PLY also keeps lists
+and other elements. Colours of faces in OFF, and normals, textures and groups in OBJ are not
+kept. With --stream, faces are held in memory.
 
 With --stream the input may be larger than memory. It is read twice (text: three times;
 LAS output: once more). At most --stream-points points, spread over the file, are kept and
@@ -98,6 +100,9 @@ inline void declare(CLI::App& app, Options& options)
       ->check(CLI::Range(std::int64_t(1), std::int64_t(1) << 26))
       ->needs(stream)
       ->group("Advanced");
+  app.add_flag("--points-only",
+               options.is_points_only,
+               "read the vertices of a mesh only, without faces, lists and other elements");
   app.add_option("--report", options.report, "write counts, seconds and energies here (JSON)");
   app.add_flag("--quiet", options.is_quiet, "print warnings and errors only");
 }

@@ -51,6 +51,7 @@ struct Run_report
   pcs::Deformation_report deformation;
   std::string edit;
   std::uint64_t number_of_points = 0; ///< points of the input; `deformation` counts those in memory
+  std::uint64_t number_of_faces = 0;  ///< faces of the output
   std::int64_t number_of_neighbors = 0;
   std::uint64_t number_of_chunks = 0; ///< 0 unless streamed
   std::vector<std::uint64_t> points_of_handles;
@@ -81,6 +82,7 @@ inline nlohmann::ordered_json to_json(const Run_report& run, const Options& opti
   json["output"] = options.output;
   json["status"] = pcs::to_string(r.status);
   json["points"] = run.number_of_points;
+  json["faces"] = run.number_of_faces;
   json["streamed"] = options.is_streamed;
   if (options.is_streamed) {
     json["kept_points"] = r.number_of_points;
@@ -125,6 +127,8 @@ inline void print_summary(std::ostream& out, const Run_report& run, const Option
   if (options.is_streamed)
     out << "            " << r.number_of_points << " of them kept, in " << run.number_of_chunks
         << " chunks\n";
+  if (run.number_of_faces > 0)
+    out << "faces       " << run.number_of_faces << '\n';
   out << "samples     " << r.number_of_samples << '\n'
       << "iterations  " << r.number_of_iterations << '\n'
       << "status      " << r.status << '\n';

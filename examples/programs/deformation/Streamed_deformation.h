@@ -13,12 +13,15 @@
 #include "deformation/Kept_points.h"
 #include "deformation/Normals.h"
 #include "deformation/Run_report.h"
+#include "deformation/adapt_faces.h"
 #include "deformation/apply_edit.h"
 #include "deformation/default_edit.h"
 #include "deformation/run_session.h"
 #include <pcs/IO/Point_reader.h>
 #include <pcs/IO/Point_writer.h>
+#include <pcs/IO/points/Mesh_faces.h>
 #include <pcs/IO/points/Point_table.h>
+#include <pcs/IO/points/Write_options.h>
 #include <pcs/IO/write_points.h>
 #include <pcs/core/Similarity.h>
 #include <pcs/core/errors.h>
@@ -27,6 +30,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -84,10 +88,11 @@ private:
   bool do_normals() const { return m_run.normals == "deformed"; }
 
   /// Calls `use(chunk, number of its first point)` for all chunks of the input.
+  /// `do_keep_faces`: also reads the faces, to `m_faces`.
   template <class Use>
-  std::uint64_t for_each_chunk(const char* stage, const Use& use)
+  std::uint64_t for_each_chunk(const char* stage, const Use& use, bool do_keep_faces = false)
   {
-    pcs::IO::Point_reader reader(m_options.input);
+    pcs::IO::Point_reader reader(m_options.input, do_keep_faces);
     Table chunk;
     std::uint64_t first = 0, number_of_chunks = 0;
     while (reader.read(chunk, static_cast<std::size_t>(m_options.chunk_size))) {
@@ -100,6 +105,8 @@ private:
                         std::min(1.0, double(first) / static_cast<double>(m_run.number_of_points)));
     }
     m_run.number_of_chunks = number_of_chunks;
+    if (do_keep_faces)
+      m_faces = reader.faces();
     return first;
   }
 
@@ -107,7 +114,7 @@ private:
   {
     std::optional<std::uint64_t> n;
     {
-      const pcs::IO::Point_reader reader(m_options.input);
+      const pcs::IO::Point_reader reader(m_options.input, !m_options.is_points_only);
       m_empty = Table(reader.schema());
       m_run.warnings = reader.schema().warnings;
       n = reader.number_of_points();
@@ -143,7 +150,8 @@ private:
       }
       keeper.add(chunk, normals, m_scan ? m_scan->add(chunk) : std::vector<std::uint32_t>(), first);
     };
-    check_count(for_each_chunk("reading", add));
+    check_count(for_each_chunk("reading", add, !m_options.is_points_only));
+    adapt_faces(m_faces, m_options.output, m_run);
     m_kept = keeper.take(do_normals());
 
     if (!m_scan) {
@@ -179,6 +187,7 @@ private:
     const Stopwatch writing;
     pcs::IO::Write_options options;
     options.number_of_points = m_run.number_of_points;
+    options.faces = m_faces;
     if (pcs::IO::internal::format_by_extension(m_options.output) == pcs::IO::File_format::las)
       choose_las_grid(session, options);
     m_run.points_of_handles.assign(m_edit->handles.size(), 0);
@@ -264,7 +273,8 @@ private:
   const Options& m_options;
   Run_report& m_run;
   Progress_line m_progress;
-  Table m_empty; // with the properties of the input
+  Table m_empty;                                // with the properties of the input
+  std::shared_ptr<pcs::IO::Mesh_faces> m_faces; // null: none
   std::optional<Edit> m_edit;
   std::optional<Edit_scan> m_scan; // refers to m_edit
   std::vector<pcs::Similarity> m_motions;
