@@ -32,7 +32,8 @@ namespace IO {
 
   \param path name of the file; its extension determines the format unless `options.format` is set
   \param table the points
-  \param options options for writing; `number_of_points` is ignored
+  \param options options for writing; `number_of_points` is ignored. `faces` belong to the points in
+         the order of the table.
   \throws pcs::IO_error when the file cannot be written, or the format cannot hold the data
   \throws pcs::Invalid_input when a coordinate is not finite or a property has the wrong size
 */

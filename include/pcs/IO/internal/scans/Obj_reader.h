@@ -70,10 +70,11 @@ public:
       if (!m_file.read_line(line))
         m_file.fail_at_end();
       const std::string_view keyword = next_word(line);
-      if (keyword == "f" && m_faces)
-        read_face(line);
-      if (keyword != "v")
+      if (keyword != "v") {
+        if (keyword == "f" && m_faces)
+          read_face(line);
         continue;
+      }
       parse_row(line, block.bytes.data() + block.number_of_rows * m_layout.row_size);
       block.locations.push_back(m_file.line_number());
       ++block.number_of_rows;
