@@ -137,7 +137,8 @@ public:
       \np{skeleton_method} how branches are found
         \nptype `Skeleton_method`: `chains`, or `sections`, the published method \cite aiteanu2022
         \npdefault `chains`
-      \np{slice_options} options of the method `sections`: how slices are cut, fitted and tilted
+      \np{slice_options} options of the method `sections`: how slices are cut, fitted and tilted,
+          how sections are connected, and the radii of sparse branches
         \nptype `Slice_options`
         \npdefault the published options
       \np{do_remove_ground} whether ground around the foot and flat faces such as walls and roofs
@@ -179,7 +180,8 @@ public:
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: `bool`
         \npdefault none
       \np{normal_map} written by `extract()`: outward unit normal of the branch at the point, the
-          null vector for points without a branch
+          null vector for points without a branch. If `Slice_options::has_normals`, the method
+          `sections` first reads the normals of the input from it; null vectors are unknown
         \nptype model of `WritablePropertyMap`, key: element of `points`, value: a vector type
         \npdefault none
       \np{node_point_map} where the position of a vertex of the result is written
@@ -208,12 +210,14 @@ public:
       skeleton::check_input(input, options.hints, function);
       std::vector<std::uint8_t> is_wood = read_wood();
       options.hints.stations = read_stations();
-      m_hints = options.hints;
+      options.hints.normals = read_normals(options.hints.slices);
       if (options.number_of_resamples > 0) {
+        m_hints = options.hints;
         m_resamples = {skeleton::resample_scan(input,
                                                is_wood,
                                                options.hints.stations,
-                                               options.number_of_resamples),
+                                               options.number_of_resamples,
+                                               options.hints.normals),
                        options.hints};
       }
       m_session =
@@ -412,6 +416,32 @@ private:
       }
     }
     return stations;
+  }
+
+  /// Returns the normals of the input if `rules` states that there are any. Null vectors and
+  /// vectors that are not finite are unknown normals.
+  std::vector<skeleton::Vec3> read_normals(const Slice_options& rules) const
+  {
+    std::vector<skeleton::Vec3> normals;
+    if (!rules.has_normals)
+      return normals;
+    constexpr bool is_given = internal::is_given_v<NamedParameters, CGAL::internal_np::normal_t>;
+    bool is_read = false;
+    if constexpr (is_given) {
+      const auto map = CGAL::parameters::get_parameter(m_np, CGAL::internal_np::normal_map);
+      using Map = std::decay_t<decltype(map)>;
+      if constexpr (is_readable_point_map_v<Map, typename Types::Element>) {
+        is_read = true;
+        normals.reserve(static_cast<std::size_t>(std::end(*m_points) - std::begin(*m_points)));
+        for (auto it = std::begin(*m_points); it != std::end(*m_points); ++it)
+          normals.push_back(skeleton::internal::to_vec3(get(map, *it)));
+      }
+    }
+    internal::check(is_read,
+                    function,
+                    "slice_options: `has_normals` needs the named parameter `normal_map` with a "
+                    "readable map");
+    return normals;
   }
 
   /// Calls `f(i)` for every input point that is assigned to a branch, concurrently if the tag is

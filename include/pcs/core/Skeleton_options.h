@@ -64,6 +64,7 @@ struct Slice_options
   double support_cosine = 0.9;    ///< cosine of the angle between the axes, likewise [-]
   double largest_radius = 200;    ///< largest radius of a candidate center, in spacings [-]
   unsigned seed = 0;              ///< of the random sample
+  bool has_normals = false;       ///< whether `normal_map` has normals of the input, to be used
 };
 
 } // namespace pcs

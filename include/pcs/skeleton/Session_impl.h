@@ -94,6 +94,7 @@ inline Session_options draft_options(Session_options options, const Scan_frame& 
   options.do_register_stations = false;
   options.do_thin = false; // merged points would not belong to one station
   options.stations.clear();
+  options.normals.clear();
   options.method = Skeleton_method::chains;
   options.axes.passes = 1; // sufficient for thick wood, even in leaves
   options.leaf_removal = Leaf_removal::never;
@@ -367,7 +368,8 @@ bool fit_all_axes(Session_state<Tag>& s, pcs::internal::Progress& progress)
 template <class Tag>
 bool find_sections(Session_state<Tag>& s, pcs::internal::Progress& progress)
 {
-  const std::vector<Surface_frame> frames = principal_curvatures<Tag>(s.scan);
+  const std::vector<Surface_frame> frames =
+      principal_curvatures<Tag>(s.scan, normals_of_scan(s.scan, s.options.normals));
   if (!progress(0.7))
     return false;
   s.sections = detect_sections(s.scan, s.is_used(), frames, s.options.slices, [&](double f) {

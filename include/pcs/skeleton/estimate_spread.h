@@ -29,6 +29,7 @@ struct Scan_copy
   std::vector<Vec3> points;
   std::vector<std::uint8_t> is_wood; ///< empty: unknown
   std::vector<long long> stations;   ///< empty: unknown
+  std::vector<Vec3> normals;         ///< empty: unknown
 };
 
 /// Returns the probability that a copy of a scan of `n` points keeps a point [-].
@@ -47,7 +48,8 @@ inline double resampled_fraction(std::size_t n)
 inline std::vector<Scan_copy> resample_scan(const std::vector<Vec3>& points,
                                             const std::vector<std::uint8_t>& is_wood,
                                             const std::vector<long long>& stations,
-                                            std::size_t number_of_copies)
+                                            std::size_t number_of_copies,
+                                            const std::vector<Vec3>& normals = {})
 {
   constexpr std::size_t min_points = 100;
   std::vector<Scan_copy> copies(points.size() < min_points ? 0 : number_of_copies);
@@ -61,6 +63,8 @@ inline std::vector<Scan_copy> resample_scan(const std::vector<Vec3>& points,
         copies[k].is_wood.push_back(is_wood[i]);
       if (!stations.empty())
         copies[k].stations.push_back(stations[i]);
+      if (!normals.empty())
+        copies[k].normals.push_back(normals[i]);
     }
   return copies;
 }
@@ -148,7 +152,8 @@ public:
   Spread_estimator(std::vector<Scan_copy> copies, Session_hints hints)
     : m_copies(std::move(copies)), m_hints(std::move(hints)), m_count(m_copies.size())
   {
-    m_hints.stations.clear(); // set for each copy
+    m_hints.stations.clear(); // set for each copy, like the normals
+    m_hints.normals.clear();
   }
 
   bool is_done() const { return m_copies.empty(); }
@@ -162,6 +167,7 @@ public:
           [&](double f) { return progress((begin + f) / double(m_count)); });
       Session_hints hints = m_hints;
       hints.stations = m_copies.back().stations;
+      hints.normals = m_copies.back().normals;
       Session<ConcurrencyTag> session(m_copies.back().points, m_copies.back().is_wood, hints);
       if (!session.join(part))
         return false;

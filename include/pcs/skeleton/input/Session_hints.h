@@ -28,7 +28,8 @@ struct Session_hints
   Leaf_removal leaf_removal = Leaf_removal::where_found; ///< for the method `chains`
   double breast_height = 1.3;                            ///< [L]
   Skeleton_method method = Skeleton_method::chains;
-  Slice_options slices; ///< for the method `sections`
+  Slice_options slices;      ///< for the method `sections`, like the next
+  std::vector<Vec3> normals; ///< of the points, in input coordinates; null or empty: unknown
 };
 
 } // namespace skeleton

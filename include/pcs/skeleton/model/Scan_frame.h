@@ -29,6 +29,7 @@ struct Scan_frame
 
   Vec3 to_local(const Vec3& p) const { return axes * (p - origin) / unit; }
   Vec3 to_input(const Vec3& p) const { return unit * (axes.transpose() * p) + origin; }
+  Vec3 direction_to_local(const Vec3& d) const { return axes * d; }
   Vec3 direction_to_input(const Vec3& d) const { return axes.transpose() * d; }
 
   /// Returns local coordinates, rounded to the grid.

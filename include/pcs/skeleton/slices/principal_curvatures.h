@@ -51,15 +51,34 @@ inline Vec3 normal_of(const std::vector<Vec3>& points)
 
 } // namespace internal
 
+/// Returns the mean unit normals of the points of the scan, null where all given normals of a point
+/// are null. Normals of opposite signs do not cancel each other.
+inline std::vector<Vec3> normals_of_scan(const Scan& scan, const std::vector<Vec3>& of_input)
+{
+  std::vector<Vec3> normals(of_input.empty() ? 0 : scan.size(), Vec3::Zero());
+  for (std::size_t i = 0; i < of_input.size(); ++i) {
+    const double length = of_input[i].stableNorm();
+    if (!(length > 0) || !std::isfinite(length))
+      continue;
+    const Vec3 normal = scan.frame.direction_to_local(of_input[i] / length);
+    Vec3& sum = normals[scan.point_of_input[i]];
+    sum += sum.dot(normal) < 0 ? Vec3(-normal) : normal;
+  }
+  for (Vec3& normal : normals)
+    normal.stableNormalize();
+  return normals;
+}
+
 /*!
-  Estimates the surface at every point. The normal is the third axis of a principal component
-  analysis. The Weingarten matrix is a least-squares fit of Euler's formula to the normal curvatures
-  of the circles that are tangent to the surface at the point and pass through a neighbour. The
-  centre of curvature, `point + normal / k1`, does not depend on the sign of the normal. O(n k log
-  n).
+  Estimates the surface at every point. The normal is that of `given`, or, if `given` is empty or
+  null at the point, the third axis of a principal component analysis. The Weingarten matrix is a
+  least-squares fit of Euler's formula to the normal curvatures of the circles that are tangent to
+  the surface at the point and pass through a neighbour. The centre of curvature, `point + normal /
+  k1`, does not depend on the sign of the normal. O(n k log n).
 */
 template <class ConcurrencyTag>
-std::vector<Surface_frame> principal_curvatures(const Scan& scan)
+std::vector<Surface_frame> principal_curvatures(const Scan& scan,
+                                                const std::vector<Vec3>& given = {})
 {
   const std::size_t n = scan.size();
   std::vector<Surface_frame> frames(n);
@@ -76,7 +95,8 @@ std::vector<Surface_frame> principal_curvatures(const Scan& scan)
         if (f.index != i && count < curvature_neighbors)
           lists[i * curvature_neighbors + count++] = f.index;
       }
-      frames[i].normal = internal::normal_of(points);
+      const bool is_given = !given.empty() && given[i] != Vec3::Zero();
+      frames[i].normal = is_given ? given[i] : internal::normal_of(points);
     }
   });
   std::vector<Vec3> normals(n);
