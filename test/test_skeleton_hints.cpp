@@ -280,6 +280,13 @@ BOOST_AUTO_TEST_CASE(hints_that_make_no_sense_are_refused)
            [](auto& r) { r.largest_radius = -1; },
            [](auto& r) { r.upright = 1.1; },
            [](auto& r) { r.tilts = -1; },
+           [](auto& r) { r.radius = 0; },
+           [&](auto& r) { r.radius_offset = bad; },
+           [](auto& r) { r.turn_cost = -1; },
+           [](auto& r) { r.dense_radius = -0.1; },
+           [&](auto& r) { r.dense_offset = bad; },
+           [](auto& r) { r.allometry = -0.4; },
+           [](auto& r) { r.has_normals = true; }, // without a normal map
            [](auto& r) { r.support_cosine = 2; }}) {
     pcs::Slice_options rules;
     spoil(rules);

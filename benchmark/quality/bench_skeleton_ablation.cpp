@@ -6,6 +6,7 @@
 #include "measure_skeleton.h"
 #include "support/Table.h"
 #include "support/measuring.h"
+#include <pcs/extract_tree_skeleton.h>
 #include <pcs/generators/grow_tree.h>
 #include <pcs/generators/scan_tree.h>
 #include <pcs/internal/progress.h>
@@ -22,6 +23,7 @@
 #include <functional>
 #include <iostream>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,46 +40,53 @@ using pcs::skeleton::Vec3;
 struct Variant
 {
   std::string name;
-  Session_options options;
+  std::optional<pcs::Slice_options> published; ///< of the public function; none: see the next
+  Session_options options = {};
 };
 
-/// All steps as published [Aiteanu 2022].
-Session_options text()
+/// Variants of the method as published [Aiteanu 2022], by its public options.
+std::vector<Variant> published_variants()
 {
-  Session_options o;
-  o.method = Skeleton_method::sections;
-  o.section_tree.turn_cost = 0;
-  return o;
+  using Options = pcs::Slice_options;
+  std::vector<Variant> result;
+  const auto add = [&](const char* name, const auto& change) {
+    Options o;
+    change(o);
+    result.push_back({name, o});
+  };
+  add("published: all steps", [](Options&) {});
+  add("published, direct ellipse", [](Options& o) { o.fit = Section_fit::ellipse; });
+  add("published, circle", [](Options& o) { o.fit = Section_fit::circle; });
+  add("published, ellipse or circle by arc", [](Options& o) { o.fit = Section_fit::by_arc; });
+  add("published, wider slices", [](Options& o) {
+    o.radius = 1.3;
+    o.radius_offset = 2;
+  });
+  add("published, all points of a slice", [](Options& o) { o.highest_count = 0; });
+  add("published, height by local spacing", [](Options& o) { o.is_height_local = true; });
+  add("published, no tilting", [](Options& o) { o.tilts = 0; });
+  add("published, no support marking", [](Options& o) { o.do_mark_support = false; });
+  add("published, cost of turns", [](Options& o) { o.turn_cost = 1; });
+  add("published, square-root radii", [](Options& o) { o.allometry = 0.5; });
+  add("published, spanning tree alone",
+      [](Options& o) { o.lowest_count = std::numeric_limits<std::size_t>::max(); });
+  add("published, four steps of pcs", [](Options& o) {
+    o.fit = Section_fit::by_arc;
+    o.highest_count = 0;
+    o.is_height_local = true;
+    o.turn_cost = 1;
+  });
+  return result;
 }
 
 std::vector<Variant> variants()
 {
-  std::vector<Variant> result;
+  std::vector<Variant> result = published_variants();
   const auto add = [&](const char* name, Session_options o, const auto& change) {
     change(o);
-    result.push_back({name, std::move(o)});
+    result.push_back({name, std::nullopt, std::move(o)});
   };
   const auto nothing = [](Session_options&) {};
-  add("published: all steps", text(), nothing);
-  add("published, direct ellipse", text(), [](auto& o) { o.slices.fit = Section_fit::ellipse; });
-  add("published, circle", text(), [](auto& o) { o.slices.fit = Section_fit::circle; });
-  add("published, ellipse or circle by arc", text(), [](auto& o) {
-    o.slices.fit = Section_fit::by_arc;
-  });
-  add("published, all points of a slice", text(), [](auto& o) { o.slices.highest_count = 0; });
-  add("published, height by local spacing", text(), [](auto& o) {
-    o.slices.is_height_local = true;
-  });
-  add("published, no tilting", text(), [](auto& o) { o.slices.tilts = 0; });
-  add("published, no support marking", text(), [](auto& o) { o.slices.do_mark_support = false; });
-  add("published, cost of turns", text(), [](auto& o) { o.section_tree.turn_cost = 1; });
-  add("published, square-root radii", text(), [](auto& o) { o.section_tree.allometry = 0.5; });
-  add("published, four steps of pcs", text(), [](auto& o) {
-    o.slices.fit = Section_fit::by_arc;
-    o.slices.highest_count = 0;
-    o.slices.is_height_local = true;
-    o.section_tree.turn_cost = 1;
-  });
   add("pcs: whole chains", Session_options(), nothing);
   add("pcs, one pass", Session_options(), [](auto& o) { o.axes.passes = 1; });
   add("pcs, arcs not joined to rings", Session_options(), [](auto& o) {
@@ -130,33 +139,57 @@ Scene make_scene(const std::string& preset, unsigned seed, std::size_t stations,
   return scene;
 }
 
-std::vector<std::string> row_of(const Scene& scene, const Variant& variant)
+/// A skeleton, and the number of its branches.
+struct Extracted
 {
+  Tree tree;
+  std::size_t number_of_branches = 0;
+};
+
+/// Extracts the skeleton by the public function, or by a session if its stages have other options.
+Extracted extract(const Scene& scene, const Variant& variant)
+{
+  Extracted result;
+  if (variant.published) {
+    const auto np = pcs::parameters::do_register_stations(false) // as in the other rows
+                        .skeleton_method(Skeleton_method::sections)
+                        .slice_options(*variant.published);
+    result.number_of_branches =
+        pcs::extract_tree_skeleton(scene.scan.points, result.tree, np).number_of_branches;
+    return result;
+  }
   std::vector<Vec3> points;
   for (const auto& p : scene.scan.points)
     points.emplace_back(p.x(), p.y(), p.z());
-  const pcs_bench::Timer timer;
   pcs::skeleton::Session<CGAL::Parallel_if_available_tag> session(std::move(points),
                                                                   {},
                                                                   variant.options);
   pcs::internal::Progress progress{std::function<bool(double)>()};
   session.join(progress);
+  if (session.tree().nodes.size() > 1)
+    pcs::skeleton::write_ready_made(session.tree(), session.scan().frame, result.tree);
+  result.number_of_branches = session.report().number_of_branches;
+  return result;
+}
+
+std::vector<std::string> row_of(const Scene& scene, const Variant& variant)
+{
+  const pcs_bench::Timer timer;
+  const Extracted result = extract(scene, variant);
   const double seconds = timer.seconds();
   using pcs_bench::number;
   std::vector<std::string> row{variant.name};
-  if (session.tree().nodes.size() < 2) {
+  if (num_vertices(result.tree) < 2) {
     row.insert(row.end(), 10, "-");
     return row;
   }
-  Tree tree;
-  pcs::skeleton::write_ready_made(session.tree(), session.scan().frame, tree);
-  const auto a = pcs_bench::measure_skeleton<Kernel>(scene.truth, scene.scan.hits, tree);
+  const auto a = pcs_bench::measure_skeleton<Kernel>(scene.truth, scene.scan.hits, result.tree);
   row.push_back(number(100 * a.at_distance.at(1).f1()));
   row.push_back(number(100 * a.at_distance.at(0).f1()));
   for (std::size_t k = 0; k < 4; ++k)
     row.push_back(number(100 * a.size_classes.at(k).radius_error, 2));
   row.push_back(number(100 * a.volume_error()));
-  row.push_back(std::to_string(session.report().number_of_branches));
+  row.push_back(std::to_string(result.number_of_branches));
   row.push_back(number(seconds, 2));
   row.push_back(number(seconds / scene.query_seconds, 2));
   return row;

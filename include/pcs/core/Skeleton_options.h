@@ -48,13 +48,16 @@ constexpr std::size_t fewest_points_of_section = 6;
   \ingroup PkgPcsSkeletonRef
   \brief options of `Skeleton_method::sections`.
 
-  The defaults are those of section 3.7 of \cite aiteanu2022.
+  The defaults are those of section 3.7 of \cite aiteanu2022, which gives no value for the distance
+  of dense points and for the exponent of sparse branches.
 */
 struct Slice_options
 {
   Section_fit fit = Section_fit::conic;
   double height = 5;              ///< height of a slice, in spacings [-]
   bool is_height_local = false;   ///< whether local spacings replace the median spacing
+  double radius = 1;              ///< radius of a slice, in radii of curvature [-] ...
+  double radius_offset = 0;       ///< ... and an addition to it, in spacings [-]
   std::size_t lowest_count = 10;  ///< smallest number of points of a slice [count]
   std::size_t highest_count = 20; ///< larger slices are sampled at random; 0: no limit [count]
   double upright = 0.9;           ///< ratio of the half axes below which a slice is tilted [-]
@@ -65,6 +68,14 @@ struct Slice_options
   double largest_radius = 200;    ///< largest radius of a candidate center, in spacings [-]
   unsigned seed = 0;              ///< of the random sample
   bool has_normals = false;       ///< whether `normal_map` has normals of the input, to be used
+  double turn_cost = 0;           ///< relative cost of a joint across the axes of sections [-]
+  //! largest distance of dense points from the surface between two sections: the sum of this
+  //! fraction of the radius [-] ...
+  double dense_radius = 0.25;
+  double dense_offset = 2; ///< ... and this number of spacings [-]
+  //! exponent of the radii of sparse branches, as a function of the length beyond; 1/2: da Vinci's
+  //! rule [-]
+  double allometry = 0.4;
 };
 
 } // namespace pcs

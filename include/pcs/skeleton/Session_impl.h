@@ -15,6 +15,7 @@
 #include <pcs/skeleton/scan/measure_coordinate_step.h>
 #include <pcs/skeleton/scan/prepare_scan.h>
 #include <pcs/skeleton/scan/thin_dense_points.h>
+#include <pcs/skeleton/slices/section_skeleton.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -372,7 +373,7 @@ bool find_sections(Session_state<Tag>& s, pcs::internal::Progress& progress)
       principal_curvatures<Tag>(s.scan, normals_of_scan(s.scan, s.options.normals));
   if (!progress(0.7))
     return false;
-  s.sections = detect_sections(s.scan, s.is_used(), frames, s.options.slices, [&](double f) {
+  s.sections = detect_sections<Tag>(s.scan, s.is_used(), frames, s.options.slices, [&](double f) {
     return progress(0.7 + 0.2 * f);
   });
   return !progress.is_cancelled();
@@ -455,7 +456,7 @@ template <class Tag>
 bool join_sections(Session_state<Tag>& s, pcs::internal::Progress& progress)
 {
   const pcs::internal::Stage_timer timer(s.report.seconds.joints);
-  s.joined.tree = section_skeleton(s.scan, s.is_used(), s.sections, s.root, s.options.section_tree);
+  s.joined.tree = section_skeleton<Tag>(s.scan, s.is_used(), s.sections, s.root, s.options.slices);
   correct_widening(s);
   describe_tree(s);
   return finish(s, Stage::joints, end_of_radii, progress);

@@ -16,7 +16,6 @@
 #include <pcs/skeleton/registration/register_stations.h>
 #include <pcs/skeleton/result/describe_tree.h>
 #include <pcs/skeleton/scan/thin_dense_points.h>
-#include <pcs/skeleton/slices/section_skeleton.h>
 
 #include <utility>
 
@@ -43,7 +42,6 @@ struct Session_options : Session_hints
   Branching_options branching;
   Radius_options radii;
   Stem_options stems;
-  Section_tree_options section_tree; ///< of the method `sections`
 };
 
 } // namespace skeleton

@@ -120,9 +120,14 @@ void read_given_skeleton(const NamedParameters& np, const std::string& caller, S
 inline void check_slices(const Slice_options& rules, const std::string& caller)
 {
   const auto is_positive = [](double x) { return x > 0 && std::isfinite(x); };
+  const auto is_valid = [](double x) { return x >= 0 && std::isfinite(x); };
   pcs::internal::check(is_positive(rules.height) && is_positive(rules.largest_radius),
                        caller,
                        "slice_options: `height` and `largest_radius` must be positive and finite");
+  pcs::internal::check(is_positive(rules.radius) && is_valid(rules.radius_offset),
+                       caller,
+                       "slice_options: `radius` must be positive, `radius_offset` not negative, "
+                       "both finite");
   pcs::internal::check(
       rules.lowest_count >= fewest_points_of_section &&
           (rules.highest_count == 0 || rules.highest_count >= fewest_points_of_section),
@@ -136,6 +141,14 @@ inline void check_slices(const Slice_options& rules, const std::string& caller)
       rules.support_radius >= 0 && rules.support_cosine >= 0 && rules.support_cosine <= 1,
       caller,
       "slice_options: `support_radius` must not be negative, `support_cosine` in [0, 1]");
+  pcs::internal::check(
+      is_valid(rules.turn_cost) && is_valid(rules.dense_radius) && is_valid(rules.dense_offset),
+      caller,
+      "slice_options: `turn_cost`, `dense_radius` and `dense_offset` must be finite and not "
+      "negative");
+  pcs::internal::check(is_valid(rules.allometry),
+                       caller,
+                       "slice_options: `allometry` must be finite and not negative");
 }
 
 template <class NamedParameters>

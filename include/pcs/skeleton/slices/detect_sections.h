@@ -6,6 +6,7 @@
 #define PCS_SKELETON_SLICES_DETECT_SECTIONS_H
 
 #include <pcs/core/Skeleton_options.h>
+#include <pcs/internal/parallel.h>
 #include <pcs/skeleton/slices/ellipse_fit.h>
 #include <pcs/skeleton/slices/principal_curvatures.h>
 
@@ -30,52 +31,47 @@ struct Found_section
 
 namespace internal {
 
-class Section_detector
+/// Fit of one section, with buffers that are reused for the next.
+class Section_fitter
 {
 public:
-  Section_detector(const Scan& scan,
-                   const std::vector<std::uint8_t>& is_used,
-                   const std::vector<Surface_frame>& frames,
-                   const Slice_options& rules)
+  Section_fitter(const Scan& scan,
+                 const std::vector<std::uint8_t>& is_used,
+                 const std::vector<Surface_frame>& frames,
+                 const Slice_options& rules)
     : m_scan(scan), m_is_used(is_used), m_frames(frames), m_rules(rules)
   {
   }
 
-  /// Detects the sections. Stops early if `progress`, called between points, returns `false`.
-  template <class Callback>
-  std::vector<Found_section> operator()(const Callback& progress)
+  /// Whether the center of curvature of point `i` is a candidate for the center of a section.
+  bool is_candidate(Index i) const
   {
-    constexpr Index batch = 256;
-    std::vector<Found_section> sections;
-    std::vector<std::uint8_t> is_done(m_scan.size(), 0);
-    for (Index i = 0; i < m_scan.size(); ++i) {
-      if (i % batch == 0 && !progress(double(i) / double(m_scan.size())))
-        break;
-      if (is_done[i] || !m_is_used[i])
-        continue;
-      const Surface_frame& f = m_frames[i];
-      if (!(std::abs(f.k1) * m_rules.largest_radius * m_scan.spacing > 1))
-        continue;
-      Found_section s;
-      s.point = i;
-      s.center = m_scan.points[i] + f.normal / f.k1;
-      s.along = f.e2;
-      s.major = s.minor = std::abs(1 / f.k1);
-      double score = 0;
-      if (!fit(i, s, score) || !adjust(i, s, score))
-        continue;
-      sections.push_back(s);
-      if (!m_rules.do_mark_support)
-        continue;
-      for (const Index j : m_slice) {
-        const double r = m_frames[j].k1 != 0 ? std::abs(1 / m_frames[j].k1) : 0;
-        if (std::abs(r - s.radius()) < m_rules.support_radius * s.radius() &&
-            std::abs(m_frames[j].e2.dot(s.along)) > m_rules.support_cosine)
-          is_done[j] = 1;
-      }
-      is_done[i] = 1;
+    return m_is_used[i] && std::abs(m_frames[i].k1) * m_rules.largest_radius * m_scan.spacing > 1;
+  }
+
+  /// Fits the section of a candidate. Returns `false` if there is none.
+  bool operator()(Index i, Found_section& s)
+  {
+    const Surface_frame& f = m_frames[i];
+    s.point = i;
+    s.center = m_scan.points[i] + f.normal / f.k1;
+    s.along = f.e2;
+    s.major = s.minor = std::abs(1 / f.k1);
+    double score = 0;
+    return fit(i, s, score) && adjust(i, s, score);
+  }
+
+  /// Returns the points of the last slice whose curvatures agree with its section `s`.
+  std::vector<Index> support(const Found_section& s) const
+  {
+    std::vector<Index> result;
+    for (const Index j : m_slice) {
+      const double r = m_frames[j].k1 != 0 ? std::abs(1 / m_frames[j].k1) : 0;
+      if (std::abs(r - s.radius()) < m_rules.support_radius * s.radius() &&
+          std::abs(m_frames[j].e2.dot(s.along)) > m_rules.support_cosine)
+        result.push_back(j);
     }
-    return sections;
+    return result;
   }
 
 private:
@@ -84,7 +80,8 @@ private:
   bool fit(Index i, Found_section& s, double& score)
   {
     const double spacing = m_rules.is_height_local ? m_scan.local_spacing[i] : m_scan.spacing;
-    const double half = 0.5 * m_rules.height * spacing, radius = 1.3 * s.major + 2 * m_scan.spacing;
+    const double half = 0.5 * m_rules.height * spacing;
+    const double radius = m_rules.radius * s.major + m_rules.radius_offset * m_scan.spacing;
     m_near.clear();
     m_slice.clear();
     m_scan.search->within(s.center, std::hypot(half, radius), m_near);
@@ -155,23 +152,73 @@ private:
   const Scan& m_scan;
   const std::vector<std::uint8_t>& m_is_used;
   const std::vector<Surface_frame>& m_frames;
-  Slice_options m_rules;
+  const Slice_options& m_rules;
   std::vector<Index> m_near, m_slice;
 };
 
+/// A center candidate, and the result of its fit.
+struct Section_candidate
+{
+  Found_section section;
+  bool is_found = false;
+  std::vector<Index> support;
+};
+
+/// Fits all candidates, whose points are set.
+template <class ConcurrencyTag>
+void fit_candidates(const Section_fitter& fitter,
+                    bool do_find_support,
+                    std::vector<Section_candidate>& candidates)
+{
+  constexpr std::size_t block = 16; // fits differ in their cost
+  const auto fit_block = [&](std::size_t begin, std::size_t end) {
+    Section_fitter fit = fitter;
+    for (std::size_t k = begin; k < end; ++k) {
+      Section_candidate& c = candidates[k];
+      c.is_found = fit(c.section.point, c.section);
+      if (c.is_found && do_find_support)
+        c.support = fit.support(c.section);
+    }
+  };
+  pcs::internal::for_each_block<ConcurrencyTag>(candidates.size(), block, fit_block);
+}
+
 } // namespace internal
 
-/// Detects the sections of all points that support no earlier section. The result depends on the
-/// order of the points, but not on threads. It is incomplete if `progress(fraction)` returns
-/// `false`.
-template <class Callback>
+/// Detects the sections of all points that support no earlier section. The candidates are fitted
+/// concurrently in batches, and accepted in the order of the points: the result depends neither on
+/// threads nor on the size of the batches. It is incomplete if `progress(fraction)`, called between
+/// batches, returns `false`.
+template <class ConcurrencyTag, class Callback>
 std::vector<Found_section> detect_sections(const Scan& scan,
                                            const std::vector<std::uint8_t>& is_used,
                                            const std::vector<Surface_frame>& frames,
                                            const Slice_options& rules,
                                            const Callback& progress)
 {
-  return internal::Section_detector(scan, is_used, frames, rules)(progress);
+  constexpr std::size_t batch = 1024; // takes less than a second
+  const Index n = static_cast<Index>(scan.size());
+  const internal::Section_fitter fitter(scan, is_used, frames, rules);
+  std::vector<Found_section> sections;
+  std::vector<std::uint8_t> is_done(n, 0);
+  std::vector<internal::Section_candidate> candidates;
+  for (Index next = 0; next < n && progress(double(next) / double(n));) {
+    candidates.clear();
+    for (; next < n && candidates.size() < batch; ++next)
+      if (!is_done[next] && fitter.is_candidate(next)) {
+        candidates.emplace_back();
+        candidates.back().section.point = next;
+      }
+    internal::fit_candidates<ConcurrencyTag>(fitter, rules.do_mark_support, candidates);
+    for (const internal::Section_candidate& c : candidates) {
+      if (!c.is_found || is_done[c.section.point])
+        continue;
+      sections.push_back(c.section);
+      for (const Index j : c.support)
+        is_done[j] = 1;
+    }
+  }
+  return sections;
 }
 
 } // namespace skeleton
