@@ -79,10 +79,11 @@ struct Labels
   std::vector<std::size_t> branch;
   std::vector<double> residual;
   std::vector<std::uint8_t> dense, leaf;
-  std::vector<Kernel::Vector_3> normal; ///< null for points without a branch
+  std::vector<Kernel::Vector_3> normal; ///< of the input, then null for points without a branch
 };
 
-/// Extracts the skeleton; labels are computed only if they are written.
+/// Extracts the skeleton; labels are computed only if they are written, or if the normals of the
+/// input are given in them.
 template <class Range, class NamedParameters>
 pcs::Skeleton_report extract_with_labels(const Range& indices,
                                          const Skeleton_options& options,
@@ -90,7 +91,7 @@ pcs::Skeleton_report extract_with_labels(const Range& indices,
                                          Labels& labels,
                                          const NamedParameters& np)
 {
-  if (options.points.empty())
+  if (options.points.empty() && labels.normal.empty())
     return pcs::extract_tree_skeleton(indices, tree, np);
   const auto identity = boost::typed_identity_property_map<std::size_t>();
   const auto map = [&](auto& values) {
@@ -163,7 +164,11 @@ pcs::Skeleton_report extract(const std::string& input,
     line.show("skeleton", f);
     return true;
   };
-  pcs::Slice_options slices;
+  pcs::Slice_options slices = options.slices;
+  slices.has_normals =
+      options.method == "sections" && !options.do_estimate_normals && table.has_normals();
+  if (slices.has_normals)
+    labels.normal = table.normals();
   slices.fit = section_fit(options.fit);
   slices.do_mark_support = !options.do_fit_all;
   if (options.do_use_all)

@@ -465,8 +465,19 @@ BOOST_AUTO_TEST_CASE(bad_input_is_refused_and_touches_no_file)
   refuses("--input tree.xyz --swc old.swc --skeleton far.swc", "away from the points");
   refuses("--input tree.xyz --swc old.swc --skeleton dot.swc --root 0 0 0", "--root");
   refuses("--input tree.xyz --swc old.swc --method magic", "--method");
-  for (const std::string option : {"--fit circle", "--all-points", "--no-support"})
+  for (const std::string option : {"--fit circle",
+                                   "--all-points",
+                                   "--no-support",
+                                   "--estimate-normals",
+                                   "--slice-radius 1",
+                                   "--slice-offset 2",
+                                   "--turn-cost 1",
+                                   "--dense-radius 0.2",
+                                   "--dense-offset 2",
+                                   "--allometry 0.4"})
     refuses("--input tree.xyz --swc old.swc " + option, "--method sections");
+  refuses("--input tree.xyz --swc old.swc --method sections --allometry -1", "--allometry");
+  refuses("--input tree.xyz --swc old.swc --method sections --slice-radius 0", "`radius`");
   refuses("--input tree.xyz --swc old.swc --method chains --fit circle", "--method sections");
   refuses("--input tree.xyz --swc old.swc --tolerance 0.1", "--tolerance has no effect");
   refuses("--input tree.xyz --swc old.swc --separate", "--separate has no effect");

@@ -6,6 +6,7 @@
 #define PCS_EXAMPLES_PROGRAMS_SKELETON_SKELETON_OPTIONS_H
 
 #include "common/Distinct_files.h"
+#include <pcs/core/Skeleton_options.h>
 #include <pcs/core/errors.h>
 
 #include <CLI/CLI.hpp>
@@ -33,17 +34,44 @@ struct Skeleton_options
   double beam_milliradians = -1; // < 0: the default of the library
   double tolerance = -1;         // < 0: the default of the library
   double breast_height = 1.3;
-  std::size_t root_number = 1; ///< of the tree in the file of the given skeleton
+  pcs::Slice_options slices;              ///< the numbers of `slice_numbers()`
+  std::vector<std::string> given_numbers; ///< the options of those that are given
+  std::size_t root_number = 1;            ///< of the tree in the file of the given skeleton
   int number_of_resamples = 4;
   bool do_keep_stations = false, do_keep_ground = false, do_remove_leaves = false,
        do_keep_leaves = false, do_separate = false, do_use_all = false, do_fit_all = false,
-       is_quiet = false;
+       do_estimate_normals = false, is_quiet = false;
 
   bool has_mesh() const
   {
     return !mesh.empty() || std::find(also.begin(), also.end(), "mesh") != also.end();
   }
 };
+
+/// A numerical option of the method `sections`.
+struct Slice_number
+{
+  const char* option;
+  double pcs::Slice_options::*value;
+  const char* help;
+};
+
+inline const std::array<Slice_number, 6>& slice_numbers()
+{
+  using Options = pcs::Slice_options;
+  static const std::array<Slice_number, 6> numbers = {
+      {{"--slice-radius", &Options::radius, "radius of a slice, in radii of curvature"},
+       {"--slice-offset", &Options::radius_offset, "addition to this radius, in spacings"},
+       {"--turn-cost", &Options::turn_cost, "relative cost of a joint across the axes"},
+       {"--dense-radius",
+        &Options::dense_radius,
+        "largest distance of dense points from a branch, in radii ..."},
+       {"--dense-offset", &Options::dense_offset, "... and an addition to it, in spacings"},
+       {"--allometry",
+        &Options::allometry,
+        "exponent of the radii of sparse branches, as a function of the length beyond"}}};
+  return numbers;
+}
 
 /// Returns the options on which results depend, without those of a single scan.
 inline nlohmann::ordered_json to_json(const Skeleton_options& o)
@@ -65,6 +93,9 @@ inline nlohmann::ordered_json to_json(const Skeleton_options& o)
     json["fit"] = o.fit;
     json["all_points"] = o.do_use_all;
     json["no_support"] = o.do_fit_all;
+    json["estimate_normals"] = o.do_estimate_normals;
+    for (const Slice_number& number : slice_numbers())
+      json[std::string(number.option).substr(2)] = o.slices.*number.value;
   }
   if (o.has_mesh()) {
     json["tolerance"] = o.tolerance;
@@ -196,6 +227,18 @@ inline void declare(CLI::App& app, Skeleton_options& options)
                options.do_use_all,
                "method `sections`: use all points of a slice, not a random sample of 20");
   app.add_flag("--no-support", options.do_fit_all, "method `sections`: cut a slice at every point");
+  app.add_flag("--estimate-normals",
+               options.do_estimate_normals,
+               "method `sections`: estimate normals even if the scan has them");
+  for (const Slice_number& number : slice_numbers())
+    app.add_option(number.option,
+                   options.slices.*number.value,
+                   std::string("method `sections`: ") + number.help)
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str()
+        ->each([&options, number](const std::string&) {
+          options.given_numbers.emplace_back(number.option);
+        });
   app.add_flag("--keep-ground", options.do_keep_ground, "keep ground points");
   app.add_flag("--remove-leaves",
                options.do_remove_leaves,
@@ -343,6 +386,9 @@ inline void check(const Skeleton_options& options)
   refuse(!options.fit.empty() && !has_sections, "--fit", "--method sections");
   refuse(options.do_use_all && !has_sections, "--all-points", "--method sections");
   refuse(options.do_fit_all && !has_sections, "--no-support", "--method sections");
+  refuse(options.do_estimate_normals && !has_sections, "--estimate-normals", "--method sections");
+  for (const std::string& option : options.given_numbers)
+    refuse(!has_sections, option.c_str(), "--method sections");
   refuse(options.tolerance >= 0 && !options.has_mesh(), "--tolerance", "a mesh");
   refuse(options.do_separate && !options.has_mesh(), "--separate", "a mesh");
   if (options.folder.empty())
