@@ -220,6 +220,25 @@ BOOST_AUTO_TEST_CASE(implausible_trees_are_named)
   BOOST_TEST(sentences[1].find("number 1") != std::string::npos);
 }
 
+BOOST_AUTO_TEST_CASE(trees_that_end_far_below_others_are_named)
+{
+  pcs::Segmentation_report report;
+  report.breast_height = 1.3;
+  report.trees.resize(5);
+  for (std::size_t t = 0; t < 5; ++t) {
+    report.trees[t].radius = 0.2 - 0.01 * double(t);
+    report.trees[t].height = 15 - double(t);
+  }
+  BOOST_TEST(pcs::warnings(report).empty());
+  report.trees[1].height = 7; // the top is missing
+  const std::vector<std::string> sentences = pcs::warnings(report);
+  BOOST_TEST_REQUIRE(sentences.size() == 1u);
+  BOOST_TEST(sentences[0].find("1 tree(s) much lower than others") == 0u);
+  BOOST_TEST(sentences[0].find("number 1") != std::string::npos);
+  report.trees[1].radius = 0.1; // a young tree
+  BOOST_TEST(pcs::warnings(report).empty());
+}
+
 BOOST_AUTO_TEST_CASE(touching_trees_are_told_apart)
 {
   for (const double slope : {0.0, 0.4}) {

@@ -11,6 +11,7 @@
 #include <pcs/core/Tree_skeleton.h>
 #include <pcs/core/errors.h>
 #include <pcs/internal/Stopwatch.h>
+#include <pcs/internal/median.h>
 #include <pcs/internal/parallel.h>
 #include <pcs/internal/progress.h>
 #include <pcs/internal/unit_of_height.h>
@@ -90,6 +91,9 @@ void warn_of_trees(const Segmentation_report& r,
 inline std::vector<std::string> warnings(const Segmentation_report& r)
 {
   constexpr double max_diameter = 0.1; // stem diameter / height; trees: 0.01 to 0.05 [-]
+  // a tree without its top: height and radius, in medians of a stand of at least this many trees
+  constexpr double cut_height = 0.6, full_radius = 0.8;
+  constexpr std::size_t min_trees = 4;
   double height = 0;
   for (const Segmented_tree& tree : r.trees)
     height = std::max(height, tree.height);
@@ -102,6 +106,24 @@ inline std::vector<std::string> warnings(const Segmentation_report& r)
       [&](const Segmented_tree& t) { return !is_low(t) && 2 * t.radius > max_diameter * t.height; },
       "with a stem too thick for the height, perhaps several stems or ground in one",
       sentences);
+  if (r.trees.size() >= min_trees) {
+    std::vector<double> heights, radii;
+    for (const Segmented_tree& tree : r.trees) {
+      heights.push_back(tree.height);
+      radii.push_back(tree.radius);
+    }
+    const double typical_height = internal::lower_median(heights),
+                 typical_radius = internal::lower_median(radii);
+    internal::warn_of_trees(
+        r,
+        [&](const Segmented_tree& t) {
+          return !is_low(t) && t.height < cut_height * typical_height &&
+                 t.radius > full_radius * typical_radius;
+        },
+        "much lower than others with stems as thick; the top may be missing, or part of a "
+        "neighbouring tree",
+        sentences);
+  }
   return sentences;
 }
 
