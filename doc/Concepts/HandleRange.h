@@ -20,7 +20,7 @@
 
   \par Checked by
   a `static_assert` of `pcs::deform_point_set()`: on a const object, `std::begin()` and `std::end()`
-  are valid, and `*std::begin(range)` converts to `const pcs::Deformation_handle&`
+  are valid, and elements convert to `const pcs::Deformation_handle&`
 
   \par Models
   `std::vector<pcs::Deformation_handle>`, `std::array<pcs::Deformation_handle, n>`
