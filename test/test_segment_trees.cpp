@@ -218,6 +218,8 @@ BOOST_AUTO_TEST_CASE(implausible_trees_are_named)
   BOOST_TEST(sentences[0].find("number 2") != std::string::npos);
   BOOST_TEST(sentences[1].find("too thick for the height") != std::string::npos);
   BOOST_TEST(sentences[1].find("number 1") != std::string::npos);
+  report.trees[0].diameter_at_breast_height = 1.8; // of a tree of 15 m
+  BOOST_TEST(pcs::warnings(report)[1].find("number 0, 1") != std::string::npos);
 }
 
 BOOST_AUTO_TEST_CASE(trees_that_end_far_below_others_are_named)

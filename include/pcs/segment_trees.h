@@ -103,7 +103,10 @@ inline std::vector<std::string> warnings(const Segmentation_report& r)
   internal::warn_of_trees(r, is_low, "lower than breast height, perhaps shrubs", sentences);
   internal::warn_of_trees(
       r,
-      [&](const Segmented_tree& t) { return !is_low(t) && 2 * t.radius > max_diameter * t.height; },
+      [&](const Segmented_tree& t) {
+        return !is_low(t) &&
+               std::max(2 * t.radius, t.diameter_at_breast_height) > max_diameter * t.height;
+      },
       "with a stem too thick for the height, perhaps several stems or ground in one",
       sentences);
   if (r.trees.size() >= min_trees) {
