@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
-// Elliptic sections of branches that are visible from one side only.
+// Common elliptic section of branches whose single sections do not determine ellipses, since they
+// are visible from one side only or nearly round.
 
 #ifndef PCS_SKELETON_RADII_FIT_BRANCH_OVALS_H
 #define PCS_SKELETON_RADII_FIT_BRANCH_OVALS_H
