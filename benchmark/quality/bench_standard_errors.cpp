@@ -1,13 +1,16 @@
 // Copyright (c) 2026 The pcs authors
 // SPDX-License-Identifier: BSL-1.0
 // Calibration of the standard errors of skeletons: fraction of virtual trees whose true value lies
-// within two standard errors. Each seed gives another tree, scanner and number of leaves.
+// within two standard errors. Each seed gives another tree, scanner and number of leaves. For real
+// scans, whose true values are unknown, random halves of a scan are compared with the whole scan.
 
 #include "support/Table.h"
+#include <pcs/IO/read_points.h>
 #include <pcs/extract_tree_skeleton.h>
 #include <pcs/generators/Tree_habit.h>
 #include <pcs/generators/grow_tree.h>
 #include <pcs/generators/scan_tree.h>
+#include <pcs/internal/Random_stream.h>
 
 #include <CGAL/Simple_cartesian.h>
 
@@ -117,36 +120,64 @@ struct Coverage
   std::vector<double> relative_errors; ///< standard errors / values
 };
 
-/// Adds the tree of a seed.
-void add(std::uint64_t seed, std::array<Coverage, number_of_values>& coverage)
+/// Adds the values of a skeleton, and the reference values.
+void add(const pcs::Skeleton_report& report,
+         const Values& reference,
+         std::array<Coverage, number_of_values>& coverage)
 {
-  const auto habits = pcs::tree_habits();
-  Tree tree, result;
-  pcs::grow_tree(tree, habits[seed % habits.size()].second, np::random_seed(seed));
-  pcs::Virtual_scan<Kernel> scan;
-  pcs::scan_tree(tree, scan, scanner_of(seed), np::random_seed(seed));
-  const pcs::Skeleton_report report =
-      pcs::extract_tree_skeleton(scan.points, result, np::number_of_resamples(4));
-  if (report.spread.number_of_copies < 2) {
-    std::cerr << "seed " << seed << ": no tree\n";
-    return;
-  }
-  const Values truth = true_values(tree, scan.hits), found = values_of(report),
-               errors = values_of(pcs::standard_errors(report));
+  const Values found = values_of(report), errors = values_of(pcs::standard_errors(report));
   for (std::size_t k = 0; k < number_of_values; ++k) {
-    if (!(truth[k] > 0) || !(found[k] > 0))
+    if (!(reference[k] > 0) || !(found[k] > 0))
       continue;
     ++coverage[k].number_of_trees;
-    coverage[k].number_within += std::abs(found[k] - truth[k]) <= 2 * errors[k];
+    coverage[k].number_within += std::abs(found[k] - reference[k]) <= 2 * errors[k];
     coverage[k].relative_errors.push_back(errors[k] / found[k]);
   }
 }
 
-int run(std::uint64_t first, std::size_t count)
+pcs::Skeleton_report extract(const std::vector<Kernel::Point_3>& points)
 {
-  std::array<Coverage, number_of_values> coverage;
-  for (std::size_t k = 0; k < count; ++k)
-    add(first + k, coverage);
+  Tree result;
+  return pcs::extract_tree_skeleton(points, result, np::number_of_resamples(4));
+}
+
+/// Adds the tree of a seed.
+void add_virtual_tree(std::uint64_t seed, std::array<Coverage, number_of_values>& coverage)
+{
+  const auto habits = pcs::tree_habits();
+  Tree tree;
+  pcs::grow_tree(tree, habits[seed % habits.size()].second, np::random_seed(seed));
+  pcs::Virtual_scan<Kernel> scan;
+  pcs::scan_tree(tree, scan, scanner_of(seed), np::random_seed(seed));
+  const pcs::Skeleton_report report = extract(scan.points);
+  if (report.spread.number_of_copies < 2)
+    std::cerr << "seed " << seed << ": no tree\n";
+  else
+    add(report, true_values(tree, scan.hits), coverage);
+}
+
+/// Adds four random halves of a scan; the values of the whole scan are the reference.
+void add_halves(const std::string& file, std::array<Coverage, number_of_values>& coverage)
+{
+  const std::vector<Kernel::Point_3> points = pcs::IO::read_points(file).points();
+  const pcs::Skeleton_report whole = extract(points);
+  if (whole.spread.number_of_copies < 2) {
+    std::cerr << file << ": no tree\n";
+    return;
+  }
+  for (std::uint64_t half = 0; half < 4; ++half) {
+    std::vector<Kernel::Point_3> kept;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (pcs::internal::Random_stream(1000 + half, i).uniform() < 0.5)
+        kept.push_back(points[i]);
+    const pcs::Skeleton_report report = extract(kept);
+    if (report.spread.number_of_copies >= 2)
+      add(report, values_of(whole), coverage);
+  }
+}
+
+void print(std::array<Coverage, number_of_values>& coverage)
+{
   pcs_bench::Table table({"value", "trees", "within 2 standard errors", "median standard error"});
   for (std::size_t k = 0; k < number_of_values; ++k) {
     Coverage& c = coverage[k];
@@ -160,21 +191,30 @@ int run(std::uint64_t first, std::size_t count)
                pcs_bench::number(100 * median, 2) + " %"});
   }
   table.print(std::cout);
-  return 0;
 }
 
 } // namespace
 
 int main(int argc, char** argv)
 {
-  CLI::App app("Prints how often the true values of virtual trees lie within two standard errors.");
+  CLI::App app("Prints how often the true values of virtual trees lie within two standard errors. "
+               "With scans: how often the values of a scan lie within two standard errors of those "
+               "of its random halves.");
   std::uint64_t first = 20000;
   std::size_t count = 100;
+  std::vector<std::string> files;
   app.add_option("--first-seed", first, "seed of the first tree")->capture_default_str();
   app.add_option("--trees", count, "number of trees")->capture_default_str();
+  app.add_option("scans", files, "scans of single trees, z up, in metres; no virtual trees");
   CLI11_PARSE(app, argc, argv);
   try {
-    return run(first, count);
+    std::array<Coverage, number_of_values> coverage;
+    for (const std::string& file : files)
+      add_halves(file, coverage);
+    for (std::size_t k = 0; k < count && files.empty(); ++k)
+      add_virtual_tree(first + k, coverage);
+    print(coverage);
+    return 0;
   } catch (const std::exception& e) {
     std::cerr << "bench_standard_errors: " << e.what() << '\n';
     return 1;

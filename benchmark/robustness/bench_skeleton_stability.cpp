@@ -99,10 +99,11 @@ std::vector<Copy> copies_of(const Points& points)
   return result;
 }
 
-Measures measure(const Copy& copy)
+Measures measure(const Copy& copy, std::size_t number_of_resamples)
 {
   pcs::Tree_skeleton<Kernel> tree;
-  const pcs::Skeleton_report report = pcs::extract_tree_skeleton(copy.points, tree);
+  const pcs::Skeleton_report report =
+      pcs::extract_tree_skeleton(copy.points, tree, np::number_of_resamples(number_of_resamples));
   Measures m;
   m.height = report.height;
   m.diameter = report.diameter_at_breast_height;
@@ -132,6 +133,7 @@ double spread(const std::vector<Measures>& all, double Measures::*member)
 int main(int argc, char** argv)
 {
   std::vector<std::string> files;
+  std::size_t number_of_resamples = 4;
   bool is_detailed = false;
   CLI::App app("Extracts the skeleton of each scan and of nearly identical copies: 32-bit floats, "
                "moved by at most 10 um, "
@@ -140,6 +142,11 @@ int main(int argc, char** argv)
                "the scan as it is, without the copy of 95 %.",
                "bench_skeleton_stability");
   app.add_option("scans", files, "scans of single trees, z up, in metres")->required();
+  app.add_option("--resamples",
+                 number_of_resamples,
+                 "resampled copies of each scan, as of the "
+                 "program extract_tree_skeleton")
+      ->capture_default_str();
   app.add_flag("--all", is_detailed, "print the measures of each copy, too");
   CLI11_PARSE(app, argc, argv);
   pcs_bench::Table table({"scan",
@@ -167,7 +174,7 @@ int main(int argc, char** argv)
       const std::string name = std::filesystem::path(file).stem().string();
       std::vector<Measures> all;
       for (const Copy& copy : copies_of(pcs::IO::read_points(file).points())) {
-        all.push_back(measure(copy));
+        all.push_back(measure(copy, number_of_resamples));
         const Measures& m = all.back();
         details.add({name,
                      copy.name,

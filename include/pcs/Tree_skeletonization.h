@@ -151,8 +151,9 @@ public:
         \npdefault `default_breast_height`, for scans in metres
       \np{number_of_resamples} random subsets of the scan, with 90 % of the points but at most
           40,000, whose skeletons give the standard deviations in `Skeleton_report::spread`. Each
-          subset takes as long as a scan of its size. The majority of the scan and its subsets
-          decides whether there are leaves, if the subsets have at least half of the points
+          subset takes as long as a scan of its size. If the subsets have at least half of the
+          points, the majority decides whether there are leaves, and a skeleton that differs from
+          most subsets is replaced by that of points displaced by a thousandth of their spacing
         \nptype integer, 0 to 100
         \npdefault 0: the spread is not estimated
       \np{wood_map} whether a point may belong to a branch; others (leaves) are not used
@@ -295,6 +296,7 @@ public:
       Skeleton_report report = m_session->report();
       report.spread = m_resamples.spread();
       report.spread.is_leaf_removal_changed = m_is_leaf_removal_changed;
+      report.spread.is_displaced = m_is_displaced;
       if (report.spread.number_of_copies > 0)
         report.spread.fraction = skeleton::resampled_fraction(report.number_of_points);
       return report;
@@ -322,7 +324,7 @@ private:
   /// The fraction of the progress at which the stages end if resampled copies follow.
   static constexpr double end_of_stages = 0.5;
   /// The fraction at which a second extraction may follow, see `estimate_spread()`.
-  static constexpr double end_of_copies = 0.8;
+  static constexpr double end_of_copies = 0.8, end_of_vote = 0.9;
 
   template <class Stage>
   bool run(const Stage& stage)
@@ -338,21 +340,59 @@ private:
   /// scan in whether there are leaves, extracts the skeleton of the scan again.
   bool estimate_spread()
   {
-    if (m_resamples.is_done() || m_session->report().status != Status::converged)
+    if (m_is_spread_done || m_session->report().status != Status::converged)
       return true;
     internal::Progress progress(m_callback);
-    progress.stage(end_of_stages, end_of_copies);
-    if (!m_resamples.run(progress))
+    if (!m_resamples.is_done()) {
+      progress.stage(end_of_stages, end_of_copies);
+      if (!m_resamples.run(progress))
+        return false;
+      const Skeleton_report& r = m_session->report();
+      const Leaf_removal vote =
+          m_resamples.vote_on_leaves(r.number_of_leaf_points > 0, r.number_of_points);
+      m_is_leaf_removal_changed = vote != Leaf_removal::where_found;
+      if (m_is_leaf_removal_changed) {
+        m_hints.leaf_removal = vote;
+        m_session = std::make_unique<Session>(read_points(), read_wood(), m_hints);
+      }
+    }
+    progress.stage(end_of_copies, end_of_vote);
+    if (!m_session->join(progress))
       return false;
-    const Skeleton_report& r = m_session->report();
-    m_hints.leaf_removal =
-        m_resamples.vote_on_leaves(r.number_of_leaf_points > 0, r.number_of_points);
-    if (m_hints.leaf_removal == Leaf_removal::where_found)
-      return true;
-    m_is_leaf_removal_changed = true;
-    m_session = std::make_unique<Session>(read_points(), read_wood(), m_hints);
-    progress.stage(end_of_copies, 1);
-    return m_session->join(progress);
+    progress.stage(end_of_vote, 1);
+    m_is_spread_done = choose_typical_skeleton(progress);
+    return m_is_spread_done;
+  }
+
+  /*!
+    If the skeleton of the scan differs from most copies, extracts skeletons of the scan with points
+    displaced by a thousandth of their spacing, and keeps the one that differs least. Decisions that
+    depend on chance are thus made as in most copies.
+  */
+  bool choose_typical_skeleton(internal::Progress& progress)
+  {
+    constexpr std::size_t max_trials = 4;
+    constexpr double displacement = 0.001; // spacings
+    double least = m_resamples.distance_from_copies(*m_session);
+    for (; m_number_of_trials < max_trials && least > 1; ++m_number_of_trials) {
+      if (!m_trial) {
+        std::vector<skeleton::Vec3> points = read_points();
+        skeleton::displace_points(points,
+                                  displacement * m_session->report().spacing,
+                                  m_number_of_trials + 1);
+        m_trial = std::make_unique<Session>(std::move(points), read_wood(), m_hints);
+      }
+      if (!m_trial->join(progress))
+        return false;
+      const double distance = m_resamples.distance_from_copies(*m_trial);
+      if (distance < least) {
+        least = distance;
+        m_session = std::move(m_trial);
+        m_is_displaced = true;
+      }
+      m_trial.reset();
+    }
+    return true;
   }
 
   std::vector<skeleton::Vec3> read_points() const
@@ -579,7 +619,9 @@ private:
   std::unique_ptr<Session> m_session;
   skeleton::Spread_estimator<ConcurrencyTag> m_resamples;
   skeleton::Session_hints m_hints;
-  bool m_is_leaf_removal_changed = false;
+  std::unique_ptr<Session> m_trial; ///< see `choose_typical_skeleton()`
+  std::size_t m_number_of_trials = 0;
+  bool m_is_leaf_removal_changed = false, m_is_displaced = false, m_is_spread_done = false;
 };
 
 } // namespace pcs

@@ -54,6 +54,7 @@ inline nlohmann::ordered_json to_json(const pcs::Skeleton_spread& s)
           {"empty_copies", s.number_of_empty_copies},
           {"leafy_copies", s.number_of_leafy_copies},
           {"leaf_removal_changed", s.is_leaf_removal_changed},
+          {"displaced", s.is_displaced},
           {"height", s.height},
           {"diameter_at_breast_height", s.diameter_at_breast_height},
           {"trunk_length", s.trunk_length},

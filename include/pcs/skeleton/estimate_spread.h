@@ -7,6 +7,7 @@
 
 #include <pcs/core/Skeleton_report.h>
 #include <pcs/internal/Random_stream.h>
+#include <pcs/internal/median.h>
 #include <pcs/internal/progress.h>
 #include <pcs/skeleton/Session.h>
 #include <pcs/skeleton/input/Session_hints.h>
@@ -17,6 +18,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -69,6 +71,17 @@ inline std::vector<Scan_copy> resample_scan(const std::vector<Vec3>& points,
   return copies;
 }
 
+/// Displaces each coordinate by at most `largest` [L]. The displacements depend only on `seed` and
+/// the indices of the points. O(n).
+inline void displace_points(std::vector<Vec3>& points, double largest, std::uint64_t seed)
+{
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    pcs::internal::Random_stream random(seed, i);
+    for (int k = 0; k < 3; ++k)
+      points[i][k] += largest * (2 * random.uniform() - 1);
+  }
+}
+
 namespace internal {
 
 /// Returns the sample standard deviation.
@@ -105,6 +118,33 @@ struct Copied_figures
       by_size[k].push_back(r.by_size[k].volume);
     for (int k = 0; k < 3; ++k)
       root[k].push_back(root_position[k]);
+  }
+
+  /*!
+    Returns how far the descriptors of a skeleton are from the medians of the copies and this
+    skeleton: the largest difference in units of 1 % of the height, 2 % of the diameter at breast
+    height, 5 % of the length of the trunk, 5 % of the volume, or 4 % of the breast height for the
+    position of the root [-]. 0 without copies.
+  */
+  double distance_from_medians(const Skeleton_report& r, const Vec3& root_position) const
+  {
+    if (height.empty())
+      return 0;
+    double largest = 0;
+    const auto compare = [&](std::vector<double> values, double value, double unit) {
+      values.push_back(value);
+      const double difference = std::abs(value - pcs::internal::lower_median(values));
+      if (difference > 0)
+        largest = std::max(largest, difference / unit);
+    };
+    const double trunk_length = r.by_order.empty() ? 0 : r.by_order.front().length;
+    compare(height, r.height, 0.01 * r.height);
+    compare(diameter, r.diameter_at_breast_height, 0.02 * r.diameter_at_breast_height);
+    compare(trunk, trunk_length, 0.05 * trunk_length);
+    compare(volume, r.total.volume, 0.05 * r.total.volume);
+    for (int k = 0; k < 3; ++k)
+      compare(root[k], root_position[k], 0.04 * r.breast_height);
+    return largest;
   }
 
   Skeleton_spread spread() const
@@ -171,22 +211,30 @@ public:
       Session<ConcurrencyTag> session(m_copies.back().points, m_copies.back().is_wood, hints);
       if (!session.join(part))
         return false;
-      const Branch_tree& tree = session.tree();
       if (session.report().status == Status::converged)
-        m_figures.add(
-            session.report(),
-            session.scan().frame.to_input(tree.nodes[tree.branches.front().nodes.front()].point));
+        m_figures.add(session.report(), root_of(session));
     }
     return true;
+  }
+
+  /// Returns how untypical a skeleton is of the copies: the largest difference from the medians, 1
+  /// if the difference is just tolerable [-]. 0 if the copies are thinned, hence not comparable.
+  double distance_from_copies(const Session<ConcurrencyTag>& session) const
+  {
+    const Skeleton_report& r = session.report();
+    if (r.status != Status::converged)
+      return std::numeric_limits<double>::infinity();
+    if (resampled_fraction(r.number_of_points) < least_comparable_fraction)
+      return 0;
+    return m_figures.distance_from_medians(r, root_of(session));
   }
 
   /// Returns the vote of the scan and its copies on leaves, see `majority_on_leaves()`. Copies vote
   /// only if they have most of the points, since leaves are not recognized in thinned scans.
   Leaf_removal vote_on_leaves(bool has_leaves, std::size_t number_of_points) const
   {
-    constexpr double least_fraction = 0.5;
     if (m_hints.leaf_removal != Leaf_removal::where_found ||
-        resampled_fraction(number_of_points) < least_fraction)
+        resampled_fraction(number_of_points) < least_comparable_fraction)
       return Leaf_removal::where_found;
     return majority_on_leaves(m_figures.height.size(),
                               m_figures.number_of_leafy_copies,
@@ -202,6 +250,16 @@ public:
   }
 
 private:
+  /// Copies with a smaller fraction of the points are not compared with the scan [-].
+  static constexpr double least_comparable_fraction = 0.5;
+
+  /// Returns the root in the coordinates of the input.
+  static Vec3 root_of(const Session<ConcurrencyTag>& session)
+  {
+    const Branch_tree& tree = session.tree();
+    return session.scan().frame.to_input(tree.nodes[tree.branches.front().nodes.front()].point);
+  }
+
   std::vector<Scan_copy> m_copies;
   Session_hints m_hints;
   std::size_t m_count = 0;
